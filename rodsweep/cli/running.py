@@ -1,0 +1,154 @@
+"""`rodsweep run`, read aloud: read the config, open the file, solve what is missing, fold it in."""
+
+import os
+import socket
+import sys
+import time
+from pathlib import Path
+
+import click
+
+from ..results.journal import Journal, journal_directory
+from ..results.provenance import now, provenance
+from ..results.store import Plan, Store
+from ..sweep.loop import sweep
+from ..sweep.progress import Teller
+from ..sweep.team import Team
+from .job import Job, make_job
+
+FAILURES_TOLD = 3
+"""Failed points that are named at the end of a run; the file has the status of all."""
+
+
+def run_config(path: Path, output: Path, overrides: tuple[str, ...], fresh: bool) -> int:
+    """Runs a config on all ranks; returns the exit status."""
+    team = Team()
+    job = team.on_first(lambda: make_job(path, overrides))
+    from ..solve import petsc, spectrum  # starts PETSc, which only a valid config is worth
+
+    began, started = time.monotonic(), now()
+    plan = _plan(job, spectrum.Status, petsc)
+    store: list[Store] = []
+
+    def open_store() -> list[tuple[int, int]]:
+        store.append(Store(output, plan, fresh))
+        return store[0].missing()
+
+    todo = team.on_first(open_store)
+    count = sum(stop - start for start, stop in todo)
+    if team.first:
+        kept = job.points.count - count
+        click.echo(f"{output}: {count} of {job.points.count} points to do" + (f", {kept} kept" if kept else ""))
+    request = spectrum.SpectrumRequest(
+        job.config.spectrum.modes, job.config.accuracy, job.config.spectrum.certify, job.vector_nodes
+    )
+    failures: list[str] = []
+
+    def solve(index: int) -> spectrum.Spectrum:
+        return spectrum.solve_spectrum(job.points.rod(index), request)
+
+    def keep(index: int, result: spectrum.Spectrum) -> None:
+        journal.append(index, _record(result))
+        if result.status and len(failures) < FAILURES_TOLD:
+            failures.append(f"{job.points.rod(index)}: {result.status.name} {result.message}".rstrip())
+
+    if count:
+        tell = Teller(count, job.config.title or path.stem) if team.first else None
+        try:
+            journal = Journal(journal_directory(output), team.rank, job.layout, plan.fingerprint)
+            sweep(team, todo, solve, keep, tell or (lambda done: None))
+            journal.close()
+        except OSError as error:
+            sys.stderr.write(
+                f"rodsweep: rank {team.rank} cannot write beside {output}: {error.strerror or error}; what is "
+                "done is kept: make room and run again\n"
+            )
+            team.abort()
+        finally:
+            if tell:
+                tell.close()
+    told = team.gather(failures)
+    hosts = team.gather(socket.gethostname())
+    team.barrier()
+    seconds = time.monotonic() - began
+
+    def finish() -> int:
+        if count:
+            store[0].fold(_ending(team, hosts or [], started))
+        counts = store[0].status_counts()
+        store[0].close()
+        _report(output, job, count, seconds, team.size, counts, [f for some in told or [] for f in some])
+        return 0 if set(counts) == {"ok"} else 1
+
+    return team.on_first(finish)
+
+
+def _plan(job: Job, status, petsc) -> Plan:  # type: ignore[no-untyped-def]
+    versions = {f"{name}_version": value for name, value in petsc.versions().items()}
+    return Plan(
+        columns=job.points.columns,
+        is_grid=job.points.is_grid,
+        layout=job.layout,
+        coordinates=job.coordinates,
+        constants=job.constants,
+        config=job.resolved,
+        attributes={
+            "Conventions": "CF-1.8",
+            "title": job.config.title or job.path.stem,
+            "task": job.config.task,
+            "time_unit": "tau2 = gamma2 L^4/k3",
+            "config": job.text,
+            "petsc_options": petsc.options(),
+            "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in status),
+        }
+        | ({"gamma1": job.config.parameters.gamma1} if job.config.parameters.gamma1 else {})
+        | versions
+        | provenance(),
+        flags=tuple((int(s), s.name) for s in status),
+    )
+
+
+def _record(result) -> dict:  # type: ignore[no-untyped-def]
+    """A Spectrum as the variables of the file."""
+    values = {
+        "growth_rate": result.eigenvalues.real,
+        "frequency": result.eigenvalues.imag,
+        "error_estimate": result.error_estimate,
+        "unstable_count": result.unstable_count,
+        "certified": result.certified,
+        "elements": result.elements,
+        "order": result.order,
+        "seconds": result.seconds,
+        "status": int(result.status),
+    }
+    if result.vectors is not None:
+        for field, vector in zip(("Y", "Theta"), result.vectors, strict=True):
+            values[f"{field}_real"], values[f"{field}_imag"] = vector.real, vector.imag
+    return values
+
+
+def _ending(team: Team, hosts: list[str], started: str) -> dict:
+    return {
+        "ranks": team.size,
+        "hosts": " ".join(sorted(set(hosts))),
+        "started": started,
+        "finished": now(),
+        "mpi_library": team.MPI.Get_library_version().split("\n")[0].strip("\0 "),
+        "slurm_job": os.environ.get("SLURM_JOB_ID", ""),
+    }
+
+
+def _report(
+    output: Path, job: Job, count: int, seconds: float, ranks: int, counts: dict[str, int], failures: list[str]
+) -> None:
+    if not count:
+        click.echo(f"{output} is complete, nothing to do")
+    else:
+        each = 1e3 * seconds * ranks / count
+        click.echo(f"{count} points in {seconds:.2f} s on {ranks} ranks ({each:.3g} ms a point and rank)")
+    click.echo(f"{output}: " + ", ".join(f"{n} {name}" for name, n in counts.items()))
+    for failure in failures[:FAILURES_TOLD]:
+        click.echo(f"  {failure}")
+    if set(counts) != {"ok"}:
+        click.echo(f"  `rodsweep show {output}` says what each status means")
+

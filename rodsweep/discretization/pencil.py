@@ -1,0 +1,146 @@
+"""The transverse eigenproblem as a matrix pencil that is affine in the parameters.
+
+Unknowns: y and theta in continuous P_p (Gauss-Lobatto nodes, lumped mass) without the clamped node,
+the shear force s in discontinuous P_{p-1} (Gauss nodes). With test functions (a, b, c),
+
+    w <a, y>         = -<a', s> + F <a', theta> - F a(1) theta(1)
+    w gamma3 <b, th> = -<b', theta'> + g <b, s>
+    0                =  <c, y' - nu theta> - c2 <c, s>
+
+which is Sec. VI with the shear force kept as an unknown: no stiffness appears, only compliances, so
+that k1, k2 = inf and gamma3 = 0 are ordinary values.
+
+Every unknown is scaled by the square root of its mass, theta by sqrt(gamma3) and s by SHEAR_WEIGHT
+besides: the Euclidean norm in which a Krylov space is orthogonalised is then the norm of the Gamma
+inner product (Sec. VI), in which the problem at F = 0 is symmetric and s, which carries no time
+derivative, weighs next to nothing. Unscaled, the fourth eigenvalue loses four digits.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..model.rod import Rod
+from .basis import differentiation, interpolation
+from .quadrature import gauss, gauss_lobatto
+
+Array = NDArray[np.float64]
+
+SHEAR_WEIGHT = 1e-9
+"""Weight of s in the norm. Nearly crushed rods lose seven digits at 1e-3, none below 1e-8."""
+LEAST_ANGLE_WEIGHT = 1e-4
+"""Weight of theta for gamma3 -> 0, where it carries no time derivative either."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pencil:
+    """Constant pieces for `elements` equal elements of order `order`.
+
+    The matrix of one rod is A = sum_i coefficients(rod)[i] pieces[i], in coordinate form: pieces
+    has shape (6, nnz), rows and columns shape (nnz,), sorted by row, then column, diagonal included.
+    B is diagonal: 1 for y, gamma3 over the squared angle weight for theta, 0 for s.
+    The unknowns are (y, theta, s), (nodes, nodes, nodes) of them, nodes = elements * order.
+    """
+
+    elements: int
+    order: int
+    rows: NDArray[np.int32]
+    columns: NDArray[np.int32]
+    pieces: Array
+    mass: Array
+
+    @property
+    def nodes(self) -> int:
+        return self.elements * self.order
+
+    @property
+    def unknowns(self) -> int:
+        return 3 * self.nodes
+
+    def stiffness(self, rod: Rod) -> Array:
+        """The entries of A, shape (nnz,)."""
+        t = angle_weight(rod.gamma3)
+        return np.array([1, 1 / t**2, rod.F / t, rod.g / t, rod.nu / t, rod.c2]) @ self.pieces
+
+    def inertia(self, rod: Rod) -> Array:
+        """The diagonal of B, shape (unknowns,)."""
+        B = np.zeros(self.unknowns)
+        B[: self.nodes] = 1.0
+        B[self.nodes : 2 * self.nodes] = rod.gamma3 / angle_weight(rod.gamma3) ** 2
+        return B
+
+    def fields(self, vectors: NDArray[np.complex128], rod: Rod) -> tuple[NDArray, NDArray]:
+        """(y, theta) at all nodes, the clamp included, shape (nodes + 1, k), from k eigenvectors."""
+        scale = 1 / np.sqrt(self.mass)[:, None]
+        clamp = np.zeros((1, vectors.shape[1]))
+        y = vectors[: self.nodes] * scale
+        theta = vectors[self.nodes : 2 * self.nodes] * scale / angle_weight(rod.gamma3)
+        return np.vstack([clamp, y]), np.vstack([clamp, theta])
+
+    def evaluation(self, points: Array) -> Array:
+        """Matrix from values at all nodes to values at `points` in [0, 1], shape (points, nodes + 1)."""
+        nodes, _ = gauss_lobatto(self.order)
+        matrix = np.zeros((len(points), self.nodes + 1))
+        element = np.minimum((points * self.elements).astype(int), self.elements - 1)
+        for e in np.unique(element):
+            here = np.nonzero(element == e)[0]
+            local = 2 * (points[here] * self.elements - e) - 1
+            columns = np.arange(e * self.order, (e + 1) * self.order + 1)
+            matrix[np.ix_(here, columns)] = interpolation(nodes, local)
+        return matrix
+
+
+def angle_weight(gamma3: float) -> float:
+    """Weight of theta in the norm: sqrt(gamma3), bounded below."""
+    return max(sqrt(gamma3), LEAST_ANGLE_WEIGHT)
+
+
+@lru_cache(maxsize=64)
+def assemble(elements: int, order: int) -> Pencil:
+    """The constant pieces on `elements` equal elements of order `order`."""
+    n, h = elements * order, 1 / elements
+    x, w = gauss_lobatto(order)
+    xg, wg = gauss(order)
+    value = interpolation(x, xg)
+    slope = value @ differentiation(x)
+    mass = np.zeros(n + 1)
+    entries: list[tuple[int, Array, Array, Array]] = []
+    for e in range(elements):
+        local = np.arange(e * order, (e + 1) * order + 1)
+        mass[local] += w * h / 2
+        keep = local > 0
+        y = local[keep] - 1
+        theta, s = n + y, 2 * n + np.arange(e * order, (e + 1) * order)
+        test, test_slope, weight = value[:, keep], slope[:, keep], wg * h / 2
+        entries += [
+            (0, y, s, -test_slope.T * wg),
+            (0, s, y, wg[:, None] * test_slope),
+            (1, theta, theta, -(test_slope.T * wg) @ test_slope * 2 / h),
+            (2, y, theta, (test_slope.T * wg) @ test),
+            (3, theta, s, test.T * weight),
+            (4, s, theta, -weight[:, None] * test),
+            (5, s, s, -np.diag(weight)),
+        ]
+    entries.append((2, np.array([n - 1]), np.array([2 * n - 1]), np.array([[-1.0]])))
+    masses = np.concatenate([mass[1:], mass[1:], np.tile(wg * h / 2, elements) * SHEAR_WEIGHT**2])
+    return _gather(elements, order, entries, mass[1:], 1 / np.sqrt(masses))
+
+
+def _gather(elements: int, order: int, entries: list, mass: Array, scale: Array) -> Pencil:
+    """Sums the element entries (piece, rows, columns, block) into one sorted coordinate pattern."""
+    size = 3 * elements * order
+    diagonal = np.arange(size)
+    key = [diagonal * size + diagonal]
+    key += [np.add.outer(rows * size, columns).ravel() for _, rows, columns, _ in entries]
+    pattern, where = np.unique(np.concatenate(key), return_inverse=True)
+    rows, columns = np.divmod(pattern, size)
+    pieces = np.zeros((6, len(pattern)))
+    at = size
+    for piece, _, _, block in entries:
+        np.add.at(pieces[piece], where[at : at + block.size], block.ravel())
+        at += block.size
+    pieces *= scale[rows] * scale[columns]
+    return Pencil(elements, order, rows.astype(np.int32), columns.astype(np.int32), pieces, mass)

@@ -1,0 +1,96 @@
+"""The characteristic determinant D(w) of the transverse problem, in closed form.
+
+With the state (y, theta, s, m = theta') the eigenproblem of Sec. VI reads
+
+    y' = nu theta + c2 s,   theta' = m,   s' = w y + F m,   m' = gamma3 w theta - g s,
+
+and D(w) is the determinant of the (s, m) x (s, m) block of its propagator over [0, 1]: entire in w,
+real on the real axis, D(0) = 1, with the transverse eigenvalues as its zeros. The squares z of the
+sum and the difference of the two roots q of the dispersion relation (Sec. VI) are
+
+    z+- = (c2 + gamma3) w - F g +- 2 P,   P^2 = w (g nu + c2 gamma3 w),
+
+and, worked out from the determinant, all of Appendix C collapses to
+
+    D(w) = 1 + (w/2) [ z+' E(z+) + z-' E(z-) ],   E(z) = (cosh sqrt(z) - 1)/z,   ' = d/dw.
+
+E is entire and the sum is even in P, so nothing is singular where roots q coincide, and every limit
+(k1, k2 = inf, gamma3 = 0) is a regular value of the same formula. D is returned times exp(-S), with
+S = max Re sqrt(z+-), because it spans hundreds of decades.
+"""
+
+import cmath
+import math
+
+from .compilation import compiled
+from .rod import Rod
+
+SERIES_BELOW = 0.1
+"""abs(z) below which E is summed as a series: the closed form of dE/dz would cancel there."""
+
+
+@compiled
+def entire_cosh(z: complex, root: complex, scale: float) -> tuple[complex, complex]:
+    """E(z) = (cosh sqrt(z) - 1)/z and dE/dz, both times exp(-scale); root = sqrt(z)."""
+    if abs(z) < SERIES_BELOW:
+        value = 1 + z / 30 * (1 + z / 56 * (1 + z / 90 * (1 + z / 132 * (1 + z / 182))))
+        slope = 1 + 3 * z / 112 * (1 + 4 * z / 270 * (1 + 5 * z / 528 * (1 + 6 * z / 910)))
+        size = math.exp(-scale)
+        return size * (0.5 + z / 24 * value), size * (1 + z / 15 * slope) / 24
+    grow = cmath.exp((root - scale) / 2)
+    decay = cmath.exp((-root - scale) / 2)
+    value = (grow - decay) ** 2 / (2 * z)
+    return value, ((grow**2 - decay**2) / (4 * root) - value) / z
+
+
+@compiled
+def branches(w: complex, F: float, nu: float, c2: float, gamma3: float):
+    """(P, P', P'', z+, z-) at w != 0; the smaller z comes from the product, which does not cancel."""
+    g = nu + F * c2
+    gn = g * nu
+    cg = c2 * gamma3
+    P = cmath.sqrt(w * (gn + cg * w))
+    P1 = (gn + 2 * cg * w) / (2 * P)
+    P2 = (cg - P1 * P1) / P
+    total = (c2 + gamma3) * w - F * g
+    plus = total + 2 * P
+    minus = total - 2 * P
+    product = ((c2 - gamma3) * w) ** 2 - 2 * g * w * ((c2 + gamma3) * F + 2 * nu) + (F * g) ** 2
+    if abs(plus) >= abs(minus):
+        if plus != 0:
+            minus = product / plus
+    else:
+        plus = product / minus
+    return P, P1, P2, plus, minus
+
+
+@compiled
+def scaled_determinant(w: complex, F: float, nu: float, c2: float, gamma3: float):
+    """(D, dD/dw, S, size): D and dD/dw times exp(-S), and the sum of D's terms in modulus.
+
+    `size` times the unit round-off bounds the rounding error of D up to a factor of order 1 + S.
+    """
+    if w == 0:
+        w = complex(1e-200, 0.0)
+    _, P1, P2, plus, minus = branches(w, F, nu, c2, gamma3)
+    root_plus = cmath.sqrt(plus)
+    root_minus = cmath.sqrt(minus)
+    scale = max(root_plus.real, root_minus.real)
+    E_plus, E1_plus = entire_cosh(plus, root_plus, scale)
+    E_minus, E1_minus = entire_cosh(minus, root_minus, scale)
+    slope_plus = c2 + gamma3 + 2 * P1
+    slope_minus = c2 + gamma3 - 2 * P1
+    one = math.exp(-scale)
+    first = slope_plus * E_plus + slope_minus * E_minus
+    second = 2 * P2 * (E_plus - E_minus) + slope_plus**2 * E1_plus + slope_minus**2 * E1_minus
+    size = one + abs(w) / 2 * (abs(slope_plus * E_plus) + abs(slope_minus * E_minus))
+    return one + w / 2 * first, (first + w * second) / 2, scale, size
+
+
+def newton_correction(w: complex, rod: Rod) -> complex:
+    """-D(w)/D'(w): how far, to first order, the nearest transverse eigenvalue of `rod` lies from w.
+
+    It does not know how w was computed, which makes its modulus an independent error estimate.
+    """
+    value, slope, _, _ = scaled_determinant(complex(w), *rod.coefficients)
+    return -value / slope if slope != 0 else complex(math.inf, 0)

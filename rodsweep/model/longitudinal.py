@@ -1,0 +1,14 @@
+"""The longitudinal modes, decoupled and in closed form (Sec. VI); no mesh is needed for them."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def longitudinal_rates(k1: float, gamma1: float, modes: int) -> NDArray[np.float64]:
+    """lambda_n = -(k1/gamma1) (pi (n - 1/2))^2 for n = 1..modes, in 1/tau2, shape (modes,).
+
+    Raises ValueError for an inextensible rod (k1 = inf), which has no longitudinal motion.
+    """
+    if np.isinf(k1):
+        raise ValueError("an inextensible rod (k1 = inf) has no longitudinal modes")
+    return -(k1 / gamma1) * (np.pi * (np.arange(1, modes + 1) - 0.5)) ** 2

@@ -1,0 +1,61 @@
+"""A result file as it is, read only: what `show` and `plot` work on."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from ..errors import InputError
+from .journal import journal_directory, read_journals
+from .schema import MISSING, PARAMETER_NAMES, spectrum_layout
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """A file's attributes and its variables as NumPy arrays."""
+
+    path: Path
+    attributes: dict[str, Any]
+    variables: dict[str, np.ndarray]
+    flags: dict[int, str]
+    journalled: int
+    """Finished points that wait in the journal for the next run."""
+
+    @property
+    def is_grid(self) -> bool:
+        return "point" not in self.variables
+
+    @property
+    def axes(self) -> dict[str, np.ndarray]:
+        """The parameter axes of a grid, or the columns of a point list."""
+        return {name: self.variables[name] for name in PARAMETER_NAMES}
+
+
+def read_view(path: Path, names: tuple[str, ...] = ()) -> View:
+    """The whole file, or the named variables beside the axes; InputError if it is no result."""
+    if not path.exists():
+        raise InputError(f"{path} does not exist")
+    try:
+        with h5py.File(path, "r") as file:
+            attributes = dict(file.attrs)
+            config = json.loads(attributes["config_resolved"])
+            wanted = [n for n in file if not names or n in names or n in PARAMETER_NAMES or n == "point"]
+            variables = {name: file[name][...] for name in wanted}
+            status = file["status"].attrs
+            words = str(status["flag_meanings"]).split()
+            flags = dict(zip((int(v) for v in status["flag_values"]), words, strict=True))
+    except (OSError, KeyError, ValueError, RuntimeError) as error:
+        raise InputError(f"{path} is not a whole rodsweep result file ({error})") from None
+    options = config["spectrum"]
+    layout = spectrum_layout(options["modes"], options["nodes"] if options["vectors"] else 0)
+    waiting: set[int] = set()
+    directory = journal_directory(path)
+    if directory.is_dir():
+        for block in read_journals(directory, layout, str(attributes["fingerprint"])):
+            waiting.update(block["index"].tolist())
+    done = variables.get("status", np.array([MISSING])).ravel()
+    journalled = sum(1 for i in waiting if i >= done.size or done[i] == MISSING)
+    return View(path, attributes, variables, flags, journalled)

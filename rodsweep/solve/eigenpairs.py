@@ -1,0 +1,114 @@
+"""Eigenvalues of the pencil nearest a real shift: SLEPc's Krylov-Schur with shift-and-invert.
+
+The objects are created once per resolution and reused with new values. The shift enters the values:
+the pencil (A - shift B, B) is solved about 0, so that a diagonal B meets a dense A and nothing is
+copied. B is singular; its null vectors belong to infinite eigenvalues, which shift-and-invert sends
+to zero and never returns. The factorisation pivots: LAPACK's where the matrix is small or PETSc has
+nothing else, otherwise a sparse one.
+"""
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..discretization.pencil import Pencil, assemble
+from ..discretization.resolution import Resolution
+from ..model.rod import Rod
+from .petsc import PETSc, SLEPc, sparse_package
+
+DENSE_UP_TO = 300
+"""Unknowns up to which the dense factorisation is no slower than a sparse one; it rounds less."""
+TOLERANCE = 1e-14
+"""Krylov tolerance: the discretisation is to be the only error. It costs one step in twenty."""
+MOST_RESTARTS = 200
+PREFIX = "spectrum_"
+"""Prefix of the PETSc options that override this solver, as in -spectrum_eps_ncv 32."""
+
+
+class EigenSolver:
+    """Krylov-Schur for one resolution; `solve` may be called any number of times."""
+
+    def __init__(self, resolution: Resolution):
+        self.pencil: Pencil = assemble(resolution.elements, resolution.order)
+        n = self.pencil.unknowns
+        package = sparse_package()
+        self.dense = n <= DENSE_UP_TO or package is None
+        self.diagonal = self.pencil.rows == self.pencil.columns
+        self.indptr = np.searchsorted(self.pencil.rows, np.arange(n + 1)).astype(PETSc.IntType)
+        self.indices = self.pencil.columns.astype(PETSc.IntType)
+        self.A, self.B = PETSc.Mat(), PETSc.Mat()
+        if self.dense:
+            self.A.createDense([n, n], comm=PETSc.COMM_SELF).setUp()
+        else:
+            values = np.ones(len(self.indices))
+            self.A.createAIJ([n, n], csr=(self.indptr, self.indices, values), comm=PETSc.COMM_SELF)
+        line = np.arange(n + 1, dtype=PETSc.IntType)
+        self.B.createAIJ([n, n], csr=(line, line[:-1], np.ones(n)), comm=PETSc.COMM_SELF)
+        self.line = line
+        self.start = PETSc.Vec().createWithArray(np.ones(n), comm=PETSc.COMM_SELF)
+        self.eps = self._solver("petsc" if self.dense else package)
+
+    def _solver(self, package: str | None) -> "SLEPc.EPS":
+        eps = SLEPc.EPS().create(PETSc.COMM_SELF)
+        eps.setOptionsPrefix(PREFIX)
+        eps.setProblemType(SLEPc.EPS.ProblemType.GNHEP)
+        eps.setType(SLEPc.EPS.Type.KRYLOVSCHUR)
+        eps.setTolerances(TOLERANCE, MOST_RESTARTS)
+        eps.setWhichEigenpairs(SLEPc.EPS.Which.TARGET_MAGNITUDE)
+        eps.setTarget(0.0)
+        transform = eps.getST()
+        transform.setType(SLEPc.ST.Type.SINVERT)
+        transform.setMatMode(SLEPc.ST.MatMode.INPLACE)
+        ksp = transform.getKSP()
+        ksp.setType(PETSc.KSP.Type.PREONLY)
+        ksp.getPC().setType(PETSc.PC.Type.LU)
+        ksp.getPC().setFactorSolverType(package)
+        eps.setFromOptions()
+        return eps
+
+    def solve(self, rod: Rod, shift: float, wanted: int, vectors: bool = False):
+        """(w, X): at least `wanted` eigenvalues nearest the shift where they converge, unsorted.
+
+        w: complex, shape (k,), in 1/tau2. X: their vectors, shape (unknowns, k), or None unless
+        asked for; of the converged ones none is left out. Raises PETSc.Error where PETSc fails.
+        """
+        A, B = self.pencil.stiffness(rod), self.pencil.inertia(rod)
+        if not (np.isfinite(A).all() and np.isfinite(shift)):
+            raise FloatingPointError("the parameters overflow the matrix entries")
+        A[self.diagonal] -= shift * B
+        if self.dense:
+            self.A.getDenseArray()[self.pencil.rows, self.pencil.columns] = A
+        else:
+            self.A.setValuesCSR(self.indptr, self.indices, A)
+        self.A.assemble()
+        self.B.setValuesCSR(self.line, self.line[:-1], B)
+        self.B.assemble()
+        self.eps.setOperators(self.A, self.B)
+        self.eps.setDimensions(min(wanted, self.pencil.unknowns - 2), PETSc.DECIDE, PETSc.DECIDE)
+        self.eps.setInitialSpace(self.start)
+        self.eps.solve()
+        found = self.eps.getConverged()
+        w = np.array([self.eps.getEigenvalue(i) for i in range(found)], dtype=complex) + shift
+        return w, self._vectors(found) if vectors else None
+
+    def _vectors(self, found: int) -> NDArray[np.complex128]:
+        real, imag = self.A.createVecs()
+        X = np.empty((self.pencil.unknowns, found), dtype=complex)
+        for i in range(found):
+            self.eps.getEigenvector(i, real, imag)
+            X[:, i] = real.array + 1j * imag.array
+        real.destroy()
+        imag.destroy()
+        return X
+
+
+@lru_cache(maxsize=64)
+def eigen_solver(resolution: Resolution) -> EigenSolver:
+    """The solver for a resolution, kept for the next point."""
+    return EigenSolver(resolution)
+
+
+def forget_solvers() -> None:
+    """Drops every kept solver, after an error inside PETSc has left one in an unknown state."""
+    eigen_solver.cache_clear()

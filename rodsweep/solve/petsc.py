@@ -1,0 +1,47 @@
+"""The one place that starts PETSc and SLEPc, and says what they can do."""
+
+from functools import cache
+
+from ..errors import EnvironmentLacks
+
+try:
+    import petsc4py
+    import slepc4py
+
+    petsc4py.init(["rodsweep"])
+    slepc4py.init(["rodsweep"])
+    from petsc4py import PETSc
+    from slepc4py import SLEPc
+except ImportError as error:
+    raise EnvironmentLacks(
+        f"petsc4py and slepc4py cannot be imported ({error}); `make install` provides them, or set "
+        "PETSC_DIR and SLEPC_DIR to where they are installed"
+    ) from error
+
+SPARSE_PACKAGES = ("superlu", "umfpack", "klu", "mumps")
+"""Sparse factorisations that pivot, the fastest on these matrices first. PETSc's own does not."""
+
+
+@cache
+def sparse_package() -> str | None:
+    """The first of SPARSE_PACKAGES that this PETSc has; None if it has none."""
+    for name in SPARSE_PACKAGES:
+        if PETSc.Sys.hasExternalPackage({"umfpack": "suitesparse", "klu": "suitesparse"}.get(name, name)):
+            return name
+    return None
+
+
+def versions() -> dict[str, str]:
+    """Versions of PETSc, SLEPc and their Python bindings."""
+    number = lambda v: ".".join(str(i) for i in v)  # noqa: E731
+    return {
+        "petsc": number(PETSc.Sys.getVersion()),
+        "slepc": number(SLEPc.Sys.getVersion()),
+        "petsc4py": petsc4py.__version__,
+        "slepc4py": slepc4py.__version__,
+    }
+
+
+def options() -> str:
+    """The options given to PETSc by PETSC_OPTIONS or a resource file, as one line."""
+    return " ".join(f"-{k} {v}".strip() for k, v in sorted(PETSc.Options().getAll().items()))

@@ -1,0 +1,109 @@
+"""The points of a sweep, by index and never all at once: a grid of axes or an explicit list."""
+
+import csv
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..config.schema import Parameters, as_number
+from ..errors import InputError
+from ..model.rod import ALLOWED, PARAMETERS, Rod, admissible
+
+MOST_POINTS = 2**40
+
+
+@dataclass(frozen=True, slots=True)
+class Points:
+    """Values of F, k1, k2, gamma3: a grid's axes (row-major order, gamma3 fastest) or equal columns."""
+
+    columns: tuple[NDArray[np.float64], ...]
+    is_grid: bool
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of a result variable: (F, k1, k2, gamma3) or (point,)."""
+        return tuple(len(c) for c in self.columns) if self.is_grid else (len(self.columns[0]),)
+
+    @property
+    def count(self) -> int:
+        return math.prod(self.shape)
+
+    def rod(self, index: int) -> Rod:
+        """The rod at a flat index."""
+        if not self.is_grid:
+            return Rod(*(float(c[index]) for c in self.columns))
+        places = np.unravel_index(index, self.shape)
+        return Rod(*(float(c[i]) for c, i in zip(self.columns, places, strict=True)))
+
+
+def points_of(parameters: Parameters, directory: Path) -> Points:
+    """The points that the config asks for; InputError for any value that the model does not allow."""
+    if parameters.points is not None:
+        path = directory / parameters.points
+        points = Points(_read_csv(path), is_grid=False)
+        where = f"{path}, row {{row}}: "
+    else:
+        axes = [getattr(parameters, name) for name in PARAMETERS]
+        if math.prod(axis.size for axis in axes) > MOST_POINTS:
+            raise InputError("parameters: the grid has more points than can be numbered")
+        points = Points(tuple(axis.array() for axis in axes), is_grid=True)
+        where = "parameters."
+    _check(points, where)
+    return points
+
+
+def _check(points: Points, where: str) -> None:
+    for name, column in zip(PARAMETERS, points.columns, strict=True):
+        for row, value in enumerate(column):
+            if not admissible(name, float(value)):
+                place = where.format(row=row + 2)
+                raise InputError(f"{place}{name} = {value:g} is not allowed; it must be {ALLOWED[name]}")
+    F, k1 = points.columns[0], points.columns[1]
+    if points.is_grid:
+        if F.max() >= k1.min():
+            raise InputError(
+                f"{where}F reaches {F.max():.15g} and parameters.k1 starts at {k1.min():.15g}; F must stay "
+                "below every k1, because the rod is crushed at F = k1"
+            )
+        return
+    bad = np.nonzero(k1 <= F)[0]
+    if len(bad):
+        row = int(bad[0])
+        place = where.format(row=row + 2)
+        raise InputError(f"{place}F = {F[row]:.15g} is not below k1 = {k1[row]:.15g}, where the rod is crushed")
+
+
+def _read_csv(path: Path) -> tuple[NDArray[np.float64], ...]:
+    """The columns F, k1, k2, gamma3 of a CSV file with that header, in any order."""
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            rows = csv.reader(file)
+            header = [cell.strip() for cell in next(rows, [])]
+            if sorted(header) != sorted(PARAMETERS):
+                raise InputError(
+                    f"{path}: the header is {','.join(header)[:100]!r}; it must name {', '.join(PARAMETERS)}"
+                )
+            values = [_row(row, header, f"{path}, line {rows.line_num}") for row in rows if any(row)]
+    except OSError as error:
+        raise InputError(f"parameters.points: {path} cannot be read: {error.strerror}") from error
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"parameters.points: {path} is not CSV text ({error})") from error
+    if not values:
+        raise InputError(f"{path}: there is no point after the header")
+    table = np.array(values)
+    return tuple(table[:, header.index(name)] for name in PARAMETERS)
+
+
+def _row(row: list[str], header: list[str], where: str) -> list[float]:
+    if len(row) != len(header):
+        raise InputError(f"{where}: {len(row)} values, where the header names {len(header)}")
+    numbers = []
+    for cell, name in zip(row, header, strict=True):
+        try:
+            numbers.append(as_number(float(cell)))
+        except ValueError:
+            raise InputError(f"{where}: {name} = {cell.strip()[:40]!r} is not a number") from None
+    return numbers

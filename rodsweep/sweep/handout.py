@@ -1,0 +1,162 @@
+"""Who solves which point: small chunks from the first rank, sized by how long points take.
+
+The first rank computes like any other; a thread of it answers the requests of the others, so they
+need not wait for its own solve to end. A rank that finds its chunk slower than foreseen gives the
+rest back with its next request. Nobody is told that the work is over while another rank may still
+give something back, so the ranks finish within one point of each other.
+"""
+
+import threading
+import time
+import traceback
+from collections import deque
+from dataclasses import dataclass
+
+from ..errors import EnvironmentLacks
+from .team import Team
+
+REQUEST, ANSWER = 71, 72
+CHUNK_SECONDS = 0.1
+"""How long a chunk should take: long against a message (20 microseconds), short against a run."""
+GIVE_BACK_AFTER = 3 * CHUNK_SECONDS
+LARGEST_CHUNK = 4096
+POLL_SECONDS = 5e-4
+
+Range = tuple[int, int]
+OVER: Range = (0, 0)
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """What a rank says when it wants more: points done, seconds they took, and what it gives back."""
+
+    done: int = 0
+    seconds: float = 0.0
+    rest: Range = OVER
+
+
+class Handout:
+    """The points still to do, on the first rank; safe to use from its two threads."""
+
+    def __init__(self, todo: list[Range], ranks: int):
+        self.todo = deque(todo)
+        self.left = sum(stop - start for start, stop in todo)
+        self.ranks = ranks
+        self.busy: set[int] = set()
+        self.done = 0
+        self.pace: dict[int, float] = {}
+        self.change = threading.Condition()
+
+    def settle(self, rank: int, report: Report) -> None:
+        """Takes in a report: what is done, and what is given back."""
+        with self.change:
+            self.busy.discard(rank)
+            self.done += report.done
+            if report.done:
+                self.pace[rank] = report.seconds / report.done
+            start, stop = report.rest
+            if stop > start:
+                self.todo.appendleft(report.rest)
+                self.left += stop - start
+            self.change.notify_all()
+
+    def take(self, rank: int) -> Range | None:
+        """The next chunk for a rank, OVER when all work is done, None when it has to wait."""
+        with self.change:
+            if not self.todo:
+                return None if self.busy else OVER
+            share = max(1, self.left // (2 * self.ranks))
+            pace = self.pace.get(rank)
+            size = 1 if pace is None else int(CHUNK_SECONDS / max(pace, 1e-7))
+            start, stop = self.todo.popleft()
+            end = min(stop, start + max(1, min(size, share, LARGEST_CHUNK)))
+            if end < stop:
+                self.todo.appendleft((end, stop))
+            self.left -= end - start
+            self.busy.add(rank)
+            return start, end
+
+    def wait(self) -> None:
+        """Waits a little for a change."""
+        with self.change:
+            self.change.wait(0.05)
+
+
+class FirstRankClaims:
+    """How the first rank gets its chunks, and how its thread serves the others."""
+
+    def __init__(self, team: Team, todo: list[Range]):
+        self.team, self.handout = team, Handout(todo, team.size)
+        self.thread: threading.Thread | None = None
+        if team.size > 1:
+            if team.MPI.Query_thread() < team.MPI.THREAD_MULTIPLE:
+                raise EnvironmentLacks("this MPI does not support MPI_THREAD_MULTIPLE, which rodsweep needs")
+            self.thread = threading.Thread(target=self._serve_or_abort, name="handout", daemon=True)
+            self.thread.start()
+
+    @property
+    def done(self) -> int:
+        """Points that all ranks have reported done."""
+        return self.handout.done
+
+    def claim(self, report: Report) -> Range:
+        self.handout.settle(0, report)
+        while (chunk := self.handout.take(0)) is None:
+            self.handout.wait()
+        return chunk
+
+    def close(self) -> None:
+        if self.thread is not None:
+            self.thread.join()
+
+    def _serve_or_abort(self) -> None:
+        try:
+            self._serve()
+        except BaseException:
+            traceback.print_exc()
+            self.team.abort()
+
+    def _serve(self) -> None:
+        comm, status = self.team.comm, self.team.MPI.Status()
+        waiting: list[int] = []
+        working = set(range(1, self.team.size))
+        while working:
+            heard = comm.Iprobe(source=self.team.MPI.ANY_SOURCE, tag=REQUEST, status=status)
+            if heard:
+                rank = status.Get_source()
+                self.handout.settle(rank, comm.recv(source=rank, tag=REQUEST))
+                waiting.append(rank)
+            for rank in list(waiting):
+                chunk = self.handout.take(rank)
+                if chunk is None:
+                    break
+                comm.send(chunk, dest=rank, tag=ANSWER)
+                waiting.remove(rank)
+                if chunk == OVER:
+                    working.discard(rank)
+            if not heard:
+                time.sleep(POLL_SECONDS)
+
+
+class OtherRankClaims:
+    """How every other rank gets its chunks: by asking the first."""
+
+    done = 0
+
+    def __init__(self, team: Team):
+        self.comm = team.comm
+
+    def claim(self, report: Report) -> Range:
+        self.comm.send(report, dest=0, tag=REQUEST)
+        # A blocking receive would spin and take the processor from the ranks that compute.
+        while not self.comm.Iprobe(source=0, tag=ANSWER):
+            time.sleep(POLL_SECONDS / 5)
+        return self.comm.recv(source=0, tag=ANSWER)
+
+    def close(self) -> None:
+        """Nothing to close."""
+
+
+def claims_of(team: Team, todo: list[Range]) -> FirstRankClaims | OtherRankClaims:
+    """This rank's way to its chunks; `todo` matters on the first rank only."""
+    return FirstRankClaims(team, todo) if team.first else OtherRankClaims(team)

@@ -1,0 +1,61 @@
+"""How far a sweep is: a bar on a terminal, a plain line now and then in a log."""
+
+import os
+import sys
+import time
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+LINE_EVERY = 10.0
+"""Seconds between lines in a log; the first comes after one second."""
+BAR_EVERY = 0.1
+
+
+def on_terminal() -> bool:
+    """Whether the user sees our output live: a launcher's ranks write to its pipe, not to its terminal."""
+    if sys.stderr.isatty():
+        return True
+    launcher = f"/proc/{os.getppid()}/fd/2"
+    under_mpi = any(name in os.environ for name in ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE"))
+    return under_mpi and os.path.realpath(launcher).startswith(("/dev/pts/", "/dev/tty"))
+
+
+class Teller:
+    """Tells how many of `total` points are done, with rate and remaining time."""
+
+    def __init__(self, total: int, title: str):
+        self.total, self.began = total, time.monotonic()
+        self.next = self.began + 1.0
+        self.bar: Progress | None = None
+        if on_terminal():
+            console = Console(file=sys.stderr, force_terminal=True)
+            columns = (
+                TextColumn(title, markup=False),
+                BarColumn(),
+                MofNCompleteColumn(),
+                TextColumn("{task.fields[rate]}"),
+                TimeRemainingColumn(),
+            )
+            self.bar = Progress(*columns, console=console, transient=True, auto_refresh=False)
+            self.task = self.bar.add_task(title, total=total, rate="")
+            self.bar.start()
+
+    def __call__(self, done: int) -> None:
+        """Hears that `done` points are done in all; says so when it is time."""
+        now = time.monotonic()
+        if now < self.next:
+            return
+        rate = done / (now - self.began)
+        if self.bar is not None:
+            self.next = now + BAR_EVERY
+            self.bar.update(self.task, completed=done, rate=f"{rate:.0f}/s")
+            self.bar.refresh()
+            return
+        self.next = now + LINE_EVERY
+        left = (self.total - done) / rate if rate else float("inf")
+        print(f"{done} of {self.total} points, {rate:.0f}/s, {left:.0f} s left", file=sys.stderr, flush=True)
+
+    def close(self) -> None:
+        if self.bar is not None:
+            self.bar.stop()

@@ -1,0 +1,67 @@
+"""The ranks of a run: who is first, and how an error on one ends all at once."""
+
+import sys
+import traceback
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any, NoReturn, TypeVar
+
+from ..errors import EnvironmentLacks, InputError
+
+T = TypeVar("T")
+
+
+class Team:
+    """All ranks of MPI's world; a single rank where there is no launcher."""
+
+    def __init__(self) -> None:
+        try:
+            from mpi4py import MPI
+        except ImportError as error:
+            raise EnvironmentLacks(f"mpi4py cannot be imported ({error}); `make install` provides it") from error
+        self.MPI = MPI
+        self.comm = MPI.COMM_WORLD.Dup()
+        self.rank: int = self.comm.Get_rank()
+        self.size: int = self.comm.Get_size()
+        if self.size > 1:
+            sys.excepthook = self._abort
+
+    @property
+    def first(self) -> bool:
+        """Whether this rank is the one that talks, hands out points and writes the file."""
+        return self.rank == 0
+
+    def on_first(self, work: Callable[[], T]) -> T:
+        """What `work` returns on the first rank, on every rank; its refusals end every rank too."""
+        outcome: Any = None
+        if self.first:
+            try:
+                outcome = (work(), None)
+            except (InputError, EnvironmentLacks) as refusal:
+                outcome = (None, refusal)
+        value, refusal = self.comm.bcast(outcome)
+        if refusal is not None:
+            raise refusal
+        return value
+
+    def gather(self, value: T) -> list[T] | None:
+        """The values of all ranks on the first rank, None elsewhere."""
+        return self.comm.gather(value)
+
+    def barrier(self) -> None:
+        self.comm.Barrier()
+
+    def abort(self) -> NoReturn:
+        """Ends all ranks now, with exit status 3, after whoever calls has said why."""
+        sys.stdout.flush()
+        sys.stderr.flush()
+        self.comm.Abort(3)
+        raise SystemExit(3)
+
+    def _abort(
+        self, kind: type[BaseException], error: BaseException, trace: TracebackType | None
+    ) -> None:
+        """A bug on one rank ends all ranks; without this the others would wait for ever."""
+        sys.stderr.write(f"rodsweep: rank {self.rank} failed, all ranks end\n")
+        traceback.print_exception(kind, error, trace)
+        self.abort()
