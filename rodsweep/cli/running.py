@@ -52,6 +52,7 @@ def run_config(path: Path, output: Path, overrides: tuple[str, ...], fresh: bool
         if result.status and len(failures) < FAILURES_TOLD:
             failures.append(f"{job.points.rod(index)}: {result.status.name} {result.message}".rstrip())
 
+    spectrum.warm_up()
     if count:
         tell = Teller(count, job.config.title or path.stem) if team.first else None
         try:

@@ -22,6 +22,9 @@ S = max Re sqrt(z+-), because it spans hundreds of decades.
 import cmath
 import math
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .compilation import compiled
 from .rod import Rod
 
@@ -87,10 +90,18 @@ def scaled_determinant(w: complex, F: float, nu: float, c2: float, gamma3: float
     return one + w / 2 * first, (first + w * second) / 2, scale, size
 
 
-def newton_correction(w: complex, rod: Rod) -> complex:
-    """-D(w)/D'(w): how far, to first order, the nearest transverse eigenvalue of `rod` lies from w.
+@compiled
+def _corrections(w, F, nu, c2, gamma3):
+    out = np.empty_like(w)
+    for i in range(len(w)):
+        value, slope, _, _ = scaled_determinant(w[i], F, nu, c2, gamma3)
+        out[i] = -value / slope if slope != 0 else complex(math.inf, 0.0)
+    return out
+
+
+def newton_corrections(w: NDArray[np.complex128], rod: Rod) -> NDArray[np.complex128]:
+    """-D(w)/D'(w), in 1/tau2: how far, to first order, an eigenvalue of `rod` lies from each w.
 
     It does not know how w was computed, which makes its modulus an independent error estimate.
     """
-    value, slope, _, _ = scaled_determinant(complex(w), *rod.coefficients)
-    return -value / slope if slope != 0 else complex(math.inf, 0)
+    return _corrections(np.asarray(w, complex), *rod.coefficients)

@@ -19,7 +19,7 @@ from ..discretization.resolution import (
     finer,
     resolution_for,
 )
-from ..model.determinant import newton_correction
+from ..model.determinant import newton_corrections
 from ..model.dispersion import most_amplified_wave, wave_numbers
 from ..model.rod import Rod
 from .certificate import Count, count_right_of
@@ -36,6 +36,12 @@ STALLED = 2
 """Refinements without a better error after which rounding, not the mesh, is taken as the limit."""
 A_ROOT = 1e-3
 """Relative Newton correction below which a computed eigenvalue counts as standing for a root of D."""
+WIDE_GAP = 0.05
+"""Relative gap between two real parts that is wide enough to draw a line through."""
+NO_GAP = 1e-6
+"""Relative gap below which two real parts count as equal."""
+MOST_LINES = 3
+"""Lines tried before the count is given up."""
 REAL_BELOW = 1e-14
 """Relative imaginary part below which an eigenvalue is real: what rounding leaves of zero."""
 
@@ -105,6 +111,11 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
     return replace(outcome, seconds=time.perf_counter() - started)
 
 
+def warm_up() -> None:
+    """Loads what is compiled and created at first use, so that no point pays for it."""
+    _solve(Rod(30.0, 1e4, 1e4, 1e-4), SpectrumRequest(modes=2, accuracy=1e-4, certify=True))
+
+
 def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
     growth, wave = most_amplified_wave(rod)
     shift = SHIFT_ABOVE_GROWTH * growth
@@ -150,7 +161,7 @@ def _attempt(rod: Rod, resolution: Resolution, shift: float, wanted: int, vector
     """One solve; what does not stand for a root of D of its own is dropped."""
     w, X = eigen_solver(resolution).solve(rod, shift, wanted, vectors)
     w = np.where(np.abs(w.imag) <= REAL_BELOW * np.abs(w), w.real, w)
-    error = np.array([abs(newton_correction(value, rod)) for value in w])
+    error = np.abs(newton_corrections(w, rod))
     apart = np.abs(w[:, None] - w[None, :])
     np.fill_diagonal(apart, np.inf)
     nearest = apart.min(axis=1) if len(w) > 1 else np.full(len(w), np.inf)
@@ -176,26 +187,25 @@ def _next_resolution(rod: Rod, found: _Found, request: SpectrumRequest) -> Resol
 def _count(rod: Rod, found: _Found, modes: int) -> tuple[Count, float]:
     """The winding number right of a line below the last wanted and below every unstable mode."""
     count, line = Count(None, 0), 0.0
-    for line in _lines(found, modes):
+    for line in _lines(found.w.real.tolist(), modes):
         count = count_right_of(line, rod)
         if count.number is not None:
             break
     return count, line
 
 
-def _lines(found: _Found, modes: int) -> list[float]:
-    """Where to draw the line, best first: in gaps between real parts, the first wide one foremost."""
-    real = np.unique(np.append(found.w.real, 0.0))[::-1]
-    target = min(found.w[modes - 1].real, 0.0)
-    below = real[real <= target]
-    gaps = -np.diff(below)
-    size = np.maximum(np.abs(below[1:]), np.abs(below[:-1]))
-    order = [i for i in range(len(gaps)) if gaps[i] > 0.05 * size[i]]
-    order += [int(i) for i in np.argsort(-gaps / size) if i not in order and gaps[i] > 0]
-    lines = [float((below[i] + below[i + 1]) / 2) for i in order[:3]]
-    last = float(below[-1])
-    scale = abs(last) if last != 0 else max(abs(found.w[modes - 1]), 1.0)
-    return [*lines, last - 0.05 * scale]
+def _lines(real: list[float], modes: int) -> list[float]:
+    """Where to draw the line, best first: in gaps between the real parts, the first wide one foremost.
+
+    Behind the last of them it is drawn through the unknown, where the count may ask for more.
+    """
+    target = min(real[modes - 1], 0.0)
+    below = [target] + [x for x in real if x < target]
+    gaps = [(min((r - l) / abs(l), WIDE_GAP), (l + r) / 2) for l, r in zip(below[1:], below[:-1], strict=True)]
+    gaps.sort(key=lambda gap: -gap[0])  # stable: of the wide ones the first stays foremost
+    lines = [middle for width, middle in gaps if width > NO_GAP][: MOST_LINES - 1]
+    last = below[-1]
+    return [*lines, last - WIDE_GAP * (abs(last) if last < 0 else abs(real[0]) + 1.0)]
 
 
 def _undecided(found: _Found) -> bool:

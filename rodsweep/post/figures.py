@@ -1,0 +1,126 @@
+"""Figures of a result file: a line of spectra as the paper's Fig. 2 draws it, or a map over two axes."""
+
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+from ..errors import EnvironmentLacks, InputError
+from ..results.view import View
+
+SYMBOLS = {"F": r"\tilde F", "k1": r"\tilde k_1", "k2": r"\tilde k_2", "gamma3": r"\tilde\gamma_3"}
+LABELS = {
+    "F": rf"follower force ${SYMBOLS['F']}$",
+    "k1": rf"stretch stiffness ${SYMBOLS['k1']}$",
+    "k2": rf"shear stiffness ${SYMBOLS['k2']}$",
+    "gamma3": rf"rotational drag ${SYMBOLS['gamma3']}$",
+}
+FIRST, SECOND = "#0072B2", "#D55E00"
+"""Blue and vermilion: told apart by the colour-blind and in grey."""
+STYLE = {"font.size": 10, "axes.grid": False, "axes.spines.top": False, "axes.spines.right": False}
+ROOTS = {"rightmost": "the two rightmost roots", "smallest": "of the stored roots, the two smallest in magnitude"}
+
+
+def draw(view: View, output: Path, roots: str) -> str:
+    """Draws the file's figure into `output`; returns a sentence about it.
+
+    Raises InputError where there is nothing that a figure could show.
+    """
+    if not view.is_grid:
+        raise InputError(f"{view.path} is a list of points; a figure needs a grid with one or two long axes")
+    long = [name for name, values in view.axes.items() if len(values) > 1]
+    if not 1 <= len(long) <= 2:
+        raise InputError(
+            f"{view.path} has {len(long)} axes with more than one value ({', '.join(long) or 'none'}); a "
+            "figure needs one or two"
+        )
+    with matplotlib.rc_context(STYLE):
+        figure = _line(view, long[0], roots) if len(long) == 1 else _map(view, long)
+        try:
+            figure.savefig(output, dpi=160)
+        except ValueError as error:
+            raise InputError(f"{output}: {str(error).splitlines()[0]}") from None
+        except OSError as error:
+            raise EnvironmentLacks(f"{output} cannot be written: {error.strerror}") from error
+    what = ROOTS[roots] if len(long) == 1 else "the leading growth rate"
+    return f"wrote {output}: {what}"
+
+
+def followed_roots(growth: np.ndarray, frequency: np.ndarray, roots: str) -> np.ndarray:
+    """Two roots of each point, complex, shape (points, 2), from all stored ones, shape (points, modes).
+
+    Of a pair the positive frequency is first; two real roots are ordered as `roots` says.
+    """
+    w = growth + 1j * frequency
+    if roots == "smallest":
+        order = np.lexsort((-frequency, np.round(np.abs(w), 9)), axis=1)
+        w = np.take_along_axis(w, order, axis=1)
+    return w[:, :2]
+
+
+def broken(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(x, w) with a gap of NaN where the followed roots change places with others between two points."""
+    step = np.abs(np.diff(w, axis=0)).max(axis=1)
+    size = np.abs(w).max(axis=1)
+    around = np.array([np.median(step[max(0, i - 3) : i + 4]) for i in range(len(step))])
+    jump = np.flatnonzero((step > 8 * around) & (step > 0.5 * np.minimum(size[1:], size[:-1]))) + 1
+    return np.insert(x, jump, np.nan), np.insert(w, jump, np.nan, axis=0)
+
+
+def _line(view: View, name: str, roots: str) -> Figure:
+    x = view.axes[name]
+    modes = len(view.variables["mode"])
+    if modes < 2:
+        raise InputError(f"{view.path} holds one mode; the figure follows two, so run with spectrum.modes >= 2")
+    growth = view.variables["growth_rate"].reshape(-1, modes)
+    w = followed_roots(growth, view.variables["frequency"].reshape(-1, modes), roots)
+    figure = Figure(figsize=(5.2, 6.6), layout="constrained")
+    top, bottom = figure.subplots(2, 1)
+    x_broken, w = broken(x, w)
+    for i, colour in enumerate((FIRST, SECOND)):
+        top.plot(x_broken, w[:, i].real, color=colour, lw=1.6, label=rf"$\mathrm{{Re}}\,\omega_{i + 1}$")
+        top.plot(x_broken, w[:, i].imag, ":", color=colour, lw=1.6, label=rf"$\mathrm{{Im}}\,\omega_{i + 1}$")
+        bottom.plot(w[:, i].real, w[:, i].imag, ".-", color=colour, lw=0.8, ms=3, label=rf"$\omega_{i + 1}$")
+    unstable = view.variables["unstable_count"].reshape(-1) > 0
+    top.fill_between(x, 0, 1, where=unstable, transform=top.get_xaxis_transform(), color="0.92", lw=0,
+                     label="flutter")
+    top.axhline(0, color="0.5", lw=0.6)
+    bottom.axvline(0, color="0.5", lw=0.6)
+    if _is_logarithmic(x):
+        top.set_xscale("log")
+    top.set(xlabel=LABELS[name], ylabel=r"$\omega\,\tau_2$", xlim=(x[0], x[-1]))
+    bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
+    top.legend(frameon=False, fontsize=8, ncols=2)
+    bottom.legend(frameon=False, fontsize=8)
+    fixed = ", ".join(f"${SYMBOLS[n]}$ = {v[0]:.6g}" for n, v in view.axes.items() if n != name)
+    figure.suptitle(f"{view.attributes.get('title', '')}\n{fixed}\n{ROOTS[roots]}", fontsize=9)
+    return figure
+
+
+def _map(view: View, names: list[str]) -> Figure:
+    horizontal, vertical = names
+    growth = view.variables["growth_rate"][..., 0].squeeze()
+    x, y = view.axes[horizontal], view.axes[vertical]
+    figure = Figure(figsize=(5.6, 4.4), layout="constrained")
+    axes = figure.subplots()
+    reach = np.nanmax(np.abs(growth))
+    norm = matplotlib.colors.SymLogNorm(max(1.0, reach * 1e-4), vmin=-reach, vmax=reach)
+    mesh = axes.pcolormesh(x, y, growth.T, norm=norm, cmap="PuOr_r", shading="nearest", rasterized=True)
+    if growth.min() < 0 < growth.max():
+        axes.contour(x, y, growth.T, levels=[0.0], colors="k", linewidths=1.2)
+    for values, scale in ((x, axes.set_xscale), (y, axes.set_yscale)):
+        if _is_logarithmic(values):
+            scale("log")
+    axes.set(xlabel=LABELS[horizontal], ylabel=LABELS[vertical])
+    figure.colorbar(mesh, label=r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$")
+    axes.set_title(f"{view.attributes.get('title', '')}; black: zero growth", fontsize=9)
+    return figure
+
+
+def _is_logarithmic(values: np.ndarray) -> bool:
+    """Whether an axis was spaced in equal ratios."""
+    if len(values) < 3 or values[0] <= 0 or not np.isfinite(values).all():
+        return False
+    ratio = values[1:] / values[:-1]
+    return bool(np.ptp(ratio) < 1e-6 * ratio[0] and np.ptp(np.diff(values)) > 1e-6 * values[-1])
