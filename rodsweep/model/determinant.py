@@ -92,16 +92,24 @@ def scaled_determinant(w: complex, F: float, nu: float, c2: float, gamma3: float
 
 @compiled
 def _corrections(w, F, nu, c2, gamma3):
-    out = np.empty_like(w)
+    correction = np.empty_like(w)
+    length = np.empty(len(w))
     for i in range(len(w)):
         value, slope, _, _ = scaled_determinant(w[i], F, nu, c2, gamma3)
-        out[i] = -value / slope if slope != 0 else complex(math.inf, 0.0)
-    return out
+        correction[i] = -value / slope if slope != 0 else complex(math.inf, 0.0)
+        _, P1, _, plus, minus = branches(w[i], F, nu, c2, gamma3)
+        fast = abs(c2 + gamma3 + 2 * P1) / max(1.0, math.sqrt(abs(plus)))
+        slow = abs(c2 + gamma3 - 2 * P1) / max(1.0, math.sqrt(abs(minus)))
+        length[i] = 2 / max(fast, slow)
+    return correction, length
 
 
-def newton_corrections(w: NDArray[np.complex128], rod: Rod) -> NDArray[np.complex128]:
-    """-D(w)/D'(w), in 1/tau2: how far, to first order, an eigenvalue of `rod` lies from each w.
+def newton_corrections(
+    w: NDArray[np.complex128], rod: Rod
+) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+    """(-D/D', length) at each w, in 1/tau2: how far, to first order, an eigenvalue of `rod` lies.
 
-    It does not know how w was computed, which makes its modulus an independent error estimate.
+    The correction does not know how w was computed, which makes its modulus an independent error
+    estimate. It means something only well below `length`, over which an exponent of D changes by one.
     """
     return _corrections(np.asarray(w, complex), *rod.coefficients)

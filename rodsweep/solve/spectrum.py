@@ -34,8 +34,8 @@ SPARE_MODES = 2
 MOST_ATTEMPTS = 14
 STALLED = 2
 """Refinements without a better error after which rounding, not the mesh, is taken as the limit."""
-A_ROOT = 1e-3
-"""Relative Newton correction below which a computed eigenvalue counts as standing for a root of D."""
+A_ROOT = 1e-2
+"""Newton correction, in units of the length over which D changes, that still stands for a root of D."""
 WIDE_GAP = 0.05
 """Relative gap between two real parts that is wide enough to draw a line through."""
 NO_GAP = 1e-6
@@ -55,6 +55,11 @@ class SpectrumRequest:
     certify: bool
     vector_nodes: int = 0
     """Number of Lobatto nodes on which (Y, Theta) are wanted; 0 for none."""
+
+    @property
+    def mesh_accuracy(self) -> float:
+        """What the mesh is chosen for: a vector's error is the square root of its eigenvalue's."""
+        return self.accuracy**2 if self.vector_nodes else self.accuracy
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +125,7 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
     growth, wave = most_amplified_wave(rod)
     shift = SHIFT_ABOVE_GROWTH * growth
     wave_number = expected_wave_number(request.modes, wave)
-    resolution = resolution_for(wave_number, request.accuracy)
+    resolution = resolution_for(wave_number, request.mesh_accuracy)
     wanted = request.modes + SPARE_MODES
     best: _Found | None = None
     count: Count | None = None
@@ -160,12 +165,15 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
 def _attempt(rod: Rod, resolution: Resolution, shift: float, wanted: int, vectors: bool) -> _Found:
     """One solve; what does not stand for a root of D of its own is dropped."""
     w, X = eigen_solver(resolution).solve(rod, shift, wanted, vectors)
+    finite = np.isfinite(w)
+    w, X = w[finite], None if X is None else X[:, finite]
     w = np.where(np.abs(w.imag) <= REAL_BELOW * np.abs(w), w.real, w)
-    error = np.abs(newton_corrections(w, rod))
+    correction, length = newton_corrections(w, rod)
+    error = np.abs(correction)
     apart = np.abs(w[:, None] - w[None, :])
     np.fill_diagonal(apart, np.inf)
     nearest = apart.min(axis=1) if len(w) > 1 else np.full(len(w), np.inf)
-    root = (error <= A_ROOT * np.abs(w)) & (error <= nearest)
+    root = (error <= A_ROOT * length) & (error <= nearest)
     order = np.lexsort((-w.imag, -w.real))
     order = order[root[order]]
     return _Found(resolution, w[order], error[order], None if X is None else X[:, order])
@@ -179,7 +187,7 @@ def _covers(found: _Found, wanted: int) -> bool:
 def _next_resolution(rod: Rod, found: _Found, request: SpectrumRequest) -> Resolution:
     """A finer mesh: what the wave numbers now known ask for, at least the next finer one."""
     wave = max(max(wave_numbers(w, rod)) for w in found.w[: request.modes])
-    informed = resolution_for(wave, request.accuracy)
+    informed = resolution_for(wave, request.mesh_accuracy)
     least = finer(found.resolution)
     return informed if informed.unknowns >= least.unknowns else least
 

@@ -1,0 +1,82 @@
+"""Quadrature, basis and pencil: orders and exact answers."""
+
+import numpy as np
+import pytest
+
+from rodsweep.discretization.basis import differentiation, interpolation
+from rodsweep.discretization.pencil import assemble
+from rodsweep.discretization.quadrature import gauss, gauss_lobatto
+from rodsweep.discretization.resolution import LARGEST_ORDER, finer, required_order, resolution_for
+from rodsweep.model.rod import Rod
+
+
+@pytest.mark.parametrize(("rule", "n", "degree"), [(gauss, 9, 17), (gauss_lobatto, 9, 17), (gauss_lobatto, 40, 79)])
+def test_quadrature_is_exact_to_its_degree_and_no_further(rule, n, degree):
+    x, w = rule(n)
+    for k in range(degree + 1):
+        exact = 2 / (k + 1) if k % 2 == 0 else 0.0
+        assert abs(w @ x**k - exact) < 1e-13
+    if degree < 30:
+        assert abs(w @ x ** (degree + 1) - 2 / (degree + 2)) > 1e-9
+
+
+@pytest.mark.parametrize("p", [1, 2, 7, 33, 64])
+def test_basis_reproduces_polynomials_and_their_slopes(p):
+    x, _ = gauss_lobatto(p)
+    points = np.linspace(-1, 1, 23)
+    chebyshev = np.polynomial.chebyshev.Chebyshev.basis(p)
+    assert np.abs(interpolation(x, points) @ chebyshev(x) - chebyshev(points)).max() < 1e-12
+    slope = differentiation(x) @ chebyshev(x) - chebyshev.deriv()(x)
+    assert np.abs(slope).max() < 1e-12 * max(p, 2) ** 4
+
+
+def dense(rod, elements, order):
+    """All finite eigenvalues of the pencil by LAPACK, largest real part first."""
+    pencil = assemble(elements, order)
+    A = np.zeros((pencil.unknowns,) * 2)
+    A[pencil.rows, pencil.columns] = pencil.stiffness(rod)
+    T = np.linalg.solve(A, np.diag(pencil.inertia(rod)))[: 2 * pencil.nodes, : 2 * pencil.nodes]
+    inverse = np.linalg.eigvals(T)
+    w = 1 / inverse[np.abs(inverse) > 1e-13 * np.abs(inverse).max()]
+    return w[np.argsort(-w.real)]
+
+
+@pytest.mark.parametrize("order", [2, 3, 4])
+def test_eigenvalues_converge_with_twice_the_order(order):
+    """h-refinement of a filament: the error of the first eigenvalue falls as h^(2 p)."""
+    rod = Rod(5.0, np.inf, np.inf, 0.0)
+    exact = dense(rod, 2, 20)[0].real
+    errors = [abs(dense(rod, n, order)[0].real - exact) for n in (4, 8)]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(2 * order, abs=0.35)
+
+
+def test_pencil_at_rest_is_symmetric_and_negative():
+    """At F = 0 the operator is self-adjoint and negative definite in the Gamma inner product (Sec. VI)."""
+    pencil = assemble(2, 7)
+    rod = Rod(0.0, 50.0, 30.0, 0.5)
+    A = np.zeros((pencil.unknowns,) * 2)
+    A[pencil.rows, pencil.columns] = pencil.stiffness(rod)
+    n = pencil.nodes
+    sign = np.where(np.arange(3 * n) < 2 * n, 1.0, -1.0)[:, None]  # the third row is a constraint
+    assert np.abs(sign * A - (sign * A).T).max() < 1e-12 * np.abs(A).max()
+    assert dense(rod, 2, 7).real.max() < 0
+    assert np.abs(dense(rod, 2, 7).imag).max() < 1e-9 * np.abs(dense(rod, 2, 7)).max()
+
+
+def test_evaluation_at_points_is_the_polynomial():
+    pencil = assemble(3, 6)
+    x, _ = gauss_lobatto(6)
+    nodes = np.unique(np.round(np.concatenate([(x + 1) / 6 + e / 3 for e in range(3)]), 14))
+    points = np.array([0.0, 0.1, 1 / 3, 0.5, 0.999, 1.0])
+    assert np.abs(pencil.evaluation(points) @ nodes**5 - points**5).max() < 1e-13
+
+
+def test_resolution_grows_with_waves_and_digits():
+    assert required_order(20, 1e-10) > required_order(10, 1e-10) > required_order(10, 1e-6)
+    last = 0
+    for wave in (5, 20, 60, 200, 1000):
+        resolution = resolution_for(wave, 1e-10)
+        assert resolution.order <= LARGEST_ORDER + 1
+        assert resolution.unknowns > last
+        assert finer(resolution).unknowns >= 1.2 * resolution.unknowns
+        last = resolution.unknowns
