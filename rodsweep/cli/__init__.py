@@ -82,6 +82,21 @@ def plot(file: Path, output: Path | None, roots: str) -> None:
     click.echo(draw(read_view(file), output, roots))
 
 
+@commands.command()
+@click.option("--quick", is_flag=True, help="Fewer rounds, for a first impression.")
+@click.option("-o", "--output", type=FILE, help="Write the Markdown here as well.")
+def bench(quick: bool, output: Path | None) -> None:
+    """Time a spectrum point beside what one would otherwise use, and state every error."""
+    try:
+        from ..bench.spectrum import spectrum_table
+    except ModuleNotFoundError as error:
+        raise EnvironmentLacks(f"the benchmark needs {error.name}: pip install 'rodsweep[bench]'") from None
+    table = spectrum_table(quick)
+    click.echo(table)
+    if output is not None:
+        output.write_text(table + "\n")
+
+
 def _speaks() -> bool:
     """Whether this process is the one that talks, before MPI has been started."""
     names = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID")

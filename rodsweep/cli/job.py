@@ -12,7 +12,7 @@ from ..errors import InputError
 from ..model.longitudinal import longitudinal_rates
 from ..model.rod import ALLOWED, admissible
 from ..results.schema import Layout, Variable, spectrum_layout
-from ..sweep.grid import Points, points_of
+from ..sweep.grid import Points, grid_size, points_of
 from .machine import memory_of_machine
 
 
@@ -60,14 +60,8 @@ class Job:
 def make_job(path: Path, overrides: tuple[str, ...]) -> Job:
     """The job of a config file; InputError for everything that can be known to be wrong beforehand."""
     config, text = load_config(path, overrides)
+    _refuse_too_many(path, config, grid_size(config.parameters))
     job = Job(path, config, text, points_of(config.parameters, path.parent))
-    size = job.points.count * job.layout.bytes_per_point
-    memory = memory_of_machine()
-    if size > memory:
-        raise InputError(
-            f"{path}: the grid has {job.points.count} points, whose results take {size / 1e9:.3g} GB, more "
-            f"than the {memory / 1e9:.3g} GB of memory of this machine; use fewer points or modes"
-        )
     gamma1 = config.parameters.gamma1
     if gamma1 is not None:
         if not admissible("gamma1", gamma1):
@@ -77,3 +71,15 @@ def make_job(path: Path, overrides: tuple[str, ...]) -> Job:
                 f"{path}: spectrum.longitudinal needs finite k1; an inextensible rod has no longitudinal modes"
             )
     return job
+
+
+def _refuse_too_many(path: Path, config: Config, count: int) -> None:
+    """InputError where the results of a grid would not fit in memory; before any axis is made."""
+    options = config.spectrum
+    layout = spectrum_layout(options.modes, options.nodes if options.vectors else 0)
+    size, memory = count * layout.bytes_per_point, memory_of_machine()
+    if size > memory:
+        raise InputError(
+            f"{path}: parameters make a grid of {count:.6g} points, whose results take {size / 1e9:.3g} GB, more "
+            f"than the {memory / 1e9:.3g} GB of memory of this machine; use fewer points or modes"
+        )

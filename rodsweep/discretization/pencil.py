@@ -60,10 +60,20 @@ class Pencil:
     def unknowns(self) -> int:
         return 3 * self.nodes
 
+    def coefficients(self, rod: Rod) -> Array:
+        """What the pieces are multiplied by, shape (6,)."""
+        t, g, nu = angle_weight(rod.gamma3), rod.g, rod.nu
+        return np.array([1.0, 1 / t**2, rod.F / t, g / t, nu / t, rod.c2])
+
     def stiffness(self, rod: Rod) -> Array:
         """The entries of A, shape (nnz,)."""
-        t = angle_weight(rod.gamma3)
-        return np.array([1, 1 / t**2, rod.F / t, rod.g / t, rod.nu / t, rod.c2]) @ self.pieces
+        return self.coefficients(rod) @ self.pieces
+
+    def dense_pieces(self) -> Array:
+        """The pieces as whole matrices, column by column as LAPACK stores them, shape (6, unknowns^2)."""
+        whole = np.zeros((6, self.unknowns**2))
+        whole[:, self.columns.astype(int) * self.unknowns + self.rows] = self.pieces
+        return whole
 
     def inertia(self, rod: Rod) -> Array:
         """The diagonal of B, shape (unknowns,)."""

@@ -50,6 +50,17 @@ def git_commit() -> str:
     return run.stdout.strip() or "unknown"
 
 
+def cpu_name() -> str:
+    """The processor's name, as the system gives it."""
+    try:
+        for line in Path("/proc/cpuinfo").read_text().splitlines():
+            if line.startswith("model name"):
+                return line.split(":", 1)[1].strip()
+    except OSError:
+        pass
+    return platform.processor() or platform.machine()
+
+
 def _version(name: str) -> str:
     try:
         return version(name)

@@ -68,19 +68,24 @@ class Store:
         self.journals = journal_directory(path)
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            self.journals.mkdir(exist_ok=True)
             self.lock = self._locked()
-            if fresh:
-                path.unlink(missing_ok=True)
-                self._drop_journals()
-            if path.exists():
-                self._refuse_another()
-                self.fold({})
-            else:
-                self._drop_journals()
-                self._create()
+            try:
+                self._open(fresh)
+            except BaseException:
+                self.close()
+                raise
         except OSError as error:
             raise EnvironmentLacks(f"{path} cannot be written: {error.strerror or error}") from error
+
+    def _open(self, fresh: bool) -> None:
+        if self.path.is_dir():
+            raise InputError(f"{self.path} is a directory; name a file with -o")
+        if self.path.exists() and not fresh:
+            self._refuse_another()
+            self.fold({})
+        else:
+            self._drop_journals()
+            self._create()
 
     def missing(self) -> list[tuple[int, int]]:
         """Ranges of flat indices that are not computed yet, in order."""
@@ -121,23 +126,31 @@ class Store:
         return counts
 
     def close(self) -> None:
-        """Gives the lock back and removes the empty journal directory."""
+        """Gives the lock back and removes the journal directory where nothing is left in it."""
+        (self.journals / "next.h5").unlink(missing_ok=True)
         (self.journals / "lock").unlink(missing_ok=True)
-        os.close(self.lock)
-        if self.journals.exists() and not any(self.journals.iterdir()):
+        if not any(self.journals.iterdir()):
             self.journals.rmdir()
+        os.close(self.lock)
 
     def _locked(self) -> int:
-        handle = os.open(self.journals / "lock", os.O_RDWR | os.O_CREAT, 0o644)
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            os.close(handle)
-            raise InputError(
-                f"{self.path} is being written by another run; wait for it, or choose another file with -o. "
-                "(Several ranks that each say this were started without MPI between them.)"
-            ) from None
-        return handle
+        """The lock of this file; InputError if another run has it."""
+        while True:
+            self.journals.mkdir(exist_ok=True)
+            try:
+                handle = os.open(self.journals / "lock", os.O_RDWR | os.O_CREAT, 0o644)
+            except FileNotFoundError:  # a run that ended just now took the directory away
+                continue
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                if os.fstat(handle).st_nlink:
+                    return handle
+            except BlockingIOError:
+                raise InputError(
+                    f"{self.path} is being written by another run; wait for it, or choose another file with "
+                    "-o (several ranks that each say this were started without MPI between them)"
+                ) from None
+            os.close(handle)  # the run that ended just now took this lock file away: take a new one
 
     def _drop_journals(self) -> None:
         for path in self.journals.glob("rank-*"):

@@ -21,6 +21,8 @@ DENSE_UP_TO = 300
 """Unknowns up to which the dense factorisation is no slower than a sparse one; it rounds less."""
 TOLERANCE = 1e-14
 """Krylov tolerance: the discretisation is to be the only error. It costs one step in twenty."""
+KRYLOV_SPARE = 11
+"""Krylov vectors beyond the wanted eigenvalues: the fewest with which most points need no restart."""
 MOST_RESTARTS = 200
 PREFIX = "spectrum_"
 """Prefix of the PETSc options that override this solver, as in -spectrum_eps_ncv 32."""
@@ -40,6 +42,7 @@ class EigenSolver:
         self.A, self.B = PETSc.Mat(), PETSc.Mat()
         if self.dense:
             self.A.createDense([n, n], comm=PETSc.COMM_SELF).setUp()
+            self.pieces = self.pencil.dense_pieces()
         else:
             values = np.ones(len(self.indices))
             self.A.createAIJ([n, n], csr=(self.indptr, self.indices, values), comm=PETSc.COMM_SELF)
@@ -47,6 +50,7 @@ class EigenSolver:
         self.B.createAIJ([n, n], csr=(line, line[:-1], np.ones(n)), comm=PETSc.COMM_SELF)
         self.line = line
         self.start = PETSc.Vec().createWithArray(np.ones(n), comm=PETSc.COMM_SELF)
+        self.users_krylov = PETSc.Options(PREFIX).getInt("eps_ncv", 0)
         self.eps = self._solver("petsc" if self.dense else package)
 
     def _solver(self, package: str | None) -> "SLEPc.EPS":
@@ -73,19 +77,24 @@ class EigenSolver:
         w: complex, shape (k,), in 1/tau2. X: their vectors, shape (unknowns, k), or None unless
         asked for; of the converged ones none is left out. Raises PETSc.Error where PETSc fails.
         """
-        A, B = self.pencil.stiffness(rod), self.pencil.inertia(rod)
+        A, B = self.pencil.coefficients(rod), self.pencil.inertia(rod)
         if not (np.isfinite(A).all() and np.isfinite(shift)):
             raise FloatingPointError("the parameters overflow the matrix entries")
-        A[self.diagonal] -= shift * B
         if self.dense:
-            self.A.getDenseArray()[self.pencil.rows, self.pencil.columns] = A
+            values = A @ self.pieces
+            values[:: self.pencil.unknowns + 1] -= shift * B
+            self.A.getDenseArray().T.reshape(-1)[:] = values
         else:
-            self.A.setValuesCSR(self.indptr, self.indices, A)
+            values = A @ self.pencil.pieces
+            values[self.diagonal] -= shift * B
+            self.A.setValuesCSR(self.indptr, self.indices, values)
         self.A.assemble()
         self.B.setValuesCSR(self.line, self.line[:-1], B)
         self.B.assemble()
         self.eps.setOperators(self.A, self.B)
-        self.eps.setDimensions(min(wanted, self.pencil.unknowns - 2), PETSc.DECIDE, PETSc.DECIDE)
+        wanted = min(wanted, self.pencil.unknowns - 2)
+        krylov = self.users_krylov or max(2 * wanted, wanted + KRYLOV_SPARE)
+        self.eps.setDimensions(wanted, min(krylov, self.pencil.unknowns))
         self.eps.setInitialSpace(self.start)
         self.eps.solve()
         found = self.eps.getConverged()

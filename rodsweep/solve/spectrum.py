@@ -29,7 +29,7 @@ from .status import Status
 
 SHIFT_ABOVE_GROWTH = 1.05
 """Shift in units of the growth rate of the most amplified wave, which bounds most spectra."""
-SPARE_MODES = 2
+SPARE_MODES = 1
 """Eigenvalues asked for beyond the wanted ones, to see where the next gap is."""
 MOST_ATTEMPTS = 14
 STALLED = 2
@@ -227,10 +227,10 @@ def _finished(rod: Rod, request: SpectrumRequest, found: _Found, count: Count | 
     certified = count is not None and count.number is not None
     if request.certify and not certified:
         status, message = Status.not_certified, count.why_not if count else ""
-    if _undecided(found):
-        certified = False
-        status = Status.undecided if request.certify else status
-    return _result(status, rod, request, found, certified, message)
+    undecided = _undecided(found)
+    if undecided and request.certify:
+        status = Status.undecided
+    return _result(status, rod, request, found, None if undecided else certified, message)
 
 
 def _given_up(rod: Rod, request: SpectrumRequest, best: _Found | None, count: Count | None) -> Spectrum:
@@ -241,20 +241,22 @@ def _given_up(rod: Rod, request: SpectrumRequest, best: _Found | None, count: Co
         line = min(best.w[request.modes - 1].real, 0.0)
         if count.number != int((best.w.real >= line).sum()):
             return _nothing(Status.modes_missing, request, f"the winding number counts {count.number}")
-    certified = count is not None and count.number is not None and not _undecided(best)
-    return _result(Status.accuracy_not_reached, rod, request, best, certified, "")
+    certified = count is not None and count.number is not None
+    undecided = _undecided(best)
+    return _result(Status.accuracy_not_reached, rod, request, best, None if undecided else certified, "")
 
 
 def _result(
-    status: Status, rod: Rod, request: SpectrumRequest, found: _Found, certified: bool, message: str
+    status: Status, rod: Rod, request: SpectrumRequest, found: _Found, certified: bool | None, message: str
 ) -> Spectrum:
+    """The outcome with its numbers; `certified` is None where the sign of a growth rate is undecided."""
     m = request.modes
     return Spectrum(
         status=status,
         eigenvalues=found.w[:m],
         error_estimate=found.error[:m],
-        unstable_count=-1 if _undecided(found) else int((found.w.real > 0).sum()),
-        certified=certified,
+        unstable_count=-1 if certified is None else int((found.w.real > 0).sum()),
+        certified=bool(certified),
         elements=found.resolution.elements,
         order=found.resolution.order,
         seconds=0.0,

@@ -12,8 +12,6 @@ from ..config.schema import Parameters, as_number
 from ..errors import InputError
 from ..model.rod import ALLOWED, PARAMETERS, Rod, admissible
 
-MOST_POINTS = 2**40
-
 
 @dataclass(frozen=True, slots=True)
 class Points:
@@ -39,6 +37,13 @@ class Points:
         return Rod(*(float(c[i]) for c, i in zip(self.columns, places, strict=True)))
 
 
+def grid_size(parameters: Parameters) -> int:
+    """Number of points of a grid, known before its axes are made; 0 for a list."""
+    if parameters.points is not None:
+        return 0
+    return math.prod(getattr(parameters, name).size for name in PARAMETERS)
+
+
 def points_of(parameters: Parameters, directory: Path) -> Points:
     """The points that the config asks for; InputError for any value that the model does not allow."""
     if parameters.points is not None:
@@ -47,8 +52,6 @@ def points_of(parameters: Parameters, directory: Path) -> Points:
         where = f"{path}, row {{row}}: "
     else:
         axes = [getattr(parameters, name) for name in PARAMETERS]
-        if math.prod(axis.size for axis in axes) > MOST_POINTS:
-            raise InputError("parameters: the grid has more points than can be numbered")
         points = Points(tuple(axis.array() for axis in axes), is_grid=True)
         where = "parameters."
     _check(points, where)
@@ -57,10 +60,10 @@ def points_of(parameters: Parameters, directory: Path) -> Points:
 
 def _check(points: Points, where: str) -> None:
     for name, column in zip(PARAMETERS, points.columns, strict=True):
-        for row, value in enumerate(column):
-            if not admissible(name, float(value)):
-                place = where.format(row=row + 2)
-                raise InputError(f"{place}{name} = {value:g} is not allowed; it must be {ALLOWED[name]}")
+        bad = [row for row, value in enumerate(column.tolist()) if not admissible(name, value)]
+        if bad:
+            place = where.format(row=bad[0] + 2)
+            raise InputError(f"{place}{name} = {column[bad[0]]:g} is not allowed; it must be {ALLOWED[name]}")
     F, k1 = points.columns[0], points.columns[1]
     if points.is_grid:
         if F.max() >= k1.min():

@@ -1,0 +1,170 @@
+"""What a config may say and how it is refused: one sentence, before anything is computed."""
+
+import numpy as np
+import pytest
+
+from rodsweep.cli.job import make_job
+from rodsweep.errors import InputError
+
+GOOD = """
+title: test
+task: spectrum
+parameters:
+  F: {start: 0, stop: 30, num: 4}
+  k1: 1e4
+  k2: [100, 1.0e4, inf]
+  gamma3: {start: 1e-4, stop: 1e-2, num: 3, spacing: log}
+spectrum: {modes: 3}
+accuracy: 1.0e-8
+"""
+
+
+def job(tmp_path, text, *overrides):
+    path = tmp_path / "c.yaml"
+    path.write_text(text)
+    return make_job(path, overrides)
+
+
+def test_axes_are_numbers_lists_and_ranges(tmp_path):
+    points = job(tmp_path, GOOD).points
+    assert points.shape == (4, 1, 3, 3)
+    F, k1, k2, gamma3 = points.columns
+    assert np.array_equal(F, [0, 10, 20, 30])
+    assert np.array_equal(k2, [100, 1e4, np.inf])
+    assert np.allclose(gamma3, [1e-4, 1e-3, 1e-2], rtol=1e-14)
+    rod = points.rod(points.count - 1)
+    assert (rod.F, rod.k1, rod.k2) == (30, 1e4, np.inf)
+
+
+def test_axes_may_come_in_any_order(tmp_path):
+    shuffled = "parameters: {gamma3: 0, k2: .inf, F: 3, k1: inf}\ntask: spectrum\n"
+    assert job(tmp_path, shuffled).points.rod(0).F == 3
+
+
+def test_defaults_are_certified_and_without_vectors(tmp_path):
+    config = job(tmp_path, GOOD).config
+    assert (config.spectrum.certify, config.spectrum.vectors, config.spectrum.longitudinal) == (True, False, False)
+
+
+def test_override_sets_a_key(tmp_path):
+    points = job(tmp_path, GOOD, "parameters.F.num=7", "accuracy=1e-6").points
+    assert points.shape[0] == 7
+
+
+@pytest.mark.parametrize("parts", [("F", "k1", "k2", "gamma3"), ("gamma3", "k2", "F", "k1")])
+def test_point_list_is_read_in_any_column_order(tmp_path, parts):
+    row = {"F": "10", "k1": "inf", "k2": "50", "gamma3": "0.5"}
+    (tmp_path / "p.csv").write_text(",".join(parts) + "\n" + ", ".join(row[p] for p in parts) + "\n\n")
+    points = job(tmp_path, "task: spectrum\nparameters: {points: p.csv}").points
+    assert points.shape == (1,)
+    assert points.rod(0).gamma3 == 0.5
+    assert points.rod(0).k1 == np.inf
+
+
+REFUSED = {
+    "F: {start: 0, stop: 1e4, num: 4}": ["F", "10000", "k1"],
+    "k1: 0": ["k1", "0", "above 0"],
+    "k1: 30": ["F", "30", "k1"],
+    "k2: -5": ["k2", "-5", "above 0"],
+    "gamma3: -1e-3": ["gamma3", "-0.001", "0 or above"],
+    "gamma3: inf": ["gamma3", "inf", "finite"],
+    "F: .nan": ["F", "nan"],
+    "F: []": ["F", "empty"],
+    "F: [3, 2]": ["F", "[3, 2]", "sorted"],
+    "F: [2, 2]": ["F", "sorted"],
+    "F: {start: 3, stop: 2, num: 4}": ["F", "start", "stop"],
+    "F: {start: 3, stop: 4}": ["F", "num"],
+    "F: {start: 3, stop: 4, num: 0}": ["F", "num", "0"],
+    "F: {start: 3, stop: 4, num: 2.5}": ["F", "num", "2.5"],
+    "F: {start: 3, stop: 4, num: 3, step: 1}": ["F", "step"],
+    "F: {start: 0, stop: 4, num: 3, spacing: log}": ["F", "log", "0"],
+    "F: {start: 1, stop: 4, num: 3, spacing: cubic}": ["F", "cubic", "log"],
+    "F: {start: 1, stop: inf, num: 3}": ["F", "finite"],
+    "F: yes": ["F", "yes"],
+    "F: true": ["F", "True", "number"],
+    "F: null": ["F", "missing"],
+    "F: {start: 0, stop: 1, num: 1000000000}": ["points", "memory"],
+    "Force: 3": ["Force", "F"],
+    "gamma1: 1": ["gamma1", "not used"],
+    "points: p.csv": ["points", "F"],
+}
+
+
+@pytest.mark.parametrize("line", REFUSED)
+def test_bad_parameters_are_refused_naming_key_and_value(tmp_path, line):
+    key = line.split(":")[0]
+    kept = [text for text in GOOD.splitlines() if not text.strip().startswith(key + ":")]
+    at = kept.index("parameters:") + 1
+    with pytest.raises(InputError) as refusal:
+        job(tmp_path, "\n".join([*kept[:at], "  " + line, *kept[at:]]))
+    for word in REFUSED[line]:
+        assert word in str(refusal.value), str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+BROKEN = {
+    "": "mapping",
+    "- 1\n- 2": "mapping",
+    "a: [1, 2": "line",
+    "a: 1\na: 2": "a",
+    "task: spectrum\nparameters: {F: !!python/object/apply:os.system [ls]}": "tags",
+    "a: &x [1]\nb: *x": "aliases",
+    "task: spectrum": "parameters",
+    "task: thresolds\nparameters: {F: 1, k1: 9, k2: 1, gamma3: 0}": "spectrum",
+    "task: spectrum\nparameters: {F: 1, k1: 9, k2: 1}": "gamma3",
+    "task: spectrum\nparameters: 3": "parameters",
+    "task: spectrum\nparameters: {F: 1, k1: 9, k2: 1, gamma3: 0}\nspectrum: {mods: 3}": "modes",
+    "task: spectrum\nparameters: {F: 1, k1: 9, k2: 1, gamma3: 0}\nspectrum: {modes: 0}": "modes",
+    "task: spectrum\nparameters: {F: 1, k1: 9, k2: 1, gamma3: 0}\nspectrum: {modes: 2.0}": "modes",
+    "task: spectrum\nparameters: {F: 1, k1: 9, k2: 1, gamma3: 0}\nspectrum: {nodes: 9}": "vectors",
+    "task: spectrum\nparameters: {F: 1, k1: 9, k2: 1, gamma3: 0}\nspectrum: {longitudinal: true}": "gamma1",
+    "task: spectrum\nparameters: {F: 1, k1: 9, k2: 1, gamma3: 0}\naccuracy: 0": "accuracy",
+    "task: spectrum\nparameters: {F: 1, k1: 9, k2: 1, gamma3: 0}\naccurracy: 1e-8": "accuracy",
+    "task: spectrum\nparameters: {F: 1, k1: 9, k2: 1, gamma3: 0}\n---\na: 1": "document",
+    "[" * 100: "nested",
+    "a: " + "[" * 5000: "nested",
+    "\t- x": "YAML",
+    "task: spectrum\nparameters: {F: 1" + "0" * 400 + ", k1: 9, k2: 1, gamma3: 0}": "F",
+}
+
+
+@pytest.mark.parametrize("text", BROKEN, ids=range(len(BROKEN)))
+def test_broken_configs_are_refused_in_one_sentence(tmp_path, text):
+    with pytest.raises(InputError) as refusal:
+        job(tmp_path, text)
+    assert BROKEN[text] in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+    assert len(str(refusal.value)) < 500
+
+
+@pytest.mark.parametrize(
+    ("table", "word"),
+    [
+        ("", "header"),
+        ("F,k1,k2\n1,2,3\n", "header"),
+        ("F,k1,k2,gamma3\n", "no point"),
+        ("F,k1,k2,gamma3\n1,9,9,x\n", "gamma3"),
+        ("F,k1,k2,gamma3\n1,9,9\n", "line 2"),
+        ("F,k1,k2,gamma3\n1,9,9,0\n9,9,9,0\n", "row 3"),
+        ("F,k1,k2,gamma3\n1,9,9,nan\n", "nan"),
+        ("F,k1,k2,gamma3\n1,9,-9,0\n", "k2"),
+    ],
+)
+def test_bad_point_lists_are_refused_naming_the_place(tmp_path, table, word):
+    (tmp_path / "p.csv").write_text(table)
+    with pytest.raises(InputError, match=word):
+        job(tmp_path, "task: spectrum\nparameters: {points: p.csv}")
+
+
+@pytest.mark.parametrize("override", ["accuracy", "=3", "parameters.F.num.x=3", "spectrum.mods=3", "a..b=1", "accuracy=["])
+def test_bad_overrides_are_refused(tmp_path, override):
+    with pytest.raises(InputError):
+        job(tmp_path, GOOD, override)
+
+
+def test_file_that_is_no_text_is_refused(tmp_path):
+    path = tmp_path / "c.yaml"
+    path.write_bytes(b"\xff\xfe\x00\x01")
+    for bad in (path, tmp_path, tmp_path / "none.yaml"):
+        with pytest.raises(InputError):
+            make_job(bad, ())

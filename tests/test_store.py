@@ -1,0 +1,141 @@
+"""The result file and its journal: what is written is read back, whatever was killed in between."""
+
+import h5py
+import numpy as np
+import pytest
+
+from rodsweep.errors import InputError
+from rodsweep.results.journal import Journal, journal_directory, read_journals
+from rodsweep.results.schema import spectrum_layout
+from rodsweep.results.store import Plan, Store, difference
+from rodsweep.results.view import read_view
+
+LAYOUT = spectrum_layout(2, 0)
+
+
+def plan(is_grid=True, **config):
+    columns = tuple(np.arange(1.0, n + 1) for n in ((3, 2, 1, 2) if is_grid else (5, 5, 5, 5)))
+    resolved = {"spectrum": {"modes": 2, "vectors": False, "nodes": 33}} | config
+    return Plan(columns, is_grid, LAYOUT, {}, (), resolved, {"title": "t"}, ((0, "ok"), (5, "failed")))
+
+
+def record(index):
+    return {
+        "growth_rate": [index + 0.25, -index],
+        "frequency": [0.0, index],
+        "error_estimate": [1e-12, 2e-12],
+        "unstable_count": index % 3,
+        "certified": 1,
+        "elements": 1,
+        "order": 17,
+        "seconds": 1e-3,
+        "status": 0,
+    }
+
+
+def journal(store, indices, rank=0):
+    pages = Journal(store.journals, rank, LAYOUT, store.plan.fingerprint)
+    for index in indices:
+        pages.append(index, record(index))
+    pages.close()
+
+
+@pytest.mark.parametrize("is_grid", [True, False])
+def test_journalled_points_reach_their_place_in_any_order(tmp_path, is_grid):
+    path = tmp_path / "a.h5"
+    store = Store(path, plan(is_grid))
+    count = 12 if is_grid else 5
+    assert store.missing() == [(0, count)]
+    journal(store, [4, 0, 3], rank=0)
+    journal(store, [1], rank=1)
+    store.fold({"finished": "now"})
+    assert store.missing() == ([(2, 3), (5, 12)] if is_grid else [(2, 3)])
+    with h5py.File(path) as file:
+        growth = file["growth_rate"][...].reshape(count, 2)
+        assert growth[4].tolist() == [4.25, -4]
+        assert np.isnan(growth[2]).all()
+        assert file["status"][...].ravel()[:5].tolist() == [0, 0, -1, 0, 0]
+        assert file.attrs["finished"] == "now"
+    store.close()
+    assert not journal_directory(path).exists()
+
+
+def test_points_journalled_before_a_kill_are_folded_at_the_next_start(tmp_path):
+    path = tmp_path / "a.h5"
+    store = Store(path, plan())
+    journal(store, range(7))
+    assert read_view(path).journalled == 7
+    store.close()
+    again = Store(path, plan())
+    assert again.missing() == [(7, 12)]
+    assert again.status_counts() == {"missing": 5, "ok": 7}
+    again.close()
+
+
+@pytest.mark.parametrize("lost", range(1, 140, 13))
+def test_torn_tail_of_a_journal_is_dropped(tmp_path, lost):
+    store = Store(tmp_path / "a.h5", plan())
+    journal(store, range(7))
+    (page,) = store.journals.glob("rank-*")
+    page.write_bytes(page.read_bytes()[:-lost])
+    records = np.concatenate(list(read_journals(store.journals, LAYOUT, store.plan.fingerprint)))
+    whole = 7 - -(-lost // (LAYOUT.record.itemsize + 4))
+    assert records["index"].tolist() == list(range(whole))
+    store.close()
+
+
+def test_damaged_record_is_dropped_and_only_it(tmp_path):
+    store = Store(tmp_path / "a.h5", plan())
+    journal(store, range(7))
+    (page,) = store.journals.glob("rank-*")
+    data = bytearray(page.read_bytes())
+    data[-3 * (LAYOUT.record.itemsize + 4) + 20] ^= 1
+    page.write_bytes(data)
+    records = np.concatenate(list(read_journals(store.journals, LAYOUT, store.plan.fingerprint)))
+    assert records["index"].tolist() == [0, 1, 2, 3, 5, 6]
+    store.close()
+
+
+def test_journal_of_another_config_is_not_folded(tmp_path):
+    store = Store(tmp_path / "a.h5", plan())
+    pages = Journal(store.journals, 0, LAYOUT, "another")
+    pages.append(0, record(0))
+    pages.close()
+    store.fold({})
+    assert store.missing() == [(0, 12)]
+    store.close()
+
+
+def test_file_of_another_config_is_refused_naming_the_difference(tmp_path):
+    path = tmp_path / "a.h5"
+    Store(path, plan(accuracy=1e-8)).close()
+    before = path.read_bytes()
+    with pytest.raises(InputError, match="accuracy is 1e-08 in the file and 1e-10 in the config"):
+        Store(path, plan(accuracy=1e-10))
+    assert path.read_bytes() == before
+    Store(path, plan(accuracy=1e-10), fresh=True).close()
+
+
+def test_foreign_file_is_refused_and_left_alone(tmp_path):
+    path = tmp_path / "a.h5"
+    for content in (b"", b"not HDF5", b"\x89HDF\r\n\x1a\n" + b"\0" * 100):
+        path.write_bytes(content)
+        with pytest.raises(InputError, match="not a whole rodsweep result"):
+            Store(path, plan())
+        assert path.read_bytes() == content
+        with pytest.raises(InputError, match="not a whole rodsweep result"):
+            read_view(path)
+
+
+def test_two_runs_on_one_file_are_refused(tmp_path):
+    store = Store(tmp_path / "a.h5", plan())
+    with pytest.raises(InputError, match="another run"):
+        Store(tmp_path / "a.h5", plan())
+    store.close()
+    Store(tmp_path / "a.h5", plan()).close()
+
+
+def test_difference_names_the_first_key_that_differs():
+    assert difference({"a": {"b": 1}}, {"a": {"b": 1}}) == ""
+    assert difference({"a": {"b": 1}}, {"a": {"b": 2}}) == "a.b is 1 in the file and 2 in the config"
+    assert difference({"a": 1, "c": 2}, {"a": 1}) == "c is 2 in the file and null in the config"
