@@ -43,7 +43,11 @@ def test_axes_may_come_in_any_order(tmp_path):
 
 def test_defaults_are_certified_and_without_vectors(tmp_path):
     config = job(tmp_path, GOOD).config
-    assert (config.spectrum.certify, config.spectrum.vectors, config.spectrum.longitudinal) == (True, False, False)
+    assert (config.spectrum.certify, config.spectrum.vectors, config.spectrum.longitudinal) == (
+        True,
+        False,
+        False,
+    )
 
 
 def test_override_sets_a_key(tmp_path):
@@ -156,7 +160,9 @@ def test_bad_point_lists_are_refused_naming_the_place(tmp_path, table, word):
         job(tmp_path, "task: spectrum\nparameters: {points: p.csv}")
 
 
-@pytest.mark.parametrize("override", ["accuracy", "=3", "parameters.F.num.x=3", "spectrum.mods=3", "a..b=1", "accuracy=["])
+@pytest.mark.parametrize(
+    "override", ["accuracy", "=3", "parameters.F.num.x=3", "spectrum.mods=3", "a..b=1", "accuracy=["]
+)
 def test_bad_overrides_are_refused(tmp_path, override):
     with pytest.raises(InputError):
         job(tmp_path, GOOD, override)

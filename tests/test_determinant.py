@@ -3,8 +3,8 @@
 import mpmath as mp
 import numpy as np
 import pytest
-
 from reference import determinant as reference
+
 from rodsweep.model.determinant import newton_corrections, scaled_determinant
 from rodsweep.model.rod import Rod
 
@@ -15,7 +15,9 @@ def cases():
     """Random rods and random w, far beyond where eigenvalues lie."""
     random = np.random.default_rng(7)
     for i in range(60):
-        k1, k2 = (float(10 ** random.uniform(1.3, 12)) if random.random() > 0.15 else np.inf for _ in range(2))
+        k1, k2 = (
+            float(10 ** random.uniform(1.3, 12)) if random.random() > 0.15 else np.inf for _ in range(2)
+        )
         gamma3 = float(random.choice([0.0, 10 ** random.uniform(-8, 0.5)]))
         F = float(random.uniform(-0.5, 0.999) * min(k1, 300.0))
         w = complex(*(random.normal(size=2) * 10 ** random.uniform(-3, 5)))

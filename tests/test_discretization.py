@@ -10,7 +10,9 @@ from rodsweep.discretization.resolution import LARGEST_ORDER, finer, required_or
 from rodsweep.model.rod import Rod
 
 
-@pytest.mark.parametrize(("rule", "n", "degree"), [(gauss, 9, 17), (gauss_lobatto, 9, 17), (gauss_lobatto, 40, 79)])
+@pytest.mark.parametrize(
+    ("rule", "n", "degree"), [(gauss, 9, 17), (gauss_lobatto, 9, 17), (gauss_lobatto, 40, 79)]
+)
 def test_quadrature_is_exact_to_its_degree_and_no_further(rule, n, degree):
     x, w = rule(n)
     for k in range(degree + 1):

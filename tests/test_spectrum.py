@@ -3,8 +3,8 @@
 import mpmath as mp
 import numpy as np
 import pytest
-
 from reference import determinant as reference
+
 from rodsweep.model.rod import Rod
 from rodsweep.solve import spectrum
 from rodsweep.solve.spectrum import SpectrumRequest, solve_spectrum, vector_points
@@ -166,7 +166,9 @@ def test_lost_mode_is_found_again_or_the_numbers_are_withheld(monkeypatch, remem
     rod = Rod(50.0, 1e4, 1e4, 1e-4)
     whole = solve_spectrum(rod, TIGHT)
     real = spectrum.eigen_solver
-    monkeypatch.setattr(spectrum, "eigen_solver", lambda resolution: Forgetful(real(resolution), remembers_from))
+    monkeypatch.setattr(
+        spectrum, "eigen_solver", lambda resolution: Forgetful(real(resolution), remembers_from)
+    )
     result = solve_spectrum(rod, TIGHT)
     assert result.status == status
     if status == Status.ok:
@@ -203,7 +205,9 @@ def eigenfunction(w, rod, points):
         start = mp.matrix([0, 0, tip[2, 3], -tip[2, 2]])
         states = [mp.expm(A * mp.mpf(float(u))) * start for u in points]
         scale = (tip * start)[0]
-        return np.array([complex(s[0] / scale) for s in states]), np.array([complex(s[1] / scale) for s in states])
+        return np.array([complex(s[0] / scale) for s in states]), np.array(
+            [complex(s[1] / scale) for s in states]
+        )
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from rodsweep.errors import InputError
+from rodsweep.results import store as store_module
 from rodsweep.results.journal import Journal, journal_directory, read_journals
 from rodsweep.results.schema import spectrum_layout
 from rodsweep.results.store import Plan, Store, difference
@@ -127,7 +128,8 @@ def test_foreign_file_is_refused_and_left_alone(tmp_path):
             read_view(path)
 
 
-def test_two_runs_on_one_file_are_refused(tmp_path):
+def test_two_runs_on_one_file_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(store_module, "LOCK_PATIENCE", 0.3)
     store = Store(tmp_path / "a.h5", plan())
     with pytest.raises(InputError, match="another run"):
         Store(tmp_path / "a.h5", plan())

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..discretization.resolution import Resolution
 from ..model.determinant import newton_corrections
 from ..model.rod import Rod
 from ..results.provenance import cpu_name, now, provenance
-from ..discretization.resolution import Resolution
 from ..solve import petsc
 from ..solve.spectrum import SpectrumRequest, solve_spectrum
 from .peers import SAME_PENCIL, chebyshev_qz
@@ -71,7 +71,10 @@ def spectrum_table(quick: bool) -> str:
             "| method | ms a point | worst error | times slower |",
             "|---|---|---|---|",
         ]
-        lines += [f"| {r.method} | {r.milliseconds:.3f} | {r.error:.0e} | {r.milliseconds / own:.1f} |" for r in rows]
+        lines += [
+            f"| {r.method} | {r.milliseconds:.3f} | {r.error:.0e} | {r.milliseconds / own:.1f} |"
+            for r in rows
+        ]
     versions = petsc.versions() | {k.removesuffix("_version"): v for k, v in provenance().items()}
     shown = ("rodsweep", "petsc", "slepc", "numpy", "python")
     where = ", ".join(f"{name} {versions[name]}" for name in shown)

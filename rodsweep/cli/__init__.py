@@ -39,7 +39,10 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], fresh: bo
     """Compute CONFIG, continuing an interrupted result file. Start it with mpiexec for many ranks."""
     from .running import run_config
 
-    sys.exit(run_config(config, output or Path(config.stem + ".h5"), overrides, fresh))
+    output = output or Path(config.stem + ".h5")
+    if output.is_dir() or not output.name:
+        raise InputError(f"--output {output} is a directory; name a file")
+    sys.exit(run_config(config, output, overrides, fresh))
 
 
 @commands.command()

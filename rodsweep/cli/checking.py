@@ -31,8 +31,10 @@ def describe_job(job: Job) -> None:
         f"{points.count * job.layout.bytes_per_point / 1e6:.3g} MB of results"
     )
     if cost.too_large:
-        console.print(f"warning: about {cost.too_large} of {min(200, points.count)} sampled points need more "
-                      "unknowns than the limit and will end with status failed")
+        console.print(
+            f"warning: about {cost.too_large} of {min(200, points.count)} sampled points need more "
+            "unknowns than the limit and will end with status failed"
+        )
 
 
 def modelled(job: Job) -> list[tuple[str, str, str]]:
@@ -55,7 +57,9 @@ def modelled(job: Job) -> list[tuple[str, str, str]]:
         (
             "longitudinal modes",
             "yes" if options.longitudinal else "no",
-            "closed form, no mesh" if options.longitudinal else "they decouple; spectrum.longitudinal adds them",
+            "closed form, no mesh"
+            if options.longitudinal
+            else "they decouple; spectrum.longitudinal adds them",
         ),
         (
             "eigenvectors",

@@ -2,12 +2,12 @@
 
 import os
 import socket
-import sys
 import time
 from pathlib import Path
 
 import click
 
+from ..errors import EnvironmentLacks
 from ..results.journal import Journal, journal_directory
 from ..results.provenance import now, provenance
 from ..results.store import Plan, Store
@@ -38,7 +38,30 @@ def run_config(path: Path, output: Path, overrides: tuple[str, ...], fresh: bool
     count = sum(stop - start for start, stop in todo)
     if team.first:
         kept = job.points.count - count
-        click.echo(f"{output}: {count} of {job.points.count} points to do" + (f", {kept} kept" if kept else ""))
+        click.echo(
+            f"{output}: {count} of {job.points.count} points to do" + (f", {kept} kept" if kept else "")
+        )
+    with team.together():
+        failures = _solve_missing(team, job, plan, output, todo) if count else []
+        told = team.gather(failures)
+        hosts = team.gather(socket.gethostname())
+    seconds = time.monotonic() - began
+
+    def finish() -> int:
+        if count:
+            store[0].fold(_ending(team, hosts or [], started))
+        counts = store[0].status_counts()
+        store[0].close()
+        _report(output, job, count, seconds, team.size, counts, [f for some in told or [] for f in some])
+        return 0 if set(counts) == {"ok"} else 1
+
+    return team.on_first(finish)
+
+
+def _solve_missing(team: Team, job: Job, plan: Plan, output: Path, todo: list[tuple[int, int]]) -> list[str]:
+    """This rank's share of the missing points, into its journal; returns what to tell of failures."""
+    from ..solve import spectrum
+
     request = spectrum.SpectrumRequest(
         job.config.spectrum.modes, job.config.accuracy, job.config.spectrum.certify, job.vector_nodes
     )
@@ -53,35 +76,21 @@ def run_config(path: Path, output: Path, overrides: tuple[str, ...], fresh: bool
             failures.append(f"{job.points.rod(index)}: {result.status.name} {result.message}".rstrip())
 
     spectrum.warm_up()
-    if count:
-        tell = Teller(count, job.config.title or path.stem) if team.first else None
-        try:
-            journal = Journal(journal_directory(output), team.rank, job.layout, plan.fingerprint)
-            sweep(team, todo, solve, keep, tell or (lambda done: None))
-            journal.close()
-        except OSError as error:
-            sys.stderr.write(
-                f"rodsweep: rank {team.rank} cannot write beside {output}: {error.strerror or error}; what is "
-                "done is kept: make room and run again\n"
-            )
-            team.abort()
-        finally:
-            if tell:
-                tell.close()
-    told = team.gather(failures)
-    hosts = team.gather(socket.gethostname())
-    team.barrier()
-    seconds = time.monotonic() - began
-
-    def finish() -> int:
-        if count:
-            store[0].fold(_ending(team, hosts or [], started))
-        counts = store[0].status_counts()
-        store[0].close()
-        _report(output, job, count, seconds, team.size, counts, [f for some in told or [] for f in some])
-        return 0 if set(counts) == {"ok"} else 1
-
-    return team.on_first(finish)
+    total = sum(stop - start for start, stop in todo)
+    tell = Teller(total, job.config.title or job.path.stem) if team.first else None
+    try:
+        journal = Journal(journal_directory(output), team.rank, job.layout, plan.fingerprint)
+        sweep(team, todo, solve, keep, tell or (lambda done: None))
+        journal.close()
+    except OSError as error:
+        raise EnvironmentLacks(
+            f"cannot write beside {output}: {error.strerror or error}; what is done is kept: make room and "
+            "run again"
+        ) from error
+    finally:
+        if tell:
+            tell.close()
+    return failures
 
 
 def _plan(job: Job, status, petsc) -> Plan:  # type: ignore[no-untyped-def]
@@ -140,7 +149,13 @@ def _ending(team: Team, hosts: list[str], started: str) -> dict:
 
 
 def _report(
-    output: Path, job: Job, count: int, seconds: float, ranks: int, counts: dict[str, int], failures: list[str]
+    output: Path,
+    job: Job,
+    count: int,
+    seconds: float,
+    ranks: int,
+    counts: dict[str, int],
+    failures: list[str],
 ) -> None:
     if not count:
         click.echo(f"{output} is complete, nothing to do")
@@ -152,4 +167,3 @@ def _report(
         click.echo(f"  {failure}")
     if set(counts) != {"ok"}:
         click.echo(f"  `rodsweep show {output}` says what each status means")
-

@@ -31,7 +31,9 @@ def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, st
 
 def canonical(config: Config) -> dict[str, Any]:
     """The config with all defaults filled in, as JSON-compatible values; inf becomes "inf"."""
-    return json.loads(json.dumps(config.model_dump(exclude_none=True), default=str).replace("Infinity", '"inf"'))
+    return json.loads(
+        json.dumps(config.model_dump(exclude_none=True), default=str).replace("Infinity", '"inf"')
+    )
 
 
 def read_text(path: Path) -> str:

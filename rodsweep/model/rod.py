@@ -45,7 +45,7 @@ class Rod:
         for name in PARAMETERS:
             if not admissible(name, getattr(self, name)):
                 raise ValueError(f"{name} = {getattr(self, name)} is not {ALLOWED[name]}")
-        if not self.F < self.k1:
+        if not self.k1 > self.F:
             raise ValueError(f"F = {self.F} is not below k1 = {self.k1}")
 
     @property

@@ -19,7 +19,10 @@ LABELS = {
 FIRST, SECOND = "#0072B2", "#D55E00"
 """Blue and vermilion: told apart by the colour-blind and in grey."""
 STYLE = {"font.size": 10, "axes.grid": False, "axes.spines.top": False, "axes.spines.right": False}
-ROOTS = {"rightmost": "the two rightmost roots", "smallest": "of the stored roots, the two smallest in magnitude"}
+ROOTS = {
+    "rightmost": "the two rightmost roots",
+    "smallest": "of the stored roots, the two smallest in magnitude",
+}
 
 
 def draw(view: View, output: Path, roots: str) -> str:
@@ -72,7 +75,9 @@ def _line(view: View, name: str, roots: str) -> Figure:
     x = view.axes[name]
     modes = len(view.variables["mode"])
     if modes < 2:
-        raise InputError(f"{view.path} holds one mode; the figure follows two, so run with spectrum.modes >= 2")
+        raise InputError(
+            f"{view.path} holds one mode; the figure follows two, so run with spectrum.modes >= 2"
+        )
     growth = view.variables["growth_rate"].reshape(-1, modes)
     w = followed_roots(growth, view.variables["frequency"].reshape(-1, modes), roots)
     figure = Figure(figsize=(5.2, 6.6), layout="constrained")
@@ -83,8 +88,9 @@ def _line(view: View, name: str, roots: str) -> Figure:
         top.plot(x_broken, w[:, i].imag, ":", color=colour, lw=1.6, label=rf"$\mathrm{{Im}}\,\omega_{i + 1}$")
         bottom.plot(w[:, i].real, w[:, i].imag, ".-", color=colour, lw=0.8, ms=3, label=rf"$\omega_{i + 1}$")
     unstable = view.variables["unstable_count"].reshape(-1) > 0
-    top.fill_between(x, 0, 1, where=unstable, transform=top.get_xaxis_transform(), color="0.92", lw=0,
-                     label="flutter")
+    top.fill_between(
+        x, 0, 1, where=unstable, transform=top.get_xaxis_transform(), color="0.92", lw=0, label="flutter"
+    )
     top.axhline(0, color="0.5", lw=0.6)
     bottom.axvline(0, color="0.5", lw=0.6)
     if _is_logarithmic(x):

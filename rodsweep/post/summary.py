@@ -25,7 +25,9 @@ def show_summary(view: View) -> None:
     done = status != MISSING
     if done.any():
         _numbers(console, view, done)
-    ran = f"{a['started']} to {a['finished']} on {a['ranks']} ranks" if "finished" in a else "not finished yet"
+    ran = (
+        f"{a['started']} to {a['finished']} on {a['ranks']} ranks" if "finished" in a else "not finished yet"
+    )
     console.print(
         f"computed {ran}; rodsweep {a.get('rodsweep_version')}, PETSc {a.get('petsc_version')}, "
         f"SLEPc {a.get('slepc_version')}, commit {str(a.get('git_commit'))[:12]}"
@@ -48,7 +50,9 @@ def _statuses(view: View, status: np.ndarray) -> Table:
     for heading in ("status", "points", "meaning"):
         table.add_column(heading)
     sentences = dict(
-        line.split(": ", 1) for line in str(view.attributes.get("status_sentences", "")).splitlines() if ": " in line
+        line.split(": ", 1)
+        for line in str(view.attributes.get("status_sentences", "")).splitlines()
+        if ": " in line
     )
     sentences["missing"] = "not computed yet"
     for value, count in zip(*np.unique(status, return_counts=True), strict=True):

@@ -75,7 +75,9 @@ EACH_POINT = (
     Variable("status", "|i1", MISSING, "1", "outcome of the point"),
 )
 VECTORS = tuple(
-    Variable(f"{field}_{part}", "<f8", np.nan, "1", f"{word} part of the eigenmode's {meaning}", ("mode", "u"))
+    Variable(
+        f"{field}_{part}", "<f8", np.nan, "1", f"{word} part of the eigenmode's {meaning}", ("mode", "u")
+    )
     for field, meaning in (("Y", "deflection, scaled to Y(1) = 1"), ("Theta", "angle, scaled as Y"))
     for part, word in (("real", "real"), ("imag", "imaginary"))
 )

@@ -9,6 +9,7 @@ import fcntl
 import json
 import os
 import shutil
+import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
@@ -26,6 +27,8 @@ from .schema import MISSING, PARAMETER_NAMES, Layout, Variable
 
 BLOCK = 1 << 20
 """Values read at once where a whole variable is scanned."""
+LOCK_PATIENCE = 5.0
+"""Seconds to wait for the lock: ranks whose launcher was killed live on for a moment."""
 SIGNATURE = "rodsweep"
 
 
@@ -78,8 +81,6 @@ class Store:
             raise EnvironmentLacks(f"{path} cannot be written: {error.strerror or error}") from error
 
     def _open(self, fresh: bool) -> None:
-        if self.path.is_dir():
-            raise InputError(f"{self.path} is a directory; name a file with -o")
         if self.path.exists() and not fresh:
             self._refuse_another()
             self.fold({})
@@ -134,7 +135,8 @@ class Store:
         os.close(self.lock)
 
     def _locked(self) -> int:
-        """The lock of this file; InputError if another run has it."""
+        """The lock of this file; InputError if another run keeps it."""
+        patience = time.monotonic() + LOCK_PATIENCE
         while True:
             self.journals.mkdir(exist_ok=True)
             try:
@@ -146,6 +148,10 @@ class Store:
                 if os.fstat(handle).st_nlink:
                     return handle
             except BlockingIOError:
+                os.close(handle)
+                if time.monotonic() < patience:
+                    time.sleep(0.1)
+                    continue
                 raise InputError(
                     f"{self.path} is being written by another run; wait for it, or choose another file with "
                     "-o (several ranks that each say this were started without MPI between them)"

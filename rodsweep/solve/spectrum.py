@@ -209,7 +209,9 @@ def _lines(real: list[float], modes: int) -> list[float]:
     """
     target = min(real[modes - 1], 0.0)
     below = [target] + [x for x in real if x < target]
-    gaps = [(min((r - l) / abs(l), WIDE_GAP), (l + r) / 2) for l, r in zip(below[1:], below[:-1], strict=True)]
+    gaps = [
+        (min((r - l) / abs(l), WIDE_GAP), (l + r) / 2) for l, r in zip(below[1:], below[:-1], strict=True)
+    ]
     gaps.sort(key=lambda gap: -gap[0])  # stable: of the wide ones the first stays foremost
     lines = [middle for width, middle in gaps if width > NO_GAP][: MOST_LINES - 1]
     last = below[-1]

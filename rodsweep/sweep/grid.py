@@ -76,7 +76,9 @@ def _check(points: Points, where: str) -> None:
     if len(bad):
         row = int(bad[0])
         place = where.format(row=row + 2)
-        raise InputError(f"{place}F = {F[row]:.15g} is not below k1 = {k1[row]:.15g}, where the rod is crushed")
+        raise InputError(
+            f"{place}F = {F[row]:.15g} is not below k1 = {k1[row]:.15g}, where the rod is crushed"
+        )
 
 
 def _read_csv(path: Path) -> tuple[NDArray[np.float64], ...]:

@@ -8,11 +8,9 @@ give something back, so the ranks finish within one point of each other.
 
 import threading
 import time
-import traceback
 from collections import deque
 from dataclasses import dataclass
 
-from ..errors import EnvironmentLacks
 from .team import Team
 
 REQUEST, ANSWER = 71, 72
@@ -89,8 +87,6 @@ class FirstRankClaims:
         self.team, self.handout = team, Handout(todo, team.size)
         self.thread: threading.Thread | None = None
         if team.size > 1:
-            if team.MPI.Query_thread() < team.MPI.THREAD_MULTIPLE:
-                raise EnvironmentLacks("this MPI does not support MPI_THREAD_MULTIPLE, which rodsweep needs")
             self.thread = threading.Thread(target=self._serve_or_abort, name="handout", daemon=True)
             self.thread.start()
 
@@ -110,11 +106,8 @@ class FirstRankClaims:
             self.thread.join()
 
     def _serve_or_abort(self) -> None:
-        try:
+        with self.team.together():
             self._serve()
-        except BaseException:
-            traceback.print_exc()
-            self.team.abort()
 
     def _serve(self) -> None:
         comm, status = self.team.comm, self.team.MPI.Status()

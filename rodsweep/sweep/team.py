@@ -2,8 +2,8 @@
 
 import sys
 import traceback
-from collections.abc import Callable
-from types import TracebackType
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, NoReturn, TypeVar
 
 from ..errors import EnvironmentLacks, InputError
@@ -18,13 +18,15 @@ class Team:
         try:
             from mpi4py import MPI
         except ImportError as error:
-            raise EnvironmentLacks(f"mpi4py cannot be imported ({error}); `make install` provides it") from error
+            raise EnvironmentLacks(
+                f"mpi4py cannot be imported ({error}); `make install` provides it"
+            ) from error
         self.MPI = MPI
         self.comm = MPI.COMM_WORLD.Dup()
         self.rank: int = self.comm.Get_rank()
         self.size: int = self.comm.Get_size()
-        if self.size > 1:
-            sys.excepthook = self._abort
+        if self.size > 1 and MPI.Query_thread() < MPI.THREAD_MULTIPLE:
+            raise EnvironmentLacks("this MPI was started without MPI_THREAD_MULTIPLE, which rodsweep needs")
 
     @property
     def first(self) -> bool:
@@ -51,17 +53,27 @@ class Team:
     def barrier(self) -> None:
         self.comm.Barrier()
 
+    @contextmanager
+    def together(self) -> Iterator[None]:
+        """What fails in here on one rank ends all ranks, with a message; the others would wait for ever.
+
+        With a single rank there is nobody to wait, and the exception goes on.
+        """
+        try:
+            yield
+        except BaseException as error:
+            if self.size == 1:
+                raise
+            if isinstance(error, InputError | EnvironmentLacks):
+                sys.stderr.write(f"rodsweep: rank {self.rank}: {error}\n")
+            else:
+                sys.stderr.write(f"rodsweep: rank {self.rank} failed, all ranks end\n")
+                traceback.print_exc()
+            self.abort()
+
     def abort(self) -> NoReturn:
         """Ends all ranks now, with exit status 3, after whoever calls has said why."""
         sys.stdout.flush()
         sys.stderr.flush()
         self.comm.Abort(3)
         raise SystemExit(3)
-
-    def _abort(
-        self, kind: type[BaseException], error: BaseException, trace: TracebackType | None
-    ) -> None:
-        """A bug on one rank ends all ranks; without this the others would wait for ever."""
-        sys.stderr.write(f"rodsweep: rank {self.rank} failed, all ranks end\n")
-        traceback.print_exception(kind, error, trace)
-        self.abort()

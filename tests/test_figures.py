@@ -1,0 +1,85 @@
+"""Figures: which roots are followed, what is drawn, what cannot be; and the configs' own numbers."""
+
+import numpy as np
+import pytest
+from conftest import ROOT
+
+from rodsweep.cli.job import make_job
+from rodsweep.errors import InputError
+from rodsweep.post.figures import broken, draw, followed_roots
+from rodsweep.results.view import read_view
+from rodsweep.solve.spectrum import SpectrumRequest, solve_spectrum
+
+
+def test_rightmost_and_smallest_roots_differ():
+    growth = np.array([[5.0, 5.0, -1.0, -3.0]])
+    frequency = np.array([[7.0, -7.0, 0.0, 0.0]])
+    assert followed_roots(growth, frequency, "rightmost").tolist() == [[5 + 7j, 5 - 7j]]
+    assert followed_roots(growth, frequency, "smallest").tolist() == [[-1 + 0j, -3 + 0j]]
+
+
+def test_line_is_broken_where_another_root_takes_over():
+    x = np.arange(8.0)
+    w = np.stack([x + 0j, np.where(x < 5, 1.0, 200.0) + 0.1 * x], axis=1)
+    broken_x, broken_w = broken(x, w)
+    assert np.flatnonzero(np.isnan(broken_x)).tolist() == [5]
+    assert np.isnan(broken_w[5]).all()
+
+
+LINE = "task: spectrum\nparameters: {F: {start: 0, stop: 30, num: 16}, k1: 1e4, k2: 1e2, gamma3: 1e-2}\n"
+
+
+@pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])
+@pytest.mark.parametrize("roots", ["smallest", "rightmost"])
+def test_line_of_spectra_is_drawn(command, suffix, roots):
+    command.write("c.yaml", LINE)
+    command("run", "c.yaml")
+    run = command("plot", "c.h5", "-o", f"f.{suffix}", "--roots", roots)
+    assert run.returncode == 0, run.stderr
+    assert roots in run.stdout
+    assert (command.directory / f"f.{suffix}").stat().st_size > 5000
+
+
+def test_map_is_drawn_and_other_shapes_are_refused(command):
+    command.write("c.yaml", LINE)
+    command(
+        "run", "c.yaml", "--set", "parameters.k2={start: 50, stop: 5e3, num: 5, spacing: log}", "-o", "map.h5"
+    )
+    assert "growth rate" in command("plot", "map.h5").stdout
+    command("run", "c.yaml", "--set", "parameters.F=3", "-o", "point.h5")
+    refused = command("plot", "point.h5")
+    assert refused.returncode == 2
+    assert "one or two" in refused.stderr
+    with pytest.raises(InputError, match="frob"):
+        draw(read_view(command.directory / "map.h5"), command.directory / "f.frob", "smallest")
+
+
+EXPECTED = {
+    "fig2a": [(37.6559805452711, +1)],
+    "fig2b": [(27.4271941267593, +1)],
+    "fig2c": [(49.7580049161915, +1), (155.600159298791, -1)],
+    "fig2d": [],
+}
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_config_changes_stability_where_its_head_comment_says(name):
+    """Flutter sets in (+1) and ends (-1) at the forces of physics.md, to ten digits, and nowhere else."""
+    path = ROOT / "configs" / f"{name}.yaml"
+    head = path.read_text()
+    job = make_job(path, ())
+    F = job.points.columns[0]
+    crossings = EXPECTED[name]
+    request = SpectrumRequest(4, 1e-10, True)
+    for force, direction in crossings:
+        assert str(force) in head
+        at = [solve_spectrum(_with_force(job, force * (1 + e)), request) for e in (-1e-10, 1e-10)]
+        assert [r.unstable_count for r in at] == ([0, 2] if direction > 0 else [2, 0])
+    for index in range(0, len(F), 25):
+        expected = 2 * sum(direction for force, direction in crossings if F[index] > force)
+        assert solve_spectrum(job.points.rod(index), request).unstable_count == expected
+
+
+def _with_force(job, force):
+    rod = job.points.rod(0)
+    return type(rod)(force, rod.k1, rod.k2, rod.gamma3)

@@ -1,0 +1,74 @@
+"""Handing out points: every point once, slow rest given back, nobody dismissed too early."""
+
+import threading
+import time
+
+import pytest
+
+from rodsweep.sweep.handout import CHUNK_SECONDS, OVER, Handout, Report
+
+
+def test_every_point_is_handed_out_once():
+    handout = Handout([(0, 10), (20, 25)], ranks=2)
+    seen = []
+    chunk = handout.take(0)
+    while chunk != OVER:
+        seen += range(*chunk)
+        handout.settle(0, Report(chunk[1] - chunk[0], 1e-3))
+        chunk = handout.take(0)
+    assert sorted(seen) == [*range(10), *range(20, 25)]
+    assert handout.done == 15
+
+
+def test_chunks_follow_the_pace_and_shrink_towards_the_end():
+    handout = Handout([(0, 100_000)], ranks=4)
+    start, stop = handout.take(1)
+    assert stop - start == 1
+    handout.settle(1, Report(1, 1e-3))
+    start, stop = handout.take(1)
+    assert stop - start == pytest.approx(CHUNK_SECONDS / 1e-3, abs=1)
+    handout = Handout([(0, 16)], ranks=4)
+    handout.settle(1, Report(1, 1e-6))
+    assert handout.take(1) == (0, 2)
+
+
+def test_rest_that_is_given_back_goes_to_the_next():
+    handout = Handout([(0, 3)], ranks=1)
+    handout.settle(0, Report(1, 1e-6))
+    assert handout.take(0) == (0, 1)
+    handout.settle(0, Report(0, 1.0, (0, 1)))
+    assert handout.take(1) == (0, 1)
+
+
+def test_idle_rank_waits_while_another_may_give_back():
+    handout = Handout([(0, 1)], ranks=2)
+    assert handout.take(0) == (0, 1)
+    assert handout.take(1) is None
+    handout.settle(0, Report(0, 9.0, (0, 1)))
+    assert handout.take(1) == (0, 1)
+    assert handout.take(0) is None
+    handout.settle(1, Report(1, 0.1))
+    assert handout.take(0) == handout.take(1) == OVER
+
+
+def test_two_threads_share_the_work_without_losing_any():
+    handout = Handout([(0, 5000)], ranks=2)
+    seen: list[list[int]] = [[], []]
+
+    def work(rank):
+        report = Report()
+        while True:
+            handout.settle(rank, report)
+            while (chunk := handout.take(rank)) is None:
+                time.sleep(1e-4)
+            if chunk == OVER:
+                return
+            seen[rank] += range(*chunk)
+            report = Report(chunk[1] - chunk[0], 1e-5 * (chunk[1] - chunk[0]))
+
+    threads = [threading.Thread(target=work, args=(rank,)) for rank in (0, 1)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(30)
+    assert sorted(seen[0] + seen[1]) == list(range(5000))

@@ -1,0 +1,279 @@
+"""`rodsweep run` as a user starts it: ranks, kills, refusals, exit statuses, the file in other hands."""
+
+import os
+import signal
+import subprocess
+import time
+
+import h5py
+import numpy as np
+import pytest
+import xarray
+
+from rodsweep.results.view import read_view
+
+SMALL = """
+title: small
+task: spectrum
+parameters:
+  F: {start: 0, stop: 60, num: 21}
+  k1: [100, 1.0e4, inf]
+  k2: [50, 1.0e4]
+  gamma3: [0, 1.0e-4]
+spectrum: {modes: 4}
+"""
+
+
+def content(path):
+    """All variables of a file but the time they took."""
+    with h5py.File(path) as file:
+        return {name: file[name][...] for name in file if name != "seconds"}
+
+
+def same(a, b):
+    return set(a) == set(b) and all(np.array_equal(a[n], b[n], equal_nan=a[n].dtype.kind == "f") for n in a)
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 3])
+def test_any_number_of_ranks_gives_the_same_file(command, ranks):
+    command.write("c.yaml", SMALL)
+    alone = command("run", "c.yaml", "-o", "alone.h5")
+    assert alone.returncode == 0, alone.stderr
+    many = command("run", "c.yaml", "-o", "many.h5", ranks=ranks)
+    assert many.returncode == 0, many.stderr
+    assert same(content(command.directory / "alone.h5"), content(command.directory / "many.h5"))
+    assert many.stdout.count("252 of 252 points to do") == 1
+    with h5py.File(command.directory / "many.h5") as file:
+        assert file.attrs["ranks"] == ranks
+
+
+def settled(measure):
+    """A value once it has stayed the same for a second: ranks outlive a killed launcher for a moment."""
+    last, since = measure(), time.monotonic()
+    while time.monotonic() < since + 1:
+        time.sleep(0.1)
+        if (now := measure()) != last:
+            last, since = now, time.monotonic()
+    return last
+
+
+SLOW = SMALL.replace("num: 21", "num: 500")
+
+
+def kill_when(process, condition, sign, whole_job):
+    """Sends the signal once the condition holds: to the whole process group or to one of its ranks."""
+    deadline = time.monotonic() + 60
+    while not condition() and process.poll() is None:
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+    if whole_job:
+        os.killpg(process.pid, sign)
+    else:
+        children = subprocess.run(
+            ["pgrep", "-P", str(process.pid)], capture_output=True, text=True, check=True
+        )
+        os.kill(int(children.stdout.split()[-1]), sign)
+    process.wait(60)
+
+
+@pytest.mark.parametrize("whole_job", [True, False], ids=["all ranks", "one rank"])
+def test_resume_after_a_kill_gives_the_same_file(command, whole_job):
+    command.write("c.yaml", SLOW)
+    path = command.directory / "c.h5"
+    pages = command.directory / "c.h5.journal"
+
+    def some_are_done():
+        return sum(page.stat().st_size for page in pages.glob("rank-*")) > 20_000 if pages.is_dir() else False
+
+    process = subprocess.Popen(
+        command.argv("run", "c.yaml", ranks=2),
+        cwd=command.directory,
+        start_new_session=True,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    kill_when(process, some_are_done, signal.SIGKILL, whole_job)
+    done = settled(lambda: read_view(path).journalled)
+    assert 100 < done < 6_000
+    assert f"{done} are done and wait" in " ".join(command("show", "c.h5").stdout.split())
+    again = command("run", "c.yaml", ranks=2)
+    assert again.returncode == 0, again.stderr
+    assert f"{6_000 - done} of 6000 points to do, {done} kept" in again.stdout
+    whole = command("run", "c.yaml", "-o", "whole.h5", ranks=2)
+    assert whole.returncode == 0
+    assert same(content(path), content(command.directory / "whole.h5"))
+    assert not pages.exists()
+    third = command("run", "c.yaml")
+    assert "complete, nothing to do" in third.stdout
+    assert third.returncode == 0
+
+
+def test_bad_config_ends_all_ranks_with_status_2_and_one_message(command):
+    command.write("c.yaml", SMALL.replace("modes", "mods"))
+    for ranks in (0, 2):
+        run = command("run", "c.yaml", ranks=ranks, timeout=60)
+        assert run.returncode == 2
+        assert run.stderr.count("unknown key spectrum.mods; did you mean modes?") == 1
+        assert "Traceback" not in run.stderr
+        assert [p.name for p in command.directory.iterdir()] == ["c.yaml"]
+
+
+def test_refusals_of_the_command_line_have_status_2(command):
+    command.write("c.yaml", SMALL)
+    for words in (
+        ["frob"],
+        ["run"],
+        ["run", "none.yaml"],
+        ["show", "none.h5"],
+        ["run", "c.yaml", "--set", "parameters.F.stop=200"],
+        ["run", "c.yaml", "-o", "."],
+    ):
+        run = command(*words)
+        assert run.returncode == 2, (words, run.stderr)
+        assert run.stderr.startswith("rodsweep: ")
+        assert len(run.stderr.splitlines()) == 1
+        assert [p.name for p in command.directory.iterdir()] == ["c.yaml"]
+
+
+def test_file_from_another_config_is_refused_and_fresh_replaces_it(command):
+    command.write("c.yaml", SMALL)
+    command("run", "c.yaml", "--set", "accuracy=1e-6", "-o", "c.h5")
+    refused = command("run", "c.yaml")
+    assert refused.returncode == 2
+    assert "accuracy is 1e-06 in the file and 1e-10 in the config" in refused.stderr
+    assert command("run", "c.yaml", "--fresh").returncode == 0
+
+
+def test_failed_point_is_a_status_and_not_the_end(command):
+    """The onset F* cannot be had to 1e-12: its status says so, the rest is computed, exit status 1."""
+    config = "task: spectrum\nparameters: {F: [10, 20.0080206921031, 30], k1: 1e4, k2: 1e4, gamma3: 1e-4}\n"
+    command.write("c.yaml", config + "accuracy: 1e-12\n")
+    run = command("run", "c.yaml", ranks=2)
+    assert run.returncode == 1
+    assert "2 ok, 1 accuracy_not_reached" in run.stdout
+    status = read_view(command.directory / "c.h5").variables["status"].ravel()
+    assert status.tolist() == [0, 3, 0]
+    shown = " ".join(command("show", "c.h5").stdout.split())
+    assert "its error estimate says by how much" in shown
+
+
+def run_patched(command, patch, ranks=2):
+    """A run whose every rank wraps `solve(index)` by the function `patched(rank, solve)` of `patch`."""
+    command.write(
+        "sitecustomize.py",
+        "import time\nimport rodsweep.sweep.loop as loop\nreal = loop.sweep\n"
+        + patch
+        + "\ndef sweep(team, todo, solve, keep, tell):\n"
+        "    real(team, todo, patched(team.rank, solve), keep, tell)\n"
+        "loop.sweep = sweep\n",
+    )
+    return subprocess.run(
+        command.argv("run", "c.yaml", ranks=ranks),
+        cwd=command.directory,
+        env=os.environ | {"PYTHONPATH": str(command.directory)},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+
+
+@pytest.mark.parametrize("rank", [0, 1])
+def test_bug_on_one_rank_ends_all_ranks(command, rank):
+    command.write("c.yaml", SLOW)
+    patch = f"def patched(rank, solve):\n    return (lambda index: 1 / 0) if rank == {rank} else solve\n"
+    run = run_patched(command, patch)
+    assert run.returncode not in (0, 1, 2)
+    assert f"rank {rank} failed, all ranks end" in run.stderr
+    assert "ZeroDivisionError" in run.stderr
+
+
+def test_uneven_points_leave_no_rank_waiting(command):
+    """The first twelve points take 0.4 s: 4.8 s on one rank, 2.4 s when two share them one by one."""
+    command.write("c.yaml", SMALL)
+    patch = (
+        "def patched(rank, solve):\n"
+        "    def slow(index):\n"
+        "        time.sleep(0.4 if index < 12 else 0)\n"
+        "        return solve(index)\n"
+        "    return slow\n"
+    )
+    run = run_patched(command, patch)
+    assert run.returncode == 0, run.stderr
+    assert float(run.stdout.split("points in ")[1].split(" s")[0]) < 4.2
+
+
+def test_only_the_first_rank_talks_and_logs_have_plain_lines(command):
+    command.write("c.yaml", SLOW)
+    run = command("run", "c.yaml", "--set", "parameters.F.num=2000", ranks=3)
+    assert run.stdout.count("24000 points in") == 1
+    assert "of 24000 points, " in run.stderr
+    assert "\x1b" not in run.stdout + run.stderr
+
+
+def test_file_opens_in_xarray_with_named_coordinates_and_no_argument(command):
+    command.write("c.yaml", SMALL)
+    command("run", "c.yaml", ranks=2)
+    with xarray.open_dataset(command.directory / "c.h5", engine="h5netcdf") as data:
+        assert dict(data.sizes) == {"F": 21, "k1": 3, "k2": 2, "gamma3": 2, "mode": 4}
+        point = data.sel(F=30, k1=1e4, k2=1e4, gamma3=1e-4)
+        assert float(point.growth_rate.sel(mode=1)) == pytest.approx(-54.2947994117, rel=1e-10)
+        assert float(point.frequency.sel(mode=1)) == pytest.approx(145.671884063, rel=1e-10)
+        assert data.growth_rate.attrs["units"] == "1/tau2"
+        assert int(data.status.max()) == 0
+        for name in ("config", "petsc_version", "git_commit", "ranks", "hosts", "started", "finished"):
+            assert name in data.attrs
+        assert data.attrs["config"] == SMALL
+
+
+def test_point_list_opens_with_its_parameters_as_coordinates(command):
+    command.write("p.csv", "gamma3,F,k1,k2\n0,30,inf,inf\n1e-4,30,1e4,1e4\n")
+    command.write("c.yaml", "task: spectrum\nparameters: {points: p.csv}\n")
+    assert command("run", "c.yaml").returncode == 0
+    with xarray.open_dataset(command.directory / "c.h5", engine="h5netcdf") as data:
+        assert {"F", "k1", "k2", "gamma3", "point", "mode"} <= set(data.coords)
+        assert data.growth_rate.dims == ("point", "mode")
+        assert data.k1.values.tolist() == [np.inf, 1e4]
+    command.write("p.csv", "gamma3,F,k1,k2\n0,31,inf,inf\n1e-4,30,1e4,1e4\n")
+    changed = command("run", "c.yaml")
+    assert changed.returncode == 2
+    assert "points" in changed.stderr
+
+
+def test_longitudinal_modes_are_added_only_where_asked(command):
+    config = "task: spectrum\nparameters: {F: 3, k1: [10, 40], k2: 9, gamma3: 0, gamma1: 0.5}\n"
+    command.write("c.yaml", config + "spectrum: {longitudinal: true, modes: 2}\n")
+    assert command("run", "c.yaml").returncode == 0
+    rates = read_view(command.directory / "c.h5").variables["longitudinal_rate"]
+    assert np.allclose(rates, -np.outer([20, 80], [(np.pi / 2) ** 2, (1.5 * np.pi) ** 2]), rtol=1e-14)
+    command.write("d.yaml", SMALL)
+    command("run", "d.yaml")
+    assert "longitudinal_rate" not in read_view(command.directory / "d.h5").variables
+
+
+def test_package_imports_start_neither_mpi_nor_petsc(command):
+    code = (
+        "import sys, rodsweep, rodsweep.cli\n"
+        "from rodsweep.cli.job import make_job\nfrom rodsweep.results.view import read_view\n"
+        "from rodsweep.post.figures import draw\nfrom rodsweep.post.summary import show_summary\n"
+        "print([m for m in ('mpi4py.MPI', 'petsc4py.PETSc', 'slepc4py.SLEPc') if m in sys.modules])"
+    )
+    python = command.argv()[0].replace("rodsweep", "python")
+    run = subprocess.run([python, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == "[]"
+
+
+def test_check_says_what_is_modelled_and_what_is_left_out(command):
+    command.write("c.yaml", SMALL.replace("[100, 1.0e4, inf]", "inf").replace("[0, 1.0e-4]", "0"))
+    run = command("check", "c.yaml")
+    assert run.returncode == 0, run.stderr
+    text = " ".join(run.stdout.split())
+    for words in (
+        "42 points",
+        "stretch no k1 = inf",
+        "rotational drag no gamma3 = 0",
+        "certificate yes",
+        "s on one rank",
+    ):
+        assert words in text, words
+    assert sorted(p.name for p in command.directory.iterdir()) == ["c.yaml"]
