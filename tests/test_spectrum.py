@@ -6,7 +6,7 @@ import pytest
 from reference import determinant as reference
 
 from rodsweep.model.rod import Rod
-from rodsweep.solve import spectrum
+from rodsweep.solve import attempt
 from rodsweep.solve.spectrum import SpectrumRequest, solve_spectrum, vector_points
 from rodsweep.solve.status import Status
 
@@ -81,7 +81,7 @@ def test_error_estimate_is_the_error_within_a_factor_of_ten(reference_spectra):
 
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-7, 1e-10])
 def test_accuracy_asked_for_is_reached_with_few_unknowns(accuracy, reference_spectra):
-    """The mesh follows the accuracy: fewer unknowns for fewer digits, and no more than 60 on the paper's rods."""
+    """The mesh follows the accuracy: fewer unknowns for fewer digits, at most 60 on the paper's rods."""
     rods = [point for point in reference_spectra if point["group"].startswith("c")][::4]
     unknowns = []
     for point in rods:
@@ -165,9 +165,9 @@ class Forgetful:
 def test_lost_mode_is_found_again_or_the_numbers_are_withheld(monkeypatch, remembers_from, status):
     rod = Rod(50.0, 1e4, 1e4, 1e-4)
     whole = solve_spectrum(rod, TIGHT)
-    real = spectrum.eigen_solver
+    real = attempt.eigen_solver
     monkeypatch.setattr(
-        spectrum, "eigen_solver", lambda resolution: Forgetful(real(resolution), remembers_from)
+        attempt, "eigen_solver", lambda resolution: Forgetful(real(resolution), remembers_from)
     )
     result = solve_spectrum(rod, TIGHT)
     assert result.status == status

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..discretization.resolution import Resolution
-from ..model.determinant import newton_corrections
+from ..model.determinant import scaled_determinant
 from ..model.rod import Rod
 from ..results.provenance import cpu_name, now, provenance
 from ..solve import petsc
@@ -47,10 +47,12 @@ def points() -> list[Rod]:
 
 
 def exact_spectrum(rod: Rod) -> np.ndarray:
-    """The leading eigenvalues, refined on D to rounding from a certified solve."""
-    w = solve_spectrum(rod, SpectrumRequest(MODES, 1e-12, certify=True)).eigenvalues
-    for _ in range(3):
-        w = w + newton_corrections(w, rod)[0]
+    """The leading eigenvalues, refined by Newton on D from a certified solve."""
+    w = solve_spectrum(rod, SpectrumRequest(MODES, 1e-12, certify=True)).eigenvalues.copy()
+    for i in range(len(w)):
+        for _ in range(3):
+            value, slope, _, _ = scaled_determinant(w[i], rod.coefficients)
+            w[i] -= value / slope
     return w
 
 

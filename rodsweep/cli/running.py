@@ -24,10 +24,10 @@ def run_config(path: Path, output: Path, overrides: tuple[str, ...], fresh: bool
     """Runs a config on all ranks; returns the exit status."""
     team = Team()
     job = team.on_first(lambda: make_job(path, overrides))
-    from ..solve import petsc, spectrum  # starts PETSc, which only a valid config is worth
+    from ..solve import petsc, status  # starts PETSc, which only a valid config is worth
 
     began, started = time.monotonic(), now()
-    plan = _plan(job, spectrum.Status, petsc)
+    plan = _plan(job, status.Status, petsc)
     store: list[Store] = []
 
     def open_store() -> list[tuple[int, int]]:

@@ -132,10 +132,10 @@ class Parameters(Strict):
 class SpectrumOptions(Strict):
     """What the task spectrum computes at each point."""
 
-    modes: int = Field(4, ge=1, le=100)
+    modes: Annotated[int, Field(ge=1, le=100)] = 4
     certify: bool = True
     vectors: bool = False
-    nodes: int = Field(33, ge=3, le=513)
+    nodes: Annotated[int, Field(ge=3, le=513)] = 33
     """Lobatto nodes on which (Y, Theta) are given, where `vectors` asks for them."""
     longitudinal: bool = False
 
@@ -143,7 +143,7 @@ class SpectrumOptions(Strict):
 class Config(Strict):
     """A whole config."""
 
-    title: str = Field("", max_length=200)
+    title: Annotated[str, Field(max_length=200)] = ""
     task: Literal["spectrum"]
     parameters: Parameters
     spectrum: SpectrumOptions = SpectrumOptions()

@@ -15,6 +15,9 @@ The weight is free; the best one makes both entries of the maximum equal.
 
 from math import inf, sqrt
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .rod import Rod
 
 MARGIN = 1.01
@@ -28,6 +31,15 @@ def eigenvalue_box(rod: Rod, depth: float = 0.0) -> tuple[float, float]:
     # A pad in proportion to the depth keeps the box open where F = 0 makes the bound vanish.
     pad = 0.01 * depth + 1e-6
     return MARGIN * a * a / 4 + pad, MARGIN * a * n + pad
+
+
+def inside_box(w: NDArray[np.complex128], rod: Rod) -> NDArray[np.bool_]:
+    """Whether each w lies where an eigenvalue of its own growth rate can lie."""
+    a = sqrt(squared_amplification(rod))
+    depth = np.maximum(-w.real, 0.0)
+    n = (a + np.sqrt(a * a + 4 * depth)) / 2
+    pad = 0.01 * depth + 1e-6
+    return (w.real <= MARGIN * a * a / 4 + pad) & (np.abs(w.imag) <= MARGIN * a * n + pad)
 
 
 def squared_amplification(rod: Rod) -> float:

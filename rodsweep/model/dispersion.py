@@ -8,7 +8,6 @@ No eigenvalue of the finite rod is claimed to be near; its largest growth rate a
 tell where to look for eigenvalues and how fine a mesh will be needed.
 """
 
-import cmath
 import math
 
 from .compilation import compiled
@@ -43,13 +42,3 @@ def _peak(top: float, drag: float, stiffness: float, square: float) -> tuple[flo
         if rate > best:
             best, at = rate, math.sqrt(K)
     return best, at
-
-
-def wave_numbers(w: complex, rod: Rod) -> tuple[float, float]:
-    """|q| of the two pairs of exponents exp(+-q u) of an eigenfunction at w (Sec. VI)."""
-    total = (rod.c2 + rod.gamma3) * w - rod.F * rod.g
-    product = w * (rod.g * rod.nu + rod.c2 * rod.gamma3 * w)
-    root = cmath.sqrt(total**2 - 4 * product)
-    large = (total + root if abs(total + root) >= abs(total - root) else total - root) / 2
-    small = product / large if large != 0 else 0.0
-    return abs(large) ** 0.5, abs(small) ** 0.5

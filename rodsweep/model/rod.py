@@ -3,6 +3,9 @@
 from dataclasses import dataclass
 from math import inf, isfinite, isnan
 
+Coefficients = tuple[float, float, float, float]
+"""(F, nu, c2, gamma3): all that the transverse operator contains, as compiled functions take it."""
+
 PARAMETERS = ("F", "k1", "k2", "gamma3")
 """Names of the parameters of the linear problem, in the order used everywhere."""
 
@@ -69,6 +72,6 @@ class Rod:
         return self.nu + self.F * self.c2
 
     @property
-    def coefficients(self) -> tuple[float, float, float, float]:
-        """(F, nu, c2, gamma3): all that the transverse operator contains."""
-        return self.F, self.nu, self.c2, self.gamma3
+    def coefficients(self) -> Coefficients:
+        """(F, nu, c2, gamma3) as floats."""
+        return float(self.F), self.nu, self.c2, float(self.gamma3)

@@ -221,7 +221,7 @@ class Store:
             data = file.create_dataset(name, data=column)
             if plan.is_grid:
                 data.make_scale(name)
-        scales = {} if plan.is_grid else {"point": np.arange(plan.shape[0])}
+        scales: dict[str, np.ndarray] = {} if plan.is_grid else {"point": np.arange(plan.shape[0])}
         for name, extent in plan.layout.extents.items():
             scales[name] = plan.coordinates.get(name, np.arange(1, extent + 1))
         for name, values in scales.items():

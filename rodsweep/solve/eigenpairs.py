@@ -71,7 +71,9 @@ class EigenSolver:
         eps.setFromOptions()
         return eps
 
-    def solve(self, rod: Rod, shift: float, wanted: int, vectors: bool = False):
+    def solve(
+        self, rod: Rod, shift: float, wanted: int, vectors: bool = False
+    ) -> tuple[NDArray[np.complex128], NDArray[np.complex128] | None]:
         """(w, X): at least `wanted` eigenvalues nearest the shift where they converge, unsorted.
 
         w: complex, shape (k,), in 1/tau2. X: their vectors, shape (unknowns, k), or None unless

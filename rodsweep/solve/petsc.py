@@ -18,6 +18,8 @@ except ImportError as error:
         "PETSC_DIR and SLEPC_DIR to where they are installed"
     ) from error
 
+__all__ = ["PETSc", "SLEPc", "options", "sparse_package", "versions"]
+
 SPARSE_PACKAGES = ("superlu", "umfpack", "klu", "mumps")
 """Sparse factorisations that pivot, the fastest on these matrices first. PETSc's own does not."""
 
@@ -33,10 +35,9 @@ def sparse_package() -> str | None:
 
 def versions() -> dict[str, str]:
     """Versions of PETSc, SLEPc and their Python bindings."""
-    number = lambda v: ".".join(str(i) for i in v)  # noqa: E731
     return {
-        "petsc": number(PETSc.Sys.getVersion()),
-        "slepc": number(SLEPc.Sys.getVersion()),
+        "petsc": ".".join(map(str, PETSc.Sys.getVersion())),
+        "slepc": ".".join(map(str, SLEPc.Sys.getVersion())),
         "petsc4py": petsc4py.__version__,
         "slepc4py": slepc4py.__version__,
     }

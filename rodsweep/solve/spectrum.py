@@ -1,8 +1,7 @@
 """The leading eigenvalues of one rod: as few unknowns as the accuracy needs, none missed.
 
-One attempt solves at a resolution, about a shift, for a number of eigenvalues. Two judges that know
-nothing of meshes decide what to change next: the Newton correction of D at each eigenvalue
-(resolution) and the winding number of D (missing eigenvalues). Both must agree before a point is ok.
+One attempt (`rodsweep.solve.attempt`) solves at a resolution, about a shift, for a number of
+eigenvalues; its judges decide what to change next, and both must agree before a point is ok.
 """
 
 import time
@@ -19,10 +18,9 @@ from ..discretization.resolution import (
     finer,
     resolution_for,
 )
-from ..model.determinant import newton_corrections
-from ..model.dispersion import most_amplified_wave, wave_numbers
+from ..model.dispersion import most_amplified_wave
 from ..model.rod import Rod
-from .certificate import Count, count_right_of
+from .attempt import Found, Verdict, attempt, judge
 from .eigenpairs import eigen_solver, forget_solvers
 from .petsc import PETSc
 from .status import Status
@@ -34,16 +32,8 @@ SPARE_MODES = 1
 MOST_ATTEMPTS = 14
 STALLED = 2
 """Refinements without a better error after which rounding, not the mesh, is taken as the limit."""
-A_ROOT = 1e-2
-"""Newton correction, in units of the length over which D changes, that still stands for a root of D."""
-WIDE_GAP = 0.05
-"""Relative gap between two real parts that is wide enough to draw a line through."""
-NO_GAP = 1e-6
-"""Relative gap below which two real parts count as equal."""
-MOST_LINES = 3
-"""Lines tried before the count is given up."""
-REAL_BELOW = 1e-14
-"""Relative imaginary part below which an eigenvalue is real: what rounding leaves of zero."""
+NO_TIP = 1e-10
+"""Y(1) in units of the largest value, below which a vector cannot be scaled by it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +57,7 @@ class Spectrum:
     """The leading transverse eigenvalues of one rod, in the order that `rodsweep.model` states.
 
     eigenvalues: complex, shape (modes,), in 1/tau2; error_estimate: |D/D'|, shape (modes,).
-    unstable_count: eigenvalues with Re w > 0, or -1 where it is not known.
+    unstable_count: eigenvalues with Re w > 0, or -1 where it is not known; a proof only if certified.
     certified: the winding number proves that none right of the last given mode is missing.
     vectors: (Y, Theta), complex, shape (2, modes, vector_nodes), scaled to Y(1) = 1; or None.
     """
@@ -84,22 +74,6 @@ class Spectrum:
     message: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class _Found:
-    """Everything one attempt found, sorted; only eigenvalues that stand for a root of D."""
-
-    resolution: Resolution
-    w: NDArray[np.complex128]
-    error: NDArray[np.float64]
-    vectors: NDArray[np.complex128] | None
-
-    def worst(self, modes: int) -> float:
-        """Largest relative error estimate of the leading modes; inf when there are too few."""
-        if len(self.w) < modes:
-            return np.inf
-        return float((self.error[:modes] / np.abs(self.w[:modes])).max())
-
-
 def vector_points(nodes: int) -> NDArray[np.float64]:
     """The Lobatto nodes in [0, 1] on which vectors are given, shape (nodes,)."""
     return (gauss_lobatto(nodes - 1)[0] + 1) / 2
@@ -110,9 +84,9 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
     started = time.perf_counter()
     try:
         outcome = _solve(rod, request)
-    except (PETSc.Error, np.linalg.LinAlgError, FloatingPointError, OverflowError, MemoryError) as error:
+    except (PETSc.Error, np.linalg.LinAlgError, ArithmeticError, MemoryError) as error:
         forget_solvers()  # a PETSc object is not usable after an error inside it
-        outcome = _nothing(Status.failed, request, str(error).splitlines()[-1])
+        outcome = _nothing(Status.failed, request, (str(error) or type(error).__name__).splitlines()[-1])
     return replace(outcome, seconds=time.perf_counter() - started)
 
 
@@ -124,141 +98,88 @@ def warm_up() -> None:
 def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
     growth, wave = most_amplified_wave(rod)
     shift = SHIFT_ABOVE_GROWTH * growth
-    wave_number = expected_wave_number(request.modes, wave)
-    resolution = resolution_for(wave_number, request.mesh_accuracy)
+    resolution = resolution_for(expected_wave_number(request.modes, wave), request.mesh_accuracy)
     wanted = request.modes + SPARE_MODES
-    best: _Found | None = None
-    count: Count | None = None
+    best: tuple[Found, Verdict | None] | None = None
+    lost: Verdict | None = None
     stalled = 0
     for _ in range(MOST_ATTEMPTS):
         if resolution.unknowns > MOST_UNKNOWNS:
             break
-        found = _attempt(rod, resolution, shift, wanted, request.vector_nodes > 0)
-        worst = found.worst(request.modes)
+        found = attempt(rod, resolution, shift, wanted, request.vector_nodes > 0)
         if len(found.w) < request.modes:
             # Either too few converged, or what converged stands for no root yet: do both more.
             wanted, resolution = wanted + request.modes, finer(resolution)
             continue
-        stalled = 0 if best is None or worst < 0.5 * best.worst(request.modes) else stalled + 1
-        if best is None or len(found.w) > len(best.w) or worst <= best.worst(request.modes):
-            best = found
-        if request.certify:
-            count, line = _count(rod, found, request.modes)
-            here = int((found.w.real > line).sum())
-            if count.number is not None and count.number > here:
-                wanted = max(wanted, len(found.w)) + (count.number - here) + SPARE_MODES
-                if _covers(found, wanted):
-                    resolution = finer(resolution)
-                stalled = 0
-                continue
-            if count.number is not None and count.number < here:
-                resolution, stalled = finer(resolution), 0
-                continue
-        if worst <= request.accuracy:
-            return _finished(rod, request, found, count)
+        verdict = judge(rod, found, request.modes) if request.certify else None
+        if verdict is not None and verdict.count.number is not None and not verdict.agrees:
+            lost = verdict
+            wanted, resolution = _search_more(verdict, wanted, resolution)
+            continue
+        worst = found.worst(request.modes)
+        stalled = 0 if best is None or worst < 0.5 * best[0].worst(request.modes) else stalled + 1
+        if best is None or worst <= best[0].worst(request.modes):
+            best = found, verdict
+        if worst <= request.accuracy and (stalled >= STALLED or not _blurred(found, request)):
+            return _result(Status.ok, rod, request, found, verdict)
         if stalled >= STALLED:
             break
-        resolution = _next_resolution(rod, found, request)
-    return _given_up(rod, request, best, count)
+        resolution = _next_resolution(found, request)
+    if best is not None:
+        return _result(Status.accuracy_not_reached, rod, request, *best)
+    if lost is not None:
+        return _nothing(Status.modes_missing, request, f"the winding number counts {lost.count.number}")
+    return _nothing(Status.failed, request, "no mesh within the limit resolves the wanted modes")
 
 
-def _attempt(rod: Rod, resolution: Resolution, shift: float, wanted: int, vectors: bool) -> _Found:
-    """One solve; what does not stand for a root of D of its own is dropped."""
-    w, X = eigen_solver(resolution).solve(rod, shift, wanted, vectors)
-    finite = np.isfinite(w)
-    w, X = w[finite], None if X is None else X[:, finite]
-    w = np.where(np.abs(w.imag) <= REAL_BELOW * np.abs(w), w.real, w)
-    correction, length = newton_corrections(w, rod)
-    error = np.abs(correction)
-    apart = np.abs(w[:, None] - w[None, :])
-    np.fill_diagonal(apart, np.inf)
-    nearest = apart.min(axis=1) if len(w) > 1 else np.full(len(w), np.inf)
-    root = (error <= A_ROOT * length) & (error <= nearest)
-    order = np.lexsort((-w.imag, -w.real))
-    order = order[root[order]]
-    return _Found(resolution, w[order], error[order], None if X is None else X[:, order])
+def _search_more(verdict: Verdict, wanted: int, resolution: Resolution) -> tuple[int, Resolution]:
+    """(eigenvalues to ask for, mesh) after a count that the found eigenvalues do not explain."""
+    number = verdict.count.number or 0
+    if number <= verdict.here:  # impostors, or a line that the mesh leaves within the errors
+        return wanted, finer(resolution)
+    more = number + SPARE_MODES
+    if more <= wanted:  # enough were asked for: they are farther from the shift, or beyond the mesh
+        more, resolution = wanted + number - verdict.here + SPARE_MODES, finer(resolution)
+    while more > resolution.unknowns // 6 and resolution.unknowns <= MOST_UNKNOWNS:
+        resolution = finer(resolution)
+    return more, resolution
 
 
-def _covers(found: _Found, wanted: int) -> bool:
-    """Whether the mesh can hardly hold as many resolved modes as are wanted."""
-    return wanted > found.resolution.unknowns // 6
+def _blurred(found: Found, request: SpectrumRequest) -> bool:
+    """Whether a mode on the imaginary axis is there only because its error is still large."""
+    coarse = found.error > request.accuracy * np.abs(found.w)
+    return bool((found.on_the_axis() & coarse).any())
 
 
-def _next_resolution(rod: Rod, found: _Found, request: SpectrumRequest) -> Resolution:
+def _next_resolution(found: Found, request: SpectrumRequest) -> Resolution:
     """A finer mesh: what the wave numbers now known ask for, at least the next finer one."""
-    wave = max(max(wave_numbers(w, rod)) for w in found.w[: request.modes])
-    informed = resolution_for(wave, request.mesh_accuracy)
+    informed = resolution_for(float(found.wave[: request.modes].max()), request.mesh_accuracy)
     least = finer(found.resolution)
     return informed if informed.unknowns >= least.unknowns else least
 
 
-def _count(rod: Rod, found: _Found, modes: int) -> tuple[Count, float]:
-    """The winding number right of a line below the last wanted and below every unstable mode."""
-    count, line = Count(None, 0), 0.0
-    for line in _lines(found.w.real.tolist(), modes):
-        count = count_right_of(line, rod)
-        if count.number is not None:
-            break
-    return count, line
-
-
-def _lines(real: list[float], modes: int) -> list[float]:
-    """Where to draw the line, best first: in gaps between the real parts, the first wide one foremost.
-
-    Behind the last of them it is drawn through the unknown, where the count may ask for more.
-    """
-    target = min(real[modes - 1], 0.0)
-    below = [target] + [x for x in real if x < target]
-    gaps = [
-        (min((r - l) / abs(l), WIDE_GAP), (l + r) / 2) for l, r in zip(below[1:], below[:-1], strict=True)
-    ]
-    gaps.sort(key=lambda gap: -gap[0])  # stable: of the wide ones the first stays foremost
-    lines = [middle for width, middle in gaps if width > NO_GAP][: MOST_LINES - 1]
-    last = below[-1]
-    return [*lines, last - WIDE_GAP * (abs(last) if last < 0 else abs(real[0]) + 1.0)]
-
-
-def _undecided(found: _Found) -> bool:
-    """Whether some eigenvalue lies on the imaginary axis within its error."""
-    margin = np.maximum(4 * found.error, 1e-13 * np.abs(found.w))
-    return bool((np.abs(found.w.real) <= margin).any())
-
-
-def _finished(rod: Rod, request: SpectrumRequest, found: _Found, count: Count | None) -> Spectrum:
-    status, message = Status.ok, ""
-    certified = count is not None and count.number is not None
-    if request.certify and not certified:
-        status, message = Status.not_certified, count.why_not if count else ""
-    undecided = _undecided(found)
-    if undecided and request.certify:
-        status = Status.undecided
-    return _result(status, rod, request, found, None if undecided else certified, message)
-
-
-def _given_up(rod: Rod, request: SpectrumRequest, best: _Found | None, count: Count | None) -> Spectrum:
-    """The outcome when no attempt satisfied both judges: numbers only where none are wrong."""
-    if best is None:
-        return _nothing(Status.failed, request, "no mesh within the limit resolves the wanted modes")
-    if count is not None and count.number is not None:
-        line = min(best.w[request.modes - 1].real, 0.0)
-        if count.number != int((best.w.real >= line).sum()):
-            return _nothing(Status.modes_missing, request, f"the winding number counts {count.number}")
-    certified = count is not None and count.number is not None
-    undecided = _undecided(best)
-    return _result(Status.accuracy_not_reached, rod, request, best, None if undecided else certified, "")
-
-
 def _result(
-    status: Status, rod: Rod, request: SpectrumRequest, found: _Found, certified: bool | None, message: str
+    status: Status, rod: Rod, request: SpectrumRequest, found: Found, verdict: Verdict | None
 ) -> Spectrum:
-    """The outcome with its numbers; `certified` is None where the sign of a growth rate is undecided."""
+    """The outcome with its numbers, and how far they are proved."""
     m = request.modes
+    proved = verdict is not None and verdict.agrees
+    undecided = bool(found.on_the_axis().any())
+    message = ""
+    if status == Status.ok and request.certify:
+        if undecided:
+            status = Status.undecided
+        elif not proved:
+            status, message = Status.not_certified, verdict.count.why_not if verdict else ""
+    unstable = int((found.w.real > 0).sum())
+    # Without a proof the unstable modes are counted only if the search went past them.
+    known = not undecided and (proved or unstable < len(found.w))
     return Spectrum(
         status=status,
         eigenvalues=found.w[:m],
         error_estimate=found.error[:m],
-        unstable_count=-1 if certified is None else int((found.w.real > 0).sum()),
-        certified=bool(certified),
+        unstable_count=unstable if known else -1,
+        certified=proved and not undecided,
         elements=found.resolution.elements,
         order=found.resolution.order,
         seconds=0.0,
@@ -267,17 +188,18 @@ def _result(
     )
 
 
-def _vectors(rod: Rod, request: SpectrumRequest, found: _Found) -> NDArray[np.complex128] | None:
+def _vectors(rod: Rod, request: SpectrumRequest, found: Found) -> NDArray[np.complex128] | None:
     """(Y, Theta) on the Lobatto nodes; NaN where Y(1) vanishes and cannot be scaled to 1."""
     if found.vectors is None:
         return None
     pencil = eigen_solver(found.resolution).pencil
     y, theta = pencil.fields(found.vectors[:, : request.modes], rod)
     matrix = pencil.evaluation(vector_points(request.vector_nodes))
-    tip = y[-1]
     size = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))
-    tip = np.where(np.abs(tip) > 1e-10 * size, tip, np.nan)
-    return np.stack([(matrix @ y / tip).T, (matrix @ theta / tip).T])
+    scale = np.full(len(size), np.nan + 0j)
+    tipped = np.abs(y[-1]) > NO_TIP * size
+    scale[tipped] = 1 / y[-1][tipped]
+    return np.stack([(matrix @ y * scale).T, (matrix @ theta * scale).T])
 
 
 def _nothing(status: Status, request: SpectrumRequest, message: str) -> Spectrum:

@@ -72,9 +72,9 @@ def _check(points: Points, where: str) -> None:
                 "below every k1, because the rod is crushed at F = k1"
             )
         return
-    bad = np.nonzero(k1 <= F)[0]
-    if len(bad):
-        row = int(bad[0])
+    crushed = np.flatnonzero(k1 <= F)
+    if len(crushed):
+        row = int(crushed[0])
         place = where.format(row=row + 2)
         raise InputError(
             f"{place}F = {F[row]:.15g} is not below k1 = {k1[row]:.15g}, where the rod is crushed"

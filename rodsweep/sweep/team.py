@@ -39,8 +39,8 @@ class Team:
         if self.first:
             try:
                 outcome = (work(), None)
-            except (InputError, EnvironmentLacks) as refusal:
-                outcome = (None, refusal)
+            except (InputError, EnvironmentLacks) as error:
+                outcome = (None, error)
         value, refusal = self.comm.bcast(outcome)
         if refusal is not None:
             raise refusal

@@ -85,7 +85,7 @@ def D_wedge(w, F, k1, k2, gamma3, digits=40):
 
 
 def refine(w, F, k1, k2, gamma3, digits=30, det=D):
-    """The zero of D next to w to `digits` digits: secant steps, doubled precision so that a close pair costs none."""
+    """The zero of D next to w to `digits` digits: secant steps in doubled precision, for close pairs."""
     work = 2 * digits + 10
     with mp.workdps(work):
         w0 = mp.mpmathify(w)
@@ -100,7 +100,7 @@ def refine(w, F, k1, k2, gamma3, digits=30, det=D):
                 break
             d1 = det(w1, F, k1, k2, gamma3, work)
         else:
-            raise ArithmeticError("no convergence from %s" % w)
+            raise ArithmeticError(f"no convergence from {w}")
         w1 = mp.re(w1) if real else w1
     with mp.workdps(digits):
         return +w1

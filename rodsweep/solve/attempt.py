@@ -1,0 +1,118 @@
+"""One attempt at a rod's leading eigenvalues, and its two judges, which know nothing of meshes.
+
+The Newton correction of D at each eigenvalue judges the mesh; the winding number of D judges whether
+one is missing. What to do about it is `rodsweep.solve.spectrum`'s to decide.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..discretization.resolution import Resolution
+from ..model.bounds import inside_box
+from ..model.determinant import newton_corrections
+from ..model.rod import Rod
+from .certificate import Count, count_right_of
+from .eigenpairs import eigen_solver
+
+A_ROOT = 1e-2
+"""Newton correction, in units of the length over which D changes, that still stands for a root of D."""
+WAVES_A_NODE = 2.0
+"""Largest |q| of an eigenvalue, in units of the nodes, that a mesh can stand for."""
+REAL_BELOW = 1e-14
+"""Relative imaginary part below which an eigenvalue is real: what rounding leaves of zero."""
+WIDE_GAP = 0.05
+"""Relative gap between two real parts that is wide enough to draw a line through."""
+NO_GAP = 1e-6
+"""Relative gap below which two real parts count as equal."""
+MOST_LINES = 3
+"""Lines tried before the count is given up."""
+ON_THE_AXIS = 1e-13
+"""Relative real part below which an eigenvalue is on the imaginary axis whatever its error estimate."""
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What one attempt found and what stands for a root of D: sorted as `rodsweep.model` states.
+
+    w: complex, shape (k,); error: |D/D'| at each, wave: largest |q| of each, shape (k,); vectors: shape
+    (unknowns, k), or None.
+    """
+
+    resolution: Resolution
+    w: NDArray[np.complex128]
+    error: NDArray[np.float64]
+    wave: NDArray[np.float64]
+    vectors: NDArray[np.complex128] | None
+
+    def worst(self, modes: int) -> float:
+        """Largest relative error estimate of the leading modes."""
+        return float((self.error[:modes] / np.abs(self.w[:modes])).max())
+
+    def on_the_axis(self) -> NDArray[np.bool_]:
+        """Which eigenvalues lie on the imaginary axis within their error."""
+        return np.abs(self.w.real) <= np.maximum(4 * self.error, ON_THE_AXIS * np.abs(self.w))
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """The count right of a line, and how many of the found eigenvalues lie there."""
+
+    count: Count
+    here: int
+    clear: bool
+    """Whether every found eigenvalue is farther from the line than twice its error."""
+
+    @property
+    def agrees(self) -> bool:
+        return self.clear and self.count.number == self.here
+
+
+def attempt(rod: Rod, resolution: Resolution, shift: float, wanted: int, vectors: bool) -> Found:
+    """The eigenvalues nearest the shift, at least `wanted` where they converge, without impostors.
+
+    Rounding makes infinite eigenvalues finite: they are recognised by their size, because they lie
+    outside the a-priori box or beyond what the mesh can resolve.
+    """
+    solver = eigen_solver(resolution)
+    w, X = solver.solve(rod, shift, wanted, vectors)
+    finite = np.isfinite(w)
+    w = np.where(np.abs(w.imag) <= REAL_BELOW * np.abs(w), w.real, w)[finite]
+    error, length, wave = newton_corrections(w, rod)
+    root = (error <= A_ROOT * length) & inside_box(w, rod)
+    root &= wave <= WAVES_A_NODE * solver.pencil.nodes
+    order = np.lexsort((-w.imag, -w.real))
+    order = order[root[order]]
+    return Found(
+        resolution, w[order], error[order], wave[order], None if X is None else X[:, finite][:, order]
+    )
+
+
+def judge(rod: Rod, found: Found, modes: int) -> Verdict:
+    """Counts the eigenvalues right of a line below the last wanted and below every unstable mode."""
+    for line in lines(found.w.real.tolist(), modes):
+        count = count_right_of(line, rod)
+        if count.number is not None:
+            break
+    here = int((found.w.real > line).sum())
+    clear = bool((np.abs(found.w.real - line) > 2 * found.error).all())
+    return Verdict(count, here, clear)
+
+
+def lines(real: list[float], modes: int) -> list[float]:
+    """Where to draw the line, best first: in gaps between the real parts, the first wide one foremost.
+
+    Behind the last of them it is drawn through the unknown, where the count may ask for more.
+    """
+    target = min(real[modes - 1], 0.0)
+    below = [target] + [x for x in real if x < target]
+    gaps = []
+    for right, left in zip(below[:-1], below[1:], strict=True):
+        width = (right - left) / abs(left)
+        if width > NO_GAP:
+            gaps.append((min(width, WIDE_GAP), (left + right) / 2))
+    gaps.sort(key=lambda gap: -gap[0])  # stable: of the wide ones the first stays foremost
+    last = below[-1]
+    behind = last - WIDE_GAP * (abs(last) if last < 0 else abs(real[0]) + 1.0)
+    return [*(middle for _, middle in gaps[: MOST_LINES - 1]), behind]
