@@ -242,3 +242,59 @@ def test_without_certificate_the_numbers_are_the_same():
     assert np.array_equal(plain.eigenvalues, proved.eigenvalues)
     assert (plain.certified, proved.certified) == (False, True)
     assert plain.status == proved.status == Status.ok
+
+
+INF = np.inf
+
+
+@pytest.mark.parametrize("certify", [True, False])
+@pytest.mark.parametrize(
+    ("parameters", "modes", "accuracy", "first", "unstable"),
+    [
+        # Rounded infinite eigenvalues, which pass for roots by |D/D'| < 1e-3 |w| alone.
+        (
+            (26.04659802855468, 29287386.853228822, 21412.516508201144, 0.0),
+            2,
+            1e-6,
+            -81.0836121 + 114.6015074j,
+            0,
+        ),
+        ((-30.0, 1e4, 20.0, 0.0), 4, 1e-10, 77.2539904092, 1),
+        # Next to the onset, where the two leading modes are nearly one: they must not be dropped.
+        ((10.589580275349956, 2624325589.972623, INF, 0.12382152767397504), 1, 1e-4, -36.54212, 0),
+        ((7.2777665409750725, 342362964.0940207, INF, 0.6515180987071483), 3, 1e-4, -10.790602, 0),
+        # Many unstable modes of which few are asked for.
+        ((555.8965078633564, 1e4, INF, 0.7924466867097243), 1, 1e-6, 556.780062570 + 12.6570849j, 6),
+        (
+            (1965.3051532726147, INF, 409848.6378546153, 2.0920036069589485),
+            2,
+            1e-10,
+            896.468274539 + 1.65020728j,
+            14,
+        ),
+        ((20.0, 1e4, 0.1, 0.0), 4, 1e-10, 345.438443730 + 0.37962835j, 20),
+        # g = gamma3 = 0: the two exponents coincide for every w.
+        ((-20.0, INF, 20.0, 0.0), 2, 1e-10, -((np.pi / 2) ** 2) * 20, 0),
+        # Nearly crushed.
+        ((200 * (1 - 1e-8), 200.0, 1e4, 0.0), 4, 1e-10, -41667.2675135, 0),
+    ],
+)
+def test_hard_rods_have_the_right_leading_mode(parameters, modes, accuracy, first, unstable, certify):
+    result = solve_spectrum(Rod(*parameters), SpectrumRequest(modes, accuracy, certify))
+    assert result.status in (Status.ok, Status.not_certified)
+    assert abs(result.eigenvalues[0] - first) < max(2 * accuracy, 1e-8) * abs(first)
+    assert result.unstable_count == unstable or (not certify and result.unstable_count == -1)
+
+
+def test_pair_at_the_onset_is_kept_without_a_certificate():
+    """The certificate is not there to miss it: the nearly double pair has to survive by itself."""
+    result = solve_spectrum(Rod(20.050953618975804, INF, INF, 0.0), SpectrumRequest(2, 1e-10, False))
+    assert result.status == Status.accuracy_not_reached
+    assert abs(result.eigenvalues[0] - (-121.34251 + 6.8e-5j)) < 1e-5
+
+
+def test_resting_modes_a_hundred_deep_are_those_of_the_cantilever():
+    result = solve_spectrum(Rod(0.0, INF, INF, 0.0), SpectrumRequest(100, 1e-8, True))
+    assert result.status == Status.ok
+    n = np.arange(8, 101)
+    assert np.allclose(result.eigenvalues[7:].real, -(((n - 0.5) * np.pi) ** 4), rtol=1e-7)

@@ -68,7 +68,7 @@ def make_job(path: Path, overrides: tuple[str, ...]) -> Job:
             raise InputError(f"{path}: parameters.gamma1 = {gamma1:g} is not {ALLOWED['gamma1']}")
         if np.isinf(job.points.columns[1]).any():
             raise InputError(
-                f"{path}: spectrum.longitudinal needs finite k1; an inextensible rod has no longitudinal modes"
+                f"{path}: spectrum.longitudinal needs finite k1: a rod with k1 = inf cannot stretch"
             )
     return job
 
@@ -80,6 +80,6 @@ def _refuse_too_many(path: Path, config: Config, count: int) -> None:
     size, memory = count * layout.bytes_per_point, memory_of_machine()
     if size > memory:
         raise InputError(
-            f"{path}: parameters make a grid of {count:.6g} points, whose results take {size / 1e9:.3g} GB, more "
-            f"than the {memory / 1e9:.3g} GB of memory of this machine; use fewer points or modes"
+            f"{path}: parameters make a grid of {count:.6g} points, whose results take {size / 1e9:.3g} GB, "
+            f"more than the {memory / 1e9:.3g} GB of memory of this machine; use fewer points or modes"
         )

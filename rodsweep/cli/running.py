@@ -52,7 +52,10 @@ def run_config(path: Path, output: Path, overrides: tuple[str, ...], fresh: bool
             store[0].fold(_ending(team, hosts or [], started))
         counts = store[0].status_counts()
         store[0].close()
-        _report(output, job, count, seconds, team.size, counts, [f for some in told or [] for f in some])
+        each = 1e3 * seconds * team.size / max(count, 1)
+        spent = f"{count} points in {seconds:.2f} s on {team.size} ranks ({each:.3g} ms a point and rank)"
+        spent = spent if count else f"{output} is complete, nothing to do"
+        _report(output, spent, counts, [failure for some in told or [] for failure in some])
         return 0 if set(counts) == {"ok"} else 1
 
     return team.on_first(finish)
@@ -148,20 +151,9 @@ def _ending(team: Team, hosts: list[str], started: str) -> dict:
     }
 
 
-def _report(
-    output: Path,
-    job: Job,
-    count: int,
-    seconds: float,
-    ranks: int,
-    counts: dict[str, int],
-    failures: list[str],
-) -> None:
-    if not count:
-        click.echo(f"{output} is complete, nothing to do")
-    else:
-        each = 1e3 * seconds * ranks / count
-        click.echo(f"{count} points in {seconds:.2f} s on {ranks} ranks ({each:.3g} ms a point and rank)")
+def _report(output: Path, spent: str, counts: dict[str, int], failures: list[str]) -> None:
+    """Prints how the run ended."""
+    click.echo(spent)
     click.echo(f"{output}: " + ", ".join(f"{n} {name}" for name, n in counts.items()))
     for failure in failures[:FAILURES_TOLD]:
         click.echo(f"  {failure}")

@@ -14,7 +14,10 @@ R = TypeVar("R")
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """`function` compiled by numba in nopython mode. Real division by zero gives inf or nan, complex division raises."""
+    """`function` compiled by numba in nopython mode.
+
+    Real division by zero gives inf or nan, complex division by zero raises ZeroDivisionError.
+    """
     try:
         return numba.njit(cache=True, error_model="numpy")(function)
     except RuntimeError:  # numba finds no directory that it may write its cache to

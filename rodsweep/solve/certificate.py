@@ -32,7 +32,7 @@ CLEARANCE = 0.9
 """Share of |D| that the proved change may use up."""
 SMALLEST_REACH = 1e-13
 """Reach in units of |w| below which the line is taken to run through a zero of D."""
-MOST_NODES = 200_000
+MOST_NODES = 20_000
 """Nodes on one edge before the count is given up; the paper's rods need about 150."""
 HUGE = 600.0
 """Exponents are cut here before exp, which would overflow at 709."""
@@ -114,7 +114,9 @@ def reach(w: complex, coefficients: Coefficients) -> tuple[complex, complex, flo
         if cg > 0:
             eta = max(eta, rho * cg / abs(gn + cg * w))
         bend = 2 * abs(P) * ((2 - math.sqrt(1 - eta)) ** 2 - 1 - eta)
-        steepest = c2 + gamma3 + (abs(gn + 2 * cg * w) + 2 * cg * rho) / (abs(P) * (1 - eta))
+        steepest = c2 + gamma3
+        if P != 0:
+            steepest += (abs(gn + 2 * cg * w) + 2 * cg * rho) / (abs(P) * (1 - eta))
         terms = term_on_disc(plus, c2 + gamma3 + 2 * P1, L, rho, bend, S)
         terms += term_on_disc(minus, c2 + gamma3 - 2 * P1, L, rho, bend, S)
         M = math.exp(min(abs(L) * rho - S, HUGE)) + (abs(w) + rho) / 2 * steepest * terms

@@ -100,7 +100,8 @@ class EigenSolver:
         self.eps.setInitialSpace(self.start)
         self.eps.solve()
         found = self.eps.getConverged()
-        w = np.array([self.eps.getEigenvalue(i) for i in range(found)], dtype=complex) + shift
+        w: NDArray[np.complex128] = np.array([self.eps.getEigenvalue(i) for i in range(found)], complex)
+        w += shift
         return w, self._vectors(found) if vectors else None
 
     def _vectors(self, found: int) -> NDArray[np.complex128]:

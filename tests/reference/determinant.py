@@ -5,8 +5,9 @@ Units L = k3 = gamma2 = 1.  For exp(w t) the state x = (y, theta, s, m = theta')
     c1 = 1/k1,  c2 = 1/k2,  nu = 1 - F c1,  p = nu + F c2        (k1 or k2 = inf: the compliance is 0),
 y = theta = 0 at u = 0 and s = m = 0 at u = 1.  The eigenvalues are exactly the zeros of the entire function
     D(w) = det [exp(A)]_{(s,m),(s,m)},        D(0) = 1.
-Two evaluations that share nothing but A: `D` (propagator from its Taylor series) and `D_wedge` (closed form of the
-second compound).  Parameters may be int, float, str ('inf' allowed) or mpf; floats are taken at their exact value.
+Two evaluations that share nothing but A: `D` (propagator from its Taylor series) and `D_wedge` (closed
+form of the
+second compound).  Parameters may be int, float, str ('inf' allowed) or mpf; floats are exact.
 """
 
 import mpmath as mp
@@ -34,8 +35,9 @@ def largest_q(w, *c):
 def D(w, F, k1, k2, gamma3, digits=40):
     """D(w), absolute error below 10^-digits times the size exp(Re q1 + Re q2) of its terms.
 
-    exp(A) = C + A S with C = cosh A, S = sinh(A)/A even in A; their series live in span(1, B), B = A^2, because
-    B^2 = t B - b (Cayley-Hamilton), so only scalars are summed and nothing branches where two q coincide."""
+    exp(A) = C + A S with C = cosh A, S = sinh(A)/A even in A; their series live in span(1, B), B = A^2,
+    because
+    B^2 = t B - b (Cayley-Hamilton), so only scalars are summed and nothing branches."""
     with mp.workdps(15):
         q = largest_q(mp.mpmathify(w), *coefficients(F, k1, k2, gamma3))
     with mp.workdps(digits + 15 + int(1.8 * q)):  # terms grow like exp(q), the determinant cancels exp(2 q)
@@ -62,7 +64,7 @@ def D(w, F, k1, k2, gamma3, digits=40):
 
 
 def D_wedge(w, F, k1, k2, gamma3, digits=40):
-    """The same number from D'' and D'''' at u = 0 and the compound's eigenvalues 0, 0, +-(q1 + q2), +-(q1 - q2)."""
+    """The same number from derivatives of D at u = 0 and the compound's eigenvalues 0, 0, +-q1 +- q2."""
     with mp.workdps(2 * digits + 20):
         F, c2, g, nu, p = c = coefficients(F, k1, k2, gamma3)
         w = mp.mpmathify(w)
@@ -80,7 +82,10 @@ def D_wedge(w, F, k1, k2, gamma3, digits=40):
             + 6 * a33 * a44
             + 4 * (F * p * ((g + c2) * w - F * p) + p * (p * w + F * a44))
         )
-        phi = lambda z: 2 * mp.sinh(mp.sqrt(z) / 2) ** 2 / z if z else mp.mpf(1) / 2
+
+        def phi(z):
+            return 2 * mp.sinh(mp.sqrt(z) / 2) ** 2 / z if z else mp.mpf(1) / 2
+
         return 1 + ((d2 - d1 * Z) * phi(S) + (d1 * S - d2) * phi(Z)) / (S - Z)
 
 
