@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from reference import determinant as reference
 
-from rodsweep.model.determinant import newton_corrections, scaled_determinant
+from rodsweep.model.determinant import newton_correction, scaled_determinant
 from rodsweep.model.rod import Rod
 
 
@@ -49,12 +49,12 @@ def test_filament_roots_are_those_of_the_cantilever():
     for n in range(1, 5):
         b = mp.findroot(lambda b: mp.cosh(b) * mp.cos(b) + 1, (n - 0.5) * mp.pi)
         w = float(-(b**4))
-        assert newton_corrections(np.array([w + 0j]), rod)[0][0] < 1e-13 * abs(w)
+        assert newton_correction(complex(w), rod.coefficients)[0] < 1e-13 * abs(w)
 
 
 def test_newton_correction_is_the_distance_to_the_root():
     rod = Rod(30.0, 1e4, 1e4, 1e-4)
     root = complex(reference.refine(mp.mpc(-54.3, 145.7), 30, 1e4, 1e4, 1e-4))
     for distance in (1e-3, 1e-6j, 1e-9 - 1e-9j):
-        found = newton_corrections(np.array([root + distance]), rod)[0][0]
+        found = newton_correction(root + distance, rod.coefficients)[0]
         assert found == pytest.approx(abs(distance), rel=1e-2)

@@ -153,8 +153,8 @@ class Forgetful:
     def __getattr__(self, name):
         return getattr(self.solver, name)
 
-    def solve(self, rod, shift, wanted, vectors=False):
-        w, X = self.solver.solve(rod, shift, wanted, vectors)
+    def solve(self, rod, shift, wanted, accuracy, vectors=False):
+        w, X = self.solver.solve(rod, shift, wanted, accuracy, vectors)
         if wanted >= self.remembers_from:
             return w, X
         kept = w.real < w.real.max() - 1e-6 * abs(w.real.max())

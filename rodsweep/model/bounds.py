@@ -15,9 +15,7 @@ The weight is free; the best one makes both entries of the maximum equal.
 
 from math import inf, sqrt
 
-import numpy as np
-from numpy.typing import NDArray
-
+from .compilation import compiled
 from .rod import Rod
 
 MARGIN = 1.01
@@ -26,20 +24,16 @@ MARGIN = 1.01
 
 def eigenvalue_box(rod: Rod, depth: float = 0.0) -> tuple[float, float]:
     """(max Re w, max |Im w|) over all eigenvalues with Re w >= -depth, depth >= 0; inf if unknown."""
-    a = sqrt(squared_amplification(rod))
+    return box_of(sqrt(squared_amplification(rod)), depth)
+
+
+@compiled
+def box_of(a: float, depth: float) -> tuple[float, float]:
+    """`eigenvalue_box` from a, the root of `squared_amplification`."""
     n = (a + sqrt(a * a + 4 * depth)) / 2
     # A pad in proportion to the depth keeps the box open where F = 0 makes the bound vanish.
     pad = 0.01 * depth + 1e-6
     return MARGIN * a * a / 4 + pad, MARGIN * a * n + pad
-
-
-def inside_box(w: NDArray[np.complex128], rod: Rod) -> NDArray[np.bool_]:
-    """Whether each w lies where an eigenvalue of its own growth rate can lie."""
-    a = sqrt(squared_amplification(rod))
-    depth = np.maximum(-w.real, 0.0)
-    n = (a + np.sqrt(a * a + 4 * depth)) / 2
-    pad = 0.01 * depth + 1e-6
-    return (w.real <= MARGIN * a * a / 4 + pad) & (np.abs(w.imag) <= MARGIN * a * n + pad)
 
 
 def squared_amplification(rod: Rod) -> float:

@@ -22,11 +22,8 @@ S = max Re sqrt(z+-), because it spans hundreds of decades.
 import cmath
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from .compilation import compiled
-from .rod import Coefficients, Rod
+from .rod import Coefficients
 
 ROUND_OFF = 2.220446049250313e-16
 TYPICAL_NOISE = 0.02
@@ -110,33 +107,18 @@ def scaled_determinant(w: complex, coefficients: Coefficients) -> tuple[complex,
 
 
 @compiled
-def _corrections(
-    w: NDArray[np.complex128], coefficients: Coefficients
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    c2, gamma3 = coefficients[2], coefficients[3]
-    error = np.empty(len(w))
-    length = np.empty(len(w))
-    wave = np.empty(len(w))
-    for i in range(len(w)):
-        value, slope, _, noise = scaled_determinant(w[i], coefficients)
-        error[i] = max(abs(value), TYPICAL_NOISE * noise) / max(abs(slope), 1e-300)
-        _, P1, _, plus, minus = branches(w[i], coefficients)
-        root_plus, root_minus = math.sqrt(abs(plus)), math.sqrt(abs(minus))
-        fast = abs(c2 + gamma3 + 2 * P1) / max(1.0, root_plus)
-        slow = abs(c2 + gamma3 - 2 * P1) / max(1.0, root_minus)
-        length[i] = 2 / max(fast, slow, 1e-300)
-        wave[i] = (root_plus + root_minus) / 2
-    return error, length, wave
-
-
-def newton_corrections(
-    w: NDArray[np.complex128], rod: Rod
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """(|D/D'|, length, wave number) at each w: how far, to first order, an eigenvalue of `rod` lies.
+def newton_correction(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
+    """(|D/D'|, length, wave number) at w: how far, to first order, an eigenvalue of the rod lies.
 
     The correction, in 1/tau2, does not know how w was computed, which makes it an independent error
     estimate. Where D is smaller than its rounding error, that error takes its place. It means something
     only well below `length`, over which an exponent of D changes by one. The wave number, in 1/L,
     bounds |q| of the exponents exp(+-q u) of an eigenfunction at w (Sec. VI).
     """
-    return _corrections(np.asarray(w, complex), rod.coefficients)
+    value, slope, _, noise = scaled_determinant(w, coefficients)
+    error = max(abs(value), TYPICAL_NOISE * noise) / max(abs(slope), 1e-300)
+    _, P1, _, plus, minus = branches(w, coefficients)
+    root_plus, root_minus = math.sqrt(abs(plus)), math.sqrt(abs(minus))
+    drag = coefficients[2] + coefficients[3]
+    fast = max(abs(drag + 2 * P1) / max(1.0, root_plus), abs(drag - 2 * P1) / max(1.0, root_minus))
+    return error, 2 / max(fast, 1e-300), (root_plus + root_minus) / 2

@@ -4,14 +4,18 @@ The Newton correction of D at each eigenvalue judges the mesh; the winding numbe
 one is missing. What to do about it is `rodsweep.solve.spectrum`'s to decide.
 """
 
+import math
 from dataclasses import dataclass
+from math import sqrt
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..discretization.resolution import Resolution
-from ..model.bounds import inside_box
-from ..model.determinant import newton_corrections
+from ..model.bounds import box_of, squared_amplification
+from ..model.compilation import compiled
+from ..model.determinant import newton_correction
 from ..model.rod import Rod
 from .certificate import Count, count_right_of
 from .eigenpairs import eigen_solver
@@ -32,27 +36,34 @@ ON_THE_AXIS = 1e-13
 """Relative real part below which an eigenvalue is on the imaginary axis whatever its error estimate."""
 
 
+class Wish(Protocol):
+    """The part of a request that an attempt needs."""
+
+    @property
+    def accuracy(self) -> float: ...
+
+    @property
+    def vector_nodes(self) -> int: ...
+
+
 @dataclass(frozen=True, slots=True)
 class Found:
     """What one attempt found and what stands for a root of D: sorted as `rodsweep.model` states.
 
-    w: complex, shape (k,); error: |D/D'| at each, wave: largest |q| of each, shape (k,); vectors: shape
-    (unknowns, k), or None.
+    w: complex, shape (k,); error: |D/D'| at each, wave: largest |q| of each, on_the_axis: whether it
+    lies on the imaginary axis within its error, shape (k,); vectors: shape (unknowns, k), or None.
     """
 
     resolution: Resolution
     w: NDArray[np.complex128]
     error: NDArray[np.float64]
     wave: NDArray[np.float64]
+    on_the_axis: NDArray[np.bool_]
     vectors: NDArray[np.complex128] | None
 
     def worst(self, modes: int) -> float:
         """Largest relative error estimate of the leading modes."""
         return float((self.error[:modes] / np.abs(self.w[:modes])).max())
-
-    def on_the_axis(self) -> NDArray[np.bool_]:
-        """Which eigenvalues lie on the imaginary axis within their error."""
-        return np.abs(self.w.real) <= np.maximum(4 * self.error, ON_THE_AXIS * np.abs(self.w))
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,24 +80,50 @@ class Verdict:
         return self.clear and self.count.number == self.here
 
 
-def attempt(rod: Rod, resolution: Resolution, shift: float, wanted: int, vectors: bool) -> Found:
+def attempt(rod: Rod, resolution: Resolution, wanted: int, shift: float, request: "Wish") -> Found:
     """The eigenvalues nearest the shift, at least `wanted` where they converge, without impostors.
 
     Rounding makes infinite eigenvalues finite: they are recognised by their size, because they lie
     outside the a-priori box or beyond what the mesh can resolve.
     """
     solver = eigen_solver(resolution)
-    w, X = solver.solve(rod, shift, wanted, vectors)
-    finite = np.isfinite(w)
-    w = np.where(np.abs(w.imag) <= REAL_BELOW * np.abs(w), w.real, w)[finite]
-    error, length, wave = newton_corrections(w, rod)
-    root = (error <= A_ROOT * length) & inside_box(w, rod)
-    root &= wave <= WAVES_A_NODE * solver.pencil.nodes
-    order = np.lexsort((-w.imag, -w.real))
-    order = order[root[order]]
-    return Found(
-        resolution, w[order], error[order], wave[order], None if X is None else X[:, finite][:, order]
-    )
+    w, X = solver.solve(rod, shift, wanted, request.accuracy, request.vector_nodes > 0)
+    most_waves = WAVES_A_NODE * solver.pencil.nodes
+    order, w, error, wave, axis = _roots(w, rod.coefficients, sqrt(squared_amplification(rod)), most_waves)
+    return Found(resolution, w, error, wave, axis, None if X is None else X[:, order])
+
+
+@compiled
+def _roots(w, coefficients, amplification, most_waves):  # type: ignore[no-untyped-def]
+    """(indices, w, error, wave number, on the axis) of those w that stand for a root of D, sorted."""
+    error = np.empty(len(w))
+    wave = np.empty(len(w))
+    keep = []
+    for i in range(len(w)):
+        if not (math.isfinite(w[i].real) and math.isfinite(w[i].imag)):
+            continue
+        if abs(w[i].imag) <= REAL_BELOW * abs(w[i]):
+            w[i] = complex(w[i].real, 0.0)
+        error[i], length, wave[i] = newton_correction(w[i], coefficients)
+        real, imag = box_of(amplification, max(-w[i].real, 0.0))
+        inside = w[i].real <= real and abs(w[i].imag) <= imag
+        if error[i] <= A_ROOT * length and inside and wave[i] <= most_waves:
+            keep.append(i)
+    order = np.array(keep, dtype=np.int64)
+    for n in range(1, len(order)):  # insertion: descending real part, then descending frequency
+        i, at = order[n], n
+        while at > 0:
+            j = order[at - 1]
+            if w[j].real > w[i].real or (w[j].real == w[i].real and w[j].imag >= w[i].imag):
+                break
+            order[at] = j
+            at -= 1
+        order[at] = i
+    w, error, wave = w[order], error[order], wave[order]
+    axis = np.empty(len(order), dtype=np.bool_)
+    for n in range(len(order)):
+        axis[n] = abs(w[n].real) <= max(4 * error[n], ON_THE_AXIS * abs(w[n]))
+    return order, w, error, wave, axis
 
 
 def judge(rod: Rod, found: Found, modes: int) -> Verdict:

@@ -19,10 +19,11 @@ from .petsc import PETSc, SLEPc, sparse_package
 
 DENSE_UP_TO = 300
 """Unknowns up to which the dense factorisation is no slower than a sparse one; it rounds less."""
-TOLERANCE = 1e-14
-"""Krylov tolerance: the discretisation is to be the only error. It costs one step in twenty."""
-KRYLOV_SPARE = 11
-"""Krylov vectors beyond the wanted eigenvalues: the fewest with which most points need no restart."""
+KRYLOV_SHARE = 1e-2
+"""Krylov tolerance in units of the accuracy: the discretisation is to be the only error."""
+LEAST_TOLERANCE, LARGEST_TOLERANCE = 1e-14, 1e-12
+KRYLOV_SPARE = 15
+"""Krylov vectors beyond the wanted eigenvalues: with fewer the shearable rods need a restart."""
 MOST_RESTARTS = 200
 PREFIX = "spectrum_"
 """Prefix of the PETSc options that override this solver, as in -spectrum_eps_ncv 32."""
@@ -51,6 +52,7 @@ class EigenSolver:
         self.line = line
         self.start = PETSc.Vec().createWithArray(np.ones(n), comm=PETSc.COMM_SELF)
         self.users_krylov = PETSc.Options(PREFIX).getInt("eps_ncv", 0)
+        self.users_tolerance = PETSc.Options(PREFIX).getReal("eps_tol", 0.0)
         self.eps = self._solver("petsc" if self.dense else package)
 
     def _solver(self, package: str | None) -> "SLEPc.EPS":
@@ -58,7 +60,6 @@ class EigenSolver:
         eps.setOptionsPrefix(PREFIX)
         eps.setProblemType(SLEPc.EPS.ProblemType.GNHEP)
         eps.setType(SLEPc.EPS.Type.KRYLOVSCHUR)
-        eps.setTolerances(TOLERANCE, MOST_RESTARTS)
         eps.setWhichEigenpairs(SLEPc.EPS.Which.TARGET_MAGNITUDE)
         eps.setTarget(0.0)
         transform = eps.getST()
@@ -72,7 +73,7 @@ class EigenSolver:
         return eps
 
     def solve(
-        self, rod: Rod, shift: float, wanted: int, vectors: bool = False
+        self, rod: Rod, shift: float, wanted: int, accuracy: float, vectors: bool = False
     ) -> tuple[NDArray[np.complex128], NDArray[np.complex128] | None]:
         """(w, X): at least `wanted` eigenvalues nearest the shift where they converge, unsorted.
 
@@ -96,6 +97,8 @@ class EigenSolver:
         self.eps.setOperators(self.A, self.B)
         wanted = min(wanted, self.pencil.unknowns - 2)
         krylov = self.users_krylov or max(2 * wanted, wanted + KRYLOV_SPARE)
+        tolerance = min(max(KRYLOV_SHARE * accuracy, LEAST_TOLERANCE), LARGEST_TOLERANCE)
+        self.eps.setTolerances(self.users_tolerance or tolerance, MOST_RESTARTS)
         self.eps.setDimensions(wanted, min(krylov, self.pencil.unknowns))
         self.eps.setInitialSpace(self.start)
         self.eps.solve()

@@ -106,7 +106,7 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
     for _ in range(MOST_ATTEMPTS):
         if resolution.unknowns > MOST_UNKNOWNS:
             break
-        found = attempt(rod, resolution, shift, wanted, request.vector_nodes > 0)
+        found = attempt(rod, resolution, wanted, shift, request)
         if len(found.w) < request.modes:
             # Either too few converged, or what converged stands for no root yet: do both more.
             wanted, resolution = wanted + request.modes, finer(resolution)
@@ -148,7 +148,7 @@ def _search_more(verdict: Verdict, wanted: int, resolution: Resolution) -> tuple
 def _blurred(found: Found, request: SpectrumRequest) -> bool:
     """Whether a mode on the imaginary axis is there only because its error is still large."""
     coarse = found.error > request.accuracy * np.abs(found.w)
-    return bool((found.on_the_axis() & coarse).any())
+    return bool((found.on_the_axis & coarse).any())
 
 
 def _next_resolution(found: Found, request: SpectrumRequest) -> Resolution:
@@ -164,7 +164,7 @@ def _result(
     """The outcome with its numbers, and how far they are proved."""
     m = request.modes
     proved = verdict is not None and verdict.agrees
-    undecided = bool(found.on_the_axis().any())
+    undecided = bool(found.on_the_axis.any())
     message = ""
     if status == Status.ok and request.certify:
         if undecided:
