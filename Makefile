@@ -64,7 +64,7 @@ define WRAPPER
 #!/bin/sh
 # Written by `make install`; the Makefile says why.
 for default in OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 \
-    OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_btl_vader_single_copy_mechanism=none HWLOC_HIDE_ERRORS=2 \
+    OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_orte_execute_quiet=1 HWLOC_HIDE_ERRORS=2 \
     PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe PRTE_MCA_hwloc_default_binding_policy=none \
     OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1; do
   eval "export $${default%%=*}=\"\$${$${default%%=*}:-$${default#*=}}\""

@@ -5,9 +5,15 @@ goes on.
 """
 
 
-class InputError(Exception):
-    """Bad input: one sentence that names the key, the value and what is allowed. Exit status 2."""
+class Refusal(Exception):
+    """One sentence for the user; `collective` where every rank of a run raises it at the same place."""
+
+    collective = False
 
 
-class EnvironmentLacks(Exception):
-    """The machine lacks a component or a right: one sentence that says which. Exit status 3."""
+class InputError(Refusal):
+    """Bad input: the sentence names the key, the value and what is allowed. Exit status 2."""
+
+
+class EnvironmentLacks(Refusal):
+    """The machine lacks a component or a right: the sentence says which. Exit status 3."""

@@ -50,7 +50,7 @@ def test_map_is_drawn_and_other_shapes_are_refused(command):
     refused = command("plot", "point.h5")
     assert refused.returncode == 2
     assert "one or two" in refused.stderr
-    with pytest.raises(InputError, match="frob"):
+    with pytest.raises(InputError, match="must end in"):
         draw(read_view(command.directory / "map.h5"), command.directory / "f.frob", "smallest")
 
 

@@ -89,6 +89,7 @@ def test_resume_after_a_kill_gives_the_same_file(command, whole_job):
         command.argv("run", "c.yaml", ranks=2),
         cwd=command.directory,
         start_new_session=True,
+        env=dict(os.environ),  # as this process got it: MPI, once started in here, adds to the one in C
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
     )

@@ -109,6 +109,8 @@ def _speaks() -> bool:
 def main() -> None:
     """Runs the command line; every refusal is one sentence on standard error."""
     code, message = 0, ""
+    if not _speaks() and "run" not in sys.argv[1:2]:
+        sys.exit(0)  # under a launcher one rank shows or draws, and the others have nothing to add
     try:
         commands.main(standalone_mode=False)
     except click.exceptions.Abort:

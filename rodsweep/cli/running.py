@@ -23,8 +23,19 @@ FAILURES_TOLD = 3
 def run_config(path: Path, output: Path, overrides: tuple[str, ...], fresh: bool) -> int:
     """Runs a config on all ranks; returns the exit status."""
     team = Team()
-    job = team.on_first(lambda: make_job(path, overrides))
-    from ..solve import petsc, status  # starts PETSc, which only a valid config is worth
+    with team.together():
+        job = team.on_first(lambda: make_job(path, overrides))
+        team.all_can(_start_petsc)
+        return _run(team, job, output, fresh)
+
+
+def _start_petsc() -> None:
+    """Starts PETSc, which only a valid config is worth."""
+    from ..solve import petsc  # noqa: F401
+
+
+def _run(team: Team, job: Job, output: Path, fresh: bool) -> int:
+    from ..solve import petsc, status
 
     began, started = time.monotonic(), now()
     plan = _plan(job, status.Status, petsc)
@@ -41,15 +52,14 @@ def run_config(path: Path, output: Path, overrides: tuple[str, ...], fresh: bool
         click.echo(
             f"{output}: {count} of {job.points.count} points to do" + (f", {kept} kept" if kept else "")
         )
-    with team.together():
-        failures = _solve_missing(team, job, plan, output, todo) if count else []
-        told = team.gather(failures)
-        hosts = team.gather(socket.gethostname())
+    failures = _solve_missing(team, job, plan, output, todo) if count else []
+    told = team.gather(failures)
+    hosts = team.gather(socket.gethostname())
     seconds = time.monotonic() - began
 
     def finish() -> int:
-        if count:
-            store[0].fold(_ending(team, hosts or [], started))
+        if count or not store[0].finished():
+            store[0].fold(_ending(team, hosts or [], started, plan))
         counts = store[0].status_counts()
         store[0].close()
         each = 1e3 * seconds * team.size / max(count, 1)
@@ -140,8 +150,9 @@ def _record(result) -> dict:  # type: ignore[no-untyped-def]
     return values
 
 
-def _ending(team: Team, hosts: list[str], started: str) -> dict:
-    return {
+def _ending(team: Team, hosts: list[str], started: str, plan: Plan) -> dict:
+    versions = {k: v for k, v in plan.attributes.items() if k.endswith(("_version", "_commit", "_options"))}
+    return versions | {
         "ranks": team.size,
         "hosts": " ".join(sorted(set(hosts))),
         "started": started,

@@ -54,6 +54,8 @@ def read_text(path: Path) -> str:
 def _parse(text: str, where: str) -> Any:
     """YAML 1.2 without tags, aliases or duplicate keys."""
     yaml = YAML(typ="safe", pure=True)
+    if any(line.startswith("%") for line in text.splitlines()):
+        raise InputError(f"{where}: directives (%...) are not allowed in a config")
     try:
         depth = 0
         for event in yaml.parse(text):
@@ -106,6 +108,22 @@ SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
 }
 
 
+WHAT_IS_ALLOWED = {
+    "title": "text of at most 200 characters",
+    "task": "spectrum",
+    "parameters": "a mapping of keys to values",
+    "parameters.points": "the name of a CSV file",
+    "spectrum": "a mapping of keys to values",
+    "spectrum.modes": "a whole number from 1 to 100",
+    "spectrum.nodes": "a whole number from 3 to 513",
+    "spectrum.certify": "true or false",
+    "spectrum.vectors": "true or false",
+    "spectrum.longitudinal": "true or false",
+    "accuracy": "a number from 1e-13 to 1e-2",
+}
+"""What the user may write, for the keys whose refusal pydantic words in its own terms."""
+
+
 def _sentence(problem: Any) -> str:
     """One pydantic problem as a sentence: which key, which value, what is allowed."""
     location = tuple(str(part) for part in problem["loc"])
@@ -121,5 +139,7 @@ def _sentence(problem: Any) -> str:
     if kind == "value_error":
         text = str(problem["ctx"]["error"])
         return f"{key}: {text}" if key and not text.startswith(key) else text
-    allowed = problem["msg"].removeprefix("Input should be ").removeprefix("a valid ")
+    if kind == "invalid_key":
+        return f"{short(value)} is not a key; keys are words"
+    allowed = WHAT_IS_ALLOWED.get(key, problem["msg"])
     return f"{key} = {short(value)} is not allowed; it should be {allowed}"

@@ -41,6 +41,14 @@ def short(value: Any) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
+def as_text(value: Any) -> Any:
+    """Text without control characters or lone surrogates, which no file name and no title needs."""
+    if isinstance(value, str) and not all(c.isprintable() or c == " " for c in value):
+        raise ValueError(f"{short(value)} has characters that cannot be printed")
+    return value
+
+
+Text = Annotated[str, BeforeValidator(as_text)]
 Number = Annotated[float, BeforeValidator(as_number)]
 
 
@@ -100,6 +108,8 @@ def _range(value: dict) -> Axis:
         raise ValueError("start and stop of a range must be finite; put inf in a list")
     if (num > 1 and not start < stop) or (num == 1 and start != stop):
         raise ValueError(f"start = {start:g} and stop = {stop:g} do not make {num} increasing values")
+    if num > 1 and (stop - start) / num <= 4e-16 * max(abs(start), abs(stop)) or stop - start == inf:
+        raise ValueError(f"{num} values from {start!r} to {stop!r} cannot be told apart")
     if spacing == "log" and start <= 0:
         raise ValueError(f"log spacing needs start above 0, not {start:g}")
     return Axis(start=start, stop=stop, num=num, spacing=spacing)
@@ -116,7 +126,7 @@ class Parameters(Strict):
     k2: Values | None = None
     gamma3: Values | None = None
     gamma1: Number | None = None
-    points: str | None = None
+    points: Text | None = None
 
     @model_validator(mode="after")
     def _grid_or_points(self) -> "Parameters":
@@ -143,7 +153,7 @@ class SpectrumOptions(Strict):
 class Config(Strict):
     """A whole config."""
 
-    title: Annotated[str, Field(max_length=200)] = ""
+    title: Annotated[Text, Field(max_length=200)] = ""
     task: Literal["spectrum"]
     parameters: Parameters
     spectrum: SpectrumOptions = SpectrumOptions()

@@ -15,8 +15,8 @@ WAVE_FACTOR, MODE_OFFSET = 1.4, 0.3
 LARGEST_ORDER = 32
 """Order beyond which another element costs less than a higher order."""
 SMALLEST_ORDER = 6
-MOST_UNKNOWNS = 20_000
-"""Unknowns beyond which a point is given up: some 10 s and 1 GB with a sparse factorisation."""
+MOST_UNKNOWNS = 10_000
+"""Unknowns beyond which a point is given up: some seconds with a sparse factorisation."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,9 +49,12 @@ def required_order(wave_number: float, accuracy: float) -> float:
 
 def resolution_for(wave_number: float, accuracy: float) -> Resolution:
     """The smallest resolution: one element up to LARGEST_ORDER, then equal elements that share q."""
+    most = MOST_UNKNOWNS // (3 * LARGEST_ORDER) + 2  # more is given up anyway
     elements = 1
-    while required_order(wave_number / elements, accuracy) > LARGEST_ORDER:
+    while elements < most and required_order(wave_number / elements, accuracy) > LARGEST_ORDER:
         elements += 1
+    if elements == most:
+        return Resolution(elements, LARGEST_ORDER)
     order = max(SMALLEST_ORDER, ceil(required_order(wave_number / elements, accuracy)))
     return Resolution(elements, order + (1 if elements > 1 else 0))
 

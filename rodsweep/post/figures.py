@@ -1,5 +1,6 @@
 """Figures of a result file: a line of spectra as the paper's Fig. 2 draws it, or a map over two axes."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib
@@ -19,6 +20,7 @@ LABELS = {
 FIRST, SECOND = "#0072B2", "#D55E00"
 """Blue and vermilion: told apart by the colour-blind and in grey."""
 STYLE = {"font.size": 10, "axes.grid": False, "axes.spines.top": False, "axes.spines.right": False}
+FORMATS = (".png", ".pdf", ".svg")
 ROOTS = {
     "rightmost": "the two rightmost roots",
     "smallest": "of the stored roots, the two smallest in magnitude",
@@ -32,6 +34,13 @@ def draw(view: View, output: Path, roots: str) -> str:
     """
     if not view.is_grid:
         raise InputError(f"{view.path} is a list of points; a figure needs a grid with one or two long axes")
+    if output.suffix not in FORMATS:
+        raise InputError(f"--output {output}: the name must end in {', '.join(FORMATS)}")
+    if output.is_dir() or (output.exists() and output.samefile(view.path)):
+        raise InputError(f"--output {output} is not a name for a figure; choose another")
+    if not np.isfinite(view.variables["growth_rate"]).any():
+        raise InputError(f"{view.path} holds no computed point that could be drawn")
+    view = without_infinite(view)
     long = [name for name, values in view.axes.items() if len(values) > 1]
     if not 1 <= len(long) <= 2:
         raise InputError(
@@ -42,12 +51,27 @@ def draw(view: View, output: Path, roots: str) -> str:
         figure = _line(view, long[0], roots) if len(long) == 1 else _map(view, long)
         try:
             figure.savefig(output, dpi=160)
-        except ValueError as error:
-            raise InputError(f"{output}: {str(error).splitlines()[0]}") from None
         except OSError as error:
             raise EnvironmentLacks(f"{output} cannot be written: {error.strerror}") from error
     what = ROOTS[roots] if len(long) == 1 else "the leading growth rate"
     return f"wrote {output}: {what}"
+
+
+def without_infinite(view: View) -> View:
+    """The view without axis values that are inf, which no axis of a figure has a place for."""
+    variables = dict(view.variables)
+    for place, (name, values) in enumerate(view.axes.items()):
+        finite = np.isfinite(values)
+        if len(values) > 1 and not finite.all():
+            variables[name] = values[finite]
+            for key in ("growth_rate", "frequency", "unstable_count"):
+                variables[key] = np.compress(finite, variables[key], axis=place)
+    return replace(view, variables=variables)
+
+
+def plain(text: object) -> str:
+    """A user's text, in which a dollar is a dollar and not mathematics."""
+    return str(text).replace("$", r"\$")
 
 
 def followed_roots(growth: np.ndarray, frequency: np.ndarray, roots: str) -> np.ndarray:
@@ -100,7 +124,7 @@ def _line(view: View, name: str, roots: str) -> Figure:
     top.legend(frameon=False, fontsize=8, ncols=2)
     bottom.legend(frameon=False, fontsize=8)
     fixed = ", ".join(f"${SYMBOLS[n]}$ = {v[0]:.6g}" for n, v in view.axes.items() if n != name)
-    figure.suptitle(f"{view.attributes.get('title', '')}\n{fixed}\n{ROOTS[roots]}", fontsize=9)
+    figure.suptitle(f"{plain(view.attributes.get('title', ''))}\n{fixed}\n{ROOTS[roots]}", fontsize=9)
     return figure
 
 
@@ -113,14 +137,14 @@ def _map(view: View, names: list[str]) -> Figure:
     reach = np.nanmax(np.abs(growth))
     norm = matplotlib.colors.SymLogNorm(max(1.0, reach * 1e-4), vmin=-reach, vmax=reach)
     mesh = axes.pcolormesh(x, y, growth.T, norm=norm, cmap="PuOr_r", shading="nearest", rasterized=True)
-    if growth.min() < 0 < growth.max():
+    if np.nanmin(growth) < 0 < np.nanmax(growth):
         axes.contour(x, y, growth.T, levels=[0.0], colors="k", linewidths=1.2)
     for values, scale in ((x, axes.set_xscale), (y, axes.set_yscale)):
         if _is_logarithmic(values):
             scale("log")
     axes.set(xlabel=LABELS[horizontal], ylabel=LABELS[vertical])
     figure.colorbar(mesh, label=r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$")
-    axes.set_title(f"{view.attributes.get('title', '')}; black: zero growth", fontsize=9)
+    axes.set_title(f"{plain(view.attributes.get('title', ''))}; black: zero growth", fontsize=9)
     return figure
 
 

@@ -78,6 +78,7 @@ def _numbers(console: Console, view: View, done: np.ndarray) -> None:
     console.print(f"unknowns a point: {unknowns.min()} to {unknowns.max()}")
     unstable = v["unstable_count"][done]
     console.print(
-        f"certified: {int(v['certified'][done].sum())} of {int(done.sum())}; unstable modes a point: "
-        f"0 to {unstable.max()}, at {int((unstable > 0).sum())} points at least one"
+        f"certified: {int(v['certified'][done].sum())} of {int(done.sum())}; unstable modes: at most "
+        f"{max(int(unstable.max()), 0)}, at {int((unstable > 0).sum())} points; not known at "
+        f"{int((unstable < 0).sum())}"
     )

@@ -56,6 +56,8 @@ def read_journals(directory: Path, layout: Layout, fingerprint: str) -> Iterator
     size = layout.record.itemsize
     header = MAGIC + fingerprint.encode() + b"\n"
     for path in sorted(directory.glob("rank-*")):
+        if not path.is_file():
+            continue
         with path.open("rb") as file:
             if file.read(len(header)) != header:
                 continue

@@ -10,7 +10,8 @@ import json
 import os
 import shutil
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from hashlib import sha256
 from itertools import chain
@@ -29,6 +30,8 @@ BLOCK = 1 << 20
 """Values read at once where a whole variable is scanned."""
 LOCK_PATIENCE = 5.0
 """Seconds to wait for the lock: ranks whose launcher was killed live on for a moment."""
+SPACE_FACTOR, SPACE_FIXED = 3, 300_000
+"""Room that a run needs: the file, the journals and the copy in units of the file, and bytes besides."""
 SIGNATURE = "rodsweep"
 
 
@@ -69,7 +72,7 @@ class Store:
         """Opens the file that continues `plan`, or creates it; InputError if it is another's."""
         self.path, self.plan = path, plan
         self.journals = journal_directory(path)
-        try:
+        with self._on_disk():
             path.parent.mkdir(parents=True, exist_ok=True)
             self.lock = self._locked()
             try:
@@ -77,16 +80,44 @@ class Store:
             except BaseException:
                 self.close()
                 raise
-        except OSError as error:
-            raise EnvironmentLacks(f"{path} cannot be written: {error.strerror or error}") from error
+
+    @contextmanager
+    def _on_disk(self) -> Iterator[None]:
+        """What the disk refuses in here is EnvironmentLacks; HDF5 says RuntimeError for it."""
+        try:
+            yield
+        except (OSError, RuntimeError) as error:
+            reason = getattr(error, "strerror", None) or str(error).splitlines()[0]
+            raise EnvironmentLacks(
+                f"{self.path} cannot be written: {reason}; what is done is kept"
+            ) from error
 
     def _open(self, fresh: bool) -> None:
         if self.path.exists() and not fresh:
             self._refuse_another()
             self.fold({})
-        else:
-            self._drop_journals()
-            self._create()
+            return
+        if self.path.exists() and not is_hdf5(self.path):
+            raise InputError(f"{self.path} is no result file, so --fresh leaves it alone")
+        self._need_room()
+        self._drop_journals()
+        self._create()
+
+    def _need_room(self) -> None:
+        """EnvironmentLacks unless the file, its journals and the copy that replaces it have room."""
+        size = SPACE_FACTOR * int(np.prod(self.plan.shape)) * (self.plan.layout.bytes_per_point + 12)
+        size += SPACE_FIXED
+        free = shutil.disk_usage(self.path.parent).free
+        if free < size:
+            raise EnvironmentLacks(
+                f"{self.path} needs {size / 1e6:.3g} MB on its disk while it is computed, and {free / 1e6:.3g} "
+                "MB are free"
+            )
+
+    def finished(self) -> bool:
+        """Whether the file says when its run ended."""
+        with h5py.File(self.path, "r") as file:
+            return "finished" in file.attrs
 
     def missing(self) -> list[tuple[int, int]]:
         """Ranges of flat indices that are not computed yet, in order."""
@@ -103,6 +134,10 @@ class Store:
 
     def fold(self, attributes: dict[str, Any]) -> None:
         """Puts all journalled points and the attributes into the file, then drops the journals."""
+        with self._on_disk():
+            self._fold(attributes)
+
+    def _fold(self, attributes: dict[str, Any]) -> None:
         blocks = read_journals(self.journals, self.plan.layout, self.plan.fingerprint)
         first = next(blocks, None)
         if first is not None or attributes:
@@ -179,7 +214,7 @@ class Store:
             with h5py.File(self.path, "r") as file:
                 theirs = json.loads(file.attrs["config_resolved"])
                 fingerprint = file.attrs["fingerprint"]
-        except (OSError, KeyError, ValueError):
+        except (OSError, KeyError, ValueError, TypeError, RuntimeError):
             raise InputError(
                 f"{self.path} exists and is not a whole rodsweep result; it is left as it is: choose another "
                 "file with -o, or replace it with --fresh"
@@ -237,6 +272,12 @@ class Store:
         if not plan.is_grid:
             file.attrs["coordinates"] = " ".join(names)
         return dims
+
+
+def is_hdf5(path: Path) -> bool:
+    """Whether a file starts as HDF5 files do."""
+    with path.open("rb") as file:
+        return file.read(8) == b"\x89HDF\r\n\x1a\n"
 
 
 def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> None:

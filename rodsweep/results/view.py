@@ -47,7 +47,7 @@ def read_view(path: Path, names: tuple[str, ...] = ()) -> View:
             status = file["status"].attrs
             words = str(status["flag_meanings"]).split()
             flags = dict(zip((int(v) for v in status["flag_values"]), words, strict=True))
-    except (OSError, KeyError, ValueError, RuntimeError) as error:
+    except (OSError, KeyError, ValueError, TypeError, RuntimeError) as error:
         raise InputError(f"{path} is not a whole rodsweep result file ({error})") from None
     options = config["spectrum"]
     layout = spectrum_layout(options["modes"], options["nodes"] if options["vectors"] else 0)

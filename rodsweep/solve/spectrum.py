@@ -83,11 +83,19 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
     """The leading `request.modes` eigenvalues of `rod`; failures are a status, never an exception."""
     started = time.perf_counter()
     try:
-        outcome = _solve(rod, request)
-    except (PETSc.Error, np.linalg.LinAlgError, ArithmeticError, MemoryError) as error:
+        with np.errstate(all="ignore"):
+            outcome = _solve(rod, request)
+    except (PETSc.Error, SystemError, ArithmeticError, MemoryError) as error:
+        # SystemError is how some releases of petsc4py wrap a PETSc.Error.
         forget_solvers()  # a PETSc object is not usable after an error inside it
-        outcome = _nothing(Status.failed, request, (str(error) or type(error).__name__).splitlines()[-1])
+        outcome = _nothing(Status.failed, request, _reason(error))
     return replace(outcome, seconds=time.perf_counter() - started)
+
+
+def _reason(error: BaseException) -> str:
+    """The last line of an error's message, which in PETSc's says what is wrong."""
+    cause = error.__cause__ or error
+    return (str(cause) or type(cause).__name__).splitlines()[-1]
 
 
 def warm_up() -> None:

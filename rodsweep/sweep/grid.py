@@ -47,42 +47,26 @@ def grid_size(parameters: Parameters) -> int:
 def points_of(parameters: Parameters, directory: Path) -> Points:
     """The points that the config asks for; InputError for any value that the model does not allow."""
     if parameters.points is not None:
-        path = directory / parameters.points
-        points = Points(_read_csv(path), is_grid=False)
-        where = f"{path}, row {{row}}: "
-    else:
-        axes = [getattr(parameters, name) for name in PARAMETERS]
-        points = Points(tuple(axis.array() for axis in axes), is_grid=True)
-        where = "parameters."
-    _check(points, where)
-    return points
-
-
-def _check(points: Points, where: str) -> None:
+        return Points(_read_csv(directory / parameters.points), is_grid=False)
+    axes = [getattr(parameters, name) for name in PARAMETERS]
+    points = Points(tuple(axis.array() for axis in axes), is_grid=True)
     for name, column in zip(PARAMETERS, points.columns, strict=True):
-        bad = [row for row, value in enumerate(column.tolist()) if not admissible(name, value)]
+        bad = [value for value in column.tolist() if not admissible(name, value)]
         if bad:
-            place = where.format(row=bad[0] + 2)
-            raise InputError(f"{place}{name} = {column[bad[0]]:g} is not allowed; it must be {ALLOWED[name]}")
+            raise InputError(f"parameters.{name} = {bad[0]:g} is not allowed; it must be {ALLOWED[name]}")
     F, k1 = points.columns[0], points.columns[1]
-    if points.is_grid:
-        if F.max() >= k1.min():
-            raise InputError(
-                f"{where}F reaches {F.max():.15g} and parameters.k1 starts at {k1.min():.15g}; F must stay "
-                "below every k1, because the rod is crushed at F = k1"
-            )
-        return
-    crushed = np.flatnonzero(k1 <= F)
-    if len(crushed):
-        row = int(crushed[0])
-        place = where.format(row=row + 2)
+    if F.max() >= k1.min():
         raise InputError(
-            f"{place}F = {F[row]:.15g} is not below k1 = {k1[row]:.15g}, where the rod is crushed"
+            f"parameters.F reaches {F.max():.15g} and parameters.k1 starts at {k1.min():.15g}; F must stay "
+            "below every k1, because the rod is crushed at F = k1"
         )
+    return points
 
 
 def _read_csv(path: Path) -> tuple[NDArray[np.float64], ...]:
     """The columns F, k1, k2, gamma3 of a CSV file with that header, in any order."""
+    if path.exists() and not path.is_file():
+        raise InputError(f"parameters.points: {path} is not a file")
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
             rows = csv.reader(file)
@@ -91,7 +75,7 @@ def _read_csv(path: Path) -> tuple[NDArray[np.float64], ...]:
                 raise InputError(
                     f"{path}: the header is {','.join(header)[:100]!r}; it must name {', '.join(PARAMETERS)}"
                 )
-            values = [_row(row, header, f"{path}, line {rows.line_num}") for row in rows if any(row)]
+            values = [_row(row, header, f"{path}, line {rows.line_num}") for row in rows if row]
     except OSError as error:
         raise InputError(f"parameters.points: {path} cannot be read: {error.strerror}") from error
     except (UnicodeDecodeError, csv.Error) as error:
@@ -108,7 +92,13 @@ def _row(row: list[str], header: list[str], where: str) -> list[float]:
     numbers = []
     for cell, name in zip(row, header, strict=True):
         try:
+            if "_" in cell or not cell.isascii():
+                raise ValueError
             numbers.append(as_number(float(cell)))
         except ValueError:
             raise InputError(f"{where}: {name} = {cell.strip()[:40]!r} is not a number") from None
+    try:
+        Rod(**dict(zip(header, numbers, strict=True)))
+    except ValueError as error:
+        raise InputError(f"{where}: {error}") from None
     return numbers

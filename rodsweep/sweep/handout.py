@@ -54,6 +54,7 @@ class Handout:
                 self.pace[rank] = report.seconds / report.done
             start, stop = report.rest
             if stop > start:
+                self.pace[rank] = report.seconds  # as slow as its slowest point may be: next, one point
                 self.todo.appendleft(report.rest)
                 self.left += stop - start
             self.change.notify_all()
@@ -85,9 +86,13 @@ class FirstRankClaims:
 
     def __init__(self, team: Team, todo: list[Range]):
         self.team, self.handout = team, Handout(todo, team.size)
+        self.waiting: deque[int] = deque()
+        self.working = set(range(1, team.size))
+        self.status = team.MPI.Status()
+        self.serving = threading.Lock()
         self.thread: threading.Thread | None = None
         if team.size > 1:
-            self.thread = threading.Thread(target=self._serve_or_abort, name="handout", daemon=True)
+            self.thread = threading.Thread(target=self._serve_until_over, name="handout", daemon=True)
             self.thread.start()
 
     @property
@@ -97,6 +102,7 @@ class FirstRankClaims:
 
     def claim(self, report: Report) -> Range:
         self.handout.settle(0, report)
+        self.serve()
         while (chunk := self.handout.take(0)) is None:
             self.handout.wait()
         return chunk
@@ -105,29 +111,28 @@ class FirstRankClaims:
         if self.thread is not None:
             self.thread.join()
 
-    def _serve_or_abort(self) -> None:
-        with self.team.together():
-            self._serve()
+    def serve(self) -> None:
+        """Answers what other ranks ask; called between points and, while a point is solved, by the thread.
 
-    def _serve(self) -> None:
-        comm, status = self.team.comm, self.team.MPI.Status()
-        waiting: list[int] = []
-        working = set(range(1, self.team.size))
-        while working:
-            heard = comm.Iprobe(source=self.team.MPI.ANY_SOURCE, tag=REQUEST, status=status)
-            if heard:
-                rank = status.Get_source()
+        The thread alone would not do: a solve inside PETSc keeps Python's lock, and the thread might
+        get it only once a point for each of its steps.
+        """
+        comm, MPI = self.team.comm, self.team.MPI
+        with self.serving:
+            while comm.Iprobe(source=MPI.ANY_SOURCE, tag=REQUEST, status=self.status):
+                rank = self.status.Get_source()
                 self.handout.settle(rank, comm.recv(source=rank, tag=REQUEST))
-                waiting.append(rank)
-            for rank in list(waiting):
-                chunk = self.handout.take(rank)
-                if chunk is None:
-                    break
+                self.waiting.append(rank)
+            while self.waiting and (chunk := self.handout.take(self.waiting[0])) is not None:
+                rank = self.waiting.popleft()
                 comm.send(chunk, dest=rank, tag=ANSWER)
-                waiting.remove(rank)
                 if chunk == OVER:
-                    working.discard(rank)
-            if not heard:
+                    self.working.discard(rank)
+
+    def _serve_until_over(self) -> None:
+        with self.team.together():
+            while self.working:
+                self.serve()
                 time.sleep(POLL_SECONDS)
 
 
@@ -145,6 +150,9 @@ class OtherRankClaims:
         while not self.comm.Iprobe(source=0, tag=ANSWER):
             time.sleep(POLL_SECONDS / 5)
         return self.comm.recv(source=0, tag=ANSWER)
+
+    def serve(self) -> None:
+        """Nobody asks this rank."""
 
     def close(self) -> None:
         """Nothing to close."""

@@ -30,6 +30,7 @@ def sweep(
         while at < stop:
             keep(at, solve(at))
             at += 1
+            claims.serve()
             if team.first:
                 tell(claims.done + at - chunk[0])
             if time.monotonic() - began > GIVE_BACK_AFTER:

@@ -34,7 +34,7 @@ class Team:
         return self.rank == 0
 
     def on_first(self, work: Callable[[], T]) -> T:
-        """What `work` returns on the first rank, on every rank; its refusals end every rank too."""
+        """What `work` returns on the first rank, on every rank; its refusals are raised on every rank."""
         outcome: Any = None
         if self.first:
             try:
@@ -43,8 +43,21 @@ class Team:
                 outcome = (None, error)
         value, refusal = self.comm.bcast(outcome)
         if refusal is not None:
+            refusal.collective = True
             raise refusal
         return value
+
+    def all_can(self, work: Callable[[], object]) -> None:
+        """Does `work` on every rank; where the machine of one lacks something, all raise its refusal."""
+        refusal = None
+        try:
+            work()
+        except EnvironmentLacks as error:
+            refusal = error
+        refusals = [r for r in self.comm.allgather(refusal) if r is not None]
+        if refusals:
+            refusals[0].collective = True
+            raise refusals[0]
 
     def gather(self, value: T) -> list[T] | None:
         """The values of all ranks on the first rank, None elsewhere."""
@@ -57,12 +70,13 @@ class Team:
     def together(self) -> Iterator[None]:
         """What fails in here on one rank ends all ranks, with a message; the others would wait for ever.
 
-        With a single rank there is nobody to wait, and the exception goes on.
+        With a single rank there is nobody to wait, and a refusal that all ranks share needs no abort:
+        such exceptions go on.
         """
         try:
             yield
         except BaseException as error:
-            if self.size == 1:
+            if self.size == 1 or getattr(error, "collective", False):
                 raise
             if isinstance(error, InputError | EnvironmentLacks):
                 sys.stderr.write(f"rodsweep: rank {self.rank}: {error}\n")
