@@ -54,6 +54,20 @@ def test_map_is_drawn_and_other_shapes_are_refused(command):
         draw(read_view(command.directory / "map.h5"), command.directory / "f.frob", "smallest")
 
 
+def test_infinite_axis_values_and_odd_titles_are_drawn_or_refused_in_a_sentence(command):
+    command.write("c.yaml", LINE)
+    both = ["--set", "parameters.k2=[50, 100, .inf]", "--set", "title=cost in $ and \\frac"]
+    command("run", "c.yaml", *both, "-o", "map.h5")
+    assert command("plot", "map.h5").returncode == 0
+    command("run", "c.yaml", *both, "--set", "parameters.F=3", "-o", "line.h5")
+    assert command("plot", "line.h5").returncode == 0
+    for output in ("map.h5", ".", "figure"):
+        refused = command("plot", "map.h5", "-o", output)
+        assert refused.returncode == 2
+        assert len(refused.stderr.splitlines()) == 1
+    assert read_view(command.directory / "map.h5").variables["k2"][-1] == np.inf
+
+
 EXPECTED = {
     "fig2a": [(37.6559805452711, +1)],
     "fig2b": [(27.4271941267593, +1)],

@@ -15,7 +15,7 @@ from ..discretization.pencil import SHEAR_WEIGHT, assemble
 from ..discretization.resolution import Resolution
 from ..model.dispersion import most_amplified_wave
 from ..model.rod import Rod
-from ..solve.spectrum import SHIFT_ABOVE_GROWTH, SPARE_MODES
+from ..solve.spectrum import SHIFT_ABOVE_GROWTH
 
 Eigenvalues = NDArray[np.complex128]
 INFINITE_BELOW = 1e-11
@@ -67,7 +67,7 @@ def scipy_eigs(rod: Rod, resolution: Resolution, modes: int) -> Eigenvalues:
         A.shape, matvec=lambda x: scipy.linalg.lu_solve(factors, B * x, check_finite=False), dtype=float
     )
     start = np.ones(len(B))
-    theta = scipy.sparse.linalg.eigs(operator, modes + SPARE_MODES, v0=start, return_eigenvectors=False)
+    theta = scipy.sparse.linalg.eigs(operator, modes, v0=start, return_eigenvectors=False)
     return _leading(shift + 1 / theta, modes)
 
 

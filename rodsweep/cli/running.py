@@ -11,6 +11,7 @@ from ..errors import EnvironmentLacks
 from ..results.journal import Journal, journal_directory
 from ..results.provenance import now, provenance
 from ..results.store import Plan, Store
+from ..solve.presence import require_petsc
 from ..sweep.loop import sweep
 from ..sweep.progress import Teller
 from ..sweep.team import Team
@@ -25,17 +26,12 @@ def run_config(path: Path, output: Path, overrides: tuple[str, ...], fresh: bool
     team = Team()
     with team.together():
         job = team.on_first(lambda: make_job(path, overrides))
-        team.all_can(_start_petsc)
+        team.all_can(require_petsc)
         return _run(team, job, output, fresh)
 
 
-def _start_petsc() -> None:
-    """Starts PETSc, which only a valid config is worth."""
-    from ..solve import petsc  # noqa: F401
-
-
 def _run(team: Team, job: Job, output: Path, fresh: bool) -> int:
-    from ..solve import petsc, status
+    from ..solve import petsc, status  # starts PETSc, which only a valid config is worth
 
     began, started = time.monotonic(), now()
     plan = _plan(job, status.Status, petsc)

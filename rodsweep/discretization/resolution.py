@@ -8,7 +8,7 @@ linearly with the largest |q| of the wanted modes, exp(q u), with the intercept 
 from dataclasses import dataclass
 from math import ceil, hypot, log10, pi
 
-ORDER_INTERCEPT, ORDER_SLOPE = 5.0, 0.49
+ORDER_INTERCEPT, ORDER_SLOPE = 4.0, 0.49
 DIGIT_INTERCEPT, DIGIT_SLOPE, DIGIT_SLOPE_END = 0.7, 0.02, 35.0
 BASE_DIGITS = 4
 WAVE_FACTOR, MODE_OFFSET = 1.4, 0.3

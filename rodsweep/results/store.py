@@ -110,8 +110,8 @@ class Store:
         free = shutil.disk_usage(self.path.parent).free
         if free < size:
             raise EnvironmentLacks(
-                f"{self.path} needs {size / 1e6:.3g} MB on its disk while it is computed, and {free / 1e6:.3g} "
-                "MB are free"
+                f"{self.path} needs {size / 1e6:.3g} MB on its disk while it is computed, and "
+                f"{free / 1e6:.3g} MB are free"
             )
 
     def finished(self) -> bool:

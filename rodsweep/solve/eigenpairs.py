@@ -7,6 +7,7 @@ to zero and never returns. The factorisation pivots: LAPACK's where the matrix i
 nothing else, otherwise a sparse one.
 """
 
+import math
 from functools import lru_cache
 
 import numpy as np
@@ -22,7 +23,7 @@ DENSE_UP_TO = 300
 KRYLOV_SHARE = 1e-2
 """Krylov tolerance in units of the accuracy: the discretisation is to be the only error."""
 LEAST_TOLERANCE, LARGEST_TOLERANCE = 1e-14, 1e-12
-KRYLOV_SPARE = 15
+KRYLOV_SPARE = 13
 """Krylov vectors beyond the wanted eigenvalues: with fewer the shearable rods need a restart."""
 MOST_RESTARTS = 200
 PREFIX = "spectrum_"
@@ -50,6 +51,7 @@ class EigenSolver:
         line = np.arange(n + 1, dtype=PETSc.IntType)
         self.B.createAIJ([n, n], csr=(line, line[:-1], np.ones(n)), comm=PETSc.COMM_SELF)
         self.line = line
+        self.gamma3, self.inertia = -1.0, np.ones(n)
         self.start = PETSc.Vec().createWithArray(np.ones(n), comm=PETSc.COMM_SELF)
         self.users_krylov = PETSc.Options(PREFIX).getInt("eps_ncv", 0)
         self.users_tolerance = PETSc.Options(PREFIX).getReal("eps_tol", 0.0)
@@ -80,20 +82,19 @@ class EigenSolver:
         w: complex, shape (k,), in 1/tau2. X: their vectors, shape (unknowns, k), or None unless
         asked for; of the converged ones none is left out. Raises PETSc.Error where PETSc fails.
         """
-        A, B = self.pencil.coefficients(rod), self.pencil.inertia(rod)
-        if not (np.isfinite(A).all() and np.isfinite(shift)):
+        coefficients = self.pencil.coefficients(rod)
+        if not math.isfinite(coefficients.sum() + shift):
             raise FloatingPointError("the parameters overflow the matrix entries")
+        self._set_inertia(rod)
         if self.dense:
-            values = A @ self.pieces
-            values[:: self.pencil.unknowns + 1] -= shift * B
+            values = coefficients @ self.pieces
+            values[:: self.pencil.unknowns + 1] -= shift * self.inertia
             self.A.getDenseArray().T.reshape(-1)[:] = values
         else:
-            values = A @ self.pencil.pieces
-            values[self.diagonal] -= shift * B
+            values = coefficients @ self.pencil.pieces
+            values[self.diagonal] -= shift * self.inertia
             self.A.setValuesCSR(self.indptr, self.indices, values)
         self.A.assemble()
-        self.B.setValuesCSR(self.line, self.line[:-1], B)
-        self.B.assemble()
         self.eps.setOperators(self.A, self.B)
         wanted = min(wanted, self.pencil.unknowns - 2)
         krylov = self.users_krylov or max(2 * wanted, wanted + KRYLOV_SPARE)
@@ -107,6 +108,13 @@ class EigenSolver:
         w: NDArray[np.complex128] = np.array([self.eps.getEigenvalue(i) for i in range(found)], complex)
         w += shift
         return w, self._vectors(found) if vectors else None
+
+    def _set_inertia(self, rod: Rod) -> None:
+        """B of the rod, which differs from the last one's only where gamma3 does."""
+        if rod.gamma3 != self.gamma3:
+            self.gamma3, self.inertia = rod.gamma3, self.pencil.inertia(rod)
+            self.B.setValuesCSR(self.line, self.line[:-1], self.inertia)
+            self.B.assemble()
 
     def _vectors(self, found: int) -> NDArray[np.complex128]:
         real, imag = self.A.createVecs()

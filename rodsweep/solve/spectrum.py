@@ -28,10 +28,12 @@ from .status import Status
 SHIFT_ABOVE_GROWTH = 1.05
 """Shift in units of the growth rate of the most amplified wave, which bounds most spectra."""
 SPARE_MODES = 1
-"""Eigenvalues asked for beyond the wanted ones, to see where the next gap is."""
+"""Eigenvalues asked for beyond those that the winding number counts."""
 MOST_ATTEMPTS = 14
 STALLED = 2
 """Refinements without a better error after which rounding, not the mesh, is taken as the limit."""
+SAFETY = 0.5
+"""Share of the accuracy that the error estimate may use up, being an estimate."""
 NO_TIP = 1e-10
 """Y(1) in units of the largest value, below which a vector cannot be scaled by it."""
 
@@ -107,7 +109,7 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
     growth, wave = most_amplified_wave(rod)
     shift = SHIFT_ABOVE_GROWTH * growth
     resolution = resolution_for(expected_wave_number(request.modes, wave), request.mesh_accuracy)
-    wanted = request.modes + SPARE_MODES
+    wanted = request.modes
     best: tuple[Found, Verdict | None] | None = None
     lost: Verdict | None = None
     stalled = 0
@@ -128,7 +130,7 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
         stalled = 0 if best is None or worst < 0.5 * best[0].worst(request.modes) else stalled + 1
         if best is None or worst <= best[0].worst(request.modes):
             best = found, verdict
-        if worst <= request.accuracy and (stalled >= STALLED or not _blurred(found, request)):
+        if worst <= SAFETY * request.accuracy and (stalled >= STALLED or not _blurred(found, request)):
             return _result(Status.ok, rod, request, found, verdict)
         if stalled >= STALLED:
             break
