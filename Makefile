@@ -90,6 +90,7 @@ export WRAPPER
 	  $$sudo env DEBIAN_FRONTEND=noninteractive apt-get -qy -o DPkg::Lock::Timeout=300 install \
 	    --no-install-recommends $$missing || die "$$advice"
 	fi
+	mpiexec=$$(command -v $(MPIEXEC))  # now, while .venv/bin is not on PATH
 	[ "$(ROUTE)" = $(PETSC) ] || rm -rf .venv
 	$(PYTHON) -m venv $(VENV_OPTIONS) .venv
 	echo $(PETSC) > .venv/route
@@ -114,7 +115,7 @@ export WRAPPER
 	  for p in petsc slepc petsc4py slepc4py; do $$pip install --no-build-isolation --no-deps $$p; done
 	  $$pip install -e '.[solvers]'
 	fi
-	{ echo "$$WRAPPER"; echo "exec '$$(command -v $(MPIEXEC))' \"\$$@\""; } > $(BIN)/mpiexec
+	{ echo "$$WRAPPER"; echo "exec '$$mpiexec' \"\$$@\""; } > $(BIN)/mpiexec
 	chmod +x $(BIN)/mpiexec
 	touch $@
 	echo 'Installed. Next: . .venv/bin/activate'

@@ -3,7 +3,9 @@
 import os
 import signal
 import subprocess
+import sys
 import time
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -70,10 +72,8 @@ def kill_when(process, condition, sign, whole_job):
     if whole_job:
         os.killpg(process.pid, sign)
     else:
-        children = subprocess.run(
-            ["pgrep", "-P", str(process.pid)], capture_output=True, text=True, check=True
-        )
-        os.kill(int(children.stdout.split()[-1]), sign)
+        children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+        os.kill(int(children[-1]), sign)
     process.wait(60)
 
 
@@ -324,8 +324,7 @@ def test_package_imports_start_neither_mpi_nor_petsc(command):
         "from rodsweep.post.figures import draw\nfrom rodsweep.post.summary import show_summary\n"
         "print([m for m in ('mpi4py.MPI', 'petsc4py.PETSc', 'slepc4py.SLEPc') if m in sys.modules])"
     )
-    python = command.argv()[0].replace("rodsweep", "python")
-    run = subprocess.run([python, "-c", code], capture_output=True, text=True, check=True)
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == "[]"
 
 
