@@ -136,7 +136,8 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
             break
         resolution = _next_resolution(found, request)
     if best is not None:
-        return _result(Status.accuracy_not_reached, rod, request, *best)
+        reached = best[0].worst(request.modes) <= request.accuracy
+        return _result(Status.ok if reached else Status.accuracy_not_reached, rod, request, *best)
     if lost is not None:
         return _nothing(Status.modes_missing, request, f"the winding number counts {lost.count.number}")
     return _nothing(Status.failed, request, "no mesh within the limit resolves the wanted modes")
