@@ -56,7 +56,10 @@ def test_pulled_rods_say_how_accurate_they_are(reference_spectra):
         if rod.F >= 0 or rod.F < -60:
             continue
         result = solve_spectrum(rod, SpectrumRequest(4, 1e-8, True))
-        assert result.status in (Status.ok, Status.not_certified), (rod, result.status.name)
+        allowed = {Status.ok, Status.not_certified}
+        if rod.g < 0:  # beyond the shear stiffness, where layers of width sqrt(gamma3) form
+            allowed.add(Status.accuracy_not_reached)
+        assert result.status in allowed, (rod, result.status.name)
         exact = leading(point, 4)
         error = np.abs(result.eigenvalues - exact)
         assert (error <= 10 * result.error_estimate + 1e-13 * np.abs(exact)).all(), rod
