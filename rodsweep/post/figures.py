@@ -107,9 +107,11 @@ def _line(view: View, name: str, roots: str) -> Figure:
     figure = Figure(figsize=(5.2, 6.6), layout="constrained")
     top, bottom = figure.subplots(2, 1)
     x_broken, w = broken(x, w)
-    for i, colour in enumerate((FIRST, SECOND)):
-        top.plot(x_broken, w[:, i].real, color=colour, lw=1.6, label=rf"$\mathrm{{Re}}\,\omega_{i + 1}$")
-        top.plot(x_broken, w[:, i].imag, ":", color=colour, lw=1.6, label=rf"$\mathrm{{Im}}\,\omega_{i + 1}$")
+    for i, (colour, width) in enumerate(((FIRST, 3.0), (SECOND, 1.2))):  # the thin one on the thick
+        top.plot(x_broken, w[:, i].real, color=colour, lw=width, label=rf"$\mathrm{{Re}}\,\omega_{i + 1}$")
+        top.plot(
+            x_broken, w[:, i].imag, ":", color=colour, lw=width, label=rf"$\mathrm{{Im}}\,\omega_{i + 1}$"
+        )
         bottom.plot(w[:, i].real, w[:, i].imag, ".-", color=colour, lw=0.8, ms=3, label=rf"$\omega_{i + 1}$")
     unstable = view.variables["unstable_count"].reshape(-1) > 0
     top.fill_between(
@@ -121,7 +123,7 @@ def _line(view: View, name: str, roots: str) -> Figure:
         top.set_xscale("log")
     top.set(xlabel=LABELS[name], ylabel=r"$\omega\,\tau_2$", xlim=(x[0], x[-1]))
     bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
-    top.legend(frameon=False, fontsize=8, ncols=2)
+    top.legend(facecolor="white", framealpha=1, edgecolor="0.8", fontsize=8, ncols=2)
     bottom.legend(frameon=False, fontsize=8)
     fixed = ", ".join(f"${SYMBOLS[n]}$ = {v[0]:.6g}" for n, v in view.axes.items() if n != name)
     figure.suptitle(f"{plain(view.attributes.get('title', ''))}\n{fixed}\n{ROOTS[roots]}", fontsize=9)
