@@ -32,8 +32,8 @@ SPARE_MODES = 1
 MOST_ATTEMPTS = 14
 STALLED = 2
 """Refinements without a better error after which rounding, not the mesh, is taken as the limit."""
-SAFETY = 0.5
-"""Share of the accuracy that the error estimate may use up, being an estimate."""
+SAFETY, STALLED_SAFETY = 0.5, 0.8
+"""Share of the accuracy that the error estimate may use up, being an estimate; more where rounding stalls."""
 NO_TIP = 1e-10
 """Y(1) in units of the largest value, below which a vector cannot be scaled by it."""
 
@@ -136,7 +136,7 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
             break
         resolution = _next_resolution(found, request)
     if best is not None:
-        reached = best[0].worst(request.modes) <= request.accuracy
+        reached = best[0].worst(request.modes) <= STALLED_SAFETY * request.accuracy
         return _result(Status.ok if reached else Status.accuracy_not_reached, rod, request, *best)
     if lost is not None:
         return _nothing(Status.modes_missing, request, f"the winding number counts {lost.count.number}")
