@@ -49,14 +49,18 @@ def test_line_through_an_eigenvalue_is_refused(reference_spectra):
         assert "too close" in count.why_not
 
 
-@pytest.mark.parametrize("offset", [1e-6, -1e-6, 1e-9, -1e-9])
+@pytest.mark.parametrize("offset", [1e-4, -1e-4, 1e-6, -1e-6])
 def test_line_beside_an_eigenvalue_is_decided_rightly(offset, reference_spectra):
-    for point in reference_spectra[::40]:
+    decided = 0
+    for point in reference_spectra[::20]:
         rod, w = rod_and_eigenvalues(point)
-        near = int((w.real >= w[0].real * (1 + 1e-6)).sum() if w[0].real < 0 else 0)
-        alike = int((np.abs(w.real - w[0].real) < 1e-12 * abs(w[0].real)).sum())
-        count = count_right_of(w[0].real + offset * abs(w[0].real), rod).number
-        assert count in (None, near + (0 if offset > 0 else alike), alike if offset < 0 else 0)
+        if not point["proven"]:
+            continue
+        line = w[0].real + offset * abs(w[0])
+        count = count_right_of(line, rod).number
+        assert count in (None, int((w.real > line).sum())), rod
+        decided += count is not None
+    assert decided >= 20
 
 
 def test_no_bound_no_count():

@@ -240,6 +240,11 @@ def test_fresh_leaves_a_file_that_is_no_result(command):
     assert run.returncode == 2
     assert "no result file" in run.stderr
     assert (command.directory / "c.yaml").read_text() == SMALL
+    with h5py.File(command.directory / "theirs.h5", "w") as file:
+        file["data"] = 1.0
+    assert command("run", "c.yaml", "-o", "theirs.h5", "--fresh").returncode == 2
+    with h5py.File(command.directory / "theirs.h5") as file:
+        assert file["data"][()] == 1.0
 
 
 def test_run_killed_before_its_end_was_written_writes_it_the_next_time(command):

@@ -4,6 +4,7 @@ import platform
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from ..model.rod import Rod
 from ..results.provenance import cpu_name, now, provenance
 from ..solve import petsc
 from ..solve.spectrum import SpectrumRequest, solve_spectrum
-from .peers import SAME_PENCIL, chebyshev_qz
+from .peers import SAME_PENCIL, Peer, chebyshev_qz
 
 MODES = 4
 RODS = {
@@ -94,7 +95,7 @@ def _measure(rods: list[Rod], exact: list[np.ndarray], accuracy: float, rounds: 
         "rodsweep, certificate on": lambda i: solve_spectrum(rods[i], proved).eigenvalues,
     }
     for name, peer in SAME_PENCIL.items():
-        methods[f"{name}, same pencil"] = lambda i, peer=peer: peer(rods[i], meshes[i], MODES)  # type: ignore[misc]
+        methods[f"{name}, same pencil"] = partial(_on_mesh, peer, rods, meshes)
     sizes = [_cheapest_chebyshev(rod, w, accuracy) for rod, w in zip(rods, exact, strict=True)]
     reached = [i for i, size in enumerate(sizes) if size]
     name = f"Chebyshev collocation and QZ, the cheapest N that reaches it (at {len(reached)} points)"
@@ -111,6 +112,10 @@ def _measure(rods: list[Rod], exact: list[np.ndarray], accuracy: float, rounds: 
                     times[name].append(spent)
                 errors[name] = max(errors[name], relative_error(w, exact[i]))
     return [Row(name, 1e3 * float(np.median(times[name])), errors[name]) for name in methods]
+
+
+def _on_mesh(peer: Peer, rods: list[Rod], meshes: list[Resolution], i: int) -> np.ndarray:
+    return peer(rods[i], meshes[i], MODES)
 
 
 def relative_error(w: np.ndarray, exact: np.ndarray) -> float:

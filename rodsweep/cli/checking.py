@@ -4,8 +4,9 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from ..discretization.resolution import mesh_accuracy
 from ..model.rod import PARAMETERS
-from ..sweep.estimate import estimate
+from ..sweep.estimate import SAMPLE, estimate
 from .job import Job
 
 
@@ -22,7 +23,12 @@ def describe_job(job: Job) -> None:
     for row in modelled(job):
         table.add_row(*row)
     console.print(table)
-    cost = estimate(points, config.spectrum.modes, config.accuracy, config.spectrum.certify)
+    cost = estimate(
+        points,
+        config.spectrum.modes,
+        mesh_accuracy(config.accuracy, config.spectrum.vectors),
+        config.spectrum.certify,
+    )
     low, high = cost.unknowns
     console.print(f"unknowns a point: {low} to {high} expected, for accuracy {config.accuracy:g}")
     console.print(
@@ -32,7 +38,7 @@ def describe_job(job: Job) -> None:
     )
     if cost.too_large:
         console.print(
-            f"warning: about {cost.too_large} of {min(200, points.count)} sampled points need more "
+            f"warning: about {cost.too_large} of {min(SAMPLE, points.count)} sampled points need more "
             "unknowns than the limit and will end with status failed"
         )
 

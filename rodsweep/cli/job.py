@@ -1,5 +1,6 @@
 """From a config file to everything a run needs that is neither PETSc nor MPI."""
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -7,13 +8,12 @@ import numpy as np
 
 from ..config import Config, load_config
 from ..config.reading import canonical
-from ..discretization.quadrature import gauss_lobatto
+from ..discretization.quadrature import lobatto_points
 from ..errors import InputError
 from ..model.longitudinal import longitudinal_rates
 from ..model.rod import ALLOWED, admissible
 from ..results.schema import Layout, Variable, spectrum_layout
 from ..sweep.grid import Points, grid_size, points_of
-from .machine import memory_of_machine
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class Job:
         """The material coordinate of the vectors' nodes, where there are vectors."""
         if not self.vector_nodes:
             return {}
-        return {"u": (gauss_lobatto(self.vector_nodes - 1)[0] + 1) / 2}
+        return {"u": lobatto_points(self.vector_nodes)}
 
     @property
     def constants(self) -> tuple[tuple[Variable, np.ndarray], ...]:
@@ -77,7 +77,8 @@ def _refuse_too_many(path: Path, config: Config, count: int) -> None:
     """InputError where the results of a grid would not fit in memory; before any axis is made."""
     options = config.spectrum
     layout = spectrum_layout(options.modes, options.nodes if options.vectors else 0)
-    size, memory = count * layout.bytes_per_point, memory_of_machine()
+    size = count * layout.bytes_per_point
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     if size > memory:
         raise InputError(
             f"{path}: parameters make a grid of {count:.6g} points, whose results take {size / 1e9:.3g} GB, "

@@ -4,6 +4,7 @@ import os
 import socket
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -16,6 +17,9 @@ from ..sweep.loop import sweep
 from ..sweep.progress import Teller
 from ..sweep.team import Team
 from .job import Job, make_job
+
+if TYPE_CHECKING:
+    from ..solve.spectrum import Spectrum
 
 FAILURES_TOLD = 3
 """Failed points that are named at the end of a run; the file has the status of all."""
@@ -31,10 +35,8 @@ def run_config(path: Path, output: Path, overrides: tuple[str, ...], fresh: bool
 
 
 def _run(team: Team, job: Job, output: Path, fresh: bool) -> int:
-    from ..solve import petsc, status  # starts PETSc, which only a valid config is worth
-
     began, started = time.monotonic(), now()
-    plan = _plan(job, status.Status, petsc)
+    plan = _plan(job)  # starts PETSc, which only a valid config is worth
     store: list[Store] = []
 
     def open_store() -> list[tuple[int, int]]:
@@ -102,7 +104,10 @@ def _solve_missing(team: Team, job: Job, plan: Plan, output: Path, todo: list[tu
     return failures
 
 
-def _plan(job: Job, status, petsc) -> Plan:  # type: ignore[no-untyped-def]
+def _plan(job: Job) -> Plan:
+    from ..solve import petsc
+    from ..solve.status import Status
+
     versions = {f"{name}_version": value for name, value in petsc.versions().items()}
     return Plan(
         columns=job.points.columns,
@@ -118,18 +123,18 @@ def _plan(job: Job, status, petsc) -> Plan:  # type: ignore[no-untyped-def]
             "time_unit": "tau2 = gamma2 L^4/k3",
             "config": job.text,
             "petsc_options": petsc.options(),
-            "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in status),
+            "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in Status),
         }
         | ({"gamma1": job.config.parameters.gamma1} if job.config.parameters.gamma1 else {})
         | versions
         | provenance(),
-        flags=tuple((int(s), s.name) for s in status),
+        flags=tuple((int(s), s.name) for s in Status),
     )
 
 
-def _record(result) -> dict:  # type: ignore[no-untyped-def]
+def _record(result: "Spectrum") -> dict[str, Any]:
     """A Spectrum as the variables of the file."""
-    values = {
+    values: dict[str, Any] = {
         "growth_rate": result.eigenvalues.real,
         "frequency": result.eigenvalues.imag,
         "error_estimate": result.error_estimate,

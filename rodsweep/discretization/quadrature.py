@@ -35,6 +35,11 @@ def gauss_lobatto(p: int) -> tuple[Array, Array]:
     return x, 2 / (p * (p + 1) * _legendre_pair(p, x)[0] ** 2)
 
 
+def lobatto_points(nodes: int) -> Array:
+    """The Gauss-Lobatto points on [0, 1], shape (nodes,)."""
+    return (gauss_lobatto(nodes - 1)[0] + 1) / 2
+
+
 def _legendre_pair(p: int, x: Array) -> tuple[Array, Array]:
     """P_p(x) and P_{p-1}(x) by the three-term recurrence."""
     below, here = np.ones_like(x), x.copy()

@@ -40,6 +40,11 @@ def expected_wave_number(modes: int, most_amplified: float) -> float:
     return hypot(WAVE_FACTOR * most_amplified, (modes - MODE_OFFSET) * pi)
 
 
+def mesh_accuracy(accuracy: float, vectors: bool) -> float:
+    """Accuracy of the eigenvalues that a mesh has to reach: a vector's error is the square root of it."""
+    return accuracy**2 if vectors else accuracy
+
+
 def required_order(wave_number: float, accuracy: float) -> float:
     """Order of a single element that resolves exp(+-q u) to the relative accuracy, before rounding."""
     digits = max(-log10(accuracy), BASE_DIGITS)

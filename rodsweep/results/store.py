@@ -97,7 +97,7 @@ class Store:
             self._refuse_another()
             self.fold({})
             return
-        if self.path.exists() and not is_hdf5(self.path):
+        if self.path.exists() and not is_ours(self.path):
             raise InputError(f"{self.path} is no result file, so --fresh leaves it alone")
         self._need_room()
         self._drop_journals()
@@ -274,10 +274,16 @@ class Store:
         return dims
 
 
-def is_hdf5(path: Path) -> bool:
-    """Whether a file starts as HDF5 files do."""
-    with path.open("rb") as file:
-        return file.read(8) == b"\x89HDF\r\n\x1a\n"
+def is_ours(path: Path) -> bool:
+    """Whether a file is a rodsweep result, or HDF5 that is too damaged to say whose it is."""
+    with path.open("rb") as stream:
+        if stream.read(8) != b"\x89HDF\r\n\x1a\n":
+            return False
+    try:
+        with h5py.File(path, "r") as file:
+            return bool(file.attrs.get("program") == SIGNATURE)
+    except OSError:
+        return True
 
 
 def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> None:

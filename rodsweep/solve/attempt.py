@@ -16,7 +16,7 @@ from ..discretization.resolution import Resolution
 from ..model.bounds import box_of, squared_amplification
 from ..model.compilation import compiled
 from ..model.determinant import newton_correction
-from ..model.rod import Rod
+from ..model.rod import Coefficients, Rod
 from .certificate import Count, count_right_of
 from .eigenpairs import eigen_solver
 
@@ -80,7 +80,7 @@ class Verdict:
         return self.clear and self.count.number == self.here
 
 
-def attempt(rod: Rod, resolution: Resolution, wanted: int, shift: float, request: "Wish") -> Found:
+def attempt(rod: Rod, resolution: Resolution, wanted: int, shift: float, request: Wish) -> Found:
     """The eigenvalues nearest the shift, at least `wanted` where they converge, without impostors.
 
     Rounding makes infinite eigenvalues finite: they are recognised by their size, because they lie
@@ -94,7 +94,9 @@ def attempt(rod: Rod, resolution: Resolution, wanted: int, shift: float, request
 
 
 @compiled
-def _roots(w, coefficients, amplification, most_waves):  # type: ignore[no-untyped-def]
+def _roots(
+    w: NDArray[np.complex128], coefficients: Coefficients, amplification: float, most_waves: float
+) -> tuple[NDArray, NDArray, NDArray, NDArray, NDArray]:
     """(indices, w, error, wave number, on the axis) of those w that stand for a root of D, sorted."""
     error = np.empty(len(w))
     wave = np.empty(len(w))

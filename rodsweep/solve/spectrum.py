@@ -10,12 +10,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..discretization.quadrature import gauss_lobatto
+from ..discretization.quadrature import lobatto_points
 from ..discretization.resolution import (
     MOST_UNKNOWNS,
     Resolution,
     expected_wave_number,
     finer,
+    mesh_accuracy,
     resolution_for,
 )
 from ..model.dispersion import most_amplified_wave
@@ -50,8 +51,8 @@ class SpectrumRequest:
 
     @property
     def mesh_accuracy(self) -> float:
-        """What the mesh is chosen for: a vector's error is the square root of its eigenvalue's."""
-        return self.accuracy**2 if self.vector_nodes else self.accuracy
+        """What the mesh is chosen for."""
+        return mesh_accuracy(self.accuracy, self.vector_nodes > 0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,11 +75,6 @@ class Spectrum:
     seconds: float
     vectors: NDArray[np.complex128] | None = None
     message: str = ""
-
-
-def vector_points(nodes: int) -> NDArray[np.float64]:
-    """The Lobatto nodes in [0, 1] on which vectors are given, shape (nodes,)."""
-    return (gauss_lobatto(nodes - 1)[0] + 1) / 2
 
 
 def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
@@ -205,7 +201,7 @@ def _vectors(rod: Rod, request: SpectrumRequest, found: Found) -> NDArray[np.com
         return None
     pencil = eigen_solver(found.resolution).pencil
     y, theta = pencil.fields(found.vectors[:, : request.modes], rod)
-    matrix = pencil.evaluation(vector_points(request.vector_nodes))
+    matrix = pencil.evaluation(lobatto_points(request.vector_nodes))
     size = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))
     scale = np.full(len(size), np.nan + 0j)
     tipped = np.abs(y[-1]) > NO_TIP * size

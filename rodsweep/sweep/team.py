@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, NoReturn, TypeVar
 
-from ..errors import EnvironmentLacks, InputError
+from ..errors import EnvironmentLacks, Refusal
 
 T = TypeVar("T")
 
@@ -39,7 +39,7 @@ class Team:
         if self.first:
             try:
                 outcome = (work(), None)
-            except (InputError, EnvironmentLacks) as error:
+            except Refusal as error:
                 outcome = (None, error)
         value, refusal = self.comm.bcast(outcome)
         if refusal is not None:
@@ -78,7 +78,7 @@ class Team:
         except BaseException as error:
             if self.size == 1 or getattr(error, "collective", False):
                 raise
-            if isinstance(error, InputError | EnvironmentLacks):
+            if isinstance(error, Refusal):
                 sys.stderr.write(f"rodsweep: rank {self.rank}: {error}\n")
             else:
                 sys.stderr.write(f"rodsweep: rank {self.rank} failed, all ranks end\n")
