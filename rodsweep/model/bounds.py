@@ -11,15 +11,20 @@ a^2 = max(F^2/rho, (rho g - nu)^2/(c2 rho gamma3)), so that
     Re w <= a n - n^2 <= a^2/4,   |Im w| <= a n,   and Re w >= -depth forces n^2 <= a n + depth.
 
 The weight is free; the best one makes both entries of the maximum equal.
+
+Beside w = 0 no eigenvalue lies on the imaginary axis: |E(z)| <= exp(Re sqrt z)/2 bounds D - 1 there.
 """
 
-from math import inf, sqrt
+from math import exp, inf, sqrt
 
 from .compilation import compiled
-from .rod import Rod
+from .path import Path, changes, coefficients_at
+from .rod import Coefficients, Rod
 
 MARGIN = 1.01
 """Factor on every bound, so that rounding in the bound itself cannot matter."""
+QUIET = 0.5
+"""Largest |D - 1| that counts as near 1."""
 
 
 def eigenvalue_box(rod: Rod, depth: float = 0.0) -> tuple[float, float]:
@@ -50,3 +55,53 @@ def squared_amplification(rod: Rod) -> float:
         return inf
     weights = [rod.nu / -rod.g] + ([(level - rod.nu) / -rod.g] if level > rod.nu else [])
     return min(max(rod.F**2 / rho, (rho * rod.g - rod.nu) ** 2 / (drag * rho)) for rho in weights)
+
+
+def squared_amplification_over(path: Path, start: float, stop: float) -> float:
+    """An upper bound of `squared_amplification` over all rods of a path from p = start to stop; inf if none.
+
+    Every factor is monotone along a path but for nu g, which is not used: ends are extremes.
+    """
+    ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
+    load = max(abs(F) for F, *_ in ends)
+    least_load = 0.0 if start < 0 < stop and path.name == "F" else min(abs(F) for F, *_ in ends)
+    weak = inf if any(c2 > 0 and gamma3 == 0 for *_, c2, gamma3 in ends) else 1.0
+    if weak < inf:
+        weak = max(1.0, *(c2 / gamma3 if c2 else 1.0 for *_, c2, gamma3 in ends))
+    g = [nu + F * c2 for F, nu, c2, _ in ends]
+    denominator = min(nu for _, nu, _, _ in ends) + least_load * min(sqrt(c2 * g3) for *_, c2, g3 in ends)
+    strong = max(g) / denominator if min(g) >= 0 and denominator > 0 else inf
+    return load**2 * min(weak, strong)
+
+
+def quiet_radius(path: Path, start: float, stop: float, largest: float) -> float:
+    """r <= largest with |D(i eta) - 1| < 1/2 for |eta| <= r and all p from start to stop."""
+    ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
+    T = max(c2 + gamma3 for *_, c2, gamma3 in ends)
+    X = max(c2 * gamma3 for *_, c2, gamma3 in ends)
+    bends = [changes(c, path.direction) for c in ends]
+    span = (stop - start) ** 2 / 8
+    G = max(abs(nu * (nu + F * c2)) for F, nu, c2, _ in ends) + span * max(abs(b[4]) for b in bends)
+    pull = max(max(-F * (nu + F * c2) for F, nu, c2, _ in ends) + span * max(abs(b[2]) for b in bends), 0.0)
+    r = largest
+    while _departure(r, T, X, G, pull) >= QUIET:
+        r /= 2
+    return r
+
+
+def quiet_radius_of(coefficients: Coefficients, largest: float) -> float:
+    """`quiet_radius` of a single rod."""
+    F, nu, c2, gamma3 = coefficients
+    g = nu + F * c2
+    r = largest
+    while _departure(r, c2 + gamma3, c2 * gamma3, abs(g * nu), max(-F * g, 0.0)) >= QUIET:
+        r /= 2
+    return r
+
+
+def _departure(r: float, T: float, X: float, G: float, pull: float) -> float:
+    """A bound of |D(i eta) - 1| for |eta| <= r."""
+    exponent = sqrt(pull + T * r + 2 * sqrt(r * (G + X * r)))
+    if exponent > 1 + sqrt(pull):
+        return inf
+    return (T * r + sqrt(r * G) + 2 * r * sqrt(X)) * exp(exponent) / 2

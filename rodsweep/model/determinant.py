@@ -72,27 +72,22 @@ def branches(w: complex, coefficients: Coefficients) -> tuple[complex, complex, 
 
 
 @compiled
-def scaled_determinant(w: complex, coefficients: Coefficients) -> tuple[complex, complex, float, float]:
-    """(D, dD/dw, S, noise): D and dD/dw times exp(-S); the rounding error of D is of order noise.
+def exponentials(
+    w: complex, coefficients: Coefficients
+) -> tuple[float, float, complex, complex, complex, complex, complex, complex, complex, complex, complex]:
+    """(S, noise, P, P', P'', z+, z-, E(z+), E'(z+), E(z-), E'(z-)) at w != 0, the E times exp(-S).
 
     `noise` adds up what rounding does to each term of D: an error of |sqrt z| units in the exponent,
     and an error of z itself in units of the terms that cancel in it, both through moduli that do not
     vanish where E does.
     """
     F, nu, c2, gamma3 = coefficients
-    if w == 0:
-        w = complex(1e-200, 0.0)
     P, P1, P2, plus, minus = branches(w, coefficients)
     root_plus = cmath.sqrt(plus)
     root_minus = cmath.sqrt(minus)
     scale = max(root_plus.real, root_minus.real)
     E_plus, E1_plus = entire_cosh(plus, root_plus, scale)
     E_minus, E1_minus = entire_cosh(minus, root_minus, scale)
-    slope_plus = c2 + gamma3 + 2 * P1
-    slope_minus = c2 + gamma3 - 2 * P1
-    one = math.exp(-scale)
-    first = slope_plus * E_plus + slope_minus * E_minus
-    second = 2 * P2 * (E_plus - E_minus) + slope_plus**2 * E1_plus + slope_minus**2 * E1_minus
     g = abs(nu + F * c2)
     terms = (c2 + gamma3) * abs(w) + abs(F) * g + 2 * abs(P)
     product_terms = ((c2 - gamma3) * abs(w)) ** 2 + 2 * g * abs(w) * ((c2 + gamma3) * abs(F) + 2 * nu)
@@ -102,8 +97,22 @@ def scaled_determinant(w: complex, coefficients: Coefficients) -> tuple[complex,
         q = abs(root)
         modulus = math.exp(root.real - scale) / 2 * min(1.0, 4 / max(q * q, 1e-300))
         noise += modulus * (1 + q + terms / max(1.0, q))
-    noise = ROUND_OFF * (one + abs(w) / 2 * (c2 + gamma3 + 2 * abs(P1)) * noise)
-    return one + w / 2 * first, (first + w * second) / 2, scale, noise
+    noise = ROUND_OFF * (math.exp(-scale) + abs(w) / 2 * (c2 + gamma3 + 2 * abs(P1)) * noise)
+    return scale, noise, P, P1, P2, plus, minus, E_plus, E1_plus, E_minus, E1_minus
+
+
+@compiled
+def scaled_determinant(w: complex, coefficients: Coefficients) -> tuple[complex, complex, float, float]:
+    """(D, dD/dw, S, noise): D and dD/dw times exp(-S); the rounding error of D is of order noise."""
+    if w == 0:
+        w = complex(1e-200, 0.0)
+    scale, noise, _, P1, P2, _, _, E_plus, E1_plus, E_minus, E1_minus = exponentials(w, coefficients)
+    drag = coefficients[2] + coefficients[3]
+    slope_plus = drag + 2 * P1
+    slope_minus = drag - 2 * P1
+    first = slope_plus * E_plus + slope_minus * E_minus
+    second = 2 * P2 * (E_plus - E_minus) + slope_plus**2 * E1_plus + slope_minus**2 * E1_minus
+    return math.exp(-scale) + w / 2 * first, (first + w * second) / 2, scale, noise
 
 
 @compiled

@@ -21,21 +21,18 @@ import cmath
 import math
 from dataclasses import dataclass
 
-from ..model.bounds import eigenvalue_box
+from ..model.bounds import eigenvalue_box, quiet_radius_of
 from ..model.compilation import compiled
 from ..model.determinant import branches, scaled_determinant
 from ..model.rod import Coefficients, Rod
+from .discs import CLEARANCE, ROUNDING_OF_D, bound_on_bidisc
 
-ROUNDING_OF_D = 4.0
-"""Rounding error of D in units of its noise: below 0.5 at 2000 values chosen to be bad, and room."""
-CLEARANCE = 0.9
-"""Share of |D| that the proved change may use up."""
+STILL = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+"""The changes along no path: a bound for one rod."""
 SMALLEST_REACH = 1e-13
 """Reach in units of |w| below which the line is taken to run through a zero of D."""
 MOST_NODES = 20_000
 """Nodes on one edge before the count is given up; the paper's rods need about 150."""
-HUGE = 600.0
-"""Exponents are cut here before exp, which would overflow at 709."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,31 +42,6 @@ class Count:
     number: int | None
     nodes: int
     why_not: str = ""
-
-
-@compiled
-def term_on_disc(z: complex, slope: complex, L: complex, rho: float, bend: float, S: float) -> float:
-    """Bound of |E(z(w)) exp(-L (w - c))| exp(-S) for |w - c| <= rho, without the factor |w z'|/2.
-
-    Two bounds of the exponents +-sqrt(z) - L (w - c), the smaller counts: one from |sqrt(z)| alone,
-    one from its Taylor polynomial, where the disc stays away from z = 0. `bend` bounds the part of
-    z(w) - z(c) beyond the linear one.
-    """
-    root = cmath.sqrt(z)
-    drift = abs(L) * rho
-    change = abs(slope) * rho + bend
-    crude = math.sqrt(max((abs(z) + z.real) / 2 + change, 0.0)) + drift
-    grow = crude
-    decay = crude
-    if change < 0.5 * abs(z):
-        rate = slope / (2 * root)
-        x = change / abs(z)
-        curve = bend / (2 * abs(root)) + abs(root) * x * x / (8 * (1 - x))
-        grow = min(grow, root.real + abs(rate - L) * rho + curve)
-        decay = min(decay, -root.real + abs(rate + L) * rho + curve)
-    small = min(1.0, 4 / (abs(z) - change)) if abs(z) > change else 1.0
-    exponentials = math.exp(min(grow - S, HUGE)) + math.exp(min(decay - S, HUGE))
-    return small / 8 * (exponentials + 2 * math.exp(min(drift - S, HUGE)))
 
 
 @compiled
@@ -97,29 +69,17 @@ def radius(w: complex, coefficients: Coefficients, L: complex, S: float) -> floa
 @compiled
 def reach(w: complex, coefficients: Coefficients) -> tuple[complex, complex, float]:
     """(D exp(-S), L = D'/D, r): no zero of D lies within r of w, and f turns by less than pi/2."""
-    F, nu, c2, gamma3 = coefficients
     D, D1, S, noise = scaled_determinant(w, coefficients)
     room = CLEARANCE * abs(D) - ROUNDING_OF_D * noise
     L = D1 / D
     if not room > 0:
         return D, L, 0.0
     P, P1, _, plus, minus = branches(w, coefficients)
-    cg = c2 * gamma3
-    gn = (nu + F * c2) * nu
+    centre = P, P1, plus, minus, 0j, 0j
     best = 0.0
     rho = radius(w, coefficients, L, S)
     for _ in range(2):
-        # w = c (1 + e1) and g nu + cg w = (...)(1 + e2) with |e1|, |e2| <= eta over the disc.
-        eta = rho / abs(w)
-        if cg > 0:
-            eta = max(eta, rho * cg / abs(gn + cg * w))
-        bend = 2 * abs(P) * ((2 - math.sqrt(1 - eta)) ** 2 - 1 - eta)
-        steepest = c2 + gamma3
-        if P != 0:
-            steepest += (abs(gn + 2 * cg * w) + 2 * cg * rho) / (abs(P) * (1 - eta))
-        terms = term_on_disc(plus, c2 + gamma3 + 2 * P1, L, rho, bend, S)
-        terms += term_on_disc(minus, c2 + gamma3 - 2 * P1, L, rho, bend, S)
-        M = math.exp(min(abs(L) * rho - S, HUGE)) + (abs(w) + rho) / 2 * steepest * terms
+        M = bound_on_bidisc(w, coefficients, STILL, centre, (L, 0j), (rho, 0.0), S)
         q = room / M
         best = max(best, rho * (math.sqrt(q * q + 4 * q) - q) / 2)
         rho /= 2
@@ -168,10 +128,11 @@ def count_right_of(line: float, rod: Rod) -> Count:
         return Count(None, 0, "no a-priori bound on the eigenvalues applies")
     if line >= real:
         return Count(0, 0)
-    if line == 0.0:
-        raise ValueError("w = 0 is a branch point of the exponents: choose a line beside it")
-    corners = (complex(real, 0), complex(real, imag), complex(line, imag), complex(line, 0))
-    total, nodes = 0.0, 0
+    foot, total, nodes = 0.0, 0.0, 0
+    if line == 0.0:  # D = 1 at the foot of the line: the rest of it, where D is near 1, needs no nodes
+        foot = quiet_radius_of(rod.coefficients, imag)
+        total = -cmath.phase(scaled_determinant(complex(0.0, foot), rod.coefficients)[0])
+    corners = (complex(real, 0), complex(real, imag), complex(line, imag), complex(line, foot))
     for start, end in zip(corners[:-1], corners[1:], strict=True):
         change, used = phase_change(start, end, rod.coefficients, MOST_NODES)
         nodes += abs(used)
