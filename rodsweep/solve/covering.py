@@ -43,6 +43,11 @@ MOST_BOXES = 1_000_000
 SAME = 1e-9
 """Relative distance below which two zeros, found from neighbouring boxes, are one."""
 
+Box = tuple[float, float, float, float]
+"""(eta from, eta to, p from, p to)."""
+Zero = tuple[float, float, float, float]
+"""(eta, p, error of eta, error of p)."""
+
 
 @compiled
 def distance(value: complex, a: complex, b: complex) -> float:
@@ -128,7 +133,7 @@ def examine(
 @compiled
 def cover(
     first: NDArray[np.float64], origin: Coefficients, direction: Coefficients
-) -> tuple[list, list, int]:
+) -> tuple[list[Zero], list[Box], int]:
     """(zeros, open boxes, boxes examined) of D(i eta; p) in the boxes `first`, shape (n, 4).
 
     A zero is (eta, p, error of eta, error of p), a box (eta from, eta to, p from, p to).

@@ -1,0 +1,232 @@
+"""Which eigenvalue leads along a path of rods, a real one or a pair, and where that changes.
+
+Two things change the character of the rightmost eigenvalue: two real ones meet and become a pair, or
+the other way round (a double eigenvalue, where D = D_w = 0), or one overtakes the other without
+meeting it. Anchors are rods whose leading eigenvalues the spectrum solver gives, certified where
+asked for; between two anchors the squared difference of the two leading ones and the lead over the
+next, which are smooth, must be explained by their slopes, or an anchor is put between. The points
+themselves are found by Newton's method on D, and the winding number says that nothing lies right of
+them.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..model.path import Path, coefficients_at
+from .certificate import count_right_of
+from .newton import double_newton, eigenvalue_newton
+from .spectrum import SpectrumRequest, solve_spectrum
+
+MODES = 4
+"""Leading eigenvalues that an anchor knows: two that lead, and their rivals."""
+ANCHOR_ACCURACY = 1e-6
+"""What is asked of the spectrum solver; Newton's method on D does the rest."""
+EXPLAINED = 0.25
+"""Share of a quantity that its cubic model may miss between two anchors."""
+CLOSEST = 2e-4
+"""Distance of anchors, in units of the path, below which no more are put between."""
+MOST_SECANTS = 60
+
+
+class Untraceable(Exception):
+    """The leading eigenvalues of a rod on the path could not be computed; says why."""
+
+
+@dataclass(frozen=True)
+class Anchor:
+    """A rod of the path with its leading eigenvalues w and their slopes dw/dp, shape (MODES,)."""
+
+    p: float
+    w: NDArray[np.complex128]
+    slope: NDArray[np.complex128]
+
+    @cached_property
+    def oscillates(self) -> bool:
+        """Whether a pair leads."""
+        return bool(self.w[0].imag != 0)
+
+    def partner(self) -> tuple[float, float] | None:
+        """((w1 - w2)^2, its slope) of the two that lead, where both are real or both are a pair."""
+        if self.oscillates:
+            return -4 * self.w[0].imag ** 2, -8 * self.w[0].imag * self.slope[0].imag
+        if self.w[1].imag != 0:
+            return None
+        gap, slope = (self.w[0] - self.w[1]).real, (self.slope[0] - self.slope[1]).real
+        return gap**2, 2 * gap * slope
+
+    def rival(self) -> tuple[float, float] | None:
+        """(lead of the real part over the first eigenvalue of the other kind, its slope)."""
+        for w, slope in zip(self.w[1:], self.slope[1:], strict=True):
+            if (w.imag != 0) != self.oscillates:
+                return float((self.w[0] - w).real), float((self.slope[0] - slope).real)
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """The rightmost eigenvalue becomes a pair, or real, at p: by a double root or by an overtaking."""
+
+    p: float
+    error: float
+    growth_rate: float
+    frequency: float
+    """Of the pair, where it overtakes or is overtaken; 0 at a double root."""
+    to_pair: bool
+    double: bool
+
+
+class Tracer:
+    """Follows the leading eigenvalue along one path; anchors are kept."""
+
+    def __init__(self, path: Path, certify: bool):
+        self.path, self.certify = path, certify
+        self.anchors: dict[float, Anchor] = {}
+        self.solves = 0
+        self.proved = certify
+        """Whether every anchor is certified and nothing lies right of any change."""
+
+    def anchor(self, p: float) -> Anchor:
+        """The anchor at p; Untraceable where its eigenvalues cannot be had."""
+        if p not in self.anchors:
+            self.anchors[p] = self._solve(p)
+        return self.anchors[p]
+
+    def _solve(self, p: float) -> Anchor:
+        request = SpectrumRequest(MODES, ANCHOR_ACCURACY, self.certify)
+        rod = self.path.at(p)
+        found = solve_spectrum(rod, request)
+        self.solves += 1
+        self.proved = self.proved and found.certified
+        if not np.isfinite(found.eigenvalues).all():
+            raise Untraceable(f"{rod}: {found.status.name} {found.message}".rstrip())
+        w, slope = found.eigenvalues.copy(), np.empty(MODES, dtype=complex)
+        for i, guess in enumerate(found.eigenvalues):
+            polished, slope[i], _ = eigenvalue_newton(
+                complex(guess), coefficients_at(p, self.path.origin, self.path.direction), self.path.direction
+            )
+            if abs(polished - guess) <= max(10 * found.error_estimate[i], 1e-12 * abs(guess)):
+                w[i] = polished
+        return Anchor(p, w, slope)
+
+    def changes(self, edges: list[float]) -> list[Change]:
+        """All changes between the first and the last of `edges`, sorted by p."""
+        found: list[Change] = []
+        stack = [(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True)][::-1]
+        least = CLOSEST * abs(edges[-1] - edges[0])
+        while stack:
+            a, b = stack.pop()
+            left, right = self.anchor(a), self.anchor(b)
+            if left.oscillates == right.oscillates:
+                if b - a <= least or explained(left, right):
+                    continue
+            else:
+                change = self._between(left, right)
+                if change is not None:
+                    found.append(change)
+                    continue
+                if b - a <= 1e-12 * max(abs(a), abs(b)):
+                    raise Untraceable(f"the change of the leading eigenvalue near {self.path.at(a)} is not found")
+            middle = (a + b) / 2
+            stack += [(middle, b), (a, middle)]
+        return found
+
+    def _between(self, left: Anchor, right: Anchor) -> Change | None:
+        """The one change between two anchors of different character, if it is found there and leads."""
+        pair, real = (left, right) if left.oscillates else (right, left)
+        for attempt in (self._double, self._overtaking):
+            change = attempt(pair, real, right.oscillates)
+            if change is not None and left.p <= change.p <= right.p:
+                meeting = 2 if change.double else 3
+                behind = max(left.w[meeting].real, right.w[meeting].real)
+                count = count_right_of((change.growth_rate + behind) / 2, self.path.at(change.p))
+                self.proved = self.proved and count.number == meeting
+                if count.number in (meeting, None):
+                    return change
+        return None
+
+    def _double(self, pair: Anchor, real: Anchor, to_pair: bool) -> Change | None:
+        partner = real.partner()
+        width = abs(pair.p - real.p)
+        if partner is None:
+            return None
+        negative, positive = -4 * pair.w[0].imag ** 2, partner[0]
+        share = positive / (positive - negative)
+        p = real.p + share * (pair.p - real.p)
+        x = (1 - share) * float((real.w[0] + real.w[1]).real) / 2 + share * float(pair.w[0].real)
+        x, p, _, error = double_newton(x, p, self.path.origin, self.path.direction, width)
+        return None if math.isnan(p) else Change(p, error, x, 0.0, to_pair, True)
+
+    def _overtaking(self, pair: Anchor, real: Anchor, to_pair: bool) -> Change | None:
+        """Regula falsi on the lead of the real eigenvalue over the pair."""
+        if any(w.imag == 0 for w in pair.w) and any(w.imag != 0 for w in real.w):
+            return self._level(pair, real, to_pair)
+        return None
+
+    def _level(self, pair: Anchor, real: Anchor, to_pair: bool) -> Change | None:
+        w_real, w_pair = complex(real.w[0]), complex(pair.w[0])
+        p, ends = (pair.p + real.p) / 2, sorted((pair.p, real.p))
+        # Start each eigenvalue from the anchor where it leads and carry it to the middle.
+        w_real = self._carried(w_real, real.p, p)
+        w_pair = self._carried(w_pair, pair.p, p)
+        for _ in range(MOST_SECANTS):
+            coefficients = coefficients_at(p, self.path.origin, self.path.direction)
+            w_real, s_real, e_real = eigenvalue_newton(w_real, coefficients, self.path.direction)
+            w_pair, s_pair, e_pair = eigenvalue_newton(w_pair, coefficients, self.path.direction)
+            slope = s_real.real - s_pair.real
+            if w_real.imag != 0 or w_pair.imag == 0 or slope == 0 or not math.isfinite(slope):
+                return None
+            step = -(w_real.real - w_pair.real) / slope
+            error = (e_real + e_pair) / abs(slope) + 4e-16 * abs(p)
+            p += step
+            if not ends[0] <= p <= ends[1]:
+                return None
+            if abs(step) <= 4 * error:
+                return Change(p, max(error, abs(step)), w_pair.real, abs(w_pair.imag), to_pair, False)
+            w_real, w_pair = w_real + step * s_real, w_pair + step * s_pair
+            if w_real.imag != 0:
+                w_real = complex(w_real.real, 0.0)
+        return None
+
+    def _carried(self, w: complex, start: float, stop: float) -> complex:
+        """An eigenvalue followed from p = start to stop in small steps."""
+        steps = 8
+        p = start
+        for i in range(1, steps + 1):
+            coefficients = coefficients_at(p, self.path.origin, self.path.direction)
+            w, slope, _ = eigenvalue_newton(w, coefficients, self.path.direction)
+            following = start + (stop - start) * i / steps
+            real = w.imag == 0
+            w = w + slope * (following - p)
+            w = complex(w.real, 0.0) if real else w
+            p = following
+        return w
+
+
+def explained(left: Anchor, right: Anchor) -> bool:
+    """Whether slopes explain what lies between two anchors of equal character, and no change fits in."""
+    for ends in ((left.partner(), right.partner()), (left.rival(), right.rival())):
+        a, b = ends
+        if a is None and b is None:
+            continue
+        if a is None or b is None:
+            known, anchor = (a, left) if a is not None else (b, right)
+            assert known is not None
+            if abs(known[0]) < 2 * abs(known[1]) * abs(right.p - left.p):
+                return False
+            continue
+        h = right.p - left.p
+        smallest = min(abs(a[0]), abs(b[0]))
+        missed = abs(b[0] - a[0] - h * (a[1] + b[1]) / 2)
+        t = np.linspace(0, 1, 17)
+        cubic = (
+            a[0] * (1 + 2 * t) * (1 - t) ** 2 + b[0] * t**2 * (3 - 2 * t)
+            + h * (a[1] * t * (1 - t) ** 2 - b[1] * t**2 * (1 - t))
+        )  # fmt: skip
+        lowest = np.abs(cubic).min() if (np.sign(cubic) == np.sign(a[0])).all() else 0.0
+        if missed > EXPLAINED * max(smallest, abs(b[0] - a[0])) or lowest < EXPLAINED * smallest:
+            return False
+    return True

@@ -1,0 +1,133 @@
+"""All stability changes of one straight rod as the follower force grows from 0 (paper, Sec. VI)."""
+
+import math
+import time
+from dataclasses import dataclass, replace
+from enum import IntEnum
+
+import numpy as np
+
+from ..model.path import Path
+from ..model.rod import Rod
+from .leading import Untraceable
+from .transitions import Crossing, Transitions, transitions
+
+SHORT_OF_CRUSHED = 1e-6
+"""How far below k1, relatively, the search ends where F_max lies beyond: at F = k1 the rod is crushed."""
+
+
+class ThresholdStatus(IntEnum):
+    """Outcome of a search for thresholds, as `rodsweep.solve.status.Status` is for spectra."""
+
+    ok = 0
+    not_certified = 1
+    window_open = 2
+    accuracy_not_reached = 3
+    list_full = 4
+    failed = 5
+
+    @property
+    def sentence(self) -> str:
+        """Cause and remedy."""
+        return SENTENCES[self]
+
+
+SENTENCES = {
+    ThresholdStatus.ok: "every change is found, as accurate as asked for, and proved complete where asked for",
+    ThresholdStatus.not_certified: (
+        "the changes are accurate, but a count of the unstable modes between them could not be decided or "
+        "does not agree; `certify: false` accepts that"
+    ),
+    ThresholdStatus.window_open: (
+        "within the open range two crossings are about to meet, so it is undecided whether a window of flutter "
+        "opens and closes there; move a parameter slightly"
+    ),
+    ThresholdStatus.accuracy_not_reached: (
+        "a change is less accurate than asked for and its error says by how much, as where two changes are "
+        "about to meet; ask for a lower accuracy there"
+    ),
+    ThresholdStatus.list_full: "there are more changes than the list holds; raise the option crossings",
+    ThresholdStatus.failed: "the search failed and nothing is stored; the log has its message",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class ThresholdsRequest:
+    """What is asked of every rod: the largest force, a relative accuracy of each threshold, a proof."""
+
+    F_max: float
+    accuracy: float
+    certify: bool
+    crossings: int
+    """Most changes that are kept."""
+
+
+@dataclass(frozen=True, slots=True)
+class Thresholds:
+    """The changes in 0 < F < F_end, in increasing order of F.
+
+    crossing_count counts those beyond the list too. open_range: (from, to) in F, nan where nothing is
+    open. boxes, solves: evaluations of D and eigenproblems that it took.
+    """
+
+    status: ThresholdStatus
+    crossings: tuple[Crossing, ...]
+    crossing_count: int
+    F_end: float
+    unstable_at_end: int
+    open_range: tuple[float, float]
+    certified: bool
+    boxes: int
+    solves: int
+    seconds: float
+    message: str = ""
+
+
+def solve_thresholds(k1: float, k2: float, gamma3: float, request: ThresholdsRequest) -> Thresholds:
+    """All changes for one rod; failures are a status, never an exception."""
+    started = time.perf_counter()
+    end = min(request.F_max, k1 * (1 - SHORT_OF_CRUSHED))
+    try:
+        with np.errstate(all="ignore"):
+            found = transitions(Path(Rod(0.0, k1, k2, gamma3), "F"), 0.0, end, request.certify)
+        outcome = _outcome(found, end, request)
+    except (Untraceable, ArithmeticError, MemoryError) as error:
+        nothing = math.nan, math.nan
+        outcome = Thresholds(
+            ThresholdStatus.failed, (), 0, end, -1, nothing, False, 0, 0, 0.0, str(error) or type(error).__name__
+        )
+    return replace(outcome, seconds=time.perf_counter() - started)
+
+
+def _outcome(found: Transitions, end: float, request: ThresholdsRequest) -> Thresholds:
+    return Thresholds(
+        status=status_of(found, request.accuracy, request.certify, request.crossings),
+        crossings=found.crossings[: request.crossings],
+        crossing_count=len(found.crossings),
+        F_end=end,
+        unstable_at_end=found.unstable_at_end,
+        open_range=found.open_range,
+        certified=found.proved,
+        boxes=found.boxes,
+        solves=found.solves,
+        seconds=0.0,
+        message=found.why_not,
+    )
+
+
+def status_of(found: Transitions, accuracy: float, certify: bool, most: int) -> ThresholdStatus:
+    """How far a list of changes can be relied on; what matters most is said first."""
+    if not math.isnan(found.open_range[0]):
+        return ThresholdStatus.window_open
+    if len(found.crossings) > most:
+        return ThresholdStatus.list_full
+    if any(c.error > accuracy * abs(c.at) for c in found.crossings):
+        return ThresholdStatus.accuracy_not_reached
+    if certify and not found.proved:
+        return ThresholdStatus.not_certified
+    return ThresholdStatus.ok
+
+
+def warm_up() -> None:
+    """Loads what is compiled and created at first use, so that no point pays for it."""
+    solve_thresholds(1e4, 1e4, 1e-4, ThresholdsRequest(40.0, 1e-8, True, 4))
