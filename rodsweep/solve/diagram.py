@@ -1,0 +1,199 @@
+"""Phase diagrams: rows of a plane with all their changes, and the curves on which the changes lie.
+
+A row is a path along one axis of the diagram. All changes on it are found (`rodsweep.solve.transitions`),
+so that the class of any of its points follows without solving there: the solves go where the class
+changes, and the boundary is as sharp as Newton's method makes it. The curves are traced from the changes
+of all rows (`rodsweep.solve.continuation`).
+"""
+
+import math
+import time
+from dataclasses import dataclass, replace
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..model.path import Path
+from ..model.plane import Plane
+from ..model.rod import Rod
+from .continuation import Curve, double_equations, hopf_equations, on_line, trace
+from .leading import Untraceable
+from .thresholds import ThresholdStatus, status_of
+from .transitions import Crossing, Kind, Transitions, transitions
+
+ON_CURVE = 1e-3
+"""Relative distance of the eigenvalue below which a change may lie on a curve beside it."""
+AGREE = 1e-7
+"""Distance, in units of the axis, below which a change lies on a curve."""
+
+
+class Motion(IntEnum):
+    """How a small deflection of the straight rod evolves."""
+
+    monotone = 0
+    oscillatory = 1
+    flutter = 2
+    undecided = 3
+
+    @property
+    def sentence(self) -> str:
+        return MOTIONS[self]
+
+
+MOTIONS = {
+    Motion.monotone: "stable, and the slowest mode decays without oscillating",
+    Motion.oscillatory: "stable, and the slowest mode decays in oscillations",
+    Motion.flutter: "at least one mode grows",
+    Motion.undecided: "on a boundary within its error, or not known",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class RowRequest:
+    """What is asked of every row: the parameter that varies along it and its values, increasing."""
+
+    name: str
+    values: NDArray[np.float64]
+    accuracy: float
+    certify: bool
+    crossings: int
+    """Most changes that are kept."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One row: the class and the unstable modes at each value, shape (values,), and all changes along it."""
+
+    status: ThresholdStatus
+    motion: NDArray[np.int8]
+    unstable_count: NDArray[np.int32]
+    crossings: tuple[Crossing, ...]
+    crossing_count: int
+    open_range: tuple[float, float]
+    certified: bool
+    boxes: int
+    solves: int
+    seconds: float
+    message: str = ""
+
+
+def solve_row(rod: Rod, request: RowRequest) -> Row:
+    """The row through `rod` (whose own value of the parameter does not matter); never raises."""
+    started = time.perf_counter()
+    values = request.values
+    try:
+        with np.errstate(all="ignore"):
+            found = transitions(
+                Path(rod, request.name), float(values[0]), float(values[-1]), request.certify
+            )
+        motion, unstable = classes(found, values)
+        row = Row(
+            status=status_of(found, request.accuracy, request.certify, request.crossings),
+            motion=motion,
+            unstable_count=unstable,
+            crossings=found.crossings[: request.crossings],
+            crossing_count=len(found.crossings),
+            open_range=found.open_range,
+            certified=found.proved,
+            boxes=found.boxes,
+            solves=found.solves,
+            seconds=0.0,
+            message=found.why_not,
+        )
+    except (Untraceable, ArithmeticError, MemoryError) as error:
+        unknown = np.full(len(values), Motion.undecided, dtype=np.int8)
+        counts = np.full(len(values), -1, dtype=np.int32)
+        nothing = (math.nan, math.nan)
+        reason = str(error) or type(error).__name__
+        row = Row(ThresholdStatus.failed, unknown, counts, (), 0, nothing, False, 0, 0, 0.0, reason)
+    return replace(row, seconds=time.perf_counter() - started)
+
+
+def classes(found: Transitions, values: NDArray[np.float64]) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
+    """(class, unstable modes) at each value of the parameter of a path, from the changes along it."""
+    oscillates = np.full(len(values), found.oscillates_at_start)
+    unstable = np.full(len(values), found.unstable_at_start, dtype=np.int32)
+    blurred = np.zeros(len(values), dtype=bool)
+    for crossing in found.crossings:
+        beyond = values > crossing.at
+        if crossing.kind in (Kind.onset, Kind.pair_leads, Kind.real_again, Kind.real_leads):
+            oscillates[beyond] = crossing.kind in (Kind.onset, Kind.pair_leads)
+        else:
+            unstable[beyond] = crossing.unstable_after
+        blurred |= np.abs(values - crossing.at) <= crossing.error
+    low, high = found.open_range
+    if not math.isnan(low):
+        blurred |= (values >= low) & (values <= high)
+        unstable[values > max([high, *(c.at for c in found.crossings)])] = found.unstable_at_end
+    motion = np.where(oscillates, Motion.oscillatory, Motion.monotone).astype(np.int8)
+    motion[unstable > 0] = Motion.flutter
+    blurred |= unstable < 0
+    motion[blurred] = Motion.undecided
+    unstable[blurred] = -1
+    return motion, unstable
+
+
+@dataclass(frozen=True, slots=True)
+class Seed:
+    """A change on a row, as a start for a curve: values of both parameters and the eigenvalue there."""
+
+    values: tuple[float, float]
+    hopf: bool
+    eigenvalue: float
+    """The frequency of a Hopf point, or the double eigenvalue, which is negative."""
+
+
+@dataclass(frozen=True, slots=True)
+class Curves:
+    """All curves of a diagram; how far the changes on rows lie from them, in units of the axis.
+
+    untraced: changes on rows through which no curve could be followed.
+    """
+
+    curves: tuple[Curve, ...]
+    agreement: float
+    untraced: int
+
+
+def curves_through(plane: Plane, seeds: list[Seed]) -> Curves:
+    """The curves through all changes; each is followed once, and every change is then found on one."""
+    curves: list[Curve] = []
+    worst, untraced = 0.0, 0
+    for seed in seeds:
+        distance = min((_distance(plane, curve, seed) for curve in curves), default=math.inf)
+        if distance > AGREE:
+            x, y = (a.scaled(v) for a, v in zip(plane.axes, seed.values, strict=True))
+            curve = trace(seed.hopf, plane, (x, y), seed.eigenvalue)
+            if curve is not None:
+                curves.append(curve)
+                distance = _distance(plane, curve, seed)
+        if distance > AGREE:
+            untraced += 1
+        else:
+            worst = max(worst, distance)
+    return Curves(tuple(curves), worst, untraced)
+
+
+def _distance(plane: Plane, curve: Curve, seed: Seed) -> float:
+    """How far along the first axis a change lies from the curve, at its place on the second axis."""
+    if curve.hopf != seed.hopf:
+        return math.inf
+    x, y = (a.scaled(v) for a, v in zip(plane.axes, seed.values, strict=True))
+    points = curve.scaled
+    side = points[:, 1] - y
+    if len(points) == 1:
+        return float(abs(points[0, 0] - x)) if abs(side[0]) < AGREE else math.inf
+    best = math.inf
+    equations = hopf_equations if curve.hopf else double_equations
+    for i in np.flatnonzero(side[:-1] * side[1:] <= 0):
+        a, b = points[i], points[i + 1]
+        if not min(a[0], b[0]) - 0.1 <= x <= max(a[0], b[0]) + 0.1:
+            continue
+        share = side[i] / (side[i] - side[i + 1]) if side[i] != side[i + 1] else 0.0
+        guess = a + share * (b - a)
+        guess[1] = y
+        there = on_line(equations, plane, guess, 1)
+        if there is not None and abs(there[0][2] - math.log(abs(seed.eigenvalue))) < ON_CURVE:
+            best = min(best, float(abs(there[0][0] - x)))
+    return best
