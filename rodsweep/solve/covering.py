@@ -37,7 +37,7 @@ FIRST_RATIO = 4.0
 """Ratio of the ends of the boxes in eta to start from."""
 LARGEST_SHARE, NEXT_SHARE, MOST_SHARES = 0.45, 0.6, 30
 """Share t of the bidisc that a box takes up: the largest tried, the ratio to the next, how many."""
-SMALLEST_BOX = 1e-7
+SMALLEST_BOX = 1e-9
 """Half-widths in units of eta and p below which a box is left open."""
 MOST_BOXES = 1_000_000
 SAME = 1e-9

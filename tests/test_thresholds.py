@@ -1,0 +1,163 @@
+"""All stability changes of a rod: against the independent reference, closed forms and plain counts."""
+
+import json
+from math import inf, isnan
+
+import numpy as np
+import pytest
+
+from rodsweep.model.path import Path
+from rodsweep.model.rod import Rod
+from rodsweep.solve import transitions as transitions_module
+from rodsweep.solve.certificate import count_right_of
+from rodsweep.solve.diagram import classes
+from rodsweep.solve.spectrum import SpectrumRequest, solve_spectrum
+from rodsweep.solve.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
+from rodsweep.solve.transitions import Kind, transitions
+
+from conftest import ROOT
+
+REFERENCE = json.loads((ROOT / "tests" / "reference" / "thresholds.json").read_text())
+SAME_KIND = {"restabilization": "hopf_reverse"}
+
+
+def thresholds(k1, k2, gamma3, F_max=200.0, accuracy=1e-11):
+    return solve_thresholds(k1, k2, gamma3, ThresholdsRequest(F_max, accuracy, True, 200))
+
+
+@pytest.mark.parametrize("rod", REFERENCE, ids=lambda r: f"{r['k1']}-{r['k2']}-{r['gamma3']}-{r['F_end']}")
+def test_every_change_of_the_reference_and_no_other_to_twelve_digits(rod):
+    found = thresholds(*(float(rod[name]) for name in ("k1", "k2", "gamma3", "F_end")))
+    assert found.status == ThresholdStatus.ok, found.message
+    assert found.certified
+    assert [SAME_KIND.get(c.kind.name, c.kind.name) for c in found.crossings] == [
+        e["kind"] for e in rod["events"]
+    ]
+    assert found.unstable_at_end == rod["unstable_at_end"]
+    for crossing, event in zip(found.crossings, rod["events"], strict=True):
+        exact = float(event["F"])
+        assert crossing.at == pytest.approx(exact, rel=1e-12)
+        assert abs(crossing.at - exact) <= 10 * crossing.error
+        assert crossing.frequency == pytest.approx(float(event["frequency"]), rel=1e-11)
+        # At a double root the eigenvalue is where D and its slope vanish, which keeps its digits too.
+        assert crossing.growth_rate == pytest.approx(float(event["rate"]), rel=1e-9)
+        assert crossing.unstable_after == event["unstable_after"]
+
+
+def test_the_partial_beam_flutters_where_the_compressed_filament_does():
+    """k2 = inf, gamma3 = 0: F (1 - F/k1) = Fc (Sec. VIII), so both ends of the window are known."""
+    filament = thresholds(inf, inf, 0.0)
+    Fc = next(c.at for c in filament.crossings if c.kind == Kind.hopf)
+    assert Fc == pytest.approx(37.6954308403186, rel=1e-13)
+    for k1 in (4 * Fc * 1.0001, 163.0, 400.0):
+        root = np.sqrt(1 - 4 * Fc / k1)
+        found = [c for c in thresholds(k1, inf, 0.0, 2 * k1).crossings if c.kind in (2, 4)]
+        assert [c.kind for c in found][:2] == [Kind.hopf, Kind.restabilization] or k1 == 400.0
+        # Near the fold F moves like the root of what D can tell.
+        assert found[0].at == pytest.approx(k1 / 2 * (1 - root), rel=1e-13 / root)
+        assert found[-1].at == pytest.approx(k1 / 2 * (1 + root), rel=1e-13 / root)
+    assert not [c for c in thresholds(4 * Fc * 0.9999, inf, 0.0, 2e3).crossings if c.kind in (2, 3, 4)]
+
+
+FOLD = 147.921519683199662  # of k2 = 1e4, gamma3 = 1e-4, 30 digits known
+
+
+@pytest.mark.parametrize("beyond", [1e-3, 1e-5, 1e-7])
+def test_a_window_far_narrower_than_any_sampling_is_found(beyond):
+    """Just beyond the fold the window of flutter is 12 sqrt(beyond) wide; its ends are found and counted."""
+    found = thresholds(FOLD + beyond, 1e4, 1e-4, accuracy=1e-8)
+    window = [c for c in found.crossings if c.kind in (Kind.hopf, Kind.restabilization)]
+    assert [c.unstable_after for c in window] == [2, 0]
+    assert window[1].at - window[0].at == pytest.approx(12.5 * np.sqrt(beyond), rel=0.01)
+    assert found.status == ThresholdStatus.ok
+
+
+def test_before_the_fold_there_is_no_window():
+    found = thresholds(FOLD - 1e-9, 1e4, 1e-4)
+    assert found.status == ThresholdStatus.ok
+    assert not [c for c in found.crossings if c.unstable_after]
+
+
+@pytest.mark.parametrize("beyond", [0.0, 1e-11, 1e-9])
+def test_a_window_that_rounding_cannot_decide_is_reported_open(beyond):
+    found = thresholds(FOLD + beyond, 1e4, 1e-4)
+    assert found.status == ThresholdStatus.window_open
+    assert found.open_range[0] < 75.3972626336 < found.open_range[1]
+    assert found.open_range[1] - found.open_range[0] < 1e-3
+    assert not found.certified
+    assert found.unstable_at_end == 0
+
+
+def test_classes_agree_with_certified_spectra_at_random_points_of_random_rods():
+    rng = np.random.default_rng(5)
+    compared = 0
+    for _ in range(12):
+        k1, k2 = (10 ** rng.uniform(1.3, 6) if rng.random() < 0.85 else inf for _ in range(2))
+        gamma3 = 10 ** rng.uniform(-6, 1) if rng.random() < 0.85 else 0.0
+        end = min(150.0, 0.999 * k1)
+        found = transitions(Path(Rod(0.0, k1, k2, gamma3), "F"), 0.0, end)
+        forces = np.sort(rng.uniform(0, end, 20))
+        for F, motion, unstable in zip(forces, *classes(found, forces), strict=True):
+            spectrum = solve_spectrum(Rod(F, k1, k2, gamma3), SpectrumRequest(2, 1e-6, True))
+            if spectrum.certified:
+                leads = 2 if spectrum.unstable_count else int(spectrum.eigenvalues[0].imag != 0)
+                assert (motion, unstable) == (leads, spectrum.unstable_count), (F, k1, k2, gamma3)
+                compared += 1
+    assert compared > 200
+
+
+@pytest.mark.parametrize(
+    ("name", "fixed", "start", "stop"),
+    [
+        ("k1", Rod(60.0, 1e3, 1e4, 1e-4), 70.0, 1e5),
+        ("k2", Rod(30.0, 1e4, 1e3, 1e-4), 3.0, 1e6),
+        ("gamma3", Rod(30.0, 1e4, 1e3, 1e-4), 1e-6, 10.0),
+    ],
+)
+def test_a_change_along_any_parameter_is_a_change_along_the_force(name, fixed, start, stop):
+    found = transitions(Path(fixed, name), start, stop).crossings
+    assert found
+    for crossing in found:
+        values = {n: getattr(fixed, n) for n in ("k1", "k2", "gamma3")} | {name: crossing.at}
+        forces = [c.at for c in thresholds(**values, F_max=1.2 * fixed.F).crossings]
+        assert min(abs(F - fixed.F) for F in forces) < 1e-10 * fixed.F
+        before, after = (
+            count_right_of(0.0, Path(fixed, name).at(Path(fixed, name).variable(v))).number
+            for v in (crossing.at * 0.99, crossing.at * 1.01)
+        )
+        assert after == crossing.unstable_after
+        if crossing.kind in (Kind.hopf, Kind.hopf_reverse, Kind.restabilization):
+            assert after - before == (2 if crossing.kind == Kind.hopf else -2)
+
+
+def test_a_lost_crossing_is_noticed_by_the_counts(monkeypatch):
+    whole = transitions_module.cover
+
+    def loses_one(*arguments):
+        zeros, left, examined = whole(*arguments)
+        return sorted(zeros, key=lambda z: z[1])[1:], left, examined
+
+    monkeypatch.setattr(transitions_module, "cover", loses_one)
+    found = thresholds(1e4, 1e4, 1e-4)
+    assert found.status == ThresholdStatus.not_certified
+    assert "modes are unstable between" in found.message
+    assert not found.certified
+
+
+def test_the_search_ends_below_a_crushed_rod_and_says_where():
+    found = thresholds(60.0, 1e3, 1e-3, F_max=500.0)
+    assert found.F_end == pytest.approx(60.0, rel=2e-6)
+    assert found.F_end < 60.0
+
+
+def test_more_changes_than_the_list_holds_are_counted():
+    found = solve_thresholds(1e4, 1e4, 1e-4, ThresholdsRequest(200.0, 1e-10, True, 2))
+    assert found.status == ThresholdStatus.list_full
+    assert (len(found.crossings), found.crossing_count) == (2, 3)
+
+
+def test_what_overflows_fails_with_a_reason():
+    found = thresholds(1e300, 1e-300, 1e300)
+    assert found.status == ThresholdStatus.failed
+    assert found.message
+    assert isnan(found.open_range[0])
