@@ -5,6 +5,7 @@ from math import inf, isnan
 
 import numpy as np
 import pytest
+from conftest import ROOT
 
 from rodsweep.model.path import Path
 from rodsweep.model.rod import Rod
@@ -14,8 +15,6 @@ from rodsweep.solve.diagram import classes
 from rodsweep.solve.spectrum import SpectrumRequest, solve_spectrum
 from rodsweep.solve.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
 from rodsweep.solve.transitions import Kind, transitions
-
-from conftest import ROOT
 
 REFERENCE = json.loads((ROOT / "tests" / "reference" / "thresholds.json").read_text())
 SAME_KIND = {"restabilization": "hopf_reverse"}

@@ -75,11 +75,11 @@ def reach(w: complex, coefficients: Coefficients) -> tuple[complex, complex, flo
     if not room > 0:
         return D, L, 0.0
     P, P1, _, plus, minus = branches(w, coefficients)
-    centre = P, P1, plus, minus, 0j, 0j
+    local = w, coefficients, STILL, (P, P1, plus, minus, 0j, 0j), S
     best = 0.0
     rho = radius(w, coefficients, L, S)
     for _ in range(2):
-        M = bound_on_bidisc(w, coefficients, STILL, centre, (L, 0j), (rho, 0.0), S)
+        M = bound_on_bidisc(local, (L, 0j), (rho, 0.0))
         q = room / M
         best = max(best, rho * (math.sqrt(q * q + 4 * q) - q) / 2)
         rho /= 2

@@ -220,6 +220,7 @@ def _fold(
     """The point between two points of a curve where the tangent has no component along an axis."""
     equations = hopf_equations if hopf else double_equations
     a, b = left, right
+    noise, fold = HOPF_TANGENT if hopf else DOUBLE_TANGENT, None
     for i in range(MOST_FOLD_STEPS):
         # Bisection every third step keeps the bracket shrinking from both sides.
         share = a[1][axis] / (a[1][axis] - b[1][axis]) if i % 3 else 0.5
@@ -230,24 +231,25 @@ def _fold(
             return None
         t = tangent(there[1])
         t = t if t @ normal > 0 else -t
-        bend = float(np.abs(b[1][axis] - a[1][axis])) / size
+        along = (abs(float(t[axis])) + noise) * size / abs(float(b[1][axis] - a[1][axis]))
+        fold = _as_fold(hopf, plane, there, axis, along)
         if abs(t[axis]) < FOLD_ACCURACY or size < FOLD_ACCURACY:
             break
         a, b = ((there[0], t), b) if t[axis] * a[1][axis] > 0 else (a, (there[0], t))
-    noise = HOPF_TANGENT if hopf else DOUBLE_TANGENT
-    return _as_fold(hopf, plane, there, axis, (abs(float(t[axis])) + noise) / bend)
+    return fold
 
 
 def _as_fold(
     hopf: bool, plane: Plane, there: tuple[Vector, NDArray[np.float64], float], axis: int, along: float
 ) -> Fold:
     v, _, error = there
-    values = tuple(a.value(x) for a, x in zip(plane.axes, v[:2], strict=True))
-    per_unit = [
+    first, second = (a.value(float(x)) for a, x in zip(plane.axes, v[:2], strict=True))
+    units = [
         abs(a.slope(x)) * (x**2 if a.name in ("k1", "k2") else 1.0)
-        for a, x in zip(plane.axes, values, strict=True)
+        for a, x in zip(plane.axes, (first, second), strict=True)
     ]
     # Across the fold the extremal coordinate does not move to first order, the other one does.
-    errors = tuple(size * (error if i == axis else error + along) for i, size in enumerate(per_unit))
+    errors = [unit * (error if i == axis else error + along) for i, unit in enumerate(units)]
     size = math.exp(v[2])
-    return Fold(axis, values, size if hopf else 0.0, 0.0 if hopf else -size, errors)
+    frequency, growth_rate = (size, 0.0) if hopf else (0.0, -size)
+    return Fold(axis, (first, second), frequency, growth_rate, (errors[0], errors[1]))

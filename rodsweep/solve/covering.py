@@ -26,9 +26,9 @@ from numpy.typing import NDArray
 from ..model.bounds import MARGIN, quiet_radius, squared_amplification_over
 from ..model.compilation import compiled
 from ..model.determinant import branches
-from ..model.path import Changes, Path, changes, coefficients_at, determinant_along, root_changes
+from ..model.path import Path, changes, coefficients_at, determinant_along, root_changes
 from ..model.rod import Coefficients
-from .discs import CLEARANCE, ROUNDING_OF_D, Centre, Pair, bound_on_bidisc
+from .discs import CLEARANCE, ROUNDING_OF_D, Centre, Local, Pair, bound_on_bidisc
 from .newton import crossing_newton
 
 SLABS = 8
@@ -73,14 +73,11 @@ def mean_rates(centre: Centre, drag: float, S: float) -> Pair:
 
 
 @compiled
-def remainder(
-    w: complex, coefficients: Coefficients, change: Changes, centre: Centre, rates: Pair,
-    half: tuple[float, float], S: float, room: float, power: int,
-) -> bool:  # fmt: skip
+def remainder(local: Local, rates: Pair, half: tuple[float, float], room: float, power: int) -> bool:
     """Whether M t^2/(1 - t)^power < room for some bidisc about the box."""
     t, last = LARGEST_SHARE, math.inf
     for _ in range(MOST_SHARES):
-        M = bound_on_bidisc(w, coefficients, change, centre, rates, (half[0] / t, half[1] / t), S)
+        M = bound_on_bidisc(local, rates, (half[0] / t, half[1] / t))
         rest = M * t * t / (1 - t) ** power
         if rest < room:
             return True
@@ -104,6 +101,7 @@ def examine(
     P, P1, _, plus, minus = branches(w, coefficients)
     along_plus, along_minus, _, _ = root_changes(w, P, P1, coefficients, change)
     centre = P, P1, plus, minus, along_plus, along_minus
+    local = w, coefficients, change, centre, S
     drag = coefficients[2] + coefficients[3]
     mean = mean_rates(centre, drag, S)
     rounding = ROUNDING_OF_D * noise
@@ -111,7 +109,7 @@ def examine(
         for rates in ((D_w / D, D_p / D), mean):
             a, b = 1j * (D_w - rates[0] * D) * half[0], (D_p - rates[1] * D) * half[1]
             room = CLEARANCE * distance(D, a, b) - rounding
-            if room > 0 and remainder(w, coefficients, change, centre, rates, half, S, room, 1):
+            if room > 0 and remainder(local, rates, half, room, 1):
                 return 0, 0.0, 0.0
     # In the doubled box the derivatives of f change by at most 3 M t^2/(1 - t)^2 each.
     a, b = 2j * (D_w - mean[0] * D) * half[0], 2 * (D_p - mean[1] * D) * half[1]
@@ -119,7 +117,7 @@ def examine(
         least = abs((a * b.conjugate()).imag) / (abs(a) + abs(b))
         room = (CLEARANCE * least - rounding) / 3
         double = (2 * half[0], 2 * half[1])
-        if room > 0 and remainder(w, coefficients, change, centre, mean, double, S, room, 2):
+        if room > 0 and remainder(local, mean, double, room, 2):
             return 1, 0.0, 0.0
     root_plus, root_minus = math.sqrt(max(abs(plus), 1.0)), math.sqrt(max(abs(minus), 1.0))
     in_w = max(abs(drag + 2 * P1) / root_plus, abs(drag - 2 * P1) / root_minus) * half[0] / 2

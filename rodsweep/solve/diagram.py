@@ -84,9 +84,7 @@ def solve_row(rod: Rod, request: RowRequest) -> Row:
     values = request.values
     try:
         with np.errstate(all="ignore"):
-            found = transitions(
-                Path(rod, request.name), float(values[0]), float(values[-1]), request.certify
-            )
+            found = transitions(Path(rod, request.name), float(values[0]), float(values[-1]), request.certify)
         motion, unstable = classes(found, values)
         row = Row(
             status=status_of(found, request.accuracy, request.certify, request.crossings),

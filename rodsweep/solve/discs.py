@@ -23,6 +23,8 @@ Pair = tuple[complex, complex]
 Radii = tuple[float, float]
 Centre = tuple[complex, complex, complex, complex, complex, complex]
 """(P, P', z+, z-, dz+/dp, dz-/dp) at the centre of a bidisc."""
+Local = tuple[complex, Coefficients, Changes, Centre, float]
+"""(w, coefficients, their changes, roots, S): all that is known of D at the centre of a bidisc."""
 
 
 @compiled
@@ -53,16 +55,13 @@ def term_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: fl
 
 
 @compiled
-def bound_on_bidisc(
-    w: complex, coefficients: Coefficients, change: Changes, centre: Centre, rates: Pair, radii: Radii, S: float
-) -> float:  # fmt: skip
+def bound_on_bidisc(local: Local, rates: Pair, radii: Radii) -> float:
     """Bound of |D exp(-L dw - K dp)| exp(-S) over the bidisc about (w, p); inf where none is given.
 
     In w -> w (1 + e1) and g nu + c2 gamma3 w -> (...)(1 + e2), |e1| and |e2| are bounded over the
     bidisc; sqrt(1 + e) is majorised by 2 - sqrt(1 - e).
     """
-    F, nu, c2, gamma3 = coefficients
-    T1, _, N2, G1, G2, X1, X2 = change
+    w, (F, nu, c2, gamma3), (T1, _, N2, G1, G2, X1, X2), centre, S = local
     P, P1, plus, minus, along_plus, along_minus = centre
     rho, sigma = radii
     g = nu + F * c2

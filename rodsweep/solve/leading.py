@@ -129,7 +129,9 @@ class Tracer:
                     found.append(change)
                     continue
                 if b - a <= 1e-12 * max(abs(a), abs(b)):
-                    raise Untraceable(f"the change of the leading eigenvalue near {self.path.at(a)} is not found")
+                    raise Untraceable(
+                        f"the change of the leading eigenvalue near {self.path.at(a)} is not found"
+                    )
             middle = (a + b) / 2
             stack += [(middle, b), (a, middle)]
         return found

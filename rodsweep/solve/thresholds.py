@@ -33,14 +33,16 @@ class ThresholdStatus(IntEnum):
 
 
 SENTENCES = {
-    ThresholdStatus.ok: "every change is found, as accurate as asked for, and proved complete where asked for",
+    ThresholdStatus.ok: (
+        "every change is found, as accurate as asked for, and proved complete where asked for"
+    ),
     ThresholdStatus.not_certified: (
         "the changes are accurate, but a count of the unstable modes between them could not be decided or "
         "does not agree; `certify: false` accepts that"
     ),
     ThresholdStatus.window_open: (
-        "within the open range two crossings are about to meet, so it is undecided whether a window of flutter "
-        "opens and closes there; move a parameter slightly"
+        "within the open range two crossings are about to meet, so it is undecided whether a window of "
+        "flutter opens and closes there; move a parameter slightly"
     ),
     ThresholdStatus.accuracy_not_reached: (
         "a change is less accurate than asked for and its error says by how much, as where two changes are "
@@ -94,7 +96,17 @@ def solve_thresholds(k1: float, k2: float, gamma3: float, request: ThresholdsReq
     except (Untraceable, ArithmeticError, MemoryError) as error:
         nothing = math.nan, math.nan
         outcome = Thresholds(
-            ThresholdStatus.failed, (), 0, end, -1, nothing, False, 0, 0, 0.0, str(error) or type(error).__name__
+            ThresholdStatus.failed,
+            (),
+            0,
+            end,
+            -1,
+            nothing,
+            False,
+            0,
+            0,
+            0.0,
+            str(error) or type(error).__name__,
         )
     return replace(outcome, seconds=time.perf_counter() - started)
 

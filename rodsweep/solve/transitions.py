@@ -81,7 +81,9 @@ def transitions(path: Path, start: float, stop: float, certify: bool = True) -> 
         raise Untraceable("no a-priori bound on the eigenvalues applies")
     zeros, left, examined = cover(boxes, path.origin, path.direction)
     tracer = Tracer(path, certify)
-    edges = [a + (b - a) * i / ANCHORS_A_SLAB for a, b in slabs(path, low, high) for i in range(ANCHORS_A_SLAB)]
+    edges = [
+        a + (b - a) * i / ANCHORS_A_SLAB for a, b in slabs(path, low, high) for i in range(ANCHORS_A_SLAB)
+    ]
     leads = [_lead(path, change) for change in tracer.changes([*edges, high])]
     hopfs = [_hopf(path, zero) for zero in zeros]
     gaps = _gaps(path, left)
@@ -153,20 +155,25 @@ class _Counts:
         return -1 if number is None else number
 
     def along(
-        self, ordered: list[Crossing], gaps: list[tuple[float, float]], ends: tuple[float, float], unstable: int
+        self,
+        ordered: list[Crossing],
+        gaps: list[tuple[float, float]],
+        ends: tuple[float, float],
+        unstable: int,
     ) -> tuple[tuple[Crossing, ...], int]:
         """(crossings with the unstable modes after each, the number at the end)."""
         out: list[Crossing] = []
         place = ends[0]
         for crossing in ordered:
-            if crossing.kind in (Kind.hopf, Kind.hopf_reverse):
+            kind = crossing.kind
+            if kind in (Kind.hopf, Kind.hopf_reverse):
                 unstable = self._between(place, crossing.at, gaps, unstable)
                 place = crossing.at
                 if unstable >= 0:
-                    unstable += 2 if crossing.kind == Kind.hopf else -2
-                if crossing.kind == Kind.hopf_reverse and unstable == 0:
-                    crossing = replace(crossing, kind=Kind.restabilization)
-            out.append(replace(crossing, unstable_after=unstable))
+                    unstable += 2 if kind == Kind.hopf else -2
+                if kind == Kind.hopf_reverse and unstable == 0:
+                    kind = Kind.restabilization
+            out.append(replace(crossing, kind=kind, unstable_after=unstable))
         return tuple(out), self._between(place, ends[1], gaps, unstable)
 
     def _between(self, a: float, b: float, gaps: list[tuple[float, float]], unstable: int) -> int:
@@ -187,6 +194,7 @@ class _Counts:
             return counted
         if counted >= 0 and counted != unstable:
             self.doubts.append(
-                f"{counted} modes are unstable between {self.path.name} = {a:.12g} and {b:.12g}, not {unstable}"
+                f"{counted} modes are unstable between {self.path.name} = {a:.12g} and {b:.12g}, "
+                f"not {unstable}"
             )
         return unstable

@@ -1,0 +1,113 @@
+"""Curves through folds against known ones, and rows and curves against each other."""
+
+from math import inf
+
+import numpy as np
+import pytest
+
+from rodsweep.model.plane import Axis, Plane
+from rodsweep.model.rod import Rod
+from rodsweep.solve.certificate import count_right_of
+from rodsweep.solve.continuation import trace
+from rodsweep.solve.diagram import Motion, RowRequest, Seed, curves_through, solve_row
+from rodsweep.solve.thresholds import ThresholdStatus
+from rodsweep.solve.transitions import Kind
+
+HOPFS = (Kind.hopf, Kind.hopf_reverse, Kind.restabilization)
+FOLDS = [
+    # k2, gamma3, k1, F, frequency: 30-digit roots of D = 0 and of the vanishing Jacobian
+    (1e4, 1e-4, 147.921519683199662, 75.3972626336484526, 770.860809443855688),
+    (1e3, 1e-3, 125.348273522142548, 76.4344208786000375, 856.287128113415467),
+    (inf, 0.0, 150.781723361274312, 75.3908616806371558, 765.034543061012451),
+]
+
+
+def rows(plane_axes, rod, count):
+    """Rows along the first axis at `count` values of the second, and the seeds on them."""
+    along, across = plane_axes
+    found, seeds = [], []
+    for y in np.linspace(0, 1, count):
+        value = across.value(float(y))
+        values = {n: getattr(rod, n) for n in ("F", "k1", "k2", "gamma3")} | {across.name: value}
+        values[along.name] = along.start
+        request = RowRequest(along.name, np.linspace(along.start, along.stop, 41), 1e-9, True, 50)
+        row = solve_row(Rod(**values), request)
+        assert row.status == ThresholdStatus.ok, row.message
+        found.append(row)
+        for c in row.crossings:
+            hopf = c.kind in HOPFS
+            seeds.append(Seed((c.at, value), hopf, c.frequency if hopf else c.growth_rate))
+    return found, seeds
+
+
+@pytest.mark.parametrize(("k2", "gamma3", "k1", "F", "frequency"), FOLDS)
+def test_the_flutter_window_closes_at_the_fold_to_nine_digits(k2, gamma3, k1, F, frequency):
+    plane = Plane(
+        Rod(0.0, 200.0, k2, gamma3), (Axis("F", 0.0, 119.0), Axis("k1", 120.0, 1000.0, logarithmic=True))
+    )
+    row = solve_row(Rod(0.0, 300.0, k2, gamma3), RowRequest("F", np.array([0.0, 119.0]), 1e-9, True, 9))
+    hopf = next(c for c in row.crossings if c.kind == Kind.hopf)
+    curve = trace(True, plane, (plane.axes[0].scaled(hopf.at), plane.axes[1].scaled(300.0)), hopf.frequency)
+    (fold,) = [f for f in curve.folds if f.axis == 1]
+    assert fold.values[1] == pytest.approx(k1, rel=1e-12)
+    assert fold.values[0] == pytest.approx(F, rel=1e-10)
+    assert fold.frequency == pytest.approx(frequency, rel=1e-9)
+    assert abs(fold.values[1] - k1) <= 10 * fold.errors[1]
+    assert abs(fold.values[0] - F) <= fold.errors[0] <= 1e-8
+
+
+def test_the_hopf_curve_of_the_partial_beam_is_the_parabola_of_the_paper():
+    """F (1 - F/k1) = Fc with k2 = inf, gamma3 = 0 (Sec. VIII), all along the curve and through its fold."""
+    Fc = 37.6954308403186051
+    plane = Plane(Rod(0.0, 200.0, inf, 0.0), (Axis("F", 0.0, 140.0), Axis("k1", 145.0, 400.0)))
+    start = 200.0 * (0.5 - np.sqrt(0.25 - Fc / 200.0))
+    curve = trace(True, plane, (plane.axes[0].scaled(start), plane.axes[1].scaled(200.0)), 341.801)
+    F, k1 = curve.values.T
+    assert len(F) > 30
+    assert np.abs(F * (1 - F / k1) - Fc).max() < 1e-11
+    assert F.min() < 42.2
+    assert F.max() == pytest.approx(140.0, rel=1e-12)
+
+
+def test_rows_and_curves_agree_and_every_change_lies_on_a_curve():
+    axes = (Axis("F", 0.0, 99.0), Axis("k1", 100.0, 1000.0, logarithmic=True))
+    rod = Rod(0.0, 200.0, 1e4, 1e-4)
+    _, seeds = rows(axes, rod, 12)
+    curves = curves_through(Plane(rod, axes), seeds)
+    assert curves.untraced == 0
+    assert curves.agreement < 1e-11
+    assert sum(c.hopf for c in curves.curves) == 1
+    for curve in curves.curves:
+        inside = (np.diff(curve.scaled[:, :2], axis=0) ** 2).sum(axis=1)
+        assert np.sqrt(inside).max() < 0.05
+
+
+def test_a_plane_of_two_material_parameters():
+    """k2 against gamma3 at fixed force: rows along k2, curves through both, counts on either side."""
+    axes = (Axis("k2", 20.0, 1e5, logarithmic=True), Axis("gamma3", 1e-4, 0.1, logarithmic=True))
+    rod = Rod(30.0, 1e4, 1e3, 1e-3)
+    found, seeds = rows(axes, rod, 6)
+    curves = curves_through(Plane(rod, axes), seeds)
+    assert seeds
+    assert (curves.untraced, curves.agreement < 1e-11) == (0, True)
+    values = np.linspace(20.0, 1e5, 41)
+    gamma3 = axes[1].value(0.4)
+    for k2, motion, unstable in zip(values, found[2].motion, found[2].unstable_count, strict=True):
+        assert count_right_of(0.0, Rod(30.0, 1e4, float(k2), gamma3)).number == unstable
+        assert (motion == Motion.flutter) == (unstable > 0)
+
+
+def test_a_value_on_a_boundary_is_undecided_and_its_neighbours_are_not():
+    hopf = 37.6559805452710668
+    row = solve_row(
+        Rod(0.0, 1e4, 1e4, 1e-4), RowRequest("F", np.array([10.0, 30.0, hopf, 40.0]), 1e-9, True, 9)
+    )
+    assert row.motion.tolist() == [Motion.monotone, Motion.oscillatory, Motion.undecided, Motion.flutter]
+    assert row.unstable_count.tolist() == [0, 0, -1, 2]
+
+
+def test_a_row_without_a_bound_fails_with_its_reason():
+    row = solve_row(Rod(0.0, 1e4, 10.0, 0.0), RowRequest("F", np.linspace(-50.0, 20.0, 8), 1e-9, True, 9))
+    assert row.status == ThresholdStatus.failed
+    assert "bound" in row.message
+    assert (row.motion == Motion.undecided).all()
