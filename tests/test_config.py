@@ -145,6 +145,133 @@ def test_broken_configs_are_refused_in_one_sentence(tmp_path, text):
     assert len(str(refusal.value)) < 500
 
 
+def config(task, parameters="F: 1, k1: 9, k2: 1, gamma3: 0", options=""):
+    section = f"{task}: {{{options}}}\n" if options else ""
+    return f"task: {task}\nparameters: {{{parameters}}}\n{section}"
+
+
+def thresholds(parameters="k1: 9, k2: 1, gamma3: 0", options=""):
+    return config("thresholds", parameters, options)
+
+
+def diagram(F="[1, 2]", k1="9", k2="[1, inf]", more="gamma3: 0", options=""):
+    return config("phase_diagram", f"F: {F}, k1: {k1}, k2: {k2}, {more}", options)
+
+
+ALL = "F, k1, k2 and gamma3"
+REFUSED_BY_TASK = [
+    ("parameters: {F: 1}", "task is missing; it should be spectrum, thresholds, phase_diagram or modes"),
+    ("task: [spectrum]", "task = ['spectrum'] is not allowed; it should be spectrum, thresholds"),
+    (thresholds() + "spectrum: {modes: 3}", "spectrum is given but the task is thresholds; remove it"),
+    (config("modes") + "thresholds: {}", "thresholds is given but the task is modes; remove it"),
+    (diagram() + "modes:", "modes is given but the task is phase_diagram; remove it"),
+    (config("spectrum") + "phase_diagram: 3", "phase_diagram is given but the task is spectrum"),
+    (
+        thresholds() + "thresholds: 3",
+        "thresholds = 3 is not allowed; it should be a mapping of keys to values",
+    ),
+    (thresholds() + "thresholds:", "thresholds = None is not allowed; it should be a mapping"),
+    (thresholds(options="Fmax: 3"), "unknown key thresholds.Fmax; did you mean F_max?"),
+    (thresholds(options="F_max: 0"), "F_max = 0 is not allowed; it should be a finite number above 0"),
+    (thresholds(options="F_max: -3"), "F_max = -3 is not allowed; it should be a finite number above 0"),
+    (thresholds(options="F_max: .inf"), "F_max = inf is not allowed; it should be a finite number above 0"),
+    (thresholds(options="F_max: far"), "thresholds.F_max: 'far' is not a number"),
+    (
+        thresholds(options="crossings: 0"),
+        "crossings = 0 is not allowed; it should be a whole number from 1 to",
+    ),
+    (thresholds(options="crossings: 1001"), "it should be a whole number from 1 to 1000"),
+    (thresholds(options="certify: 1"), "certify = 1 is not allowed; it should be true or false"),
+    (
+        thresholds("F: 3, k1: 9"),
+        "parameters.F is given but the task thresholds finds F itself; remove it and",
+    ),
+    (thresholds("gamma1: 3, k1: 9"), "parameters.gamma1 is given but the task thresholds does not use it"),
+    (thresholds("k2: 9, gamma3: 0"), "parameters.k1 is missing; give k1, k2 and gamma3, or points: FILE.csv"),
+    (
+        thresholds("k1: -9, k2: 1, gamma3: 0"),
+        "parameters.k1 = -9 is not allowed; it must be a number above 0",
+    ),
+    (thresholds("points: p.csv, k1: 9"), "parameters.points and parameters.k1 are both given"),
+    (diagram(F="1"), f"has 1 axes with more than one value (k2); a phase diagram needs exactly two of {ALL}"),
+    (diagram(k1="[9, 10]"), "has 3 axes with more than one value (F, k1, k2); a phase diagram needs exactly"),
+    (diagram(more="points: p.csv"), "parameters.points is given but the task phase_diagram needs axes"),
+    (diagram(more="gamma3: null"), f"parameters.gamma3 is missing; give {ALL}"),
+    (diagram(more="gamma3: 0, gamma1: 2"), "parameters.gamma1 is given but the task phase_diagram does not"),
+    (diagram(F="[1, inf]"), "parameters.F contains inf, which is not allowed on the axis along which"),
+    (diagram(F="1", k1="[9, .inf]"), "parameters.k1 contains inf, which is not allowed on the axis along"),
+    (diagram(F="[9, 10]"), "parameters.F starts at 9 and parameters.k1 ends at 9; the rod is crushed where"),
+    (diagram(F="{start: 0, stop: 8, num: 40000000}"), "the results of one point take 0.2 GB"),
+    (diagram(options="crossings: 2.0"), "phase_diagram.crossings = 2.0 is not allowed"),
+    (diagram(options="curves: no"), "phase_diagram.curves = 'no' is not allowed; it should be true or false"),
+    (config("modes", options="modes: 101"), "modes.modes = 101 is not allowed; it should be a whole number"),
+    (
+        config("modes", options="nodes: 2"),
+        "modes.nodes = 2 is not allowed; it should be a whole number from 3",
+    ),
+    (config("modes", options="growth: 2"), "modes.growth = 2 is not allowed; it should be true or false"),
+    (config("modes", options="vectors: true"), "unknown key modes.vectors"),
+    (config("modes", "k1: 9, k2: 1, gamma3: 0"), f"parameters.F is missing; give {ALL}, or points: FILE.csv"),
+]
+
+
+@pytest.mark.parametrize(("text", "sentence"), REFUSED_BY_TASK, ids=range(len(REFUSED_BY_TASK)))
+def test_what_a_task_cannot_use_is_refused_in_one_sentence(tmp_path, text, sentence):
+    with pytest.raises(InputError) as refusal:
+        job(tmp_path, text)
+    assert sentence in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+def test_options_of_every_task_have_their_defaults(tmp_path):
+    options = job(tmp_path, thresholds()).config.thresholds
+    assert (options.F_max, options.crossings, options.certify) == (200, 16, True)
+    options = job(tmp_path, diagram()).config.phase_diagram
+    assert (options.crossings, options.certify, options.curves) == (16, True, True)
+    options = job(tmp_path, config("modes")).config.modes
+    assert (options.modes, options.nodes, options.growth, options.certify) == (2, 65, True, True)
+
+
+def test_thresholds_may_search_beyond_k1_and_their_points_have_no_force(tmp_path):
+    points = job(tmp_path, thresholds(options="F_max: 1000")).points
+    assert points.names == ("k1", "k2", "gamma3")
+    assert points.values(0) == {"k1": 9, "k2": 1, "gamma3": 0}
+    (tmp_path / "p.csv").write_text("gamma3,k1,k2\n0,9,inf\n1,inf,3\n")
+    points = job(tmp_path, thresholds("points: p.csv")).points
+    assert points.values(1) == {"k1": np.inf, "k2": 3, "gamma3": 1}
+    for table, word in {
+        "F,k1,k2,gamma3\n1,9,1,0\n": "it must name k1, k2 and gamma3",
+        "k1,k2,gamma3\n9,1,-1\n": "line 2: gamma3 = -1.0 is not",
+    }.items():
+        (tmp_path / "p.csv").write_text(table)
+        with pytest.raises(InputError, match=word):
+            job(tmp_path, thresholds("points: p.csv"))
+
+
+def test_phase_diagram_may_reach_into_the_crushed_rods(tmp_path):
+    assert job(tmp_path, diagram(F="[1, 9]")).points.count == 2
+    assert job(tmp_path, diagram(F="9", k1="[8, 10]")).points.count == 2
+
+
+@pytest.mark.parametrize(
+    ("axes", "line", "row"),
+    [
+        ("F: [1, 2], k1: 9, k2: [1, inf], gamma3: 0", "F", "k2"),
+        ("F: [1, 2], k1: [9, inf], k2: 1, gamma3: 0", "F", "k1"),
+        ("gamma3: [0, 1], k2: 3, k1: [9, 10], F: 1", "k1", "gamma3"),
+        ("F: 1, k1: inf, k2: [1, 2], gamma3: [0, 1]", "k2", "gamma3"),
+    ],
+)
+def test_rows_of_a_phase_diagram_lie_along_the_first_of_its_two_axes(tmp_path, axes, line, row):
+    made = job(tmp_path, config("phase_diagram", axes))
+    assert made.config.plane == (line, row)
+    assert made.points.names == tuple(name for name in ("F", "k1", "k2", "gamma3") if name != line)
+    assert made.points.count == 2
+    assert made.points.values(0)[row] != made.points.values(1)[row]
+    assert made.layout.extents[line] == 2
+    assert made.task.coordinates()[line].tolist() == made.config.parameters.axes[line].array().tolist()
+
+
 @pytest.mark.parametrize(
     ("table", "word"),
     [

@@ -9,11 +9,10 @@ from rodsweep.model.plane import Axis, Plane
 from rodsweep.model.rod import Rod
 from rodsweep.solve.certificate import count_right_of
 from rodsweep.solve.continuation import trace
-from rodsweep.solve.diagram import Motion, RowRequest, Seed, curves_through, solve_row
+from rodsweep.solve.diagram import Motion, RowRequest, curves_through, seed_of, solve_row
 from rodsweep.solve.thresholds import ThresholdStatus
 from rodsweep.solve.transitions import Kind
 
-HOPFS = (Kind.hopf, Kind.hopf_reverse, Kind.restabilization)
 FOLDS = [
     # k2, gamma3, k1, F, frequency: 30-digit roots of D = 0 and of the vanishing Jacobian
     (1e4, 1e-4, 147.921519683199662, 75.3972626336484526, 770.860809443855688),
@@ -28,15 +27,12 @@ def rows(plane_axes, rod, count):
     found, seeds = [], []
     for y in np.linspace(0, 1, count):
         value = across.value(float(y))
-        values = {n: getattr(rod, n) for n in ("F", "k1", "k2", "gamma3")} | {across.name: value}
-        values[along.name] = along.start
+        values = {n: getattr(rod, n) for n in ("F", "k1", "k2", "gamma3") if n != along.name}
         request = RowRequest(along.name, np.linspace(along.start, along.stop, 41), 1e-9, True, 50)
-        row = solve_row(Rod(**values), request)
+        row = solve_row(values | {across.name: value}, request)
         assert row.status == ThresholdStatus.ok, row.message
         found.append(row)
-        for c in row.crossings:
-            hopf = c.kind in HOPFS
-            seeds.append(Seed((c.at, value), hopf, c.frequency if hopf else c.growth_rate))
+        seeds += [seed_of((c.at, value), c.kind, c.frequency, c.growth_rate) for c in row.crossings]
     return found, seeds
 
 
@@ -45,7 +41,9 @@ def test_the_flutter_window_closes_at_the_fold_to_nine_digits(k2, gamma3, k1, F,
     plane = Plane(
         Rod(0.0, 200.0, k2, gamma3), (Axis("F", 0.0, 119.0), Axis("k1", 120.0, 1000.0, logarithmic=True))
     )
-    row = solve_row(Rod(0.0, 300.0, k2, gamma3), RowRequest("F", np.array([0.0, 119.0]), 1e-9, True, 9))
+    row = solve_row(
+        {"k1": 300.0, "k2": k2, "gamma3": gamma3}, RowRequest("F", np.array([0.0, 119.0]), 1e-9, True, 9)
+    )
     hopf = next(c for c in row.crossings if c.kind == Kind.hopf)
     curve = trace(True, plane, (plane.axes[0].scaled(hopf.at), plane.axes[1].scaled(300.0)), hopf.frequency)
     (fold,) = [f for f in curve.folds if f.axis == 1]
@@ -100,14 +98,17 @@ def test_a_plane_of_two_material_parameters():
 def test_a_value_on_a_boundary_is_undecided_and_its_neighbours_are_not():
     hopf = 37.6559805452710668
     row = solve_row(
-        Rod(0.0, 1e4, 1e4, 1e-4), RowRequest("F", np.array([10.0, 30.0, hopf, 40.0]), 1e-9, True, 9)
+        {"k1": 1e4, "k2": 1e4, "gamma3": 1e-4},
+        RowRequest("F", np.array([10.0, 30.0, hopf, 40.0]), 1e-9, True, 9),
     )
     assert row.motion.tolist() == [Motion.monotone, Motion.oscillatory, Motion.undecided, Motion.flutter]
     assert row.unstable_count.tolist() == [0, 0, -1, 2]
 
 
 def test_a_row_without_a_bound_fails_with_its_reason():
-    row = solve_row(Rod(0.0, 1e4, 10.0, 0.0), RowRequest("F", np.linspace(-50.0, 20.0, 8), 1e-9, True, 9))
+    row = solve_row(
+        {"k1": 1e4, "k2": 10.0, "gamma3": 0.0}, RowRequest("F", np.linspace(-50.0, 20.0, 8), 1e-9, True, 9)
+    )
     assert row.status == ThresholdStatus.failed
     assert "bound" in row.message
     assert (row.motion == Motion.undecided).all()

@@ -6,7 +6,8 @@ from conftest import ROOT
 
 from rodsweep.cli.job import make_job
 from rodsweep.errors import InputError
-from rodsweep.post.figures import broken, draw, followed_roots
+from rodsweep.post.figures import draw
+from rodsweep.post.figures.spectrum import broken, followed_roots
 from rodsweep.results.view import read_view
 from rodsweep.solve.spectrum import SpectrumRequest, solve_spectrum
 

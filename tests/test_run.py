@@ -253,7 +253,7 @@ def test_run_killed_before_its_end_was_written_writes_it_the_next_time(command):
         "import os, rodsweep.results.store as store\n"
         "def die(self, attributes): os._exit(9)\n"
         "fold = store.Store._fold\n"
-        "store.Store._fold = lambda self, a: die(self, a) if a else fold(self, a)\n"
+        "store.Store._fold = lambda self, a, more: die(self, a) if a else fold(self, a, more)\n"
         "def patched(rank, solve): return solve\n"
     )
     assert run_patched(command, patch, ranks=1).returncode == 9

@@ -5,10 +5,11 @@ import numpy as np
 import pytest
 
 from rodsweep.errors import InputError
-from rodsweep.results import store as store_module
+from rodsweep.results import lock
+from rodsweep.results.creation import Plan
 from rodsweep.results.journal import Journal, journal_directory, read_journals
-from rodsweep.results.schema import spectrum_layout
-from rodsweep.results.store import Plan, Store, difference
+from rodsweep.results.layouts import spectrum_layout
+from rodsweep.results.store import Store, difference
 from rodsweep.results.view import read_view
 
 LAYOUT = spectrum_layout(2, 0)
@@ -16,7 +17,7 @@ LAYOUT = spectrum_layout(2, 0)
 
 def plan(is_grid=True, **config):
     columns = tuple(np.arange(1.0, n + 1) for n in ((3, 2, 1, 2) if is_grid else (5, 5, 5, 5)))
-    resolved = {"spectrum": {"modes": 2, "vectors": False, "nodes": 33}} | config
+    resolved = {"task": "spectrum", "spectrum": {"modes": 2, "vectors": False, "nodes": 33}} | config
     return Plan(columns, is_grid, LAYOUT, {}, (), resolved, {"title": "t"}, ((0, "ok"), (5, "failed")))
 
 
@@ -129,7 +130,7 @@ def test_foreign_file_is_refused_and_left_alone(tmp_path):
 
 
 def test_two_runs_on_one_file_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(store_module, "LOCK_PATIENCE", 0.3)
+    monkeypatch.setattr(lock, "LOCK_PATIENCE", 0.3)
     store = Store(tmp_path / "a.h5", plan())
     with pytest.raises(InputError, match="another run"):
         Store(tmp_path / "a.h5", plan())

@@ -3,23 +3,25 @@
 import os
 import socket
 import time
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from ..errors import EnvironmentLacks
+from ..results.creation import Plan
 from ..results.journal import Journal, journal_directory
 from ..results.provenance import now, provenance
-from ..results.store import Plan, Store
+from ..results.schema import Filled
+from ..results.store import Store
+from ..results.view import read_view
 from ..solve.presence import require_petsc
 from ..sweep.loop import sweep
 from ..sweep.progress import Teller
 from ..sweep.team import Team
 from .job import Job, make_job
-
-if TYPE_CHECKING:
-    from ..solve.spectrum import Spectrum
+from .tasks.protocol import Solver
 
 FAILURES_TOLD = 3
 """Failed points that are named at the end of a run; the file has the status of all."""
@@ -36,7 +38,8 @@ def run_config(path: Path, output: Path, overrides: tuple[str, ...], fresh: bool
 
 def _run(team: Team, job: Job, output: Path, fresh: bool) -> int:
     began, started = time.monotonic(), now()
-    plan = _plan(job)  # starts PETSc, which only a valid config is worth
+    solver = job.task.solver()
+    plan = _plan(job, solver)
     store: list[Store] = []
 
     def open_store() -> list[tuple[int, int]]:
@@ -50,14 +53,18 @@ def _run(team: Team, job: Job, output: Path, fresh: bool) -> int:
         click.echo(
             f"{output}: {count} of {job.points.count} points to do" + (f", {kept} kept" if kept else "")
         )
-    failures = _solve_missing(team, job, plan, output, todo) if count else []
+    failures = _solve_missing(team, job, solver, plan, output, todo) if count else []
     told = team.gather(failures)
     hosts = team.gather(socket.gethostname())
     seconds = time.monotonic() - began
 
     def finish() -> int:
         if count or not store[0].finished():
-            store[0].fold(_ending(team, hosts or [], started, plan))
+            additions: Sequence[Filled] = ()
+            if solver.finish is not None:
+                store[0].fold({})  # it needs all points in the file
+                additions = solver.finish(read_view(output))
+            store[0].fold(_ending(team, hosts or [], started, plan), additions)
         counts = store[0].status_counts()
         store[0].close()
         each = 1e3 * seconds * team.size / max(count, 1)
@@ -69,29 +76,24 @@ def _run(team: Team, job: Job, output: Path, fresh: bool) -> int:
     return team.on_first(finish)
 
 
-def _solve_missing(team: Team, job: Job, plan: Plan, output: Path, todo: list[tuple[int, int]]) -> list[str]:
+def _solve_missing(
+    team: Team, job: Job, solver: Solver, plan: Plan, output: Path, todo: list[tuple[int, int]]
+) -> list[str]:
     """This rank's share of the missing points, into its journal; returns what to tell of failures."""
-    from ..solve import spectrum
-
-    request = spectrum.SpectrumRequest(
-        job.config.spectrum.modes, job.config.accuracy, job.config.spectrum.certify, job.vector_nodes
-    )
     failures: list[str] = []
 
-    def solve(index: int) -> spectrum.Spectrum:
-        return spectrum.solve_spectrum(job.points.rod(index), request)
-
-    def keep(index: int, result: spectrum.Spectrum) -> None:
-        journal.append(index, _record(result))
+    def keep(index: int, result: Any) -> None:
+        journal.append(index, solver.record(result))
         if result.status and len(failures) < FAILURES_TOLD:
-            failures.append(f"{job.points.rod(index)}: {result.status.name} {result.message}".rstrip())
+            where = ", ".join(f"{name}={value!r}" for name, value in job.points.values(index).items())
+            failures.append(f"{where}: {result.status.name} {result.message}".rstrip())
 
-    spectrum.warm_up()
+    solver.warm_up()
     total = sum(stop - start for start, stop in todo)
-    tell = Teller(total, job.config.title or job.path.stem) if team.first else None
+    tell = Teller(total, job.name) if team.first else None
     try:
-        journal = Journal(journal_directory(output), team.rank, job.layout, plan.fingerprint)
-        sweep(team, todo, solve, keep, tell or (lambda done: None))
+        journal = Journal(journal_directory(output), team.rank, plan.layout, plan.fingerprint)
+        sweep(team, todo, solver.solve, keep, tell or (lambda done: None))
         journal.close()
     except OSError as error:
         raise EnvironmentLacks(
@@ -104,51 +106,31 @@ def _solve_missing(team: Team, job: Job, plan: Plan, output: Path, todo: list[tu
     return failures
 
 
-def _plan(job: Job) -> Plan:
+def _plan(job: Job, solver: Solver) -> Plan:
     from ..solve import petsc
-    from ..solve.status import Status
 
     versions = {f"{name}_version": value for name, value in petsc.versions().items()}
     return Plan(
         columns=job.points.columns,
         is_grid=job.points.is_grid,
         layout=job.layout,
-        coordinates=job.coordinates,
-        constants=job.constants,
+        coordinates=job.task.coordinates(),
+        constants=job.task.constants(),
         config=job.resolved,
         attributes={
             "Conventions": "CF-1.8",
-            "title": job.config.title or job.path.stem,
+            "title": job.name,
             "task": job.config.task,
             "time_unit": "tau2 = gamma2 L^4/k3",
             "config": job.text,
             "petsc_options": petsc.options(),
-            "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in Status),
+            "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in solver.statuses),
         }
         | ({"gamma1": job.config.parameters.gamma1} if job.config.parameters.gamma1 else {})
         | versions
         | provenance(),
-        flags=tuple((int(s), s.name) for s in Status),
+        flags=tuple((int(s), s.name) for s in solver.statuses),
     )
-
-
-def _record(result: "Spectrum") -> dict[str, Any]:
-    """A Spectrum as the variables of the file."""
-    values: dict[str, Any] = {
-        "growth_rate": result.eigenvalues.real,
-        "frequency": result.eigenvalues.imag,
-        "error_estimate": result.error_estimate,
-        "unstable_count": result.unstable_count,
-        "certified": result.certified,
-        "elements": result.elements,
-        "order": result.order,
-        "seconds": result.seconds,
-        "status": int(result.status),
-    }
-    if result.vectors is not None:
-        for field, vector in zip(("Y", "Theta"), result.vectors, strict=True):
-            values[f"{field}_real"], values[f"{field}_imag"] = vector.real, vector.imag
-    return values
 
 
 def _ending(team: Team, hosts: list[str], started: str, plan: Plan) -> dict:

@@ -1,6 +1,13 @@
 """What the user asks for: YAML to a validated, frozen `Config`. Knows no physics and no files but YAML."""
 
 from .reading import load_config
-from .schema import Axis, Config, SpectrumOptions
+from .schema import Config, ModesConfig, PhaseDiagramConfig, SpectrumConfig, ThresholdsConfig
 
-__all__ = ["Axis", "Config", "SpectrumOptions", "load_config"]
+__all__ = [
+    "Config",
+    "ModesConfig",
+    "PhaseDiagramConfig",
+    "SpectrumConfig",
+    "ThresholdsConfig",
+    "load_config",
+]

@@ -6,12 +6,14 @@ from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 from ruamel.yaml.events import AliasEvent
 
 from ..errors import InputError
-from .schema import Config, Parameters, SpectrumOptions, short
+from .schema import CONFIGS, Config, words
+from .values import short
 
 LARGEST_FILE = 1_000_000
 DEEPEST = 20
@@ -93,44 +95,36 @@ def _override(tree: dict, override: str) -> None:
 
 
 def _validated(tree: dict, where: str) -> Config:
+    config = CONFIGS[_task(tree, where)]
     try:
-        return Config.model_validate(tree)
+        return config.model_validate(tree)
     except ValidationError as error:
         problems = error.errors(include_url=False)
         more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
-        raise InputError(f"{where}: {_sentence(problems[0])}{more}") from None
+        raise InputError(f"{where}: {_sentence(config, problems[0])}{more}") from None
 
 
-SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
-    (): Config,
-    ("parameters",): Parameters,
-    ("spectrum",): SpectrumOptions,
-}
+def _task(tree: dict, where: str) -> str:
+    """The task that the config names; InputError if it is none, or if a section belongs to another."""
+    known = words(tuple(CONFIGS), "or")
+    if "task" not in tree:
+        raise InputError(f"{where}: task is missing; it should be {known}")
+    task = tree["task"]
+    if not isinstance(task, str) or task not in CONFIGS:
+        raise InputError(f"{where}: task = {short(task)} is not allowed; it should be {known}")
+    for name in CONFIGS:
+        if name in tree and name != task:
+            raise InputError(f"{where}: {name} is given but the task is {task}; remove it")
+    return task
 
 
-WHAT_IS_ALLOWED = {
-    "title": "text of at most 200 characters",
-    "task": "spectrum",
-    "parameters": "a mapping of keys to values",
-    "parameters.points": "the name of a CSV file",
-    "spectrum": "a mapping of keys to values",
-    "spectrum.modes": "a whole number from 1 to 100",
-    "spectrum.nodes": "a whole number from 3 to 513",
-    "spectrum.certify": "true or false",
-    "spectrum.vectors": "true or false",
-    "spectrum.longitudinal": "true or false",
-    "accuracy": "a number from 1e-13 to 1e-2",
-}
-"""What the user may write, for the keys whose refusal pydantic words in its own terms."""
-
-
-def _sentence(problem: Any) -> str:
+def _sentence(config: type[Config], problem: Any) -> str:
     """One pydantic problem as a sentence: which key, which value, what is allowed."""
     location = tuple(str(part) for part in problem["loc"])
     key = ".".join(location)
     kind, value = problem["type"], problem["input"]
     if kind == "extra_forbidden":
-        known = list(SECTIONS.get(location[:-1], Config).model_fields)
+        known = list(_section(config, location[:-1]).model_fields)
         close = difflib.get_close_matches(location[-1], known, n=1, cutoff=0.5)
         hint = f"did you mean {close[0]}?" if close else f"known keys are {', '.join(known)}"
         return f"unknown key {key}; {hint}"
@@ -141,5 +135,40 @@ def _sentence(problem: Any) -> str:
         return f"{key}: {text}" if key and not text.startswith(key) else text
     if kind == "invalid_key":
         return f"{short(value)} is not a key; keys are words"
-    allowed = WHAT_IS_ALLOWED.get(key, problem["msg"])
+    field = _section(config, location[:-1]).model_fields.get(location[-1])
+    allowed = what_is_allowed(field) if field else problem["msg"]
     return f"{key} = {short(value)} is not allowed; it should be {allowed}"
+
+
+def _section(config: type[Config], location: tuple[str, ...]) -> type[BaseModel]:
+    """The section of a config at a place."""
+    section: type[BaseModel] = config
+    for name in location:
+        kind = section.model_fields[name].annotation
+        if not (isinstance(kind, type) and issubclass(kind, BaseModel)):
+            break
+        section = kind
+    return section
+
+
+def what_is_allowed(field: FieldInfo) -> str:
+    """What the user may write for a key, as a phrase made of its type and bounds."""
+    kind = field.annotation
+    bound = {
+        name: getattr(part, name)
+        for part in field.metadata
+        for name in ("ge", "gt", "le", "lt", "max_length")
+        if hasattr(part, name)
+    }
+    if field.description:
+        return field.description
+    if kind is bool:
+        return "true or false"
+    if kind is str:
+        return f"text of at most {bound['max_length']} characters"
+    if kind is int or kind is float:
+        number = "a whole number" if kind is int else "a number"
+        if "gt" in bound:
+            return f"a finite number above {bound['gt']:g}"
+        return f"{number} from {bound['ge']:g} to {bound['le']:g}"
+    return "a mapping of keys to values"

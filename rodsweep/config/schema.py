@@ -1,166 +1,97 @@
-"""The keys of a config, their types and defaults, validated by pydantic.
+"""The keys of a config, their types and defaults: what every task has, and one section of options per task.
 
 Ranges that are physics (F < k1, positive stiffness) belong to `rodsweep.model`; here is form only.
 """
 
-from math import inf, isnan
-from typing import Annotated, Any, Literal
+from abc import ABC, abstractmethod
+from math import inf
+from typing import Annotated, Literal
 
-import numpy as np
-from numpy.typing import NDArray
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
-MOST_VALUES = 1_000_000_000
-"""Values on one axis."""
+from .values import Axis, Number, Strict, Text, Values
 
+PARAMETERS = ("F", "k1", "k2", "gamma3")
+"""Parameters that have an axis, in the order used everywhere."""
 
-class Strict(BaseModel):
-    """A section of the config: unknown keys are refused, types are not guessed, values are frozen."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
-
-
-def as_number(value: Any) -> float:
-    """A YAML number, or the words inf and -inf; raises ValueError with a sentence otherwise."""
-    if isinstance(value, str) and value.strip().lower() in ("inf", "+inf", "-inf"):
-        return float(value)
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ValueError(f"{short(value)} is not a number")
-    try:
-        number = float(value)
-    except OverflowError:
-        raise ValueError(f"{short(value)} is too large for a floating-point number") from None
-    if isnan(number):
-        raise ValueError("nan is not a number")
-    return number
-
-
-def short(value: Any) -> str:
-    """`value` as the user may recognise it, cut to a line."""
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
-
-
-def as_text(value: Any) -> Any:
-    """Text without control characters or lone surrogates, which no file name and no title needs."""
-    if isinstance(value, str) and not all(c.isprintable() or c == " " for c in value):
-        raise ValueError(f"{short(value)} has characters that cannot be printed")
-    return value
-
-
-Text = Annotated[str, BeforeValidator(as_text)]
-Number = Annotated[float, BeforeValidator(as_number)]
-
-
-class Axis(Strict):
-    """Values of one parameter: one number, a list, or `num` values from start to stop."""
-
-    values: tuple[float, ...] | None = None
-    start: float = 0.0
-    stop: float = 0.0
-    num: int = 0
-    spacing: Literal["linear", "log"] = "linear"
-
-    @property
-    def size(self) -> int:
-        return self.num if self.values is None else len(self.values)
-
-    def array(self) -> NDArray[np.float64]:
-        """The values, increasing, shape (size,)."""
-        if self.values is not None:
-            return np.array(self.values)
-        if self.spacing == "log":
-            return np.geomspace(self.start, self.stop, self.num)
-        return np.linspace(self.start, self.stop, self.num)
-
-
-def as_axis(value: Any) -> Axis:
-    """A number, a list or a mapping {start, stop, num, spacing} as an Axis; ValueError otherwise."""
-    if isinstance(value, Axis):
-        return value
-    if isinstance(value, dict):
-        return _range(value)
-    if not isinstance(value, list | tuple):
-        return Axis(values=(as_number(value),))
-    if not value:
-        raise ValueError("the list is empty; give at least one number")
-    numbers = tuple(as_number(item) for item in value)
-    if any(b <= a for a, b in zip(numbers[:-1], numbers[1:], strict=True)):
-        raise ValueError(f"{short(value)} is not sorted; list the numbers in increasing order, each once")
-    return Axis(values=numbers)
-
-
-def _range(value: dict) -> Axis:
-    known = ("start", "stop", "num", "spacing")
-    for key in value:
-        if key not in known:
-            raise ValueError(f"unknown key {short(key)} in a range; its keys are {', '.join(known)}")
-    for key in known[:3]:
-        if key not in value:
-            raise ValueError(f"a range needs start, stop and num, and {key} is missing")
-    start, stop, num = as_number(value["start"]), as_number(value["stop"]), value["num"]
-    spacing = value.get("spacing", "linear")
-    if spacing not in ("linear", "log"):
-        raise ValueError(f"spacing = {short(spacing)} is neither linear nor log")
-    if isinstance(num, bool) or not isinstance(num, int) or not 1 <= num <= MOST_VALUES:
-        raise ValueError(f"num = {short(num)} is not a whole number from 1 to {MOST_VALUES}")
-    if abs(start) == inf or abs(stop) == inf:
-        raise ValueError("start and stop of a range must be finite; put inf in a list")
-    if (num > 1 and not start < stop) or (num == 1 and start != stop):
-        raise ValueError(f"start = {start:g} and stop = {stop:g} do not make {num} increasing values")
-    if num > 1 and (stop - start) / num <= 4e-16 * max(abs(start), abs(stop)) or stop - start == inf:
-        raise ValueError(f"{num} values from {start!r} to {stop!r} cannot be told apart")
-    if spacing == "log" and start <= 0:
-        raise ValueError(f"log spacing needs start above 0, not {start:g}")
-    return Axis(start=start, stop=stop, num=num, spacing=spacing)
-
-
-Values = Annotated[Axis, BeforeValidator(as_axis)]
+Modes = Annotated[int, Field(ge=1, le=100)]
+Nodes = Annotated[int, Field(ge=3, le=513)]
+Crossings = Annotated[int, Field(ge=1, le=1000)]
 
 
 class Parameters(Strict):
-    """A grid, from one axis per parameter, or an explicit list of points from a CSV file."""
+    """Axes, one for each parameter of a grid, or the name of a CSV file that lists points."""
 
     F: Values | None = None
     k1: Values | None = None
     k2: Values | None = None
     gamma3: Values | None = None
     gamma1: Number | None = None
-    points: Text | None = None
+    points: Annotated[Text | None, Field(description="the name of a CSV file")] = None
+
+    @property
+    def axes(self) -> dict[str, Axis]:
+        """The axes that are given, by name."""
+        found = {name: getattr(self, name) for name in PARAMETERS}
+        return {name: axis for name, axis in found.items() if axis is not None}
+
+    def require(self, names: tuple[str, ...], or_points: bool = True) -> None:
+        """ValueError unless all axes `names` are given or, where that is allowed, a file of points."""
+        if self.points is not None and self.axes:
+            both = f"parameters.points and parameters.{next(iter(self.axes))}"
+            raise ValueError(f"{both} are both given; give the axes or the file, not both")
+        missing = [name for name in names if name not in self.axes]
+        if missing and self.points is None:
+            hint = ", or points: FILE.csv" if or_points else ""
+            raise ValueError(f"parameters.{missing[0]} is missing; give {words(names, 'and')}{hint}")
+
+
+class Config(Strict, ABC):
+    """What the config of every task has."""
+
+    title: Annotated[Text, Field(max_length=200)] = ""
+    task: str
+    parameters: Parameters
+    accuracy: Annotated[Number, Field(ge=1e-13, le=1e-2)] = 1e-10
+
+    @property
+    @abstractmethod
+    def names(self) -> tuple[str, ...]:
+        """The parameters that make a point of the sweep."""
 
     @model_validator(mode="after")
-    def _grid_or_points(self) -> "Parameters":
-        given = [name for name in ("F", "k1", "k2", "gamma3") if getattr(self, name) is not None]
-        if self.points is not None and given:
-            raise ValueError(f"both points and {given[0]} are given; give the axes or the file, not both")
-        missing = [name for name in ("F", "k1", "k2", "gamma3") if name not in given]
-        if self.points is None and missing:
-            raise ValueError(f"{missing[0]} is missing; give F, k1, k2 and gamma3, or points: FILE.csv")
+    def _gamma1_only_where_used(self) -> "Config":
+        if self.parameters.gamma1 is not None and not isinstance(self, SpectrumConfig):
+            raise ValueError(
+                f"parameters.gamma1 is given but the task {self.task} does not use it; remove it"
+            )
         return self
 
 
 class SpectrumOptions(Strict):
     """What the task spectrum computes at each point."""
 
-    modes: Annotated[int, Field(ge=1, le=100)] = 4
+    modes: Modes = 4
     certify: bool = True
     vectors: bool = False
-    nodes: Annotated[int, Field(ge=3, le=513)] = 33
+    nodes: Nodes = 33
     """Lobatto nodes on which (Y, Theta) are given, where `vectors` asks for them."""
     longitudinal: bool = False
 
 
-class Config(Strict):
-    """A whole config."""
+class SpectrumConfig(Config):
+    """The leading eigenvalues at every point."""
 
-    title: Annotated[Text, Field(max_length=200)] = ""
     task: Literal["spectrum"]
-    parameters: Parameters
     spectrum: SpectrumOptions = SpectrumOptions()
-    accuracy: Annotated[Number, Field(ge=1e-13, le=1e-2)] = 1e-10
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return PARAMETERS
 
     @model_validator(mode="after")
-    def _only_what_is_used(self) -> "Config":
+    def _only_what_is_used(self) -> "SpectrumConfig":
+        self.parameters.require(PARAMETERS)
         if self.parameters.gamma1 is not None and not self.spectrum.longitudinal:
             raise ValueError(
                 "parameters.gamma1 is given but not used: the transverse spectrum does not contain it; "
@@ -171,3 +102,129 @@ class Config(Strict):
         if "nodes" in self.spectrum.model_fields_set and not self.spectrum.vectors:
             raise ValueError("spectrum.nodes is given but not used; set spectrum.vectors: true or remove it")
         return self
+
+
+class ThresholdsOptions(Strict):
+    """What the task thresholds computes for each rod."""
+
+    F_max: Annotated[Number, Field(gt=0, lt=inf)] = 200.0
+    """The search ends here, or just below k1 where that is less."""
+    crossings: Crossings = 16
+    """The most crossings that are stored."""
+    certify: bool = True
+
+
+class ThresholdsConfig(Config):
+    """The forces at which the spectrum of every rod changes its kind."""
+
+    task: Literal["thresholds"]
+    thresholds: ThresholdsOptions = ThresholdsOptions()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return PARAMETERS[1:]
+
+    @model_validator(mode="after")
+    def _finds_the_force_itself(self) -> "ThresholdsConfig":
+        if self.parameters.F is not None:
+            raise ValueError(
+                "parameters.F is given but the task thresholds finds F itself; remove it and set "
+                "thresholds.F_max"
+            )
+        self.parameters.require(self.names)
+        return self
+
+
+class PhaseDiagramOptions(Strict):
+    """What the task phase_diagram computes along each row."""
+
+    crossings: Crossings = 16
+    """The most crossings that are stored for a row."""
+    certify: bool = True
+    curves: bool = True
+    """Whether the boundaries between the rows are followed as curves."""
+
+
+class PhaseDiagramConfig(Config):
+    """What the rod does over two parameters, row by row: a row is a line in the first of the two."""
+
+    task: Literal["phase_diagram"]
+    phase_diagram: PhaseDiagramOptions = PhaseDiagramOptions()
+
+    @property
+    def plane(self) -> tuple[str, str]:
+        """(line axis, row axis): the two parameters with more than one value, in their usual order."""
+        line, row = long_axes(self.parameters)
+        return line, row
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(name for name in PARAMETERS if name != self.plane[0])
+
+    @model_validator(mode="after")
+    def _two_axes(self) -> "PhaseDiagramConfig":
+        if self.parameters.points is not None:
+            raise ValueError(
+                "parameters.points is given but the task phase_diagram needs axes; remove it and give "
+                f"{words(PARAMETERS, 'and')}"
+            )
+        self.parameters.require(PARAMETERS, or_points=False)
+        long = long_axes(self.parameters)
+        if len(long) != 2:
+            raise ValueError(
+                f"parameters has {len(long)} axes with more than one value ({', '.join(long) or 'none'}); a "
+                f"phase diagram needs exactly two of {words(PARAMETERS, 'and')}"
+            )
+        line = self.parameters.axes[long[0]]
+        if inf in (line.values or ()):
+            raise ValueError(
+                f"parameters.{long[0]} contains inf, which is not allowed on the axis along which a phase "
+                f"diagram is searched; remove it (on the other axis, {long[1]}, k1 and k2 may be inf)"
+            )
+        return self
+
+
+class ModesOptions(Strict):
+    """What the task modes computes at each point."""
+
+    modes: Modes = 2
+    nodes: Nodes = 65
+    """Lobatto nodes on which the modes are given."""
+    growth: bool = True
+    """Whether the numerical abscissa and the transient growth are computed."""
+    certify: bool = True
+
+
+class ModesConfig(Config):
+    """The leading modes at every point, with their adjoints, and what non-normality makes of them."""
+
+    task: Literal["modes"]
+    modes: ModesOptions = ModesOptions()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return PARAMETERS
+
+    @model_validator(mode="after")
+    def _whole_points(self) -> "ModesConfig":
+        self.parameters.require(PARAMETERS)
+        return self
+
+
+CONFIGS: dict[str, type[Config]] = {
+    "spectrum": SpectrumConfig,
+    "thresholds": ThresholdsConfig,
+    "phase_diagram": PhaseDiagramConfig,
+    "modes": ModesConfig,
+}
+"""The config of every task; the section of a task's options has the task's name."""
+
+
+def long_axes(parameters: Parameters) -> list[str]:
+    """The parameters with more than one value."""
+    return [name for name, axis in parameters.axes.items() if axis.size > 1]
+
+
+def words(names: tuple[str, ...], last: str) -> str:
+    """The names as a list in a sentence."""
+    return f"{', '.join(names[:-1])} {last} {names[-1]}"

@@ -7,6 +7,9 @@ from .determinant import ROUND_OFF
 from .path import determinant_along, direction_of
 from .rod import PARAMETERS, Rod
 
+LITTLE = 0.01
+"""Share of the distance from a crushed rod that a small step may use."""
+
 
 @dataclass(frozen=True, slots=True)
 class Axis:
@@ -29,9 +32,13 @@ class Axis:
             return (log(value) - log(self.start)) / (log(self.stop) - log(self.start))
         return (value - self.start) / (self.stop - self.start)
 
+    def stretch(self, value: float) -> float:
+        """d(parameter)/dx at a value of the parameter."""
+        return value * (log(self.stop) - log(self.start)) if self.logarithmic else self.stop - self.start
+
     def slope(self, value: float) -> float:
         """d(path variable)/dx at a value of the parameter; the variable of k1 and k2 is 1/k."""
-        along = value * (log(self.stop) - log(self.start)) if self.logarithmic else self.stop - self.start
+        along = self.stretch(value)
         return -along / value**2 if self.name in ("k1", "k2") else along
 
 
@@ -64,6 +71,13 @@ class Plane:
         axis = self.axes[which]
         D, D_w, D_p, S, noise = determinant_along(w, rod.coefficients, direction_of(rod, axis.name))
         return D, D_w, D_p * axis.slope(getattr(rod, axis.name)), S, noise
+
+    def small_step(self, x: float, y: float, which: int, largest: float) -> float:
+        """A step along an axis, at most `largest`, that changes the distance k1 - F from crushing little."""
+        rod, axis = self.at(x, y), self.axes[which]
+        if axis.name not in ("F", "k1"):
+            return largest
+        return min(largest, LITTLE * (rod.k1 - rod.F) / axis.stretch(getattr(rod, axis.name)))
 
     def inside(self, x: float, y: float) -> bool:
         """Whether the coordinates lie on the plane and the rod is not crushed."""

@@ -15,7 +15,8 @@ import numpy as np
 from .schema import Layout
 
 MAGIC = b"rodsweep journal 1\n"
-RECORDS_AT_ONCE = 4096
+BLOCK = 1 << 24
+"""Bytes read at once."""
 
 
 def journal_directory(file: Path) -> Path:
@@ -61,7 +62,7 @@ def read_journals(directory: Path, layout: Layout, fingerprint: str) -> Iterator
         with path.open("rb") as file:
             if file.read(len(header)) != header:
                 continue
-            while block := file.read(RECORDS_AT_ONCE * (size + 4)):
+            while block := file.read(max(1, BLOCK // (size + 4)) * (size + 4)):
                 raw = np.frombuffer(block, np.uint8)
                 raw = raw[: len(raw) // (size + 4) * (size + 4)].reshape(-1, size + 4)
                 sums = np.ascontiguousarray(raw[:, size:]).view("<u4").ravel()

@@ -1,15 +1,36 @@
-"""What a result file holds, as one table: the variables, their types, dimensions, units and meanings.
+"""What a result file is made of: variables with their types, dimensions, units and meanings.
 
-The same table makes the HDF5 datasets and the records of the journal.
+The same table makes the HDF5 datasets and the records of the journal; `rodsweep.results.layouts` has
+the table of every task.
 """
 
 from dataclasses import dataclass
+from math import prod
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 MISSING = -1
 """Status of a point that has not been computed."""
+
+PARAMETER_NAMES = {
+    "F": ("k3/L^2", "follower force at the tip, along -e1"),
+    "k1": ("k3/L^2", "stretch stiffness; inf is inextensible"),
+    "k2": ("k3/L^2", "shear stiffness; inf is unshearable"),
+    "gamma3": ("gamma2 L^2", "rotational drag"),
+}
+"""Units and long names of the parameters."""
+
+DIMENSIONS = PARAMETER_NAMES | {
+    "point": ("1", "row of the point list, from 0"),
+    "mode": ("1", "leading first: descending growth rate, of a pair the positive frequency first"),
+    "u": ("1", "material coordinate along the rod"),
+    "crossing": ("1", "in increasing order of the parameter that is varied"),
+    "curve_point": ("1", "points of all curves, each curve's one after another"),
+    "fold": ("1", "points where a curve turns back"),
+}
+"""Units and long names of all dimensions."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,69 +43,37 @@ class Variable:
     units: str
     long_name: str
     extra: tuple[str, ...] = ()
+    flags: tuple[tuple[int, str], ...] = ()
+    """Values and meanings, where the variable is a word; those of `status` come from the task's solver."""
+
+
+Filled = tuple[Variable, NDArray[Any]]
+"""A variable that is known as a whole, with its values; `extra` names all of its dimensions."""
 
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """The variables of one file and the lengths of their extra dimensions."""
+    """The variables of one file and their dimensions."""
 
     variables: tuple[Variable, ...]
     extents: dict[str, int]
+    """Lengths of the extra dimensions."""
+    parameters: tuple[str, ...] = tuple(PARAMETER_NAMES)
+    """What makes a point: the dimensions of a grid, or what is given along `point`."""
 
     @property
     def record(self) -> np.dtype:
         """One point as a flat record: its index, then every variable."""
         fields: list[Any] = [("index", "<i8")]
         for v in self.variables:
-            fields.append((v.name, v.dtype, tuple(self.extents[d] for d in v.extra)))
+            fields.append((v.name, v.dtype, self.inner(v)))
         return np.dtype(fields)
 
     @property
     def bytes_per_point(self) -> int:
-        return self.record.itemsize - 8
+        """Size of all variables at one point, also where that is more than a record can hold."""
+        return sum(np.dtype(v.dtype).itemsize * prod(self.inner(v)) for v in self.variables)
 
-
-PARAMETER_NAMES = {
-    "F": ("k3/L^2", "follower force at the tip, along -e1"),
-    "k1": ("k3/L^2", "stretch stiffness; inf is inextensible"),
-    "k2": ("k3/L^2", "shear stiffness; inf is unshearable"),
-    "gamma3": ("gamma2 L^2", "rotational drag"),
-}
-"""Units and long names of the parameters."""
-
-EACH_MODE = (
-    Variable("growth_rate", "<f8", np.nan, "1/tau2", "real part of the transverse eigenvalue", ("mode",)),
-    Variable("frequency", "<f8", np.nan, "1/tau2", "imaginary part of the transverse eigenvalue", ("mode",)),
-    Variable(
-        "error_estimate",
-        "<f8",
-        np.nan,
-        "1/tau2",
-        "modulus of the Newton correction D/D' of the characteristic determinant at the eigenvalue",
-        ("mode",),
-    ),
-)
-EACH_POINT = (
-    Variable("unstable_count", "<i4", -1, "1", "number of modes with positive growth rate; -1: not known"),
-    Variable(
-        "certified", "|i1", 0, "1", "1 where the winding number of D proves that no leading mode is missing"
-    ),
-    Variable("elements", "<i2", 0, "1", "spectral elements used"),
-    Variable("order", "<i2", 0, "1", "polynomial order used"),
-    Variable("seconds", "<f4", np.nan, "s", "time spent on the point"),
-    Variable("status", "|i1", MISSING, "1", "outcome of the point"),
-)
-VECTORS = tuple(
-    Variable(
-        f"{field}_{part}", "<f8", np.nan, "1", f"{word} part of the eigenmode's {meaning}", ("mode", "u")
-    )
-    for field, meaning in (("Y", "deflection, scaled to Y(1) = 1"), ("Theta", "angle, scaled as Y"))
-    for part, word in (("real", "real"), ("imag", "imaginary"))
-)
-
-
-def spectrum_layout(modes: int, vector_nodes: int) -> Layout:
-    """The layout of the task spectrum; vectors only where vector_nodes > 0."""
-    vectors = VECTORS if vector_nodes else ()
-    extents = {"mode": modes} | ({"u": vector_nodes} if vector_nodes else {})
-    return Layout(EACH_MODE + vectors + EACH_POINT, extents)
+    def inner(self, variable: Variable) -> tuple[int, ...]:
+        """Shape of a variable at one point."""
+        return tuple(self.extents[d] for d in variable.extra)

@@ -5,64 +5,29 @@ instant. What ranks finish goes to the journal beside it (`rodsweep.results.jour
 in at the end of a run, or at the start of the next one where a run was killed.
 """
 
-import fcntl
 import json
 import os
 import shutil
-import time
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
-from hashlib import sha256
 from itertools import chain
+from math import prod
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
 from ..errors import EnvironmentLacks, InputError
+from .creation import SIGNATURE, Plan, add_variables, create_file
 from .journal import journal_directory, read_journals
-from .schema import MISSING, PARAMETER_NAMES, Layout, Variable
+from .lock import Lock
+from .schema import MISSING, Filled, Layout
 
 BLOCK = 1 << 20
 """Values read at once where a whole variable is scanned."""
-LOCK_PATIENCE = 5.0
-"""Seconds to wait for the lock: ranks whose launcher was killed live on for a moment."""
 SPACE_FACTOR, SPACE_FIXED = 3, 300_000
 """Room that a run needs: the file, the journals and the copy in units of the file, and bytes besides."""
-SIGNATURE = "rodsweep"
-
-
-@dataclass(frozen=True, slots=True)
-class Plan:
-    """What makes a file: the points, the layout, and the config that it answers."""
-
-    columns: Sequence[NDArray[np.float64]]
-    is_grid: bool
-    layout: Layout
-    coordinates: dict[str, NDArray[np.float64]]
-    """Values of extra dimensions that have some, such as u."""
-    constants: tuple[tuple[Variable, NDArray[np.float64]], ...]
-    """Variables known without solving, with their values: (k1, mode) on a grid, (point, mode) else."""
-    config: dict[str, Any]
-    """The resolved config."""
-    attributes: dict[str, Any]
-    flags: tuple[tuple[int, str], ...]
-    """Values and meanings of `status`, beside MISSING."""
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        return tuple(len(c) for c in self.columns) if self.is_grid else (len(self.columns[0]),)
-
-    @property
-    def fingerprint(self) -> str:
-        """What two files must share for the one to continue the other."""
-        digest = sha256(json.dumps(self.config, sort_keys=True).encode())
-        for column in self.columns:
-            digest.update(np.ascontiguousarray(column).tobytes())
-        return digest.hexdigest()
 
 
 class Store:
@@ -74,7 +39,7 @@ class Store:
         self.journals = journal_directory(path)
         with self._on_disk():
             path.parent.mkdir(parents=True, exist_ok=True)
-            self.lock = self._locked()
+            self.lock = Lock(self.journals, path)
             try:
                 self._open(fresh)
             except BaseException:
@@ -101,11 +66,13 @@ class Store:
             raise InputError(f"{self.path} is no result file, so --fresh leaves it alone")
         self._need_room()
         self._drop_journals()
-        self._create()
+        copy = self._temporary()
+        create_file(copy, self.plan)
+        self._replace(copy)
 
     def _need_room(self) -> None:
         """EnvironmentLacks unless the file, its journals and the copy that replaces it have room."""
-        size = SPACE_FACTOR * int(np.prod(self.plan.shape)) * (self.plan.layout.bytes_per_point + 12)
+        size = SPACE_FACTOR * prod(self.plan.shape) * (self.plan.layout.bytes_per_point + 12)
         size += SPACE_FIXED
         free = shutil.disk_usage(self.path.parent).free
         if free < size:
@@ -132,21 +99,25 @@ class Store:
                         ranges.append((int(a), int(b)))
         return ranges
 
-    def fold(self, attributes: dict[str, Any]) -> None:
-        """Puts all journalled points and the attributes into the file, then drops the journals."""
-        with self._on_disk():
-            self._fold(attributes)
+    def fold(self, attributes: dict[str, Any], additions: Sequence[Filled] = ()) -> None:
+        """Puts all journalled points, the attributes and whole variables into the file; drops the journals.
 
-    def _fold(self, attributes: dict[str, Any]) -> None:
+        `additions` are what only all points together give, such as curves; the file changes in one instant.
+        """
+        with self._on_disk():
+            self._fold(attributes, additions)
+
+    def _fold(self, attributes: dict[str, Any], additions: Sequence[Filled]) -> None:
         blocks = read_journals(self.journals, self.plan.layout, self.plan.fingerprint)
         first = next(blocks, None)
-        if first is not None or attributes:
+        if first is not None or attributes or additions:
             copy = self._temporary()
             shutil.copyfile(self.path, copy)
             if first is not None:
                 write_points(copy, chain([first], blocks), self.plan.layout)
-            if attributes:
+            if attributes or additions:
                 with h5py.File(copy, "r+") as file:
+                    add_variables(file, additions)
                     file.attrs.update(attributes)
             self._replace(copy)
         self._drop_journals()
@@ -163,35 +134,8 @@ class Store:
 
     def close(self) -> None:
         """Gives the lock back and removes the journal directory where nothing is left in it."""
-        (self.journals / "next.h5").unlink(missing_ok=True)
-        (self.journals / "lock").unlink(missing_ok=True)
-        if not any(self.journals.iterdir()):
-            self.journals.rmdir()
-        os.close(self.lock)
-
-    def _locked(self) -> int:
-        """The lock of this file; InputError if another run keeps it."""
-        patience = time.monotonic() + LOCK_PATIENCE
-        while True:
-            self.journals.mkdir(exist_ok=True)
-            try:
-                handle = os.open(self.journals / "lock", os.O_RDWR | os.O_CREAT, 0o644)
-            except FileNotFoundError:  # a run that ended just now took the directory away
-                continue
-            try:
-                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                if os.fstat(handle).st_nlink:
-                    return handle
-            except BlockingIOError:
-                os.close(handle)
-                if time.monotonic() < patience:
-                    time.sleep(0.1)
-                    continue
-                raise InputError(
-                    f"{self.path} is being written by another run; wait for it, or choose another file with "
-                    "-o (several ranks that each say this were started without MPI between them)"
-                ) from None
-            os.close(handle)  # the run that ended just now took this lock file away: take a new one
+        self._temporary().unlink(missing_ok=True)
+        self.lock.release()
 
     def _drop_journals(self) -> None:
         for path in self.journals.glob("rank-*"):
@@ -226,53 +170,6 @@ class Store:
                 "replace it with --fresh"
             )
 
-    def _create(self) -> None:
-        plan = self.plan
-        copy = self._temporary()
-        with h5py.File(copy, "w") as file:
-            dims = self._dimensions(file)
-            for variable in plan.layout.variables:
-                shape = plan.shape + tuple(plan.layout.extents[d] for d in variable.extra)
-                data = _contiguous(file, variable, shape)
-                _describe(file, data, variable, (*dims, *variable.extra))
-            for variable, values in plan.constants:
-                data = file.create_dataset(variable.name, data=values)
-                _describe(file, data, variable, variable.extra)
-            status = file["status"]
-            status.attrs["flag_values"] = np.array([MISSING, *(v for v, _ in plan.flags)], dtype="i1")
-            status.attrs["flag_meanings"] = " ".join(["missing", *(m for _, m in plan.flags)])
-            file.attrs["program"] = SIGNATURE
-            file.attrs["fingerprint"] = plan.fingerprint
-            file.attrs["config_resolved"] = json.dumps(plan.config)
-            file.attrs.update(plan.attributes)
-        self._replace(copy)
-
-    def _dimensions(self, file: h5py.File) -> tuple[str, ...]:
-        """Dimension scales: the four parameters, or `point` with the parameters along it."""
-        plan = self.plan
-        names = tuple(PARAMETER_NAMES)
-        dims: tuple[str, ...] = names if plan.is_grid else ("point",)
-        for name, column in zip(names, plan.columns, strict=True):
-            data = file.create_dataset(name, data=column)
-            if plan.is_grid:
-                data.make_scale(name)
-        scales: dict[str, np.ndarray] = {} if plan.is_grid else {"point": np.arange(plan.shape[0])}
-        for name, extent in plan.layout.extents.items():
-            scales[name] = plan.coordinates.get(name, np.arange(1, extent + 1))
-        for name, values in scales.items():
-            file.create_dataset(name, data=values).make_scale(name)
-        for name, (units, long_name) in PARAMETER_NAMES.items():
-            if not plan.is_grid:
-                file[name].dims[0].attach_scale(file["point"])
-            file[name].attrs.update(units=units, long_name=long_name)
-        extra = {"mode": "leading first: descending growth rate, of a pair the positive frequency first"}
-        extra |= {"u": "material coordinate along the rod", "point": "row of the point list, from 0"}
-        for name in scales:
-            file[name].attrs.update(units="1", long_name=extra[name])
-        if not plan.is_grid:
-            file.attrs["coordinates"] = " ".join(names)
-        return dims
-
 
 def is_ours(path: Path) -> bool:
     """Whether a file is a rodsweep result, or HDF5 that is too damaged to say whose it is."""
@@ -296,8 +193,8 @@ def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> No
     with h5py.File(path, "r") as file:
         for variable in layout.variables:
             data = file[variable.name]
-            inner = tuple(layout.extents[d] for d in variable.extra)
-            points = data.size // int(np.prod(inner))
+            inner = layout.inner(variable)
+            points = data.size // prod(inner)
             places[variable.name] = (data.id.get_offset(), data.dtype, (points, *inner))
     arrays = {
         name: np.memmap(path, dtype, "r+", offset, shape) for name, (offset, dtype, shape) in places.items()
@@ -311,29 +208,10 @@ def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> No
 
 def _blocks(data: h5py.Dataset) -> Iterable[tuple[int, np.ndarray]]:
     """(flat index, values) of a point variable, a block at a time along its first dimension."""
-    step = max(1, BLOCK // max(1, int(np.prod(data.shape[1:]))))
+    step = max(1, BLOCK // max(1, prod(data.shape[1:])))
     for first in range(0, data.shape[0], step):
         block = data[first : first + step]
-        yield first * int(np.prod(data.shape[1:])), block.ravel()
-
-
-def _contiguous(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> h5py.Dataset:
-    """A dataset in one piece that has its place in the file, filled, from the start."""
-    creation = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
-    creation.set_layout(h5py.h5d.CONTIGUOUS)
-    creation.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
-    creation.set_fill_value(np.array(variable.fill, variable.dtype))
-    kind = h5py.h5t.py_create(np.dtype(variable.dtype), logical=True)
-    space = h5py.h5s.create_simple(shape)
-    return h5py.Dataset(h5py.h5d.create(file.id, variable.name.encode(), kind, space, creation))
-
-
-def _describe(file: h5py.File, data: h5py.Dataset, variable: Variable, dims: Sequence[str]) -> None:
-    for axis, name in enumerate(dims):
-        data.dims[axis].attach_scale(file[name])
-    data.attrs.update(units=variable.units, long_name=variable.long_name)
-    if dims and dims[0] == "point":
-        data.attrs["coordinates"] = " ".join(PARAMETER_NAMES)
+        yield first * prod(data.shape[1:]), block.ravel()
 
 
 def difference(theirs: Any, ours: Any, key: str = "") -> str:

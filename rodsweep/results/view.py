@@ -10,7 +10,8 @@ import numpy as np
 
 from ..errors import InputError
 from .journal import journal_directory, read_journals
-from .schema import MISSING, PARAMETER_NAMES, spectrum_layout
+from .layouts import layout_of
+from .schema import MISSING, PARAMETER_NAMES
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,9 +21,16 @@ class View:
     path: Path
     attributes: dict[str, Any]
     variables: dict[str, np.ndarray]
+    parameters: tuple[str, ...]
+    """What makes a point: the dimensions of a grid, or what is given along `point`."""
     flags: dict[int, str]
     journalled: int
     """Finished points that wait in the journal for the next run."""
+
+    @property
+    def task(self) -> str:
+        """The task whose results these are."""
+        return str(self.attributes["task"])
 
     @property
     def is_grid(self) -> bool:
@@ -30,8 +38,8 @@ class View:
 
     @property
     def axes(self) -> dict[str, np.ndarray]:
-        """The parameter axes of a grid, or the columns of a point list."""
-        return {name: self.variables[name] for name in PARAMETER_NAMES}
+        """The parameters that the file knows: axes of a grid, or columns of a point list."""
+        return {name: self.variables[name] for name in PARAMETER_NAMES if name in self.variables}
 
 
 def read_view(path: Path, names: tuple[str, ...] = ()) -> View:
@@ -41,7 +49,7 @@ def read_view(path: Path, names: tuple[str, ...] = ()) -> View:
     try:
         with h5py.File(path, "r") as file:
             attributes = dict(file.attrs)
-            config = json.loads(attributes["config_resolved"])
+            layout = layout_of(json.loads(attributes["config_resolved"]))
             wanted = [n for n in file if not names or n in names or n in PARAMETER_NAMES or n == "point"]
             variables = {name: file[name][...] for name in wanted}
             status = file["status"].attrs
@@ -49,8 +57,6 @@ def read_view(path: Path, names: tuple[str, ...] = ()) -> View:
             flags = dict(zip((int(v) for v in status["flag_values"]), words, strict=True))
     except (OSError, KeyError, ValueError, TypeError, RuntimeError) as error:
         raise InputError(f"{path} is not a whole rodsweep result file ({error})") from None
-    options = config["spectrum"]
-    layout = spectrum_layout(options["modes"], options["nodes"] if options["vectors"] else 0)
     waiting: set[int] = set()
     directory = journal_directory(path)
     if directory.is_dir():
@@ -58,4 +64,4 @@ def read_view(path: Path, names: tuple[str, ...] = ()) -> View:
             waiting.update(block["index"].tolist())
     done = variables.get("status", np.array([MISSING])).ravel()
     journalled = sum(1 for i in waiting if i >= done.size or done[i] == MISSING)
-    return View(path, attributes, variables, flags, journalled)
+    return View(path, attributes, variables, layout.parameters, flags, journalled)

@@ -23,11 +23,12 @@ STEP_FIRST, STEP_LARGEST, STEP_SMALLEST = 0.01, 0.04, 1e-9
 TURN = 0.15
 """Largest angle between successive tangents, in radians; the step follows it."""
 MOST_NEWTON, MOST_POINTS, MOST_FOLD_STEPS = 12, 5000, 80
-DIFFERENCE = 1e-5
-"""Step of the differences in the Jacobian of D_w, which need not be accurate."""
+DIFFERENCE = 1e-3
+STENCIL = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
+"""Step and weights of the differences, of fourth order, in the Jacobian of D_w."""
 FOLD_ACCURACY = 1e-13
 """Component of the tangent, or length of the bracket, that counts as none."""
-HOPF_TANGENT, DOUBLE_TANGENT = 1e-12, 1e-8
+HOPF_TANGENT, DOUBLE_TANGENT = 1e-12, 1e-11
 """Uncertainty of a tangent: from rounding, and from the differences in the Jacobian of D_w."""
 
 
@@ -76,12 +77,13 @@ def double_equations(plane: Plane, v: Vector) -> tuple[Vector, NDArray[np.float6
     jacobian[0] = value[1], value[2], value[3]  # D_x, D_y, w D_w = dD/dh
     size = value[4]
     for i in range(3):
-        step = np.zeros(3)
-        step[i] = DIFFERENCE
-        after, before = _real_rows(plane, v + step)[0], _real_rows(plane, v - step)[0]
-        jacobian[1, i] = (after[3] * math.exp(after[4] - size) - before[3] * math.exp(before[4] - size)) / (
-            2 * DIFFERENCE
-        )
+        h = plane.small_step(v[0], v[1], i, DIFFERENCE) if i < 2 else DIFFERENCE
+        jacobian[1, i] = 0.0
+        for places, weight in STENCIL:
+            step = np.zeros(3)
+            step[i] = places * h
+            there = _real_rows(plane, v + step)[0]
+            jacobian[1, i] += weight * there[3] * math.exp(there[4] - size) / h
     scale = np.abs(jacobian).max(axis=1)
     residual = np.array([value[0], value[3]]) / scale
     return residual, jacobian / scale[:, None], float(blur / scale.min())
@@ -244,10 +246,7 @@ def _as_fold(
 ) -> Fold:
     v, _, error = there
     first, second = (a.value(float(x)) for a, x in zip(plane.axes, v[:2], strict=True))
-    units = [
-        abs(a.slope(x)) * (x**2 if a.name in ("k1", "k2") else 1.0)
-        for a, x in zip(plane.axes, (first, second), strict=True)
-    ]
+    units = [abs(a.stretch(x)) for a, x in zip(plane.axes, (first, second), strict=True)]
     # Across the fold the extremal coordinate does not move to first order, the other one does.
     errors = [unit * (error if i == axis else error + along) for i, unit in enumerate(units)]
     size = math.exp(v[2])

@@ -19,7 +19,7 @@ from ..model.plane import Plane
 from ..model.rod import Rod
 from .continuation import Curve, double_equations, hopf_equations, on_line, trace
 from .leading import Untraceable
-from .thresholds import ThresholdStatus, status_of
+from .thresholds import SHORT_OF_CRUSHED, ThresholdStatus, status_of
 from .transitions import Crossing, Kind, Transitions, transitions
 
 ON_CURVE = 1e-3
@@ -29,24 +29,17 @@ AGREE = 1e-7
 
 
 class Motion(IntEnum):
-    """How a small deflection of the straight rod evolves."""
+    """How a small deflection of the straight rod evolves.
+
+    monotone, oscillatory: stable, and the slowest mode decays without or with oscillations. flutter: at
+    least one mode grows. undecided: on a boundary within its error, or not known. crushed: F >= k1.
+    """
 
     monotone = 0
     oscillatory = 1
     flutter = 2
     undecided = 3
-
-    @property
-    def sentence(self) -> str:
-        return MOTIONS[self]
-
-
-MOTIONS = {
-    Motion.monotone: "stable, and the slowest mode decays without oscillating",
-    Motion.oscillatory: "stable, and the slowest mode decays in oscillations",
-    Motion.flutter: "at least one mode grows",
-    Motion.undecided: "on a boundary within its error, or not known",
-}
+    crushed = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,34 +71,67 @@ class Row:
     message: str = ""
 
 
-def solve_row(rod: Rod, request: RowRequest) -> Row:
-    """The row through `rod` (whose own value of the parameter does not matter); never raises."""
+def solve_row(fixed: dict[str, float], request: RowRequest) -> Row:
+    """The row on which the three parameters `fixed` do not vary; never raises."""
     started = time.perf_counter()
     values = request.values
     try:
         with np.errstate(all="ignore"):
-            found = transitions(Path(rod, request.name), float(values[0]), float(values[-1]), request.certify)
-        motion, unstable = classes(found, values)
-        row = Row(
-            status=status_of(found, request.accuracy, request.certify, request.crossings),
-            motion=motion,
-            unstable_count=unstable,
-            crossings=found.crossings[: request.crossings],
-            crossing_count=len(found.crossings),
-            open_range=found.open_range,
-            certified=found.proved,
-            boxes=found.boxes,
-            solves=found.solves,
-            seconds=0.0,
-            message=found.why_not,
-        )
-    except (Untraceable, ArithmeticError, MemoryError) as error:
-        unknown = np.full(len(values), Motion.undecided, dtype=np.int8)
-        counts = np.full(len(values), -1, dtype=np.int32)
-        nothing = (math.nan, math.nan)
+            row = _searched(fixed, request)
+    except (Untraceable, ArithmeticError, MemoryError, ValueError) as error:
         reason = str(error) or type(error).__name__
-        row = Row(ThresholdStatus.failed, unknown, counts, (), 0, nothing, False, 0, 0, 0.0, reason)
+        row = _blank(ThresholdStatus.failed, len(values), Motion.undecided, reason)
     return replace(row, seconds=time.perf_counter() - started)
+
+
+def _searched(fixed: dict[str, float], request: RowRequest) -> Row:
+    name, values = request.name, request.values
+    F = values if name == "F" else np.full(len(values), fixed["F"])
+    k1 = values if name == "k1" else np.full(len(values), fixed["k1"])
+    alive = k1 * (1 - SHORT_OF_CRUSHED) > F
+    if not alive.any():
+        return _blank(ThresholdStatus.ok, len(values), Motion.crushed, "")
+    start, stop = float(values[alive][0]), float(values[alive][-1])
+    if name == "F" and not alive.all():
+        stop = fixed["k1"] * (1 - SHORT_OF_CRUSHED)
+    if name == "k1" and not alive.all():
+        start = fixed["F"] / (1 - SHORT_OF_CRUSHED) if fixed["F"] > 0 else start
+    rod = Rod(**fixed | {name: start})
+    found = transitions(Path(rod, name), start, stop, request.certify)
+    motion, unstable = classes(found, values)
+    crushed = k1 <= F
+    motion[crushed], unstable[crushed] = Motion.crushed, -1
+    motion[~alive & ~crushed], unstable[~alive & ~crushed] = Motion.undecided, -1
+    return Row(
+        status=status_of(found, request.accuracy, request.certify, request.crossings),
+        motion=motion,
+        unstable_count=unstable,
+        crossings=found.crossings[: request.crossings],
+        crossing_count=len(found.crossings),
+        open_range=found.open_range,
+        certified=found.proved,
+        boxes=found.boxes,
+        solves=found.solves,
+        seconds=0.0,
+        message=found.why_not,
+    )
+
+
+def _blank(status: ThresholdStatus, count: int, motion: Motion, message: str) -> Row:
+    """A row of one class without any change."""
+    return Row(
+        status=status,
+        motion=np.full(count, motion, dtype=np.int8),
+        unstable_count=np.full(count, -1, dtype=np.int32),
+        crossings=(),
+        crossing_count=0,
+        open_range=(math.nan, math.nan),
+        certified=motion == Motion.crushed,
+        boxes=0,
+        solves=0,
+        seconds=0.0,
+        message=message,
+    )
 
 
 def classes(found: Transitions, values: NDArray[np.float64]) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
@@ -140,6 +166,13 @@ class Seed:
     hopf: bool
     eigenvalue: float
     """The frequency of a Hopf point, or the double eigenvalue, which is negative."""
+
+
+def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rate: float) -> Seed | None:
+    """The seed of a change, or None for an overtaking, which lies on neither kind of curve."""
+    if kind in (Kind.hopf, Kind.hopf_reverse, Kind.restabilization):
+        return Seed(values, True, frequency)
+    return Seed(values, False, growth_rate) if kind in (Kind.onset, Kind.real_again) else None
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,7 +30,7 @@ SENTENCES = {
         "is undecided there; move the parameters off the threshold"
     ),
     Status.accuracy_not_reached: (
-        "an eigenvalue is less accurate than asked for and its error estimate says by how much; near "
+        "a number is less accurate than asked for and its error estimate says by how much; near "
         "a double eigenvalue half of the digits are lost, so ask for a lower accuracy there"
     ),
     Status.modes_missing: (

@@ -10,7 +10,7 @@ import numpy as np
 from ..model.path import Path
 from ..model.rod import Rod
 from .leading import Untraceable
-from .transitions import Crossing, Transitions, transitions
+from .transitions import Crossing, Kind, Transitions, transitions
 
 SHORT_OF_CRUSHED = 1e-6
 """How far below k1, relatively, the search ends where F_max lies beyond: at F = k1 the rod is crushed."""
@@ -143,3 +143,9 @@ def status_of(found: Transitions, accuracy: float, certify: bool, most: int) -> 
 def warm_up() -> None:
     """Loads what is compiled and created at first use, so that no point pays for it."""
     solve_thresholds(1e4, 1e4, 1e-4, ThresholdsRequest(40.0, 1e-8, True, 4))
+
+
+def filament_hopf() -> float:
+    """Fc, where the filament (k1 = k2 = inf, gamma3 = 0) starts to flutter (De Canio et al. 2017)."""
+    found = transitions(Path(Rod(0.0, math.inf, math.inf, 0.0), "F"), 0.0, 60.0)
+    return next(c.at for c in found.crossings if c.kind == Kind.hopf)

@@ -1,6 +1,6 @@
-"""What a spectrum sweep will cost, before it starts: unknowns and time a point, from a sample."""
+"""What a sweep will cost, before it starts: for spectra, unknowns and time a point from a sample."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,6 +13,10 @@ FIXED_MS, LINEAR_MS, CUBIC_MS = 0.15, 1.0e-3, 1.2e-7
 """Time of a solve with n unknowns: overhead, orthogonalisation and dense factorisation, measured."""
 SPARSE_FROM, SPARSE_MS = 300, 8e-3
 CERTIFICATE_MS = 0.2
+LINE_MS, LINE_CERTIFICATE_MS = 24.0, 16.0
+"""Time of a search for crossings along one parameter, a mean over 72 rods: some take four times as long."""
+MODES_MS, GROWTH_MS = 4.0, 9.0
+"""Time that the vectors, and the growth that they allow, take beside the eigenvalues: means over 24 rods."""
 MEMORY_PER_UNKNOWN = 40_000
 BASE_MEMORY = 200_000_000
 
@@ -21,17 +25,28 @@ BASE_MEMORY = 200_000_000
 class Estimate:
     """For one core like that of the README's benchmark."""
 
-    unknowns: tuple[int, int]
-    """Smallest and largest number of unknowns over the sample."""
     seconds: float
     """Time of the whole sweep on one rank."""
-    memory: int
+    memory: int = BASE_MEMORY
     """Bytes per rank."""
-    too_large: int
+    unknowns: tuple[int, int] | None = None
+    """Smallest and largest number of unknowns over the sample; None where there is no mesh."""
+    too_large: int = 0
     """Sampled points whose mesh would exceed the limit."""
 
 
-def estimate(points: Points, modes: int, accuracy: float, certify: bool) -> Estimate:
+def estimate_lines(lines: int, certify: bool) -> Estimate:
+    """The cost of searching `lines` rods for crossings, each along one parameter."""
+    return Estimate(lines * 1e-3 * (LINE_MS + (LINE_CERTIFICATE_MS if certify else 0)))
+
+
+def estimate_modes(spectra: Estimate, count: int, growth: bool) -> Estimate:
+    """The cost of modes at `count` points, from that of their eigenvalues alone."""
+    more = count * 1e-3 * (MODES_MS + (GROWTH_MS if growth else 0))
+    return replace(spectra, seconds=spectra.seconds + more, unknowns=None)
+
+
+def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool) -> Estimate:
     """The cost of a sweep from points spread evenly over it."""
     indices = np.unique(np.linspace(0, points.count - 1, min(SAMPLE, points.count)).astype(np.int64))
     sizes = []
@@ -42,9 +57,5 @@ def estimate(points: Points, modes: int, accuracy: float, certify: bool) -> Esti
     dense = FIXED_MS + LINEAR_MS * n + CUBIC_MS * n**3
     each = np.where(n <= SPARSE_FROM, dense, SPARSE_MS * n) + (CERTIFICATE_MS if certify else 0)
     memory = BASE_MEMORY + int(n.max()) * MEMORY_PER_UNKNOWN
-    return Estimate(
-        (min(sizes), max(sizes)),
-        float(each.mean()) * 1e-3 * points.count,
-        memory,
-        int((np.array(sizes) > MOST_UNKNOWNS).sum()),
-    )
+    too_large = int((np.array(sizes) > MOST_UNKNOWNS).sum())
+    return Estimate(float(each.mean()) * 1e-3 * points.count, memory, (min(sizes), max(sizes)), too_large)

@@ -4,77 +4,95 @@ import csv
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..config.schema import Parameters, as_number
+from ..config.schema import Config, words
+from ..config.values import as_number
 from ..errors import InputError
-from ..model.rod import ALLOWED, PARAMETERS, Rod, admissible
+from ..model.rod import ALLOWED, Rod, admissible
 
 
 @dataclass(frozen=True, slots=True)
 class Points:
-    """Values of F, k1, k2, gamma3: a grid's axes (row-major order, gamma3 fastest) or equal columns."""
+    """Values of some parameters: a grid's axes (row-major order, the last fastest) or equal columns."""
 
+    names: tuple[str, ...]
+    """The parameter of each column."""
     columns: tuple[NDArray[np.float64], ...]
     is_grid: bool
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Shape of a result variable: (F, k1, k2, gamma3) or (point,)."""
+        """Shape of a result variable: one dimension per column, or (point,)."""
         return tuple(len(c) for c in self.columns) if self.is_grid else (len(self.columns[0]),)
 
     @property
     def count(self) -> int:
         return math.prod(self.shape)
 
+    def values(self, index: int) -> dict[str, float]:
+        """The parameters at a flat index, by name."""
+        places: tuple[Any, ...] = (index,) * len(self.columns)
+        if self.is_grid:
+            places = np.unravel_index(index, self.shape)
+        return {n: float(c[i]) for n, c, i in zip(self.names, self.columns, places, strict=True)}
+
     def rod(self, index: int) -> Rod:
-        """The rod at a flat index."""
-        if not self.is_grid:
-            return Rod(*(float(c[index]) for c in self.columns))
-        places = np.unravel_index(index, self.shape)
-        return Rod(*(float(c[i]) for c, i in zip(self.columns, places, strict=True)))
+        """The rod at a flat index, where the columns are all four parameters."""
+        return Rod(**self.values(index))
 
 
-def grid_size(parameters: Parameters) -> int:
+def grid_size(config: Config) -> int:
     """Number of points of a grid, known before its axes are made; 0 for a list."""
-    if parameters.points is not None:
+    if config.parameters.points is not None:
         return 0
-    return math.prod(getattr(parameters, name).size for name in PARAMETERS)
+    return math.prod(config.parameters.axes[name].size for name in config.names)
 
 
-def points_of(parameters: Parameters, directory: Path) -> Points:
+def points_of(config: Config, directory: Path) -> Points:
     """The points that the config asks for; InputError for any value that the model does not allow."""
+    parameters = config.parameters
+    if parameters.gamma1 is not None and not admissible("gamma1", parameters.gamma1):
+        raise InputError(
+            f"parameters.gamma1 = {parameters.gamma1:g} is not allowed; it must be {ALLOWED['gamma1']}"
+        )
     if parameters.points is not None:
-        return Points(_read_csv(directory / parameters.points), is_grid=False)
-    axes = [getattr(parameters, name) for name in PARAMETERS]
-    points = Points(tuple(axis.array() for axis in axes), is_grid=True)
-    for name, column in zip(PARAMETERS, points.columns, strict=True):
+        columns = _read_csv(directory / parameters.points, config.names)
+        return Points(config.names, columns, is_grid=False)
+    axes = {name: axis.array() for name, axis in parameters.axes.items()}
+    for name, column in axes.items():
         bad = [value for value in column.tolist() if not admissible(name, value)]
         if bad:
             raise InputError(f"parameters.{name} = {bad[0]:g} is not allowed; it must be {ALLOWED[name]}")
-    F, k1 = points.columns[0], points.columns[1]
-    if F.max() >= k1.min():
+    # A phase diagram may reach into the crushed rods, which are a class of their own.
+    diagram = config.task == "phase_diagram"
+    if diagram and axes["F"].min() >= axes["k1"].max():
         raise InputError(
-            f"parameters.F reaches {F.max():.15g} and parameters.k1 starts at {k1.min():.15g}; F must stay "
-            "below every k1, because the rod is crushed at F = k1"
+            f"parameters.F starts at {axes['F'].min():.15g} and parameters.k1 ends at "
+            f"{axes['k1'].max():.15g}; the rod is crushed where F >= k1, which is everywhere here"
         )
-    return points
+    if not diagram and "F" in axes and axes["F"].max() >= axes["k1"].min():
+        raise InputError(
+            f"parameters.F reaches {axes['F'].max():.15g} and parameters.k1 starts at "
+            f"{axes['k1'].min():.15g}; F must stay below every k1, because the rod is crushed at F = k1"
+        )
+    return Points(config.names, tuple(axes[name] for name in config.names), is_grid=True)
 
 
-def _read_csv(path: Path) -> tuple[NDArray[np.float64], ...]:
-    """The columns F, k1, k2, gamma3 of a CSV file with that header, in any order."""
+def _read_csv(path: Path, names: tuple[str, ...]) -> tuple[NDArray[np.float64], ...]:
+    """The columns `names` of a CSV file with that header, in any order."""
     if path.exists() and not path.is_file():
         raise InputError(f"parameters.points: {path} is not a file")
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
             rows = csv.reader(file)
             header = [cell.strip() for cell in next(rows, [])]
-            if sorted(header) != sorted(PARAMETERS):
-                raise InputError(
-                    f"{path}: the header is {','.join(header)[:100]!r}; it must name {', '.join(PARAMETERS)}"
-                )
+            if sorted(header) != sorted(names):
+                given = ",".join(header)[:100]
+                raise InputError(f"{path}: the header is {given!r}; it must name {words(names, 'and')}")
             values = [_row(row, header, f"{path}, line {rows.line_num}") for row in rows if row]
     except OSError as error:
         raise InputError(f"parameters.points: {path} cannot be read: {error.strerror}") from error
@@ -83,7 +101,7 @@ def _read_csv(path: Path) -> tuple[NDArray[np.float64], ...]:
     if not values:
         raise InputError(f"{path}: there is no point after the header")
     table = np.array(values)
-    return tuple(table[:, header.index(name)] for name in PARAMETERS)
+    return tuple(table[:, header.index(name)] for name in names)
 
 
 def _row(row: list[str], header: list[str], where: str) -> list[float]:
@@ -97,8 +115,9 @@ def _row(row: list[str], header: list[str], where: str) -> list[float]:
             numbers.append(as_number(float(cell)))
         except ValueError:
             raise InputError(f"{where}: {name} = {cell.strip()[:40]!r} is not a number") from None
+    unloaded = {"F": 0.0}  # where F is no column
     try:
-        Rod(**dict(zip(header, numbers, strict=True)))
+        Rod(**(unloaded | dict(zip(header, numbers, strict=True))))
     except ValueError as error:
         raise InputError(f"{where}: {error}") from None
     return numbers

@@ -1,18 +1,32 @@
-"""What `rodsweep show` prints: axes, statuses with their meaning, cost and accuracy."""
+"""What `rodsweep show` prints: axes, statuses with their meaning, cost, and what the task has to tell."""
+
+from collections.abc import Callable
 
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from ..results.schema import MISSING
-from ..results.view import View
+from ...results.schema import DIMENSIONS, MISSING
+from ...results.view import View
+from .modes import modes_lines
+from .phase_diagram import phase_diagram_lines
+from .spectrum import spectrum_lines
+from .thresholds import thresholds_lines
+
+LINES: dict[str, Callable[[View, np.ndarray], list[str]]] = {
+    "spectrum": spectrum_lines,
+    "thresholds": thresholds_lines,
+    "phase_diagram": phase_diagram_lines,
+    "modes": modes_lines,
+}
+"""What each task has to tell of its computed points, from (view, which points are computed)."""
 
 
 def show_summary(view: View) -> None:
     """Prints a summary of a result file."""
     console = Console(highlight=False)
     a = view.attributes
-    console.print(f"{view.path}: {a.get('title', '')}, task {a.get('task', '')}", markup=False)
+    console.print(f"{view.path}: {a.get('title', '')}, task {view.task}", markup=False)
     console.print(_axes(view))
     status = view.variables["status"]
     console.print(_statuses(view, status))
@@ -24,7 +38,13 @@ def show_summary(view: View) -> None:
         )
     done = status != MISSING
     if done.any():
-        _numbers(console, view, done)
+        seconds = view.variables["seconds"][done]
+        console.print(
+            f"time a point: median {1e3 * np.median(seconds):.3g} ms, longest {1e3 * seconds.max():.3g} ms, "
+            f"all together {seconds.sum():.3g} s"
+        )
+        for line in LINES[view.task](view, done):
+            console.print(line)
     ran = (
         f"{a['started']} to {a['finished']} on {a['ranks']} ranks" if "finished" in a else "not finished yet"
     )
@@ -38,10 +58,9 @@ def _axes(view: View) -> Table:
     table = Table(box=None, pad_edge=False)
     for heading in ("parameter", "values", "from", "to", "unit"):
         table.add_column(heading)
-    units = {"gamma3": "gamma2 L^2"}
     for name, values in view.axes.items():
         low, high = values.min(), values.max()
-        table.add_row(name, str(len(values)), f"{low:.6g}", f"{high:.6g}", units.get(name, "k3/L^2"))
+        table.add_row(name, str(len(values)), f"{low:.6g}", f"{high:.6g}", DIMENSIONS[name][0])
     return table
 
 
@@ -59,26 +78,3 @@ def _statuses(view: View, status: np.ndarray) -> Table:
         name = view.flags.get(int(value), f"unknown ({value})")
         table.add_row(name, str(count), sentences.get(name, ""))
     return table
-
-
-def _numbers(console: Console, view: View, done: np.ndarray) -> None:
-    v = view.variables
-    seconds = v["seconds"][done]
-    console.print(
-        f"time a point: median {1e3 * np.median(seconds):.3g} ms, longest {1e3 * seconds.max():.3g} ms, "
-        f"all together {seconds.sum():.3g} s"
-    )
-    size = np.hypot(v["growth_rate"][done], v["frequency"][done])
-    relative = v["error_estimate"][done] / size
-    if np.isfinite(relative).any():
-        console.print(
-            f"error estimate, relative: worst {np.nanmax(relative):.1e}, median {np.nanmedian(relative):.1e}"
-        )
-    unknowns = 3 * v["elements"][done].astype(int) * v["order"][done]
-    console.print(f"unknowns a point: {unknowns.min()} to {unknowns.max()}")
-    unstable = v["unstable_count"][done]
-    console.print(
-        f"certified: {int(v['certified'][done].sum())} of {int(done.sum())}; unstable modes: at most "
-        f"{max(int(unstable.max()), 0)}, at {int((unstable > 0).sum())} points; not known at "
-        f"{int((unstable < 0).sum())}"
-    )

@@ -1,43 +1,25 @@
-"""Figures of a result file: a line of spectra as the paper's Fig. 2 draws it, or a map over two axes."""
+"""The figure of the task spectrum: a line of spectra as in the paper's Fig. 2, or a map over two axes."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from ..errors import EnvironmentLacks, InputError
-from ..results.view import View
+from ...errors import InputError
+from ...results.view import View
+from .style import FIRST, LABELS, SECOND, SYMBOLS, is_logarithmic, plain
 
-SYMBOLS = {"F": r"\tilde F", "k1": r"\tilde k_1", "k2": r"\tilde k_2", "gamma3": r"\tilde\gamma_3"}
-LABELS = {
-    "F": rf"follower force ${SYMBOLS['F']}$",
-    "k1": rf"stretch stiffness ${SYMBOLS['k1']}$",
-    "k2": rf"shear stiffness ${SYMBOLS['k2']}$",
-    "gamma3": rf"rotational drag ${SYMBOLS['gamma3']}$",
-}
-FIRST, SECOND = "#0072B2", "#D55E00"
-"""Blue and vermilion: told apart by the colour-blind and in grey."""
-STYLE = {"font.size": 10, "axes.grid": False, "axes.spines.top": False, "axes.spines.right": False}
-FORMATS = (".png", ".pdf", ".svg")
 ROOTS = {
     "rightmost": "the two rightmost roots",
     "smallest": "of the stored roots, the two smallest in magnitude",
 }
 
 
-def draw(view: View, output: Path, roots: str) -> str:
-    """Draws the file's figure into `output`; returns a sentence about it.
-
-    Raises InputError where there is nothing that a figure could show.
-    """
+def draw_spectrum(view: View, roots: str) -> tuple[Figure, str]:
+    """The figure and what it shows; InputError where there is nothing that a figure could show."""
     if not view.is_grid:
         raise InputError(f"{view.path} is a list of points; a figure needs a grid with one or two long axes")
-    if output.suffix not in FORMATS:
-        raise InputError(f"--output {output}: the name must end in {', '.join(FORMATS)}")
-    if output.is_dir() or (output.exists() and output.samefile(view.path)):
-        raise InputError(f"--output {output} is not a name for a figure; choose another")
     if not np.isfinite(view.variables["growth_rate"]).any():
         raise InputError(f"{view.path} holds no computed point that could be drawn")
     view = without_infinite(view)
@@ -47,14 +29,9 @@ def draw(view: View, output: Path, roots: str) -> str:
             f"{view.path} has {len(long)} axes with more than one value ({', '.join(long) or 'none'}); a "
             "figure needs one or two"
         )
-    with matplotlib.rc_context(STYLE):
-        figure = _line(view, long[0], roots) if len(long) == 1 else _map(view, long)
-        try:
-            figure.savefig(output, dpi=160)
-        except OSError as error:
-            raise EnvironmentLacks(f"{output} cannot be written: {error.strerror}") from error
-    what = ROOTS[roots] if len(long) == 1 else "the leading growth rate"
-    return f"wrote {output}: {what}"
+    if len(long) == 1:
+        return _line(view, long[0], roots), ROOTS[roots]
+    return _map(view, long), "the leading growth rate"
 
 
 def without_infinite(view: View) -> View:
@@ -67,11 +44,6 @@ def without_infinite(view: View) -> View:
             for key in ("growth_rate", "frequency", "unstable_count"):
                 variables[key] = np.compress(finite, variables[key], axis=place)
     return replace(view, variables=variables)
-
-
-def plain(text: object) -> str:
-    """A user's text, in which a dollar is a dollar and not mathematics."""
-    return str(text).replace("$", r"\$")
 
 
 def followed_roots(growth: np.ndarray, frequency: np.ndarray, roots: str) -> np.ndarray:
@@ -119,7 +91,7 @@ def _line(view: View, name: str, roots: str) -> Figure:
     )
     top.axhline(0, color="0.5", lw=0.6)
     bottom.axvline(0, color="0.5", lw=0.6)
-    if _is_logarithmic(x):
+    if is_logarithmic(x):
         top.set_xscale("log")
     top.set(xlabel=LABELS[name], ylabel=r"$\omega\,\tau_2$", xlim=(x[0], x[-1]))
     bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
@@ -142,17 +114,9 @@ def _map(view: View, names: list[str]) -> Figure:
     if np.nanmin(growth) < 0 < np.nanmax(growth):
         axes.contour(x, y, growth.T, levels=[0.0], colors="k", linewidths=1.2)
     for values, scale in ((x, axes.set_xscale), (y, axes.set_yscale)):
-        if _is_logarithmic(values):
+        if is_logarithmic(values):
             scale("log")
     axes.set(xlabel=LABELS[horizontal], ylabel=LABELS[vertical])
     figure.colorbar(mesh, label=r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$")
     axes.set_title(f"{plain(view.attributes.get('title', ''))}; black: zero growth", fontsize=9)
     return figure
-
-
-def _is_logarithmic(values: np.ndarray) -> bool:
-    """Whether an axis was spaced in equal ratios."""
-    if len(values) < 3 or values[0] <= 0 or not np.isfinite(values).all():
-        return False
-    ratio = values[1:] / values[:-1]
-    return bool(np.ptp(ratio) < 1e-6 * ratio[0] and np.ptp(np.diff(values)) > 1e-6 * values[-1])

@@ -1,0 +1,77 @@
+"""What a search along one parameter found, as variables of the file: the same for a rod and for a row."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from ...results.layouts import CROSSING_KINDS
+
+if TYPE_CHECKING:
+    from ...solve.thresholds import ThresholdStatus
+    from ...solve.transitions import Crossing
+
+
+class Search(Protocol):
+    """What the searches of thresholds and of rows have in common."""
+
+    @property
+    def status(self) -> "ThresholdStatus": ...
+
+    @property
+    def crossings(self) -> "tuple[Crossing, ...]": ...
+
+    @property
+    def crossing_count(self) -> int: ...
+
+    @property
+    def open_range(self) -> tuple[float, float]: ...
+
+    @property
+    def certified(self) -> bool: ...
+
+    @property
+    def boxes(self) -> int: ...
+
+    @property
+    def solves(self) -> int: ...
+
+    @property
+    def seconds(self) -> float: ...
+
+
+def search_record(result: Search, most: int, at: str) -> dict[str, Any]:
+    """The variables of a search: at most `most` crossings, whose place is the variable `at`."""
+    return {
+        "crossing_count": result.crossing_count,
+        "open_from": result.open_range[0],
+        "open_to": result.open_range[1],
+        "certified": result.certified,
+        "boxes": result.boxes,
+        "solves": result.solves,
+        "seconds": result.seconds,
+        "status": int(result.status),
+    } | _along_crossing(result.crossings[:most], most, at)
+
+
+def first_of(crossings: "Sequence[Crossing]", kind: str) -> "Crossing | None":
+    """The first crossing of a kind."""
+    number = CROSSING_KINDS.index(kind)
+    return next((crossing for crossing in crossings if crossing.kind == number), None)
+
+
+def _along_crossing(crossings: "Sequence[Crossing]", most: int, at: str) -> dict[str, Any]:
+    """The variables along `crossing`, filled up to `most`."""
+    columns: dict[str, tuple[str, float]] = {
+        at: ("at", np.nan),
+        "crossing_kind": ("kind", 0),
+        "crossing_frequency": ("frequency", np.nan),
+        "crossing_growth_rate": ("growth_rate", np.nan),
+        "crossing_error": ("error", np.nan),
+        "unstable_after": ("unstable_after", -1),
+    }
+    spare = most - len(crossings)
+    return {
+        name: [getattr(crossing, field) for crossing in crossings] + [fill] * spare
+        for name, (field, fill) in columns.items()
+    }

@@ -1,0 +1,99 @@
+"""The task modes: the leading modes with their adjoints, and what non-normality makes of them."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...config import ModesConfig
+from ...discretization.quadrature import lobatto_points
+from ...model.rod import Rod
+from ...results.layouts import GROWTH
+from ...results.schema import Filled
+from ...sweep.estimate import Estimate, estimate_modes, estimate_spectra
+from ...sweep.grid import Points
+from .parts import LEFT_OUT, certificate_part, count_of, rod_parts
+from .protocol import Part, Solver
+
+if TYPE_CHECKING:
+    from ...solve.modes import Modes
+
+
+@dataclass(frozen=True, slots=True)
+class ModesTask:
+    """Modes on their points."""
+
+    config: ModesConfig
+    points: Points
+
+    def coordinates(self) -> dict[str, np.ndarray]:
+        return {"u": lobatto_points(self.config.modes.nodes)}
+
+    def constants(self) -> tuple[Filled, ...]:
+        return ()
+
+    def headline(self) -> str:
+        options = self.config.modes
+        return f"{count_of(self.points)}, {options.modes} leading modes each, on {options.nodes} nodes"
+
+    def parts(self) -> list[Part]:
+        options = self.config.modes
+        return [
+            *rod_parts(dict(zip(self.points.names, self.points.columns, strict=True))),
+            ("transverse modes and their adjoints", True, "task: modes"),
+            (
+                "transient growth, numerical abscissa",
+                options.growth,
+                "in the norm of the dissipation" if options.growth else "modes.growth: false",
+            ),
+            ("longitudinal modes", False, "they decouple; the task spectrum has them"),
+            certificate_part("modes", options.certify, "modes may be missed"),
+            LEFT_OUT,
+        ]
+
+    def cost(self) -> Estimate:
+        options = self.config.modes
+        spectra = estimate_spectra(self.points, options.modes, self.config.accuracy, options.certify)
+        return estimate_modes(spectra, self.points.count, options.growth)
+
+    def solver(self) -> Solver:
+        from ...solve.modes import ModesRequest, solve_modes
+        from ...solve.status import Status
+
+        options = self.config.modes
+        request = ModesRequest(
+            options.modes, self.config.accuracy, options.nodes, options.growth, options.certify
+        )
+        first = ModesRequest(2, 1e-4, 9, options.growth, True)
+        return Solver(
+            statuses=tuple(Status),
+            warm_up=lambda: solve_modes(Rod(30.0, 1e4, 1e4, 1e-4), first),
+            solve=lambda index: solve_modes(self.points.rod(index), request),
+            record=lambda result: record(result, options.growth),
+        )
+
+
+def record(result: "Modes", growth: bool) -> dict[str, Any]:
+    """Modes as the variables of the file."""
+    values: dict[str, Any] = {
+        "growth_rate": result.eigenvalues.real,
+        "frequency": result.eigenvalues.imag,
+        "error_estimate": result.error_estimate,
+        "mode_error": result.mode_error,
+        "pairing_real": result.pairing.real,
+        "pairing_imag": result.pairing.imag,
+        "condition": result.condition,
+        "condition_error": result.condition_error,
+        "unstable_count": result.unstable_count,
+        "certified": result.certified,
+        "elements": result.elements,
+        "order": result.order,
+        "seconds": result.seconds,
+        "status": int(result.status),
+    }
+    fields = ("Y", "Theta", "h2", "Pi", "adjoint_Y", "adjoint_Theta")
+    for name, field in zip(fields, (*result.right, *result.deformation, *result.left), strict=True):
+        values[f"{name}_real"], values[f"{name}_imag"] = field.real, field.imag
+    if growth:
+        values |= {variable.name: getattr(result, variable.name) for variable in GROWTH}
+    return values

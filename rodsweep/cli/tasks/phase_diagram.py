@@ -1,0 +1,155 @@
+"""The task phase_diagram: what the rod does over two parameters, row by row."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...config import PhaseDiagramConfig
+from ...model.plane import Axis, Plane
+from ...model.rod import Rod
+from ...results.layouts import curve_variables
+from ...results.schema import Filled
+from ...results.view import View
+from ...sweep.estimate import Estimate, estimate_lines
+from ...sweep.grid import Points
+from .crossings import search_record
+from .parts import LEFT_OUT, certificate_part, rod_parts
+from .protocol import Part, Solver
+
+if TYPE_CHECKING:
+    from ...solve.continuation import Curve
+    from ...solve.diagram import Curves, Row
+
+
+@dataclass(frozen=True, slots=True)
+class PhaseDiagramTask:
+    """A phase diagram; its points are the rows, each a line of values of the first of its two parameters."""
+
+    config: PhaseDiagramConfig
+    points: Points
+
+    @property
+    def line(self) -> np.ndarray:
+        """Values along every row."""
+        return self.config.parameters.axes[self.config.plane[0]].array()
+
+    def coordinates(self) -> dict[str, np.ndarray]:
+        return {self.config.plane[0]: self.line}
+
+    def constants(self) -> tuple[Filled, ...]:
+        return ()
+
+    def headline(self) -> str:
+        line, row = self.config.plane
+        return f"{self.points.count} rows, one for each {row}, of {len(self.line)} values of {line} each"
+
+    def parts(self) -> list[Part]:
+        options = self.config.phase_diagram
+        columns = dict(zip(self.points.names, self.points.columns, strict=True)) | self.coordinates()
+        curves = "followed from row to row" if options.curves else "phase_diagram.curves: false"
+        return [
+            *rod_parts(columns),
+            ("monotone, oscillatory, flutter", True, "task: phase_diagram"),
+            ("crossings along each row", True, f"at most {options.crossings} are stored for each row"),
+            ("boundaries as curves", options.curves, curves),
+            certificate_part("phase_diagram", options.certify, "crossings may be missed"),
+            LEFT_OUT,
+        ]
+
+    def cost(self) -> Estimate:
+        return estimate_lines(self.points.count, self.config.phase_diagram.certify)
+
+    def solver(self) -> Solver:
+        from ...solve.diagram import RowRequest, solve_row
+        from ...solve.thresholds import ThresholdStatus, warm_up
+
+        options = self.config.phase_diagram
+        request = RowRequest(
+            self.config.plane[0], self.line, self.config.accuracy, options.certify, options.crossings
+        )
+        return Solver(
+            statuses=tuple(ThresholdStatus),
+            warm_up=warm_up,
+            solve=lambda index: solve_row(self.points.values(index), request),
+            record=lambda result: record(result, options.crossings),
+            finish=self.curves if options.curves else None,
+        )
+
+    def curves(self, view: View) -> list[Filled]:
+        """The boundaries through the crossings of all rows, with their folds, as variables of the file."""
+        from ...solve.diagram import curves_through, seed_of
+
+        line, row = self.config.plane
+        rows = self.points.columns[self.points.names.index(row)]
+        finite = rows[np.isfinite(rows)]
+        if len(finite) < 2:
+            return []
+        plane = Plane(self._rod(), (self._axis(line, self.line), self._axis(row, finite)))
+        names = ("crossing_at", "crossing_kind", "crossing_frequency", "crossing_growth_rate")
+        at, kind, frequency, rate = (view.variables[n].reshape(len(rows), -1) for n in names)
+        seeds = [
+            seed_of(
+                (float(at[i, j]), float(rows[i])), int(kind[i, j]), float(frequency[i, j]), float(rate[i, j])
+            )
+            for i in np.flatnonzero(np.isfinite(rows))
+            for j in np.flatnonzero(kind[i])
+        ]
+        found = curves_through(plane, [seed for seed in seeds if seed is not None])
+        variables = curve_variables(line, row)
+        values = curve_record(found, line, row) | (self._partial_beam() if {line, row} == {"F", "k1"} else {})
+        return [(variables[name], np.asarray(value)) for name, value in values.items()]
+
+    def _axis(self, name: str, values: np.ndarray) -> Axis:
+        logarithmic = self.config.parameters.axes[name].logarithmic
+        return Axis(name, float(values[0]), float(values[-1]), logarithmic)
+
+    def _rod(self) -> Rod:
+        """Some rod of the plane that is not crushed."""
+        axes = {name: axis.array() for name, axis in self.config.parameters.axes.items()}
+        values = {name: float(column[-1] if name == "k1" else column[0]) for name, column in axes.items()}
+        return Rod(**values)
+
+    @staticmethod
+    def _partial_beam() -> dict[str, float]:
+        """Where the partial beam limit has the fold of the Hopf curve (Sec. VIII): k1 = 4 Fc, F = 2 Fc."""
+        from ...solve.thresholds import filament_hopf
+
+        Fc = filament_hopf()
+        return {"filament_F_hopf": Fc, "partial_beam_k1": 4 * Fc, "partial_beam_F": 2 * Fc}
+
+
+def record(result: "Row", most: int) -> dict[str, Any]:
+    """A row as the variables of the file."""
+    classes = {"class": result.motion, "unstable_count": result.unstable_count}
+    return classes | search_record(result, most, "crossing_at")
+
+
+def curve_record(found: "Curves", line: str, row: str) -> dict[str, Any]:
+    """Curves and folds as the variables of the file."""
+    curves = found.curves
+    folds = [(number, curve.hopf, fold) for number, curve in enumerate(curves, 1) for fold in curve.folds]
+    points = np.concatenate([curve.values for curve in curves]) if curves else np.empty((0, 2))
+
+    def along(of: Callable[["Curve"], Any]) -> list[np.ndarray]:
+        return [np.broadcast_to(of(curve), len(curve.values)) for curve in curves] or [np.empty(0)]
+
+    values: dict[str, Any] = {
+        "curve_number": np.repeat(np.arange(1, len(curves) + 1), [len(c.values) for c in curves]),
+        "curve_kind": np.concatenate(along(lambda c: c.hopf)),
+        "curve_frequency": np.concatenate(along(lambda c: c.frequency)),
+        "curve_growth_rate": np.concatenate(along(lambda c: c.growth_rate)),
+        "fold_curve": [number for number, _, _ in folds],
+        "fold_kind": [hopf for _, hopf, _ in folds],
+        "fold_of": [fold.axis for _, _, fold in folds],
+        "fold_frequency": [fold.frequency for _, _, fold in folds],
+        "fold_growth_rate": [fold.growth_rate for _, _, fold in folds],
+        "curve_agreement": found.agreement,
+        "curves_untraced": found.untraced,
+    }
+    for place, name in enumerate((line, row)):
+        values[f"curve_{name}"] = points[:, place]
+        values[f"fold_{name}"] = [fold.values[place] for _, _, fold in folds]
+        values[f"fold_{name}_error"] = [fold.errors[place] for _, _, fold in folds]
+    return values

@@ -1,0 +1,66 @@
+"""What a task is, for `check` and `run`: neither knows more of it than is said here.
+
+A task is made from its config and its points, is sent to all ranks, and knows no PETSc until its
+solver is asked for.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from ...results.schema import Filled
+from ...results.view import View
+from ...sweep.estimate import Estimate
+
+Part = tuple[str, bool, str]
+"""(what, whether it is modelled, why): a row of what `check` prints."""
+
+
+class Status(Protocol):
+    """How a point ended: a member of the task's own IntEnum, of which 0 is ok."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def sentence(self) -> str: ...
+
+    def __int__(self) -> int: ...
+
+
+@dataclass(frozen=True, slots=True)
+class Solver:
+    """What every rank of a run does with a point; `solve` gives an outcome with status and message."""
+
+    statuses: Sequence[Status]
+    warm_up: Callable[[], object]
+    """Loads what is compiled and created at first use, so that no point pays for it."""
+    solve: Callable[[int], Any]
+    record: Callable[[Any], dict[str, Any]]
+    """An outcome as the variables of the file."""
+    finish: Callable[[View], Sequence[Filled]] | None = None
+    """Variables that only all points together give, on the first rank, from the file with all points."""
+
+
+class Task(Protocol):
+    """One task on its points."""
+
+    def coordinates(self) -> dict[str, np.ndarray]:
+        """Values of the layout's extra dimensions that have some."""
+
+    def constants(self) -> tuple[Filled, ...]:
+        """Variables that are known without solving."""
+
+    def headline(self) -> str:
+        """How many points there are, and what is asked of each."""
+
+    def parts(self) -> list[Part]:
+        """What is modelled and what is left out."""
+
+    def cost(self) -> Estimate:
+        """What the run will cost."""
+
+    def solver(self) -> Solver:
+        """Starts PETSc, which only a valid config is worth."""

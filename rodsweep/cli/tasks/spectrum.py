@@ -1,0 +1,114 @@
+"""The task spectrum: the leading eigenvalues at every point."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...config import SpectrumConfig
+from ...discretization.quadrature import lobatto_points
+from ...discretization.resolution import mesh_accuracy
+from ...errors import InputError
+from ...model.longitudinal import longitudinal_rates
+from ...results.schema import Filled, Variable
+from ...sweep.estimate import Estimate, estimate_spectra
+from ...sweep.grid import Points
+from .parts import LEFT_OUT, certificate_part, count_of, rod_parts
+from .protocol import Part, Solver
+
+if TYPE_CHECKING:
+    from ...solve.spectrum import Spectrum
+
+
+@dataclass(frozen=True, slots=True)
+class SpectrumTask:
+    """Spectra on their points."""
+
+    config: SpectrumConfig
+    points: Points
+
+    def __post_init__(self) -> None:
+        if self.config.spectrum.longitudinal and np.isinf(self._k1).any():
+            raise InputError("spectrum.longitudinal needs finite k1: a rod with k1 = inf cannot stretch")
+
+    @property
+    def _k1(self) -> np.ndarray:
+        return self.points.columns[self.points.names.index("k1")]
+
+    @property
+    def _vector_nodes(self) -> int:
+        return self.config.spectrum.nodes if self.config.spectrum.vectors else 0
+
+    def coordinates(self) -> dict[str, np.ndarray]:
+        """The material coordinate of the vectors' nodes, where there are vectors."""
+        return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
+
+    def constants(self) -> tuple[Filled, ...]:
+        """The longitudinal rates, where they are asked for: along k1 on a grid, along the points else."""
+        gamma1 = self.config.parameters.gamma1
+        if gamma1 is None:
+            return ()
+        rates = np.array([longitudinal_rates(float(k), gamma1, self.config.spectrum.modes) for k in self._k1])
+        dims = ("k1" if self.points.is_grid else "point", "mode")
+        meaning = f"longitudinal eigenvalue, real, for gamma1 = {gamma1:g}"
+        return ((Variable("longitudinal_rate", "<f8", np.nan, "1/tau2", meaning, dims), rates),)
+
+    def headline(self) -> str:
+        return f"{count_of(self.points)}, {self.config.spectrum.modes} leading modes each"
+
+    def parts(self) -> list[Part]:
+        options = self.config.spectrum
+        closed = "closed form, no mesh"
+        return [
+            *rod_parts(dict(zip(self.points.names, self.points.columns, strict=True))),
+            ("transverse modes", True, "task: spectrum"),
+            (
+                "longitudinal modes",
+                options.longitudinal,
+                closed if options.longitudinal else "they decouple; spectrum.longitudinal adds them",
+            ),
+            (
+                "eigenvectors",
+                options.vectors,
+                f"on {options.nodes} nodes" if options.vectors else "spectrum.vectors adds them",
+            ),
+            certificate_part("spectrum", options.certify, "modes may be missed"),
+            LEFT_OUT,
+        ]
+
+    def cost(self) -> Estimate:
+        options = self.config.spectrum
+        accuracy = mesh_accuracy(self.config.accuracy, options.vectors)
+        return estimate_spectra(self.points, options.modes, accuracy, options.certify)
+
+    def solver(self) -> Solver:
+        from ...solve.spectrum import SpectrumRequest, solve_spectrum, warm_up
+        from ...solve.status import Status
+
+        options = self.config.spectrum
+        request = SpectrumRequest(options.modes, self.config.accuracy, options.certify, self._vector_nodes)
+        return Solver(
+            statuses=tuple(Status),
+            warm_up=warm_up,
+            solve=lambda index: solve_spectrum(self.points.rod(index), request),
+            record=record,
+        )
+
+
+def record(result: "Spectrum") -> dict[str, Any]:
+    """A Spectrum as the variables of the file."""
+    values: dict[str, Any] = {
+        "growth_rate": result.eigenvalues.real,
+        "frequency": result.eigenvalues.imag,
+        "error_estimate": result.error_estimate,
+        "unstable_count": result.unstable_count,
+        "certified": result.certified,
+        "elements": result.elements,
+        "order": result.order,
+        "seconds": result.seconds,
+        "status": int(result.status),
+    }
+    if result.vectors is not None:
+        for field, vector in zip(("Y", "Theta"), result.vectors, strict=True):
+            values[f"{field}_real"], values[f"{field}_imag"] = vector.real, vector.imag
+    return values

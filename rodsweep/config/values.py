@@ -1,0 +1,123 @@
+"""What a value in a config may be: a number, text, or the axis of a parameter. Knows no key, no physics."""
+
+from math import inf, isnan
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, BeforeValidator, ConfigDict
+
+MOST_VALUES = 1_000_000_000
+"""Values on one axis."""
+
+
+class Strict(BaseModel):
+    """A section of the config: unknown keys are refused, types are not guessed, values are frozen."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+def as_number(value: Any) -> float:
+    """A YAML number, or the words inf and -inf; raises ValueError with a sentence otherwise."""
+    if isinstance(value, str) and value.strip().lower() in ("inf", "+inf", "-inf"):
+        return float(value)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueError(f"{short(value)} is not a number")
+    try:
+        number = float(value)
+    except OverflowError:
+        raise ValueError(f"{short(value)} is too large for a floating-point number") from None
+    if isnan(number):
+        raise ValueError("nan is not a number")
+    return number
+
+
+def short(value: Any) -> str:
+    """`value` as the user may recognise it, cut to a line."""
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def as_text(value: Any) -> Any:
+    """Text without control characters or lone surrogates, which no file name and no title needs."""
+    if isinstance(value, str) and not all(c.isprintable() or c == " " for c in value):
+        raise ValueError(f"{short(value)} has characters that cannot be printed")
+    return value
+
+
+Text = Annotated[str, BeforeValidator(as_text)]
+Number = Annotated[float, BeforeValidator(as_number)]
+
+
+class Axis(Strict):
+    """Values of one parameter: one number, a list, or `num` values from start to stop."""
+
+    values: tuple[float, ...] | None = None
+    start: float = 0.0
+    stop: float = 0.0
+    num: int = 0
+    spacing: Literal["linear", "log"] = "linear"
+
+    @property
+    def size(self) -> int:
+        return self.num if self.values is None else len(self.values)
+
+    @property
+    def logarithmic(self) -> bool:
+        """Whether the axis is meant in ratios: by its spacing, or a list over more than a decade."""
+        if self.values is None:
+            return self.spacing == "log"
+        finite = [value for value in self.values if value < inf]
+        return bool(finite) and 0 < 10 * finite[0] < finite[-1]
+
+    def array(self) -> NDArray[np.float64]:
+        """The values, increasing, shape (size,)."""
+        if self.values is not None:
+            return np.array(self.values)
+        if self.spacing == "log":
+            return np.geomspace(self.start, self.stop, self.num)
+        return np.linspace(self.start, self.stop, self.num)
+
+
+def as_axis(value: Any) -> Axis:
+    """A number, a list or a mapping {start, stop, num, spacing} as an Axis; ValueError otherwise."""
+    if isinstance(value, Axis):
+        return value
+    if isinstance(value, dict):
+        return _range(value)
+    if not isinstance(value, list | tuple):
+        return Axis(values=(as_number(value),))
+    if not value:
+        raise ValueError("the list is empty; give at least one number")
+    numbers = tuple(as_number(item) for item in value)
+    if any(b <= a for a, b in zip(numbers[:-1], numbers[1:], strict=True)):
+        raise ValueError(f"{short(value)} is not sorted; list the numbers in increasing order, each once")
+    return Axis(values=numbers)
+
+
+def _range(value: dict) -> Axis:
+    known = ("start", "stop", "num", "spacing")
+    for key in value:
+        if key not in known:
+            raise ValueError(f"unknown key {short(key)} in a range; its keys are {', '.join(known)}")
+    for key in known[:3]:
+        if key not in value:
+            raise ValueError(f"a range needs start, stop and num, and {key} is missing")
+    start, stop, num = as_number(value["start"]), as_number(value["stop"]), value["num"]
+    spacing = value.get("spacing", "linear")
+    if spacing not in ("linear", "log"):
+        raise ValueError(f"spacing = {short(spacing)} is neither linear nor log")
+    if isinstance(num, bool) or not isinstance(num, int) or not 1 <= num <= MOST_VALUES:
+        raise ValueError(f"num = {short(num)} is not a whole number from 1 to {MOST_VALUES}")
+    if abs(start) == inf or abs(stop) == inf:
+        raise ValueError("start and stop of a range must be finite; put inf in a list")
+    if (num > 1 and not start < stop) or (num == 1 and start != stop):
+        raise ValueError(f"start = {start:g} and stop = {stop:g} do not make {num} increasing values")
+    if num > 1 and (stop - start) / num <= 4e-16 * max(abs(start), abs(stop)) or stop - start == inf:
+        raise ValueError(f"{num} values from {start!r} to {stop!r} cannot be told apart")
+    if spacing == "log" and start <= 0:
+        raise ValueError(f"log spacing needs start above 0, not {start:g}")
+    return Axis(start=start, stop=stop, num=num, spacing=spacing)
+
+
+Values = Annotated[Axis, BeforeValidator(as_axis)]

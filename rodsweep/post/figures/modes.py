@@ -1,0 +1,77 @@
+"""The leading mode, its deformations and its adjoint, as the paper's Figs. 7 to 9."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ...errors import InputError
+from ...results.view import View
+from .style import FIRST, SECOND, SYMBOLS, plain
+
+MOST_POINTS = 4
+"""Points for which one figure has room."""
+PANELS = (
+    ("mode", (("Y", r"$Y_1$"), ("Theta", r"$\Theta_1$"))),
+    ("deformations", (("h2", r"$h_2$"), ("Pi", r"$\Pi$"))),
+    ("adjoint mode", (("adjoint_Y", r"$Y_1^\dagger$"), ("adjoint_Theta", r"$\Theta_1^\dagger$"))),
+)
+
+
+def draw_modes(view: View, roots: str) -> tuple[Figure, str]:
+    """A row of panels for each point: the leading mode, its deformations, its adjoint."""
+    v = view.variables
+    growth = v["growth_rate"][..., 0].ravel()
+    points = np.flatnonzero(np.isfinite(growth))
+    if not points.size:
+        raise InputError(f"{view.path} holds no computed point that could be drawn")
+    drawn = points[:MOST_POINTS]
+    figure = Figure(figsize=(10.0, 2.8 * len(drawn) + 0.4), layout="constrained")
+    panels = figure.subplots(len(drawn), len(PANELS), squeeze=False)
+    for row, point in zip(panels, drawn, strict=True):
+        for panel, (word, fields) in zip(row, PANELS, strict=True):
+            _panel(panel, view, int(point), fields)
+            panel.set_title(word, fontsize=9)
+        row[1].set_title(f"{_where(view, int(point))}\n{PANELS[1][0]}", fontsize=9)
+    for panel in panels[-1]:
+        panel.set_xlabel("material coordinate $u/L$")
+    figure.suptitle(plain(view.attributes.get("title", "")), fontsize=9)
+    left = f" of the first {len(drawn)} of {points.size} points" if points.size > len(drawn) else ""
+    return figure, f"the leading mode{left}: real part solid, imaginary part dotted"
+
+
+def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], ...]) -> None:
+    """Two fields of a point's leading mode against u, each on its own axis, with a common zero."""
+    u = view.variables["u"]
+    both = panel, panel.twinx()
+    spans = []
+    for axes, (name, label), colour in zip(both, fields, (FIRST, SECOND), strict=True):
+        shape = (-1, *view.variables[f"{name}_real"].shape[-2:])
+        real, imag = (view.variables[f"{name}_{part}"].reshape(shape)[point, 0] for part in ("real", "imag"))
+        axes.plot(u, real, color=colour, lw=1.5)
+        if np.abs(imag).max() > 0:
+            axes.plot(u, imag, ":", color=colour, lw=1.5)
+        axes.tick_params(axis="y", colors=colour, labelsize=8)
+        axes.set_ylabel(label, color=colour)
+        spans.append((min(real.min(), imag.min(), 0.0), max(real.max(), imag.max(), 0.0)))
+    zero = max(-low / (high - low) if high > low else 0.5 for low, high in spans)
+    for axes, (low, high) in zip(both, spans, strict=True):
+        height = max(high / (1 - zero) if zero < 1 else 0.0, -low / zero if zero > 0 else 0.0) or 1.0
+        axes.set_ylim(-1.06 * zero * height - 0.02 * height, 1.06 * (1 - zero) * height + 0.02 * height)
+    both[1].spines["right"].set_visible(True)
+    panel.axhline(0, color="0.8", lw=0.6, zorder=0)
+    panel.set_xlim(0, 1)
+
+
+def _where(view: View, point: int) -> str:
+    """The parameters of a point and its leading eigenvalue, in one line."""
+    at = []
+    for name, values in view.axes.items():
+        place = point
+        if view.is_grid:
+            sizes = [len(column) for column in view.axes.values()]
+            place = int(np.unravel_index(point, sizes)[list(view.axes).index(name)])
+        at.append(f"${SYMBOLS[name]}$ = {values[place]:.4g}")
+    modes = view.variables["growth_rate"].shape[-1]
+    w = [view.variables[name].reshape(-1, modes)[point, 0] for name in ("growth_rate", "frequency")]
+    value = f"{w[0]:.6g}" + (f" + {w[1]:.6g}i" if w[1] else "")
+    return f"{', '.join(at)}: " + rf"$\omega_1\tau_2$ = {value}"

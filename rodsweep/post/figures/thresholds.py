@@ -1,0 +1,77 @@
+"""Critical forces against the parameters of the rod, as the paper's Fig. 3 draws them."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ...errors import InputError
+from ...results.view import View
+from .style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, is_logarithmic, plain
+
+EVENTS = (
+    ("F_onset", r"onset $\tilde F_*$", FIRST, "o"),
+    ("F_hopf", r"Hopf $\tilde F_{**}$", SECOND, "s"),
+    ("F_restabilization", "restabilization", THIRD, "^"),
+)
+MOST_LINES = 3
+"""Values of the other parameter for which lines are drawn in one panel."""
+STYLES = ("-", "--", ":")
+
+
+def draw_thresholds(view: View, roots: str) -> tuple[Figure, str]:
+    """One panel for each long axis: the first onset, Hopf point and restabilization along it."""
+    if not view.is_grid:
+        raise InputError(f"{view.path} is a list of rods; a figure needs a grid with one or two long axes")
+    long = [name for name, values in view.axes.items() if len(values) > 1]
+    if not 1 <= len(long) <= 2:
+        raise InputError(
+            f"{view.path} has {len(long)} axes with more than one value ({', '.join(long) or 'none'}); a "
+            "figure needs one or two"
+        )
+    if not any(np.isfinite(view.variables[name]).any() for name, *_ in EVENTS):
+        raise InputError(f"{view.path} holds no threshold that could be drawn")
+    figure = Figure(figsize=(4.6 * len(long) + 0.4, 4.0), layout="constrained")
+    panels = figure.subplots(1, len(long), sharey=True, squeeze=False)[0]
+    for panel, name in zip(panels, long, strict=True):
+        _panel(panel, view, name, [other for other in long if other != name])
+    panels[0].set_ylabel(r"critical force $\tilde F$  [$k_3/L^2$]")
+    fixed = ", ".join(f"${SYMBOLS[n]}$ = {v[0]:.6g}" for n, v in view.axes.items() if n not in long)
+    figure.suptitle(
+        f"{plain(view.attributes.get('title', ''))}" + (f"\n{fixed}" if fixed else ""), fontsize=9
+    )
+    return figure, "critical forces against " + " and ".join(long)
+
+
+def _panel(panel: Axes, view: View, name: str, others: list[str]) -> None:
+    """The critical forces against one parameter, for some values of the other one."""
+    axes = list(view.axes)
+    x, label = view.axes[name], LABELS[name]
+    if name == "gamma3":  # as the paper: against 1/gamma3
+        with np.errstate(divide="ignore"):
+            x, label = 1 / x, rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$"
+    place = others[0] if others else None
+    chosen = _spread(view.axes[place]) if place else [0]
+    for line, at in enumerate(chosen):
+        index = tuple(slice(None) if n == name else (at if n == place else 0) for n in axes)
+        for variable, word, colour, marker in EVENTS:
+            values = view.variables[variable][index]
+            keep = np.isfinite(x) & np.isfinite(values)
+            if keep.any():
+                panel.plot(
+                    x[keep], values[keep], STYLES[line], color=colour, marker=marker, ms=2.5, lw=1.2,
+                    label=word if line == 0 else None,
+                )  # fmt: skip
+    for line, at in enumerate(chosen if place else []):
+        text = rf"${SYMBOLS[str(place)]}$ = {view.axes[str(place)][at]:.3g}"
+        panel.plot([], [], STYLES[line], color="0.3", label=text)
+    finite = np.sort(x[np.isfinite(x)])
+    if is_logarithmic(finite) or (finite[0] > 0 and finite[-1] > 100 * finite[0]):
+        panel.set_xscale("log")
+    panel.set_xlabel(label)
+    panel.set_ylim(bottom=0)
+    panel.legend(frameon=False, fontsize=8)
+
+
+def _spread(values: np.ndarray) -> list[int]:
+    """Places of the first, the middle and the last value, each once."""
+    return sorted({0, (len(values) - 1) // 2, len(values) - 1})[:MOST_LINES]

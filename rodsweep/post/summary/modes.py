@@ -1,0 +1,26 @@
+"""What `rodsweep show` says of modes: accuracy, stability and non-normality."""
+
+import numpy as np
+
+from ...results.view import View
+from .ranges import span
+from .spectrum import accuracy_lines, stability_line
+
+
+def modes_lines(view: View, done: np.ndarray) -> list[str]:
+    """The task's lines about the points that are `done`."""
+    v = view.variables
+    lines = [*accuracy_lines(view, done), stability_line(view, done)]
+    errors = v["mode_error"][done]
+    if np.isfinite(errors).any():
+        lines.append(f"error of the modes, relative: worst {np.nanmax(errors):.1e}")
+    lines.append(f"condition of the leading eigenvalue: {span(v['condition'][done][:, 0])}")
+    if "transient_growth" in v:
+        growth = v["transient_growth"][done]
+        lines.append(f"numerical abscissa: {span(v['numerical_abscissa'][done])}")
+        if np.isfinite(growth).any():
+            time = span(v["transient_time"][done])
+            lines.append(f"largest transient growth: {span(growth)} times, at t = {time} tau2")
+        if np.isinf(growth).any():
+            lines.append(f"growth without bound at {int(np.isinf(growth).sum())} points: a mode is unstable")
+    return lines

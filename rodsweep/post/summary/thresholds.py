@@ -1,0 +1,68 @@
+"""What `rodsweep show` says of thresholds: where they lie, and what was not decided."""
+
+import numpy as np
+
+from ...results.view import View
+from .ranges import span
+
+EVENTS = {
+    "onset": ("F_onset", "growth rate", "onset_growth_rate"),
+    "Hopf": ("F_hopf", "frequency", "hopf_frequency"),
+    "restabilization": ("F_restabilization", "frequency", "restabilization_frequency"),
+}
+
+
+def thresholds_lines(view: View, done: np.ndarray) -> list[str]:
+    """The task's lines about the points that are `done`."""
+    v = view.variables
+    points = int(done.sum())
+    lines = []
+    for event, (force, word, number) in EVENTS.items():
+        F = v[force][done]
+        there = int(np.isfinite(F).sum())
+        where = f": F = {span(F)}, {word} {span(v[number][done])}" if there else ""
+        lines.append(f"{event}: at {there} of {points} points{where}")
+    lines.append(f"searched up to F = {span(v['F_end'][done])}")
+    return [*lines, *monotony_lines(view), *search_lines(view, done, points)]
+
+
+def monotony_lines(view: View) -> list[str]:
+    """Whether the first onset and Hopf point rise with a parameter, as the paper says of k2 and 1/gamma3."""
+    lines = []
+    long = [name for name, values in view.axes.items() if len(values) > 2] if view.is_grid else []
+    for name in long:
+        place = list(view.axes).index(name)
+        label = "1/gamma3" if name == "gamma3" else name
+        for force in ("F_onset", "F_hopf"):
+            along = np.moveaxis(view.variables[force], place, -1)
+            along = along[..., ::-1] if name == "gamma3" else along
+            rising = np.array([_rises(line) for line in along.reshape(-1, along.shape[-1])])
+            text = f"{force} rises with {label} on {int(rising.sum())} of {rising.size} lines"
+            falls = np.argwhere(~rising.reshape(along.shape[:-1]))
+            others = [n for n in view.axes if n != name]
+            for other, places in zip(others, falls.T, strict=True):
+                if len(view.axes[other]) > 1 and places.size:
+                    text += f", and falls somewhere for {other} = {span(view.axes[other][places])}"
+            lines.append(text)
+    return lines
+
+
+def _rises(values: np.ndarray) -> bool:
+    """Whether the finite values increase."""
+    return bool((np.diff(values[np.isfinite(values)]) > 0).all())
+
+
+def search_lines(view: View, done: np.ndarray, lines: int) -> list[str]:
+    """How far the searches can be trusted, and what they cost."""
+    v = view.variables
+    there = v["crossing_kind"][done] > 0
+    stored = there.sum(axis=-1)
+    errors = v["crossing_error"][done][there]
+    worst = f"; absolute error at most {np.nanmax(errors):.1e}" if np.isfinite(errors).any() else ""
+    undecided = int(np.isfinite(v["open_from"][done]).sum())
+    return [
+        f"crossings stored: {int(stored.sum())}, at most {int(stored.max())} on a line{worst}",
+        f"certified: {int(v['certified'][done].sum())} of {lines}; a range stays undecided on {undecided}",
+        f"cost of a line: {span(v['boxes'][done].astype(float))} evaluations of D, "
+        f"{span(v['solves'][done].astype(float))} eigenproblems",
+    ]

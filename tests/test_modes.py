@@ -1,0 +1,513 @@
+"""Modes, adjoint modes and non-normality of one rod, against closed forms in 60 digits that share no mesh."""
+
+from dataclasses import replace
+
+import mpmath as mp
+import numpy as np
+import pytest
+from numpy.polynomial import legendre
+
+from rodsweep.discretization.basis import differentiation
+from rodsweep.discretization.pencil import assemble
+from rodsweep.discretization.quadrature import gauss_lobatto, lobatto_points
+from rodsweep.model.rod import Rod
+from rodsweep.solve import growth as growth_module
+from rodsweep.solve import modes as modes_module
+from rodsweep.solve.growth import dense_operator, numerical_abscissa
+from rodsweep.solve.modes import ModesRequest, shear_force, solve_modes
+from rodsweep.solve.spectrum import SpectrumRequest, solve_spectrum
+from rodsweep.solve.status import Status
+
+INF = float("inf")
+NODES = 65
+TIGHT = ModesRequest(modes=4, accuracy=1e-10, nodes=NODES, growth=True)
+SHAPES = ModesRequest(modes=4, accuracy=1e-10, nodes=NODES, growth=False)
+POINTS = lobatto_points(NODES)
+WEIGHTS = gauss_lobatto(NODES - 1)[1] / 2
+SLOPE = 2 * differentiation(gauss_lobatto(NODES - 1)[0])
+ONSET = 20.0080206921031
+"""F* of (1e4, 1e4, 1e-4), where the first two eigenvalues meet (physics.md, section 5)."""
+
+FIG_2A = (15.0, 1e4, 1e4, 1e-4)
+RODS = [
+    FIG_2A,
+    (30.0, 1e4, 1e4, 1e-4),
+    (15.0, 1e4, 1e8, 1e-8),
+    (15.0, INF, INF, 0.0),
+    (12.0, 200.0, INF, 0.0),
+    (3.0, 100.0, 5.0, 5.0),
+    (198.0, 200.0, 1e4, 1e-4),
+    (-10.0, 1e4, 1e4, 1e-4),
+    (15.0, 1e4, 200.0, 0.0),
+    (0.0, 1e4, 1e2, 1e-2),
+]
+
+
+@pytest.fixture(autouse=True)
+def digits():
+    with mp.workdps(60):
+        yield
+
+
+class ClosedForm:
+    """sum_j a_j exp(q_j u) (y, theta, s, m)_j at an eigenvalue, Y(1) = 1; `ends` 0 of L, 1 of its adjoint.
+
+    The roots q are those of the corrected quartic (physics.md, section 2): only the end conditions tell
+    L, its adjoint and its Hermitian part (ends 1/2, tip stiffness `layer`) apart.
+    """
+
+    def __init__(self, rod, w, ends=0):
+        self.rod, self.ends = rod, mp.mpf(ends)
+        self.F, self.c2, self.gamma3 = mp.mpf(rod.F), 1 / mp.mpf(rod.k2), mp.mpf(rod.gamma3)
+        self.nu = 1 - self.F / mp.mpf(rod.k1)
+        self.g = self.nu + self.F * self.c2
+        self.w = self._root(mp.mpmathify(w))
+        q, v = self._waves(self.w)
+        decay = [mp.exp(-max(mp.re(x), 0)) for x in q]
+        a = self._null(self._ends(self.w)[:3, :])
+        a = [x * d for x, d in zip(a, decay, strict=True)]
+        tip = mp.fsum(x * mp.exp(z) * field[0] for x, z, field in zip(a, q, v, strict=True))
+        self.q, self.v, self.a = q, v, [x / tip for x in a]
+        if ends == 1:  # the adjoint mode belongs to the conjugate eigenvalue
+            self.q, self.a = [mp.conj(x) for x in self.q], [mp.conj(x) for x in self.a]
+            self.v = [[mp.conj(x) for x in field] for field in self.v]
+
+    def _waves(self, w):
+        total = (self.c2 + self.gamma3) * w - self.F * self.g
+        root = mp.sqrt(total**2 - 4 * w * (self.c2 * self.gamma3 * w + self.nu * self.g))
+        first, second = mp.sqrt((total + root) / 2), mp.sqrt((total - root) / 2)
+        q = [first, -first, second, -second]
+        shear = [(self.gamma3 * w - x * x) / self.g for x in q]
+        return q, [[(self.nu + self.c2 * s) / x, mp.mpf(1), s, x] for s, x in zip(shear, q, strict=True)]
+
+    def _ends(self, w):
+        layer = mp.mpf(0)
+        if self.ends == 0.5 and self.gamma3 == 0 and self.c2 > 0:
+            kappa = mp.sqrt(self.g * self.nu / self.c2)
+            layer = self.F**2 / 4 * mp.tanh(kappa) / kappa
+        matrix = mp.matrix(4, 4)
+        for j, (q, (y, theta, s, m)) in enumerate(zip(*self._waves(w), strict=True)):
+            tip = (s - self.ends * self.F * theta + layer * y, m + self.ends * self.F * y)
+            column = [y, theta, *(mp.exp(q) * x for x in tip)]
+            for i in range(4):
+                matrix[i, j] = column[i] * mp.exp(-max(mp.re(q), 0))
+        return matrix
+
+    def _root(self, w):
+        def value(x):
+            q, _ = self._waves(x)
+            return mp.det(self._ends(x)) / (q[0] * q[2] * (q[0] ** 2 - q[2] ** 2) ** 2)
+
+        return mp.findroot(value, (w, w * (1 + mp.mpf(10) ** -9)), tol=1e-90, verify=False)
+
+    @staticmethod
+    def _null(rows):
+        """The null vector of a 3x4 matrix by its minors."""
+        minors = []
+        for j in range(4):
+            rest = mp.matrix([[rows[i, k] for k in range(4) if k != j] for i in range(3)])
+            minors.append((-1) ** j * mp.det(rest))
+        return minors
+
+    def fields(self, points):
+        """(y, theta, s, m), shape (4, points)."""
+        a = np.array([complex(x * mp.exp(max(mp.re(q), 0))) for x, q in zip(self.a, self.q, strict=True)])
+        v = np.array([[complex(x) for x in field] for field in self.v])
+        q = np.array([complex(x) for x in self.q])
+        return (a[:, None] * v).T @ np.exp(np.outer(q, points) - np.maximum(q.real, 0)[:, None])
+
+    def product(self, other):
+        total = mp.mpf(0)
+        for a, q, v in zip(self.a, self.q, self.v, strict=True):
+            for b, r, x in zip(other.a, other.q, other.v, strict=True):
+                k = mp.conj(q) + r
+                integral = mp.expm1(k) / k if k else mp.mpf(1)
+                weight = mp.conj(v[0]) * x[0] + self.gamma3 * mp.conj(v[1]) * x[1]
+                total += mp.conj(a) * b * integral * weight
+        return total
+
+
+def reference_condition(rod, w):
+    xi, psi = ClosedForm(rod, w), ClosedForm(rod, w, 1)
+    return float(mp.sqrt(mp.re(xi.product(xi)) * mp.re(psi.product(psi))) / abs(psi.product(xi)))
+
+
+class ReferenceGrowth:
+    """|exp(L t)| from exact modes and their exact Gram matrices, shape independent of any mesh."""
+
+    def __init__(self, rod, eigenvalues):
+        right = [ClosedForm(rod, w) for w in eigenvalues]
+        left = [ClosedForm(rod, w, 1) for w in eigenvalues]
+        self.w = [x.w for x in right]
+        self.pairing = [psi.product(xi) for psi, xi in zip(left, right, strict=True)]
+        self.right, self.left = (self._factor(modes) for modes in (right, left))
+
+    @staticmethod
+    def _factor(modes):
+        gram = mp.matrix([[a.product(b) for b in modes] for a in modes])
+        return mp.cholesky((gram + gram.H) / 2).H
+
+    def __call__(self, t):
+        weights = [mp.exp(w * t) / p for w, p in zip(self.w, self.pairing, strict=True)]
+        E = self.right * mp.diag(weights) * self.left.H
+        return float(np.linalg.norm(np.array(E.tolist(), dtype=complex), 2))
+
+
+def gamma_products(result, gamma3):
+    """(psi_m, xi_n) over the norms of both."""
+    y, theta = result.right
+    left_y, left_theta = result.left
+    products = (left_y.conj() * WEIGHTS) @ y.T + gamma3 * (left_theta.conj() * WEIGHTS) @ theta.T
+    norms = [
+        np.sqrt((WEIGHTS * (abs(a) ** 2 + gamma3 * abs(b) ** 2)).sum(1)) for a, b in ((y, theta), result.left)
+    ]
+    return products, norms[1][:, None] * norms[0]
+
+
+def relative(found, exact):
+    return abs(found - exact).max() / abs(exact).max()
+
+
+@pytest.mark.parametrize(
+    "k1, k2, gamma3", [(1e4, 1e4, 1e-4), (1e4, 5.0, 0.5), (INF, INF, 0.0), (1e4, 50.0, 0.0)]
+)
+def test_at_rest_left_and_right_modes_are_equal(k1, k2, gamma3):
+    result = solve_modes(Rod(0.0, k1, k2, gamma3), TIGHT)
+    assert result.status == Status.ok
+    assert (result.eigenvalues.imag == 0).all()
+    assert (result.eigenvalues.real < 0).all()
+    assert relative(result.left, result.right) < 1e-11
+    assert abs(result.condition - 1).max() < 1e-12
+    assert result.numerical_abscissa == pytest.approx(result.eigenvalues[0].real, rel=1e-11)
+    assert (result.transient_growth, result.transient_time) == (1.0, 0.0)
+
+
+@pytest.mark.parametrize("parameters", RODS)
+def test_modes_are_those_of_appendix_c(parameters):
+    """The closed form, deformations included, and condition numbers."""
+    rod = Rod(*parameters)
+    result = solve_modes(rod, SHAPES)
+    assert result.status == Status.ok
+    for n, w in enumerate(result.eigenvalues):
+        y, theta, s, m = ClosedForm(rod, w).fields(POINTS)
+        assert relative(result.right[0, n], y) < 1e-11
+        assert relative(result.right[1, n], theta) < 1e-11
+        assert relative(result.deformation[1, n], m) < 1e-11
+        if rod.c2:
+            assert relative(result.deformation[0, n], rod.c2 * s) < 1e-11
+        y, theta, *_ = ClosedForm(rod, w, 1).fields(POINTS)
+        assert relative(result.left[0, n], y) < 1e-11
+        assert relative(result.left[1, n], theta) < 1e-11
+        assert result.condition[n] == pytest.approx(reference_condition(rod, w), rel=1e-11)
+
+
+def test_printed_form_of_appendix_c():
+    """Y and Theta as printed (G, g1, g2, chi), with the corrected quartic, normalised to Y(1) = 1."""
+    rod = Rod(*FIG_2A)
+    result = solve_modes(rod, SHAPES)
+    w, mu = result.eigenvalues[1], rod.k2 * rod.nu + rod.F
+    b = rod.F * mu - (1 + rod.k2 * rod.gamma3) * w
+    root = np.sqrt(b * b - 4 * rod.k2 * w * (rod.gamma3 * w + rod.nu * mu))
+    x1, x2 = np.sqrt((-b + root) / (2 * rod.k2)), np.sqrt((b + root) / (2 * rod.k2))
+    g1, g2 = (rod.k2 * x1**2 - w) / (mu * x1), (rod.k2 * x2**2 + w) / (mu * x2)
+    G = (x1 * g1 * np.cosh(x1) + x2 * g2 * np.cos(x2)) / (x1 * np.sinh(x1) + x2 * np.sin(x2))
+    a, c = x1 * POINTS, x2 * POINTS
+    Y = np.cosh(a) - np.cos(c) - G * (np.sinh(a) / g1 - np.sin(c) / g2)
+    Theta = g1 * np.sinh(a) + g2 * np.sin(c) - G * (np.cosh(a) - np.cos(c))
+    assert relative(result.right[0, 1], Y / Y[-1]) < 1e-9
+    assert relative(result.right[1, 1], Theta / Y[-1]) < 1e-9
+
+
+@pytest.mark.parametrize("parameters", RODS)
+def test_left_and_right_modes_are_biorthogonal(parameters):
+    rod = Rod(*parameters)
+    result = solve_modes(rod, SHAPES)
+    products, norms = gamma_products(result, rod.gamma3)
+    off = products - np.diag(np.diag(products))
+    assert (abs(off) / norms).max() < 1e-10
+    assert abs(np.diag(products) - result.pairing).max() < 1e-10 * abs(result.pairing).max()
+    assert abs(np.diag(norms) / abs(np.diag(products)) / result.condition - 1).max() < 1e-10
+    assert abs(result.right[0, :, -1] - 1).max() < 1e-12
+    assert abs(result.left[0, :, -1] - 1).max() < 1e-12
+
+
+@pytest.mark.parametrize("parameters", RODS)
+def test_left_modes_have_the_ends_of_appendix_b(parameters):
+    """psi(0) = 0, (K D psi + ad*_psi Sigma0)(1) = 0: Theta+' = -F Y+, Y+' - nu Theta+ = c2 F Theta+."""
+    rod = Rod(*parameters)
+    result = solve_modes(rod, SHAPES)
+    slope = result.left @ SLOPE.T
+    size = abs(slope).max(axis=2)
+    assert (result.left[:, :, 0] == 0).all()
+    assert (abs(slope[1, :, -1] + rod.F * result.left[0, :, -1]) / size[1]).max() < 1e-9
+    assert (abs(slope[0, :, -1] - rod.g * result.left[1, :, -1]) / size[0]).max() < 1e-9
+
+
+def test_left_null_vector_of_the_pencil_has_the_adjoint_ends():
+    """Its third part is -(s+ - F Theta+), which the transposed weak form makes vanish at the tip.
+
+    This holds the shear condition where k2 = inf makes it invisible in Y+, and to the order of the mesh.
+    """
+    rod = Rod(15.0, INF, INF, 0.0)
+    w = complex(ClosedForm(rod, -43.923).w)
+    left_over = []
+    for order in (8, 12, 16):
+        pencil = assemble(1, order)
+        A, B = dense_operator(rod, pencil)
+        _, z = modes_module._null_vectors(A, B, w)
+        force = shear_force(pencil, z[:, None].astype(complex), np.linspace(0, 1, 11))
+        left_over.append(abs(force[-1, 0]) / abs(force).max())
+    assert left_over[0] < 1e-3
+    assert left_over[1] < 1e-3 * left_over[0]
+    assert left_over[2] < 1e-10
+
+
+def test_condition_diverges_at_the_onset_like_a_square_root():
+    distances = [1e-2, 1e-4]
+    condition = []
+    for distance in distances:
+        rod = Rod(ONSET * (1 - distance), 1e4, 1e4, 1e-4)
+        result = solve_modes(rod, ModesRequest(2, 1e-8, 9, growth=False))
+        assert result.status == Status.ok
+        condition.append(result.condition)
+    order = np.log(condition[1] / condition[0]) / np.log(distances[0] / distances[1])
+    assert abs(order - 0.5).max() < 0.01
+    assert condition[1].min() > 50
+
+
+def test_a_rod_at_the_onset_says_that_its_modes_are_inaccurate():
+    result = solve_modes(Rod(ONSET, 1e4, 1e4, 1e-4), TIGHT)
+    assert result.status == Status.accuracy_not_reached
+    assert result.condition[:2].min() > 1e5
+    assert result.condition_error[:2].max() > 1e-3
+    assert result.condition_error[2:].max() < 1e-11
+
+
+def test_modes_next_to_the_onset_are_not_called_accurate():
+    """The eigenvalues are right to 1e-10 there, their condition numbers are not."""
+    request = ModesRequest(modes=4, accuracy=1e-10, nodes=9, growth=False)
+    rod = Rod(20.008, 1e4, 1e4, 1e-4)
+    assert solve_spectrum(rod, SpectrumRequest(4, 1e-10, True)).status == Status.ok
+    result = solve_modes(rod, request)
+    assert result.status == Status.accuracy_not_reached
+    assert "condition numbers" in result.message
+    assert solve_modes(rod, replace(request, accuracy=1e-6)).status == Status.ok
+
+
+def test_a_decaying_rod_may_grow_at_first():
+    """Fig. 2a's rod at F = 15: all modes decay like exp(-44 t) or faster, yet the abscissa is positive."""
+    result = solve_modes(Rod(*FIG_2A), TIGHT)
+    exact = ClosedForm(Rod(*FIG_2A), result.eigenvalues[0]).w
+    assert result.eigenvalues[0].real == pytest.approx(float(mp.re(exact)), rel=1e-11)
+    assert result.eigenvalues[0].real < -44
+    assert result.numerical_abscissa > 21.9
+    assert result.transient_growth > 1
+
+
+@pytest.mark.parametrize("parameters", RODS)
+def test_abscissa_is_the_largest_root_of_the_averaged_ends(parameters):
+    rod = Rod(*parameters)
+    found = numerical_abscissa(rod, assemble(1, 24))
+    exact = ClosedForm(rod, found, 0.5).w
+    assert found == pytest.approx(float(mp.re(exact)), rel=1e-11, abs=1e-10)
+    assert ClosedForm(rod, found, 0.5)._root(mp.mpf(found)) == pytest.approx(exact)
+
+
+def test_abscissa_is_found_where_no_bound_is_known():
+    """A soft rod without rotational drag, pulled beyond its shear stiffness (g < 0)."""
+    rod = Rod(-48.0, 1e6, 3.5, 0.0)
+    found = numerical_abscissa(rod, assemble(2, 32))
+    leading = solve_modes(rod, ModesRequest(1, 1e-8, 9, growth=False, certify=False)).eigenvalues[0]
+    assert rod.g < 0
+    assert found > leading.real > 5000
+    assert found == pytest.approx(float(mp.re(ClosedForm(rod, found, 0.5).w)), rel=1e-11)
+
+
+def polynomial_suprema(rod, degree):
+    """(over the form domain, over the domain of L): the largest quotient over polynomials y, theta; c2 > 0.
+
+    With gamma3 = 0 theta is the polynomial and y follows from theta'' + g s = 0.
+    """
+    x, weights = legendre.leggauss(2 * degree + 2)
+    points, weights = np.append((x + 1) / 2, [0.0, 1.0]), np.append(weights / 2, [0.0, 0.0])
+    one = np.eye(degree + 1)
+    P, D, D2 = (
+        np.stack([2**k * legendre.legval(2 * points - 1, legendre.legder(e, k)) for e in one], 1)
+        for k in range(3)
+    )
+    if rod.gamma3 == 0:
+        integral = [legendre.legval(2 * points - 1, legendre.legint(e, lbnd=-1) / 2) for e in one]
+        theta, moment, s = P, D, -D2 / rod.g
+        y = rod.nu * np.stack(integral, 1) - rod.c2 / rod.g * (D - D[-2])
+    else:
+        zero = np.zeros_like(P)
+        y, theta, moment = np.hstack([P, zero]), np.hstack([zero, P]), np.hstack([zero, D])
+        s = (np.hstack([D, zero]) - rod.nu * theta) / rod.c2
+    clamp = [y[-2], theta[-2]]
+    form = [*clamp, moment[-1]] if rod.gamma3 == 0 else clamp
+    suprema = []
+    for conditions in (form, [*clamp, moment[-1], rod.c2 * s[-1]]):
+        _, sizes, rows = np.linalg.svd(np.array(conditions))
+        free = rows[(sizes > 1e-10 * sizes[0]).sum() :].T
+        Y, T, M, S = (field @ free for field in (y, theta, moment, s))
+        W = weights[:, None]
+        Q = rod.F * rod.c2 * T.T @ (W * S) - rod.F * Y.T @ (W * M) - rod.c2 * S.T @ (W * S) - M.T @ (W * M)
+        factor = np.linalg.inv(np.linalg.cholesky(Y.T @ (W * Y) + rod.gamma3 * T.T @ (W * T)))
+        suprema.append(np.linalg.eigvalsh(factor @ (Q + Q.T) @ factor.T / 2)[-1])
+    return suprema
+
+
+@pytest.mark.parametrize(
+    "parameters", [(15.0, 1e4, 1e2, 1e-2), (15.0, 1e4, 200.0, 0.0), (3.0, 100.0, 5.0, 5.0)]
+)
+def test_abscissa_is_the_supremum_over_the_domain(parameters):
+    """The form domain reaches it at once; fields with the ends of L only in the limit, like 1/degree^2."""
+    rod = Rod(*parameters)
+    exact = numerical_abscissa(rod, assemble(1, 24))
+    over_form, over_domain = np.array([polynomial_suprema(rod, degree) for degree in (14, 28)]).T
+    assert over_form == pytest.approx(exact, rel=1e-7)
+    assert (over_domain < exact).all()
+    order = np.log2((exact - over_domain[0]) / (exact - over_domain[1]))
+    assert 1.5 < order < 2.5
+
+
+def test_unshearable_limit_is_reached_at_first_order():
+    """k2 -> inf at gamma3 = 1e-2, every number; h2 = c2 s is exactly 0 there."""
+    limit = solve_modes(Rod(15.0, 1e4, INF, 1e-2), TIGHT)
+    assert (limit.deformation[0] == 0).all()
+    differences = []
+    for k2 in (1e5, 1e6):
+        near = solve_modes(Rod(15.0, 1e4, k2, 1e-2), TIGHT)
+        differences.append(
+            [
+                abs(near.numerical_abscissa - limit.numerical_abscissa),
+                abs(near.transient_growth - limit.transient_growth),
+                abs(near.condition - limit.condition).max(),
+                abs(near.left - limit.left).max(),
+                abs(near.right - limit.right).max(),
+                abs(near.deformation[0]).max(),
+            ]
+        )
+    assert np.array(differences[0]) / np.array(differences[1]) == pytest.approx(10, rel=0.01)
+
+
+def test_without_rotational_drag_only_the_abscissa_jumps():
+    """gamma3 -> 0 at c2 > 0: theta loses the freedom to start anywhere, which the norm does not notice."""
+    limit = solve_modes(Rod(15.0, 1e4, 200.0, 0.0), TIGHT)
+    near, nearer = (solve_modes(Rod(15.0, 1e4, 200.0, gamma3), TIGHT) for gamma3 in (1e-6, 1e-8))
+    for name in ("eigenvalues", "condition", "left", "right", "deformation", "transient_growth"):
+        far, close = (np.max(abs(getattr(x, name) - getattr(limit, name))) for x in (near, nearer))
+        assert close < 0.11 * far, name
+    assert nearer.numerical_abscissa - limit.numerical_abscissa > 2
+    assert nearer.numerical_abscissa == pytest.approx(near.numerical_abscissa, rel=1e-5)
+
+
+def test_abscissa_is_continuous_where_theta_is_no_state_of_its_own():
+    """c2 = 0, gamma3 -> 0 at first order; and c2 -> 0 at gamma3 = 0 like the layer's thickness, sqrt(c2)."""
+    limit = numerical_abscissa(Rod(15.0, 1e4, INF, 0.0), assemble(1, 24))
+    drags = [abs(numerical_abscissa(Rod(15.0, 1e4, INF, x), assemble(1, 24)) - limit) for x in (1e-4, 1e-5)]
+    assert drags[0] / drags[1] == pytest.approx(10, rel=0.02)
+    shears = [abs(numerical_abscissa(Rod(15.0, 1e4, x, 0.0), assemble(1, 24)) - limit) for x in (1e6, 1e8)]
+    assert shears[0] / shears[1] == pytest.approx(10, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    "parameters",
+    [
+        FIG_2A,
+        (30.0, 1e4, 1e4, 1e-4),
+        (37.6559, 1e4, 1e4, 1e-4),
+        (20.008, 1e4, 1e4, 1e-4),
+        (30.0, INF, INF, 0.0),
+        (15.0, 1e4, 200.0, 0.0),
+        (7.0, 100.0, 5.0, 5.0),
+        (-10.0, 1e4, 1e4, 1e-4),
+    ],
+)
+def test_transient_growth_is_the_largest_norm_of_the_exact_propagator(parameters):
+    rod = Rod(*parameters)
+    result = solve_modes(rod, TIGHT)
+    # Ten modes represent exp(L t) to 1e-12 at these times.
+    exact = ReferenceGrowth(rod, solve_modes(rod, ModesRequest(10, 1e-7, 2, growth=False)).eigenvalues)
+    peak = result.transient_time
+    assert result.growth_error < 1e-10
+    assert result.transient_growth == pytest.approx(exact(peak), rel=1e-11)
+    step = 1e-3 * peak
+    assert exact(peak) > max(exact(peak - step), exact(peak + step))
+    scan = [exact(t) for t in np.geomspace(peak / 2, 50 * peak, 40)]
+    assert max(scan) <= result.transient_growth
+
+
+def test_a_peak_later_than_the_decay_time_is_found():
+    """Three close modes in a chain, |exp(L t)| near 1800 t^2 exp(-t): the peak is at t = 2, not before 1."""
+    propagator = object.__new__(growth_module.Propagator)
+    propagator.generator = np.diag([-1.0, -1.002, -1.004]) + np.diag([60.0, 60.0], 1)
+    propagator.entry = np.eye(3)
+    propagator.w = np.diag(propagator.generator).astype(complex)
+    end = growth_module._end(propagator, 1e-3, 20.0)
+    largest, time = growth_module._highest(propagator, growth_module._times(propagator, 1e-3, end))
+    assert propagator.norm(end)[0] < 1
+    assert time == pytest.approx(2, rel=1e-2)
+    assert largest == pytest.approx(4 * 1800 * np.exp(-2), rel=1e-2)
+    assert largest > propagator.norms(np.linspace(0.1, 20, 1000)).max() * (1 - 1e-9)
+
+
+def test_transient_growth_is_smooth_across_the_onset():
+    """Eigenvectors become parallel there and exp(L t) does not notice: second differences are O(h^2)."""
+    growth = {}
+    for h in (-2, -1, 0, 1, 2):
+        result = solve_modes(Rod(ONSET + 0.01 * h, 1e4, 1e4, 1e-4), TIGHT)
+        assert result.growth_error < 1e-10
+        growth[h] = result.transient_growth
+    second, wide = (growth[h] - 2 * growth[0] + growth[-h] for h in (1, 2))
+    assert wide / second == pytest.approx(4, rel=1e-3)
+
+
+def test_an_unstable_rod_grows_without_end():
+    result = solve_modes(Rod(40.0, 1e4, 1e4, 1e-4), TIGHT)
+    assert result.status == Status.ok
+    assert result.unstable_count == 2
+    assert (result.transient_growth, result.transient_time) == (INF, INF)
+    assert result.numerical_abscissa > result.eigenvalues[0].real
+
+
+def test_growth_lies_between_one_and_what_the_abscissa_allows():
+    for F in (5.0, 9.9, 10.0, 11.0, 20.0, 35.0):
+        result = solve_modes(Rod(F, 1e4, 1e4, 1e-4), ModesRequest(2, 1e-6, 9, growth=True))
+        assert result.status == Status.ok
+        bound = np.exp(max(result.numerical_abscissa, 0) * result.transient_time)
+        assert 1 <= result.transient_growth <= bound * (1 + 1e-12)
+        assert (result.transient_time > 0) == (result.numerical_abscissa > 0)
+
+
+def test_growth_is_computed_only_where_asked_for():
+    result = solve_modes(Rod(*FIG_2A), SHAPES)
+    assert result.status == Status.ok
+    assert np.isnan([result.numerical_abscissa, result.transient_growth, result.growth_error]).all()
+
+
+def test_a_point_that_fails_is_a_status():
+    result = solve_modes(Rod(1e200, INF, 1e-5, 1e-4), TIGHT)
+    assert result.status == Status.failed
+    assert result.message
+    assert np.isnan(result.right).all()
+    assert result.right.shape == result.left.shape == result.deformation.shape == (2, 4, NODES)
+
+
+def test_a_failing_mesh_is_a_status(monkeypatch):
+    def broken(*_):
+        raise np.linalg.LinAlgError("Singular matrix")
+
+    monkeypatch.setattr(modes_module, "mode_shapes", broken)
+    result = solve_modes(Rod(*FIG_2A), TIGHT)
+    assert result.status == Status.failed
+    assert result.message == "Singular matrix"
+
+
+def test_coarse_meshes_are_refined_until_they_agree(monkeypatch):
+    monkeypatch.setattr(modes_module, "_first_mesh", lambda *_: modes_module.Resolution(1, 8))
+    result = solve_modes(Rod(*FIG_2A), SHAPES)
+    assert result.status == Status.ok
+    assert result.order > 16
+    y, *_ = ClosedForm(Rod(*FIG_2A), result.eigenvalues[3]).fields(POINTS)
+    assert relative(result.right[0, 3], y) < 1e-10

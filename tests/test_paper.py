@@ -1,0 +1,139 @@
+"""The configs of the paper's figures, coarsened: each gives the number that its head comment states.
+
+Every config is run as a user runs it, its figure is drawn, and its result is opened.
+"""
+
+import re
+from math import isnan
+
+import h5py
+import matplotlib.image
+import numpy as np
+import pytest
+import xarray as xr
+from conftest import ROOT
+
+CONFIGS = ROOT / "configs"
+FILAMENT = 37.6954308403186051  # Fc, 27 digits in tests/reference/thresholds.json
+
+
+def stated(name):
+    """The numbers in a config's head comment, as floats."""
+    head = "".join(line for line in (CONFIGS / f"{name}.yaml").read_text().splitlines(True) if line[0] == "#")
+    return [float(number) for number in re.findall(r"-?\d+\.\d+", head)]
+
+
+def run(command, name, *overrides):
+    """The coarse run of a config: its file, open; the figure is drawn beside it."""
+    words = [word for override in overrides for word in ("--set", override)]
+    outcome = command("run", CONFIGS / f"{name}.yaml", *words)
+    assert outcome.returncode == 0, outcome.stderr
+    for suffix in ("png", "pdf"):
+        drawn = command("plot", f"{name}.h5", "-o", f"{name}.{suffix}")
+        assert drawn.returncode == 0, drawn.stderr
+    picture = matplotlib.image.imread(command.directory / f"{name}.png")
+    assert np.ptp(picture[..., :3]) > 0.5
+    xr.open_dataset(command.directory / f"{name}.h5", engine="h5netcdf").close()
+    return h5py.File(command.directory / f"{name}.h5")
+
+
+def test_every_config_says_what_to_expect():
+    for path in CONFIGS.glob("*.yaml"):
+        head = path.read_text().split("\n\n")[0]
+        assert "# Expected: " in head, path
+        assert stated(path.stem), path
+
+
+@pytest.mark.parametrize(
+    ("name", "onset", "hopf", "frequency"),
+    [("fig2a", 0, 1, 2), ("fig2b", 0, 1, 2), ("fig2c", None, 0, 1), ("fig2d", 0, None, None)],
+)
+def test_figure_2(command, name, onset, hopf, frequency):
+    """Just below and just above each threshold that the comment states."""
+    numbers = stated(name)
+    at = [numbers[i] for i in (onset, hopf) if i is not None]
+    forces = [F * (1 + side) for F in at for side in (-1e-9, 1e-9)]
+    with run(command, name, f"parameters.F={forces}", "accuracy=1e-2") as file:
+        w, unstable = file["frequency"][:, 0, 0, 0, 0], file["unstable_count"][:, 0, 0, 0]
+        if onset is not None:
+            assert w[0] == 0 < w[1]
+        if hopf is not None:
+            assert unstable[-2:].tolist() == [0, 2]
+            assert w[-1] == pytest.approx(numbers[frequency], rel=1e-4)
+        else:
+            assert (unstable == 0).all()
+
+
+def test_figure_3(command):
+    onset, hopf, *_ = stated("fig3")
+    axes = "parameters.k2=[20, 1.0e4, 1.0e8]", "parameters.gamma3=[1.0e-8, 1.0e-4, 1.0]"
+    with run(command, "fig3", *axes) as file:
+        F_onset, F_hopf = file["F_onset"][0], file["F_hopf"][0]
+        assert F_onset[1, 1] == pytest.approx(onset, rel=1e-12)
+        assert F_hopf[1, 1] == pytest.approx(hopf, rel=1e-12)
+        # The plateau is the filament's, compressed as k1 = 1e4 does: F (1 - F/k1) = Fc.
+        plateau = F_hopf[2, 0]
+        assert plateau * (1 - plateau / 1e4) == pytest.approx(FILAMENT, rel=1e-6)
+        assert (np.diff(F_hopf, axis=0) > 0).all()
+        # The paper: "increase monotonically" with 1/gamma3. At k2 = 20 the onset does not.
+        assert (np.diff(F_onset[1:], axis=1) < 0).all()
+        assert file["certified"][:].all()
+
+
+def test_the_onset_of_a_soft_rod_does_not_rise_with_inverse_drag(command):
+    """Beside the paper's Fig. 3: for k2 below about 25 the onset has a minimum over gamma3."""
+    axes = "parameters.k2=5", "parameters.gamma3=[0.01, 0.5, 10]"
+    with run(command, "fig3", *axes) as file:
+        small, middle, large = file["F_onset"][0, 0]
+        assert middle < large < small
+    assert "F_onset rises with 1/gamma3 on 0 of 1 lines" in command("show", "fig3.h5").stdout
+
+
+def test_figure_4(command):
+    k1, F, partial = stated("fig4")[:3]
+    axes = "parameters.F.num=51", "parameters.k1.num=17"
+    with run(command, "fig4", *axes) as file:
+        folds = [i for i in range(len(file["fold"])) if file["fold_kind"][i] == 1 and file["fold_of"][i] == 1]
+        (fold,) = folds
+        assert file["fold_k1"][fold] == pytest.approx(k1, rel=1e-12)
+        assert file["fold_F"][fold] == pytest.approx(F, rel=1e-10)
+        assert abs(file["fold_F"][fold] - F) <= file["fold_F_error"][fold] < 1e-8
+        assert file["partial_beam_k1"][()] == pytest.approx(partial, rel=1e-12)
+        assert file["curve_agreement"][()] < 1e-11
+        assert file["curves_untraced"][()] == 0
+        # The map knows the class on either side of the window, and of a crushed rod.
+        words = dict(
+            zip(file["class"].attrs["flag_values"], file["class"].attrs["flag_meanings"].split(), strict=True)
+        )
+        row = int(np.argmin(np.abs(file["k1"][:] - 200)))
+        classes = [words[c] for c in file["class"][row, 0, 0]]
+        assert [c for c, before in zip(classes, [None, *classes], strict=False) if c != before] == [
+            "monotone", "oscillatory", "flutter", "oscillatory", "crushed",
+        ]  # fmt: skip
+    told = command("show", "fig4.h5").stdout.replace("\n", " ")
+    assert f"k1 = {k1:.13g}" in told
+    assert "4 Fc = 150.7817233613" in told
+
+
+@pytest.mark.parametrize("name", ["fig7", "fig8", "fig9"])
+def test_figures_7_to_9(command, name):
+    growth_rate, *frequency = stated(name)[:2] if name != "fig7" else stated(name)[:1]
+    with run(command, name, "modes.nodes=17") as file:
+        first = (0, 0, 0, 0, 0)
+        assert file["growth_rate"][first] == pytest.approx(growth_rate, rel=1e-11)
+        assert file["frequency"][first] == pytest.approx(frequency[0] if frequency else 0, rel=1e-11)
+        assert file["Y_real"][first][-1] == pytest.approx(1, rel=1e-12)
+        growth = file["transient_growth"][0, 0, 0, 0]
+        assert not isnan(growth)
+        assert np.isinf(growth) == (name == "fig9")
+
+
+def test_a_phase_diagram_is_the_same_on_any_number_of_ranks(command):
+    axes = [w for o in ("parameters.F.num=21", "parameters.k1.num=9") for w in ("--set", o)]
+    for ranks, output in ((0, "one.h5"), (3, "three.h5")):
+        outcome = command("run", CONFIGS / "fig4.yaml", "-o", output, *axes, ranks=ranks)
+        assert outcome.returncode == 0, outcome.stderr
+    with h5py.File(command.directory / "one.h5") as one, h5py.File(command.directory / "three.h5") as three:
+        assert set(one) == set(three)
+        for name in set(one) - {"seconds"}:
+            assert np.array_equal(one[name][()], three[name][()], equal_nan=True), name

@@ -1,0 +1,390 @@
+"""What each task stores: files as other programs open them, records that fit them, runs that continue."""
+
+import os
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import h5py
+import numpy as np
+import pytest
+import xarray
+
+from rodsweep.cli.job import make_job
+from rodsweep.cli.tasks import modes, spectrum, thresholds
+from rodsweep.cli.tasks.crossings import search_record
+from rodsweep.post.summary import show_summary
+from rodsweep.results.creation import Plan
+from rodsweep.results.journal import Journal
+from rodsweep.results.layouts import CROSSING_KINDS
+from rodsweep.results.schema import Variable
+from rodsweep.results.store import Store
+from rodsweep.results.view import read_view
+
+CONFIGS = {
+    "spectrum": "parameters: {F: [1, 2], k1: 9, k2: [1, 2], gamma3: 0}\nspectrum: {modes: 3, vectors: true}",
+    "thresholds": "parameters: {k1: [9, .inf], k2: [1, 2, 3], gamma3: 0}\nthresholds: {crossings: 4}",
+    "phase_diagram": "parameters: {F: [1, 2, 4], k1: 9, k2: [1, .inf], gamma3: 0}",
+    "modes": "parameters: {F: [1, 2], k1: 9, k2: 1, gamma3: 0}\nmodes: {nodes: 5}",
+}
+SIZES = {
+    "spectrum": {"F": 2, "k1": 1, "k2": 2, "gamma3": 1, "mode": 3, "u": 33},
+    "thresholds": {"k1": 2, "k2": 3, "gamma3": 1, "crossing": 4},
+    "phase_diagram": {"k1": 1, "k2": 2, "gamma3": 1, "F": 3, "crossing": 16},
+    "modes": {"F": 2, "k1": 1, "k2": 1, "gamma3": 1, "mode": 2, "u": 5},
+}
+DIMENSIONS = {
+    ("spectrum", "Theta_imag"): ("F", "k1", "k2", "gamma3", "mode", "u"),
+    ("thresholds", "F_onset"): ("k1", "k2", "gamma3"),
+    ("thresholds", "crossing_F"): ("k1", "k2", "gamma3", "crossing"),
+    ("phase_diagram", "class"): ("k1", "k2", "gamma3", "F"),
+    ("phase_diagram", "crossing_at"): ("k1", "k2", "gamma3", "crossing"),
+    ("modes", "adjoint_Theta_real"): ("F", "k1", "k2", "gamma3", "mode", "u"),
+    ("modes", "transient_growth"): ("F", "k1", "k2", "gamma3"),
+}
+TASKS = list(CONFIGS)
+
+
+def job_of(tmp_path, task, *overrides):
+    path = tmp_path / "c.yaml"
+    path.write_text(f"task: {task}\n{CONFIGS[task]}\n")
+    return make_job(path, overrides)
+
+
+def plan_of(job):
+    return Plan(
+        job.points.columns,
+        job.points.is_grid,
+        job.layout,
+        job.task.coordinates(),
+        job.task.constants(),
+        job.resolved,
+        {"title": "t", "task": job.config.task},
+        ((0, "ok"), (5, "failed")),
+    )
+
+
+def crossing(at, kind, unstable):
+    return SimpleNamespace(
+        at=at, kind=kind, frequency=10 * at, growth_rate=-at, error=1e-12, unstable_after=unstable
+    )
+
+
+def search(index=0, **more):
+    """A search that found an onset, a Hopf point, its reverse, and two more; index moves them."""
+    kinds = enumerate((1, 2, 4, 5, 1))
+    return SimpleNamespace(
+        status=0,
+        crossings=tuple(crossing(1.0 + index + i, kind, 2 * (kind == 2)) for i, kind in kinds),
+        crossing_count=5,
+        open_range=(np.nan, np.nan),
+        certified=True,
+        boxes=100,
+        solves=7,
+        seconds=0.25,
+        F_end=200.0,
+        unstable_at_end=0,
+        **more,
+    )
+
+
+def of_modes(number, nodes):
+    """What the tasks spectrum and modes have in common, and what only modes has."""
+    fields = (np.arange(2 * number * nodes) * (1 + 2j)).reshape(2, number, nodes)
+    return SimpleNamespace(
+        status=0,
+        eigenvalues=np.array([-1 + 2j, -1 - 2j, -5 + 0j][:number]),
+        error_estimate=np.full(number, 1e-12),
+        mode_error=np.full(number, 1e-9),
+        pairing=np.full(number, 2 + 1j),
+        condition=np.full(number, 3.0),
+        condition_error=np.full(number, 1e-9),
+        unstable_count=0,
+        certified=True,
+        elements=1,
+        order=20,
+        seconds=0.25,
+        vectors=fields,
+        right=fields,
+        deformation=fields + 100,
+        left=fields + 200,
+        numerical_abscissa=4.0,
+        abscissa_error=1e-9,
+        transient_growth=1.5,
+        transient_time=0.5,
+        growth_error=1e-9,
+    )
+
+
+def record_of(task, index=0):
+    if task == "spectrum":
+        return spectrum.record(of_modes(3, 33))
+    if task == "modes":
+        return modes.record(of_modes(2, 5), growth=True)
+    if task == "thresholds":
+        return thresholds.record(search(index), 4)
+    row = {"class": [0, 1, 2], "unstable_count": [0, 0, 2]}
+    return search_record(search(index), 16, "crossing_at") | row
+
+
+def filled_file(tmp_path, task):
+    """The file of a small run in which every point has a record."""
+    job = job_of(tmp_path, task)
+    store = Store(tmp_path / "c.h5", plan_of(job))
+    journal = Journal(store.journals, 0, job.layout, store.plan.fingerprint)
+    for index in range(job.points.count):
+        journal.append(index, record_of(task, index))
+    journal.close()
+    store.fold({"note": "whole"})
+    store.close()
+    return tmp_path / "c.h5"
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_record_of_a_task_has_all_variables_of_its_layout_and_no_other(tmp_path, task):
+    assert set(record_of(task)) == {variable.name for variable in job_of(tmp_path, task).layout.variables}
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_file_of_every_task_opens_in_xarray_with_named_dimensions(tmp_path, task):
+    with xarray.open_dataset(filled_file(tmp_path, task), engine="h5netcdf") as data:
+        assert dict(data.sizes) == SIZES[task]
+        assert set(data.sizes) <= set(data.coords)
+        for (owner, name), dims in DIMENSIONS.items():
+            if owner == task:
+                assert data[name].dims == dims
+        assert int(abs(data.status).max()) == 0
+        assert all("units" in v.attrs and "long_name" in v.attrs for v in data.variables.values())
+
+
+def dimensions(data):
+    """The names of the dimension scales of an HDF5 dataset; readers guess by size where there are none."""
+    return tuple("/".join(dimension.keys()) for dimension in data.dims)
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_every_variable_has_its_dimension_scales(tmp_path, task):
+    with h5py.File(filled_file(tmp_path, task)) as file:
+        for name in set(file) - set(SIZES[task]):
+            names = dimensions(file[name])
+            assert [SIZES[task][n] for n in names] == list(file[name].shape), name
+            assert names == DIMENSIONS.get((task, name), names)
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_words_are_stored_as_flags_with_their_meanings(tmp_path, task):
+    flagged = {"thresholds": ["crossing_kind"], "phase_diagram": ["crossing_kind", "class"]}.get(task, [])
+    with h5py.File(filled_file(tmp_path, task)) as file:
+        assert {n for n in file if "flag_values" in file[n].attrs} == {"status", *flagged}
+        for name in flagged:
+            a = file[name].attrs
+            assert a["flag_values"].dtype == file[name].dtype == np.int8
+            meaning = dict(zip(a["flag_values"], a["flag_meanings"].split(), strict=True))
+            assert [meaning[i] for i in (1, 2)] == {
+                "crossing_kind": ["onset", "hopf"],
+                "class": ["oscillatory", "flutter"],
+            }[name]
+
+
+def test_kinds_of_crossings_have_the_numbers_of_the_solver():
+    from rodsweep.solve.transitions import Kind
+
+    assert {kind.name: int(kind) for kind in Kind} == {
+        name: number for number, name in enumerate(CROSSING_KINDS) if number
+    }
+
+
+def test_classes_of_a_phase_diagram_have_the_numbers_of_the_solver():
+    from rodsweep.results.layouts import CLASSES
+    from rodsweep.solve.diagram import Motion
+
+    assert {int(motion): motion.name for motion in Motion} == {v: name for v, name in CLASSES if v >= 0}
+
+
+def test_first_crossings_are_stored_and_all_are_counted(tmp_path):
+    v = read_view(filled_file(tmp_path, "thresholds")).variables
+    assert v["F_onset"].ravel().tolist() == [1, 2, 3, 4, 5, 6]
+    assert (v["F_hopf"][0, 0, 0], v["hopf_frequency"][0, 0, 0]) == (2, 20)
+    assert (v["F_restabilization"][0, 0, 0], v["restabilization_frequency"][0, 0, 0]) == (3, 30)
+    assert v["crossing_F"][0, 0, 0].tolist() == [1, 2, 3, 4]
+    assert v["unstable_after"][0, 0, 0].tolist() == [0, 2, 0, 0]
+    assert v["crossing_count"].max() == 5
+
+
+def test_places_without_a_crossing_are_filled():
+    nothing = search()
+    nothing.crossings, nothing.crossing_count = (), 0
+    record = thresholds.record(nothing, 2)
+    assert np.isnan([record["F_onset"], record["F_hopf"], *record["crossing_F"]]).all()
+    assert record["crossing_kind"] == [0, 0]
+    assert record["unstable_after"] == [-1, -1]
+
+
+def test_transient_growth_is_stored_only_where_it_is_computed(tmp_path):
+    with_growth, without = (job_of(tmp_path, "modes", f"modes.growth={g}") for g in ("true", "false"))
+    names = [{v.name for v in job.layout.variables} for job in (with_growth, without)]
+    assert names[0] - names[1] >= {"numerical_abscissa", "transient_growth", "transient_time"}
+    assert set(modes.record(of_modes(2, 5), growth=False)) == names[1]
+
+
+def test_point_list_of_rods_without_a_force_opens_with_its_coordinates(tmp_path):
+    (tmp_path / "p.csv").write_text("k2,k1,gamma3\n1,9,0\n2,inf,0.5\n")
+    (tmp_path / "c.yaml").write_text("task: thresholds\nparameters: {points: p.csv}\n")
+    Store(tmp_path / "c.h5", plan_of(make_job(tmp_path / "c.yaml", ()))).close()
+    with xarray.open_dataset(tmp_path / "c.h5", engine="h5netcdf") as data:
+        assert data.crossing_F.dims == ("point", "crossing")
+        assert set(data.coords) == {"point", "crossing", "k1", "k2", "gamma3"}
+        assert data.k1.values.tolist() == [9, np.inf]
+
+
+@pytest.mark.parametrize("count", [0, 5])
+def test_variables_added_when_a_run_ends_have_their_own_dimensions(tmp_path, count):
+    path = filled_file(tmp_path, "phase_diagram")
+    job = job_of(tmp_path, "phase_diagram")
+    store = Store(path, plan_of(job))
+    curve = [
+        (Variable("curve_number", "<i4", -1, "1", "curve", ("curve_point",)), np.arange(count)),
+        (Variable("curve_F", "<f8", np.nan, "k3/L^2", "F", ("curve_point",)), np.arange(count) / 2),
+        (Variable("fold_F", "<f8", np.nan, "k3/L^2", "F", ("fold",)), np.array([3.5])),
+    ]
+    store.fold({"finished": "now"}, curve)
+    store.close()
+    with h5py.File(path) as file:
+        assert dimensions(file["curve_F"]) == dimensions(file["curve_number"]) == ("curve_point",)
+        assert dimensions(file["fold_F"]) == ("fold",)
+    with xarray.open_dataset(path, engine="h5netcdf") as data:
+        assert dict(data.sizes) == SIZES["phase_diagram"] | {"curve_point": count, "fold": 1}
+        assert data.curve_F.values.tolist() == [i / 2 for i in range(count)]
+        assert data.attrs["finished"] == "now"
+        assert data["class"].values[0, 0, 0].tolist() == [0, 1, 2]
+
+
+@pytest.mark.parametrize(
+    ("task", "words"),
+    {
+        "spectrum": ["certified: 4 of 4", "unknowns a point: 60 to 60"],
+        "thresholds": [
+            "onset: at 6 of 6 points: F = 1 to 6, growth rate -6 to -1",
+            "Hopf: at 6 of 6 points: F = 2 to 7, frequency 20 to 70",
+            "restabilization: at 6 of 6 points: F = 3 to 8",
+            "searched up to F = 200",
+            "certified: 6 of 6; a range stays undecided on 0",
+        ],
+        "phase_diagram": [
+            "of 6 points: 2 monotone, 2 oscillatory, 2 flutter",
+            "absolute error at most 1.0e-12",
+        ],
+        "modes": [
+            "condition of the leading eigenvalue: 3",
+            "abscissa: 4 largest transient growth: 1.5 times, at t = 0.5 tau2",
+        ],
+    }.items(),
+    ids=TASKS,
+)
+def test_show_tells_what_matters_of_every_task(tmp_path, capsys, task, words):
+    show_summary(read_view(filled_file(tmp_path, task)))
+    text = " ".join(capsys.readouterr().out.split())
+    for word in ["ok", "time a point: median 250 ms", *words]:
+        assert word in text
+
+
+@pytest.mark.parametrize(
+    ("task", "words"),
+    {
+        "thresholds": ["6 points (2 x 3 x 1), each searched from F = 0 to 200", "at most 4 are stored"],
+        "phase_diagram": ["2 rows, one for each k2, of 3 values of F each", "boundaries as curves yes"],
+        "modes": ["2 points (2 x 1 x 1 x 1), 2 leading modes each, on 5 nodes", "numerical abscissa yes"],
+    }.items(),
+    ids=TASKS[1:],
+)
+def test_check_says_what_every_task_would_compute(command, task, words):
+    command.write("c.yaml", f"task: {task}\n{CONFIGS[task]}\n")
+    run = command("check", "c.yaml")
+    assert run.returncode == 0, run.stderr
+    text = " ".join(run.stdout.split())
+    for word in ["stretch yes", "rotational drag no gamma3 = 0", "certificate yes", "s on one rank", *words]:
+        assert word in text
+
+
+def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
+    """For any task: they must work on a login node."""
+    code = (
+        "import sys\nfrom pathlib import Path\n"
+        "from rodsweep.cli.checking import describe_job\nfrom rodsweep.cli.job import make_job\n"
+        "from rodsweep.post.summary import show_summary\nfrom rodsweep.results.view import read_view\n"
+        "describe_job(make_job(Path(sys.argv[1]), ()))\nshow_summary(read_view(Path(sys.argv[2])))\n"
+        "print([m for m in ('mpi4py.MPI', 'petsc4py', 'slepc4py') if m in sys.modules])"
+    )
+    for task in TASKS:
+        file = filled_file(tmp_path, task)
+        argv = [sys.executable, "-c", code, str(tmp_path / "c.yaml"), str(file)]
+        run = subprocess.run(argv, capture_output=True, text=True, check=True)
+        assert run.stdout.splitlines()[-1] == "[]"
+        file.unlink()
+
+
+FAKE = """
+import os
+import rodsweep.solve.thresholds as real
+from types import SimpleNamespace as Value
+
+def solve_thresholds(k1, k2, gamma3, request):
+    if os.environ.get("DIE_AT") == f"{k1:g}":
+        os._exit(9)
+    status = real.ThresholdStatus.list_full if k1 == 14 else real.ThresholdStatus.ok
+    found = (Value(at=k1 / 2, kind=2, frequency=k2, growth_rate=0.0, error=1e-12, unstable_after=2),)
+    nothing = (float("nan"), float("nan"))
+    return real.Thresholds(status, found, 1, request.F_max, 2, nothing, True, 3, 4, 0.01, "a message")
+
+real.solve_thresholds = solve_thresholds
+real.warm_up = lambda: None
+"""
+
+
+def run_fake(command, *words, **environment):
+    command.write("sitecustomize.py", FAKE)
+    return subprocess.run(
+        command.argv("run", "c.yaml", *words),
+        cwd=command.directory,
+        env=os.environ | {"PYTHONPATH": str(command.directory)} | environment,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+
+
+def test_killed_search_for_thresholds_is_continued_to_the_same_file(command):
+    command.write(
+        "c.yaml", "task: thresholds\nparameters: {k1: {start: 10, stop: 17, num: 8}, k2: [1, 2], gamma3: 0}\n"
+    )
+    assert run_fake(command, DIE_AT="13").returncode == 9
+    assert read_view(command.directory / "c.h5").journalled == 6
+    again = run_fake(command)
+    assert "10 of 16 points to do, 6 kept" in again.stdout, again.stderr
+    assert "14 ok, 2 list_full" in again.stdout
+    assert "k1=14.0, k2=1.0, gamma3=0.0: list_full a message" in again.stdout
+    assert again.returncode == 1
+    assert "raise the option crossings" in " ".join(command("show", "c.h5").stdout.split())
+    run_fake(command, "-o", "whole.h5")
+    with h5py.File(command.directory / "c.h5") as a, h5py.File(command.directory / "whole.h5") as b:
+        assert set(a) == set(b)
+        for name in a:
+            assert np.array_equal(a[name][...], b[name][...], equal_nan=a[name].dtype.kind == "f"), name
+        assert a["F_hopf"][:, 1, 0].tolist() == [k1 / 2 for k1 in range(10, 18)]
+    assert "complete, nothing to do" in run_fake(command).stdout
+
+
+def test_thresholds_of_the_paper_are_found_from_the_command_line(command):
+    command.write(
+        "c.yaml",
+        "task: thresholds\nparameters: {k1: [100, 200], k2: 1.0e4, gamma3: 1.0e-4}\naccuracy: 1e-9\n",
+    )
+    run = command("run", "c.yaml", ranks=2)
+    assert run.returncode == 0, run.stderr
+    v = read_view(command.directory / "c.h5").variables
+    assert np.allclose(v["F_onset"].ravel(), [27.4058263581943, 22.4709774737663], rtol=1e-9)
+    assert np.isnan(v["F_hopf"][0, 0, 0])
+    assert v["F_hopf"][1, 0, 0] == pytest.approx(49.7580049161915, rel=1e-9)
+    assert v["F_restabilization"][1, 0, 0] == pytest.approx(155.600159298791, rel=1e-9)
+    assert v["restabilization_frequency"][1, 0, 0] == pytest.approx(3367.28095760, rel=1e-9)
