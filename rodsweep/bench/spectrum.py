@@ -58,7 +58,7 @@ def exact_spectrum(rod: Rod) -> np.ndarray:
 
 
 def spectrum_table(quick: bool) -> str:
-    """Runs the benchmark; returns Markdown with the medians and where and when they were measured."""
+    """Runs the benchmark; returns Markdown with the medians."""
     rods = points()
     exact = [exact_spectrum(rod) for rod in rods]
     rounds = QUICK_ROUNDS if quick else ROUNDS
@@ -78,11 +78,15 @@ def spectrum_table(quick: bool) -> str:
             f"| {r.method} | {r.milliseconds:.3f} | {r.error:.0e} | {r.milliseconds / own:.1f} |"
             for r in rows
         ]
+    return "\n".join(lines[1:])
+
+
+def where_and_when() -> str:
+    """The machine, the date and the versions that a benchmark ran with."""
     versions = petsc.versions() | {k.removesuffix("_version"): v for k, v in provenance().items()}
     shown = ("rodsweep", "petsc", "slepc", "numpy", "python")
     where = ", ".join(f"{name} {versions[name]}" for name in shown)
-    head = f"One core of {cpu_name()}, {platform.system()}, {now()[:10]}; {where}. Threads: one."
-    return "\n".join([head, *lines])
+    return f"One core of {cpu_name()}, {platform.system()}, {now()[:10]}; {where}. Threads: one."
 
 
 def _measure(rods: list[Rod], exact: list[np.ndarray], accuracy: float, rounds: int) -> list[Row]:

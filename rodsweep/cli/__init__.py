@@ -27,7 +27,7 @@ overrides_option = click.option(
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="rodsweep")
 def commands() -> None:
-    """Spectra of follower-loaded soft rods in a viscous fluid, over parameter grids."""
+    """Spectra, thresholds, phase diagrams and modes of follower-loaded soft rods in a viscous fluid."""
 
 
 @commands.command()
@@ -86,18 +86,22 @@ def plot(file: Path, output: Path | None, roots: str) -> None:
 
 
 @commands.command()
+@click.argument("what", type=click.Choice(["spectrum", "thresholds"]), required=False)
 @click.option("--quick", is_flag=True, help="Fewer rounds, for a first impression.")
 @click.option("-o", "--output", type=FILE, help="Write the Markdown here as well.")
-def bench(quick: bool, output: Path | None) -> None:
-    """Time a spectrum point beside what one would otherwise use, and state every error."""
+def bench(what: str | None, quick: bool, output: Path | None) -> None:
+    """Time WHAT (by default all) beside what one would otherwise use, and state every error."""
     try:
-        from ..bench.spectrum import spectrum_table
+        from ..bench.spectrum import spectrum_table, where_and_when
+        from ..bench.thresholds import thresholds_table
     except ModuleNotFoundError as error:
         raise EnvironmentLacks(f"the benchmark needs {error.name}: pip install 'rodsweep[bench]'") from None
-    table = spectrum_table(quick)
-    click.echo(table)
+    tables = {"spectrum": spectrum_table, "thresholds": thresholds_table}
+    wanted = [what] if what else list(tables)
+    text = "\n\n".join([where_and_when(), *(tables[name](quick) for name in wanted)])
+    click.echo(text)
     if output is not None:
-        output.write_text(table + "\n")
+        output.write_text(text + "\n")
 
 
 def _speaks() -> bool:
