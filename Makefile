@@ -25,7 +25,7 @@ else
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: install demo test lint check bench clean distclean help FORCE
+.PHONY: install demo figures test lint check bench clean distclean help FORCE
 .ONESHELL:
 .SHELLFLAGS := -euc
 # An activated .venv must pass neither its wrapper off as the machine's mpiexec nor its Python as the one to start from.
@@ -37,6 +37,15 @@ demo: .venv/installed  ## compute configs/fig2c.yaml on two ranks and plot it, i
 	mkdir -p results
 	$(BIN)/mpiexec -n 2 $(BIN)/rodsweep run configs/fig2c.yaml -o results/fig2c.h5
 	$(BIN)/rodsweep plot results/fig2c.h5 -o results/fig2c.png
+
+figures: .venv/installed  ## compute every config on two ranks and draw its figure: docs/*.png and results/*.pdf
+	mkdir -p results
+	for config in configs/*.yaml; do
+	  name=$$(basename $$config .yaml)
+	  $(BIN)/mpiexec -n 2 $(BIN)/rodsweep run $$config -o results/$$name.h5
+	  $(BIN)/rodsweep plot results/$$name.h5 -o results/$$name.pdf
+	  $(BIN)/rodsweep plot results/$$name.h5 -o docs/$$name.png
+	done
 
 test: .venv/installed  ## run the tests
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest

@@ -3,12 +3,14 @@
 import numpy as np
 
 SYMBOLS = {"F": r"\tilde F", "k1": r"\tilde k_1", "k2": r"\tilde k_2", "gamma3": r"\tilde\gamma_3"}
+FORCE, DRAG = r"[$k_3/L^2$]", r"\gamma_2 L^2"
 LABELS = {
-    "F": rf"follower force ${SYMBOLS['F']}$",
-    "k1": rf"stretch stiffness ${SYMBOLS['k1']}$",
-    "k2": rf"shear stiffness ${SYMBOLS['k2']}$",
-    "gamma3": rf"rotational drag ${SYMBOLS['gamma3']}$",
+    "F": rf"follower force ${SYMBOLS['F']}$  {FORCE}",
+    "k1": rf"stretch stiffness ${SYMBOLS['k1']}$  {FORCE}",
+    "k2": rf"shear stiffness ${SYMBOLS['k2']}$  {FORCE}",
+    "gamma3": rf"rotational drag ${SYMBOLS['gamma3']}$  [${DRAG}$]",
 }
+INVERSE_DRAG = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$  [$1/({DRAG})$]"
 FIRST, SECOND, THIRD = "#0072B2", "#D55E00", "#009E73"
 """Blue, vermilion and green of Okabe and Ito: told apart by the colour-blind."""
 STYLE = {"font.size": 10, "axes.grid": False, "axes.spines.top": False, "axes.spines.right": False}

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from ...errors import InputError
 from ...results.view import View
-from .style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, is_logarithmic, plain
+from .style import FIRST, FORCE, INVERSE_DRAG, LABELS, SECOND, SYMBOLS, THIRD, is_logarithmic, plain
 
 EVENTS = (
     ("F_onset", r"onset $\tilde F_*$", FIRST, "o"),
@@ -34,7 +34,7 @@ def draw_thresholds(view: View, roots: str) -> tuple[Figure, str]:
     panels = figure.subplots(1, len(long), sharey=True, squeeze=False)[0]
     for panel, name in zip(panels, long, strict=True):
         _panel(panel, view, name, [other for other in long if other != name])
-    panels[0].set_ylabel(r"critical force $\tilde F$  [$k_3/L^2$]")
+    panels[0].set_ylabel(rf"critical force ${SYMBOLS['F']}$  {FORCE}")
     fixed = ", ".join(f"${SYMBOLS[n]}$ = {v[0]:.6g}" for n, v in view.axes.items() if n not in long)
     figure.suptitle(
         f"{plain(view.attributes.get('title', ''))}" + (f"\n{fixed}" if fixed else ""), fontsize=9
@@ -48,7 +48,7 @@ def _panel(panel: Axes, view: View, name: str, others: list[str]) -> None:
     x, label = view.axes[name], LABELS[name]
     if name == "gamma3":  # as the paper: against 1/gamma3
         with np.errstate(divide="ignore"):
-            x, label = 1 / x, rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$"
+            x, label = 1 / x, INVERSE_DRAG
     place = others[0] if others else None
     chosen = _spread(view.axes[place]) if place else [0]
     for line, at in enumerate(chosen):
