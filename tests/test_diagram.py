@@ -45,7 +45,7 @@ def test_the_flutter_window_closes_at_the_fold_to_nine_digits(k2, gamma3, k1, F,
         {"k1": 300.0, "k2": k2, "gamma3": gamma3}, RowRequest("F", np.array([0.0, 119.0]), 1e-9, True, 9)
     )
     hopf = next(c for c in row.crossings if c.kind == Kind.hopf)
-    curve = trace(True, plane, (plane.axes[0].scaled(hopf.at), plane.axes[1].scaled(300.0)), hopf.frequency)
+    curve = trace(0.0, plane, (plane.axes[0].scaled(hopf.at), plane.axes[1].scaled(300.0)), hopf.frequency)
     (fold,) = [f for f in curve.folds if f.axis == 1]
     assert fold.values[1] == pytest.approx(k1, rel=1e-12)
     assert fold.values[0] == pytest.approx(F, rel=1e-10)
@@ -59,7 +59,7 @@ def test_the_hopf_curve_of_the_partial_beam_is_the_parabola_of_the_paper():
     Fc = 37.6954308403185779
     plane = Plane(Rod(0.0, 200.0, inf, 0.0), (Axis("F", 0.0, 140.0), Axis("k1", 145.0, 400.0)))
     start = 200.0 * (0.5 - np.sqrt(0.25 - Fc / 200.0))
-    curve = trace(True, plane, (plane.axes[0].scaled(start), plane.axes[1].scaled(200.0)), 341.801)
+    curve = trace(0.0, plane, (plane.axes[0].scaled(start), plane.axes[1].scaled(200.0)), 341.801)
     F, k1 = curve.values.T
     assert len(F) > 30
     assert np.abs(F * (1 - F / k1) - Fc).max() < 1e-11

@@ -160,3 +160,29 @@ def test_what_overflows_fails_with_a_reason():
     assert found.status == ThresholdStatus.failed
     assert found.message
     assert isnan(found.open_range[0])
+
+
+def test_a_rod_pulled_beyond_its_shear_stiffness_buckles_and_every_kind_of_change_occurs():
+    """F c2 < -nu: two positive real eigenvalues become a pair, which a real one overtakes when it is stable."""
+    found = transitions(Path(Rod(-8.0, 1e4, 3.0, 0.01), "F"), -8.0, 20.0)
+    kinds = [c.kind for c in found.crossings]
+    assert found.unstable_at_start == 2
+    assert not found.oscillates_at_start
+    assert kinds[:3] == [Kind.onset, Kind.restabilization, Kind.real_leads]
+    assert found.proved
+    onset, _, overtaken = found.crossings[:3]
+    assert onset.growth_rate > 60
+    for change, before, after in ((onset, False, True), (overtaken, True, False)):
+        for F, pair in ((change.at - 1e-3, before), (change.at + 1e-3, after)):
+            w = solve_spectrum(Rod(F, 1e4, 3.0, 0.01), SpectrumRequest(4, 1e-8, True)).eigenvalues
+            assert (w[0].imag != 0) == pair
+    # A real eigenvalue and a pair have the same real part where the one overtakes the other.
+    w = solve_spectrum(Rod(overtaken.at, 1e4, 3.0, 0.01), SpectrumRequest(3, 1e-10, True)).eigenvalues
+    assert w.real == pytest.approx(overtaken.growth_rate, rel=1e-9)
+    assert w.imag.max() == pytest.approx(overtaken.frequency, rel=1e-9)
+
+
+def test_a_box_that_holds_only_the_neighbourhood_of_zero_is_counted():
+    """A rod so quiet that D is near 1 along the whole imaginary axis within the a-priori box."""
+    assert count_right_of(0.0, Rod(1e-3, 1e4, 1e4, 1e-4)).number == 0
+    assert count_right_of(0.0, Rod(0.0, 1e4, 1e4, 1e-4)).number == 0

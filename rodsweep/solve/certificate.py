@@ -134,6 +134,8 @@ def count_right_of(line: float, rod: Rod) -> Count:
         total = -cmath.phase(scaled_determinant(complex(0.0, foot), rod.coefficients)[0])
     corners = (complex(real, 0), complex(real, imag), complex(line, imag), complex(line, foot))
     for start, end in zip(corners[:-1], corners[1:], strict=True):
+        if start == end:  # a box so small that D is near 1 all along its left side
+            continue
         change, used = phase_change(start, end, rod.coefficients, MOST_NODES)
         nodes += abs(used)
         if used < 0:

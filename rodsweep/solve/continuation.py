@@ -1,14 +1,16 @@
 """Curves in a plane of rods on which the spectrum changes: Hopf points, and double real eigenvalues.
 
-With h = log eta a Hopf curve is D(i eta; x, y) = 0, with h = log(-w) a curve of double eigenvalues is
-D(w; x, y) = D_w = 0: in either case two real equations for (x, y, h), which pseudo-arclength continuation
-follows through folds. A fold is a point where one of the coordinates is extremal on the curve, as where a
-window of flutter closes: there the tangent has no component along that axis.
+With h = log eta a Hopf curve is D(i eta; x, y) = 0, and with h = log |w| a curve of double real
+eigenvalues is D(w; x, y) = D_w = 0, where w keeps its sign because D(0) = 1. Both are two real equations
+for (x, y, h), which pseudo-arclength continuation follows through folds. A fold is a point where one of
+the coordinates is extremal on the curve, as where a window of flutter closes: there the tangent has no
+component along that axis.
 """
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,12 +47,14 @@ class Fold:
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """A curve of Hopf points (`hopf`) or of double eigenvalues: values of both parameters, shape (points, 2).
+    """A curve of Hopf points (sign 0) or of double real eigenvalues of a sign (-1 or 1).
+
+    values: of both parameters, shape (points, 2).
 
     frequency, growth_rate: of the eigenvalue, in 1/tau2, shape (points,).
     """
 
-    hopf: bool
+    sign: float
     values: NDArray[np.float64]
     frequency: NDArray[np.float64]
     growth_rate: NDArray[np.float64]
@@ -58,6 +62,10 @@ class Curve:
     closed: bool
     scaled: NDArray[np.float64]
     """(x, y, h) of each point, shape (points, 3)."""
+
+    @property
+    def hopf(self) -> bool:
+        return self.sign == 0
 
 
 def hopf_equations(plane: Plane, v: Vector) -> tuple[Vector, NDArray[np.float64], float]:
@@ -70,9 +78,9 @@ def hopf_equations(plane: Plane, v: Vector) -> tuple[Vector, NDArray[np.float64]
     return np.array([D.real, D.imag]) / scale, jacobian, blur / scale
 
 
-def double_equations(plane: Plane, v: Vector) -> tuple[Vector, NDArray[np.float64], float]:
-    """(residual, Jacobian, rounding error) of (D, w D_w) at w = -exp(h)."""
-    value, blur = _real_rows(plane, v)
+def double_equations(sign: float, plane: Plane, v: Vector) -> tuple[Vector, NDArray[np.float64], float]:
+    """(residual, Jacobian, rounding error) of (D, w D_w) at w = sign exp(h)."""
+    value, blur = _real_rows(sign, plane, v)
     jacobian = np.empty((2, 3))
     jacobian[0] = value[1], value[2], value[3]  # D_x, D_y, w D_w = dD/dh
     size = value[4]
@@ -82,18 +90,25 @@ def double_equations(plane: Plane, v: Vector) -> tuple[Vector, NDArray[np.float6
         for places, weight in STENCIL:
             step = np.zeros(3)
             step[i] = places * h
-            there = _real_rows(plane, v + step)[0]
+            there = _real_rows(sign, plane, v + step)[0]
             jacobian[1, i] += weight * there[3] * math.exp(there[4] - size) / h
     scale = np.abs(jacobian).max(axis=1)
     residual = np.array([value[0], value[3]]) / scale
     return residual, jacobian / scale[:, None], float(blur / scale.min())
 
 
-def _real_rows(plane: Plane, v: Vector) -> tuple[tuple[float, float, float, float, float], float]:
-    """((D, D_x, D_y, w D_w, S), rounding error) at w = -exp(h), where D is real."""
-    w = complex(-math.exp(v[2]), 0.0)
+def _real_rows(
+    sign: float, plane: Plane, v: Vector
+) -> tuple[tuple[float, float, float, float, float], float]:
+    """((D, D_x, D_y, w D_w, S), rounding error) at w = sign exp(h), where D is real."""
+    w = complex(sign * math.exp(v[2]), 0.0)
     D, D_w, D_x, D_y, S, blur = plane.determinant(w, v[0], v[1])
     return (D.real, D_x.real, D_y.real, (w * D_w).real, S), blur
+
+
+def equations_of(sign: float) -> Equations:
+    """The equations of a curve: of Hopf points for sign 0, of double eigenvalues of that sign else."""
+    return partial(double_equations, sign) if sign else hopf_equations
 
 
 def tangent(jacobian: NDArray[np.float64]) -> Vector:
@@ -129,12 +144,12 @@ def corrected(
     return None
 
 
-def trace(hopf: bool, plane: Plane, start: tuple[float, float], eigenvalue: float) -> Curve | None:
-    """The curve through a start (scaled coordinates) with w = i eigenvalue, or w = eigenvalue < 0; or None.
+def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: float) -> Curve | None:
+    """The curve of that sign through a start (scaled coordinates) with |w| = |eigenvalue|; or None.
 
     It is followed in both directions until it leaves the plane, closes, or reaches a crushed rod.
     """
-    equations = hopf_equations if hopf else double_equations
+    equations = equations_of(sign)
     guess = np.array([*start, math.log(abs(eigenvalue))])
     try:
         first = corrected(equations, plane, guess, tangent(equations(plane, guess)[1]))
@@ -145,7 +160,7 @@ def trace(hopf: bool, plane: Plane, start: tuple[float, float], eigenvalue: floa
     ahead, closed = _follow(equations, plane, first[0], 1.0)
     back = [] if closed else _follow(equations, plane, first[0], -1.0)[0]
     points = np.array([*back[::-1], first[0], *ahead])
-    return _curve(hopf, plane, points, closed)
+    return _curve(sign, plane, points, closed)
 
 
 def _follow(equations: Equations, plane: Plane, start: Vector, sign: float) -> tuple[list[Vector], bool]:
@@ -194,20 +209,21 @@ def on_line(
     return corrected(equations, plane, guess, np.eye(3)[axis])
 
 
-def _curve(hopf: bool, plane: Plane, points: NDArray[np.float64], closed: bool) -> Curve:
-    equations = hopf_equations if hopf else double_equations
+def _curve(sign: float, plane: Plane, points: NDArray[np.float64], closed: bool) -> Curve:
+    equations = equations_of(sign)
     folds = []
     if len(points) > 1:
         tangents = _oriented(np.array([tangent(equations(plane, v)[1]) for v in points]), points)
         for axis in (0, 1):
             for i in np.flatnonzero(tangents[:-1, axis] * tangents[1:, axis] < 0):
-                fold = _fold(hopf, plane, (points[i], tangents[i]), (points[i + 1], tangents[i + 1]), axis)
+                fold = _fold(sign, plane, (points[i], tangents[i]), (points[i + 1], tangents[i + 1]), axis)
                 if fold is not None:
                     folds.append(fold)
     size = np.exp(points[:, 2])
     zero = np.zeros(len(points))
     values = np.array([[axis.value(x) for axis, x in zip(plane.axes, v[:2], strict=True)] for v in points])
-    return Curve(hopf, values, size if hopf else zero, zero if hopf else -size, tuple(folds), closed, points)
+    frequency, growth_rate = (zero, sign * size) if sign else (size, zero)
+    return Curve(sign, values, frequency, growth_rate, tuple(folds), closed, points)
 
 
 def _oriented(tangents: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -217,12 +233,12 @@ def _oriented(tangents: NDArray[np.float64], points: NDArray[np.float64]) -> NDA
 
 
 def _fold(
-    hopf: bool, plane: Plane, left: tuple[Vector, Vector], right: tuple[Vector, Vector], axis: int
+    sign: float, plane: Plane, left: tuple[Vector, Vector], right: tuple[Vector, Vector], axis: int
 ) -> Fold | None:
     """The point between two points of a curve where the tangent has no component along an axis."""
-    equations = hopf_equations if hopf else double_equations
+    equations = equations_of(sign)
     a, b = left, right
-    noise, fold = HOPF_TANGENT if hopf else DOUBLE_TANGENT, None
+    noise, fold = DOUBLE_TANGENT if sign else HOPF_TANGENT, None
     for i in range(MOST_FOLD_STEPS):
         # Bisection every third step keeps the bracket shrinking from both sides.
         share = a[1][axis] / (a[1][axis] - b[1][axis]) if i % 3 else 0.5
@@ -234,7 +250,7 @@ def _fold(
         t = tangent(there[1])
         t = t if t @ normal > 0 else -t
         along = (abs(float(t[axis])) + noise) * size / abs(float(b[1][axis] - a[1][axis]))
-        fold = _as_fold(hopf, plane, there, axis, along)
+        fold = _as_fold(sign, plane, there, axis, along)
         if abs(t[axis]) < FOLD_ACCURACY or size < FOLD_ACCURACY:
             break
         a, b = ((there[0], t), b) if t[axis] * a[1][axis] > 0 else (a, (there[0], t))
@@ -242,7 +258,7 @@ def _fold(
 
 
 def _as_fold(
-    hopf: bool, plane: Plane, there: tuple[Vector, NDArray[np.float64], float], axis: int, along: float
+    sign: float, plane: Plane, there: tuple[Vector, NDArray[np.float64], float], axis: int, along: float
 ) -> Fold:
     v, _, error = there
     first, second = (a.value(float(x)) for a, x in zip(plane.axes, v[:2], strict=True))
@@ -250,5 +266,5 @@ def _as_fold(
     # Across the fold the extremal coordinate does not move to first order, the other one does.
     errors = [unit * (error if i == axis else error + along) for i, unit in enumerate(units)]
     size = math.exp(v[2])
-    frequency, growth_rate = (size, 0.0) if hopf else (0.0, -size)
+    frequency, growth_rate = (0.0, sign * size) if sign else (size, 0.0)
     return Fold(axis, (first, second), frequency, growth_rate, (errors[0], errors[1]))

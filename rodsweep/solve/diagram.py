@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ..model.path import Path
 from ..model.plane import Plane
 from ..model.rod import Rod
-from .continuation import Curve, double_equations, hopf_equations, on_line, trace
+from .continuation import Curve, equations_of, on_line, trace
 from .leading import Untraceable
 from .thresholds import SHORT_OF_CRUSHED, ThresholdStatus, status_of
 from .transitions import Crossing, Kind, Transitions, transitions
@@ -163,16 +163,19 @@ class Seed:
     """A change on a row, as a start for a curve: values of both parameters and the eigenvalue there."""
 
     values: tuple[float, float]
-    hopf: bool
+    sign: float
+    """0 for a Hopf point, else the sign of the double eigenvalue."""
     eigenvalue: float
-    """The frequency of a Hopf point, or the double eigenvalue, which is negative."""
+    """The frequency of a Hopf point, or the double eigenvalue."""
 
 
 def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rate: float) -> Seed | None:
     """The seed of a change, or None for an overtaking, which lies on neither kind of curve."""
     if kind in (Kind.hopf, Kind.hopf_reverse, Kind.restabilization):
-        return Seed(values, True, frequency)
-    return Seed(values, False, growth_rate) if kind in (Kind.onset, Kind.real_again) else None
+        return Seed(values, 0.0, frequency)
+    if kind in (Kind.onset, Kind.real_again):
+        return Seed(values, math.copysign(1.0, growth_rate), growth_rate)
+    return None
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,7 +198,7 @@ def curves_through(plane: Plane, seeds: list[Seed]) -> Curves:
         distance = min((_distance(plane, curve, seed) for curve in curves), default=math.inf)
         if distance > AGREE:
             x, y = (a.scaled(v) for a, v in zip(plane.axes, seed.values, strict=True))
-            curve = trace(seed.hopf, plane, (x, y), seed.eigenvalue)
+            curve = trace(seed.sign, plane, (x, y), seed.eigenvalue)
             if curve is not None:
                 curves.append(curve)
                 distance = _distance(plane, curve, seed)
@@ -208,7 +211,7 @@ def curves_through(plane: Plane, seeds: list[Seed]) -> Curves:
 
 def _distance(plane: Plane, curve: Curve, seed: Seed) -> float:
     """How far along the first axis a change lies from the curve, at its place on the second axis."""
-    if curve.hopf != seed.hopf:
+    if curve.sign != seed.sign:
         return math.inf
     x, y = (a.scaled(v) for a, v in zip(plane.axes, seed.values, strict=True))
     points = curve.scaled
@@ -216,7 +219,7 @@ def _distance(plane: Plane, curve: Curve, seed: Seed) -> float:
     if len(points) == 1:
         return float(abs(points[0, 0] - x)) if abs(side[0]) < AGREE else math.inf
     best = math.inf
-    equations = hopf_equations if curve.hopf else double_equations
+    equations = equations_of(curve.sign)
     for i in np.flatnonzero(side[:-1] * side[1:] <= 0):
         a, b = points[i], points[i + 1]
         if not min(a[0], b[0]) - 0.1 <= x <= max(a[0], b[0]) + 0.1:

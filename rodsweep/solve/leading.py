@@ -145,8 +145,8 @@ class Tracer:
                 meeting = 2 if change.double else 3
                 behind = max(left.w[meeting].real, right.w[meeting].real)
                 count = count_right_of((change.growth_rate + behind) / 2, self.path.at(change.p))
-                self.proved = self.proved and count.number == meeting
                 if count.number in (meeting, None):
+                    self.proved = self.proved and count.number is not None
                     return change
         return None
 

@@ -80,7 +80,7 @@ def double_newton(x: float, p: float, origin: Coefficients, direction: Coefficie
         e_x = (blur * abs(D_wp) + noise / max(abs(x), 1e-300) * abs(D_p)) / abs(cross)
         x += in_x
         p += in_p
-        if not abs(p - first) <= 2 * reach or not x < 0:
+        if not abs(p - first) <= 2 * reach or x == 0:
             return failed
         if abs(in_p) <= SETTLED * e_p and (abs(in_x) <= SETTLED * e_x or abs(in_x) > last / 2):
             return x, p, max(e_x, abs(in_x)), max(e_p, abs(in_p))
