@@ -1,10 +1,13 @@
 """The closed form of D against independent evaluations in multiple precision, and exact limits."""
 
+import shutil
+
 import mpmath as mp
 import numpy as np
 import pytest
 from reference import determinant as reference
 
+from rodsweep.model import compilation
 from rodsweep.model.determinant import newton_correction, scaled_determinant
 from rodsweep.model.rod import Rod
 
@@ -58,3 +61,20 @@ def test_newton_correction_is_the_distance_to_the_root():
     for distance in (1e-3, 1e-6j, 1e-9 - 1e-9j):
         found = newton_correction(root + distance, rod.coefficients)[0]
         assert found == pytest.approx(abs(distance), rel=1e-2)
+
+
+def test_compiled_code_is_kept_for_one_content_of_the_sources(tmp_path, monkeypatch):
+    """A change in a module whose formulas are inlined elsewhere must not meet old compiled code."""
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    copy = tmp_path / "rodsweep"
+    for name in compilation.COMPILED_IN:
+        shutil.copytree(compilation.PACKAGE / name, copy / name, ignore=shutil.ignore_patterns("__pycache__"))
+    monkeypatch.setattr(compilation, "PACKAGE", copy)
+    before = compilation.cache_directory()
+    assert before == compilation.cache_directory()
+    assert copy in before.parents
+    discs = copy / "solve" / "discs.py"
+    discs.write_text(discs.read_text() + "# changed\n")
+    assert compilation.cache_directory() != before
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "/elsewhere")
+    assert str(compilation.cache_directory()).startswith("/elsewhere/compiled-")

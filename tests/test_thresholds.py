@@ -163,7 +163,7 @@ def test_what_overflows_fails_with_a_reason():
 
 
 def test_a_rod_pulled_beyond_its_shear_stiffness_buckles_and_every_kind_of_change_occurs():
-    """F c2 < -nu: two positive real eigenvalues become a pair, which a real one overtakes when it is stable."""
+    """F c2 < -nu: two positive real eigenvalues become a pair, which later a real one overtakes."""
     found = transitions(Path(Rod(-8.0, 1e4, 3.0, 0.01), "F"), -8.0, 20.0)
     kinds = [c.kind for c in found.crossings]
     assert found.unstable_at_start == 2
@@ -180,6 +180,67 @@ def test_a_rod_pulled_beyond_its_shear_stiffness_buckles_and_every_kind_of_chang
     w = solve_spectrum(Rod(overtaken.at, 1e4, 3.0, 0.01), SpectrumRequest(3, 1e-10, True)).eigenvalues
     assert w.real == pytest.approx(overtaken.growth_rate, rel=1e-9)
     assert w.imag.max() == pytest.approx(overtaken.frequency, rel=1e-9)
+
+
+@pytest.mark.parametrize("beyond", [1e-3, 1e-6, 1e-9])
+def test_a_narrow_window_of_oscillations_is_found(beyond):
+    """Partial beam: F (1 - F/k1) = F* of the filament twice, as close as one likes (k1 -> 4 F*)."""
+    start = 20.0509536189737612
+    k1 = 4 * start * (1 + beyond)
+    found = thresholds(k1, inf, 0.0, 60.0, accuracy=1e-8)
+    half = k1 / 2 * np.sqrt(1 - 4 * start / k1)
+    assert found.status == ThresholdStatus.ok
+    assert [c.kind for c in found.crossings] == [Kind.onset, Kind.real_again]
+    assert found.crossings[1].at - found.crossings[0].at == pytest.approx(2 * half, rel=1e-3)
+
+
+def test_a_pair_about_to_cross_the_axis_leads():
+    """The onset and an overtaking lie close together before it, between two spectra that agree in kind."""
+    rod = Rod(-27.0, 424.7068961055969, 2.2470358417416847, 0.00041823639524173143)
+    found = transitions(Path(rod, "F"), -27.170544378578725, 100.0)
+    kinds = [c.kind for c in found.crossings]
+    assert Kind.onset in kinds
+    assert Kind.real_leads in kinds
+    motion, _ = classes(found, np.array([-4.95]))
+    assert motion.tolist() == [1]
+    assert found.proved
+
+
+def test_no_change_outside_the_path_is_reported():
+    """A Hopf point 1e-6 beyond the end, which Newton's method finds from a box at the edge."""
+    hopf = 37.6559805452710668
+    before = thresholds(1e4, 1e4, 1e-4, F_max=hopf * (1 - 1e-6))
+    assert before.status == ThresholdStatus.ok
+    assert [c.kind for c in before.crossings] == [Kind.onset]
+    assert before.unstable_at_end == 0
+    beyond = transitions(Path(Rod(0.0, 1e4, 1e4, 1e-4), "F"), hopf * (1 + 1e-6), 50.0)
+    assert (beyond.unstable_at_start, beyond.crossings) == (2, ())
+
+
+@pytest.mark.parametrize("k1", [8e8, 1.6e8, 3.1e9])
+def test_a_change_on_the_border_of_two_boxes_is_one(k1):
+    """A path along k1 at a force for which the Hopf point lies where the error of k1 is large."""
+    hopf = next(c.at for c in thresholds(k1, 1e4, 1e-4, F_max=60.0).crossings if c.kind == Kind.hopf)
+    found = transitions(Path(Rod(hopf, k1, 1e4, 1e-4), "k1"), 100.0, 1e12)
+    assert [c.unstable_after for c in found.crossings if c.kind == Kind.hopf] == [2]
+
+
+@pytest.mark.parametrize("F_max", [1e-3, 0.3, 0.7])
+def test_a_search_that_ends_before_anything_happens(F_max):
+    found = thresholds(1e4, 1e4, 1e-4, F_max=F_max)
+    assert (found.status, found.crossings, found.unstable_at_end) == (ThresholdStatus.ok, (), 0)
+
+
+@pytest.mark.parametrize("k1", [1e4, 200.0])
+def test_strong_pulls_cost_no_more_than_pushes(k1):
+    """Both exponentials of D grow there and cancel; bounded apart they would take a million boxes."""
+    path = Path(Rod(0.0, k1, 1e4, 1e-4), "F")
+    for start in (-400.0, -100.0):
+        zeros, left, examined = transitions_module.cover(
+            transitions_module.first_boxes(path, start, 0.0), path.origin, path.direction
+        )
+        assert (zeros, left) == ([], [])
+        assert examined < 20_000
 
 
 def test_a_box_that_holds_only_the_neighbourhood_of_zero_is_counted():

@@ -15,7 +15,7 @@ The weight is free; the best one makes both entries of the maximum equal.
 Beside w = 0 no eigenvalue lies on the imaginary axis: |E(z)| <= exp(Re sqrt z)/2 bounds D - 1 there.
 """
 
-from math import exp, inf, sqrt
+from math import exp, inf, log, sqrt
 
 from .compilation import compiled
 from .path import Path, changes, coefficients_at
@@ -83,6 +83,8 @@ def quiet_radius(path: Path, start: float, stop: float, largest: float) -> float
     span = (stop - start) ** 2 / 8
     G = max(abs(nu * (nu + F * c2)) for F, nu, c2, _ in ends) + span * max(abs(b[4]) for b in bends)
     pull = max(max(-F * (nu + F * c2) for F, nu, c2, _ in ends) + span * max(abs(b[2]) for b in bends), 0.0)
+    if all(F >= 0 and nu + F * c2 >= 0 for F, nu, c2, _ in ends):
+        pull = 0.0  # a product of two factors that are linear, or one of which does not change
     r = largest
     while _departure(r, T, X, G, pull) >= QUIET:
         r /= 2
@@ -104,4 +106,5 @@ def _departure(r: float, T: float, X: float, G: float, pull: float) -> float:
     exponent = sqrt(pull + T * r + 2 * sqrt(r * (G + X * r)))
     if exponent > 1 + sqrt(pull):
         return inf
-    return (T * r + sqrt(r * G) + 2 * r * sqrt(X)) * exp(exponent) / 2
+    factor = (T * r + sqrt(r * G) + 2 * r * sqrt(X)) / 2
+    return exp(min(exponent + log(factor), 1.0)) if factor > 0 else 0.0

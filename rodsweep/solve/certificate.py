@@ -71,9 +71,9 @@ def reach(w: complex, coefficients: Coefficients) -> tuple[complex, complex, flo
     """(D exp(-S), L = D'/D, r): no zero of D lies within r of w, and f turns by less than pi/2."""
     D, D1, S, noise = scaled_determinant(w, coefficients)
     room = CLEARANCE * abs(D) - ROUNDING_OF_D * noise
-    L = D1 / D
     if not room > 0:
-        return D, L, 0.0
+        return D, 0j, 0.0
+    L = D1 / D
     P, P1, _, plus, minus = branches(w, coefficients)
     local = w, coefficients, STILL, (P, P1, plus, minus, 0j, 0j), S
     best = 0.0
@@ -131,16 +131,20 @@ def count_right_of(line: float, rod: Rod) -> Count:
     foot, total, nodes = 0.0, 0.0, 0
     if line == 0.0:  # D = 1 at the foot of the line: the rest of it, where D is near 1, needs no nodes
         foot = quiet_radius_of(rod.coefficients, imag)
+        if foot == 0.0:
+            return Count(None, 0, "the pull is so strong that numbers underflow")
         total = -cmath.phase(scaled_determinant(complex(0.0, foot), rod.coefficients)[0])
     corners = (complex(real, 0), complex(real, imag), complex(line, imag), complex(line, foot))
     for start, end in zip(corners[:-1], corners[1:], strict=True):
-        if start == end:  # a box so small that D is near 1 all along its left side
+        if start == end:  # D is near 1 all along the line
             continue
-        change, used = phase_change(start, end, rod.coefficients, MOST_NODES)
+        # Upwards, because steps from the top could not resolve a foot below its rounding.
+        sign, ends = (-1, (end, start)) if end.imag < start.imag else (1, (start, end))
+        change, used = phase_change(*ends, rod.coefficients, MOST_NODES)
         nodes += abs(used)
         if used < 0:
             return Count(None, nodes, "an eigenvalue lies too close to the line, or the box is too large")
-        total += change
+        total += sign * change
     number = round(total / math.pi)
     if abs(total / math.pi - number) > 1e-3:
         return Count(None, nodes, "the winding number is not an integer within rounding")

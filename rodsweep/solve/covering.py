@@ -40,8 +40,8 @@ LARGEST_SHARE, NEXT_SHARE, MOST_SHARES = 0.45, 0.6, 30
 SMALLEST_BOX = 1e-9
 """Half-widths in units of eta and p below which a box is left open."""
 MOST_BOXES = 1_000_000
-SAME = 1e-9
-"""Relative distance below which two zeros, found from neighbouring boxes, are one."""
+SAME = 1.5
+"""Distance from the centre of a regular box, in half-widths, within which a zero known before is the same."""
 
 Box = tuple[float, float, float, float]
 """(eta from, eta to, p from, p to)."""
@@ -156,7 +156,8 @@ def cover(
             if away <= 2:  # false where Newton's method failed, which returns nan
                 seen = away > 1.01  # then a neighbouring box finds it too
                 for other in zeros:
-                    near = abs(other[0] - zero[0]) <= SAME * eta and abs(other[1] - zero[1]) <= SAME * abs(p)
+                    # The doubled box holds one zero at most.
+                    near = abs(other[0] - eta) <= SAME * half[0] and abs(other[1] - p) <= SAME * half[1]
                     seen = seen or near
                 if not seen:
                     zeros.append(zero)
@@ -197,7 +198,9 @@ def first_boxes(path: Path, start: float, stop: float) -> NDArray[np.float64] | 
         if not math.isfinite(top):
             return None
         low = quiet_radius(path, a, b, top)
+        if low == 0.0:
+            return None
         count = max(1, math.ceil(math.log(top / low) / math.log(FIRST_RATIO)))
         edges = np.geomspace(low, top, count + 1)
         boxes += [(edges[i], edges[i + 1], a, b) for i in range(count)]
-    return np.array(boxes)
+    return np.array(boxes).reshape(-1, 4)

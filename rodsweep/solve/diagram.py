@@ -22,6 +22,8 @@ from .leading import Untraceable
 from .thresholds import SHORT_OF_CRUSHED, ThresholdStatus, status_of
 from .transitions import Crossing, Kind, Transitions, transitions
 
+ROUNDED = 1e-12
+"""Difference of two coordinates that is none."""
 ON_CURVE = 1e-3
 """Relative distance of the eigenvalue below which a change may lie on a curve beside it."""
 AGREE = 1e-7
@@ -216,6 +218,7 @@ def _distance(plane: Plane, curve: Curve, seed: Seed) -> float:
     x, y = (a.scaled(v) for a, v in zip(plane.axes, seed.values, strict=True))
     points = curve.scaled
     side = points[:, 1] - y
+    side[np.abs(side) < ROUNDED] = 0.0
     if len(points) == 1:
         return float(abs(points[0, 0] - x)) if abs(side[0]) < AGREE else math.inf
     best = math.inf

@@ -27,8 +27,9 @@ ANCHOR_ACCURACY = 1e-6
 """What is asked of the spectrum solver; Newton's method on D does the rest."""
 EXPLAINED = 0.25
 """Share of a quantity that its cubic model may miss between two anchors."""
-CLOSEST = 2e-4
-"""Distance of anchors, in units of the path, below which no more are put between."""
+CLOSEST, CLOSEST_NEAR_ZERO = 2e-4, 1e-9
+"""Distance of anchors, in units of the path, below which no more are put between; and where two changes
+may hide between them."""
 MOST_SECANTS = 60
 
 
@@ -116,12 +117,16 @@ class Tracer:
         """All changes between the first and the last of `edges`, sorted by p."""
         found: list[Change] = []
         stack = [(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True)][::-1]
-        least = CLOSEST * abs(edges[-1] - edges[0])
+        length = abs(edges[-1] - edges[0])
         while stack:
             a, b = stack.pop()
             left, right = self.anchor(a), self.anchor(b)
             if left.oscillates == right.oscillates:
-                if b - a <= least or explained(left, right):
+                share, hides = unexplained(left, right)
+                if share == 0.0:
+                    continue
+                if b - a <= (CLOSEST_NEAR_ZERO if hides else CLOSEST) * length:
+                    self.proved = self.proved and not hides
                     continue
             else:
                 change = self._between(left, right)
@@ -132,7 +137,8 @@ class Tracer:
                     raise Untraceable(
                         f"the change of the leading eigenvalue near {self.path.at(a)} is not found"
                     )
-            middle = (a + b) / 2
+                share = 0.5
+            middle = a + share * (b - a)
             stack += [(middle, b), (a, middle)]
         return found
 
@@ -146,7 +152,7 @@ class Tracer:
                 behind = max(left.w[meeting].real, right.w[meeting].real)
                 count = count_right_of((change.growth_rate + behind) / 2, self.path.at(change.p))
                 if count.number in (meeting, None):
-                    self.proved = self.proved and count.number is not None
+                    self.proved = self.proved and count.number == meeting
                     return change
         return None
 
@@ -208,27 +214,41 @@ class Tracer:
         return w
 
 
-def explained(left: Anchor, right: Anchor) -> bool:
-    """Whether slopes explain what lies between two anchors of equal character, and no change fits in."""
-    for ends in ((left.partner(), right.partner()), (left.rival(), right.rival())):
-        a, b = ends
+def _lowest(a: float, b: float, slope_a: float, slope_b: float) -> tuple[float, float]:
+    """(least value on [0, 1] of the cubic with these values and slopes at its ends, where)."""
+    square, cube = 3 * (b - a) - 2 * slope_a - slope_b, slope_a + slope_b - 2 * (b - a)
+    lowest, at = min(a, b), 0.5
+    spread = square * square - 3 * cube * slope_a
+    if spread >= 0 and (square or cube):
+        # The root of slope_a + 2 square t + 3 cube t^2 at which the slope grows, without cancellation.
+        root = math.sqrt(spread)
+        t = -slope_a / (square + root) if square + root > 0 else (root - square) / (3 * cube) if cube else 0.5
+        value = a + t * (slope_a + t * (square + t * cube))
+        if 0 < t < 1 and value < lowest:
+            lowest, at = value, t
+    return lowest, at
+
+
+def unexplained(left: Anchor, right: Anchor) -> tuple[float, bool]:
+    """(where to put an anchor between two of equal character, whether two changes may hide between them).
+
+    The place is a share of the interval, 0 where slopes explain what lies between and no change fits in.
+    """
+    h = right.p - left.p
+    for a, b in ((left.partner(), right.partner()), (left.rival(), right.rival())):
         if a is None and b is None:
             continue
         if a is None or b is None:
-            known, anchor = (a, left) if a is not None else (b, right)
-            assert known is not None
-            if abs(known[0]) < 2 * abs(known[1]) * abs(right.p - left.p):
-                return False
+            value, slope = a or b or (0.0, 0.0)
+            if abs(value) < 2 * abs(slope) * h:
+                return 0.5, False
             continue
-        h = right.p - left.p
         smallest = min(abs(a[0]), abs(b[0]))
         missed = abs(b[0] - a[0] - h * (a[1] + b[1]) / 2)
-        t = np.linspace(0, 1, 17)
-        cubic = (
-            a[0] * (1 + 2 * t) * (1 - t) ** 2 + b[0] * t**2 * (3 - 2 * t)
-            + h * (a[1] * t * (1 - t) ** 2 - b[1] * t**2 * (1 - t))
-        )  # fmt: skip
-        lowest = np.abs(cubic).min() if (np.sign(cubic) == np.sign(a[0])).all() else 0.0
-        if missed > EXPLAINED * max(smallest, abs(b[0] - a[0])) or lowest < EXPLAINED * smallest:
-            return False
-    return True
+        sign = math.copysign(h, a[0])
+        lowest, share = _lowest(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
+        if a[0] * b[0] <= 0 or lowest < EXPLAINED * smallest:
+            return share, True
+        if missed > EXPLAINED * max(smallest, abs(b[0] - a[0])):
+            return 0.5, False
+    return 0.0, False

@@ -60,7 +60,7 @@ def crossing_newton(
 def double_newton(x: float, p: float, origin: Coefficients, direction: Coefficients, reach: float) -> Point:
     """The double real eigenvalue near (x, p): D = D_w = 0, p at most `reach` away."""
     failed = (math.nan, math.nan, math.nan, math.nan)
-    first, last = p, math.inf
+    start, first, last = x, p, math.inf
     for _ in range(2 * MOST_STEPS):
         D, D_w, D_p, S, noise = _real(x, p, origin, direction)
         h, k = DIFFERENCE * abs(x), DIFFERENCE * reach
@@ -80,7 +80,7 @@ def double_newton(x: float, p: float, origin: Coefficients, direction: Coefficie
         e_x = (blur * abs(D_wp) + noise / max(abs(x), 1e-300) * abs(D_p)) / abs(cross)
         x += in_x
         p += in_p
-        if not abs(p - first) <= 2 * reach or x == 0:
+        if not abs(p - first) <= 2 * reach or not x * start > 0:
             return failed
         if abs(in_p) <= SETTLED * e_p and (abs(in_x) <= SETTLED * e_x or abs(in_x) > last / 2):
             return x, p, max(e_x, abs(in_x)), max(e_p, abs(in_p))

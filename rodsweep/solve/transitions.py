@@ -18,6 +18,8 @@ ANCHORS_A_SLAB = 1
 """Rods a slab of the covering whose leading eigenvalues are computed whatever happens there."""
 PLACES = (0.5, 0.3, 0.7)
 """Where between two crossings the unstable modes are counted, until a count is decided."""
+BESIDE = 1e-4
+"""Distance from a crossing, in units of the path, of an anchor where the pair must lead."""
 TOGETHER = 1e-5
 """Relative distance of crossings below which nothing is counted between them."""
 
@@ -84,16 +86,26 @@ def transitions(path: Path, start: float, stop: float, certify: bool = True) -> 
     edges = [
         a + (b - a) * i / ANCHORS_A_SLAB for a, b in slabs(path, low, high) for i in range(ANCHORS_A_SLAB)
     ]
-    leads = [_lead(path, change) for change in tracer.changes([*edges, high])]
-    hopfs = [_hopf(path, zero) for zero in zeros]
+    hopfs = [_hopf(path, zero) for zero in zeros if low <= zero[1] <= high]
     gaps = _gaps(path, left)
-    ordered = sorted(leads + hopfs, key=lambda c: c.at)
     counts = _Counts(path, certify)
-    unstable = 0 if path.name == "F" and start == 0 else counts.at(start)
-    crossings, at_end = counts.along(ordered, gaps, (start, stop), unstable)
+    unstable = 0 if path.name == "F" and start == 0 else counts.first(start, stop, hopfs, gaps)
     first = tracer.anchor(path.variable(start))
+    edges = [*edges, high]
+    for _ in range(2):
+        counts.doubts = []
+        leads = [_lead(path, change) for change in tracer.changes(edges)]
+        ordered = sorted(leads + hopfs, key=lambda c: c.at)
+        crossings, at_end = counts.along(ordered, gaps, (start, stop), unstable)
+        missed = _pairs_that_do_not_lead(path, crossings, first.oscillates, unstable)
+        if not missed:
+            break
+        near = [(p + side * BESIDE * (high - low)) for p in missed for side in (-1, 1)]
+        edges = sorted({*edges, *(p for p in near if low < p < high)})
+    else:
+        counts.doubts.append("the leading eigenvalue is not the pair that crosses the axis")
     proved = certify and not gaps and not counts.doubts and all(c.unstable_after >= 0 for c in crossings)
-    proved = proved and tracer.proved
+    proved = proved and tracer.proved and unstable >= 0 and at_end >= 0
     return Transitions(
         crossings,
         (min(a for a, _ in gaps), max(b for _, b in gaps)) if gaps else (math.nan, math.nan),
@@ -105,6 +117,21 @@ def transitions(path: Path, start: float, stop: float, certify: bool = True) -> 
         tracer.solves,
         "; ".join(counts.doubts),
     )
+
+
+def _pairs_that_do_not_lead(
+    path: Path, crossings: tuple[Crossing, ...], oscillates: bool, unstable: int
+) -> list[float]:
+    """Path variables of crossings whose pair is alone on the axis and so must lead, but is said not to."""
+    missed = []
+    for crossing in crossings:
+        if crossing.kind in (Kind.onset, Kind.pair_leads, Kind.real_again, Kind.real_leads):
+            oscillates = crossing.kind in (Kind.onset, Kind.pair_leads)
+        else:
+            if min(unstable, crossing.unstable_after) == 0 and not oscillates:
+                missed.append(path.variable(crossing.at))
+            unstable = crossing.unstable_after
+    return missed
 
 
 def _value(path: Path, p: float, error: float) -> tuple[float, float]:
@@ -153,6 +180,15 @@ class _Counts:
         """The winding number at a value of the parameter; -1 where it is undecided."""
         number = count_right_of(0.0, self.path.at(self.path.variable(value))).number
         return -1 if number is None else number
+
+    def first(self, start: float, stop: float, hopfs: list[Crossing], gaps: list[tuple[float, float]]) -> int:
+        """The number at the start, counted there or, where that is undecided, before anything changes."""
+        until = min([stop, *(c.at for c in hopfs), *(a for a, _ in gaps)])
+        number = self.at(start)
+        for share in PLACES:
+            if number < 0 and until < math.inf:
+                number = self.at(start + share * (until - start))
+        return number
 
     def along(
         self,
