@@ -32,7 +32,7 @@ def rows(plane_axes, rod, count):
         row = solve_row(values | {across.name: value}, request)
         assert row.status == ThresholdStatus.ok, row.message
         found.append(row)
-        seeds += [seed_of((c.at, value), c.kind, c.frequency, c.growth_rate) for c in row.crossings]
+        seeds += [seed_of((c.at, value), c.kind, c.frequency, c.growth_rate) for c in row.changes.crossings]
     return found, seeds
 
 
@@ -44,7 +44,7 @@ def test_the_flutter_window_closes_at_the_fold_to_nine_digits(k2, gamma3, k1, F,
     row = solve_row(
         {"k1": 300.0, "k2": k2, "gamma3": gamma3}, RowRequest("F", np.array([0.0, 119.0]), 1e-9, True, 9)
     )
-    hopf = next(c for c in row.crossings if c.kind == Kind.hopf)
+    hopf = next(c for c in row.changes.crossings if c.kind == Kind.hopf)
     curve = trace(0.0, plane, (plane.axes[0].scaled(hopf.at), plane.axes[1].scaled(300.0)), hopf.frequency)
     (fold,) = [f for f in curve.folds if f.axis == 1]
     assert fold.values[1] == pytest.approx(k1, rel=1e-12)

@@ -82,7 +82,7 @@ def search(index=0, **more):
         boxes=100,
         solves=7,
         seconds=0.25,
-        F_end=200.0,
+        end=200.0,
         unstable_at_end=0,
         **more,
     )

@@ -145,8 +145,8 @@ def test_a_lost_crossing_is_noticed_by_the_counts(monkeypatch):
 
 def test_the_search_ends_below_a_crushed_rod_and_says_where():
     found = thresholds(60.0, 1e3, 1e-3, F_max=500.0)
-    assert found.F_end == pytest.approx(60.0, rel=2e-6)
-    assert found.F_end < 60.0
+    assert found.end == pytest.approx(60.0, rel=2e-6)
+    assert found.end < 60.0
 
 
 def test_more_changes_than_the_list_holds_are_counted():

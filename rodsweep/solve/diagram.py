@@ -19,8 +19,8 @@ from ..model.plane import Plane
 from ..model.rod import Rod
 from .continuation import Curve, equations_of, on_line, trace
 from .leading import Untraceable
-from .thresholds import SHORT_OF_CRUSHED, ThresholdStatus, status_of
-from .transitions import Crossing, Kind, Transitions, transitions
+from .thresholds import SHORT_OF_CRUSHED, Thresholds, ThresholdStatus, nothing_found, outcome_of
+from .transitions import Kind, Transitions, transitions
 
 ROUNDED = 1e-12
 """Difference of two coordinates that is none."""
@@ -60,17 +60,17 @@ class RowRequest:
 class Row:
     """One row: the class and the unstable modes at each value, shape (values,), and all changes along it."""
 
-    status: ThresholdStatus
     motion: NDArray[np.int8]
     unstable_count: NDArray[np.int32]
-    crossings: tuple[Crossing, ...]
-    crossing_count: int
-    open_range: tuple[float, float]
-    certified: bool
-    boxes: int
-    solves: int
-    seconds: float
-    message: str = ""
+    changes: Thresholds
+
+    @property
+    def status(self) -> ThresholdStatus:
+        return self.changes.status
+
+    @property
+    def message(self) -> str:
+        return self.changes.message
 
 
 def solve_row(fixed: dict[str, float], request: RowRequest) -> Row:
@@ -82,8 +82,8 @@ def solve_row(fixed: dict[str, float], request: RowRequest) -> Row:
             row = _searched(fixed, request)
     except (Untraceable, ArithmeticError, MemoryError, ValueError) as error:
         reason = str(error) or type(error).__name__
-        row = _blank(ThresholdStatus.failed, len(values), Motion.undecided, reason)
-    return replace(row, seconds=time.perf_counter() - started)
+        row = _blank(ThresholdStatus.failed, values, Motion.undecided, reason)
+    return replace(row, changes=replace(row.changes, seconds=time.perf_counter() - started))
 
 
 def _searched(fixed: dict[str, float], request: RowRequest) -> Row:
@@ -92,7 +92,7 @@ def _searched(fixed: dict[str, float], request: RowRequest) -> Row:
     k1 = values if name == "k1" else np.full(len(values), fixed["k1"])
     alive = k1 * (1 - SHORT_OF_CRUSHED) > F
     if not alive.any():
-        return _blank(ThresholdStatus.ok, len(values), Motion.crushed, "")
+        return _blank(ThresholdStatus.ok, values, Motion.crushed)
     start, stop = float(values[alive][0]), float(values[alive][-1])
     if name == "F" and not alive.all():
         stop = fixed["k1"] * (1 - SHORT_OF_CRUSHED)
@@ -104,36 +104,14 @@ def _searched(fixed: dict[str, float], request: RowRequest) -> Row:
     crushed = k1 <= F
     motion[crushed], unstable[crushed] = Motion.crushed, -1
     motion[~alive & ~crushed], unstable[~alive & ~crushed] = Motion.undecided, -1
-    return Row(
-        status=status_of(found, request.accuracy, request.certify, request.crossings),
-        motion=motion,
-        unstable_count=unstable,
-        crossings=found.crossings[: request.crossings],
-        crossing_count=len(found.crossings),
-        open_range=found.open_range,
-        certified=found.proved,
-        boxes=found.boxes,
-        solves=found.solves,
-        seconds=0.0,
-        message=found.why_not,
-    )
+    return Row(motion, unstable, outcome_of(found, stop, request))
 
 
-def _blank(status: ThresholdStatus, count: int, motion: Motion, message: str) -> Row:
+def _blank(status: ThresholdStatus, values: NDArray[np.float64], motion: Motion, message: str = "") -> Row:
     """A row of one class without any change."""
-    return Row(
-        status=status,
-        motion=np.full(count, motion, dtype=np.int8),
-        unstable_count=np.full(count, -1, dtype=np.int32),
-        crossings=(),
-        crossing_count=0,
-        open_range=(math.nan, math.nan),
-        certified=motion == Motion.crushed,
-        boxes=0,
-        solves=0,
-        seconds=0.0,
-        message=message,
-    )
+    count = len(values)
+    changes = nothing_found(status, float(values[-1]), message)
+    return Row(np.full(count, motion, dtype=np.int8), np.full(count, -1, dtype=np.int32), changes)
 
 
 def classes(found: Transitions, values: NDArray[np.float64]) -> tuple[NDArray[np.int8], NDArray[np.int32]]:

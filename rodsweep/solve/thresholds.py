@@ -4,6 +4,7 @@ import math
 import time
 from dataclasses import dataclass, replace
 from enum import IntEnum
+from typing import Protocol
 
 import numpy as np
 
@@ -53,6 +54,19 @@ SENTENCES = {
 }
 
 
+class Wish(Protocol):
+    """What the requests of a rod and of a row have in common."""
+
+    @property
+    def accuracy(self) -> float: ...
+
+    @property
+    def certify(self) -> bool: ...
+
+    @property
+    def crossings(self) -> int: ...
+
+
 @dataclass(frozen=True, slots=True)
 class ThresholdsRequest:
     """What is asked of every rod: the largest force, a relative accuracy of each threshold, a proof."""
@@ -66,16 +80,16 @@ class ThresholdsRequest:
 
 @dataclass(frozen=True, slots=True)
 class Thresholds:
-    """The changes in 0 < F < F_end, in increasing order of F.
+    """The changes along a path up to the value `end` of its parameter, F or another, in increasing order.
 
-    crossing_count counts those beyond the list too. open_range: (from, to) in F, nan where nothing is
+    crossing_count counts those beyond the list too. open_range: (from, to), nan where nothing is
     open. boxes, solves: evaluations of D and eigenproblems that it took.
     """
 
     status: ThresholdStatus
     crossings: tuple[Crossing, ...]
     crossing_count: int
-    F_end: float
+    end: float
     unstable_at_end: int
     open_range: tuple[float, float]
     certified: bool
@@ -92,31 +106,19 @@ def solve_thresholds(k1: float, k2: float, gamma3: float, request: ThresholdsReq
     try:
         with np.errstate(all="ignore"):
             found = transitions(Path(Rod(0.0, k1, k2, gamma3), "F"), 0.0, end, request.certify)
-        outcome = _outcome(found, end, request)
+        outcome = outcome_of(found, end, request)
     except (Untraceable, ArithmeticError, MemoryError) as error:
-        nothing = math.nan, math.nan
-        outcome = Thresholds(
-            ThresholdStatus.failed,
-            (),
-            0,
-            end,
-            -1,
-            nothing,
-            False,
-            0,
-            0,
-            0.0,
-            str(error) or type(error).__name__,
-        )
+        outcome = nothing_found(ThresholdStatus.failed, end, str(error) or type(error).__name__)
     return replace(outcome, seconds=time.perf_counter() - started)
 
 
-def _outcome(found: Transitions, end: float, request: ThresholdsRequest) -> Thresholds:
+def outcome_of(found: Transitions, end: float, wish: Wish) -> Thresholds:
+    """What is kept of the changes along a path, and how far it can be relied on."""
     return Thresholds(
-        status=status_of(found, request.accuracy, request.certify, request.crossings),
-        crossings=found.crossings[: request.crossings],
+        status=status_of(found, wish),
+        crossings=found.crossings[: wish.crossings],
         crossing_count=len(found.crossings),
-        F_end=end,
+        end=end,
         unstable_at_end=found.unstable_at_end,
         open_range=found.open_range,
         certified=found.proved,
@@ -127,15 +129,21 @@ def _outcome(found: Transitions, end: float, request: ThresholdsRequest) -> Thre
     )
 
 
-def status_of(found: Transitions, accuracy: float, certify: bool, most: int) -> ThresholdStatus:
+def nothing_found(status: ThresholdStatus, end: float, message: str = "") -> Thresholds:
+    """The outcome where nothing was searched, or the search failed."""
+    certified = status == ThresholdStatus.ok
+    return Thresholds(status, (), 0, end, -1, (math.nan, math.nan), certified, 0, 0, 0.0, message)
+
+
+def status_of(found: Transitions, wish: Wish) -> ThresholdStatus:
     """How far a list of changes can be relied on; what matters most is said first."""
     if not math.isnan(found.open_range[0]):
         return ThresholdStatus.window_open
-    if len(found.crossings) > most:
+    if len(found.crossings) > wish.crossings:
         return ThresholdStatus.list_full
-    if any(c.error > accuracy * abs(c.at) for c in found.crossings):
+    if any(c.error > wish.accuracy * abs(c.at) for c in found.crossings):
         return ThresholdStatus.accuracy_not_reached
-    if certify and not found.proved:
+    if wish.certify and not found.proved:
         return ThresholdStatus.not_certified
     return ThresholdStatus.ok
 

@@ -1,46 +1,18 @@
 """What a search along one parameter found, as variables of the file: the same for a rod and for a row."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...results.layouts import CROSSING_KINDS
 
 if TYPE_CHECKING:
-    from ...solve.thresholds import ThresholdStatus
+    from ...solve.thresholds import Thresholds
     from ...solve.transitions import Crossing
 
 
-class Search(Protocol):
-    """What the searches of thresholds and of rows have in common."""
-
-    @property
-    def status(self) -> "ThresholdStatus": ...
-
-    @property
-    def crossings(self) -> "tuple[Crossing, ...]": ...
-
-    @property
-    def crossing_count(self) -> int: ...
-
-    @property
-    def open_range(self) -> tuple[float, float]: ...
-
-    @property
-    def certified(self) -> bool: ...
-
-    @property
-    def boxes(self) -> int: ...
-
-    @property
-    def solves(self) -> int: ...
-
-    @property
-    def seconds(self) -> float: ...
-
-
-def search_record(result: Search, most: int, at: str) -> dict[str, Any]:
+def search_record(result: "Thresholds", most: int, at: str) -> dict[str, Any]:
     """The variables of a search: at most `most` crossings, whose place is the variable `at`."""
     return {
         "crossing_count": result.crossing_count,

@@ -123,7 +123,7 @@ class PhaseDiagramTask:
 def record(result: "Row", most: int) -> dict[str, Any]:
     """A row as the variables of the file."""
     classes = {"class": result.motion, "unstable_count": result.unstable_count}
-    return classes | search_record(result, most, "crossing_at")
+    return classes | search_record(result.changes, most, "crossing_at")
 
 
 def curve_record(found: "Curves", line: str, row: str) -> dict[str, Any]:

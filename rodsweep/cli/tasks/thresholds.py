@@ -72,6 +72,6 @@ def record(result: "Thresholds", most: int) -> dict[str, Any]:
         "hopf_frequency": hopf.frequency if hopf else np.nan,
         "F_restabilization": end.at if end else np.nan,
         "restabilization_frequency": end.frequency if end else np.nan,
-        "F_end": result.F_end,
+        "F_end": result.end,
         "unstable_at_end": result.unstable_at_end,
     } | search_record(result, most, "crossing_F")
