@@ -9,9 +9,9 @@ from rodsweep.model.plane import Axis, Plane
 from rodsweep.model.rod import Rod
 from rodsweep.solve.certificate import count_right_of
 from rodsweep.solve.continuation import trace
+from rodsweep.solve.counts import Kind
 from rodsweep.solve.diagram import Motion, RowRequest, curves_through, seed_of, solve_row
 from rodsweep.solve.thresholds import ThresholdStatus
-from rodsweep.solve.transitions import Kind
 
 FOLDS = [
     # k2, gamma3, k1, F, frequency: 30-digit roots of D = 0 and of the vanishing Jacobian

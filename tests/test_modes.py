@@ -6,15 +6,23 @@ import mpmath as mp
 import numpy as np
 import pytest
 from numpy.polynomial import legendre
+from scipy.linalg import expm
 
 from rodsweep.discretization.basis import differentiation
-from rodsweep.discretization.pencil import assemble
+from rodsweep.discretization.pencil import assemble, shear_force
 from rodsweep.discretization.quadrature import gauss_lobatto, lobatto_points
+from rodsweep.discretization.resolution import Resolution
 from rodsweep.model.rod import Rod
 from rodsweep.solve import growth as growth_module
-from rodsweep.solve import modes as modes_module
-from rodsweep.solve.growth import dense_operator, numerical_abscissa
-from rodsweep.solve.modes import ModesRequest, shear_force, solve_modes
+from rodsweep.solve import peak as peak_module
+from rodsweep.solve import shapes as shapes_module
+from rodsweep.solve import vectors as vectors_module
+from rodsweep.solve.abscissa import numerical_abscissa
+from rodsweep.solve.dense import dense_operator
+from rodsweep.solve.modes import ModesRequest, solve_modes
+from rodsweep.solve.peak import highest
+from rodsweep.solve.propagator import Propagator, exponential
+from rodsweep.solve.shapes import mode_shapes, null_vectors
 from rodsweep.solve.spectrum import SpectrumRequest, solve_spectrum
 from rodsweep.solve.status import Status
 
@@ -144,8 +152,13 @@ class ReferenceGrowth:
 
     @staticmethod
     def _factor(modes):
-        gram = mp.matrix([[a.product(b) for b in modes] for a in modes])
-        return mp.cholesky((gram + gram.H) / 2).H
+        gram = mp.matrix(len(modes), len(modes))
+        for i, a in enumerate(modes):
+            gram[i, i] = mp.re(a.product(a))
+            for j, b in enumerate(modes[:i]):
+                gram[i, j] = a.product(b)
+                gram[j, i] = mp.conj(gram[i, j])
+        return mp.cholesky(gram).H
 
     def __call__(self, t):
         weights = [mp.exp(w * t) / p for w, p in zip(self.w, self.pairing, strict=True)]
@@ -254,7 +267,7 @@ def test_left_null_vector_of_the_pencil_has_the_adjoint_ends():
     for order in (8, 12, 16):
         pencil = assemble(1, order)
         A, B = dense_operator(rod, pencil)
-        _, z = modes_module._null_vectors(A, B, w)
+        _, z = null_vectors(A, B, w)
         force = shear_force(pencil, z[:, None].astype(complex), np.linspace(0, 1, 11))
         left_over.append(abs(force[-1, 0]) / abs(force).max())
     assert left_over[0] < 1e-3
@@ -438,18 +451,189 @@ def test_transient_growth_is_the_largest_norm_of_the_exact_propagator(parameters
     assert max(scan) <= result.transient_growth
 
 
+def toy(generator):
+    """exp(L t) of a small matrix L, all modes kept."""
+    propagator = Propagator(np.linalg.inv(np.array(generator, dtype=float)))
+    assert propagator.keep(len(generator)) == len(generator)
+    return propagator
+
+
+def abscissa_of(propagator):
+    return np.linalg.eigvalsh(propagator.generator + propagator.generator.T)[-1] / 2
+
+
+def brute_force(propagator, times):
+    return np.array([np.linalg.norm(expm(propagator.generator * t), 2) for t in times])
+
+
 def test_a_peak_later_than_the_decay_time_is_found():
     """Three close modes in a chain, |exp(L t)| near 1800 t^2 exp(-t): the peak is at t = 2, not before 1."""
-    propagator = object.__new__(growth_module.Propagator)
-    propagator.generator = np.diag([-1.0, -1.002, -1.004]) + np.diag([60.0, 60.0], 1)
-    propagator.entry = np.eye(3)
-    propagator.w = np.diag(propagator.generator).astype(complex)
-    end = growth_module._end(propagator, 1e-3, 20.0)
-    largest, time = growth_module._highest(propagator, growth_module._times(propagator, 1e-3, end))
+    propagator = toy(np.diag([-1.0, -1.002, -1.004]) + np.diag([60.0, 60.0], 1))
+    end, tail = growth_module._end(propagator, 1e-3, 20.0)
+    (largest, time), bound = highest(propagator, (1e-3, end), abscissa_of(propagator), 1.0, 1e-6)
     assert propagator.norm(end)[0] < 1
+    assert tail == 0
     assert time == pytest.approx(2, rel=1e-2)
     assert largest == pytest.approx(4 * 1800 * np.exp(-2), rel=1e-2)
-    assert largest > propagator.norms(np.linspace(0.1, 20, 1000)).max() * (1 - 1e-9)
+    scan = brute_force(propagator, np.linspace(0.1, 20, 1000)).max()
+    assert scan * (1 - 1e-9) < largest <= bound <= largest * (1 + 1e-6)
+
+
+def test_no_pair_is_cut():
+    propagator = toy([[-1.0, 5.0, 0.3], [-5.0, -1.0, 0.2], [0.0, 0.0, -2.0]])
+    assert [propagator.keep(k) for k in (1, 2, 3, 4)] == [2, 2, 3, 3]
+
+
+def test_all_modes_of_a_mesh_say_the_same_as_few():
+    """Most have decayed by 1e-100 then, and must not cost digits: w t is up to 1e6."""
+    propagator = growth_module.propagator_of(Rod(12.0, INF, INF, 0.0), assemble(1, 32))
+    norms = []
+    for k in (12, 18, 32):
+        assert propagator.keep(k) == k
+        assert (np.tril(propagator.generator, -2) == 0).all()
+        norms.append(propagator.norm(4.3e-5)[0])
+    assert norms == pytest.approx([norms[0]] * 3, rel=5e-14)
+
+
+def test_a_mesh_that_makes_an_unstable_eigenvalue_up_is_refused():
+    made_up = toy(np.diag([0.1, -1.0, -2.0]))
+    assert growth_module.transient_growth(made_up, made_up, 0.2, 1e-8).error == INF
+
+
+def test_where_nothing_can_grow_no_propagator_is_needed(monkeypatch):
+    monkeypatch.setattr(growth_module, "propagator_of", None)
+    result = solve_modes(Rod(9.8, 1e4, 1e4, 1e-4), TIGHT)
+    assert result.status == Status.ok
+    assert result.numerical_abscissa < 0
+    assert (result.transient_growth, result.transient_time, result.growth_error) == (1.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("fast", [1e2, 1e6, 1e12])
+def test_fast_modes_cost_the_slow_ones_no_digits(fast):
+    """Squaring exp(L t) itself some 40 times would leave 4 of 16 digits."""
+    L = np.array([[-0.3, 2.0, 0.7], [-1.0, -0.2, 0.4], [0.0, 0.0, -1.0]]) * [1.0, 1.0, fast**0.5]
+    L[2, 2] = -fast
+    exact = np.array(mp.expm(mp.matrix(L.tolist())).tolist(), dtype=float)
+    assert abs(exponential(L) - exact)[:2].max() < 1e-14 * abs(exact).max()
+    many = exponential(L * np.array([0.5, 1.0])[:, None, None])
+    assert many[1] == pytest.approx(exponential(L), abs=1e-14)
+    assert many[0] @ many[0] == pytest.approx(many[1], abs=1e-13)
+
+
+@pytest.mark.parametrize("frequency", [7.3, 31.0, 155.0])
+def test_a_peak_between_two_times_is_found(frequency):
+    """A damped pair with |exp(L t)| up to 9 twice a turn: the times to start with see few of the peaks."""
+    propagator = toy([[-0.05, 9 * frequency], [-frequency / 9, -0.05]])
+    (largest, time), bound = highest(propagator, (1.0, 8.0), abscissa_of(propagator), 1.0, 1e-8)
+    first = (np.ceil(frequency / np.pi - 0.5) + 0.5) * np.pi / frequency
+    assert time == pytest.approx(first, rel=1e-2)
+    assert largest == pytest.approx(9 * np.exp(-0.05 * first), rel=1e-3)
+    scan = brute_force(propagator, np.linspace(1, 8, 4000)).max()
+    assert scan <= largest * (1 + 1e-12)
+    assert largest <= bound <= largest * (1 + 1e-8)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_no_time_within_an_interval_exceeds_its_bound(seed):
+    """Random non-normal operators: the bound of first order is below that of second, and the other way."""
+    draw = np.random.default_rng(seed)
+    generator = draw.normal(size=(5, 5)) * 10 ** draw.uniform(-1, 1, 5)
+    generator -= (np.linalg.eigvals(generator).real.max() + 0.1) * np.eye(5)
+    propagator = toy(generator)
+    abscissa = abscissa_of(propagator)
+    for t, h in ((0.1, 1e-3), (0.1, 0.03), (0.4, 0.2), (1.0, 1.0)):
+        squares, bends = propagator.squares(np.array([t, t + h]))
+        inside = brute_force(propagator, np.linspace(t, t + h, 60)) ** 2
+        assert squares == pytest.approx(inside[[0, -1]], rel=1e-9)
+        for bend in (bends[0], INF):  # both orders together, and the first alone
+            bound = peak_module._bound(np.array([h]), *squares[:, None], np.array([bend]), abscissa)
+            assert inside.max() <= bound[0] * (1 + 1e-12)
+
+
+def test_the_bound_is_reached_round_the_peak_of_a_pair():
+    """|exp(L t)|^2 is 81 at the peak: the bound adds what an interval astride lacks, and little else."""
+    propagator = toy([[0.0, 9.0], [-1 / 9, 0.0]])
+    h = 1e-4
+    ends = np.pi / 2 + np.array([-h / 2, h / 2])
+    squares, bends = propagator.squares(ends)
+    bound = peak_module._bound(np.array([h]), *squares[:, None], bends[:1], abscissa_of(propagator))
+    lack = 81 - squares.max()
+    assert 0 < bound[0] - 81 < 0.03 * lack
+
+
+def test_a_search_that_is_given_up_leaves_the_bound_where_it_is(monkeypatch):
+    monkeypatch.setattr(peak_module, "MOST_HALVINGS", 1)
+    propagator = toy([[-0.05, 9 * 155.0], [-155.0 / 9, -0.05]])
+    (largest, _), bound = highest(propagator, (1.0, 8.0), abscissa_of(propagator), 1.0, 1e-8)
+    scan = brute_force(propagator, np.linspace(1, 8, 4000)).max()
+    assert scan < bound
+    assert bound > 1.01 * largest
+
+
+def test_the_bend_is_that_of_the_most_concave_square():
+    """c of (-f'')/2 over unit vectors, by differences; for a symmetric operator every f is convex."""
+    propagator = toy([[-1.0, 9.0, 0.0], [0.0, -2.0, 5.0], [0.0, 0.0, -3.0]])
+    t, h = 0.3, 1e-3
+    matrices = [expm(propagator.generator * x) for x in (t - h, t, t + h)]
+    low, middle, high = (E.T @ E for E in matrices)
+    exact = -np.linalg.eigvalsh((low - 2 * middle + high) / h**2)[0]
+    assert propagator.squares(np.array([t]))[1][0] == pytest.approx(exact, rel=1e-4)
+    assert exact > 1
+    symmetric = toy(np.diag([-1.0, -2.0]) + 0.1 * np.ones((2, 2)))
+    assert symmetric.squares(np.array([t]))[1][0] == 0
+
+
+def test_a_leading_pair_next_to_its_threshold_is_followed_for_half_a_turn_only():
+    """It decays like exp(-1e-9 t): waiting for |exp(L t)| < 1 would take 1e9; the rest is gone by 30."""
+    generator = np.zeros((4, 4))
+    generator[:2, :2] = [[-1e-9, 12.0], [-3.0, -1e-9]]
+    generator[2:, 2:] = [[-1.0, 8.0], [0.0, -1.5]]
+    generator[:2, 2:] = 4.0
+    propagator = toy(generator)
+    end, tail = growth_module._end(propagator, 1e-2, 25.0)
+    assert 20 < end < 40
+    left_over = expm(generator * (end - np.pi / 6)) - mode_part(generator, end - np.pi / 6)
+    assert tail == pytest.approx(2 * np.linalg.norm(left_over, 2), rel=1e-3)
+    assert tail < 1e-7
+    scans = [brute_force(propagator, np.linspace(*span, 4000)).max() for span in ((0, end), (end, 500))]
+    assert scans[1] <= scans[0] * (1 + tail)
+
+
+def mode_part(generator, t):
+    """exp(L t) of the leading pair alone."""
+    w, V = np.linalg.eig(generator)
+    leading = np.isclose(abs(w.imag), abs(w.imag).max())
+    return ((V * np.where(leading, np.exp(w * t), 0)) @ np.linalg.inv(V)).real
+
+
+EARLY = [(10.5, 1e4, 1e4, 1e-4), (11.0, 1e4, 1e8, 1e-8), (9.9, 1e4, 1e2, 1e-2)]
+
+
+@pytest.mark.parametrize("parameters", EARLY)
+def test_early_growth_is_that_of_the_exact_propagator(parameters):
+    """Abscissae of 2 to 4, peaks at 1e-6 to 1e-4 of S - 1 from 1e-7 to 1e-4: 26 exact modes."""
+    rod = Rod(*parameters)
+    result = solve_modes(rod, TIGHT)
+    assert result.status == Status.ok
+    exact = ReferenceGrowth(rod, solve_modes(rod, ModesRequest(26, 1e-8, 2, growth=False)).eigenvalues)
+    scan = {x: exact(x * result.transient_time) for x in (0.9, 1.0, 1.1)}
+    assert max(scan, key=scan.get) == 1.0
+    assert result.transient_growth == pytest.approx(scan[1.0], rel=1e-10)
+    assert abs(result.transient_growth - scan[1.0]) < 1e-4 * (scan[1.0] - 1)
+
+
+@pytest.mark.parametrize("F", [9.8697, 9.87, 9.88, 9.9, 9.95, 10.0, 10.2, 10.5, 11.0])
+def test_growth_is_as_accurate_as_it_says_where_the_abscissa_is_small(F):
+    """Abscissae from 1e-4 to 4; S - 1 below the accuracy is 0 at 0 and covered by the error estimate."""
+    rod = Rod(F, 1e4, 1e4, 1e-4)
+    fine = solve_modes(rod, TIGHT)
+    assert fine.status == Status.ok
+    assert 0 < fine.numerical_abscissa < 4.1
+    for accuracy in (1e-4, 1e-6, 1e-8):
+        coarse = solve_modes(rod, replace(TIGHT, accuracy=accuracy))
+        assert coarse.status == Status.ok
+        assert coarse.growth_error <= accuracy
+        assert abs(coarse.transient_growth - fine.transient_growth) <= coarse.growth_error + 1e-10
 
 
 def test_transient_growth_is_smooth_across_the_onset():
@@ -477,7 +661,8 @@ def test_growth_lies_between_one_and_what_the_abscissa_allows():
         assert result.status == Status.ok
         bound = np.exp(max(result.numerical_abscissa, 0) * result.transient_time)
         assert 1 <= result.transient_growth <= bound * (1 + 1e-12)
-        assert (result.transient_time > 0) == (result.numerical_abscissa > 0)
+        assert (result.transient_time > 0) == (result.transient_growth > 1)
+        assert result.transient_time == 0 or result.numerical_abscissa > 0
 
 
 def test_growth_is_computed_only_where_asked_for():
@@ -498,16 +683,75 @@ def test_a_failing_mesh_is_a_status(monkeypatch):
     def broken(*_):
         raise np.linalg.LinAlgError("Singular matrix")
 
-    monkeypatch.setattr(modes_module, "mode_shapes", broken)
+    monkeypatch.setattr(vectors_module, "mode_shapes", broken)
     result = solve_modes(Rod(*FIG_2A), TIGHT)
     assert result.status == Status.failed
     assert result.message == "Singular matrix"
 
 
 def test_coarse_meshes_are_refined_until_they_agree(monkeypatch):
-    monkeypatch.setattr(modes_module, "_first_mesh", lambda *_: modes_module.Resolution(1, 8))
+    monkeypatch.setattr(vectors_module, "first_mesh", lambda *_: Resolution(1, 8))
     result = solve_modes(Rod(*FIG_2A), SHAPES)
     assert result.status == Status.ok
     assert result.order > 16
     y, *_ = ClosedForm(Rod(*FIG_2A), result.eigenvalues[3]).fields(POINTS)
     assert relative(result.right[0, 3], y) < 1e-10
+
+
+def test_a_tip_that_does_not_move_leaves_a_mode_without_scale():
+    """Y(1) = 0 is met at single points only: a made-up vector has it."""
+    rod, pencil = Rod(*FIG_2A), assemble(1, 12)
+    vectors = np.ones((pencil.unknowns, 3), complex)
+    vectors[pencil.nodes - 1] = [0.0, 1e-15, 2.0]
+    with np.errstate(all="ignore"):
+        scale = shapes_module._tip_scale(rod, pencil, vectors)
+    assert np.isnan(scale[:2]).all()
+    assert scale[2] * pencil.fields(vectors, rod)[0][-1, 2] == pytest.approx(1)
+
+
+def test_a_mode_whose_tip_does_not_move_is_nan_and_not_called_accurate(monkeypatch):
+    def still(A, B, w):
+        x, z = null_vectors(A, B, w)
+        if w.real < -100:
+            x[len(B) // 3 - 1] = 0
+        return x, z
+
+    monkeypatch.setattr(shapes_module, "null_vectors", still)
+    result = solve_modes(Rod(*FIG_2A), SHAPES)
+    still_tips = result.eigenvalues.real < -100
+    assert (np.isnan(result.right).all(axis=(0, 2)) == still_tips).all()
+    assert np.isfinite(result.left).all()
+    assert result.status == Status.accuracy_not_reached
+    assert result.message == "the error of the modes is inf"
+
+
+def test_of_a_pair_only_one_vector_is_computed(monkeypatch):
+    """The other is its conjugate; two of different pairs are not mistaken for one."""
+    calls = []
+
+    def counted(A, B, w):
+        calls.append(w)
+        return null_vectors(A, B, w)
+
+    rod, pencil = Rod(30.0, 1e4, 1e4, 1e-4), assemble(1, 24)
+    pair = solve_spectrum(rod, SpectrumRequest(2, 1e-10, True)).eigenvalues
+    other = pair[1] - 5j  # no eigenvalue: its vector is the nearest one's, from a shift of its own
+    monkeypatch.setattr(shapes_module, "null_vectors", counted)
+    shapes = mode_shapes(rod, pencil, pair, POINTS)
+    assert calls == [pair[0]]
+    assert (shapes.right[:, 1] == shapes.right[:, 0].conj()).all()
+    assert (shapes.left[:, 1] == shapes.left[:, 0].conj()).all()
+    mode_shapes(rod, pencil, np.array([pair[0], other]), POINTS)
+    assert calls[1:] == [pair[0], other]
+
+
+def test_growth_on_a_coarse_mesh_is_refined_until_meshes_agree():
+    rod = Rod(*FIG_2A)
+    exact = solve_modes(rod, TIGHT)
+    coarse, fine = (growth_module.propagator_of(rod, assemble(1, order)) for order in (4, 6))
+    first = growth_module.transient_growth(coarse, fine, 23.0, 1e-10)
+    assert 1e-9 < abs(first.largest / exact.transient_growth - 1) < first.error
+    growth = growth_module.growth_of(rod, Resolution(1, 4), 1e-10, True, 45.0)
+    assert max(growth.errors(45.0).values()) < 1e-10
+    assert growth.largest == pytest.approx(exact.transient_growth, rel=1e-10)
+    assert growth.abscissa == pytest.approx(exact.numerical_abscissa, rel=1e-9)

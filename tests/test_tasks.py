@@ -187,7 +187,7 @@ def test_words_are_stored_as_flags_with_their_meanings(tmp_path, task):
 
 
 def test_kinds_of_crossings_have_the_numbers_of_the_solver():
-    from rodsweep.solve.transitions import Kind
+    from rodsweep.solve.counts import Kind
 
     assert {kind.name: int(kind) for kind in Kind} == {
         name: number for number, name in enumerate(CROSSING_KINDS) if number

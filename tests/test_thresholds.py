@@ -11,10 +11,11 @@ from rodsweep.model.path import Path
 from rodsweep.model.rod import Rod
 from rodsweep.solve import transitions as transitions_module
 from rodsweep.solve.certificate import count_right_of
+from rodsweep.solve.counts import Kind
 from rodsweep.solve.diagram import classes
 from rodsweep.solve.spectrum import SpectrumRequest, solve_spectrum
 from rodsweep.solve.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
-from rodsweep.solve.transitions import Kind, transitions
+from rodsweep.solve.transitions import transitions
 
 REFERENCE = json.loads((ROOT / "tests" / "reference" / "thresholds.json").read_text())
 SAME_KIND = {"restabilization": "hopf_reverse"}

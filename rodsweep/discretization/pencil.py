@@ -108,6 +108,32 @@ def angle_weight(gamma3: float) -> float:
     return max(sqrt(gamma3), LEAST_ANGLE_WEIGHT)
 
 
+def shear_force(pencil: Pencil, vectors: NDArray[np.complex128], points: Array) -> NDArray[np.complex128]:
+    """s of the vectors at `points`, from its own unknowns at the Gauss nodes; shape (points, k)."""
+    nodes, weights = gauss(pencil.order)
+    mass = np.tile(weights / (2 * pencil.elements), pencil.elements) * SHEAR_WEIGHT**2
+    values = vectors[2 * pencil.nodes :] / np.sqrt(mass)[:, None]
+    result = np.empty((len(points), vectors.shape[1]), complex)
+    element = np.minimum((points * pencil.elements).astype(int), pencil.elements - 1)
+    for e in np.unique(element):
+        local = 2 * (points[element == e] * pencil.elements - e) - 1
+        result[element == e] = interpolation(nodes, local) @ values[e * pencil.order : (e + 1) * pencil.order]
+    return result
+
+
+def slope(pencil: Pencil, values: NDArray[np.complex128], points: Array) -> NDArray[np.complex128]:
+    """The derivative at `points` of fields given at all nodes, shape (nodes + 1, k); shape (points, k)."""
+    nodes, _ = gauss_lobatto(pencil.order)
+    derivative = 2 * pencil.elements * differentiation(nodes)
+    result = np.empty((len(points), values.shape[1]), complex)
+    element = np.minimum((points * pencil.elements).astype(int), pencil.elements - 1)
+    for e in np.unique(element):
+        local = 2 * (points[element == e] * pencil.elements - e) - 1
+        here = values[e * pencil.order : (e + 1) * pencil.order + 1]
+        result[element == e] = interpolation(nodes, local) @ (derivative @ here)
+    return result
+
+
 @lru_cache(maxsize=64)
 def assemble(elements: int, order: int) -> Pencil:
     """The constant pieces on `elements` equal elements of order `order`."""

@@ -18,9 +18,10 @@ from ..model.path import Path
 from ..model.plane import Plane
 from ..model.rod import Rod
 from .continuation import Curve, equations_of, on_line, trace
+from .counts import Kind
 from .leading import Untraceable
 from .thresholds import SHORT_OF_CRUSHED, Thresholds, ThresholdStatus, nothing_found, outcome_of
-from .transitions import Kind, Transitions, transitions
+from .transitions import Transitions, transitions
 
 ROUNDED = 1e-12
 """Difference of two coordinates that is none."""

@@ -10,8 +10,9 @@ import numpy as np
 
 from ..model.path import Path
 from ..model.rod import Rod
+from .counts import Crossing, Kind
 from .leading import Untraceable
-from .transitions import Crossing, Kind, Transitions, transitions
+from .transitions import Transitions, transitions
 
 SHORT_OF_CRUSHED = 1e-6
 """How far below k1, relatively, the search ends where F_max lies beyond: at F = k1 the rod is crushed."""

@@ -15,7 +15,7 @@ SPARSE_FROM, SPARSE_MS = 300, 8e-3
 CERTIFICATE_MS = 0.2
 LINE_MS, LINE_CERTIFICATE_MS = 24.0, 16.0
 """Time of a search for crossings along one parameter, a mean over 72 rods: some take four times as long."""
-MODES_MS, GROWTH_MS = 4.0, 9.0
+MODES_MS, GROWTH_MS = 4.0, 20.0
 """Time that the vectors, and the growth that they allow, take beside the eigenvalues: means over 24 rods."""
 MEMORY_PER_UNKNOWN = 40_000
 BASE_MEMORY = 200_000_000

@@ -1,0 +1,106 @@
+"""exp(L t) on one mesh, represented as exp(L_k t) P_k, and what bounds its norm between two times.
+
+P_k is the spectral projector of the k leading modes on the *whole* space: the rest dies like
+exp(Re w_k t). Restricting the initial state to the span of the k leading modes instead, the usual
+way, converges only like a power of k, because the optimal initial state has the ends of the adjoint.
+"""
+
+from math import factorial
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+INFINITE = 1e-12
+"""Relative size of an eigenvalue of G below which it stands for an infinite one."""
+TAYLOR_ORDER = 16
+"""Terms that sum exp of a matrix of norm 1/2 to rounding; a multiple of 4."""
+
+
+class Propagator:
+    """exp(L t) from the spectral decomposition of G = L^-1 on one mesh, for any number k of leading modes.
+
+    w: the finite eigenvalues of the mesh, by descending real part; those beyond the mesh are not
+    eigenvalues of the rod, but what they stand for together is.
+    """
+
+    def __init__(self, G: Array):
+        self.G = G
+        values, right = np.linalg.eig(G)
+        finite = np.nonzero(np.abs(values) > INFINITE * np.abs(values).max())[0]
+        w = 1 / values[finite]
+        order = np.lexsort((-w.imag, -w.real))
+        self.w: NDArray[np.complex128] = w[order].astype(complex)
+        self.right = right[:, finite[order]]
+        self.left = np.linalg.inv(right)[finite[order]].T
+        self.generator, self.overlap = np.zeros((0, 0)), np.zeros((0, 0))
+
+    def keep(self, k: int) -> int:
+        """Represents exp(L t) P_k as Q exp(L_k t) (Z^T Q)^-1 Z^T, with orthonormal real Q and Z.
+
+        The bases of the right and left invariant subspaces, not their vectors, are used: at a double
+        eigenvalue the vectors are parallel and the subspaces are as good as ever. As they are nested,
+        L_k is upper triangular but for the pairs. Returns the k used: at most what the mesh has, and
+        none that would cut a conjugate pair.
+        """
+        k = min(k, len(self.w))
+        if self.w[k - 1].imag > 0:
+            k += 1
+        Q = _orthonormal(self.right[:, :k], self.w[:k])
+        Z = _orthonormal(self.left[:, :k], self.w[:k])
+        inside = np.tri(k, dtype=bool).T | np.diag(self.w[: k - 1].imag > 0, -1)
+        self.generator = np.linalg.inv(np.where(inside, Q.T @ self.G @ Q, 0.0))
+        self.overlap = Z.T @ Q
+        return k
+
+    def at(self, times: Array) -> Array:
+        """exp(L t) between the bases Z and Q, shape (times, k, k)."""
+        return exponential(self.generator * times[:, None, None]) @ np.linalg.inv(self.overlap)
+
+    def norm(self, time: float) -> tuple[float, float]:
+        """(|exp(L t)|, its logarithmic derivative) at one time."""
+        u, sizes, _ = np.linalg.svd(self.at(np.array([time]))[0])
+        return float(sizes[0]), float(u[:, 0] @ self.generator @ u[:, 0])
+
+    def squares(self, times: Array) -> tuple[Array, Array]:
+        """(N^2, c) at many times: N = |exp(L t)|, and f'' >= -c for f = |exp(L t) v|^2 of any |v| = 1."""
+        E = self.at(times)
+        first = self.generator @ E
+        half = np.swapaxes(E, 1, 2) @ (self.generator @ first) + np.swapaxes(first, 1, 2) @ first
+        size = np.linalg.eigvalsh(np.swapaxes(E, 1, 2) @ E)[:, -1]
+        return size, np.maximum(-np.linalg.eigvalsh(half + np.swapaxes(half, 1, 2))[:, 0], 0.0)
+
+    def left_over(self, m: int, time: float) -> float:
+        """|exp(L t) (1 - P_m)|: what modes behind the m leading ones still carry; m < k cuts no pair."""
+        E = self.at(np.array([time]))[0]
+        E[:m, :m] -= exponential(self.generator[:m, :m] * time) @ np.linalg.inv(self.overlap[:m, :m])
+        return float(np.linalg.norm(E, 2))
+
+
+def _orthonormal(vectors: NDArray, w: NDArray) -> Array:
+    """A real orthonormal basis of the invariant subspace that the vectors of w span, in their order."""
+    columns = np.hstack([vectors.real[:, w.imag >= 0], vectors.imag[:, w.imag > 0]])
+    place = np.concatenate([np.nonzero(w.imag >= 0)[0], np.nonzero(w.imag > 0)[0] + 1])
+    return np.linalg.qr(columns[:, np.argsort(place)])[0]
+
+
+def exponential(matrices: Array) -> Array:
+    """exp of one small matrix or of a stack of them: the Taylor series of scaled ones, squared.
+
+    What is squared is exp - 1: of a block triangular matrix with slow and fast parts the slow ones
+    then keep their digits, however often the fast ones ask to square.
+    """
+    size = float(np.abs(matrices).sum(axis=-2).max())
+    squarings = max(0, int(np.ceil(np.log2(size))) + 1) if size > 0 else 0
+    scaled = matrices / 2.0**squarings
+    identity = np.eye(matrices.shape[-1])
+    powers = [identity, scaled, scaled @ scaled]
+    powers += [powers[2] @ scaled, powers[2] @ powers[2]]
+    result = np.zeros_like(scaled)
+    for order in range(TAYLOR_ORDER - 4, -1, -4):  # four terms a product
+        terms = sum(powers[i] / factorial(order + i) for i in range(4) if order + i > 0)
+        result = terms + powers[4] @ result
+    for _ in range(squarings):
+        result = 2 * result + result @ result
+    return result + identity
