@@ -378,3 +378,14 @@ def test_check_says_what_is_modelled_and_what_is_left_out(command):
     ):
         assert words in text, words
     assert sorted(p.name for p in command.directory.iterdir()) == ["c.yaml"]
+
+
+def test_transverse_spectrum_does_not_move_with_axial_drag(command):
+    config = "task: spectrum\nparameters: {F: [3, 30], k1: 100, k2: 50, gamma3: 0.1, gamma1: 0.5}\n"
+    command.write("c.yaml", config + "spectrum: {longitudinal: true}\n")
+    for gamma1, output in ((0.5, "half.h5"), (7, "seven.h5")):
+        assert command("run", "c.yaml", "-o", output, "--set", f"parameters.gamma1={gamma1}").returncode == 0
+    half, seven = (h5py.File(command.directory / name) for name in ("half.h5", "seven.h5"))
+    for name in ("growth_rate", "frequency", "unstable_count"):
+        assert np.array_equal(half[name][:], seven[name][:])
+    assert np.allclose(half["longitudinal_rate"][:] * 0.5, seven["longitudinal_rate"][:] * 7, rtol=1e-14)
