@@ -112,3 +112,31 @@ def test_a_row_without_a_bound_fails_with_its_reason():
     assert row.status == ThresholdStatus.failed
     assert "bound" in row.message
     assert (row.motion == Motion.undecided).all()
+
+
+def test_a_diagram_that_begins_at_the_limit_of_the_model_has_its_curves():
+    """gamma3 = 0 is the first row: nothing lies beyond it, neither for steps nor for differences."""
+    axes = (Axis("F", 5.0, 60.0), Axis("gamma3", 0.0, 1.0))
+    rod = Rod(30.0, 1e4, 20.0, 0.01)
+    _, seeds = rows(axes, rod, 3)
+    curves = curves_through(Plane(rod, axes), seeds)
+    assert {seed.values[1] for seed in seeds} == {0.0, 0.5, 1.0}
+    assert (curves.untraced, curves.agreement < 1e-11) == (0, True)
+
+
+@pytest.mark.parametrize(
+    ("k1", "top", "folds"), [((100.0, 150.0, 200.0), 120.0, 1), ((10.0, 20.0, 1e4), 250.0, 4)]
+)
+def test_each_curve_is_followed_once_and_ends_are_no_folds(k1, top, folds):
+    """Rows on the border, and rows where the curve of double eigenvalues runs along the crushed rods."""
+    axes = (Axis("F", 0.0, top), Axis("k1", k1[0], k1[-1], logarithmic=k1[-1] > 10 * k1[0]))
+    rod = Rod(0.0, k1[-1], 1e4, 1e-4)
+    seeds = []
+    for value in k1:
+        fixed = {"k1": value, "k2": 1e4, "gamma3": 1e-4}
+        row = solve_row(fixed, RowRequest("F", np.linspace(0.0, top, 13), 1e-9, True, 50))
+        seeds += [seed_of((c.at, value), c.kind, c.frequency, c.growth_rate) for c in row.changes.crossings]
+    curves = curves_through(Plane(rod, axes), seeds).curves
+    found = [fold for curve in curves for fold in curve.folds]
+    assert len(found) == folds
+    assert len({(f.axis, round(f.values[0], 3), round(f.values[1], 3)) for f in found}) == folds

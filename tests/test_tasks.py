@@ -76,7 +76,6 @@ def search(index=0, **more):
     return SimpleNamespace(
         status=0,
         crossings=tuple(crossing(1.0 + index + i, kind, 2 * (kind == 2)) for i, kind in kinds),
-        crossing_count=5,
         open_range=(np.nan, np.nan),
         certified=True,
         boxes=100,
@@ -213,7 +212,7 @@ def test_first_crossings_are_stored_and_all_are_counted(tmp_path):
 
 def test_places_without_a_crossing_are_filled():
     nothing = search()
-    nothing.crossings, nothing.crossing_count = (), 0
+    nothing.crossings = ()
     record = thresholds.record(nothing, 2)
     assert np.isnan([record["F_onset"], record["F_hopf"], *record["crossing_F"]]).all()
     assert record["crossing_kind"] == [0, 0]
@@ -334,7 +333,7 @@ def solve_thresholds(k1, k2, gamma3, request):
     status = real.ThresholdStatus.list_full if k1 == 14 else real.ThresholdStatus.ok
     found = (Value(at=k1 / 2, kind=2, frequency=k2, growth_rate=0.0, error=1e-12, unstable_after=2),)
     nothing = (float("nan"), float("nan"))
-    return real.Thresholds(status, found, 1, request.F_max, 2, nothing, True, 3, 4, 0.01, "a message")
+    return real.Thresholds(status, found, request.F_max, 2, nothing, True, 3, 4, 0.01, "a message")
 
 real.solve_thresholds = solve_thresholds
 real.warm_up = lambda: None

@@ -127,6 +127,8 @@ def main() -> None:
         code, message = 2, str(error)
     except EnvironmentLacks as error:
         code, message = 3, str(error)
+    except OSError as error:  # a name too long, a directory that may not be looked into
+        code, message = 3, f"{error.filename}: {error.strerror}"
     if message and _speaks():
         click.echo(f"rodsweep: {message}", err=True)
     sys.exit(code)

@@ -2,6 +2,7 @@
 
 import difflib
 import json
+from math import isinf
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from ruamel.yaml.events import AliasEvent
 
 from ..errors import InputError
 from .schema import CONFIGS, Config, words
-from .values import short
+from .values import overflows, short
 
 LARGEST_FILE = 1_000_000
 DEEPEST = 20
@@ -33,9 +34,16 @@ def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, st
 
 def canonical(config: Config) -> dict[str, Any]:
     """The config with all defaults filled in, as JSON-compatible values; inf becomes "inf"."""
-    return json.loads(
-        json.dumps(config.model_dump(exclude_none=True), default=str).replace("Infinity", '"inf"')
-    )
+    return json.loads(json.dumps(_without_infinities(config.model_dump(exclude_none=True)), default=str))
+
+
+def _without_infinities(value: Any) -> Any:
+    """The value with every infinite number, at any depth, as the text that a config would have."""
+    if isinstance(value, dict):
+        return {key: _without_infinities(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_without_infinities(item) for item in value]
+    return str(value) if isinstance(value, float) and isinf(value) else value
 
 
 def read_text(path: Path) -> str:
@@ -65,6 +73,8 @@ def _parse(text: str, where: str) -> Any:
                 raise InputError(f"{where}: aliases (*{event.anchor}) are not allowed in a config")
             if getattr(event, "tag", None):
                 raise InputError(f"{where}: tags ({event.tag}) are not allowed in a config")
+            if overflows(getattr(event, "value", "")):
+                raise InputError(f"{where}: {short(event.value)} is too large for a floating-point number")
             name = type(event).__name__
             depth += name.endswith("StartEvent") - name.endswith("EndEvent")
             if depth > DEEPEST:

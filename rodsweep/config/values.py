@@ -1,6 +1,6 @@
 """What a value in a config may be: a number, text, or the axis of a parameter. Knows no key, no physics."""
 
-from math import inf, isnan
+from math import inf, isinf, isnan
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -30,6 +30,14 @@ def as_number(value: Any) -> float:
     if isnan(number):
         raise ValueError("nan is not a number")
     return number
+
+
+def overflows(text: str) -> bool:
+    """Whether a text is a decimal number, such as 1e400, that a float cannot hold."""
+    try:
+        return any(c.isdigit() for c in text) and not text.lstrip("+-").isdigit() and isinf(float(text))
+    except ValueError:
+        return False
 
 
 def short(value: Any) -> str:

@@ -7,6 +7,8 @@ from .determinant import ROUND_OFF
 from .path import determinant_along, direction_of
 from .rod import PARAMETERS, Rod
 
+ROUNDED = 1e-12
+"""Distance beyond the end of an axis that is rounding."""
 LITTLE = 0.01
 """Share of the distance from a crushed rod that a small step may use."""
 
@@ -21,7 +23,9 @@ class Axis:
     logarithmic: bool = False
 
     def value(self, x: float) -> float:
-        """The parameter at the scaled coordinate x; 0 is start and 1 is stop."""
+        """The parameter at the scaled coordinate x; 0 is start and 1 is stop, also when x is rounded."""
+        if -ROUNDED < x < 0 or 1 < x < 1 + ROUNDED:
+            x = round(x)
         if self.logarithmic:
             return exp(log(self.start) + x * (log(self.stop) - log(self.start)))
         return self.start + x * (self.stop - self.start)
@@ -78,6 +82,14 @@ class Plane:
         if axis.name not in ("F", "k1"):
             return largest
         return min(largest, LITTLE * (rod.k1 - rod.F) / axis.stretch(getattr(rod, axis.name)))
+
+    def holds(self, x: float, y: float) -> bool:
+        """Whether the model has a rod at these coordinates."""
+        try:
+            self.at(x, y)
+        except ValueError:
+            return False
+        return True
 
     def inside(self, x: float, y: float) -> bool:
         """Whether the coordinates lie on the plane and the rod is not crushed."""

@@ -24,10 +24,13 @@ STEP_FIRST, STEP_LARGEST, STEP_SMALLEST = 0.01, 0.04, 1e-9
 """Steps of arclength in units of the plane, in which an axis has length 1."""
 TURN = 0.15
 """Largest angle between successive tangents, in radians; the step follows it."""
+COINCIDENT = 1e-9
+"""Distance of two points of a curve that are one, as where it starts on the border of the plane."""
 MOST_NEWTON, MOST_POINTS, MOST_FOLD_STEPS = 12, 5000, 80
 DIFFERENCE = 1e-3
 STENCIL = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
-"""Step and weights of the differences, of fourth order, in the Jacobian of D_w."""
+ONE_SIDED = ((0, -25 / 12), (1, 4.0), (2, -3.0), (3, 4 / 3), (4, -1 / 4))
+"""Step and weights of the differences, of fourth order, in the Jacobian of D_w; beside a limit, one-sided."""
 FOLD_ACCURACY = 1e-13
 """Component of the tangent, or length of the bracket, that counts as none."""
 HOPF_TANGENT, DOUBLE_TANGENT = 1e-12, 1e-11
@@ -87,7 +90,9 @@ def double_equations(sign: float, plane: Plane, v: Vector) -> tuple[Vector, NDAr
     for i in range(3):
         h = plane.small_step(v[0], v[1], i, DIFFERENCE) if i < 2 else DIFFERENCE
         jacobian[1, i] = 0.0
-        for places, weight in STENCIL:
+        back = v.copy()
+        back[i] -= 2 * h
+        for places, weight in STENCIL if plane.holds(back[0], back[1]) else ONE_SIDED:
             step = np.zeros(3)
             step[i] = places * h
             there = _real_rows(sign, plane, v + step)[0]
@@ -160,7 +165,8 @@ def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: flo
     ahead, closed = _follow(equations, plane, first[0], 1.0)
     back = [] if closed else _follow(equations, plane, first[0], -1.0)[0]
     points = np.array([*back[::-1], first[0], *ahead])
-    return _curve(sign, plane, points, closed)
+    apart = np.abs(np.diff(points, axis=0)).max(axis=1) > COINCIDENT
+    return _curve(sign, plane, points[np.append(apart, True)], closed)
 
 
 def _follow(equations: Equations, plane: Plane, start: Vector, sign: float) -> tuple[list[Vector], bool]:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ..model.path import Path
 from ..model.plane import Plane
 from ..model.rod import Rod
-from .continuation import Curve, equations_of, on_line, trace
+from .continuation import Curve, corrected, equations_of, on_line, trace
 from .counts import Kind
 from .leading import Untraceable
 from .thresholds import SHORT_OF_CRUSHED, Thresholds, ThresholdStatus, nothing_found, outcome_of
@@ -27,6 +27,9 @@ ROUNDED = 1e-12
 """Difference of two coordinates that is none."""
 ON_CURVE = 1e-3
 """Relative distance of the eigenvalue below which a change may lie on a curve beside it."""
+MOST_SECANTS = 20
+SAME_ENDS = 1e-6
+"""Distance of two ends, eigenvalues included, below which their curves are one: curves do not cross."""
 AGREE = 1e-7
 """Distance, in units of the axis, below which a change lies on a curve."""
 
@@ -92,8 +95,11 @@ def _searched(fixed: dict[str, float], request: RowRequest) -> Row:
     F = values if name == "F" else np.full(len(values), fixed["F"])
     k1 = values if name == "k1" else np.full(len(values), fixed["k1"])
     alive = k1 * (1 - SHORT_OF_CRUSHED) > F
+    crushed = k1 <= F
     if not alive.any():
-        return _blank(ThresholdStatus.ok, values, Motion.crushed)
+        row = _blank(ThresholdStatus.ok, values, Motion.crushed)
+        row.motion[~crushed] = Motion.undecided
+        return row
     start, stop = float(values[alive][0]), float(values[alive][-1])
     if name == "F" and not alive.all():
         stop = fixed["k1"] * (1 - SHORT_OF_CRUSHED)
@@ -102,7 +108,7 @@ def _searched(fixed: dict[str, float], request: RowRequest) -> Row:
     rod = Rod(**fixed | {name: start})
     found = transitions(Path(rod, name), start, stop, request.certify)
     motion, unstable = classes(found, values)
-    crushed = k1 <= F
+    # What is nearly crushed lies beyond the search.
     motion[crushed], unstable[crushed] = Motion.crushed, -1
     motion[~alive & ~crushed], unstable[~alive & ~crushed] = Motion.undecided, -1
     return Row(motion, unstable, outcome_of(found, stop, request))
@@ -181,13 +187,20 @@ def curves_through(plane: Plane, seeds: list[Seed]) -> Curves:
             x, y = (a.scaled(v) for a, v in zip(plane.axes, seed.values, strict=True))
             curve = trace(seed.sign, plane, (x, y), seed.eigenvalue)
             if curve is not None:
-                curves.append(curve)
                 distance = _distance(plane, curve, seed)
+                if not any(_same(curve, other) for other in curves):
+                    curves.append(curve)
         if distance > AGREE:
             untraced += 1
         else:
             worst = max(worst, distance)
     return Curves(tuple(curves), worst, untraced)
+
+
+def _same(one: Curve, other: Curve) -> bool:
+    """Whether two curves share an end: beside a crushed rod a change may not be found on its own curve."""
+    ends = one.scaled[[0, -1], None] - other.scaled[None, [0, -1]]
+    return one.sign == other.sign and float(np.abs(ends).max(axis=-1).min()) < SAME_ENDS
 
 
 def _distance(plane: Plane, curve: Curve, seed: Seed) -> float:
@@ -201,15 +214,35 @@ def _distance(plane: Plane, curve: Curve, seed: Seed) -> float:
     if len(points) == 1:
         return float(abs(points[0, 0] - x)) if abs(side[0]) < AGREE else math.inf
     best = math.inf
-    equations = equations_of(curve.sign)
     for i in np.flatnonzero(side[:-1] * side[1:] <= 0):
         a, b = points[i], points[i + 1]
         if not min(a[0], b[0]) - 0.1 <= x <= max(a[0], b[0]) + 0.1:
             continue
-        share = side[i] / (side[i] - side[i + 1]) if side[i] != side[i + 1] else 0.0
-        guess = a + share * (b - a)
-        guess[1] = y
-        there = on_line(equations, plane, guess, 1)
-        if there is not None and abs(there[0][2] - math.log(abs(seed.eigenvalue))) < ON_CURVE:
-            best = min(best, float(abs(there[0][0] - x)))
+        there = _at_height(plane, curve.sign, a, b, y)
+        if there is not None and abs(there[2] - math.log(abs(seed.eigenvalue))) < ON_CURVE:
+            best = min(best, float(abs(there[0] - x)))
     return best
+
+
+def _at_height(
+    plane: Plane, sign: float, a: NDArray[np.float64], b: NDArray[np.float64], y: float
+) -> NDArray[np.float64] | None:
+    """The point (x, y, h) of a curve at the height y between two of its points, or None.
+
+    First at once from the chord; where that guess is too far, by secants along the curve.
+    """
+    equations = equations_of(sign)
+    share = (y - a[1]) / (b[1] - a[1]) if a[1] != b[1] else 0.0
+    for _ in range(MOST_SECANTS):
+        guess = a + share * (b - a)
+        level = guess.copy()
+        level[1] = y
+        there = on_line(equations, plane, level, 1)
+        if there is not None:
+            return there[0]
+        there = corrected(equations, plane, guess, (b - a) / np.linalg.norm(b - a))
+        if there is None:
+            return None
+        a, b = (there[0], b) if (there[0][1] - y) * (b[1] - y) <= 0 else (a, there[0])
+        share = (y - a[1]) / (b[1] - a[1]) if a[1] != b[1] else 0.0
+    return None

@@ -76,20 +76,19 @@ class ThresholdsRequest:
     accuracy: float
     certify: bool
     crossings: int
-    """Most changes that are kept."""
+    """Most changes that will be kept."""
 
 
 @dataclass(frozen=True, slots=True)
 class Thresholds:
     """The changes along a path up to the value `end` of its parameter, F or another, in increasing order.
 
-    crossing_count counts those beyond the list too. open_range: (from, to), nan where nothing is
+    open_range: (from, to), nan where nothing is
     open. boxes, solves: evaluations of D and eigenproblems that it took.
     """
 
     status: ThresholdStatus
     crossings: tuple[Crossing, ...]
-    crossing_count: int
     end: float
     unstable_at_end: int
     open_range: tuple[float, float]
@@ -117,8 +116,7 @@ def outcome_of(found: Transitions, end: float, wish: Wish) -> Thresholds:
     """What is kept of the changes along a path, and how far it can be relied on."""
     return Thresholds(
         status=status_of(found, wish),
-        crossings=found.crossings[: wish.crossings],
-        crossing_count=len(found.crossings),
+        crossings=found.crossings,
         end=end,
         unstable_at_end=found.unstable_at_end,
         open_range=found.open_range,
@@ -133,7 +131,7 @@ def outcome_of(found: Transitions, end: float, wish: Wish) -> Thresholds:
 def nothing_found(status: ThresholdStatus, end: float, message: str = "") -> Thresholds:
     """The outcome where nothing was searched, or the search failed."""
     certified = status == ThresholdStatus.ok
-    return Thresholds(status, (), 0, end, -1, (math.nan, math.nan), certified, 0, 0, 0.0, message)
+    return Thresholds(status, (), end, -1, (math.nan, math.nan), certified, 0, 0, 0.0, message)
 
 
 def status_of(found: Transitions, wish: Wish) -> ThresholdStatus:

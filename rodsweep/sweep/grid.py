@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..config.schema import Config, words
-from ..config.values import as_number
+from ..config.values import as_number, overflows
 from ..errors import InputError
 from ..model.rod import ALLOWED, Rod, admissible
 
@@ -110,7 +110,7 @@ def _row(row: list[str], header: list[str], where: str) -> list[float]:
     numbers = []
     for cell, name in zip(row, header, strict=True):
         try:
-            if "_" in cell or not cell.isascii():
+            if "_" in cell or not cell.isascii() or overflows(cell):
                 raise ValueError
             numbers.append(as_number(float(cell)))
         except ValueError:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def search_record(result: "Thresholds", most: int, at: str) -> dict[str, Any]:
     """The variables of a search: at most `most` crossings, whose place is the variable `at`."""
     return {
-        "crossing_count": result.crossing_count,
+        "crossing_count": len(result.crossings),
         "open_from": result.open_range[0],
         "open_to": result.open_range[1],
         "certified": result.certified,
