@@ -67,8 +67,13 @@ def show(file: Path) -> None:
 
 
 @commands.command()
-@click.argument("file", type=FILE)
-@click.option("-o", "--output", type=FILE, help="Figure file (.png, .pdf, .svg); by default FILE's name.")
+@click.argument("files", type=FILE, nargs=-1, required=True, metavar="FILE...")
+@click.option(
+    "-o",
+    "--output",
+    type=FILE,
+    help="Figure file (.png, .pdf, .svg; .gif or .mp4 for an animation); by default FILE's name.",
+)
 @click.option(
     "--roots",
     type=click.Choice(["rightmost", "smallest"]),
@@ -76,13 +81,28 @@ def show(file: Path) -> None:
     show_default=True,
     help="Which two roots to follow: the rightmost, or the smallest in magnitude as the paper does.",
 )
-def plot(file: Path, output: Path | None, roots: str) -> None:
-    """Draw the result FILE."""
+@click.option(
+    "--what",
+    type=click.Choice(["cycle", "amplitude", "energy", "animation"]),
+    help="Which figure of limit_cycle; by default what the file's content suggests.",
+)
+@click.option(
+    "--point",
+    "points",
+    type=int,
+    multiple=True,
+    metavar="N",
+    help="Which points of limit_cycle, from 1; up to 3 times.",
+)
+def plot(
+    files: tuple[Path, ...], output: Path | None, roots: str, what: str | None, points: tuple[int, ...]
+) -> None:
+    """Draw the result FILE, or the amplitudes of several limit_cycle FILEs in one figure."""
     from ..post.figures import draw
     from ..results.view import read_view
 
-    output = output or file.with_suffix(".png")
-    click.echo(draw(read_view(file), output, roots))
+    output = output or files[0].with_suffix(".gif" if what == "animation" else ".png")
+    click.echo(draw([read_view(file) for file in files], output, roots, what, points))
 
 
 @commands.command()

@@ -56,7 +56,8 @@ def read_view(path: Path, names: tuple[str, ...] = ()) -> View:
             words = str(status["flag_meanings"]).split()
             flags = dict(zip((int(v) for v in status["flag_values"]), words, strict=True))
     except (OSError, KeyError, ValueError, TypeError, RuntimeError) as error:
-        raise InputError(f"{path} is not a whole rodsweep result file ({error})") from None
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise InputError(f"{path} is not a whole rodsweep result file ({reason})") from None
     waiting: set[int] = set()
     directory = journal_directory(path)
     if directory.is_dir():

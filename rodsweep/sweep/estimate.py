@@ -15,8 +15,9 @@ SPARSE_FROM, SPARSE_MS = 300, 8e-3
 CERTIFICATE_MS = 0.2
 LINE_MS, LINE_CERTIFICATE_MS = 24.0, 16.0
 """Time of a search for crossings along one parameter, a mean over 72 rods: some take four times as long."""
-MODES_MS, GROWTH_MS = 4.0, 20.0
-"""Time that the vectors, and the growth that they allow, take beside the eigenvalues: means over 24 rods."""
+MODES_MS, GROWTH_MS = 1.5, 20.0
+"""Time that the vectors take beside the eigenvalues, in units of the modes squared, because the mesh grows
+with them, and that the growth takes: means over 24 rods."""
 MEMORY_PER_UNKNOWN = 40_000
 BASE_MEMORY = 200_000_000
 
@@ -40,9 +41,9 @@ def estimate_lines(lines: int, certify: bool) -> Estimate:
     return Estimate(lines * 1e-3 * (LINE_MS + (LINE_CERTIFICATE_MS if certify else 0)))
 
 
-def estimate_modes(spectra: Estimate, count: int, growth: bool) -> Estimate:
-    """The cost of modes at `count` points, from that of their eigenvalues alone."""
-    more = count * 1e-3 * (MODES_MS + (GROWTH_MS if growth else 0))
+def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> Estimate:
+    """The cost of modes at `count` points, `modes` each, from that of their eigenvalues alone."""
+    more = count * 1e-3 * (MODES_MS * modes**2 + (GROWTH_MS if growth else 0))
     return replace(spectra, seconds=spectra.seconds + more, unknowns=None)
 
 

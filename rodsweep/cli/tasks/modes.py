@@ -54,7 +54,7 @@ class ModesTask:
     def cost(self) -> Estimate:
         options = self.config.modes
         spectra = estimate_spectra(self.points, options.modes, self.config.accuracy, options.certify)
-        return estimate_modes(spectra, self.points.count, options.growth)
+        return estimate_modes(spectra, self.points.count, options.modes, options.growth)
 
     def solver(self) -> Solver:
         from ...solve.modes import ModesRequest, solve_modes

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from ...errors import InputError
 from ...results.view import View
-from .style import FIRST, SECOND, SYMBOLS, plain
+from .style import FIRST, SECOND, SYMBOLS, heading
 
 MOST_POINTS = 4
 """Points for which one figure has room."""
@@ -34,7 +34,7 @@ def draw_modes(view: View, roots: str) -> tuple[Figure, str]:
         row[1].set_title(f"{_where(view, int(point))}\n{PANELS[1][0]}", fontsize=9)
     for panel in panels[-1]:
         panel.set_xlabel("material coordinate $u/L$")
-    figure.suptitle(plain(view.attributes.get("title", "")), fontsize=9)
+    figure.suptitle(heading(view.attributes.get("title", "")), fontsize=9)
     left = f" of the first {len(drawn)} of {points.size} points" if points.size > len(drawn) else ""
     return figure, f"the leading mode{left}: real part solid, imaginary part dotted"
 

@@ -11,7 +11,7 @@ from ...errors import InputError
 from ...results.layouts import CLASSES
 from ...results.schema import PARAMETER_NAMES
 from ...results.view import View
-from .style import LABELS, SYMBOLS, is_logarithmic, plain
+from .style import LABELS, SYMBOLS, heading, scale
 
 COLOURS = {
     "missing": "white",
@@ -46,9 +46,8 @@ def draw_phase_diagram(view: View, roots: str) -> tuple[Figure, str]:
     colours = ListedColormap([COLOURS[word] for _, word in CLASSES])
     norm = BoundaryNorm([*(n - 0.5 for n in numbers), numbers[-1] + 0.5], len(numbers))
     axes.pcolormesh(x, y, table, cmap=colours, norm=norm, shading="nearest", rasterized=True)
-    for scale, v in ((axes.set_xscale, x), (axes.set_yscale, y)):
-        if is_logarithmic(v):
-            scale("log")
+    scale(axes, "x", x)
+    scale(axes, "y", y)
     if (line, row) == ("F", "k1"):  # the map's points leave a staircase
         crushed = np.linspace(y[0], y[-1], 1000)
         axes.fill_between(crushed, crushed, y[0], color=COLOURS["crushed"], lw=0)
@@ -62,7 +61,7 @@ def draw_phase_diagram(view: View, roots: str) -> tuple[Figure, str]:
         handles += _curves(axes, view, line, row)
     figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=8)
     fixed = ", ".join(f"${SYMBOLS[n]}$ = {v[0]:.6g}" for n, v in view.axes.items() if n not in (line, row))
-    axes.set_title(f"{plain(view.attributes.get('title', ''))}\n{fixed}", fontsize=9)
+    axes.set_title(heading(view.attributes.get("title", ""), fixed), fontsize=9)
     return figure, f"what the rod does over {line} and {row}"
 
 

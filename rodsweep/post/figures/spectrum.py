@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from ...errors import InputError
 from ...results.view import View
-from .style import FIRST, LABELS, SECOND, SYMBOLS, is_logarithmic, plain
+from .style import FIRST, LABELS, SECOND, SYMBOLS, heading, scale
 
 ROOTS = {
     "rightmost": "the two rightmost roots",
@@ -91,14 +91,13 @@ def _line(view: View, name: str, roots: str) -> Figure:
     )
     top.axhline(0, color="0.5", lw=0.6)
     bottom.axvline(0, color="0.5", lw=0.6)
-    if is_logarithmic(x):
-        top.set_xscale("log")
+    scale(top, "x", x)
     top.set(xlabel=LABELS[name], ylabel=r"$\omega\,\tau_2$", xlim=(x[0], x[-1]))
     bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
     top.legend(facecolor="white", framealpha=1, edgecolor="0.8", fontsize=8, ncols=2)
     bottom.legend(frameon=False, fontsize=8)
     fixed = ", ".join(f"${SYMBOLS[n]}$ = {v[0]:.6g}" for n, v in view.axes.items() if n != name)
-    figure.suptitle(f"{plain(view.attributes.get('title', ''))}\n{fixed}\n{ROOTS[roots]}", fontsize=9)
+    figure.suptitle(heading(view.attributes.get("title", ""), fixed, ROOTS[roots]), fontsize=9)
     return figure
 
 
@@ -113,10 +112,9 @@ def _map(view: View, names: list[str]) -> Figure:
     mesh = axes.pcolormesh(x, y, growth.T, norm=norm, cmap="PuOr_r", shading="nearest", rasterized=True)
     if np.nanmin(growth) < 0 < np.nanmax(growth):
         axes.contour(x, y, growth.T, levels=[0.0], colors="k", linewidths=1.2)
-    for values, scale in ((x, axes.set_xscale), (y, axes.set_yscale)):
-        if is_logarithmic(values):
-            scale("log")
+    scale(axes, "x", x)
+    scale(axes, "y", y)
     axes.set(xlabel=LABELS[horizontal], ylabel=LABELS[vertical])
     figure.colorbar(mesh, label=r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$")
-    axes.set_title(f"{plain(view.attributes.get('title', ''))}; black: zero growth", fontsize=9)
+    axes.set_title(heading(view.attributes.get("title", ""), "black: zero growth"), fontsize=9)
     return figure

@@ -1,18 +1,34 @@
 """What all figures share: symbols, labels, colours, and how an axis is scaled."""
 
-import numpy as np
+import textwrap
+from typing import Literal
 
-SYMBOLS = {"F": r"\tilde F", "k1": r"\tilde k_1", "k2": r"\tilde k_2", "gamma3": r"\tilde\gamma_3"}
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+SYMBOLS = {
+    "F": r"\tilde F",
+    "k1": r"\tilde k_1",
+    "k2": r"\tilde k_2",
+    "gamma3": r"\tilde\gamma_3",
+    "gamma1": r"\tilde\gamma_1",
+}
 FORCE, DRAG = r"[$k_3/L^2$]", r"\gamma_2 L^2"
 LABELS = {
     "F": rf"follower force ${SYMBOLS['F']}$  {FORCE}",
     "k1": rf"stretch stiffness ${SYMBOLS['k1']}$  {FORCE}",
     "k2": rf"shear stiffness ${SYMBOLS['k2']}$  {FORCE}",
     "gamma3": rf"rotational drag ${SYMBOLS['gamma3']}$  [${DRAG}$]",
+    "gamma1": rf"axial drag ${SYMBOLS['gamma1']}$  [$\gamma_2$]",
 }
 INVERSE_DRAG = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$  [$1/({DRAG})$]"
 FIRST, SECOND, THIRD = "#0072B2", "#D55E00", "#009E73"
 """Blue, vermilion and green of Okabe and Ito: told apart by the colour-blind."""
+TITLE_WIDTH = 70
+"""Characters of a title in one line of a figure."""
+FEW_DECADES = 50
+"""Ratio of the ends of a logarithmic axis below which 1, 2 and 5 of each decade are labelled."""
 STYLE = {"font.size": 10, "axes.grid": False, "axes.spines.top": False, "axes.spines.right": False}
 
 
@@ -21,9 +37,29 @@ def plain(text: object) -> str:
     return str(text).replace("$", r"\$")
 
 
+def heading(title: object, *lines: str) -> str:
+    """A user's title, broken where it is long, above other lines."""
+    return "\n".join([*textwrap.wrap(plain(title), TITLE_WIDTH), *(line for line in lines if line)])
+
+
 def is_logarithmic(values: np.ndarray) -> bool:
-    """Whether an axis was spaced in equal ratios."""
-    if len(values) < 3 or values[0] <= 0 or not np.isfinite(values).all():
+    """Whether an axis is meant in ratios: it is not equally spaced, and has equal ratios or spans decades."""
+    if len(values) < 2 or values[0] <= 0 or not np.isfinite(values).all():
         return False
-    ratio = values[1:] / values[:-1]
-    return bool(np.ptp(ratio) < 1e-6 * ratio[0] and np.ptp(np.diff(values)) > 1e-6 * values[-1])
+    steps, ratios = np.diff(values), values[1:] / values[:-1]
+    if len(values) > 2 and np.ptp(steps) <= 1e-6 * values[-1]:
+        return False
+    even = len(values) > 2 and np.ptp(ratios) < 1e-6 * ratios[0]
+    return bool(even or values[-1] > 10 * values[0])
+
+
+def scale(axes: Axes, which: Literal["x", "y"], values: np.ndarray) -> None:
+    """Makes an axis logarithmic where its values are, with labels that do not meet."""
+    if not is_logarithmic(values):
+        return
+    axes.set(**{f"{which}scale": "log"})
+    if values[-1] < FEW_DECADES * values[0]:
+        axis = axes.xaxis if which == "x" else axes.yaxis
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_minor_formatter(NullFormatter())

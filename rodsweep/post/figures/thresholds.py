@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from ...errors import InputError
 from ...results.view import View
-from .style import FIRST, FORCE, INVERSE_DRAG, LABELS, SECOND, SYMBOLS, THIRD, is_logarithmic, plain
+from .style import FIRST, FORCE, INVERSE_DRAG, LABELS, SECOND, SYMBOLS, THIRD, heading, scale
 
 EVENTS = (
     ("F_onset", r"onset $\tilde F_*$", FIRST, "o"),
@@ -36,10 +36,10 @@ def draw_thresholds(view: View, roots: str) -> tuple[Figure, str]:
         _panel(panel, view, name, [other for other in long if other != name])
     panels[0].set_ylabel(rf"critical force ${SYMBOLS['F']}$  {FORCE}")
     fixed = ", ".join(f"${SYMBOLS[n]}$ = {v[0]:.6g}" for n, v in view.axes.items() if n not in long)
-    figure.suptitle(
-        f"{plain(view.attributes.get('title', ''))}" + (f"\n{fixed}" if fixed else ""), fontsize=9
-    )
-    return figure, "critical forces against " + " and ".join(long)
+    figure.suptitle(heading(view.attributes.get("title", ""), fixed), fontsize=9)
+    left_out = [name for name in long if not np.isfinite(view.axes[name]).all()]
+    without = f"; {' and '.join(left_out)} = inf has no place on an axis and is left out" if left_out else ""
+    return figure, "critical forces against " + " and ".join(long) + without
 
 
 def _panel(panel: Axes, view: View, name: str, others: list[str]) -> None:
@@ -51,22 +51,19 @@ def _panel(panel: Axes, view: View, name: str, others: list[str]) -> None:
             x, label = 1 / x, INVERSE_DRAG
     place = others[0] if others else None
     chosen = _spread(view.axes[place]) if place else [0]
+    labels = {variable: word for variable, word, *_ in EVENTS}
     for line, at in enumerate(chosen):
         index = tuple(slice(None) if n == name else (at if n == place else 0) for n in axes)
-        for variable, word, colour, marker in EVENTS:
+        for variable, _, colour, marker in EVENTS:
             values = view.variables[variable][index]
             keep = np.isfinite(x) & np.isfinite(values)
             if keep.any():
-                panel.plot(
-                    x[keep], values[keep], STYLES[line], color=colour, marker=marker, ms=2.5, lw=1.2,
-                    label=word if line == 0 else None,
-                )  # fmt: skip
+                (drawn,) = panel.plot(x[keep], values[keep], STYLES[line], color=colour, marker=marker)
+                drawn.set(label=labels.pop(variable, None), markersize=2.5, linewidth=1.2)
     for line, at in enumerate(chosen if place else []):
         text = rf"${SYMBOLS[str(place)]}$ = {view.axes[str(place)][at]:.3g}"
         panel.plot([], [], STYLES[line], color="0.3", label=text)
-    finite = np.sort(x[np.isfinite(x)])
-    if is_logarithmic(finite) or (finite[0] > 0 and finite[-1] > 100 * finite[0]):
-        panel.set_xscale("log")
+    scale(panel, "x", np.sort(x[np.isfinite(x)]))
     panel.set_xlabel(label)
     panel.set_ylim(bottom=0)
     panel.legend(frameon=False, fontsize=8)

@@ -44,7 +44,7 @@ def show_summary(view: View) -> None:
             f"all together {seconds.sum():.3g} s"
         )
         for line in LINES[view.task](view, done):
-            console.print(line)
+            console.print(line, soft_wrap=True)
     ran = (
         f"{a['started']} to {a['finished']} on {a['ranks']} ranks" if "finished" in a else "not finished yet"
     )

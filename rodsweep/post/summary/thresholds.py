@@ -36,13 +36,18 @@ def monotony_lines(view: View) -> list[str]:
         for force in ("F_onset", "F_hopf"):
             along = np.moveaxis(view.variables[force], place, -1)
             along = along[..., ::-1] if name == "gamma3" else along
-            rising = np.array([_rises(line) for line in along.reshape(-1, along.shape[-1])])
-            text = f"{force} rises with {label} on {int(rising.sum())} of {rising.size} lines"
-            falls = np.argwhere(~rising.reshape(along.shape[:-1]))
+            there = np.isfinite(along).sum(axis=-1) > 1
+            rising = np.apply_along_axis(_rises, -1, along) & there
+            if not there.any():
+                continue
+            text = f"{force} rises with {label} on {int(rising.sum())} of {int(there.sum())} lines"
+            falls = np.argwhere(there & ~rising)
             others = [n for n in view.axes if n != name]
             for other, places in zip(others, falls.T, strict=True):
                 if len(view.axes[other]) > 1 and places.size:
-                    text += f", and falls somewhere for {other} = {span(view.axes[other][places])}"
+                    low, high = view.axes[other][places].min(), view.axes[other][places].max()
+                    text += f", and falls somewhere for {other} = {low:.6g}"
+                    text += f" to {high:.6g}" if high > low else ""
             lines.append(text)
     return lines
 
