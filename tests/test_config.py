@@ -160,7 +160,10 @@ def diagram(F="[1, 2]", k1="9", k2="[1, inf]", more="gamma3: 0", options=""):
 
 ALL = "F, k1, k2 and gamma3"
 REFUSED_BY_TASK = [
-    ("parameters: {F: 1}", "task is missing; it should be spectrum, thresholds, phase_diagram or modes"),
+    (
+        "parameters: {F: 1}",
+        "task is missing; it should be spectrum, thresholds, phase_diagram, modes or limit_cycle",
+    ),
     ("task: [spectrum]", "task = ['spectrum'] is not allowed; it should be spectrum, thresholds"),
     (thresholds() + "spectrum: {modes: 3}", "spectrum is given but the task is thresholds; remove it"),
     (config("modes") + "thresholds: {}", "thresholds is given but the task is modes; remove it"),

@@ -27,7 +27,7 @@ overrides_option = click.option(
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="rodsweep")
 def commands() -> None:
-    """Spectra, thresholds, phase diagrams and modes of follower-loaded soft rods in a viscous fluid."""
+    """Spectra, thresholds, phase diagrams, modes and limit cycles of follower-loaded soft rods in a fluid."""
 
 
 @commands.command()

@@ -3,13 +3,14 @@
 import os
 import socket
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 import click
 
 from ..errors import EnvironmentLacks
+from ..results.checkpoints import Checkpoints
 from ..results.creation import Plan
 from ..results.journal import Journal, journal_directory
 from ..results.provenance import now, provenance
@@ -17,11 +18,13 @@ from ..results.schema import Filled
 from ..results.store import Store
 from ..results.view import read_view
 from ..solve.presence import require_petsc
+from ..sweep.chains import ChainSolver, mask
+from ..sweep.handout import Range
 from ..sweep.loop import sweep
 from ..sweep.progress import Teller
 from ..sweep.team import Team
 from .job import Job, make_job
-from .tasks.protocol import Solver
+from .tasks.protocol import Solver, succeeded
 
 FAILURES_TOLD = 3
 """Failed points that are named at the end of a run; the file has the status of all."""
@@ -70,8 +73,11 @@ def _run(team: Team, job: Job, output: Path, fresh: bool) -> int:
         each = 1e3 * seconds * team.size / max(count, 1)
         spent = f"{count} points in {seconds:.2f} s on {team.size} ranks ({each:.3g} ms a point and rank)"
         spent = spent if count else f"{output} is complete, nothing to do"
+        whole = set(counts) <= {status.name for status in solver.statuses if succeeded(status)}
         _report(output, spent, counts, [failure for some in told or [] for failure in some])
-        return 0 if set(counts) == {"ok"} else 1
+        if not whole:
+            click.echo(f"  `rodsweep show {output}` says what each status means")
+        return 0 if whole else 1
 
     return team.on_first(finish)
 
@@ -83,8 +89,8 @@ def _solve_missing(
     failures: list[str] = []
 
     def keep(index: int, result: Any) -> None:
-        journal.append(index, solver.record(result))
-        if result.status and len(failures) < FAILURES_TOLD:
+        journal.append(index, solver.record(index, result))
+        if not succeeded(result.status) and len(failures) < FAILURES_TOLD:
             where = ", ".join(f"{name}={value!r}" for name, value in job.points.values(index).items())
             failures.append(f"{where}: {result.status.name} {result.message}".rstrip())
 
@@ -92,8 +98,10 @@ def _solve_missing(
     total = sum(stop - start for start, stop in todo)
     tell = Teller(total, job.name) if team.first else None
     try:
-        journal = Journal(journal_directory(output), team.rank, plan.layout, plan.fingerprint)
-        sweep(team, todo, solver.solve, keep, tell or (lambda done: None))
+        directory = journal_directory(output)
+        journal = Journal(directory, team.rank, plan.layout, plan.fingerprint)
+        units, solve = _units(job, solver, todo, Checkpoints(directory, plan.fingerprint))
+        sweep(team, units, solve, keep, tell or (lambda done: None))
         journal.close()
     except OSError as error:
         raise EnvironmentLacks(
@@ -104,6 +112,17 @@ def _solve_missing(
         if tell:
             tell.close()
     return failures
+
+
+def _units(
+    job: Job, solver: Solver, todo: list[Range], checkpoints: Checkpoints
+) -> tuple[list[Range], Callable[[int], Iterable[tuple[int, Any]]]]:
+    """(the units to do, how one is solved): points, or chains where points start one from the other."""
+    if solver.chained is None:
+        return todo, lambda index: ((index, solver.solve(index)),)
+    missing = mask(todo, job.points.count)
+    chains = solver.chained.chains
+    return chains.todo(missing), ChainSolver(chains, missing, solver.chained.solve_from, checkpoints)
 
 
 def _plan(job: Job, solver: Solver) -> Plan:
@@ -126,7 +145,7 @@ def _plan(job: Job, solver: Solver) -> Plan:
             "petsc_options": petsc.options(),
             "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in solver.statuses),
         }
-        | ({"gamma1": job.config.parameters.gamma1} if job.config.parameters.gamma1 else {})
+        | job.config.constants
         | versions
         | provenance(),
         flags=tuple((int(s), s.name) for s in solver.statuses),
@@ -151,5 +170,3 @@ def _report(output: Path, spent: str, counts: dict[str, int], failures: list[str
     click.echo(f"{output}: " + ", ".join(f"{n} {name}" for name, n in counts.items()))
     for failure in failures[:FAILURES_TOLD]:
         click.echo(f"  {failure}")
-    if set(counts) != {"ok"}:
-        click.echo(f"  `rodsweep show {output}` says what each status means")

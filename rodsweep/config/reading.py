@@ -13,7 +13,8 @@ from ruamel.yaml.error import YAMLError
 from ruamel.yaml.events import AliasEvent
 
 from ..errors import InputError
-from .schema import CONFIGS, Config, words
+from .schema import Config, words
+from .tasks import CONFIGS
 from .values import overflows, short
 
 LARGEST_FILE = 1_000_000

@@ -1,4 +1,4 @@
-"""The keys of a config, their types and defaults: what every task has, and one section of options per task.
+"""The keys of a config, their types and defaults: what every task has, and the options of the linear tasks.
 
 Ranges that are physics (F < k1, positive stiffness) belong to `rodsweep.model`; here is form only.
 """
@@ -12,28 +12,27 @@ from pydantic import Field, model_validator
 from .values import Axis, Number, Strict, Text, Values
 
 PARAMETERS = ("F", "k1", "k2", "gamma3")
-"""Parameters that have an axis, in the order used everywhere."""
+"""Parameters that have an axis in every task, in the order used everywhere."""
 
 Modes = Annotated[int, Field(ge=1, le=100)]
 Nodes = Annotated[int, Field(ge=3, le=513)]
 Crossings = Annotated[int, Field(ge=1, le=1000)]
 
 
-class Parameters(Strict):
+class Axes(Strict):
     """Axes, one for each parameter of a grid, or the name of a CSV file that lists points."""
 
     F: Values | None = None
     k1: Values | None = None
     k2: Values | None = None
     gamma3: Values | None = None
-    gamma1: Number | None = None
     points: Annotated[Text | None, Field(description="the name of a CSV file")] = None
 
     @property
     def axes(self) -> dict[str, Axis]:
         """The axes that are given, by name."""
-        found = {name: getattr(self, name) for name in PARAMETERS}
-        return {name: axis for name, axis in found.items() if axis is not None}
+        found = {name: getattr(self, name, None) for name in (*PARAMETERS, "gamma1")}
+        return {name: axis for name, axis in found.items() if isinstance(axis, Axis)}
 
     def require(self, names: tuple[str, ...], or_points: bool = True) -> None:
         """ValueError unless all axes `names` are given or, where that is allowed, a file of points."""
@@ -46,12 +45,18 @@ class Parameters(Strict):
             raise ValueError(f"parameters.{missing[0]} is missing; give {words(names, 'and')}{hint}")
 
 
+class Parameters(Axes):
+    """The parameters of the linear problem, where axial drag is one number or none."""
+
+    gamma1: Number | None = None
+
+
 class Config(Strict, ABC):
     """What the config of every task has."""
 
     title: Annotated[Text, Field(max_length=200)] = ""
     task: str
-    parameters: Parameters
+    parameters: Axes
     accuracy: Annotated[Number, Field(ge=1e-13, le=1e-2)] = 1e-10
 
     @property
@@ -59,8 +64,20 @@ class Config(Strict, ABC):
     def names(self) -> tuple[str, ...]:
         """The parameters that make a point of the sweep."""
 
+    @property
+    def constants(self) -> dict[str, float]:
+        """Parameters beside `names` that have one value for the whole sweep."""
+        gamma1 = getattr(self.parameters, "gamma1", None)
+        return {"gamma1": gamma1} if isinstance(gamma1, float) else {}
+
+
+class LinearConfig(Config, ABC):
+    """What the configs of the linear problem share."""
+
+    parameters: Parameters
+
     @model_validator(mode="after")
-    def _gamma1_only_where_used(self) -> "Config":
+    def _gamma1_only_where_used(self) -> "LinearConfig":
         if self.parameters.gamma1 is not None and not isinstance(self, SpectrumConfig):
             raise ValueError(
                 f"parameters.gamma1 is given but the task {self.task} does not use it; remove it"
@@ -79,7 +96,7 @@ class SpectrumOptions(Strict):
     longitudinal: bool = False
 
 
-class SpectrumConfig(Config):
+class SpectrumConfig(LinearConfig):
     """The leading eigenvalues at every point."""
 
     task: Literal["spectrum"]
@@ -114,7 +131,7 @@ class ThresholdsOptions(Strict):
     certify: bool = True
 
 
-class ThresholdsConfig(Config):
+class ThresholdsConfig(LinearConfig):
     """The forces at which the spectrum of every rod changes its kind."""
 
     task: Literal["thresholds"]
@@ -145,7 +162,7 @@ class PhaseDiagramOptions(Strict):
     """Whether the boundaries between the rows are followed as curves."""
 
 
-class PhaseDiagramConfig(Config):
+class PhaseDiagramConfig(LinearConfig):
     """What the rod does over two parameters, row by row: a row is a line in the first of the two."""
 
     task: Literal["phase_diagram"]
@@ -195,7 +212,7 @@ class ModesOptions(Strict):
     certify: bool = True
 
 
-class ModesConfig(Config):
+class ModesConfig(LinearConfig):
     """The leading modes at every point, with their adjoints, and what non-normality makes of them."""
 
     task: Literal["modes"]
@@ -211,16 +228,7 @@ class ModesConfig(Config):
         return self
 
 
-CONFIGS: dict[str, type[Config]] = {
-    "spectrum": SpectrumConfig,
-    "thresholds": ThresholdsConfig,
-    "phase_diagram": PhaseDiagramConfig,
-    "modes": ModesConfig,
-}
-"""The config of every task; the section of a task's options has the task's name."""
-
-
-def long_axes(parameters: Parameters) -> list[str]:
+def long_axes(parameters: Axes) -> list[str]:
     """The parameters with more than one value."""
     return [name for name, axis in parameters.axes.items() if axis.size > 1]
 

@@ -19,7 +19,7 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 PACKAGE = Path(__file__).parents[1]
-COMPILED_IN = ("model", "solve")
+COMPILED_IN = ("model", "discretization", "solve")
 
 
 def cache_directory() -> Path:

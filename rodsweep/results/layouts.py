@@ -2,9 +2,8 @@
 
 from typing import Any
 
-import numpy as np
-
-from .schema import MISSING, PARAMETER_NAMES, Layout, Variable
+from .limit_cycle import limit_cycle_layout
+from .schema import MESH, MISSING, PARAMETER_NAMES, SECONDS, STATUS, Layout, Variable, real, whole
 
 CROSSING_KINDS = (
     "none",
@@ -28,16 +27,6 @@ CLASSES = (
 """What the rod does at a point of a phase diagram."""
 
 
-def real(name: str, units: str, long_name: str, *extra: str) -> Variable:
-    """A variable of floating-point numbers, NaN where there is none."""
-    return Variable(name, "<f8", np.nan, units, long_name, extra)
-
-
-def whole(name: str, long_name: str, *extra: str) -> Variable:
-    """A variable of counts, -1 where it is not known."""
-    return Variable(name, "<i4", -1, "1", long_name, extra)
-
-
 def complex_pair(name: str, units: str, long_name: str) -> tuple[Variable, Variable]:
     """Real and imaginary part of a field of every mode."""
     return (
@@ -47,8 +36,6 @@ def complex_pair(name: str, units: str, long_name: str) -> tuple[Variable, Varia
 
 
 UNSTABLE_COUNT = whole("unstable_count", "number of modes with positive growth rate; -1: not known")
-SECONDS = Variable("seconds", "<f4", np.nan, "s", "time spent on the point")
-STATUS = Variable("status", "|i1", MISSING, "1", "outcome of the point")
 EACH_MODE = (
     real("growth_rate", "1/tau2", "real part of the transverse eigenvalue", "mode"),
     real("frequency", "1/tau2", "imaginary part of the transverse eigenvalue", "mode"),
@@ -64,8 +51,7 @@ EACH_POINT = (
     Variable(
         "certified", "|i1", 0, "1", "1 where the winding number of D proves that no leading mode is missing"
     ),
-    Variable("elements", "<i2", 0, "1", "spectral elements used"),
-    Variable("order", "<i2", 0, "1", "polynomial order used"),
+    *MESH,
     SECONDS,
     STATUS,
 )
@@ -222,4 +208,6 @@ def layout_of(config: dict[str, Any]) -> Layout:
         sizes = {n: len(axes[n].get("values", ())) or axes[n]["num"] for n in PARAMETER_NAMES}
         line = next(name for name, size in sizes.items() if size > 1)
         return phase_diagram_layout(line, sizes[line], options["crossings"])
+    if task == "limit_cycle":
+        return limit_cycle_layout(options)
     raise KeyError(f"unknown task {task}")

@@ -20,15 +20,21 @@ PARAMETER_NAMES = {
     "k2": ("k3/L^2", "shear stiffness; inf is unshearable"),
     "gamma3": ("gamma2 L^2", "rotational drag"),
 }
-"""Units and long names of the parameters."""
+"""Units and long names of the parameters of the linear problem."""
 
-DIMENSIONS = PARAMETER_NAMES | {
+NONLINEAR_NAMES = PARAMETER_NAMES | {"gamma1": ("gamma2", "axial drag")}
+"""Units and long names of the parameters of the nonlinear rod."""
+
+DIMENSIONS = NONLINEAR_NAMES | {
     "point": ("1", "row of the point list, from 0"),
     "mode": ("1", "leading first: descending growth rate, of a pair the positive frequency first"),
     "u": ("1", "material coordinate along the rod"),
     "crossing": ("1", "in increasing order of the parameter that is varied"),
     "curve_point": ("1", "points of all curves, each curve's one after another"),
     "fold": ("1", "points where a curve turns back"),
+    "harmonic": ("1", "multiple of the cycle's frequency"),
+    "sample": ("1", "time in periods, from where y of the tip rises through its mean"),
+    "shape": ("1", "time in periods, from where y of the tip rises through its mean"),
 }
 """Units and long names of all dimensions."""
 
@@ -46,6 +52,24 @@ class Variable:
     flags: tuple[tuple[int, str], ...] = ()
     """Values and meanings, where the variable is a word; those of `status` come from the task's solver."""
 
+
+def real(name: str, units: str, long_name: str, *extra: str) -> Variable:
+    """A variable of floating-point numbers, NaN where there is none."""
+    return Variable(name, "<f8", np.nan, units, long_name, extra)
+
+
+def whole(name: str, long_name: str, *extra: str) -> Variable:
+    """A variable of counts, -1 where it is not known."""
+    return Variable(name, "<i4", -1, "1", long_name, extra)
+
+
+SECONDS = Variable("seconds", "<f4", np.nan, "s", "time spent on the point")
+STATUS = Variable("status", "|i1", MISSING, "1", "outcome of the point")
+MESH = (
+    Variable("elements", "<i2", 0, "1", "spectral elements used"),
+    Variable("order", "<i2", 0, "1", "polynomial order used"),
+)
+"""What every layout has, or every layout with a mesh."""
 
 Filled = tuple[Variable, NDArray[Any]]
 """A variable that is known as a whole, with its values; `extra` names all of its dimensions."""

@@ -19,6 +19,7 @@ import h5py
 import numpy as np
 
 from ..errors import EnvironmentLacks, InputError
+from .checkpoints import drop_checkpoints
 from .creation import SIGNATURE, Plan, add_variables, create_file
 from .journal import journal_directory, read_journals
 from .lock import Lock
@@ -66,6 +67,7 @@ class Store:
             raise InputError(f"{self.path} is no result file, so --fresh leaves it alone")
         self._need_room()
         self._drop_journals()
+        drop_checkpoints(self.journals)
         copy = self._temporary()
         create_file(copy, self.plan)
         self._replace(copy)
@@ -121,6 +123,8 @@ class Store:
                     file.attrs.update(attributes)
             self._replace(copy)
         self._drop_journals()
+        if not self.missing():
+            drop_checkpoints(self.journals)
 
     def status_counts(self) -> dict[str, int]:
         """How many points have each status, by the name of the status."""

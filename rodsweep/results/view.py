@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import InputError
 from .journal import journal_directory, read_journals
 from .layouts import layout_of
-from .schema import MISSING, PARAMETER_NAMES
+from .schema import MISSING, NONLINEAR_NAMES
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class View:
     @property
     def axes(self) -> dict[str, np.ndarray]:
         """The parameters that the file knows: axes of a grid, or columns of a point list."""
-        return {name: self.variables[name] for name in PARAMETER_NAMES if name in self.variables}
+        return {name: self.variables[name] for name in NONLINEAR_NAMES if name in self.variables}
 
 
 def read_view(path: Path, names: tuple[str, ...] = ()) -> View:
@@ -50,7 +50,7 @@ def read_view(path: Path, names: tuple[str, ...] = ()) -> View:
         with h5py.File(path, "r") as file:
             attributes = dict(file.attrs)
             layout = layout_of(json.loads(attributes["config_resolved"]))
-            wanted = [n for n in file if not names or n in names or n in PARAMETER_NAMES or n == "point"]
+            wanted = [n for n in file if not names or n in names or n in NONLINEAR_NAMES or n == "point"]
             variables = {name: file[name][...] for name in wanted}
             status = file["status"].attrs
             words = str(status["flag_meanings"]).split()

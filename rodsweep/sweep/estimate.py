@@ -18,6 +18,8 @@ LINE_MS, LINE_CERTIFICATE_MS = 24.0, 16.0
 MODES_MS, GROWTH_MS = 1.5, 20.0
 """Time that the vectors take beside the eigenvalues, in units of the modes squared, because the mesh grows
 with them, and that the growth takes: means over 24 rods."""
+CYCLE_SECONDS = 2.0
+"""Time of a limit cycle from its start, to be measured."""
 MEMORY_PER_UNKNOWN = 40_000
 BASE_MEMORY = 200_000_000
 
@@ -45,6 +47,11 @@ def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> E
     """The cost of modes at `count` points, `modes` each, from that of their eigenvalues alone."""
     more = count * 1e-3 * (MODES_MS * modes**2 + (GROWTH_MS if growth else 0))
     return replace(spectra, seconds=spectra.seconds + more, unknowns=None)
+
+
+def estimate_cycles(count: int) -> Estimate:
+    """The cost of `count` limit cycles."""
+    return Estimate(count * CYCLE_SECONDS)
 
 
 def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool) -> Estimate:

@@ -55,10 +55,9 @@ def grid_size(config: Config) -> int:
 def points_of(config: Config, directory: Path) -> Points:
     """The points that the config asks for; InputError for any value that the model does not allow."""
     parameters = config.parameters
-    if parameters.gamma1 is not None and not admissible("gamma1", parameters.gamma1):
-        raise InputError(
-            f"parameters.gamma1 = {parameters.gamma1:g} is not allowed; it must be {ALLOWED['gamma1']}"
-        )
+    for name, value in config.constants.items():
+        if not admissible(name, value):
+            raise InputError(f"parameters.{name} = {value:g} is not allowed; it must be {ALLOWED[name]}")
     if parameters.points is not None:
         columns = _read_csv(directory / parameters.points, config.names)
         return Points(config.names, columns, is_grid=False)
@@ -115,9 +114,12 @@ def _row(row: list[str], header: list[str], where: str) -> list[float]:
             numbers.append(as_number(float(cell)))
         except ValueError:
             raise InputError(f"{where}: {name} = {cell.strip()[:40]!r} is not a number") from None
-    unloaded = {"F": 0.0}  # where F is no column
+    values = {"F": 0.0, "gamma1": 1.0} | dict(zip(header, numbers, strict=True))  # where they are no column
+    gamma1 = values.pop("gamma1")
+    if not admissible("gamma1", gamma1):
+        raise InputError(f"{where}: gamma1 = {gamma1} is not {ALLOWED['gamma1']}")
     try:
-        Rod(**(unloaded | dict(zip(header, numbers, strict=True))))
+        Rod(**values)
     except ValueError as error:
         raise InputError(f"{where}: {error}") from None
     return numbers

@@ -1,9 +1,9 @@
-"""Who solves which point: small chunks from the first rank, sized by how long points take.
+"""Who solves which unit, a point or a chain of points: small chunks from the first rank, sized by pace.
 
 The first rank computes like any other; a thread of it answers the requests of the others, so they
 need not wait for its own solve to end. A rank that finds its chunk slower than foreseen gives the
 rest back with its next request. Nobody is told that the work is over while another rank may still
-give something back, so the ranks finish within one point of each other.
+give something back, so the ranks finish within one unit of each other.
 """
 
 import threading
@@ -26,15 +26,16 @@ OVER: Range = (0, 0)
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """What a rank says when it wants more: points done, seconds they took, and what it gives back."""
+    """What a rank says when it wants more: units done, their seconds, what it gives back, points kept."""
 
     done: int = 0
     seconds: float = 0.0
     rest: Range = OVER
+    points: int = 0
 
 
 class Handout:
-    """The points still to do, on the first rank; safe to use from its two threads."""
+    """The units still to do, on the first rank; safe to use from its two threads."""
 
     def __init__(self, todo: list[Range], ranks: int):
         self.todo = deque(todo)
@@ -42,6 +43,7 @@ class Handout:
         self.ranks = ranks
         self.busy: set[int] = set()
         self.done = 0
+        self.points = 0
         self.pace: dict[int, float] = {}
         self.change = threading.Condition()
 
@@ -50,11 +52,12 @@ class Handout:
         with self.change:
             self.busy.discard(rank)
             self.done += report.done
+            self.points += report.points
             if report.done:
                 self.pace[rank] = report.seconds / report.done
             start, stop = report.rest
             if stop > start:
-                self.pace[rank] = report.seconds  # as slow as its slowest point may be: next, one point
+                self.pace[rank] = report.seconds  # as slow as its slowest unit may be: next, one unit
                 self.todo.appendleft(report.rest)
                 self.left += stop - start
             self.change.notify_all()
@@ -96,9 +99,9 @@ class FirstRankClaims:
             self.thread.start()
 
     @property
-    def done(self) -> int:
-        """Points that all ranks have reported done."""
-        return self.handout.done
+    def points(self) -> int:
+        """Points that all ranks have reported kept."""
+        return self.handout.points
 
     def claim(self, report: Report) -> Range:
         self.handout.settle(0, report)
@@ -139,7 +142,7 @@ class FirstRankClaims:
 class OtherRankClaims:
     """How every other rank gets its chunks: by asking the first."""
 
-    done = 0
+    points = 0
 
     def __init__(self, team: Team):
         self.comm = team.comm

@@ -9,6 +9,7 @@ from typing import Any
 
 from ...config import Config
 from ...sweep.grid import Points
+from .limit_cycle import LimitCycleTask
 from .modes import ModesTask
 from .phase_diagram import PhaseDiagramTask
 from .protocol import Task
@@ -20,6 +21,7 @@ TASKS: dict[str, Callable[[Any, Points], Task]] = {
     "thresholds": ThresholdsTask,
     "phase_diagram": PhaseDiagramTask,
     "modes": ModesTask,
+    "limit_cycle": LimitCycleTask,
 }
 
 

@@ -69,7 +69,7 @@ class ModesTask:
             statuses=tuple(Status),
             warm_up=lambda: solve_modes(Rod(30.0, 1e4, 1e4, 1e-4), first),
             solve=lambda index: solve_modes(self.points.rod(index), request),
-            record=lambda result: record(result, options.growth),
+            record=lambda index, result: record(result, options.growth),
         )
 
 

@@ -73,7 +73,7 @@ class PhaseDiagramTask:
             statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
             solve=lambda index: solve_row(self.points.values(index), request),
-            record=lambda result: record(result, options.crossings),
+            record=lambda index, result: record(result, options.crossings),
             finish=self.curves if options.curves else None,
         )
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from ...results.schema import Filled
 from ...results.view import View
+from ...sweep.chains import Chains, State
 from ...sweep.estimate import Estimate
 
 Part = tuple[str, bool, str]
@@ -19,7 +20,7 @@ Part = tuple[str, bool, str]
 
 
 class Status(Protocol):
-    """How a point ended: a member of the task's own IntEnum, of which 0 is ok."""
+    """How a point ended: a member of the task's own IntEnum; `succeeded` says whether as it should."""
 
     @property
     def name(self) -> str: ...
@@ -30,6 +31,20 @@ class Status(Protocol):
     def __int__(self) -> int: ...
 
 
+def succeeded(status: Status) -> bool:
+    """Whether a point ended as it should: as its enum says, or else with 0, which is ok."""
+    return bool(getattr(status, "succeeded", int(status) == 0))
+
+
+@dataclass(frozen=True, slots=True)
+class Chained:
+    """Points of which each starts from its neighbour."""
+
+    chains: Chains
+    solve_from: Callable[[int, State], tuple[Any, State]]
+    """From an index and what the point starts from to its outcome and what its neighbour starts from."""
+
+
 @dataclass(frozen=True, slots=True)
 class Solver:
     """What every rank of a run does with a point; `solve` gives an outcome with status and message."""
@@ -38,10 +53,12 @@ class Solver:
     warm_up: Callable[[], object]
     """Loads what is compiled and created at first use, so that no point pays for it."""
     solve: Callable[[int], Any]
-    record: Callable[[Any], dict[str, Any]]
-    """An outcome as the variables of the file."""
+    record: Callable[[int, Any], dict[str, Any]]
+    """An index and its outcome as the variables of the file."""
     finish: Callable[[View], Sequence[Filled]] | None = None
     """Variables that only all points together give, on the first rank, from the file with all points."""
+    chained: Chained | None = None
+    """Where points start one from the other: how they are solved, instead of by `solve`."""
 
 
 class Task(Protocol):

@@ -91,7 +91,7 @@ class SpectrumTask:
             statuses=tuple(Status),
             warm_up=warm_up,
             solve=lambda index: solve_spectrum(self.points.rod(index), request),
-            record=record,
+            record=lambda index, result: record(result),
         )
 
 

@@ -56,7 +56,7 @@ class ThresholdsTask:
             statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
             solve=lambda index: solve_thresholds(**self.points.values(index), request=request),
-            record=lambda result: record(result, options.crossings),
+            record=lambda index, result: record(result, options.crossings),
         )
 
 

@@ -8,6 +8,7 @@ from rich.table import Table
 
 from ...results.schema import DIMENSIONS, MISSING
 from ...results.view import View
+from .limit_cycle import limit_cycle_lines
 from .modes import modes_lines
 from .phase_diagram import phase_diagram_lines
 from .spectrum import spectrum_lines
@@ -18,6 +19,7 @@ LINES: dict[str, Callable[[View, np.ndarray], list[str]]] = {
     "thresholds": thresholds_lines,
     "phase_diagram": phase_diagram_lines,
     "modes": modes_lines,
+    "limit_cycle": limit_cycle_lines,
 }
 """What each task has to tell of its computed points, from (view, which points are computed)."""
 

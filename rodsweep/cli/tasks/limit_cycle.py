@@ -1,0 +1,158 @@
+"""The task limit_cycle: the beating of the nonlinear rod at every point, or that it straightens."""
+
+from dataclasses import dataclass
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...config import LimitCycleConfig
+from ...discretization.quadrature import lobatto_points
+from ...errors import InputError
+from ...results.limit_cycle import CYCLE, ENERGY, PERIOD_TAU1, SHAPE, TIP
+from ...results.schema import Filled, Variable
+from ...sweep.chains import Chains, State
+from ...sweep.estimate import Estimate, estimate_cycles
+from ...sweep.grid import Points
+from .parts import count_of, rod_parts
+from .protocol import Chained, Part, Solver
+
+if TYPE_CHECKING:
+    from ...solve.cycles import Cycle, CycleRequest
+
+RENAMED = {"harmonic_amplitude": "harmonics"}
+"""Variables of the file whose field of a cycle has another name."""
+
+
+@dataclass(frozen=True, slots=True)
+class LimitCycleTask:
+    """Limit cycles on their points."""
+
+    config: LimitCycleConfig
+    points: Points
+
+    def __post_init__(self) -> None:
+        needs = {"k1": "a finite number", "k2": "a finite number", "gamma3": "a number above 0"}
+        for name, need in needs.items():
+            for value in self._columns[name].tolist():
+                if not isfinite(value) or (name == "gamma3" and value <= 0):
+                    raise InputError(
+                        f"parameters.{name} = {value:g} is not allowed in the task limit_cycle; it must be "
+                        f"{need}, because the nonlinear rod stretches, shears and turns against drag"
+                    )
+
+    @property
+    def _columns(self) -> dict[str, np.ndarray]:
+        return dict(zip(self.points.names, self.points.columns, strict=True))
+
+    @property
+    def chains(self) -> Chains | None:
+        """The chains in which points start one from the other, where they do."""
+        options = self.config.limit_cycle
+        if options.continue_from == "none":
+            return None
+        axis = self.points.names.index(options.along)
+        return Chains(self.points.shape, axis, options.direction == "up")
+
+    def coordinates(self) -> dict[str, np.ndarray]:
+        """Times of the samples and shapes in periods, and the material coordinate of the shapes' nodes."""
+        options = self.config.limit_cycle
+        extents = {"sample": options.samples, "shape": options.shapes}
+        times = {name: np.arange(count) / count for name, count in extents.items() if count}
+        return times | ({"u": lobatto_points(options.nodes)} if options.shapes else {})
+
+    def constants(self) -> tuple[Filled, ...]:
+        return ()
+
+    def headline(self) -> str:
+        options, chains = self.config.limit_cycle, self.chains
+        start = f"the leading mode with tip deflection {options.amplitude:g} L"
+        if chains is None:
+            return f"{count_of(self.points)}, each started from {start}"
+        return (
+            f"{count_of(self.points)} in {chains.count} chains of {chains.length}, {options.direction} in "
+            f"{options.along}: each started from its neighbour's cycle, the first, and any after none, from "
+            f"{start}; at most {chains.count} ranks share the work"
+        )
+
+    def parts(self) -> list[Part]:
+        options = self.config.limit_cycle
+        columns = self._columns
+        gamma1 = columns["gamma1"]
+        return [
+            *rod_parts(columns),
+            ("axial drag", True, f"gamma1 = {', '.join(f'{value:g}' for value in np.unique(gamma1)[:5])}"),
+            ("nonlinear motion", True, "task: limit_cycle; in the plane, geometrically exact"),
+            ("energy budget", True, "means and fluctuations over a cycle"),
+            self._stored("tip and energy over a cycle", "samples", TIP + ENERGY),
+            self._stored("shapes over a cycle", "shapes", SHAPE),
+            ("period in tau1 too", options.time == "tau1", f"limit_cycle.time: {options.time}"),
+            ("gravity, inertia, motion out of the plane", False, "not part of the overdamped problem"),
+        ]
+
+    def _stored(self, what: str, option: str, variables: tuple[Variable, ...]) -> Part:
+        """Whether something is stored only where it is asked for, and how much that is."""
+        options = self.config.limit_cycle
+        each: int = getattr(options, option)
+        if not each:
+            return what, False, f"limit_cycle.{option} stores them"
+        values = self.points.count * each * len(variables) * (options.nodes if option == "shapes" else 1)
+        nodes = f" on {options.nodes} nodes" if option == "shapes" else ""
+        return what, True, f"{each} a point{nodes}, {self.points.count * each} in all: {8e-6 * values:.3g} MB"
+
+    def cost(self) -> Estimate:
+        return estimate_cycles(self.points.count)
+
+    def solver(self) -> Solver:
+        from ...solve.cycles import CycleStatus, solve_cycle, warm_up
+
+        request = self._request()
+
+        def solve(index: int, start: State = None) -> "Cycle":
+            return solve_cycle(**self.points.values(index), request=request, start=start)
+
+        def solve_from(index: int, start: State) -> "tuple[Cycle, State]":
+            cycle = solve(index, start)
+            return cycle, cycle.state if cycle.status == CycleStatus.cycle else None
+
+        chains = self.chains
+        return Solver(
+            statuses=tuple(CycleStatus),
+            warm_up=warm_up,
+            solve=solve,
+            record=lambda index, cycle: self.record(self.points.values(index), cycle),
+            chained=Chained(chains, solve_from) if chains else None,
+        )
+
+    def _request(self) -> "CycleRequest":
+        from ...solve.cycles import CycleRequest
+
+        options = self.config.limit_cycle
+        return CycleRequest(
+            accuracy=self.config.accuracy,
+            amplitude=options.amplitude,
+            harmonics=options.harmonics,
+            samples=options.samples,
+            shapes=options.shapes,
+            nodes=options.nodes,
+            most_periods=options.most_periods,
+        )
+
+    def record(self, point: dict[str, float], cycle: "Cycle") -> dict[str, Any]:
+        """A Cycle as the variables of the file."""
+        options = self.config.limit_cycle
+        values = {v.name: getattr(cycle, RENAMED.get(v.name, v.name)) for v in CYCLE}
+        values["status"] = int(cycle.status)
+        if options.time == "tau1":  # t/tau1 = (t/tau2) k2/gamma3
+            values[PERIOD_TAU1.name] = cycle.period * point["k2"] / point["gamma3"]
+        if options.samples:
+            values |= _along(TIP, cycle.tip) | _along(ENERGY, cycle.energy)
+        if options.shapes:
+            values |= _along(SHAPE, cycle.shape)
+        return values
+
+
+def _along(variables: tuple[Variable, ...], arrays: np.ndarray | None) -> dict[str, Any]:
+    """Variables with their arrays, NaN where there are none."""
+    names = [variable.name for variable in variables]
+    return dict.fromkeys(names, np.nan) if arrays is None else dict(zip(names, arrays, strict=True))

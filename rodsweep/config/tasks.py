@@ -1,0 +1,12 @@
+"""The config of every task, by its name; the section of a task's options has that name too."""
+
+from .limit_cycle import LimitCycleConfig
+from .schema import Config, ModesConfig, PhaseDiagramConfig, SpectrumConfig, ThresholdsConfig
+
+CONFIGS: dict[str, type[Config]] = {
+    "spectrum": SpectrumConfig,
+    "thresholds": ThresholdsConfig,
+    "phase_diagram": PhaseDiagramConfig,
+    "modes": ModesConfig,
+    "limit_cycle": LimitCycleConfig,
+}

@@ -1,0 +1,188 @@
+"""One nonlinear rod on one mesh: strains, rates, energy and shape, for what steps in time.
+
+The equations are `rodsweep.discretization.body_frame`'s, and so is the unknown z; here are the mesh, the
+parameters, and the way from strains to a shape: theta(u) = int Pi, r(u) = int R(theta) (h1, h2).
+"""
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..model.rod import Rod
+from .basis import differentiation, interpolation
+from .body_frame import jacobian, power, rate
+from .pencil import assemble
+from .quadrature import gauss, gauss_lobatto
+
+Array = NDArray[np.float64]
+
+EXTRA_POINTS = 10
+"""Gauss points beyond the nodes with which shapes are integrated: theta turns by a radian or two."""
+TINY = 1e-30
+"""Complex step of a velocity."""
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """`elements` equal elements of order `order` on [0, 1].
+
+    matrices: D, D^T and -D^T W D on the nodes of one element, shape (3, p + 1, p + 1), so that inner loops
+    are contiguous; weights: its quadrature in u, (p + 1,).
+    """
+
+    elements: int
+    order: int
+    matrices: Array
+    weights: Array
+
+    @property
+    def nodes(self) -> int:
+        """Nodes without the tip."""
+        return self.elements * self.order
+
+    @property
+    def unknowns(self) -> int:
+        return 3 * self.nodes
+
+    @cached_property
+    def positions(self) -> Array:
+        """u of all nodes, the tip included, shape (nodes + 1,)."""
+        local = (gauss_lobatto(self.order)[0][:-1] + 1) / 2
+        return np.append((np.arange(self.elements)[:, None] + local).ravel() / self.elements, 1.0)
+
+    @cached_property
+    def quadrature(self) -> Array:
+        """Weights of all nodes, the tip included, shape (nodes + 1,)."""
+        total = np.zeros(self.nodes + 1)
+        for e in range(self.elements):
+            total[e * self.order : (e + 1) * self.order + 1] += self.weights
+        return total
+
+    def evaluation(self, points: Array) -> Array:
+        """Matrix from values at all nodes to values at `points` in [0, 1], shape (points, nodes + 1)."""
+        return assemble(self.elements, self.order).evaluation(points)
+
+
+@lru_cache(maxsize=64)
+def mesh(elements: int, order: int) -> Mesh:
+    """The mesh of `elements` equal elements of order `order`."""
+    x, w = gauss_lobatto(order)
+    D, weights = differentiation(x) * 2 * elements, w / (2 * elements)
+    return Mesh(elements, order, np.stack([D, D.T, -(D.T * weights) @ D]), weights)
+
+
+@dataclass(frozen=True, eq=False)
+class Beam:
+    """One rod with finite k1, k2 and gamma3 > 0, its axial drag gamma1 in gamma2, on one mesh.
+
+    z has shape (unknowns,) and the unit of sqrt(energy density), sqrt(k3)/L.
+    """
+
+    rod: Rod
+    gamma1: float
+    mesh: Mesh
+
+    @cached_property
+    def coefficients(self) -> Array:
+        """(F, nu, sqrt k1, sqrt k2, gamma1, gamma3) as the compiled functions take them."""
+        r = self.rod
+        return np.array([r.F, r.nu, r.k1**0.5, r.k2**0.5, self.gamma1, r.gamma3])
+
+    @property
+    def stiffness_roots(self) -> Array:
+        """Square roots of (k1, k2, k3), shape (3,)."""
+        return np.append(self.coefficients[2:4], 1.0)
+
+    def rate(self, z: Array) -> Array:
+        """dz/dt in 1/tau2."""
+        out = np.empty_like(z)
+        rate(z, out, self.coefficients, self.mesh.matrices, self.mesh.weights)
+        return out
+
+    def jacobian(self, z: Array) -> Array:
+        """d(dz/dt)/dz, shape (unknowns, unknowns)."""
+        out = np.empty((len(z), len(z)))
+        jacobian(z, out, self.coefficients, self.mesh.matrices, self.mesh.weights)
+        return out.T
+
+    def power(self, z: Array) -> tuple[float, float]:
+        """(-F v1(1), <Gamma V, V>): injected and dissipated, k3/(L tau2); dU/dt is their difference."""
+        v1, dissipated = power(z, self.coefficients, self.mesh.matrices, self.mesh.weights)
+        return -self.rod.F * v1, dissipated
+
+    def strains(self, z: Array) -> Array:
+        """(h1, h2, Pi) at all nodes, the tip included, shape (3, ..., nodes + 1) for z (..., unknowns)."""
+        E = np.zeros((3, *z.shape[:-1], self.mesh.nodes + 1), dtype=z.dtype)
+        for a, (part, root) in enumerate(zip(np.split(z, 3, axis=-1), self.stiffness_roots, strict=True)):
+            E[a, ..., :-1] = part / root
+        E[0] += self.rod.nu
+        return E
+
+    def unknown(self, strains: Array) -> Array:
+        """z of (h1, h2, Pi) at all nodes, shape (3, nodes + 1); the tip's values are not free."""
+        deviation = strains[:, :-1] - np.array([[self.rod.nu], [0.0], [0.0]])
+        return (deviation * self.stiffness_roots[:, None]).ravel()
+
+    def energy(self, z: Array) -> Array:
+        """U = 1/2 int k1 (h1 - 1)^2 + k2 h2^2 + Pi^2 in k3/L, shape (...)."""
+        E = self.strains(z)
+        E[0] -= 1.0
+        return 0.5 * np.tensordot(self.stiffness_roots**2, E * E @ self.mesh.quadrature, 1)
+
+    def shape(self, z: Array) -> Array:
+        """(x, y, theta) at all nodes in L and rad, shape (3, ..., nodes + 1), the clamp at 0 along e_x."""
+        return configuration(self.mesh, self.strains(z), np.zeros(3))
+
+    def tip(self, z: Array) -> Array:
+        """(x, y, theta) of the tip, shape (3, ...) for z of shape (..., unknowns)."""
+        return self.shape(z)[..., -1]
+
+    def tip_velocity(self, z: Array, direction: Array) -> Array:
+        """d/dt of the tip's (x, y, theta) for dz/dt = direction, by complex step, shape (3,)."""
+        velocity: Array = self.tip(z + 1j * TINY * direction).imag / TINY
+        return velocity
+
+    def least_stretch(self, z: Array) -> float:
+        """min h1 over the nodes of all states; the model holds while it is positive."""
+        least = min(0.0, float(z[..., : self.mesh.nodes].min()))
+        return float(self.rod.nu + least / self.coefficients[2])
+
+
+def configuration(grid: Mesh, strains: Array, clamp: Array) -> Array:
+    """(x, y, theta) at all nodes, shape (3, ..., nodes + 1) like the strains (h1, h2, Pi), from `clamp`, (3,)."""
+    values, angles, integrals, ends = reconstruction(grid.order)
+    m, p = grid.elements, grid.order
+    state = np.empty_like(strains)
+    start = np.broadcast_to(clamp.reshape(3, *(1,) * (strains.ndim - 1)), (3, *strains.shape[1:-1], 1))
+    for e in range(m):
+        here = slice(e * p, (e + 1) * p + 1)
+        h1, h2, Pi = (strain[..., here] for strain in strains)
+        theta = start[2] + Pi @ angles / m
+        cos, sin = np.cos(theta), np.sin(theta)
+        state[0][..., here] = start[0] + (cos * (h1 @ values) - sin * (h2 @ values)) @ integrals / m
+        state[1][..., here] = start[1] + (sin * (h1 @ values) + cos * (h2 @ values)) @ integrals / m
+        state[2][..., here] = start[2] + Pi @ ends / m
+        start = state[..., here][..., -1:]
+    return state
+
+
+@lru_cache(maxsize=64)
+def reconstruction(order: int) -> tuple[Array, Array, Array, Array]:
+    """Matrices, to be applied from the right, on an element [0, 1] with Gauss points finer than its nodes.
+
+    values: nodes to Gauss points; angles: integrals of nodal polynomials from 0 to the Gauss points; both
+    (p + 1, m). integrals: integrals from 0 to the nodes of functions given at the Gauss points, (m, p + 1);
+    ends: integrals of nodal polynomials from 0 to the nodes, (p + 1, p + 1).
+    """
+    x, g = gauss_lobatto(order)[0], gauss(order + EXTRA_POINTS)[0]
+    return interpolation(x, g).T, primitive(x, g).T, primitive(g, x).T, primitive(x, x).T
+
+
+def primitive(nodes: Array, ends: Array) -> Array:
+    """Matrix from values at `nodes` to half the integral of their polynomial from -1 to each end."""
+    points, weights = gauss(len(nodes))
+    return np.array(
+        [(end + 1) / 4 * weights @ interpolation(nodes, -1 + (end + 1) * (points + 1) / 2) for end in ends]
+    )

@@ -1,0 +1,154 @@
+"""The nonlinear rod in its body frame: the rate of its strains, the exact Jacobian, the power.
+
+Sec. III, second formulation. With Sigma = K (E - Ebar), E = (h1, h2, Pi), K = diag(k1, k2, 1),
+Gamma = diag(gamma1, 1, gamma3) and D*_E sigma = (s1' - Pi s2, s2' + Pi s1, s3' - h2 s1 + h1 s2),
+
+    V = Gamma^-1 D*_E Sigma,    <sigma, dE/dt> = -<D*_E sigma, V>  for all sigma with sigma(1) = 0,
+
+and Sigma(1) = (-F, 0, 0). The tip's stress is essential, the clamp V(0) = 0 natural. E is continuous in P_p
+on equal elements with Lobatto nodes and lumped mass; V is nodal in each element, two-valued where two meet.
+
+The unknown is the strain beyond the straight rod's (nu, 0, 0) in units of energy, z = K^(1/2) (E -
+E_straight), at all nodes but the tip, where it vanishes: z1 at every node, then z2, then z3. |z|^2/2 is an
+energy, the mass matrix is the identity, and no digits are lost for large k1 or k2.
+
+All functions take c = (F, nu, sqrt k1, sqrt k2, gamma1, gamma3), and of the mesh the matrices d = (D, D^T,
+-D^T W D) of one element, shape (3, p + 1, p + 1), and its weights w, (p + 1,). They are compiled, contain no
+configuration and no trigonometric function, and know no time stepping.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..model.compilation import compiled
+
+Array = NDArray[np.float64]
+
+
+@compiled
+def rate(z: Array, out: Array, c: Array, d: Array, w: Array) -> None:
+    """dz/dt in 1/tau2 into out, both of shape (unknowns,)."""
+    m, n = len(w), len(z) // 3
+    p = m - 1
+    out[:] = 0.0
+    fields, S = np.empty((3, 3, m)), np.empty((3, m))
+    E, V = fields[0], fields[2]
+    for e in range(n // p):
+        _velocity(z, e, fields, c, d)
+        S[:, :] = 0.0
+        for j in range(m):  # S = D^T W V, the inner loop contiguous
+            v1, v2, v3 = w[j] * V[0, j], w[j] * V[1, j], w[j] * V[2, j]
+            for i in range(m):
+                slope = d[0, j, i]
+                S[0, i] += slope * v1
+                S[1, i] += slope * v2
+                S[2, i] += slope * v3
+        for i in range(min(m, n - e * p)):
+            k = e * p + i
+            mass = w[i] + (w[0] if (i == 0 and e > 0) or i == p else 0.0)
+            share = w[i] / mass
+            out[k] -= c[2] * (S[0, i] / mass + share * (E[2, i] * V[1, i] - E[1, i] * V[2, i]))
+            out[n + k] -= c[3] * (S[1, i] / mass + share * (E[0, i] * V[2, i] - E[2, i] * V[0, i]))
+            out[2 * n + k] -= S[2, i] / mass
+
+
+@compiled
+def _velocity(z: Array, e: int, fields: Array, c: Array, d: Array) -> None:
+    """(E, Sigma - Sigma_straight, V) at the nodes of element e into fields, shape (3, 3, p + 1)."""
+    E, S, V = fields[0], fields[1], fields[2]
+    m, n = E.shape[1], len(z) // 3
+    for i in range(m):
+        k = e * (m - 1) + i
+        z1, z2, z3 = (z[k], z[n + k], z[2 * n + k]) if k < n else (0.0, 0.0, 0.0)
+        E[0, i], E[1, i], E[2, i] = c[1] + z1 / c[2], z2 / c[3], z3
+        S[0, i], S[1, i], S[2, i] = z1 * c[2], z2 * c[3], z3
+    V[:, :] = 0.0
+    for j in range(m):  # V = D S, the inner loop contiguous
+        s1, s2, s3 = S[0, j], S[1, j], S[2, j]
+        for i in range(m):
+            slope = d[1, j, i]
+            V[0, i] += slope * s1
+            V[1, i] += slope * s2
+            V[2, i] += slope * s3
+    for i in range(m):
+        tension = S[0, i] - c[0]
+        V[0, i] = (V[0, i] - E[2, i] * S[1, i]) / c[4]
+        V[1, i] = V[1, i] + E[2, i] * tension
+        V[2, i] = (V[2, i] - E[1, i] * tension + E[0, i] * S[1, i]) / c[5]
+
+
+@compiled
+def power(z: Array, c: Array, d: Array, w: Array) -> tuple[float, float]:
+    """(v1(1), <Gamma V, V>) in L/tau2 and k3/(L tau2).
+
+    v1(1) is the reaction of the essential condition: with it dU/dt = -F v1(1) - <Gamma V, V> holds on the
+    mesh.
+    """
+    p, n = len(w) - 1, len(z) // 3
+    fields = np.zeros((3, 3, p + 1))
+    E, V = fields[0], fields[2]
+    dissipated = reaction = 0.0
+    for e in range(n // p):
+        _velocity(z, e, fields, c, d)
+        for i in range(p + 1):
+            dissipated += w[i] * (c[4] * V[0, i] ** 2 + V[1, i] ** 2 + c[5] * V[2, i] ** 2)
+    for j in range(p + 1):
+        reaction += d[0, j, p] * w[j] * V[0, j]
+    return reaction + w[p] * (E[2, p] * V[1, p] - E[1, p] * V[2, p]), dissipated
+
+
+@compiled
+def jacobian(z: Array, out: Array, c: Array, d: Array, w: Array) -> None:
+    """d(dz/dt)/dz into out, transposed: out[column, row], as LAPACK and PETSc store it."""
+    p, n = len(w) - 1, len(z) // 3
+    out[:, :] = 0.0
+    fields, block = np.zeros((3, 3, p + 1)), np.zeros((3, 3))
+    scale = np.array([c[2], c[3], 1.0])
+    for e in range(n // p):
+        _velocity(z, e, fields, c, d)
+        for i in range(min(p + 1, n - e * p)):
+            row = e * p + i
+            mass = w[i] + (w[0] if (i == 0 and e > 0) or i == p else 0.0)
+            for j in range(min(p + 1, n - e * p)):
+                column = e * p + j
+                _pair(i, j, fields, c, (d[0, i, j], -d[0, j, i] * w[j], d[2, i, j], w[i]), block)
+                for a in range(3):
+                    for b in range(3):
+                        # d/dz_b = K_b^-1/2 d/dE_b; z_a = K_a^1/2 E_a
+                        out[b * n + column, a * n + row] += scale[a] / scale[b] / mass * block[a, b]
+
+
+@compiled
+def _pair(i: int, j: int, fields: Array, c: Array, here: tuple[float, float, float, float], G: Array) -> None:
+    """Derivative of the weak rates of E at node i by E at node j of one element, before the lumped mass.
+
+    With V_a = Gamma_a^-1 (slope S_a + M_a(E)) and weak rate_a = weak V_a - w N_a(E, V):
+    G = weak (V' at j) + (-w N_V at i) (V' from j) - w N_E.  here = (slope, weak, second, w) at (i, j).
+    """
+    slope, weak, second, w = here
+    E, S, V = fields[0], fields[1], fields[2]
+    K1, K2 = c[2] ** 2, c[3] ** 2
+    g1, g3 = 1 / c[4], 1 / c[5]
+    h1, h2, Pi = E[0, i], E[1, i], E[2, i]
+    # the local part of dV/dE at node j
+    a12, a13 = -E[2, j] * K2 * g1, -S[1, j] * g1
+    a21, a23 = E[2, j] * K1, S[0, j] - c[0]
+    a31, a32 = (S[1, j] - E[1, j] * K1) * g3, (E[0, j] * K2 - a23) * g3
+    G[0, 0] = second * K1 * g1
+    G[0, 1] = weak * a12 - w * Pi * slope * K2
+    G[0, 2] = weak * a13 + w * h2 * slope * g3
+    G[1, 0] = weak * a21 + w * Pi * slope * K1 * g1
+    G[1, 1] = second * K2
+    G[1, 2] = weak * a23 - w * h1 * slope * g3
+    G[2, 0] = weak * a31
+    G[2, 1] = weak * a32
+    G[2, 2] = second * g3
+    if i != j:
+        return
+    # -w (Pi V2 - h2 V3) and -w (h1 V3 - Pi V1): through V at the same node, then through E itself
+    G[0, 0] += w * (-Pi * a21 + h2 * a31)
+    G[0, 1] += w * (h2 * a32 + V[2, i])
+    G[0, 2] += w * (-Pi * a23 - V[1, i])
+    G[1, 0] += w * (-h1 * a31 - V[2, i])
+    G[1, 1] += w * (Pi * a12 - h1 * a32)
+    G[1, 2] += w * (Pi * a13 + V[0, i])

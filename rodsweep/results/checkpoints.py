@@ -1,0 +1,65 @@
+"""Where each unfinished chain of points stands: the state from which its next point starts.
+
+A small file per chain beside the journals, replaced whole, recognised by its fingerprint and its
+checksum. A file that is torn, or another run's, counts as none: the chain then starts again.
+"""
+
+import io
+import os
+import zlib
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+MAGIC = b"rodsweep checkpoint 1\n"
+NUMBER, SUM = 8, 4
+"""Bytes of the index and of the checksum."""
+
+
+class Checkpoints:
+    """The checkpoints of a run's chains in its journal directory."""
+
+    def __init__(self, directory: Path, fingerprint: str):
+        self.directory = directory
+        self.header = MAGIC + fingerprint.encode() + b"\n"
+
+    def write(self, chain: int, index: int, state: NDArray[np.float64] | None) -> None:
+        """Keeps what the neighbour of point `index` starts from; None where it has nothing to start from."""
+        stream = io.BytesIO()
+        if state is not None:
+            np.save(stream, state, allow_pickle=False)
+        content = self.header + index.to_bytes(NUMBER, "little") + stream.getvalue()
+        path = self._path(chain)
+        # Ranks of a run that was killed live on for a moment and must not share our file.
+        copy = path.with_name(f"{path.name}-{os.getpid()}-{os.urandom(4).hex()}")
+        copy.write_bytes(content + zlib.crc32(content).to_bytes(SUM, "little"))
+        os.replace(copy, path)
+
+    def read(self, chain: int) -> tuple[int, NDArray[np.float64] | None] | None:
+        """(index, state) as written last, None where there is no whole checkpoint of this run."""
+        try:
+            data = self._path(chain).read_bytes()
+        except FileNotFoundError:
+            return None
+        content, checksum = data[:-SUM], data[-SUM:]
+        start = len(self.header)
+        whole = len(content) >= start + NUMBER and zlib.crc32(content).to_bytes(SUM, "little") == checksum
+        if not whole or not content.startswith(self.header):
+            return None
+        index, state = content[start : start + NUMBER], content[start + NUMBER :]
+        loaded = np.load(io.BytesIO(state), allow_pickle=False) if state else None
+        return int.from_bytes(index, "little"), loaded
+
+    def remove(self, chain: int) -> None:
+        """Forgets a chain that is done."""
+        self._path(chain).unlink(missing_ok=True)
+
+    def _path(self, chain: int) -> Path:
+        return self.directory / f"chain-{chain:09d}"
+
+
+def drop_checkpoints(directory: Path) -> None:
+    """Removes all checkpoints of a directory, also those that a kill left half written."""
+    for path in directory.glob("chain-*"):
+        path.unlink()

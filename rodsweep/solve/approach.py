@@ -1,0 +1,183 @@
+"""From a start to the neighbourhood of a cycle, or to rest: before Newton's method takes over.
+
+The motion is followed from return to return, theta of the tip rising through 0. Two returns that agree to a
+tenth go to Newton's method. Slow motions about the straight rod are not waited for: with growth g per
+period at amplitude a and the exact linear growth g0, a cycle of g = g0 (1 - a^2/a*^2) lies at a*^2 = a^2
+g0/(g0 - g), and the state is scaled to it; what decays slowly is scaled down until it decays at the linear
+rate.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..discretization.beam import Beam
+from .cycle_status import CycleStatus
+from .evolution import Ending, Run, integrator
+from .floquet import hermite
+from .orbit import angle_weights
+from .resolved import CAREFUL, TRANSIENT, Resolved, resolve
+from .rest import leading_mode
+
+Array = NDArray[np.float64]
+
+CHUNK = 5
+"""Returns to the section per run; then the sequence is judged."""
+CLOSE = 0.1
+"""Relative distance of two returns from which Newton's method starts; a tenth after each failure."""
+MOST_ATTEMPTS = 5
+SLOW = 0.2
+"""Linear growth per period below which an amplitude is predicted rather than waited for."""
+FAINT = 0.01
+"""Linear growth per period below which the integration is a careful one."""
+NEAR = 0.1
+"""Relative distance from the predicted amplitude that is left to Newton's method."""
+MOST_JUMPS, SHRINK, LARGEST_JUMP = 60, 0.7, 4.0
+"""Jumps; the factor for what decays slowly, near enough to 1 to meet a cycle on the way; the largest."""
+LINEAR = 0.05
+"""Relative distance from the linear decay rate and frequency at which a decaying rod is called straight."""
+REST = 1e-6
+"""Norm of z at which a rod that is stable when straight is called straight."""
+SAME = 0.03
+"""Relative distance of two returns that are one and the same crossing of the orbit."""
+LONGEST_ORBIT = 4
+"""Returns to the section that one period may take."""
+STEPS_PER_CHUNK = 20_000
+BISECTIONS = 50
+
+
+@dataclass(frozen=True, eq=False)
+class Arrival:
+    """What became of the rod, and the cycle if there is one; periods: returns that were waited for."""
+
+    status: CycleStatus
+    message: str
+    periods: int
+    found: Resolved | None = None
+
+
+def returns(beam: Beam, run: Run) -> tuple[Array, Array]:
+    """Times, (k,), and states, (k, unknowns), at which theta of the tip rises through 0 between steps."""
+    row = angle_weights(beam)
+    angle = run.states @ row
+    times: list[float] = []
+    states: list[Array] = []
+    for k in np.nonzero((angle[:-1] < 0) & (angle[1:] >= 0))[0]:
+        h, ends = run.times[k + 1] - run.times[k], run.states[k : k + 2]
+        slopes = h * np.array([beam.rate(z) for z in ends])
+        low, high = 0.0, 1.0
+        for _ in range(BISECTIONS):
+            middle = (low + high) / 2
+            low, high = (middle, high) if row @ hermite(ends, slopes, middle) < 0 else (low, middle)
+        times.append(run.times[k] + h * low)
+        states.append(hermite(ends, slopes, low))
+    return np.array(times), np.array(states).reshape(len(times), beam.mesh.unknowns)
+
+
+class Approach:
+    """The way of one rod from a start; `arrive` is called once."""
+
+    def __init__(self, beam: Beam, accuracy: float, most_periods: int) -> None:
+        self.beam, self.accuracy, self.most_periods = beam, accuracy, most_periods
+        self.mode, self.row = leading_mode(beam), angle_weights(beam)
+        self.waited = self.jumps = self.attempts = 0
+
+    def arrive(self, z: Array) -> Arrival:
+        """Where the rod goes from z."""
+        while self.waited < self.most_periods:
+            run = self._chunk(z)
+            if run.ending not in (Ending.reached, Ending.stopped):
+                return self._broken(run)
+            times, states = returns(self.beam, run)
+            self.waited += max(len(times), 1)
+            z = run.states[-1]
+            if self.mode.w.real < 0 and np.linalg.norm(z) < REST:
+                return Arrival(CycleStatus.straight, "decayed to rounding", self.waited)
+            if len(times) < 3:
+                continue
+            if self._decays(times, states):
+                return Arrival(CycleStatus.straight, "decays at the rate of the leading mode", self.waited)
+            ahead = self._predicted(times, states)
+            if ahead is not None:
+                z, self.jumps = ahead, self.jumps + 1
+                continue
+            arrival = self._closed(run, times, states)
+            if arrival is not None:
+                return arrival
+        why = f"{self.waited} returns of the tip, none periodic"
+        return Arrival(CycleStatus.not_settled, why, self.waited)
+
+    def _broken(self, run: Run) -> Arrival:
+        if run.ending == Ending.left_the_model:
+            least = self.beam.least_stretch(run.states[-1])
+            where = f"h1 = {least:.3g} somewhere, {self.waited} returns from the start"
+            return Arrival(CycleStatus.left_the_model, where, self.waited)
+        why = run.message or ("too many steps" if run.ending == Ending.too_many_steps else "no step succeeds")
+        return Arrival(CycleStatus.failed, why, self.waited)
+
+    def _chunk(self, z: Array) -> Run:
+        """A run of CHUNK returns, or of three times the time they should take."""
+        count, last = 0, float(self.row @ z)
+
+        def enough(_: float, state: Array) -> bool:
+            nonlocal count, last
+            here = float(self.row @ state)
+            count, last = count + int(last < 0 <= here), here
+            return count >= CHUNK
+
+        period = self.mode.period
+        faint = abs(self.mode.w.real) * period < FAINT
+        method = integrator(self.beam.mesh, CAREFUL if faint else TRANSIENT)
+        return method.run(self.beam, z, 3 * CHUNK * period, period / 1000, enough, STEPS_PER_CHUNK)
+
+    def _growth(self, times: Array, states: Array) -> tuple[float, float]:
+        """(growth of |z| over the last return, that of the leading mode)."""
+        sizes = np.linalg.norm(states[-2:], axis=1)
+        return float(np.log(sizes[1] / sizes[0])), float(self.mode.w.real * (times[-1] - times[-2]))
+
+    def _decays(self, times: Array, states: Array) -> bool:
+        """Whether the returns shrink steadily, at last as the leading mode does."""
+        growth, linear = self._growth(times, states)
+        steady = bool((np.diff(np.linalg.norm(states, axis=1)) < 0).all())
+        alike = abs(growth - linear) < LINEAR * abs(linear)
+        in_time = abs((times[-1] - times[-2]) / self.mode.period - 1) < LINEAR
+        return linear < 0 and steady and alike and in_time
+
+    def _predicted(self, times: Array, states: Array) -> Array | None:
+        """The state scaled to where the growth should vanish; None if that is here, or cannot be said."""
+        growth, linear = self._growth(times, states)
+        if max(abs(linear), abs(growth)) > SLOW or linear <= growth or self.jumps >= MOST_JUMPS:
+            return None
+        factor = SHRINK
+        if linear > 0:
+            factor = float(np.clip(np.sqrt(linear / (linear - growth)), 1 / LARGEST_JUMP, LARGEST_JUMP))
+        if abs(factor - 1) < NEAR:
+            return None
+        scaled = factor * states[-1]
+        scaled[: self.beam.mesh.nodes] *= factor  # the stretch is quadratic in the deflection
+        return scaled
+
+    def _closed(self, run: Run, times: Array, states: Array) -> Arrival | None:
+        """The cycle, if the returns repeat and Newton's method finds it from the end of the run."""
+        growth, linear = self._growth(times, states)
+        turns, distance = self._repetition(states)
+        if distance >= CLOSE / 10**self.attempts or not (linear > 0 or growth > linear * (1 - SLOW)):
+            return None
+        self.attempts = min(self.attempts + 1, MOST_ATTEMPTS)
+        period = times[-1] - times[-1 - turns]
+        found = resolve(self.beam, run.states[-1], period, turns, self.accuracy)
+        if found is None:
+            return None
+        if max(found.errors.period, found.errors.amplitude) <= self.accuracy:
+            return Arrival(CycleStatus.cycle, "", self.waited, found)
+        why = "the cycle is less accurate than asked for"
+        return Arrival(CycleStatus.not_settled, why, self.waited, found)
+
+    def _repetition(self, states: Array) -> tuple[int, float]:
+        """(m, relative distance): after how many returns the state comes closest to itself."""
+        size = np.linalg.norm(states[-1])
+        longest = min(LONGEST_ORBIT, len(states) - 1)
+        found = [(np.linalg.norm(states[-1] - states[-1 - m]) / size, m) for m in range(1, longest + 1)]
+        enough = max(2 * min(found)[0], SAME)
+        return next((m, float(distance)) for distance, m in found if distance <= enough)

@@ -1,0 +1,165 @@
+"""A cycle resolved: Newton's method on ever finer meshes and steps, until numbers stop changing.
+
+The mesh comes first, at few steps, for equal steps the errors of time cancel between two meshes; then the
+steps are doubled on the mesh found. The energy of a cycle has to balance too, whatever the accuracy.
+"""
+
+from dataclasses import dataclass, replace
+from math import ceil
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..discretization.beam import Beam, Mesh, mesh
+from ..discretization.resolution import LARGEST_ORDER
+from .evolution import Ending, integrator
+from .floquet import tangent
+from .measures import Measures, measure
+from .method import Method
+from .orbit import Orbit, shoot
+
+Array = NDArray[np.float64]
+
+TRANSIENT = Method("arkimex", "4", tolerance=1e-5)
+"""The way to a cycle needs no accuracy: Newton's method supplies it."""
+CAREFUL = Method("arkimex", "5", tolerance=1e-9)
+"""Where the growth per period is small its sign has to be right."""
+FIRST_STEPS, MOST_FIRST_STEPS, MOST_STEPS = 64, 256, 2048
+"""Steps per return to the section."""
+FINER_ORDER, FINER_SHARE = 4, 1.25
+"""Of one element the order grows by this much; of several the unknowns by this share."""
+MOST_UNKNOWNS = 600
+REDUCED_ORDER = 3
+"""Order that stiffness leaves at least of the five: twice the steps leave 1/7 of what they change."""
+BALANCE = 1e-8
+"""What the energy of a cycle may miss, relative."""
+TANGENT_ERROR, TANGENT_STEPS = 1e-6, 128
+"""Error of the trivial multiplier above which the tangent is made again, and the most steps for it."""
+UNSTABLE = 1e-6
+"""How far beyond 1 the modulus of a multiplier is not its error."""
+LEAST_SIZE, LARGEST_SIZE = 0.2, 5.0
+"""What Newton's method finds, in units of what it started from: neither rest nor another world."""
+
+
+@dataclass(frozen=True, slots=True)
+class Errors:
+    """Relative estimates: of the period, of the tip's extrema (in units of its largest y), of the balance."""
+
+    period: float
+    amplitude: float
+    balance: float
+
+    def within(self, accuracy: float) -> bool:
+        return max(self.period, self.amplitude) <= accuracy and self.balance <= BALANCE
+
+    def __add__(self, other: "Errors") -> "Errors":
+        return Errors(
+            self.period + other.period, self.amplitude + other.amplitude, self.balance + other.balance
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Resolved:
+    """An orbit with its measures and the errors of both."""
+
+    orbit: Orbit
+    measures: Measures
+    errors: Errors
+
+
+def resolve(beam: Beam, z: Array, period: float, turns: int, accuracy: float) -> Resolved | None:
+    """The stable cycle near z, a state of a run, as accurate as the limits allow; None where there is none.
+
+    turns: returns to the section in one period.
+    """
+    size, steps = float(np.linalg.norm(z)), FIRST_STEPS * turns
+    orbit = shoot(beam, z, period, steps)
+    while orbit is None and steps < MOST_FIRST_STEPS * turns:
+        steps *= 2  # Newton's method fails in a stage of a step too long, or of the period map
+        orbit = shoot(beam, z, period, steps)
+    if orbit is None or not LEAST_SIZE * size < np.linalg.norm(orbit.state) < LARGEST_SIZE * size:
+        return None
+    if not stable(orbit):
+        return None
+    orbit, space = _in_space(orbit, accuracy / 2, MOST_STEPS * turns // 2)
+    found = _in_time(orbit, space, accuracy, MOST_STEPS * turns)
+    return found if stable(found.orbit) else None
+
+
+def stable(orbit: Orbit) -> bool:
+    """Whether all multipliers but the trivial one lie inside the circle, within their error."""
+    return orbit.tangent.largest <= 1 + max(UNSTABLE, orbit.tangent.trivial_error)
+
+
+def _in_space(orbit: Orbit, accuracy: float, most_steps: int) -> tuple[Orbit, Errors]:
+    """The orbit on the first mesh whose numbers the next one leaves alone, and what that one changes."""
+    here = measure(orbit.beam, orbit.run)
+    errors = Errors(np.inf, np.inf, np.inf)
+    while (grid := finer(orbit.beam.mesh)).unknowns <= MOST_UNKNOWNS:
+        fine = _on_mesh(orbit, grid)
+        if fine is None:  # the finer mesh is stiffer and needs shorter steps
+            shorter = shoot(orbit.beam, orbit.state, orbit.period, 2 * orbit.steps, orbit.tangent)
+            if shorter is None or shorter.steps > most_steps:
+                break
+            orbit, here = shorter, measure(orbit.beam, shorter.run)
+            continue
+        there = measure(fine.beam, fine.run)
+        errors = difference(here, there)
+        if replace(errors, balance=2 * errors.balance).within(accuracy):
+            break
+        orbit, here = fine, there
+    return orbit, errors
+
+
+def _in_time(orbit: Orbit, space: Errors, accuracy: float, most_steps: int) -> Resolved:
+    """The orbit with steps so small that the errors of space and time together are within the accuracy."""
+    best = Resolved(orbit, measure(orbit.beam, orbit.run), Errors(np.inf, np.inf, np.inf))
+    while 2 * orbit.steps <= most_steps:
+        finer_orbit = shoot(orbit.beam, orbit.state, orbit.period, 2 * orbit.steps, orbit.tangent)
+        if finer_orbit is None:
+            break
+        orbit = finer_orbit
+        if orbit.tangent.trivial_error > TANGENT_ERROR and orbit.steps <= TANGENT_STEPS:
+            orbit = replace(orbit, tangent=tangent(orbit.beam, orbit.run))
+        here = measure(orbit.beam, orbit.run)
+        change, share = difference(best.measures, here), 1 / (2**REDUCED_ORDER - 1)
+        time = Errors(change.period * share, change.amplitude * share, abs(here.energy_imbalance))
+        best = Resolved(orbit, here, space + replace(time, balance=0.0))
+        if replace(best.errors, balance=time.balance).within(accuracy):
+            break
+    return best
+
+
+def difference(a: Measures, b: Measures) -> Errors:
+    """How far the measures a are from b."""
+    names = ("tip_x_min", "tip_x_max", "tip_y_max", "tip_theta_max")
+    largest = max(abs(getattr(a, name) - getattr(b, name)) for name in names)
+    return Errors(
+        abs(a.period / b.period - 1),
+        largest / abs(b.tip_y_max) if b.tip_y_max else np.inf,
+        abs(a.energy_imbalance - b.energy_imbalance),
+    )
+
+
+def finer(grid: Mesh) -> Mesh:
+    """The next finer mesh."""
+    order = grid.order + FINER_ORDER
+    if order <= LARGEST_ORDER:
+        return mesh(grid.elements, order)
+    elements = grid.elements + 1
+    return mesh(elements, ceil(FINER_SHARE * grid.nodes / elements))
+
+
+def moved(beam: Beam, z: Array, to: Mesh) -> tuple[Beam, Array]:
+    """The same rod and state on another mesh."""
+    there = replace(beam, mesh=to)
+    return there, there.unknown(beam.strains(z) @ beam.mesh.evaluation(to.positions).T)
+
+
+def _on_mesh(orbit: Orbit, grid: Mesh) -> Orbit | None:
+    """The orbit on another mesh; a period of transient brings what was interpolated to the slow manifold."""
+    beam, z = moved(orbit.beam, orbit.state, grid)
+    run = integrator(grid, TRANSIENT).run(beam, z, orbit.period, orbit.period / 1000)
+    if run.ending != Ending.reached:
+        return None
+    return shoot(beam, run.states[-1], orbit.period, orbit.steps)

@@ -1,0 +1,336 @@
+"""Figures of limit_cycle: what is drawn of a cycle that is known in closed form, and what is refused."""
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from matplotlib.animation import writers
+from matplotlib.colors import to_rgb
+from matplotlib.quiver import Quiver
+from PIL import Image
+
+from rodsweep.errors import EnvironmentLacks, InputError
+from rodsweep.post.figures import chosen_figure, draw
+from rodsweep.post.figures.amplitude import broken_at_onset, draw_amplitude, lines_of
+from rodsweep.post.figures.cycles import chosen_cycles, derivative, periodic
+from rodsweep.post.figures.energy import draw_energy
+from rodsweep.post.figures.limit_cycle import ARROW, draw_cycle, drawn_shapes
+from rodsweep.results.creation import Plan, create_file
+from rodsweep.results.limit_cycle import limit_cycle_layout
+from rodsweep.results.view import View
+
+pytestmark = pytest.mark.filterwarnings("error::UserWarning")  # a layout that fails is only a warning
+
+NAMES = ("F", "k1", "k2", "gamma3", "gamma1")
+FLAGS = {-1: "missing", 0: "cycle", 1: "straight", 2: "not_settled", 3: "left_the_model", 4: "failed"}
+PERIODS = {1.0: 0.034, 0.5: 0.026}
+SAMPLES, SHAPES = 64, 24
+
+
+def arm(phase, size):
+    """(x, y, theta) of an arc of constant curvature that swings, shape (3, times, nodes), and u."""
+    u = np.linspace(0, 1, 21)
+    bend = size * np.cos(2 * np.pi * phase)[:, None] + 1e-9
+    return np.array([np.sin(bend * u) / bend, (1 - np.cos(bend * u)) / bend, bend * u]), u
+
+
+def energies(phase, period):
+    """U, injection and dissipation with dU/dt = injection - dissipation."""
+    a = 4 * np.pi * phase
+    injection = 2000 + 500 * np.sin(a)
+    return 3 + 0.3 * np.cos(a), injection, injection + 0.3 * np.sin(a) * 4 * np.pi / period
+
+
+def make_view(axes, statuses, *, stored=("shapes", "samples"), name="fake.h5", as_list=False):
+    """A result as the task writes it, whose amplitude depends on F and gamma1; axes in the order of NAMES."""
+    table = np.meshgrid(*axes, indexing="ij") if not as_list else [np.asarray(a, float) for a in axes]
+    shape = table[0].shape
+    status = np.array(statuses, "i1").reshape(shape)
+    v = {n: np.asarray(a, float) for n, a in zip(NAMES, axes, strict=True)} | {"status": status}
+    if as_list:
+        v["point"] = np.arange(shape[0])
+    size = np.sqrt(table[0]) / 8 / (1 + table[4])
+    period = np.vectorize(lambda g: PERIODS.get(g, 0.03))(table[4])
+    points = list(zip(size.ravel(), period.ravel(), strict=True))
+    kept = np.where(status == 0, 1.0, np.nan)
+    v |= {"period": period * kept, "tip_y_max": size * kept}
+    v |= {"tip_x_min": (0.9 - size) * kept, "tip_x_max": (0.9 + size) * kept}
+    v |= {"injection_mean": 2000 * kept, "energy_imbalance": 1e-9 * kept}
+    phase, few = np.arange(SAMPLES) / SAMPLES, np.arange(SHAPES) / SHAPES
+
+    def fill(names, arrays):
+        for i, key in enumerate(names):
+            v[key] = np.array([a[i] for a in arrays]).reshape(*shape, *np.shape(arrays[0][i]))
+
+    if "samples" in stored:
+        fill(("energy", "injection", "dissipation"), [energies(phase, T) for _, T in points])
+        fill(("tip_x", "tip_y", "tip_theta"), [arm(phase, s)[0][..., -1] for s, _ in points])
+    if "shapes" in stored:
+        fill(("shape_x", "shape_y", "shape_theta"), [arm(few, s)[0] for s, _ in points])
+        v["u"] = arm(few, 1.0)[1]
+    return View(Path(name), {"task": "limit_cycle", "title": "two $ arms"}, v, NAMES, FLAGS, 0)
+
+
+TWO = ([50.0], [1e4], [1e2], [1e-2], [1.0, 0.5])
+
+
+def two_cycles(**words):
+    return make_view(TWO, [0, 0], **words)
+
+
+@pytest.mark.parametrize("n", [15, 16])
+def test_interpolant_and_derivative_are_exact_for_harmonics(n):
+    def f(t):
+        last = np.cos(n * np.pi * t) if n % 2 == 0 else 0  # its derivative is zero at the samples
+        return 2 + np.cos(2 * np.pi * t) - 3 * np.sin(10 * np.pi * t) + last
+
+    t = np.linspace(-0.3, 1.9, 50)
+    samples = np.arange(n) / n
+    assert periodic(f(samples), t) == pytest.approx(f(t), abs=1e-12)
+    exact = -2 * np.pi * np.sin(2 * np.pi * samples) - 30 * np.pi * np.cos(10 * np.pi * samples)
+    assert derivative(f(samples)) == pytest.approx(exact, abs=1e-10)
+
+
+@pytest.mark.parametrize("stored", [1, 8, 12, 16, 25, 48, 500])
+def test_drawn_shapes_are_equally_spaced_in_time(stored):
+    drawn, step = drawn_shapes(stored)
+    assert drawn[0] == 0
+    assert min(stored, 6) <= len(drawn) <= 12
+    assert np.array(drawn) / stored == pytest.approx(np.arange(len(drawn)) * step)
+
+
+def test_force_presses_on_the_tip_against_e1_in_the_colour_of_its_shape_and_later_is_darker():
+    view = make_view(([50.0], [1e4], [1e2], [1e-2], [1.0]), [0])
+    axes = draw_cycle(view, ())[0].axes[0]
+    arrows = [a for a in axes.collections if isinstance(a, Quiver)]
+    drawn, _ = drawn_shapes(SHAPES)
+    assert len(arrows) == len(drawn) == 12
+    v = {name: view.variables[f"shape_{name}"][0, 0, 0, 0, 0] for name in ("x", "y", "theta")}
+    for place, arrow in zip(drawn, arrows, strict=True):
+        theta = v["theta"][place, -1]
+        assert arrow.pivot == "tip"
+        assert arrow.get_offsets()[0] == pytest.approx([v["x"][place, -1], v["y"][place, -1]])
+        assert [arrow.U[0], arrow.V[0]] == pytest.approx([-ARROW * np.cos(theta), -ARROW * np.sin(theta)])
+    rods = [line for line in axes.lines if len(line.get_xdata()) == 21]
+    colours = [to_rgb(line.get_color()) for line in rods]
+    assert colours == [tuple(arrow.get_facecolor()[0, :3]) for arrow in arrows]
+    grey = np.array(colours) @ (0.2126, 0.7152, 0.0722)
+    assert (np.diff(grey) < 0).all()
+
+
+def test_tip_is_drawn_in_its_own_period_with_the_clock_of_the_slowest():
+    figure = draw_cycle(two_cycles(), ())[0]
+    for number, (size, period) in enumerate(((50**0.5 / 16, 0.034), (50**0.5 / 12, 0.026))):
+        upper, lower = figure.axes[2 + number], figure.axes[4 + number]
+        time = lower.lines[0].get_xdata()
+        assert time[-1] == pytest.approx(2 * 0.034)
+        x, y, _ = arm(time / period, size)[0][..., -1]
+        assert upper.lines[0].get_ydata() == pytest.approx(x, abs=1e-9)
+        assert lower.lines[0].get_ydata() == pytest.approx(y, abs=1e-9)
+        assert "two \\$ arms" in figure.get_suptitle()
+        assert f"T$ = {period:g} $\\tau_2$ = {period * 1e4:g} $\\tau_1$" in figure.axes[number].get_title()
+
+
+def test_energy_marks_are_the_derivative_of_the_stored_energy_not_the_difference():
+    view = two_cycles()
+    for wrong in (0.0, 1.0):
+        view.variables["energy"][..., 1, :] *= 1 + wrong  # the second cycle only
+        for column, error in ((0, 0.0), (1, wrong)):
+            bottom = draw_energy(view, ())[0].axes[4 + column]
+            _, line, marks = bottom.lines
+            at = np.interp(marks.get_xdata(), line.get_xdata(), line.get_ydata())
+            size = np.abs(line.get_ydata()).max()
+            assert np.abs(marks.get_ydata() - at).max() / size == pytest.approx(error, abs=1e-2)
+
+
+SWEEP = ([20.0, 30.0, 40.0, 50.0], [1e4], [1e2], [1e-2], [1.0, 0.5])
+SWEPT = [1, 1, 0, 0, 0, 3, 0, -1]
+
+
+def test_amplitudes_are_zero_where_straight_and_unknown_where_there_is_no_cycle():
+    expected = {1.0: [0, 30**0.5 / 16, 40**0.5 / 16, 50**0.5 / 16], 0.5: [0, 30**0.5 / 12, np.nan, np.nan]}
+    grid = make_view(SWEEP, SWEPT)
+    columns = [c.ravel() for c in np.meshgrid(*SWEEP, indexing="ij")]
+    for view in (grid, make_view(columns, SWEPT, as_list=True)):
+        lines = lines_of(view, "F")
+        assert [line.parameters["gamma1"] for line in lines] == [1.0, 0.5]
+        for line in lines:
+            wanted = expected[line.parameters["gamma1"]]
+            assert line.amplitude_y == pytest.approx(wanted, nan_ok=True)
+            assert line.amplitude_x == pytest.approx(wanted, nan_ok=True)
+            x, y = broken_at_onset(line, line.amplitude_y)
+            assert np.isnan([x[1], y[1]]).all()
+            assert x[[0, 2]].tolist() == [20, 30]
+
+
+def test_points_without_a_known_amplitude_are_marked_and_named_but_missing_ones_are_not():
+    figure = draw_amplitude([make_view(SWEEP, SWEPT)])[0]
+    texts = [t.get_text() for t in figure.legends[0].get_texts()]
+    assert texts == [r"$\tilde\gamma_1$ = 1", r"$\tilde\gamma_1$ = 0.5", "left the model (at the top)"]
+    crosses = [line.get_xdata()[0] for line in figure.axes[0].lines if line.get_marker() == "x"]
+    assert crosses == [40.0]
+
+
+def test_a_list_that_goes_up_and_down_stays_in_its_order():
+    F = [20.0, 30.0, 40.0, 30.0, 20.0]
+    columns = (F, [1e4] * 5, [1e2] * 5, [1e-2] * 5, [1.0] * 5)
+    (line,) = lines_of(make_view(columns, [1, 1, 0, 0, 1], as_list=True), "F")
+    assert line.x.tolist() == F
+    assert line.amplitude_y == pytest.approx([0, 0, 40**0.5 / 16, 30**0.5 / 16, 0])
+
+
+def test_several_files_are_told_apart_by_name(tmp_path):
+    one = (*SWEEP[:4], [1.0])
+    views = [make_view(one, [1, 0, 0, 0], name="up.h5"), make_view(one, [0, 0, 0, 0], name="down.h5")]
+    texts = [t.get_text() for t in draw_amplitude(views)[0].legends[0].get_texts()]
+    assert texts == ["up", "down"]
+    assert "amplitudes" in draw(views, tmp_path / "both.pdf")
+
+
+FEW = {"stored": ()}
+
+
+@pytest.mark.parametrize(
+    ("view", "output", "points", "what"),
+    [
+        (two_cycles(), "f.png", (), "cycle"),
+        (two_cycles(**FEW), "f.png", (), "cycle"),  # which then says what to store
+        (two_cycles(), "f.gif", (), "animation"),
+        (two_cycles(), "f.mp4", (), "animation"),
+        (make_view(SWEEP, SWEPT), "f.png", (), "amplitude"),
+        (make_view(SWEEP, SWEPT), "f.png", (3,), "cycle"),
+        (make_view(SWEEP, [1, 1, 1, 1, 1, 1, 0, 0]), "f.png", (), "cycle"),
+        (make_view(SWEEP, [1, 1, 1, 1, 1, 1, 0, 0], **FEW), "f.png", (), "amplitude"),
+    ],
+)
+def test_the_file_suggests_its_figure(view, output, points, what):
+    assert chosen_figure([view], Path(output), None, points) == what
+
+
+@pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])
+@pytest.mark.parametrize("what", ["cycle", "amplitude", "energy"])
+@pytest.mark.parametrize("gamma1", [[1.0], [1.0, 0.5, 0.25]])
+def test_every_figure_is_drawn_in_every_format(tmp_path, what, suffix, gamma1):
+    view = make_view((SWEEP[0] if what == "amplitude" else [50.0], *SWEEP[1:4], gamma1), 0 * np.ones(
+        (4 if what == "amplitude" else 1) * len(gamma1)))  # fmt: skip
+    output = tmp_path / f"f.{suffix}"
+    assert draw(view, output, what=what).startswith(f"wrote {output}: ")
+    assert output.stat().st_size > 5000
+
+
+def test_animation_has_a_frame_for_each_shape_and_repeats_for_ever(tmp_path):
+    output = tmp_path / "f.gif"
+    assert f"{SHAPES} frames" in draw(two_cycles(), output)
+    with Image.open(output) as film:
+        assert (film.n_frames, film.info["loop"], film.info["duration"]) == (SHAPES, 0, 100)
+        frames = []
+        for k in range(SHAPES):
+            film.seek(k)
+            frames.append(np.asarray(film.convert("L"), float))
+    assert all(np.abs(a - b).max() > 100 for a, b in zip(frames, frames[1:], strict=False))
+
+
+def test_mp4_without_ffmpeg_says_what_is_missing(tmp_path, monkeypatch):
+    monkeypatch.setattr(writers, "is_available", lambda name: False)
+    with pytest.raises(EnvironmentLacks, match=r"needs ffmpeg.* a \.gif does not"):
+        draw(two_cycles(), tmp_path / "f.mp4")
+    assert not (tmp_path / "f.mp4").exists()
+
+
+def test_first_cycles_are_drawn_unless_points_are_chosen(tmp_path):
+    view = make_view(SWEEP, SWEPT)
+    assert [c.number for c in chosen_cycles(view, (), ())] == [3, 4, 5]
+    (cycle,) = chosen_cycles(view, (7,), ())
+    assert (cycle.parameters["F"], cycle.parameters["gamma1"], cycle.period) == (50.0, 1.0, 0.034)
+    assert cycle.tau1 == pytest.approx(1e-4)
+    assert "the first 3 of 4 cycles" in draw(view, tmp_path / "f.png", what="cycle")
+    assert "of 4 cycles" not in draw(view, tmp_path / "f.png", points=(4, 7))
+
+
+def test_points_of_a_grid_are_numbered_with_the_last_axis_fastest():
+    view = make_view(([40.0, 50.0], [1e3, 1e4, 1e5], [1e2], [1e-2], [1.0, 0.5]), [0] * 12)
+    (cycle,) = chosen_cycles(view, (10,), ())
+    assert [cycle.parameters[n] for n in NAMES] == [50.0, 1e4, 1e2, 1e-2, 0.5]
+    assert float(cycle.values["tip_y_max"]) == pytest.approx(50**0.5 / 12)
+
+
+def few_shapes():
+    view = two_cycles()
+    for name in ("shape_x", "shape_y", "shape_theta"):
+        view.variables[name] = view.variables[name][..., :5, :]
+    return view
+
+
+GRID7 = (SWEEP[0], *SWEEP[1:4], list(np.arange(1, 8.0)))
+
+
+@pytest.mark.parametrize(
+    ("view", "words", "message"),
+    [
+        (two_cycles(stored=("samples",)), {}, "limit_cycle.shapes"),
+        (two_cycles(stored=("samples",)), {"what": "animation"}, "limit_cycle.shapes"),
+        (two_cycles(stored=("shapes",)), {"what": "energy"}, "limit_cycle.samples"),
+        (few_shapes(), {"what": "animation"}, "5 shapes .* limit_cycle.shapes: 48"),
+        (make_view(SWEEP, SWEPT), {"points": (9,)}, "points 1 to 8"),
+        (make_view(SWEEP, SWEPT), {"points": (0,)}, "points 1 to 8"),
+        (make_view(SWEEP, SWEPT), {"points": (6,)}, "its status is: left the model"),
+        (make_view(SWEEP, SWEPT), {"points": (3, 4, 5, 7)}, "at most 3 points"),
+        (make_view(SWEEP, SWEPT), {"points": (3,), "what": "amplitude"}, "--point is given but"),
+        (make_view(TWO, [1, 4]), {}, "no cycle that could be drawn"),
+        (make_view(SWEEP, [-1] * 8), {"what": "amplitude"}, "no amplitude that could be drawn"),
+        (make_view((*TWO[:4], [1.0]), [0]), {"what": "amplitude"}, "holds one point"),
+        (make_view(GRID7, [0] * 28, **FEW), {"what": "amplitude"}, "makes 7 lines"),
+        ([two_cycles(), two_cycles()], {"what": "cycle"}, "only amplitudes of several files"),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused_in_one_sentence(tmp_path, view, words, message):
+    output = tmp_path / ("f.gif" if words.get("what") == "animation" else "f.png")
+    with pytest.raises(InputError, match=message) as refused:
+        draw(view, output, **words)
+    assert len(str(refused.value).splitlines()) == 1
+    assert not output.exists()
+
+
+@pytest.mark.parametrize(("what", "suffix"), [("cycle", "gif"), ("animation", "png"), ("energy", "mp4")])
+def test_suffix_has_to_suit_the_figure(tmp_path, what, suffix):
+    with pytest.raises(InputError, match="must end in"):
+        draw(two_cycles(), tmp_path / f"f.{suffix}", what=what)
+
+
+OPTIONS = {"harmonics": 8, "samples": SAMPLES, "shapes": SHAPES, "nodes": 21, "time": "tau2"}
+
+
+@pytest.mark.parametrize("as_list", [False, True])
+def test_file_as_the_task_lays_it_out_is_drawn(command, as_list):
+    """The figures name no variable that the file does not have."""
+    columns = [np.ravel(c) for c in np.meshgrid(*TWO, indexing="ij")] if as_list else TWO
+    view = make_view(columns, [0, 0], as_list=as_list)
+    config = {"task": "limit_cycle", "limit_cycle": OPTIONS}
+    flags = tuple(item for item in FLAGS.items() if item[0] >= 0)
+    title = {"task": "limit_cycle", "title": "arms"}
+    columns = [np.asarray(c, float) for c in columns]
+    layout = limit_cycle_layout(OPTIONS)
+    path = command.directory / "arms.h5"
+    create_file(path, Plan(columns, not as_list, layout, {}, (), config, title, flags))
+    with h5py.File(path, "r+") as file:
+        for name in view.variables.keys() - {*NAMES, "point"}:
+            file[name][...] = view.variables[name]
+    for words in ((), ("--what", "energy", "-o", "e.pdf"), ("--point", 2), ("--what", "animation")):
+        drawn = command("plot", "arms.h5", *words)
+        assert (drawn.returncode, drawn.stderr) == (0, "")
+    assert {f.name for f in command.directory.iterdir()} == {"arms.h5", "arms.png", "e.pdf", "arms.gif"}
+
+
+def test_other_tasks_refuse_the_options_of_limit_cycle(command):
+    command.write(
+        "c.yaml",
+        "task: spectrum\nparameters: {F: [0, 10, 20], k1: 1e4, k2: 1e2, gamma3: 1e-2}\n",
+    )
+    command("run", "c.yaml")
+    for words, name in ((("--what", "cycle"), "--what"), (("--point", 1), "--point"), (("c.h5",), "several")):
+        refused = command("plot", "c.h5", *words)
+        assert refused.returncode == 2
+        assert f"{name}" in refused.stderr
+        assert len(refused.stderr.splitlines()) == 1
+    assert command("plot", "c.h5").returncode == 0
