@@ -43,9 +43,17 @@ figures: .venv/installed  ## compute every config on two ranks and draw its figu
 	for config in configs/*.yaml; do
 	  name=$$(basename $$config .yaml)
 	  $(BIN)/mpiexec -n 2 $(BIN)/rodsweep run $$config -o results/$$name.h5
-	  $(BIN)/rodsweep plot results/$$name.h5 -o results/$$name.pdf
-	  $(BIN)/rodsweep plot results/$$name.h5 -o docs/$$name.png
 	done
+	draw="$(BIN)/rodsweep plot"
+	for name in fig2a fig2b fig2c fig2d fig3 fig4 fig5 fig6 fig7 fig8 fig9; do
+	  $$draw results/$$name.h5 -o results/$$name.pdf
+	  $$draw results/$$name.h5 -o docs/$$name.png
+	done
+	for end in results/hysteresis.pdf docs/hysteresis.png; do
+	  $$draw results/hysteresis_up.h5 results/hysteresis_down.h5 -o $$end
+	done
+	$$draw results/fig5.h5 --what energy -o docs/energy.png
+	$$draw results/fig5.h5 -o docs/fig5.gif
 
 test: .venv/installed  ## run the tests
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest

@@ -609,6 +609,10 @@ def test_fresh_run_does_not_use_old_checkpoints(command):
     command.write("c.yaml", CHAINS)
     run_fake(command, DIE_AT="8 20")
     solved(command)
+    before = sorted((command.directory / "c.h5.journal").glob("chain-*"))
+    assert [path.name for path in before] == ["chain-000000001"]
+    run_fake(command, "--fresh", DIE_AT="1 10")
+    assert not any(path.exists() for path in before)
     assert run_fake(command, "--fresh").returncode == 0
     assert len(solved(command)) == 27
     assert not (command.directory / "c.h5.journal").exists()

@@ -137,3 +137,37 @@ def test_a_phase_diagram_is_the_same_on_any_number_of_ranks(command):
         assert set(one) == set(three)
         for name in set(one) - {"seconds"}:
             assert np.array_equal(one[name][()], three[name][()], equal_nan=True), name
+
+
+def test_figure_5(command):
+    T_one, y_one, _, T_half, y_half = stated("fig5")
+    with run(command, "fig5", "limit_cycle.samples=32", "limit_cycle.shapes=8") as file:
+        assert file["period"][:].ravel() == pytest.approx([T_half, T_one], rel=1e-8)
+        assert file["tip_y_max"][:].ravel() == pytest.approx([y_half, y_one], abs=1e-8)
+        assert (file["multiplier"][:] < 1).all()
+        assert np.abs(file["energy_imbalance"][:]).max() < 1e-8
+        assert file["shape_y"].shape[-2:] == (8, 33)
+    assert command("plot", "fig5.h5", "-o", "beat.gif").returncode == 0
+    assert command("plot", "fig5.h5", "--what", "energy", "-o", "energy.png").returncode == 0
+
+
+def test_figure_6(command):
+    hopf = stated("fig6")[0]
+    forces = f"parameters.F=[27, {hopf + 0.01}, {hopf + 0.04}]"
+    with run(command, "fig6", forces, "parameters.gamma1=1") as file:
+        status, y = file["status"][:].ravel(), file["tip_y_max"][:].ravel()
+        assert status.tolist() == [1, 0, 0]
+        assert np.log(y[2] / y[1]) / np.log(4) == pytest.approx(0.5, abs=1e-3)
+
+
+def test_what_a_restabilised_rod_does_depends_on_where_it_comes_from(command):
+    """Beyond the paper, whose Discussion excludes oscillations outside the linear window of flutter."""
+    hopf, period, y = stated("hysteresis_up")[:3]
+    for direction, status in (("up", [0, 0]), ("down", [0, 1])):
+        with run(command, f"hysteresis_{direction}", "parameters.F=[150, 170]") as file:
+            assert 150 < hopf < 170
+            assert file["status"][:].ravel().tolist() == status
+            if direction == "up":
+                assert file["period"][:].ravel()[1] == pytest.approx(period, rel=1e-8)
+                assert file["tip_y_max"][:].ravel()[1] == pytest.approx(y, abs=1e-8)
+                assert file["linear_growth_rate"][:].ravel()[1] < 0

@@ -151,7 +151,7 @@ class Beam:
 
 
 def configuration(grid: Mesh, strains: Array, clamp: Array) -> Array:
-    """(x, y, theta) at all nodes, shape (3, ..., nodes + 1) like the strains (h1, h2, Pi), from `clamp`, (3,)."""
+    """(x, y, theta) at all nodes from strains (h1, h2, Pi), both (3, ..., nodes + 1), and `clamp`, (3,)."""
     values, angles, integrals, ends = reconstruction(grid.order)
     m, p = grid.elements, grid.order
     state = np.empty_like(strains)

@@ -141,8 +141,6 @@ def _solve(rod: Rod, gamma1: float, request: CycleRequest, start: Array | None) 
     approach = Approach(beam, request.accuracy, request.most_periods)
     z = request.amplitude * approach.mode.z.real if start is None else received(beam, start)
     arrival = approach.arrive(z)
-    if arrival.message.startswith("PETSc"):
-        forget_integrators()
     cycle = _about_rest(_nothing(arrival.status, request, arrival.message), arrival, approach.mode, beam)
     return cycle if arrival.found is None else _measured(cycle, arrival.found, request)
 

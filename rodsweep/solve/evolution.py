@@ -73,7 +73,7 @@ class Integrator:
         self.middle = 0.5 if self.ts.getType() == "arkimex" else 0.0
         self._times: list[float] = []
         self._states: list[Array] = []
-        self._left = False
+        self._left = self.broken = False
         self._stop: Stop | None = None
         self._beam: Beam | None = None
 
@@ -149,6 +149,7 @@ class Integrator:
             ts.solve(self.vector)
         except (PETSc.Error, SystemError) as error:
             message = str(error.__cause__ or error).splitlines()[-1]
+            self.broken = True  # a PETSc object is not usable after an error inside it
         spent = self.workspace.counts - counts
         return Run(
             ending=self._ending(message),
@@ -183,6 +184,8 @@ _kept: OrderedDict[tuple[int, int, Method], Integrator] = OrderedDict()
 def integrator(mesh: Mesh, method: Method) -> Integrator:
     """The integrator for a mesh and a method, kept for the next point."""
     key = mesh.elements, mesh.order, method
+    if key in _kept and _kept[key].broken:
+        _kept.pop(key).destroy()
     if key not in _kept:
         if len(_kept) >= MOST_KEPT:
             _kept.popitem(last=False)[1].destroy()
@@ -192,14 +195,11 @@ def integrator(mesh: Mesh, method: Method) -> Integrator:
 
 
 def forget_integrators() -> None:
-    """Drops every kept integrator, after an error inside PETSc has left one in an unknown state."""
+    """Drops every kept integrator, after an error, or so that the next one hears of new options."""
     while _kept:
         _kept.popitem()[1].destroy()
 
 
 def evolve(beam: Beam, z: Array, duration: float, method: Method | None = None) -> Run:
     """The motion of a rod from z over `duration` tau2; an integration that fails is an ending."""
-    run = integrator(beam.mesh, method or Method()).run(beam, z, duration)
-    if run.message:
-        forget_integrators()
-    return run
+    return integrator(beam.mesh, method or Method()).run(beam, z, duration)

@@ -27,7 +27,7 @@ def _cycle_lines(v: dict[str, np.ndarray], beats: np.ndarray) -> list[str]:
     ratio = v["frequency"][beats] / v["linear_frequency"][beats]
     return [
         f"{period}; frequency over the linear one: {span(ratio)}",
-        f"tip: largest y {span(v['tip_y_max'][beats])} L, largest theta {span(v['tip_theta_max'][beats])} rad",
+        f"tip: largest y {span(v['tip_y_max'][beats])} L, theta {span(v['tip_theta_max'][beats])} rad",
         f"tip: least x {span(v['tip_x_min'][beats])} L, largest x {span(v['tip_x_max'][beats])} L",
         f"energy injected: {span(v['injection_mean'][beats])} k3/(L tau2)",
         f"multiplier: {span(v['multiplier'][beats])}; returns waited for: "

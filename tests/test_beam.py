@@ -1,0 +1,211 @@
+"""The nonlinear rod in its body frame: rates, Jacobian, energy, shape, and its motion by PETSc TS."""
+
+import numpy as np
+import pytest
+
+from rodsweep.discretization.basis import differentiation
+from rodsweep.discretization.beam import Beam, configuration, mesh
+from rodsweep.discretization.quadrature import gauss_lobatto
+from rodsweep.model.longitudinal import longitudinal_rates
+from rodsweep.model.rod import Rod
+from rodsweep.solve.evolution import Ending, evolve, forget_integrators, integrator
+from rodsweep.solve.method import Method
+from rodsweep.solve.orbit import PERIOD_MAP
+from rodsweep.solve.petsc import PETSc
+from rodsweep.solve.rest import leading_mode
+from rodsweep.solve.spectrum import SpectrumRequest, solve_spectrum
+
+ROD = Rod(50.0, 1e4, 1e2, 1e-2)
+MESHES = pytest.mark.parametrize("elements, order", [(1, 16), (3, 8)])
+
+
+def bent(beam, size=1.0):
+    """A state far from rest, smooth in u."""
+    u = beam.mesh.positions
+    E = beam.strains(np.zeros(beam.mesh.unknowns))
+    wave = np.array([0.01 * np.cos(3 * u), 0.3 * np.sin(2 * u + 1), 2 * np.cos(4 * u)])
+    return beam.unknown(E + size * (1 - u) * wave)
+
+
+def rough(beam):
+    """A state that no mesh resolves."""
+    return bent(beam) + 0.01 * np.random.default_rng(1).standard_normal(beam.mesh.unknowns)
+
+
+@MESHES
+def test_jacobian_is_the_derivative_of_the_rate(elements, order):
+    beam = Beam(ROD, 0.7, mesh(elements, order))
+    z = rough(beam)
+    J = beam.jacobian(z)
+    for k, d in enumerate(1e-3 * np.eye(len(z))):  # the rate is cubic: this difference is exact
+        difference = 8 * (beam.rate(z + d) - beam.rate(z - d)) - (beam.rate(z + 2 * d) - beam.rate(z - 2 * d))
+        column = difference / (12 * d[k])
+        assert np.abs(J[:, k] - column).max() <= 1e-10 * np.abs(J[:, k]).max()
+
+
+@MESHES
+def test_energy_law_holds_on_the_mesh_to_rounding(elements, order):
+    beam = Beam(ROD, 0.7, mesh(elements, order))
+    z = rough(beam)
+    rate, n = beam.rate(z), beam.mesh.nodes
+    stress = z.copy()
+    stress[:n] -= ROD.F / ROD.k1**0.5  # Sigma = K^1/2 z + (-F, 0, 0)
+    change = stress @ (np.tile(beam.mesh.quadrature[:-1], 3) * rate)
+    injected, dissipated = beam.power(z)
+    assert change == pytest.approx(injected - dissipated, abs=1e-14 * (abs(injected) + dissipated))
+    step = 1e-9
+    measured = (beam.energy(z + step * rate) - beam.energy(z - step * rate)) / (2 * step)
+    assert measured == pytest.approx(change, rel=1e-6)
+
+
+@MESHES
+def test_strains_do_not_depend_on_where_the_clamp_is(elements, order):
+    beam = Beam(ROD, 1.0, mesh(elements, 2 * order))
+    E = beam.strains(bent(beam))
+    here = configuration(beam.mesh, E, np.zeros(3))
+    x, y, theta = there = configuration(beam.mesh, E, np.array([2.0, -1.0, 2.5]))
+    turn = np.array([[np.cos(2.5), -np.sin(2.5)], [np.sin(2.5), np.cos(2.5)]])
+    assert np.abs(there[:2] - turn @ here[:2] - np.array([[2.0], [-1.0]])).max() < 1e-13
+    D = 2 * elements * differentiation(gauss_lobatto(2 * order)[0])
+    for e in range(elements):
+        part = slice(e * 2 * order, (e + 1) * 2 * order + 1)
+        dx, dy, Pi = D @ x[part], D @ y[part], D @ theta[part]
+        cos, sin = np.cos(theta[part]), np.sin(theta[part])
+        again = np.array([cos * dx + sin * dy, cos * dy - sin * dx, Pi])
+        assert np.abs(again - E[:, part]).max() < 1e-9
+
+
+@MESHES
+def test_uniformly_bent_rod_is_an_arc(elements, order):
+    grid = mesh(elements, order)
+    E = np.zeros((3, grid.nodes + 1))
+    E[0], E[2] = 0.9, 2.0
+    x, y, theta = configuration(grid, E, np.zeros(3))
+    angle = 2.0 * grid.positions
+    assert np.abs(theta - angle).max() < 1e-14
+    assert np.abs(x - 0.45 * np.sin(angle)).max() < 1e-14
+    assert np.abs(y - 0.45 * (1 - np.cos(angle))).max() < 1e-14
+
+
+def test_velocity_of_the_tip_is_that_of_its_reconstruction():
+    beam = Beam(ROD, 1.0, mesh(1, 20))
+    z, step = bent(beam), 1e-8
+    rate = beam.rate(z)
+    difference = (beam.tip(z + step * rate) - beam.tip(z - step * rate)) / (2 * step)
+    assert beam.tip_velocity(z, rate) == pytest.approx(difference, rel=1e-6)
+
+
+@pytest.mark.parametrize("rod", [ROD, Rod(27.43, 1e4, 1e2, 1e-2), Rod(60.0, 200.0, 1e4, 1e-4)])
+def test_linearisation_has_the_spectrum_of_the_straight_rod(rod):
+    beam = Beam(rod, 0.8, mesh(1, 20))
+    values = np.linalg.eigvals(beam.jacobian(np.zeros(60)))
+    transverse = solve_spectrum(rod, SpectrumRequest(4, 1e-12, True)).eigenvalues
+    for w in np.concatenate([transverse, longitudinal_rates(rod.k1, 0.8, 3)]):
+        assert np.abs(values - w).min() <= 1e-9 * abs(w)
+    assert leading_mode(beam).w == pytest.approx(transverse[0], rel=1e-9)
+
+
+def test_shape_converges_with_order_and_with_elements():
+    exact = Beam(ROD, 1.0, mesh(1, 36))
+    for elements, order in ((1, 24), (2, 18), (4, 12)):
+        beam = Beam(ROD, 1.0, mesh(elements, order))
+        assert beam.tip(bent(beam)) == pytest.approx(exact.tip(bent(exact)), abs=1e-12)
+
+
+def test_small_start_grows_like_the_leading_eigenvalue():
+    beam = Beam(ROD, 1.0, mesh(1, 20))
+    mode, duration = leading_mode(beam), 0.02
+    start = 1e-7 * mode.z.real
+    values, left = np.linalg.eig(beam.jacobian(np.zeros(60)).T)
+    row = left[:, np.argmin(np.abs(values - mode.w))]
+    run = evolve(beam, start, duration, Method(tolerance=1e-11, newton=0.01))
+    assert run.ending == Ending.reached
+    grown = np.log((row @ run.states[-1]) / (row @ run.states[0]) * np.exp(-1j * mode.w.imag * duration))
+    assert grown.real / duration == pytest.approx(mode.w.real, rel=1e-6)
+    assert abs(grown.imag) / duration < 1e-6 * mode.w.imag
+
+
+@pytest.mark.parametrize("variant, order", [("3", 3), ("4", 4), ("5", 5)])
+def test_equal_steps_have_the_order_of_the_method(variant, order):
+    """On a rod whose stiffness the steps resolve; order reduction is a stiff rod's."""
+    beam = Beam(Rod(5.0, 10.0, 10.0, 1.0), 1.0, mesh(1, 3))
+    start, duration = bent(beam), 0.02
+    method = Method("arkimex", variant, tolerance=1e-8, newton=1e-6, equal_steps=True)
+
+    def end(steps):
+        run = integrator(beam.mesh, method).run(beam, start, duration, duration / steps)
+        assert len(run.times) == steps + 1
+        return run.states[-1]
+
+    first, second, third = end(20), end(40), end(80)
+    measured = np.log2(np.abs(first - second).max() / np.abs(second - third).max())
+    assert measured == pytest.approx(order, abs=0.35)
+
+
+@pytest.mark.parametrize(
+    "method",
+    [
+        Method(tolerance=1e-6),
+        Method("arkimex", "3", 1e-7),
+        Method("arkimex", "4", 1e-6),
+        Method("bdf", "5", 1e-7),
+        Method("rosw", "ra34pw2", 1e-6),
+        Method("rosw", "rodas3", 1e-6),
+    ],
+    ids=lambda method: f"{method.family} {method.variant}",
+)
+def test_every_method_follows_the_same_motion(method):
+    beam = Beam(ROD, 1.0, mesh(1, 14))
+    start = 0.3 * leading_mode(beam).z.real
+    exact = evolve(beam, start, 0.03, Method(tolerance=1e-10, newton=0.01)).states[-1]
+    run = evolve(beam, start, 0.03, method)
+    assert run.ending == Ending.reached
+    assert run.times[-1] == pytest.approx(0.03)
+    assert np.abs(run.states[-1] - exact).max() < 2e-4 * np.abs(exact).max()
+
+
+@pytest.fixture
+def petsc_options():
+    """Sets PETSc options for one test."""
+    given = []
+
+    def give(name, value):
+        given.append(name)
+        PETSc.Options()[name] = value
+        forget_integrators()
+
+    yield give
+    for name in given:
+        PETSc.Options().delValue(name)
+    forget_integrators()
+
+
+def test_users_options_override_the_method(petsc_options):
+    grid = mesh(1, 8)
+    assert integrator(grid, Method()).ts.getType() == "arkimex"
+    petsc_options("cycle_ts_type", "bdf")
+    assert integrator(grid, Method()).ts.getType() == "bdf"
+    assert integrator(grid, PERIOD_MAP).ts.getType() == "arkimex"
+
+
+def test_defaults_of_the_method_are_not_recorded_as_the_users_options():
+    before = PETSc.Options().getAll()
+    forget_integrators()
+    integrator(mesh(1, 8), Method())
+    assert PETSc.Options().getAll() == before
+
+
+def test_a_failed_integration_is_an_ending(petsc_options):
+    petsc_options("cycle_snes_max_it", "1")
+    petsc_options("cycle_ts_max_snes_failures", "1")
+    beam = Beam(ROD, 1.0, mesh(1, 14))
+    run = evolve(beam, bent(beam), 1.0)
+    assert run.ending == Ending.failed
+    assert len(run.times) == len(run.states)
+
+
+def test_a_crushed_rod_has_left_the_model():
+    beam = Beam(Rod(195.0, 200.0, 1e4, 1e-4), 1.0, mesh(1, 14))
+    run = evolve(beam, 0.5 * leading_mode(beam).z.real, 1e-3)
+    assert run.ending == Ending.left_the_model
+    assert beam.least_stretch(run.states[-1]) <= 0 < beam.least_stretch(run.states[0])

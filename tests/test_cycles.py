@@ -1,0 +1,271 @@
+"""Limit cycles: the reference cycles, the neighbourhood of the Hopf point, hard cases, and every status."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from rodsweep.discretization.beam import Beam, mesh
+from rodsweep.discretization.quadrature import lobatto_points
+from rodsweep.model.rod import Rod
+from rodsweep.solve import approach
+from rodsweep.solve.cycles import CycleRequest, CycleStatus, received, solve_cycle, warm_up
+from rodsweep.solve.evolution import forget_integrators
+from rodsweep.solve.measures import derivative, maximum, measure, resampled
+from rodsweep.solve.orbit import shoot
+from rodsweep.solve.petsc import PETSc
+from rodsweep.solve.resolved import _on_mesh
+from rodsweep.solve.thresholds import ThresholdsRequest, solve_thresholds
+
+SOFT = (1e4, 1e2, 1e-2, 1.0)
+"""(k1, k2, gamma3, gamma1) of the paper's Fig. 5."""
+STRETCHABLE = (200.0, 1e4, 1e-4, 1.0)
+REQUEST = CycleRequest(
+    accuracy=1e-8, amplitude=0.1, harmonics=5, samples=100, shapes=8, nodes=33, most_periods=300
+)
+
+
+@cache
+def cycle(F, rod=SOFT, amplitude=0.1, accuracy=1e-6):
+    """A solved cycle, once for all tests."""
+    return solve_cycle(F, *rod, CycleRequest(accuracy, amplitude, 5, 100, 8, 33, 300))
+
+
+def reference():
+    return cycle(50.0, SOFT, 0.1, 1e-8)
+
+
+@cache
+def hopf():
+    """F** of the soft rod."""
+    found = solve_thresholds(*SOFT[:3], ThresholdsRequest(40.0, 1e-12, False, 4))
+    return next(c.at for c in found.crossings if c.kind.name == "hopf")
+
+
+# physics.md, section 6: an independent displacement-form code.
+@pytest.mark.parametrize(
+    "gamma1, period, y, x, theta",
+    [
+        (1.0, 0.0344504294, 0.64518306, (0.49134541, 0.87215785), 1.65474908),
+        (0.5, 0.0259793620, 0.67645842, None, None),
+    ],
+)
+def test_reference_cycles(gamma1, period, y, x, theta):
+    c = cycle(50.0, (*SOFT[:3], gamma1), 0.1, 1e-8)
+    assert c.status == CycleStatus.cycle
+    assert c.period == pytest.approx(period, rel=1e-7)
+    assert c.tip_y_max == pytest.approx(y, rel=1e-7)
+    if x is not None:
+        assert (c.tip_x_min, c.tip_x_max) == pytest.approx(x, rel=1e-7)
+        assert c.tip_theta_max == pytest.approx(theta, rel=1e-7)
+    assert max(c.period_error, c.amplitude_error) <= 1e-8
+    assert abs(c.energy_imbalance) <= 1e-8
+    assert c.closure <= 1e-10
+    assert c.multiplier < 0.01
+
+
+def test_accuracy_asked_for_is_reached():
+    exact = reference()
+    for accuracy in (1e-3, 1e-5, 1e-7):
+        c = cycle(50.0, SOFT, 0.1, accuracy)
+        assert c.status == CycleStatus.cycle
+        assert c.period == pytest.approx(exact.period, rel=accuracy)
+        for name in ("tip_x_min", "tip_x_max", "tip_y_max", "tip_theta_max"):
+            error = abs(getattr(c, name) - getattr(exact, name)) / exact.tip_y_max
+            assert error <= max(1.5 * c.amplitude_error, 1e-8)
+            assert error <= accuracy
+        assert abs(c.energy_imbalance) <= 1e-8
+
+
+def test_cycle_does_not_depend_on_the_start():
+    c = cycle(50.0, SOFT, 0.5, 1e-6)
+    assert (c.period, c.tip_y_max) == pytest.approx((reference().period, reference().tip_y_max), rel=1e-6)
+
+
+def test_cycle_converges_with_order_and_with_elements():
+    z, period = received(Beam(Rod(50.0, *SOFT[:3]), 1.0, mesh(1, 14)), reference().state), reference().period
+    coarse = shoot(Beam(Rod(50.0, *SOFT[:3]), 1.0, mesh(1, 14)), z, period, 64)
+    found = [_on_mesh(coarse, mesh(*grid)) for grid in ((1, 26), (2, 16), (3, 11))]
+    exact, *others = [measure(orbit.beam, orbit.run) for orbit in found]
+    for m in others:
+        assert m.period == pytest.approx(exact.period, rel=1e-10)
+        assert m.tip_y_max == pytest.approx(exact.tip_y_max, rel=1e-10)
+        assert m.tip_x_min == pytest.approx(exact.tip_x_min, rel=1e-9)
+
+
+def test_more_steps_reduce_the_error_as_the_estimate_assumes():
+    beam = Beam(Rod(50.0, *SOFT[:3]), 1.0, mesh(1, 16))
+    orbit = shoot(beam, received(beam, reference().state), reference().period, 32)
+    theta = [measure(beam, orbit.run).tip_theta_max]
+    for steps in (64, 128, 256):
+        orbit = shoot(beam, orbit.state, orbit.period, steps, orbit.tangent)
+        theta.append(measure(beam, orbit.run).tip_theta_max)
+    change = np.abs(np.diff(theta))
+    assert (np.log2(change[:-1] / change[1:]) > 3).all()
+
+
+def test_amplitude_grows_as_the_square_root_beyond_the_hopf_point():
+    above = np.array([0.003, 0.01, 0.03])
+    cycles = [cycle(hopf() + dF) for dF in above]
+    assert {c.status for c in cycles} == {CycleStatus.cycle}
+    y = np.array([c.tip_y_max for c in cycles])
+    assert np.diff(np.log(y)) / np.diff(np.log(above)) == pytest.approx(0.5, abs=5e-3)
+    assert max(c.periods for c in cycles) < 60
+    mu = np.array([c.multiplier for c in cycles])
+    assert (mu < 1).all()
+    # The normal form: what the straight rod gains a period the cycle loses twice.
+    gained = np.array([c.linear_growth_rate * c.period for c in cycles])
+    assert -np.log(mu) / gained == pytest.approx(2.0, abs=0.02)
+
+
+def test_frequency_meets_the_linear_one_at_the_hopf_point():
+    c = cycle(hopf() + 1e-4)
+    assert c.status == CycleStatus.cycle
+    assert c.frequency == pytest.approx(c.linear_frequency, rel=1e-5)
+    assert 1 - 2e-4 < c.multiplier < 1
+    assert c.linear_growth_rate > 0
+
+
+@pytest.mark.parametrize(
+    "F, status", [(27.43, "cycle"), (27.42, "straight"), (10.0, "straight"), (0.0, "straight")]
+)
+def test_either_side_of_the_hopf_point(F, status):
+    c = cycle(F)
+    assert c.status.name == status
+    assert c.status.succeeded
+    assert np.isfinite(c.tip_y_max) == (status == "cycle")
+
+
+# No source outside this project: the period map's solution on finer meshes and more steps than are used here.
+@pytest.mark.parametrize(
+    "F, rod, period, y",
+    [
+        (60.0, STRETCHABLE, 0.01562185622, 0.23070669),
+        (100.0, STRETCHABLE, 0.00891883992, 0.32086302),
+        (140.0, STRETCHABLE, 0.00571557317, 0.28575395),
+        (150.0, SOFT, 0.00876798524, 0.58139770),
+        (50.0, (1e4, 1e2, 1e-6, 1.0), 0.03096821052, 0.61647075),
+        (50.0, (1e4, 1e6, 1e-2, 1.0), 0.03100599115, 0.50074471),
+    ],
+    ids=["soft 60", "soft 100", "soft 140", "F = 150", "gamma3 = 1e-6", "k2 = 1e6"],
+)
+def test_hard_cases(F, rod, period, y):
+    c = cycle(F, rod)
+    assert c.status == CycleStatus.cycle
+    assert c.period == pytest.approx(period, rel=1e-6)
+    assert c.tip_y_max == pytest.approx(y, rel=1e-6)
+    assert abs(c.energy_imbalance) <= 1e-8
+    assert c.multiplier < 1
+
+
+def test_a_stable_rod_may_also_beat():
+    """k1 = 200, F = 170: the straight rod is stable again, and so is a cycle of large amplitude."""
+    assert cycle(170.0, STRETCHABLE, 0.01).status == CycleStatus.straight
+    far = cycle(170.0, STRETCHABLE, 0.1)
+    below = cycle(150.0, STRETCHABLE, 0.1)
+    near = solve_cycle(170.0, *STRETCHABLE, CycleRequest(1e-6, 0.01, 5, 0, 0, 0, 300), below.state)
+    for c in (far, near):
+        assert c.status == CycleStatus.cycle
+        assert c.linear_growth_rate < 0
+        assert c.period == pytest.approx(0.00416560692, rel=1e-6)
+        assert c.tip_y_max == pytest.approx(0.24053929, rel=1e-6)
+
+
+def test_below_the_hopf_point_a_neighbours_cycle_decays():
+    above = cycle(27.43)
+    for F in (27.42, 25.0):
+        assert solve_cycle(F, *SOFT, REQUEST, above.state).status == CycleStatus.straight
+
+
+def test_state_is_handed_on_without_loss():
+    c = reference()
+    beam = Beam(Rod(50.0, *SOFT[:3]), 1.0, mesh(c.elements, c.order))
+    run = approach.integrator(beam.mesh, approach.CAREFUL).run(beam, received(beam, c.state), c.period)
+    assert np.abs(run.states[-1] - run.states[0]).max() < 1e-6 * np.abs(run.states).max()
+    again = solve_cycle(50.0, *SOFT, REQUEST, c.state)
+    assert again.period == pytest.approx(c.period, rel=1e-9)
+
+
+def test_what_is_stored_agrees_with_the_numbers():
+    c = reference()
+    assert c.tip.shape == c.energy.shape == (3, 100)
+    assert c.shape.shape == (3, 8, 33)
+    x, y, theta = c.tip
+    assert np.abs(c.shape[:, :, -1] - resampled(c.tip.T, np.arange(8) / 8).T).max() < 1e-9
+    assert c.shape[:, :, 0] == pytest.approx(0.0, abs=1e-12)
+    assert (x.min(), x.max()) == pytest.approx((c.tip_x_min, c.tip_x_max), rel=1e-3)
+    assert (y.max(), theta.max()) == pytest.approx((c.tip_y_max, c.tip_theta_max), rel=1e-3)
+    assert y[0] == pytest.approx(0.0, abs=1e-8)
+    assert y[1] > 0
+    energy, injection, dissipation = c.energy
+    assert (injection.mean(), dissipation.mean()) == pytest.approx((c.injection_mean, c.dissipation_mean))
+    assert (injection.std(), dissipation.std()) == pytest.approx((c.injection_rms, c.dissipation_rms))
+    assert derivative(energy) / c.period == pytest.approx(injection - dissipation, abs=1e-5 * c.injection_rms)
+    harmonics = 2 * np.abs(np.fft.rfft(y))[1:6] / len(y)
+    assert c.harmonics == pytest.approx(harmonics, abs=1e-10)
+    assert c.frequency * c.period == pytest.approx(2 * np.pi)
+    assert c.state.shape == (3, 65)
+    assert lobatto_points(33)[[0, -1]] == pytest.approx([0.0, 1.0])
+
+
+def test_a_crushed_rod_has_left_the_model():
+    for F, amplitude in ((195.0, 0.5), (250.0, 0.1)):
+        c = cycle(F, STRETCHABLE, amplitude)
+        assert c.status == CycleStatus.left_the_model
+        assert not c.status.succeeded
+        assert c.message
+        assert np.isnan(c.period)
+        assert c.tip is c.state is None
+
+
+def test_a_rod_that_needs_longer_is_not_settled():
+    c = solve_cycle(30.0, *SOFT, CycleRequest(1e-6, 1e-7, 3, 10, 2, 5, 3))
+    assert c.status == CycleStatus.not_settled
+    assert c.periods >= 3
+    assert np.isnan(c.period)
+    assert np.isnan(c.harmonics).all()
+
+
+def test_a_failed_integration_is_a_status():
+    options = {"cycle_snes_max_it": "1", "cycle_ts_max_snes_failures": "1"}
+    for name, value in options.items():
+        PETSc.Options()[name] = value
+    forget_integrators()
+    try:
+        c = solve_cycle(50.0, *SOFT, REQUEST)
+    finally:
+        for name in options:
+            PETSc.Options().delValue(name)
+        forget_integrators()
+    assert c.status == CycleStatus.failed
+    assert c.message
+    assert c.linear_growth_rate > 0
+
+
+def test_an_error_inside_is_a_status(monkeypatch):
+    def fail(*_):
+        raise np.linalg.LinAlgError("Singular matrix")
+
+    monkeypatch.setattr(approach, "resolve", fail)
+    c = solve_cycle(50.0, *SOFT, REQUEST)
+    assert (c.status, c.message) == (CycleStatus.failed, "Singular matrix")
+
+
+def test_every_status_has_a_sentence():
+    assert all(status.sentence for status in CycleStatus)
+    assert [status for status in CycleStatus if status.succeeded] == [CycleStatus.cycle, CycleStatus.straight]
+
+
+def test_warm_up_solves_a_cycle():
+    warm_up()
+
+
+def test_extrema_and_derivatives_of_samples_are_spectral():
+    t = np.arange(32) / 32
+    values = np.exp(np.sin(2 * np.pi * (t - 0.123)))
+    assert maximum(values) == pytest.approx(np.e, rel=1e-12)
+    at = np.array([0.01, 0.373, 0.9])
+    exact = np.exp(np.sin(2 * np.pi * (at - 0.123)))
+    assert resampled(values, at) == pytest.approx(exact, rel=1e-12)
+    slope = 2 * np.pi * np.cos(2 * np.pi * (t - 0.123)) * values
+    assert derivative(values) == pytest.approx(slope, abs=1e-10)
