@@ -18,7 +18,7 @@ LINE_MS, LINE_CERTIFICATE_MS = 24.0, 16.0
 MODES_MS, GROWTH_MS = 1.5, 20.0
 """Time that the vectors take beside the eigenvalues, in units of the modes squared, because the mesh grows
 with them, and that the growth takes: means over 24 rods."""
-CYCLE_SECONDS = 2.0
+CYCLE_SECONDS = 1.0
 """Time of a limit cycle from its start, to be measured."""
 MEMORY_PER_UNKNOWN = 40_000
 BASE_MEMORY = 200_000_000
