@@ -19,7 +19,7 @@ MODES_MS, GROWTH_MS = 1.5, 20.0
 """Time that the vectors take beside the eigenvalues, in units of the modes squared, because the mesh grows
 with them, and that the growth takes: means over 24 rods."""
 CYCLE_SECONDS = 1.0
-"""Time of a limit cycle from its start, to be measured."""
+"""Time of a limit cycle from its start, a mean over the points of Fig. 6."""
 MEMORY_PER_UNKNOWN = 40_000
 BASE_MEMORY = 200_000_000
 
