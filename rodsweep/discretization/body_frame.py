@@ -86,15 +86,15 @@ def power(z: Array, c: Array, d: Array, w: Array) -> tuple[float, float]:
     """
     p, n = len(w) - 1, len(z) // 3
     fields = np.zeros((3, 3, p + 1))
-    E, V = fields[0], fields[2]
+    V = fields[2]
     dissipated = reaction = 0.0
     for e in range(n // p):
         _velocity(z, e, fields, c, d)
         for i in range(p + 1):
             dissipated += w[i] * (c[4] * V[0, i] ** 2 + V[1, i] ** 2 + c[5] * V[2, i] ** 2)
-    for j in range(p + 1):
+    for j in range(p + 1):  # Pi V2 - h2 V3 vanishes at the tip
         reaction += d[0, j, p] * w[j] * V[0, j]
-    return reaction + w[p] * (E[2, p] * V[1, p] - E[1, p] * V[2, p]), dissipated
+    return reaction, dissipated
 
 
 @compiled

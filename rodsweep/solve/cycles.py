@@ -32,6 +32,8 @@ Array = NDArray[np.float64]
 
 EXPECTED_MODES = 3
 """Modes by whose wave number the first mesh is chosen; the cycle says whether it is fine enough."""
+FOLDS = 2.5
+"""Largest wave number of a cycle in units of sqrt(F), the inverse of the length to which F bends a rod."""
 STATE_NODES = 65
 """Lobatto nodes on which a state is handed to a neighbour."""
 
@@ -135,7 +137,7 @@ def warm_up() -> None:
 
 
 def _solve(rod: Rod, gamma1: float, request: CycleRequest, start: Array | None) -> Cycle:
-    wave = expected_wave_number(EXPECTED_MODES, most_amplified_wave(rod)[1])
+    wave = max(expected_wave_number(EXPECTED_MODES, most_amplified_wave(rod)[1]), FOLDS * abs(rod.F) ** 0.5)
     resolution = resolution_for(wave, request.accuracy)
     beam = Beam(rod, gamma1, mesh(resolution.elements, resolution.order))
     approach = Approach(beam, request.accuracy, request.most_periods)
