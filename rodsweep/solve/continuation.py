@@ -225,7 +225,8 @@ def _curve(sign: float, plane: Plane, points: NDArray[np.float64], closed: bool)
                 fold = _fold(sign, plane, (points[i], tangents[i]), (points[i + 1], tangents[i + 1]), axis)
                 if fold is not None:
                     folds.append(fold)
-    size = np.exp(points[:, 2])
+    # One by one: NumPy's exp of an array may round an element by its place in memory.
+    size = np.array([math.exp(h) for h in points[:, 2]])
     zero = np.zeros(len(points))
     values = np.array([[axis.value(x) for axis, x in zip(plane.axes, v[:2], strict=True)] for v in points])
     frequency, growth_rate = (zero, sign * size) if sign else (size, zero)
