@@ -6,6 +6,8 @@ input, 3 when the machine lacks something.
 
 import os
 import sys
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 # Each rank is one process on one core: threads inside its BLAS would compete with the other ranks.
@@ -106,17 +108,25 @@ def plot(
 
 
 @commands.command()
-@click.argument("what", type=click.Choice(["spectrum", "thresholds"]), required=False)
+@click.argument("what", type=click.Choice(["spectrum", "thresholds", "limit_cycle"]), required=False)
 @click.option("--quick", is_flag=True, help="Fewer rounds, for a first impression.")
-@click.option("-o", "--output", type=FILE, help="Write the Markdown here as well.")
+@click.option("-o", "--output", type=FILE, help="Write the Markdown here as well, and figures beside it.")
 def bench(what: str | None, quick: bool, output: Path | None) -> None:
     """Time WHAT (by default all) beside what one would otherwise use, and state every error."""
+    if output is not None and (output.is_dir() or not output.parent.is_dir() or output.suffix == ".png"):
+        raise InputError(f"--output {output} is no name for Markdown in an existing directory")
+    figure = output and output.with_suffix(".png")
     try:
+        from ..bench.limit_cycle import limit_cycle_table
         from ..bench.spectrum import spectrum_table, where_and_when
         from ..bench.thresholds import thresholds_table
     except ModuleNotFoundError as error:
         raise EnvironmentLacks(f"the benchmark needs {error.name}: pip install 'rodsweep[bench]'") from None
-    tables = {"spectrum": spectrum_table, "thresholds": thresholds_table}
+    tables: dict[str, Callable[[bool], str]] = {
+        "spectrum": spectrum_table,
+        "thresholds": thresholds_table,
+        "limit_cycle": partial(limit_cycle_table, figure=figure),
+    }
     wanted = [what] if what else list(tables)
     text = "\n\n".join([where_and_when(), *(tables[name](quick) for name in wanted)])
     click.echo(text)

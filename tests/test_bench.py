@@ -1,0 +1,143 @@
+"""The benchmark of the limit cycle: every method follows the cycle, at its order; the ratios are stated."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from rodsweep.bench import cycle_peers
+from rodsweep.bench.cycle_peers import CVODE, DEFAULT, Steps, cvode_module, families, returns
+from rodsweep.bench.limit_cycle import (
+    PERIODS,
+    Row,
+    Wait,
+    errors,
+    limit_cycle_table,
+    milliseconds_at,
+    reference,
+    rows_table,
+    summary,
+    waits_table,
+    work_precision,
+)
+from rodsweep.solve.evolution import integrator
+from rodsweep.solve.orbit import PERIOD_MAP
+
+ORDERS = {"ARKIMEX 2": 2, "ARKIMEX 3": 3, "ARKIMEX 4": 4, DEFAULT: 5, "ROSW ra34pw2": 3, "ROSW rodas3": 3}
+"""One-step methods; steps of equal error per step show the order of the global error."""
+LOOSE_AND_TIGHT = {"ARKIMEX 2": (1e-4, 1e-5), "ARKIMEX 3": (1e-5, 1e-7), "BDF 5": (1e-7, 1e-9)}
+
+
+@cache
+def cycle():
+    return reference()
+
+
+@cache
+def rows():
+    """Two tolerances of each family."""
+    chosen = [
+        replace(f, tolerances=LOOSE_AND_TIGHT.get(f.name, (f.tolerances[0], f.tolerances[-1])))
+        for f in families()
+    ]
+    return work_precision(cycle(), chosen, 1, 1)
+
+
+def of(name):
+    return [row for row in rows() if row.method == name]
+
+
+@pytest.mark.parametrize("family", families(), ids=lambda family: family.name)
+def test_every_method_follows_the_cycle_and_gains_from_a_tighter_tolerance(family):
+    loose, tight = of(family.name)
+    assert 0 < tight.error < 3e-5
+    assert np.isfinite(loose.error)
+    assert tight.error < loose.error / 5
+    assert tight.steps > loose.steps
+    assert tight.milliseconds > 0
+
+
+@pytest.mark.parametrize("name, order", ORDERS.items())
+def test_order_of_the_errors(name, order):
+    loose, tight = of(name)
+    seen = np.log(loose.error / tight.error) / np.log(tight.steps / loose.steps)
+    assert seen == pytest.approx(order, abs=0.7)
+
+
+def test_error_of_an_exact_run_is_that_of_the_measurement():
+    at = cycle()
+    steps = int(128 * PERIODS)
+    duration = steps / 128 * at.period
+    run = integrator(at.beam.mesh, PERIOD_MAP).run(at.beam, at.state, duration, at.period / 128, None, steps)
+    assert max(errors(at, Steps(run.times, run.states))) < 1e-8
+
+
+def test_returns_lie_on_the_section():
+    at = cycle()
+    steps = families()[3].integrate(at.beam, at.state, PERIODS * at.period, 1e-5)
+    found = returns(at.beam, steps)
+    angle = at.beam.tip(found.states)[2]
+    assert len(found.times) >= 6
+    assert np.abs(angle).max() < 1e-9 * np.abs(at.beam.tip(steps.states)[2]).max()
+
+
+def test_interpolation_in_the_logarithms():
+    def row(ms, error):
+        return Row("a", 0.0, 1.0, ms, error, error / 2)
+
+    falling = [row(10.0, 1e-4), row(20.0, 1e-5), row(80.0, 1e-7)]
+    assert milliseconds_at(falling, 1e-6) == pytest.approx(40.0)
+    lucky = [row(1.0, 1e-7), *falling]
+    assert milliseconds_at(lucky, 1e-6) == pytest.approx(40.0)
+    assert np.isnan(milliseconds_at(falling[:2], 1e-6))
+    assert np.isnan(milliseconds_at(falling[2:], 1e-6))
+
+
+def test_summary_states_the_ratios():
+    def pair(name, ms):
+        return [Row(name, 1e-5, 1.0, ms / 2, 1e-5, 1e-5), Row(name, 1e-7, 1.0, 2 * ms, 1e-7, 1e-7)]
+
+    own, python, fortran = pair(DEFAULT, 10.0), pair("SciPy Radau", 25.0), pair("SciPy LSODA", 5.0)
+    text = summary([*own, *python, *fortran, *pair(CVODE, 8.0)])
+    assert f"{DEFAULT} 10.00" in text
+    assert "SciPy's best (SciPy LSODA): 0.50 times" in text
+    assert "BDF and Radau (SciPy Radau): 2.50 times" in text
+    assert "CVODE: 0.80 times" in text
+    assert "CVODE is skipped: scikit-sundae is not installed" in summary([*own, *python])
+
+
+def test_cvode_is_left_out_where_it_is_not_installed(monkeypatch):
+    monkeypatch.setattr(cycle_peers, "cvode_module", lambda: None)
+    assert CVODE not in [family.name for family in families()]
+
+
+def test_cvode_takes_part_where_it_is_installed():
+    assert (CVODE in [family.name for family in families()]) == (cvode_module() is not None)
+
+
+def test_tables_show_what_failed():
+    failed = Row("a", 1e-5, float("nan"), 1.0, float("inf"), float("inf"))
+    assert "| a | 1e-05 | failed |" in rows_table([failed])
+    never = Wait(50.0, "a", float("nan"), float("nan"), 1.0, float("inf"), (1e-6, 1e-7))
+    assert "waiting, a (fails at 1e-06, 1e-07) | | not settled" in waits_table([never])
+
+
+def test_the_benchmark_writes_its_tables_and_its_figure(monkeypatch, tmp_path):
+    few = [replace(f, tolerances=f.tolerances[1:4:2], settling=f.settling[-3:]) for f in families()[3:4]]
+    radau = next(f for f in families() if f.name == "SciPy Radau")
+    few.append(replace(radau, tolerances=(1e-3, 1e-5), settling=(1e-5,)))
+    monkeypatch.setattr("rodsweep.bench.limit_cycle.families", lambda: few)
+    text = limit_cycle_table(quick=True, figure=tmp_path / "a.png")
+    assert "| 50 | solve_cycle |" in text
+    assert "| 27.43 | waiting, ARKIMEX 5 (default) |" in text
+    assert "times the default's time" in text
+    assert "](a.png)" in text
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("name", ["nowhere/a.md", "a.png", "."])
+def test_a_name_that_cannot_take_the_markdown_is_refused_at_once(command, name):
+    done = command("bench", "limit_cycle", "-o", name)
+    assert done.returncode == 2
+    assert done.stderr.startswith("rodsweep: --output")
