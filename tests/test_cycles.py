@@ -1,5 +1,6 @@
 """Limit cycles: the reference cycles, the neighbourhood of the Hopf point, hard cases, and every status."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -7,8 +8,9 @@ import pytest
 
 from rodsweep.discretization.beam import Beam, mesh
 from rodsweep.discretization.quadrature import lobatto_points
+from rodsweep.errors import EnvironmentLacks
 from rodsweep.model.rod import Rod
-from rodsweep.solve import approach
+from rodsweep.solve import approach, cycles
 from rodsweep.solve.cycles import CycleRequest, CycleStatus, received, solve_cycle, warm_up
 from rodsweep.solve.evolution import forget_integrators
 from rodsweep.solve.measures import derivative, maximum, measure, resampled
@@ -23,6 +25,8 @@ STRETCHABLE = (200.0, 1e4, 1e-4, 1.0)
 REQUEST = CycleRequest(
     accuracy=1e-8, amplitude=0.1, harmonics=5, samples=100, shapes=8, nodes=33, most_periods=300
 )
+
+pytestmark = pytest.mark.usefixtures("cycles_work")
 
 
 @cache
@@ -269,3 +273,22 @@ def test_extrema_and_derivatives_of_samples_are_spectral():
     assert resampled(values, at) == pytest.approx(exact, rel=1e-12)
     slope = 2 * np.pi * np.cos(2 * np.pi * (t - 0.123)) * values
     assert derivative(values) == pytest.approx(slope, abs=1e-10)
+
+
+def test_a_mesh_is_not_refined_for_what_is_left_of_time():
+    """The extrema of two meshes are sampled at different phases, which no mesh can make agree to 1e-9."""
+    cycle = solve_cycle(88.9376, 629.929, 60628.4, 5.59844e-4, 2.07035, replace(REQUEST, accuracy=1e-9))
+    assert cycle.status == CycleStatus.cycle
+    assert cycle.order * cycle.elements < 60
+
+
+def test_within_rounding_of_the_hopf_point_no_cycle_is_claimed():
+    cycle = solve_cycle(27.42719413, 1e4, 1e2, 1e-2, 1.0, REQUEST)
+    assert cycle.status == CycleStatus.not_settled
+    assert np.isnan(cycle.period)
+
+
+def test_a_petsc_that_loses_the_cycle_is_refused(monkeypatch):
+    monkeypatch.setattr(cycles, "KNOWN_PERIOD", 0.05)
+    with pytest.raises(EnvironmentLacks, match="limit_cycle cannot run"):
+        cycles.warm_up()

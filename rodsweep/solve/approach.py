@@ -141,13 +141,17 @@ class Approach:
         growth, linear = self._growth(times, states)
         steady = bool((np.diff(np.linalg.norm(states, axis=1)) < 0).all())
         alike = abs(growth - linear) < LINEAR * abs(linear)
-        in_time = abs((times[-1] - times[-2]) / self.mode.period - 1) < LINEAR
-        return linear < 0 and steady and alike and in_time
+        return linear < 0 and steady and alike and self._in_time(times)
+
+    def _in_time(self, times: Array) -> bool:
+        """Whether the tip returns as the leading mode does: elsewhere its growth predicts nothing."""
+        return bool(abs((times[-1] - times[-2]) / self.mode.period - 1) < LINEAR)
 
     def _predicted(self, times: Array, states: Array) -> Array | None:
         """The state scaled to where the growth should vanish; None if that is here, or cannot be said."""
         growth, linear = self._growth(times, states)
-        if max(abs(linear), abs(growth)) > SLOW or linear <= growth or self.jumps >= MOST_JUMPS:
+        slow = max(abs(linear), abs(growth)) <= SLOW and self._in_time(times)
+        if not slow or linear <= growth or self.jumps >= MOST_JUMPS:
             return None
         factor = SHRINK
         if linear > 0:

@@ -37,6 +37,8 @@ TANGENT_ERROR, TANGENT_STEPS = 1e-6, 128
 """Error of the trivial multiplier above which the tangent is made again, and the most steps for it."""
 UNSTABLE = 1e-6
 """How far beyond 1 the modulus of a multiplier is not its error."""
+NEUTRAL = 3e-8
+"""Distance of the largest multiplier from 1 below which a closed orbit says nothing of its amplitude."""
 LEAST_SIZE, LARGEST_SIZE = 0.2, 5.0
 """What Newton's method finds, in units of what it started from: neither rest nor another world."""
 
@@ -51,6 +53,10 @@ class Errors:
 
     def within(self, accuracy: float) -> bool:
         return max(self.period, self.amplitude) <= accuracy and self.balance <= BALANCE
+
+    @property
+    def largest(self) -> float:
+        return max(self.period, self.amplitude, self.balance)
 
     def __add__(self, other: "Errors") -> "Errors":
         return Errors(
@@ -77,11 +83,11 @@ def resolve(beam: Beam, z: Array, period: float, turns: int, accuracy: float) ->
     while orbit is None and steps < MOST_FIRST_STEPS * turns:
         steps *= 2  # Newton's method fails in a stage of a step too long, or of the period map
         orbit = shoot(beam, z, period, steps)
-    if orbit is None or not LEAST_SIZE * size < np.linalg.norm(orbit.state) < LARGEST_SIZE * size:
-        return None
-    if not stable(orbit):
+    if orbit is None or drifted(orbit, size) or not stable(orbit) or 1 - orbit.tangent.largest < NEUTRAL:
         return None
     orbit, space = _in_space(orbit, accuracy / 2, MOST_STEPS * turns // 2)
+    if drifted(orbit, size):
+        return None
     found = _in_time(orbit, space, accuracy, MOST_STEPS * turns)
     return found if stable(found.orbit) else None
 
@@ -92,31 +98,46 @@ def stable(orbit: Orbit) -> bool:
 
 
 def _in_space(orbit: Orbit, accuracy: float, most_steps: int) -> tuple[Orbit, Errors]:
-    """The orbit on the first mesh whose numbers the next one leaves alone, and what that one changes."""
+    """The orbit on the first mesh whose numbers the next one leaves alone, and what that one changes.
+
+    Where a finer mesh no longer changes less, what is left is of time: the steps are doubled.
+    """
     here = measure(orbit.beam, orbit.run)
-    errors = Errors(np.inf, np.inf, np.inf)
+    errors, size = Errors(np.inf, np.inf, np.inf), float(np.linalg.norm(orbit.state))
+    last = np.inf
     while (grid := finer(orbit.beam.mesh)).unknowns <= MOST_UNKNOWNS:
         fine = _on_mesh(orbit, grid)
         if fine is None:  # the finer mesh is stiffer and needs shorter steps
+            stagnates = True
+        else:
+            there = measure(fine.beam, fine.run)
+            errors = difference(here, there)
+            if replace(errors, balance=2 * errors.balance).within(accuracy):
+                break
+            stagnates = errors.largest > last / 2
+            orbit, here, last = fine, there, errors.largest
+        if stagnates:
             shorter = shoot(orbit.beam, orbit.state, orbit.period, 2 * orbit.steps, orbit.tangent)
             if shorter is None or shorter.steps > most_steps:
                 break
-            orbit, here = shorter, measure(orbit.beam, shorter.run)
-            continue
-        there = measure(fine.beam, fine.run)
-        errors = difference(here, there)
-        if replace(errors, balance=2 * errors.balance).within(accuracy):
-            break
-        orbit, here = fine, there
+            orbit, here, last = shorter, measure(orbit.beam, shorter.run), np.inf
+        if drifted(orbit, size):
+            return orbit, Errors(np.inf, np.inf, np.inf)
     return orbit, errors
+
+
+def drifted(orbit: Orbit, size: float) -> bool:
+    """Whether Newton's method went to rest or to another world from a state of that size."""
+    return not LEAST_SIZE * size < np.linalg.norm(orbit.state) < LARGEST_SIZE * size
 
 
 def _in_time(orbit: Orbit, space: Errors, accuracy: float, most_steps: int) -> Resolved:
     """The orbit with steps so small that the errors of space and time together are within the accuracy."""
     best = Resolved(orbit, measure(orbit.beam, orbit.run), Errors(np.inf, np.inf, np.inf))
+    size = float(np.linalg.norm(orbit.state))
     while 2 * orbit.steps <= most_steps:
         finer_orbit = shoot(orbit.beam, orbit.state, orbit.period, 2 * orbit.steps, orbit.tangent)
-        if finer_orbit is None:
+        if finer_orbit is None or drifted(finer_orbit, size):
             break
         orbit = finer_orbit
         if orbit.tangent.trivial_error > TANGENT_ERROR and orbit.steps <= TANGENT_STEPS:
