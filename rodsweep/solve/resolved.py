@@ -134,7 +134,7 @@ def drifted(orbit: Orbit, size: float) -> bool:
 def _in_time(orbit: Orbit, space: Errors, accuracy: float, most_steps: int) -> Resolved:
     """The orbit with steps so small that the errors of space and time together are within the accuracy."""
     best = Resolved(orbit, measure(orbit.beam, orbit.run), Errors(np.inf, np.inf, np.inf))
-    size = float(np.linalg.norm(orbit.state))
+    size, last = float(np.linalg.norm(orbit.state)), np.inf
     while 2 * orbit.steps <= most_steps:
         finer_orbit = shoot(orbit.beam, orbit.state, orbit.period, 2 * orbit.steps, orbit.tangent)
         if finer_orbit is None or drifted(finer_orbit, size):
@@ -143,12 +143,20 @@ def _in_time(orbit: Orbit, space: Errors, accuracy: float, most_steps: int) -> R
         if orbit.tangent.trivial_error > TANGENT_ERROR and orbit.steps <= TANGENT_STEPS:
             orbit = replace(orbit, tangent=tangent(orbit.beam, orbit.run))
         here = measure(orbit.beam, orbit.run)
-        change, share = difference(best.measures, here), 1 / (2**REDUCED_ORDER - 1)
+        change = difference(best.measures, here)
+        share, last = _left(change.largest, last), change.largest
         time = Errors(change.period * share, change.amplitude * share, abs(here.energy_imbalance))
         best = Resolved(orbit, here, space + replace(time, balance=0.0))
         if replace(best.errors, balance=time.balance).within(accuracy):
             break
     return best
+
+
+def _left(change: float, last: float) -> float:
+    """Error that is left, in units of the last change: by the ratio of two changes, or by the least order."""
+    ratio = change / last if last > 0 else 0.0
+    seen = min(ratio / (1 - ratio), 1.0) if ratio < 1 else 1.0
+    return max(seen, 1 / (2**REDUCED_ORDER - 1))
 
 
 def difference(a: Measures, b: Measures) -> Errors:
