@@ -387,3 +387,19 @@ def test_thresholds_of_the_paper_are_found_from_the_command_line(command):
     assert v["F_hopf"][1, 0, 0] == pytest.approx(49.7580049161915, rel=1e-9)
     assert v["F_restabilization"][1, 0, 0] == pytest.approx(155.600159298791, rel=1e-9)
     assert v["restabilization_frequency"][1, 0, 0] == pytest.approx(3367.28095760, rel=1e-9)
+
+
+def test_crossings_beyond_a_full_list_count_as_untraced(command):
+    """Their curves may be missing, and the file says so."""
+    command.write(
+        "c.yaml",
+        "task: phase_diagram\nparameters: {F: [0, 150], k1: [170, 200], k2: 1.0e4, gamma3: 1.0e-4}\n",
+    )
+    untraced = []
+    for most in (16, 1):
+        words = "--fresh", "--set", f"phase_diagram.crossings={most}"
+        assert command("run", "c.yaml", *words).returncode == (most == 1)
+        v = read_view(command.directory / "c.h5").variables
+        assert v["crossing_count"].ravel().tolist() == [3, 2]  # at k1 = 170 the window closes before 150
+        untraced.append(int(v["curves_untraced"]))
+    assert untraced == [0, 3]

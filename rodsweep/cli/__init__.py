@@ -158,6 +158,8 @@ def main() -> None:
     except EnvironmentLacks as error:
         code, message = 3, str(error)
     except OSError as error:  # a name too long, a directory that may not be looked into
+        if error.filename is None:
+            raise
         code, message = 3, f"{error.filename}: {error.strerror}"
     if message and _speaks():
         click.echo(f"rodsweep: {message}", err=True)

@@ -85,18 +85,19 @@ def quiet_radius(path: Path, start: float, stop: float, largest: float) -> float
     pull = max(max(-F * (nu + F * c2) for F, nu, c2, _ in ends) + span * max(abs(b[2]) for b in bends), 0.0)
     if all(F >= 0 and nu + F * c2 >= 0 for F, nu, c2, _ in ends):
         pull = 0.0  # a product of two factors that are linear, or one of which does not change
-    r = largest
-    while _departure(r, T, X, G, pull) >= QUIET:
-        r /= 2
-    return r
+    return _quiet(largest, T, X, G, pull)
 
 
 def quiet_radius_of(coefficients: Coefficients, largest: float) -> float:
     """`quiet_radius` of a single rod."""
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
-    r = largest
-    while _departure(r, c2 + gamma3, c2 * gamma3, abs(g * nu), max(-F * g, 0.0)) >= QUIET:
+    return _quiet(largest, c2 + gamma3, c2 * gamma3, abs(g * nu), max(-F * g, 0.0))
+
+
+def _quiet(r: float, T: float, X: float, G: float, pull: float) -> float:
+    """r, halved until D is near 1 up to there; 0 where numbers underflow."""
+    while _departure(r, T, X, G, pull) >= QUIET:
         r /= 2
     return r
 

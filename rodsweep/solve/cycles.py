@@ -36,7 +36,8 @@ EXPECTED_MODES = 3
 FOLDS = 2.5
 """Largest wave number of a cycle in units of sqrt(F), the inverse of the length to which F bends a rod."""
 KNOWN_PERIOD, KNOWN_WITHIN = 0.04204870, 1e-3
-"""Period in tau2 of the rod (40, 1e4, 1e2, 1e-2, 1), and how far off it may come out at that accuracy."""
+"""Period in tau2 of the rod (40, 1e4, 1e2, 1e-2, 1), which a displacement-form code confirms, and how far
+off it may come out at the accuracy that is asked of it here."""
 STATE_NODES = 65
 """Lobatto nodes on which a state is handed to a neighbour."""
 

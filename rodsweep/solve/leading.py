@@ -30,7 +30,9 @@ EXPLAINED = 0.25
 CLOSEST, CLOSEST_NEAR_ZERO = 2e-4, 1e-9
 """Distance of anchors, in units of the path, below which no more are put between; and where two changes
 may hide between them."""
-MOST_SECANTS = 60
+MOST_STEPS = 60
+CARRIED = 8
+"""Steps in which an eigenvalue is carried from an anchor to the middle between two."""
 
 
 class Untraceable(Exception):
@@ -126,7 +128,7 @@ class Tracer:
                 if share == 0.0:
                     continue
                 if b - a <= (CLOSEST_NEAR_ZERO if hides else CLOSEST) * length:
-                    self.proved = self.proved and not hides
+                    self.proved = False
                     continue
             else:
                 change = self._between(left, right)
@@ -169,18 +171,15 @@ class Tracer:
         return None if math.isnan(p) else Change(p, error, x, 0.0, to_pair, True)
 
     def _overtaking(self, pair: Anchor, real: Anchor, to_pair: bool) -> Change | None:
-        """Regula falsi on the lead of the real eigenvalue over the pair."""
-        if any(w.imag == 0 for w in pair.w) and any(w.imag != 0 for w in real.w):
-            return self._level(pair, real, to_pair)
-        return None
-
-    def _level(self, pair: Anchor, real: Anchor, to_pair: bool) -> Change | None:
+        """Newton's method on the lead of the real eigenvalue over the pair, each followed by its own."""
+        if all(w.imag != 0 for w in pair.w) or all(w.imag == 0 for w in real.w):
+            return None  # there is nothing of the other kind to overtake
         w_real, w_pair = complex(real.w[0]), complex(pair.w[0])
         p, ends = (pair.p + real.p) / 2, sorted((pair.p, real.p))
         # Start each eigenvalue from the anchor where it leads and carry it to the middle.
         w_real = self._carried(w_real, real.p, p)
         w_pair = self._carried(w_pair, pair.p, p)
-        for _ in range(MOST_SECANTS):
+        for _ in range(MOST_STEPS):
             coefficients = coefficients_at(p, self.path.origin, self.path.direction)
             w_real, s_real, e_real = eigenvalue_newton(w_real, coefficients, self.path.direction)
             w_pair, s_pair, e_pair = eigenvalue_newton(w_pair, coefficients, self.path.direction)
@@ -201,12 +200,11 @@ class Tracer:
 
     def _carried(self, w: complex, start: float, stop: float) -> complex:
         """An eigenvalue followed from p = start to stop in small steps."""
-        steps = 8
         p = start
-        for i in range(1, steps + 1):
+        for i in range(1, CARRIED + 1):
             coefficients = coefficients_at(p, self.path.origin, self.path.direction)
             w, slope, _ = eigenvalue_newton(w, coefficients, self.path.direction)
-            following = start + (stop - start) * i / steps
+            following = start + (stop - start) * i / CARRIED
             real = w.imag == 0
             w = w + slope * (following - p)
             w = complex(w.real, 0.0) if real else w

@@ -40,7 +40,7 @@ SENTENCES = {
     ),
     ThresholdStatus.not_certified: (
         "the changes are accurate, but a count of the unstable modes between them could not be decided or "
-        "does not agree; `certify: false` accepts that"
+        "does not agree, or it is not proved which eigenvalue leads; `certify: false` accepts that"
     ),
     ThresholdStatus.window_open: (
         "within the open range two crossings are about to meet, so it is undecided whether a window of "

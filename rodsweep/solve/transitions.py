@@ -66,6 +66,8 @@ def transitions(path: Path, start: float, stop: float, certify: bool = True) -> 
         edges = sorted({*edges, *(p for p in near if low < p < high)})
     else:
         counts.doubts.append("the leading eigenvalue is not the pair that crosses the axis")
+    if certify and not tracer.proved:
+        counts.doubts.append("it is not proved which eigenvalue leads everywhere")
     known = all(number >= 0 for number in (unstable, at_end, *(c.unstable_after for c in crossings)))
     return Transitions(
         crossings,
@@ -73,7 +75,7 @@ def transitions(path: Path, start: float, stop: float, certify: bool = True) -> 
         unstable,
         at_end,
         oscillates,
-        certify and not gaps and not counts.doubts and known and tracer.proved,
+        certify and not gaps and not counts.doubts and known,
         examined,
         tracer.solves,
         "; ".join(counts.doubts),

@@ -1,7 +1,7 @@
 """The task phase_diagram: what the rod does over two parameters, row by row."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -98,6 +98,9 @@ class PhaseDiagramTask:
         ]
         found = curves_through(plane, [seed for seed in seeds if seed is not None])
         variables = curve_variables(line, row)
+        # Where a list is full its last crossings are not stored, and no curve starts from them.
+        cut = view.variables["crossing_count"].ravel() - np.count_nonzero(kind, axis=1)
+        found = replace(found, untraced=found.untraced + int(cut[np.isfinite(rows)].clip(min=0).sum()))
         values = curve_record(found, line, row) | (self._partial_beam() if {line, row} == {"F", "k1"} else {})
         return [(variables[name], np.asarray(value)) for name, value in values.items()]
 
