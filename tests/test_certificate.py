@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from rodsweep.model.bounds import eigenvalue_box
+from rodsweep.model.determinant import scaled_determinant
 from rodsweep.model.rod import Rod
-from rodsweep.solve.certificate import count_right_of
+from rodsweep.solve.certificate import MOST_NODES, count_right_of, phase_change, stepped_change
+from rodsweep.solve.dominance import dominant_factors, dominated
 
 CROWDED = Rod(2000.0, 1e4, 1e4, 1e-4)
 
@@ -83,3 +85,67 @@ def test_box_is_nearly_sharp():
     """At k1 = k2 = 1e4, gamma3 = 1e-4, F = 2000 the rightmost eigenvalue has real part 965025.548182."""
     real, _ = eigenvalue_box(CROWDED)
     assert 965025 < real < 1.05e6
+
+
+def random_rods(count):
+    rng = np.random.default_rng(2718)
+    for _ in range(count):
+        k1, k2 = (10 ** rng.uniform(0, 12) if rng.random() < 0.8 else np.inf for _ in range(2))
+        gamma3 = 10 ** rng.uniform(-14, 2) if rng.random() < 0.8 else 0.0
+        force = rng.uniform(0, min(k1, 10 ** rng.uniform(0, 3.5)))
+        yield rng, Rod(force if rng.random() < 0.85 else -(10 ** rng.uniform(-2, 3)), k1, k2, gamma3)
+
+
+def test_where_one_exponential_is_said_to_outweigh_the_rest_it_does():
+    """|e| < 1 in D = A (1 + e), and the phase of what A is made of turns by less than a right angle."""
+    proved = 0
+    for rng, rod in random_rods(1000):
+        for _ in range(10):
+            w = 10 ** rng.uniform(0, 7) * np.exp(1j * rng.uniform(0, np.pi))
+            rho = abs(w) * rng.choice([0.25, 0.12, 0.06, 0.02])
+            if not dominated(w, rho, rod.coefficients):
+                continue
+            proved += 1
+            factor_here, root_here = dominant_factors(w, rod.coefficients)
+            for angle in rng.uniform(0, 2 * np.pi, 4):
+                there = w + rho * np.exp(1j * angle)
+                factor, root = dominant_factors(there, rod.coefficients)
+                D, _, S, _ = scaled_determinant(there, rod.coefficients)
+                A = factor / 4 * np.exp(1j * root.imag + root.real - S)
+                assert abs(D / A - 1) < 1, (rod, w, rho)
+                assert abs(np.angle(factor / factor_here)) < np.pi / 2
+                assert (root * np.conj(root_here)).real > 0
+    assert proved > 4000
+
+
+def test_long_strides_give_the_phase_of_short_steps():
+    for rng, rod in random_rods(400):
+        if rod.F < 0:
+            continue
+        real, imag = eigenvalue_box(rod, 1.0)
+        corner, end = complex(real, imag), complex(-(10 ** rng.uniform(0, 4)), imag)
+        for start, stop in ((complex(real, 0.0), corner), (end, corner)):
+            change, used = phase_change(start, stop, rod.coefficients, MOST_NODES)
+            stepped, nodes = stepped_change(start, stop, rod.coefficients, MOST_NODES)
+            assert (used > 0) == (nodes > 0)
+            assert change == pytest.approx(stepped, abs=1e-9), rod
+
+
+def test_few_nodes_suffice_on_the_paper_s_rods():
+    nodes = [
+        count_right_of(-3000.0, Rod(force, k1, k2, gamma3)).nodes
+        for k1, k2, gamma3, top in ((1e4, 1e4, 1e-4, 60), (1e4, 1e2, 1e-2, 45), (2e2, 1e4, 1e-4, 180))
+        for force in np.linspace(0.1, 1.0, 5) * top
+    ]
+    assert np.median(nodes) < 40
+
+
+def test_nothing_outweighs_between_the_eigenvalues(reference_spectra):
+    """A disc that contains an eigenvalue is never said to be dominated."""
+    for point in reference_spectra:
+        rod, w = rod_and_eigenvalues(point)
+        for root in w:
+            for rho in (0.01, 0.1, 0.3):
+                for turn in (1, 1j, -1, -1j):
+                    centre = root + 0.99 * rho * abs(root) * turn
+                    assert not dominated(centre, rho * abs(root), rod.coefficients)

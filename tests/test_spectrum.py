@@ -47,54 +47,44 @@ def test_pushed_rods_to_twelve_digits_none_missed_none_invented(reference_spectr
     assert short <= 12
 
 
-def test_pulled_rods_say_how_accurate_they_are(reference_spectra):
-    """F < 0 loses digits like exp(sqrt |F|), because an eigenvalue becomes exponentially small.
-
-    What is given is right within ten error estimates, or withheld.
-    """
+def test_pulled_rods_lose_no_digit(reference_spectra):
+    """F < 0 makes the first eigenvalue exponentially small: the mesh loses it in rounding, D does not."""
     for point in reference_spectra:
         rod = rod_of(point)
-        if rod.F >= 0 or rod.F < -60:
+        if rod.F >= 0:
             continue
-        result = solve_spectrum(rod, SpectrumRequest(4, 1e-8, True))
-        allowed = {Status.ok, Status.not_certified}
-        if rod.g < 0:  # beyond the shear stiffness, where layers of width sqrt(gamma3) form
-            allowed.add(Status.accuracy_not_reached)
-        assert result.status in allowed, (rod, result.status.name)
+        result = solve_spectrum(rod, TIGHT)
+        # A pull beyond the shear stiffness without rotational drag has no a-priori bound.
+        assert result.status in ({Status.ok} if rod.g > 0 or rod.gamma3 > 0 else {Status.not_certified}), rod
         exact = leading(point, 4)
-        error = np.abs(result.eigenvalues - exact)
-        assert (error <= 10 * result.error_estimate + 1e-13 * np.abs(exact)).all(), rod
+        assert (np.abs(result.eigenvalues - exact) < 1e-13 * np.abs(exact)).all(), rod
         assert result.unstable_count == point["unstable"], rod
 
 
 def test_error_estimate_is_the_error_within_a_factor_of_ten(reference_spectra):
+    """Where the error is more than a few units in the last place; below it is never underestimated."""
     compared = 0
-    for point in reference_spectra[::3]:
-        rod = rod_of(point)
-        result = solve_spectrum(rod, SpectrumRequest(4, 1e-5, True))
-        if not result.certified:
-            continue
-        exact = leading(point, 4)
-        error = np.abs(result.eigenvalues - exact)
-        visible = error > 1e-13 * np.abs(exact)
-        ratio = result.error_estimate[visible] / error[visible]
-        assert ((ratio > 0.1) & (ratio < 10)).all(), (rod, ratio)
+    for point in reference_spectra:
+        result = solve_spectrum(rod_of(point), SpectrumRequest(4, 1e-5, True))
+        exact = [mp.mpc(*parts) for parts in point["eigenvalues"][:4]]
+        pairs = zip(map(complex, result.eigenvalues), exact, strict=True)
+        error = np.array([float(abs(w - root)) for w, root in pairs])
+        assert (error <= 10 * result.error_estimate).all(), point
+        visible = error > 4e-15 * np.abs(result.eigenvalues)
+        assert (result.error_estimate[visible] <= 10 * error[visible]).all(), point
         compared += int(visible.sum())
-    assert compared > 200
+    assert compared > 15
 
 
-@pytest.mark.parametrize("accuracy", [1e-4, 1e-7, 1e-10])
-def test_accuracy_asked_for_is_reached_with_few_unknowns(accuracy, reference_spectra):
-    """The mesh follows the accuracy: fewer unknowns for fewer digits, at most 60 on the paper's rods."""
+def test_few_unknowns_suffice_for_every_accuracy(reference_spectra):
+    """The mesh finds the eigenvalues, D gives their digits: 36 unknowns on the paper's rods."""
     rods = [point for point in reference_spectra if point["group"].startswith("c")][::4]
-    unknowns = []
     for point in rods:
-        result = solve_spectrum(rod_of(point), SpectrumRequest(4, accuracy, True))
+        result = solve_spectrum(rod_of(point), TIGHT)
         assert result.status == Status.ok
         exact = leading(point, 4)
-        assert (np.abs(result.eigenvalues - exact) / np.abs(exact)).max() < accuracy
-        unknowns.append(3 * result.elements * result.order)
-    assert max(unknowns) <= {1e-4: 42, 1e-7: 51, 1e-10: 60}[accuracy]
+        assert (np.abs(result.eigenvalues - exact) / np.abs(exact)).max() < 1e-13
+        assert 3 * result.elements * result.order <= 36
 
 
 def test_order_is_descending_real_part_positive_frequency_first(reference_spectra):
@@ -140,13 +130,25 @@ def test_exceptional_point_says_that_digits_are_lost():
     assert result.certified
 
 
-def test_strong_pull_says_that_no_digit_is_left():
-    """F = -1000 makes the first eigenvalue smaller than the rounding of the pencil."""
-    result = solve_spectrum(Rod(-1000.0, 1e4, 1e4, 1e-4), SpectrumRequest(4, 1e-8, True))
-    assert result.status == Status.accuracy_not_reached
-    assert result.error_estimate[0] > 0.1 * abs(result.eigenvalues[0])
-    assert result.unstable_count == -1
-    assert not result.certified
+def test_strong_pull_keeps_its_digits():
+    """F = -1000 makes the first eigenvalue smaller than the rounding of the pencil by far.
+
+    The estimate is a bound of what rounding could do to D, which is worse there than what it does.
+    """
+    rod = Rod(-1000.0, 1e4, 1e4, 1e-4)
+    result = solve_spectrum(rod, SpectrumRequest(4, 1e-8, True))
+    assert (result.status, result.unstable_count, result.certified) == (Status.ok, 0, True)
+    with mp.workdps(60):
+        for w in result.eigenvalues:
+            exact = reference.refine(mp.mpc(complex(w)), rod.F, rod.k1, rod.k2, rod.gamma3)
+            assert abs(exact - complex(w)) < 1e-13 * abs(exact)
+    assert -1.2e-9 < result.eigenvalues[0].real < -1.1e-9
+
+
+def test_pull_without_a_certificate_says_what_the_mesh_could_not_find():
+    result = solve_spectrum(Rod(-1000.0, 1e4, 1e4, 1e-4), SpectrumRequest(4, 1e-8, False))
+    assert result.status in (Status.ok, Status.accuracy_not_reached)
+    assert result.eigenvalues[0] == pytest.approx(-1.126566e-09, rel=1e-6)
 
 
 class Forgetful:
@@ -158,8 +160,8 @@ class Forgetful:
     def __getattr__(self, name):
         return getattr(self.solver, name)
 
-    def solve(self, rod, shift, wanted, accuracy, vectors=False):
-        w, X = self.solver.solve(rod, shift, wanted, accuracy, vectors)
+    def solve(self, rod, shift, wanted, vectors=False):
+        w, X = self.solver.solve(rod, shift, wanted, vectors)
         if wanted >= self.remembers_from:
             return w, X
         kept = w.real < w.real.max() - 1e-6 * abs(w.real.max())

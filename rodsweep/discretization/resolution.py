@@ -12,6 +12,8 @@ ORDER_INTERCEPT, ORDER_SLOPE = 4.0, 0.49
 DIGIT_INTERCEPT, DIGIT_SLOPE, DIGIT_SLOPE_END = 0.7, 0.02, 35.0
 BASE_DIGITS = 4
 WAVE_FACTOR, MODE_OFFSET = 1.4, 0.3
+START_ACCURACY = 1e-4
+"""Relative accuracy of a mesh whose eigenvalues are refined on D."""
 LARGEST_ORDER = 32
 """Order beyond which another element costs less than a higher order."""
 SMALLEST_ORDER = 6
@@ -41,8 +43,12 @@ def expected_wave_number(modes: int, most_amplified: float) -> float:
 
 
 def mesh_accuracy(accuracy: float, vectors: bool) -> float:
-    """Accuracy of the eigenvalues that a mesh has to reach: a vector's error is the square root of it."""
-    return accuracy**2 if vectors else accuracy
+    """Relative accuracy of the eigenvalues that a mesh is chosen for.
+
+    A vector is the mesh's own, and its error is the square root of it. Eigenvalues alone only begin on
+    the mesh and are refined on D, whatever their accuracy.
+    """
+    return accuracy**2 if vectors else START_ACCURACY
 
 
 def required_order(wave_number: float, accuracy: float) -> float:

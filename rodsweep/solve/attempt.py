@@ -1,62 +1,45 @@
-"""One attempt at a rod's leading eigenvalues, and its two judges, which know nothing of meshes.
+"""One attempt at a rod's leading eigenvalues, and its judge, which knows nothing of meshes.
 
-The Newton correction of D at each eigenvalue judges the mesh; the winding number of D judges whether
-one is missing. What to do about it is `rodsweep.solve.spectrum`'s to decide.
+A mesh finds them, Newton's method on D refines them, the winding number of D judges whether one is
+missing. What to do about it is `rodsweep.solve.spectrum`'s to decide.
 """
 
-import math
 from dataclasses import dataclass
 from math import sqrt
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..discretization.resolution import Resolution
-from ..model.bounds import box_of, squared_amplification
-from ..model.compilation import compiled
-from ..model.determinant import newton_correction
-from ..model.rod import Coefficients, Rod
+from ..model.bounds import squared_amplification
+from ..model.rod import Rod
 from .certificate import Count, count_right_of
 from .eigenpairs import eigen_solver
+from .polish import roots
 
-A_ROOT = 1e-2
-"""Newton correction, in units of the length over which D changes, that still stands for a root of D."""
 WAVES_A_NODE = 2.0
 """Largest |q| of an eigenvalue, in units of the nodes, that a mesh can stand for."""
-REAL_BELOW = 1e-14
-"""Relative imaginary part below which an eigenvalue is real: what rounding leaves of zero."""
 WIDE_GAP = 0.05
 """Relative gap between two real parts that is wide enough to draw a line through."""
 NO_GAP = 1e-6
 """Relative gap below which two real parts count as equal."""
 MOST_LINES = 3
 """Lines tried before the count is given up."""
-ON_THE_AXIS = 1e-13
-"""Relative real part below which an eigenvalue is on the imaginary axis whatever its error estimate."""
-
-
-class Wish(Protocol):
-    """The part of a request that an attempt needs."""
-
-    @property
-    def accuracy(self) -> float: ...
-
-    @property
-    def vector_nodes(self) -> int: ...
 
 
 @dataclass(frozen=True, slots=True)
 class Found:
     """What one attempt found and what stands for a root of D: sorted as `rodsweep.model` states.
 
-    w: complex, shape (k,); error: |D/D'| at each, wave: largest |q| of each, on_the_axis: whether it
-    lies on the imaginary axis within its error, shape (k,); vectors: shape (unknowns, k), or None.
+    w: complex, shape (k,); error: |D/D'| at each, displacement: how far off the mesh was, in units of |w|
+    or of the length over which D changes, wave: largest |q|, on_the_axis: whether it lies on the imaginary
+    axis within its error, shape (k,); vectors: the mesh's, shape (unknowns, k), or None.
     """
 
     resolution: Resolution
     w: NDArray[np.complex128]
     error: NDArray[np.float64]
+    displacement: NDArray[np.float64]
     wave: NDArray[np.float64]
     on_the_axis: NDArray[np.bool_]
     vectors: NDArray[np.complex128] | None
@@ -64,6 +47,10 @@ class Found:
     def worst(self, modes: int) -> float:
         """Largest relative error estimate of the leading modes."""
         return float((self.error[:modes] / np.abs(self.w[:modes])).max())
+
+    def coarseness(self, modes: int) -> float:
+        """Largest displacement of the leading modes."""
+        return float(self.displacement[:modes].max())
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,52 +67,16 @@ class Verdict:
         return self.clear and self.count.number == self.here
 
 
-def attempt(rod: Rod, resolution: Resolution, wanted: int, shift: float, request: Wish) -> Found:
-    """The eigenvalues nearest the shift, at least `wanted` where they converge, without impostors.
-
-    Rounding makes infinite eigenvalues finite: they are recognised by their size, because they lie
-    outside the a-priori box or beyond what the mesh can resolve.
-    """
+def attempt(rod: Rod, resolution: Resolution, wanted: int, shift: float, vectors: bool) -> Found:
+    """The eigenvalues nearest the shift, at least `wanted` where they converge, without impostors."""
     solver = eigen_solver(resolution)
-    w, X = solver.solve(rod, shift, wanted, request.accuracy, request.vector_nodes > 0)
+    raw, X = solver.solve(rod, shift, wanted, vectors)
     most_waves = WAVES_A_NODE * solver.pencil.nodes
-    order, w, error, wave, axis = _roots(w, rod.coefficients, sqrt(squared_amplification(rod)), most_waves)
-    return Found(resolution, w, error, wave, axis, None if X is None else X[:, order])
-
-
-@compiled
-def _roots(
-    w: NDArray[np.complex128], coefficients: Coefficients, amplification: float, most_waves: float
-) -> tuple[NDArray, NDArray, NDArray, NDArray, NDArray]:
-    """(indices, w, error, wave number, on the axis) of those w that stand for a root of D, sorted."""
-    error = np.empty(len(w))
-    wave = np.empty(len(w))
-    keep = []
-    for i in range(len(w)):
-        if not (math.isfinite(w[i].real) and math.isfinite(w[i].imag)):
-            continue
-        if abs(w[i].imag) <= REAL_BELOW * abs(w[i]):
-            w[i] = complex(w[i].real, 0.0)
-        error[i], length, wave[i] = newton_correction(w[i], coefficients)
-        real, imag = box_of(amplification, max(-w[i].real, 0.0))
-        inside = w[i].real <= real and abs(w[i].imag) <= imag
-        if error[i] <= A_ROOT * length and inside and wave[i] <= most_waves:
-            keep.append(i)
-    order = np.array(keep, dtype=np.int64)
-    for n in range(1, len(order)):  # insertion: descending real part, then descending frequency
-        i, at = order[n], n
-        while at > 0:
-            j = order[at - 1]
-            if w[j].real > w[i].real or (w[j].real == w[i].real and w[j].imag >= w[i].imag):
-                break
-            order[at] = j
-            at -= 1
-        order[at] = i
-    w, error, wave = w[order], error[order], wave[order]
-    axis = np.empty(len(order), dtype=np.bool_)
-    for n in range(len(order)):
-        axis[n] = abs(w[n].real) <= max(4 * error[n], ON_THE_AXIS * abs(w[n]))
-    return order, w, error, wave, axis
+    order, w, error, displacement, wave, axis = roots(
+        raw, rod.coefficients, sqrt(squared_amplification(rod)), most_waves
+    )
+    kept = None if X is None else X[:, order]
+    return Found(resolution, w, error, displacement, wave, axis, kept)
 
 
 def judge(rod: Rod, found: Found, modes: int) -> Verdict:

@@ -4,7 +4,8 @@ All eigenvalues with Re w >= -depth lie in the box of `rodsweep.model.bounds`, s
 the winding number of the entire function D around it. D is real on the real axis, so the upper half
 of the box suffices: count = (change of arg D along it)/pi.
 
-The change of phase from one node to the next is proved, not presumed. About a node c the function
+The change of phase is proved, not presumed: where one exponential of D outweighs the others in long strides
+(`rodsweep.solve.dominance`), elsewhere from node to node. About a node c the function
 f(w) = D(w) exp(-L (w - c)), L = D'(c)/D(c), has f'(c) = 0, so by Cauchy's estimate on the disc of
 radius rho, where |f| <= M,
 
@@ -26,13 +27,20 @@ from ..model.compilation import compiled
 from ..model.determinant import branches, scaled_determinant
 from ..model.rod import Coefficients, Rod
 from .discs import CLEARANCE, ROUNDING_OF_D, bound_on_bidisc
+from .dominance import dominated_stretch
 
 STILL = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """The changes along no path: a bound for one rod."""
+WIDE, WIDER, TALL = 4.0, 50.0, 0.5
+"""Factor on the width of the box, width added to it, and its least height in units of the line's distance:
+farther out one exponential of D outweighs the rest, and larger is cheaper."""
+PATIENCE = 0.25
+"""Length, in units of |w|, of what is walked node by node before larger discs are tried again; doubled where
+they fail again."""
 SMALLEST_REACH = 1e-13
 """Reach in units of |w| below which the line is taken to run through a zero of D."""
 MOST_NODES = 20_000
-"""Nodes on one edge before the count is given up; the paper's rods need about 150."""
+"""Nodes on one edge before the count is given up; the paper's rods need about 30 in all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +101,35 @@ def phase_change(
     """(change of arg D along the segment, nodes used); the nodes are negative where it failed."""
     length = abs(end - start)
     direction = (end - start) / length
+    t, total, nodes = 0.0, 0.0, 0
+    patience = PATIENCE
+    while t < length:
+        w = start + direction * t
+        ahead, change, discs = dominated_stretch(w, direction, length - t, coefficients)
+        total += change
+        nodes += discs
+        patience = PATIENCE if ahead > 0 else 2 * patience
+        t = length if ahead == length - t else t + ahead
+        if t < length:
+            w = start + direction * t
+            goal = min(length, t + patience * abs(w))
+            to = end if goal == length else start + direction * goal
+            change, used = stepped_change(w, to, coefficients, most_nodes)
+            nodes += abs(used)
+            if used < 0 or nodes > most_nodes:
+                return 0.0, -nodes
+            total += change
+            t = goal
+    return total, nodes
+
+
+@compiled
+def stepped_change(
+    start: complex, end: complex, coefficients: Coefficients, most_nodes: int
+) -> tuple[float, int]:
+    """(change of arg D along the segment, nodes used); the nodes are negative where it failed."""
+    length = abs(end - start)
+    direction = (end - start) / length
     t = 0.0
     D, L, r = reach(start, coefficients)
     w = start
@@ -134,6 +171,7 @@ def count_right_of(line: float, rod: Rod) -> Count:
         if foot == 0.0:
             return Count(None, 0, "the pull is so strong that numbers underflow")
         total = -cmath.phase(scaled_determinant(complex(0.0, foot), rod.coefficients)[0])
+    real, imag = WIDE * real + WIDER, max(imag, TALL * abs(line))
     corners = (complex(real, 0), complex(real, imag), complex(line, imag), complex(line, foot))
     for start, end in zip(corners[:-1], corners[1:], strict=True):
         if start == end:  # D is near 1 all along the line

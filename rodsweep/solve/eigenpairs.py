@@ -20,11 +20,10 @@ from .petsc import PETSc, SLEPc, sparse_package
 
 DENSE_UP_TO = 300
 """Unknowns up to which the dense factorisation is no slower than a sparse one; it rounds less."""
-KRYLOV_SHARE = 1e-2
-"""Krylov tolerance in units of the accuracy: the discretisation is to be the only error."""
-LEAST_TOLERANCE, LARGEST_TOLERANCE = 1e-14, 1e-12
-KRYLOV_SPARE = 13
-"""Krylov vectors beyond the wanted eigenvalues: with fewer the shearable rods need a restart."""
+START_TOLERANCE, START_SPARE = 1e-6, 7
+"""Krylov tolerance, and Krylov vectors beyond the wanted eigenvalues, where these are refined on D."""
+VECTOR_TOLERANCE, VECTOR_SPARE = 1e-14, 13
+"""The same where vectors are wanted, which nothing refines: the mesh is to be their only error."""
 MOST_RESTARTS = 200
 PREFIX = "spectrum_"
 """Prefix of the PETSc options that override this solver, as in -spectrum_eps_ncv 32."""
@@ -75,7 +74,7 @@ class EigenSolver:
         return eps
 
     def solve(
-        self, rod: Rod, shift: float, wanted: int, accuracy: float, vectors: bool = False
+        self, rod: Rod, shift: float, wanted: int, vectors: bool = False
     ) -> tuple[NDArray[np.complex128], NDArray[np.complex128] | None]:
         """(w, X): at least `wanted` eigenvalues nearest the shift where they converge, unsorted.
 
@@ -97,8 +96,8 @@ class EigenSolver:
         self.A.assemble()
         self.eps.setOperators(self.A, self.B)
         wanted = min(wanted, self.pencil.unknowns - 2)
-        krylov = self.users_krylov or max(2 * wanted, wanted + KRYLOV_SPARE)
-        tolerance = min(max(KRYLOV_SHARE * accuracy, LEAST_TOLERANCE), LARGEST_TOLERANCE)
+        spare, tolerance = (VECTOR_SPARE, VECTOR_TOLERANCE) if vectors else (START_SPARE, START_TOLERANCE)
+        krylov = self.users_krylov or max(2 * wanted, wanted + spare)
         self.eps.setTolerances(self.users_tolerance or tolerance, MOST_RESTARTS)
         krylov = min(krylov, self.pencil.unknowns)
         self.eps.setDimensions(wanted, krylov, krylov)

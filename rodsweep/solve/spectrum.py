@@ -1,11 +1,13 @@
 """The leading eigenvalues of one rod: as few unknowns as the accuracy needs, none missed.
 
 One attempt (`rodsweep.solve.attempt`) solves at a resolution, about a shift, for a number of
-eigenvalues; its judges decide what to change next, and both must agree before a point is ok.
+eigenvalues, and refines them on D. How far the mesh was off, the error that is left and the count decide
+what to change next; all must be in order before a point is ok.
 """
 
 import time
 from dataclasses import dataclass, replace
+from math import isfinite
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +21,7 @@ from ..discretization.resolution import (
     mesh_accuracy,
     resolution_for,
 )
+from ..model.bounds import squared_amplification
 from ..model.dispersion import most_amplified_wave
 from ..model.rod import Rod
 from .attempt import Found, Verdict, attempt, judge
@@ -35,6 +38,9 @@ STALLED = 2
 """Refinements without a better error after which rounding, not the mesh, is taken as the limit."""
 SAFETY, STALLED_SAFETY = 0.5, 0.8
 """Share of the accuracy that the error estimate may use up, being an estimate; more where rounding stalls."""
+LARGEST_DISPLACEMENT, UNBOUNDED_DISPLACEMENT = 1e-3, 1e-6
+"""Relative displacement of a mesh's eigenvalues from the roots of D that they lead to, beyond which it may
+have missed what it was to find; where no bound holds its convergence is the only witness."""
 NO_TIP = 1e-10
 """Y(1) in units of the largest value, below which a vector cannot be scaled by it."""
 
@@ -48,11 +54,6 @@ class SpectrumRequest:
     certify: bool
     vector_nodes: int = 0
     """Number of Lobatto nodes on which (Y, Theta) are wanted; 0 for none."""
-
-    @property
-    def mesh_accuracy(self) -> float:
-        """What the mesh is chosen for."""
-        return mesh_accuracy(self.accuracy, self.vector_nodes > 0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,15 +105,17 @@ def warm_up() -> None:
 def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
     growth, wave = most_amplified_wave(rod)
     shift = SHIFT_ABOVE_GROWTH * growth
-    resolution = resolution_for(expected_wave_number(request.modes, wave), request.mesh_accuracy)
+    bounded = isfinite(squared_amplification(rod))
+    aim = mesh_accuracy(request.accuracy, request.vector_nodes > 0) if bounded else request.accuracy
+    resolution = resolution_for(expected_wave_number(request.modes, wave), aim)
     wanted = request.modes
-    best: tuple[Found, Verdict | None] | None = None
+    best: tuple[float, Found, Verdict | None] | None = None
     lost: Verdict | None = None
     stalled = 0
     for _ in range(MOST_ATTEMPTS):
         if resolution.unknowns > MOST_UNKNOWNS:
             break
-        found = attempt(rod, resolution, wanted, shift, request)
+        found = attempt(rod, resolution, wanted, shift, request.vector_nodes > 0)
         if len(found.w) < request.modes:
             # Either too few converged, or what converged stands for no root yet: do both more.
             wanted, resolution = wanted + request.modes, finer(resolution)
@@ -122,21 +125,37 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
             lost = verdict
             wanted, resolution = _search_more(verdict, wanted, resolution)
             continue
-        worst = found.worst(request.modes)
-        stalled = 0 if best is None or worst < 0.5 * best[0].worst(request.modes) else stalled + 1
-        if best is None or worst <= best[0].worst(request.modes):
-            best = found, verdict
-        if worst <= SAFETY * request.accuracy and (stalled >= STALLED or not _blurred(found, request)):
+        short = _shortfall(found, verdict, request, bounded)
+        stalled = 0 if best is None or short < 0.5 * best[0] else stalled + 1
+        if best is None or short <= best[0]:
+            best = short, found, verdict
+        if short <= SAFETY:
             return _result(Status.ok, rod, request, found, verdict)
         if stalled >= STALLED:
             break
-        resolution = _next_resolution(found, request)
+        resolution = _next_resolution(found, request.modes, aim)
     if best is not None:
-        reached = best[0].worst(request.modes) <= STALLED_SAFETY * request.accuracy
-        return _result(Status.ok if reached else Status.accuracy_not_reached, rod, request, *best)
+        short, found, verdict = best
+        status = Status.ok if short <= STALLED_SAFETY else Status.accuracy_not_reached
+        return _result(status, rod, request, found, verdict)
     if lost is not None:
         return _nothing(Status.modes_missing, request, f"the winding number counts {lost.count.number}")
     return _nothing(Status.failed, request, "no mesh within the limit resolves the wanted modes")
+
+
+def _shortfall(found: Found, verdict: Verdict | None, request: SpectrumRequest, bounded: bool) -> float:
+    """The largest of what may be too large, in units of what is allowed.
+
+    Roots of D that the count proves to be all need no witness in the mesh; vectors do, and what no count
+    can prove.
+    """
+    error = found.worst(request.modes) / request.accuracy
+    if verdict is not None and verdict.agrees and not request.vector_nodes:
+        return error
+    allowed = LARGEST_DISPLACEMENT if bounded else UNBOUNDED_DISPLACEMENT
+    return max(
+        error, found.coarseness(request.modes) / (request.accuracy if request.vector_nodes else allowed)
+    )
 
 
 def _search_more(verdict: Verdict, wanted: int, resolution: Resolution) -> tuple[int, Resolution]:
@@ -152,15 +171,9 @@ def _search_more(verdict: Verdict, wanted: int, resolution: Resolution) -> tuple
     return more, resolution
 
 
-def _blurred(found: Found, request: SpectrumRequest) -> bool:
-    """Whether a mode on the imaginary axis is there only because its error is still large."""
-    coarse = found.error > request.accuracy * np.abs(found.w)
-    return bool((found.on_the_axis & coarse).any())
-
-
-def _next_resolution(found: Found, request: SpectrumRequest) -> Resolution:
+def _next_resolution(found: Found, modes: int, mesh_accuracy: float) -> Resolution:
     """A finer mesh: what the wave numbers now known ask for, at least the next finer one."""
-    informed = resolution_for(float(found.wave[: request.modes].max()), request.mesh_accuracy)
+    informed = resolution_for(float(found.wave[:modes].max()), mesh_accuracy)
     least = finer(found.resolution)
     return informed if informed.unknowns >= least.unknowns else least
 

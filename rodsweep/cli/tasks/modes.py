@@ -7,6 +7,7 @@ import numpy as np
 
 from ...config import ModesConfig
 from ...discretization.quadrature import lobatto_points
+from ...discretization.resolution import mesh_accuracy
 from ...model.rod import Rod
 from ...results.layouts import GROWTH
 from ...results.schema import Filled
@@ -53,7 +54,9 @@ class ModesTask:
 
     def cost(self) -> Estimate:
         options = self.config.modes
-        spectra = estimate_spectra(self.points, options.modes, self.config.accuracy, options.certify)
+        spectra = estimate_spectra(
+            self.points, options.modes, mesh_accuracy(self.config.accuracy, False), options.certify
+        )
         return estimate_modes(spectra, self.points.count, options.modes, options.growth)
 
     def solver(self) -> Solver:

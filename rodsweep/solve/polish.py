@@ -1,0 +1,190 @@
+"""From the eigenvalues of a mesh to roots of D: a coarse mesh finds them, Newton's method on D refines them.
+
+A mesh has to be only as fine as Newton's method needs, so that the accuracy of an eigenvalue is that of D
+and costs some evaluations of it. Two eigenvalues that a mesh leaves closer to each other than its errors
+are refined together first, by the quadratic that D is about their middle: it knows whether they are real
+or a pair, which Newton's method from the wrong kind would never find out.
+"""
+
+import cmath
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..model.bounds import box_of
+from ..model.compilation import compiled
+from ..model.determinant import newton_correction, scaled_determinant
+from ..model.rod import Coefficients
+
+A_ROOT = 1e-2
+"""Newton correction, in units of the length over which D changes, that still stands for a root of D."""
+CLOSE_ROOTS = 0.1
+"""The same for one of two that are refined together."""
+CLOSE = 4.0
+"""Distance of two eigenvalues, in units of their corrections, within which they are refined together."""
+REAL_BELOW = 1e-14
+"""Relative imaginary part below which an eigenvalue is real: what rounding leaves of zero."""
+ON_THE_AXIS = 1e-13
+"""Relative real part below which an eigenvalue is on the imaginary axis whatever its error estimate."""
+MOST_STEPS = 12
+DIFFERENCE = 1e-4
+"""Relative step of the difference that gives D''."""
+SAME = 4.0
+"""Distance of two roots, in units of their errors, within which they may be the same."""
+
+
+@compiled
+def _second(w: complex, S: float, coefficients: Coefficients) -> complex:
+    """D'' exp(-S) at w by a difference of D'."""
+    h = DIFFERENCE * abs(w)
+    _, after, S_after, _ = scaled_determinant(w + h, coefficients)
+    _, before, S_before, _ = scaled_determinant(w - h, coefficients)
+    second = (after * math.exp(S_after - S) - before * math.exp(S_before - S)) / (2 * h)
+    return complex(second.real, 0.0) if w.imag == 0 else second
+
+
+@compiled
+def two_roots(middle: complex, coefficients: Coefficients) -> tuple[complex, complex]:
+    """The two roots near `middle` by the quadratic that D is about it; near a real one two real or a pair."""
+    D, D1, S, _ = scaled_determinant(middle, coefficients)
+    if middle.imag == 0:
+        D, D1 = complex(D.real, 0.0), complex(D1.real, 0.0)
+    D2 = _second(middle, S, coefficients)
+    if D2 == 0:
+        return middle, middle
+    root = cmath.sqrt(D1 * D1 - 2 * D * D2)
+    return middle + (root - D1) / D2, middle - (root + D1) / D2
+
+
+@compiled
+def refined(w: complex, coefficients: Coefficients) -> complex:
+    """The root of D near w by Newton's method, until rounding keeps the steps from getting smaller."""
+    real = w.imag == 0
+    last = math.inf
+    for _ in range(MOST_STEPS):
+        D, D1, _, _ = scaled_determinant(w, coefficients)
+        if D1 == 0:
+            break
+        step = D / D1
+        if real:
+            step = complex(step.real, 0.0)
+        if not abs(step) < last / 2:
+            break
+        last = abs(step)
+        w -= step
+        if abs(w.imag) <= REAL_BELOW * abs(w):
+            w = complex(w.real, 0.0)
+    return w
+
+
+@compiled
+def _separate(w: NDArray[np.complex128], error: NDArray[np.float64], coefficients: Coefficients) -> NDArray:
+    """Moves those that are closer than their errors to the two roots near them; says which it moved."""
+    moved = np.zeros(len(w), dtype=np.bool_)
+    for i in range(len(w)):
+        if moved[i]:
+            continue
+        partner, least = -1, math.inf
+        for j in range(len(w)):
+            if j != i and not moved[j] and abs(w[j] - w[i]) < least:
+                partner, least = j, abs(w[j] - w[i])
+        if partner >= 0 and least <= CLOSE * (error[i] + error[partner]):
+            middle = (w[i] + w[partner]) / 2
+            if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
+                middle = complex(middle.real, 0.0)
+            w[i], w[partner] = two_roots(middle, coefficients)
+            moved[i] = moved[partner] = True
+    return moved
+
+
+@compiled
+def _descending(w: NDArray[np.complex128]) -> NDArray:
+    """Indices that sort by descending real part, then descending frequency."""
+    order = np.arange(len(w))
+    for m in range(1, len(w)):
+        i, at = order[m], m
+        while at > 0:
+            j = order[at - 1]
+            if w[j].real > w[i].real or (w[j].real == w[i].real and w[j].imag >= w[i].imag):
+                break
+            order[at] = j
+            at -= 1
+        order[at] = i
+    return order
+
+
+@compiled
+def _candidates(
+    w: NDArray[np.complex128], coefficients: Coefficients, amplification: float, most_waves: float
+) -> NDArray:
+    """Indices of what may stand for a root of D. Rounding makes infinite eigenvalues finite: they lie
+    outside the box or beyond the mesh, or have no root near."""
+    keep = []
+    for i in range(len(w)):
+        if not (math.isfinite(w[i].real) and math.isfinite(w[i].imag)):
+            continue
+        error, length, wave = newton_correction(w[i], coefficients)
+        real, imag = box_of(amplification, max(-w[i].real, 0.0))
+        inside = w[i].real <= real and abs(w[i].imag) <= imag
+        if inside and wave <= most_waves and error <= CLOSE_ROOTS * length:
+            keep.append(i)
+    return np.array(keep, dtype=np.int64)
+
+
+@compiled
+def roots(
+    raw: NDArray[np.complex128], coefficients: Coefficients, amplification: float, most_waves: float
+) -> tuple[NDArray, NDArray, NDArray, NDArray, NDArray, NDArray]:
+    """(indices, w, error, displacement, wave number, on the axis) of what stands for a root of D, sorted.
+
+    raw: eigenvalues of a mesh, complex, shape (n,). amplification: the root of
+    `rodsweep.model.bounds.squared_amplification`; most_waves: |q| that the mesh can stand for.
+    displacement: in units of |w| or of the length over which D changes, whichever is larger.
+    """
+    index = _candidates(raw, coefficients, amplification, most_waves)
+    first = raw[index]
+    n = len(first)
+    error, length, wave = np.empty(n), np.empty(n), np.empty(n)
+    for i in range(n):
+        if abs(first[i].imag) <= REAL_BELOW * abs(first[i]):
+            first[i] = complex(first[i].real, 0.0)
+        error[i], length[i], wave[i] = newton_correction(first[i], coefficients)
+    w = first.copy()
+    moved = _separate(w, error, coefficients)
+    stands = moved | (error <= A_ROOT * length)
+    for i in range(n):
+        if not stands[i]:
+            continue
+        if (
+            i > 0
+            and w[i].imag != 0
+            and not moved[i - 1]
+            and not moved[i]
+            and w[i] == first[i - 1].conjugate()
+        ):
+            w[i] = w[i - 1].conjugate()
+        else:
+            w[i] = refined(w[i], coefficients)
+        error[i], _, wave[i] = newton_correction(w[i], coefficients)
+    order = np.flatnonzero(stands)
+    order = order[_descending(w[order])]
+    displacement = np.abs(w[order] - first[order]) / np.maximum(np.abs(w[order]), length[order])
+    index, w, error, wave = index[order], w[order], error[order], wave[order]
+    _tell_apart(w, error, coefficients)
+    axis = np.abs(w.real) <= np.maximum(4 * error, ON_THE_AXIS * np.abs(w))
+    return index, w, error, displacement, wave, axis
+
+
+@compiled
+def _tell_apart(w: NDArray[np.complex128], error: NDArray[np.float64], coefficients: Coefficients) -> None:
+    """Raises the errors of two that are the same root to the distance of the next one, 2 |D'/D''|."""
+    for i in range(len(w)):
+        for j in range(i + 1, len(w)):
+            apart = abs(w[i] - w[j])
+            if apart <= SAME * (error[i] + error[j]):
+                _, D1, S, _ = scaled_determinant(w[i], coefficients)
+                next_root = 2 * abs(D1) / max(abs(_second(w[i], S, coefficients)), 1e-300)
+                if apart < next_root / 4:
+                    error[i] = max(error[i], next_root)
+                    error[j] = max(error[j], next_root)
