@@ -60,6 +60,11 @@ class Pencil:
     def unknowns(self) -> int:
         return 3 * self.nodes
 
+    def positions(self) -> Array:
+        """u of the nodes of y and theta, shape (nodes,)."""
+        local = (gauss_lobatto(self.order)[0][1:] + 1) / 2
+        return np.add.outer(np.arange(self.elements), local).ravel() / self.elements
+
     def coefficients(self, rod: Rod) -> Array:
         """What the pieces are multiplied by, shape (6,)."""
         t, g, nu = angle_weight(rod.gamma3), rod.g, rod.nu

@@ -15,7 +15,7 @@ from ..model.bounds import squared_amplification
 from ..model.rod import Rod
 from .certificate import Count, count_right_of
 from .eigenpairs import eigen_solver
-from .polish import roots
+from .polish import largest, roots
 
 WAVES_A_NODE = 2.0
 """Largest |q| of an eigenvalue, in units of the nodes, that a mesh can stand for."""
@@ -46,7 +46,7 @@ class Found:
 
     def worst(self, modes: int) -> float:
         """Largest relative error estimate of the leading modes."""
-        return float((self.error[:modes] / np.abs(self.w[:modes])).max())
+        return largest(self.error, self.w, modes)
 
     def coarseness(self, modes: int) -> float:
         """Largest displacement of the leading modes."""
@@ -67,15 +67,18 @@ class Verdict:
         return self.clear and self.count.number == self.here
 
 
-def attempt(rod: Rod, resolution: Resolution, wanted: int, shift: float, vectors: bool) -> Found:
-    """The eigenvalues nearest the shift, at least `wanted` where they converge, without impostors."""
+def attempt(rod: Rod, resolution: Resolution, wanted: int, shift: float, vectors: bool, tight: bool) -> Found:
+    """The eigenvalues nearest the shift, at least `wanted` where they converge, without impostors.
+
+    tight: to the last digit of the mesh before they are refined on D.
+    """
     solver = eigen_solver(resolution)
-    raw, X = solver.solve(rod, shift, wanted, vectors)
+    raw = solver.solve(rod, shift, wanted, tight)
     most_waves = WAVES_A_NODE * solver.pencil.nodes
     order, w, error, displacement, wave, axis = roots(
         raw, rod.coefficients, sqrt(squared_amplification(rod)), most_waves
     )
-    kept = None if X is None else X[:, order]
+    kept = solver.vectors(len(raw))[:, order] if vectors else None
     return Found(resolution, w, error, displacement, wave, axis, kept)
 
 

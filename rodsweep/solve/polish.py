@@ -115,24 +115,6 @@ def _descending(w: NDArray[np.complex128]) -> NDArray:
 
 
 @compiled
-def _candidates(
-    w: NDArray[np.complex128], coefficients: Coefficients, amplification: float, most_waves: float
-) -> NDArray:
-    """Indices of what may stand for a root of D. Rounding makes infinite eigenvalues finite: they lie
-    outside the box or beyond the mesh, or have no root near."""
-    keep = []
-    for i in range(len(w)):
-        if not (math.isfinite(w[i].real) and math.isfinite(w[i].imag)):
-            continue
-        error, length, wave = newton_correction(w[i], coefficients)
-        real, imag = box_of(amplification, max(-w[i].real, 0.0))
-        inside = w[i].real <= real and abs(w[i].imag) <= imag
-        if inside and wave <= most_waves and error <= CLOSE_ROOTS * length:
-            keep.append(i)
-    return np.array(keep, dtype=np.int64)
-
-
-@compiled
 def roots(
     raw: NDArray[np.complex128], coefficients: Coefficients, amplification: float, most_waves: float
 ) -> tuple[NDArray, NDArray, NDArray, NDArray, NDArray, NDArray]:
@@ -140,33 +122,37 @@ def roots(
 
     raw: eigenvalues of a mesh, complex, shape (n,). amplification: the root of
     `rodsweep.model.bounds.squared_amplification`; most_waves: |q| that the mesh can stand for.
-    displacement: in units of |w| or of the length over which D changes, whichever is larger.
+    displacement: in units of |w| or of the length over which D changes, whichever is larger. Rounding
+    makes infinite eigenvalues finite: they lie outside the box or beyond the mesh, or have no root near.
     """
-    index = _candidates(raw, coefficients, amplification, most_waves)
-    first = raw[index]
-    n = len(first)
-    error, length, wave = np.empty(n), np.empty(n), np.empty(n)
-    for i in range(n):
-        if abs(first[i].imag) <= REAL_BELOW * abs(first[i]):
-            first[i] = complex(first[i].real, 0.0)
-        error[i], length[i], wave[i] = newton_correction(first[i], coefficients)
+    index, first = np.empty(len(raw), dtype=np.int64), np.empty(len(raw), dtype=np.complex128)
+    error, length, wave = np.empty(len(raw)), np.empty(len(raw)), np.empty(len(raw))
+    n = 0
+    for i in range(len(raw)):
+        w = raw[i]
+        if not (math.isfinite(w.real) and math.isfinite(w.imag)):
+            continue
+        if abs(w.imag) <= REAL_BELOW * abs(w):
+            w = complex(w.real, 0.0)
+        error[n], length[n], wave[n] = newton_correction(w, coefficients)
+        real, imag = box_of(amplification, max(-w.real, 0.0))
+        inside = w.real <= real and abs(w.imag) <= imag
+        if inside and wave[n] <= most_waves and error[n] <= CLOSE_ROOTS * length[n]:
+            index[n], first[n] = i, w
+            n += 1
+    index, first, error, length, wave = index[:n], first[:n], error[:n], length[:n], wave[:n]
     w = first.copy()
     moved = _separate(w, error, coefficients)
     stands = moved | (error <= A_ROOT * length)
     for i in range(n):
         if not stands[i]:
             continue
-        if (
-            i > 0
-            and w[i].imag != 0
-            and not moved[i - 1]
-            and not moved[i]
-            and w[i] == first[i - 1].conjugate()
-        ):
-            w[i] = w[i - 1].conjugate()
+        single = i > 0 and w[i].imag != 0 and not moved[i - 1] and not moved[i]
+        if single and w[i] == first[i - 1].conjugate():
+            w[i], error[i], wave[i] = w[i - 1].conjugate(), error[i - 1], wave[i - 1]
         else:
             w[i] = refined(w[i], coefficients)
-        error[i], _, wave[i] = newton_correction(w[i], coefficients)
+            error[i], _, wave[i] = newton_correction(w[i], coefficients)
     order = np.flatnonzero(stands)
     order = order[_descending(w[order])]
     displacement = np.abs(w[order] - first[order]) / np.maximum(np.abs(w[order]), length[order])
@@ -188,3 +174,12 @@ def _tell_apart(w: NDArray[np.complex128], error: NDArray[np.float64], coefficie
                 if apart < next_root / 4:
                     error[i] = max(error[i], next_root)
                     error[j] = max(error[j], next_root)
+
+
+@compiled
+def largest(part: NDArray[np.float64], whole: NDArray[np.complex128], modes: int) -> float:
+    """The largest part/|whole| over the first modes."""
+    worst = 0.0
+    for i in range(modes):
+        worst = max(worst, part[i] / abs(whole[i]))
+    return worst

@@ -6,7 +6,7 @@ what to change next; all must be in order before a point is ok.
 """
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import isfinite
 
 import numpy as np
@@ -83,12 +83,11 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
     started = time.perf_counter()
     try:
         with np.errstate(all="ignore"):
-            outcome = _solve(rod, request)
+            return _solve(rod, request, started)
     except (PETSc.Error, SystemError, ArithmeticError, MemoryError) as error:
         # SystemError is how some releases of petsc4py wrap a PETSc.Error.
         forget_solvers()  # a PETSc object is not usable after an error inside it
-        outcome = _nothing(Status.failed, request, _reason(error))
-    return replace(outcome, seconds=time.perf_counter() - started)
+        return _nothing(Status.failed, request, _reason(error), started)
 
 
 def _reason(error: BaseException) -> str:
@@ -99,10 +98,10 @@ def _reason(error: BaseException) -> str:
 
 def warm_up() -> None:
     """Loads what is compiled and created at first use, so that no point pays for it."""
-    _solve(Rod(30.0, 1e4, 1e4, 1e-4), SpectrumRequest(modes=2, accuracy=1e-4, certify=True))
+    _solve(Rod(30.0, 1e4, 1e4, 1e-4), SpectrumRequest(2, 1e-4, certify=True), time.perf_counter())
 
 
-def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
+def _solve(rod: Rod, request: SpectrumRequest, started: float) -> Spectrum:
     growth, wave = most_amplified_wave(rod)
     shift = SHIFT_ABOVE_GROWTH * growth
     bounded = isfinite(squared_amplification(rod))
@@ -112,10 +111,11 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
     best: tuple[float, Found, Verdict | None] | None = None
     lost: Verdict | None = None
     stalled = 0
-    for _ in range(MOST_ATTEMPTS):
+    vectors = request.vector_nodes > 0
+    for turn in range(MOST_ATTEMPTS):
         if resolution.unknowns > MOST_UNKNOWNS:
             break
-        found = attempt(rod, resolution, wanted, shift, request.vector_nodes > 0)
+        found = attempt(rod, resolution, wanted, shift, vectors, tight=vectors or turn > 0)
         if len(found.w) < request.modes:
             # Either too few converged, or what converged stands for no root yet: do both more.
             wanted, resolution = wanted + request.modes, finer(resolution)
@@ -130,17 +130,19 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
         if best is None or short <= best[0]:
             best = short, found, verdict
         if short <= SAFETY:
-            return _result(Status.ok, rod, request, found, verdict)
+            return _result(Status.ok, rod, request, (found, verdict), started)
         if stalled >= STALLED:
             break
         resolution = _next_resolution(found, request.modes, aim)
     if best is not None:
         short, found, verdict = best
         status = Status.ok if short <= STALLED_SAFETY else Status.accuracy_not_reached
-        return _result(status, rod, request, found, verdict)
+        return _result(status, rod, request, (found, verdict), started)
     if lost is not None:
-        return _nothing(Status.modes_missing, request, f"the winding number counts {lost.count.number}")
-    return _nothing(Status.failed, request, "no mesh within the limit resolves the wanted modes")
+        return _nothing(
+            Status.modes_missing, request, f"the winding number counts {lost.count.number}", started
+        )
+    return _nothing(Status.failed, request, "no mesh within the limit resolves the wanted modes", started)
 
 
 def _shortfall(found: Found, verdict: Verdict | None, request: SpectrumRequest, bounded: bool) -> float:
@@ -179,9 +181,10 @@ def _next_resolution(found: Found, modes: int, mesh_accuracy: float) -> Resoluti
 
 
 def _result(
-    status: Status, rod: Rod, request: SpectrumRequest, found: Found, verdict: Verdict | None
+    status: Status, rod: Rod, request: SpectrumRequest, judged: tuple[Found, Verdict | None], started: float
 ) -> Spectrum:
     """The outcome with its numbers, and how far they are proved."""
+    found, verdict = judged
     m = request.modes
     proved = verdict is not None and verdict.agrees
     undecided = bool(found.on_the_axis.any())
@@ -202,8 +205,8 @@ def _result(
         certified=proved and not undecided,
         elements=found.resolution.elements,
         order=found.resolution.order,
-        seconds=0.0,
         vectors=_vectors(rod, request, found),
+        seconds=time.perf_counter() - started,
         message=message,
     )
 
@@ -222,9 +225,10 @@ def _vectors(rod: Rod, request: SpectrumRequest, found: Found) -> NDArray[np.com
     return np.stack([(matrix @ y * scale).T, (matrix @ theta * scale).T])
 
 
-def _nothing(status: Status, request: SpectrumRequest, message: str) -> Spectrum:
+def _nothing(status: Status, request: SpectrumRequest, message: str, started: float) -> Spectrum:
     empty = np.full(request.modes, np.nan)
     vectors = None
     if request.vector_nodes:
         vectors = np.full((2, request.modes, request.vector_nodes), np.nan + 0j)
-    return Spectrum(status, empty + 0j, empty, -1, False, 0, 0, 0.0, vectors, message)
+    seconds = time.perf_counter() - started
+    return Spectrum(status, empty + 0j, empty, -1, False, 0, 0, seconds, vectors, message)
