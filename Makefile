@@ -25,7 +25,7 @@ else
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: install demo figures test lint check bench clean distclean help FORCE
+.PHONY: install demo figures test lint check stress bench clean distclean help FORCE
 .ONESHELL:
 .SHELLFLAGS := -euc
 # An activated .venv must pass neither its wrapper off as the machine's mpiexec nor its Python as the one to start from.
@@ -63,8 +63,11 @@ lint: .venv/installed  ## check style, types and who may import whom
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 check: lint test  ## lint and test: what must pass before a commit
-bench: .venv/installed  ## run the benchmarks
-	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/rodsweep bench
+stress: .venv/installed  ## kill runs at random 120 times and more, and compare what comes of them (half an hour)
+	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_KILLS=$${RODSWEEP_KILLS:-40} $(BIN)/python -m pytest tests/test_stress.py
+bench: .venv/installed  ## run the benchmarks: results/bench.md, its numbers (.h5) and figures
+	mkdir -p results
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/rodsweep bench -o results/bench.md
 
 clean:  ## remove caches and build leftovers; results and .venv stay
 	rm -rf build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .import_linter_cache

@@ -21,7 +21,8 @@ from rodsweep.results.creation import Plan
 from rodsweep.results.journal import Journal
 from rodsweep.results.store import Store
 from rodsweep.results.view import read_view
-from rodsweep.sweep.chains import Chains, ChainSolver, mask
+from rodsweep.sweep.chains import Chains, ChainSolver, Missing
+from rodsweep.sweep.stop import Stop
 
 GRID = {"F": "[1, 2]", "k1": "100", "k2": "[10, 20]", "gamma3": "0.5", "gamma1": "[0.5, 1]"}
 
@@ -363,9 +364,9 @@ def test_chains_hold_every_point_once_in_order_along_their_axis(axis, upward):
 
 def test_chains_that_miss_a_point_are_to_be_done():
     chains = Chains((3, 4), 0, True)
-    assert chains.todo(mask([(0, 12)], 12)) == [(0, 4)]
-    assert chains.todo(mask([(4, 5), (10, 11)], 12)) == [(0, 1), (2, 3)]
-    assert chains.todo(mask([], 12)) == []
+    assert chains.todo(Missing([(0, 12)])) == [(0, 4)]
+    assert chains.todo(Missing([(4, 5), (10, 11)])) == [(0, 1), (2, 3)]
+    assert chains.todo(Missing([])) == []
 
 
 class Kept:
@@ -384,7 +385,7 @@ class Kept:
         self.of.pop(chain, None)
 
 
-def chain_solver(missing, kept, solved):
+def chain_solver(missing, kept, solved, stop=None):
     """Solves chains of six points: an outcome is (index, what it started from); the state counts on."""
 
     def solve_from(index, state):
@@ -392,7 +393,23 @@ def chain_solver(missing, kept, solved):
         outcome = (index, None if state is None else float(state[0]))
         return outcome, np.array([0.0 if state is None else state[0] + 1])
 
-    return ChainSolver(Chains((6,), 0, True), mask(missing, 6), solve_from, kept)
+    stop = Stop() if stop is None else stop
+    return ChainSolver(Chains((6,), 0, True), Missing(missing), solve_from, kept, stop)
+
+
+@pytest.mark.parametrize("points", range(1, 6))
+def test_stopped_chain_goes_on_with_the_next_point(points):
+    whole = [outcome for _, outcome in chain_solver([(0, 6)], Kept(), [])(0)]
+    kept, stop, done = Kept(), Stop(), []
+    for _, outcome in chain_solver([(0, 6)], kept, [], stop)(0):
+        done.append(outcome)
+        if len(done) == points:
+            stop.name = "SIGUSR1"
+    assert done == whole[:points]
+    solved = []
+    rest = [outcome for _, outcome in chain_solver([(points, 6)], kept, solved)(0)]
+    assert done + rest == whole
+    assert solved == [*range(points, 6)]
 
 
 @pytest.mark.parametrize("points", range(1, 6))

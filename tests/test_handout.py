@@ -72,3 +72,12 @@ def test_two_threads_share_the_work_without_losing_any():
     for thread in threads:
         thread.join(30)
     assert sorted(seen[0] + seen[1]) == list(range(5000))
+
+
+def test_after_a_stop_nobody_gets_more_and_nobody_waits():
+    handout = Handout([(0, 100)], ranks=2)
+    assert handout.take(0) == (0, 1)
+    handout.stop()
+    assert handout.take(1) == OVER
+    handout.settle(0, Report(0, 1.0, (0, 1)))
+    assert handout.take(0) == OVER

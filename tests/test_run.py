@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import xarray
 from conftest import BIN, ROOT
+from contents import content, same
 
 from rodsweep.results.view import read_view
 
@@ -25,16 +26,6 @@ parameters:
   gamma3: [0, 1.0e-4]
 spectrum: {modes: 4}
 """
-
-
-def content(path):
-    """All variables of a file but the time they took."""
-    with h5py.File(path) as file:
-        return {name: file[name][...] for name in file if name != "seconds"}
-
-
-def same(a, b):
-    return set(a) == set(b) and all(np.array_equal(a[n], b[n], equal_nan=a[n].dtype.kind == "f") for n in a)
 
 
 @pytest.mark.parametrize("ranks", [1, 2, 3])
@@ -165,8 +156,8 @@ def run_patched(command, patch, ranks=2):
         "sitecustomize.py",
         "import time\nimport rodsweep.sweep.loop as loop\nreal = loop.sweep\n"
         + patch
-        + "\ndef sweep(team, todo, solve, keep, tell):\n"
-        "    real(team, todo, patched(team.rank, solve), keep, tell)\n"
+        + "\ndef sweep(team, todo, solve, keep, tell, stop):\n"
+        "    return real(team, todo, patched(team.rank, solve), keep, tell, stop)\n"
         "loop.sweep = sweep\n",
     )
     return subprocess.run(

@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 
 from rodsweep.errors import InputError
+from rodsweep.results import journal as pages_of
 from rodsweep.results import lock
+from rodsweep.results import store as stores
 from rodsweep.results.creation import Plan
 from rodsweep.results.journal import Journal, journal_directory, read_journals
 from rodsweep.results.layouts import spectrum_layout
@@ -60,6 +62,42 @@ def test_journalled_points_reach_their_place_in_any_order(tmp_path, is_grid):
         assert file.attrs["finished"] == "now"
     store.close()
     assert not journal_directory(path).exists()
+
+
+@pytest.mark.parametrize("is_grid", [True, False])
+def test_blocks_of_any_size_give_the_same_file(tmp_path, monkeypatch, is_grid):
+    """Whatever is read at once, in any order, and where a killed rank left points that were done again."""
+    whole = Store(tmp_path / "whole.h5", plan(is_grid))
+    count = whole.missing()[0][1]
+    journal(whole, range(count))
+    whole.fold({})
+    monkeypatch.setattr(pages_of, "BLOCK", 3 * (LAYOUT.record.itemsize + 4))
+    monkeypatch.setattr(stores, "BLOCK", 2)
+    store = Store(tmp_path / "a.h5", plan(is_grid))
+    order = np.random.default_rng(1).permutation(count).tolist()
+    journal(store, order[1:], rank=0)
+    journal(store, [*order[:3], order[0]], rank=1)
+    assert read_view(tmp_path / "a.h5").journalled == count
+    assert store.missing() == [(0, count)]
+    store.fold({})
+    assert store.missing() == []
+    assert store.status_counts() == {"ok": count}
+    with h5py.File(tmp_path / "whole.h5") as one, h5py.File(tmp_path / "a.h5") as other:
+        for variable in LAYOUT.variables:
+            assert np.array_equal(one[variable.name][...], other[variable.name][...])
+    store.close()
+    whole.close()
+
+
+def test_variables_are_read_when_they_are_asked_for(tmp_path):
+    Store(tmp_path / "a.h5", plan()).close()
+    variables = read_view(tmp_path / "a.h5").variables
+    assert set(variables.read) == {"status"}
+    assert "growth_rate" in variables
+    assert "Y_real" not in variables
+    assert variables["growth_rate"].shape == (3, 2, 1, 2, 2)
+    assert set(variables.read) == {"status", "growth_rate"}
+    assert len(dict(variables)) == len(variables)
 
 
 def test_points_journalled_before_a_kill_are_folded_at_the_next_start(tmp_path):

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from functools import partial
 from importlib.metadata import version
 from math import inf, log, nan
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +23,7 @@ from ..solve.orbit import shoot
 from ..solve.resolved import TRANSIENT
 from ..solve.rest import leading_mode
 from .cycle_peers import CVODE, DEFAULT, PYTHON, SCIPY, Family, Steps, families, returns
+from .study import Measurement, Study
 
 Array = NDArray[np.float64]
 
@@ -92,31 +92,34 @@ class Wait:
     failed: tuple[float, ...] = ()
 
 
-def limit_cycle_table(quick: bool, figure: Path | None = None) -> str:
-    """Runs the benchmark; returns Markdown with the medians, and draws the figure where one is asked for."""
+def limit_cycle_study(quick: bool) -> Study:
+    """Runs the benchmark: work and precision, and the ways to a settled cycle."""
     warm_up()
     rounds, stride = (QUICK_ROUNDS, 2) if quick else (ROUNDS, 1)
     at, every = reference(), families()
     rows = work_precision(at, every, rounds, stride)
     waits = waiting(at, every, rounds)
     waits += near_hopf(every, waits, rounds)
-    blocks = [introduction(rounds), rows_table(rows), summary(rows), waits_table(waits)]
-    if figure is not None:
-        draw(rows, figure)
-        blocks.append(f"![Errors against milliseconds a period]({figure.name})")
-    return "\n\n".join(blocks)
+    text = "\n\n".join([introduction(rounds), rows_table(rows), summary(rows), waits_table(waits)])
+    return Study("limit_cycle", text, tuple(_measured(rows)), "period", TARGET)
 
 
-def draw(rows: Sequence[Row], figure: Path) -> None:
-    """Writes the figure of the table's rows."""
-    from ..post.figures.work_precision import Curve, draw_work_precision
-
-    curves = []
-    for method in dict.fromkeys(row.method for row in rows):
-        own = [row for row in rows if row.method == method and np.isfinite(row.error)]
-        columns = ([getattr(row, name) for row in own] for name in Curve.COLUMNS)
-        curves.append(Curve(method, *map(np.array, columns)))
-    draw_work_precision(curves, TARGET, figure)
+def _measured(rows: Sequence[Row]) -> list[Measurement]:
+    """The rows as measurements of two errors."""
+    cases = (("error of the period", "period_error"), ("error of the largest tip y", "amplitude_error"))
+    return [
+        Measurement(
+            case,
+            row.method,
+            f"tolerance {row.tolerance:.0e}",
+            row.milliseconds / 1e3,
+            getattr(row, error),
+            row.method.split()[0],
+            {"steps": row.steps},
+        )
+        for case, error in cases
+        for row in rows
+    ]
 
 
 def introduction(rounds: int) -> str:

@@ -1,13 +1,11 @@
-"""The command `rodsweep`: run, check, show, plot. Joins the other packages.
+"""The command `rodsweep`: run, merge, check, show, plot, bench. Joins the other packages.
 
 Exit status: 0 when every point succeeded, 1 when the run is whole but some point did not, 2 for bad
-input, 3 when the machine lacks something.
+input, 3 when the machine lacks something, 75 when a run was asked to stop and wants to be continued.
 """
 
 import os
 import sys
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 
 # Each rank is one process on one core: threads inside its BLAS would compete with the other ranks.
@@ -37,14 +35,30 @@ def commands() -> None:
 @click.option("-o", "--output", type=FILE, help="Result file; by default CONFIG's name with .h5, here.")
 @overrides_option
 @click.option("--fresh", is_flag=True, help="Replace an existing result file instead of continuing it.")
-def run(config: Path, output: Path | None, overrides: tuple[str, ...], fresh: bool) -> None:
+@click.option("--shard", metavar="I/N", default="1/1", help="Compute the I-th of N parts only, to be merged.")
+def run(config: Path, output: Path | None, overrides: tuple[str, ...], fresh: bool, shard: str) -> None:
     """Compute CONFIG, continuing an interrupted result file. Start it with mpiexec for many ranks."""
+    from ..sweep.shards import shard_of
     from .running import run_config
 
-    output = output or Path(config.stem + ".h5")
+    part = shard_of(shard)
+    suffix = f"-{part.number}-of-{part.of}.h5" if part.of > 1 else ".h5"
+    output = output or Path(config.stem + suffix)
     if output.is_dir() or not output.name:
         raise InputError(f"--output {output} is a directory; name a file")
-    sys.exit(run_config(config, output, overrides, fresh))
+    sys.exit(run_config(config, output, overrides, fresh, part))
+
+
+@commands.command()
+@click.argument("output", type=FILE)
+@click.argument("shards", type=FILE, nargs=-1, required=True, metavar="SHARD...")
+def merge(output: Path, shards: tuple[Path, ...]) -> None:
+    """Put the points of all SHARD files of one config into OUTPUT."""
+    from .merging import merge_files
+
+    if output.is_dir():
+        raise InputError(f"{output} is a directory; name the file to write first")
+    sys.exit(merge_files(output, shards))
 
 
 @commands.command()
@@ -108,30 +122,17 @@ def plot(
 
 
 @commands.command()
-@click.argument("what", type=click.Choice(["spectrum", "thresholds", "limit_cycle"]), required=False)
+@click.argument("what", type=click.Choice(["spectrum", "thresholds", "limit_cycle", "sweep"]), required=False)
 @click.option("--quick", is_flag=True, help="Fewer rounds, for a first impression.")
-@click.option("-o", "--output", type=FILE, help="Write the Markdown here as well, and figures beside it.")
+@click.option("-o", "--output", type=FILE, help="Markdown file; the numbers (.h5) and figures go beside it.")
 def bench(what: str | None, quick: bool, output: Path | None) -> None:
     """Time WHAT (by default all) beside what one would otherwise use, and state every error."""
-    if output is not None and (output.is_dir() or not output.parent.is_dir() or output.suffix == ".png"):
+    from .benching import run_benchmarks
+
+    output = output or Path("bench.md")
+    if output.is_dir() or not output.parent.is_dir() or output.suffix in {".png", ".h5"}:
         raise InputError(f"--output {output} is no name for Markdown in an existing directory")
-    figure = output and output.with_suffix(".png")
-    try:
-        from ..bench.limit_cycle import limit_cycle_table
-        from ..bench.spectrum import spectrum_table, where_and_when
-        from ..bench.thresholds import thresholds_table
-    except ModuleNotFoundError as error:
-        raise EnvironmentLacks(f"the benchmark needs {error.name}: pip install 'rodsweep[bench]'") from None
-    tables: dict[str, Callable[[bool], str]] = {
-        "spectrum": spectrum_table,
-        "thresholds": thresholds_table,
-        "limit_cycle": partial(limit_cycle_table, figure=figure),
-    }
-    wanted = [what] if what else list(tables)
-    text = "\n\n".join([where_and_when(), *(tables[name](quick) for name in wanted)])
-    click.echo(text)
-    if output is not None:
-        output.write_text(text + "\n")
+    run_benchmarks(what, quick, output)
 
 
 def _speaks() -> bool:

@@ -3,129 +3,191 @@
 import os
 import socket
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
 import click
+import numpy as np
+from numpy.typing import NDArray
 
 from ..errors import EnvironmentLacks
 from ..results.checkpoints import Checkpoints
 from ..results.creation import Plan
 from ..results.journal import Journal, journal_directory
-from ..results.provenance import now, provenance
-from ..results.schema import Filled
+from ..results.provenance import LONGEST_ATTRIBUTE, MOST_RANKS_TOLD, now, provenance
 from ..results.store import Store
 from ..results.view import read_view
 from ..solve.presence import require_petsc
-from ..sweep.chains import ChainSolver, mask
+from ..sweep.chains import ChainSolver, Missing
 from ..sweep.handout import Range
-from ..sweep.loop import sweep
+from ..sweep.loop import Share, sweep
 from ..sweep.progress import Teller
+from ..sweep.shards import Shard
+from ..sweep.stop import Stop
 from ..sweep.team import Team
 from .job import Job, make_job
 from .tasks.protocol import Solver, succeeded
 
 FAILURES_TOLD = 3
 """Failed points that are named at the end of a run; the file has the status of all."""
+CONTINUE = 75
+"""Exit status of a run that was asked to stop: the same command continues it (EX_TEMPFAIL of sysexits.h)."""
 
 
-def run_config(path: Path, output: Path, overrides: tuple[str, ...], fresh: bool) -> int:
-    """Runs a config on all ranks; returns the exit status."""
+def run_config(path: Path, output: Path, overrides: tuple[str, ...], fresh: bool, shard: Shard) -> int:
+    """Runs a config, or a shard of it, on all ranks; returns the exit status."""
+    stop = Stop()
+    stop.listen()
     team = Team()
     with team.together():
         job = team.on_first(lambda: make_job(path, overrides))
         team.all_can(require_petsc)
-        return _run(team, job, output, fresh)
+        return _Run(team, job, output, shard, stop).run(fresh)
 
 
-def _run(team: Team, job: Job, output: Path, fresh: bool) -> int:
-    began, started = time.monotonic(), now()
-    solver = job.task.solver()
-    plan = _plan(job, solver)
-    store: list[Store] = []
+class _Run:
+    """One run of a job on this rank."""
 
-    def open_store() -> list[tuple[int, int]]:
-        store.append(Store(output, plan, fresh))
-        return store[0].missing()
+    def __init__(self, team: Team, job: Job, output: Path, shard: Shard, stop: Stop):
+        self.team, self.job, self.output, self.shard, self.stop = team, job, output, shard, stop
+        self.began, self.started = time.monotonic(), now()
+        self.solver = job.task.solver()
+        self.plan = _plan(job, self.solver, shard)
 
-    todo = team.on_first(open_store)
-    count = sum(stop - start for start, stop in todo)
-    if team.first:
-        kept = job.points.count - count
-        click.echo(
-            f"{output}: {count} of {job.points.count} points to do" + (f", {kept} kept" if kept else "")
-        )
-    failures = _solve_missing(team, job, solver, plan, output, todo) if count else []
-    told = team.gather(failures)
-    hosts = team.gather(socket.gethostname())
-    seconds = time.monotonic() - began
+    def run(self, fresh: bool) -> int:
+        """Solves what is missing and folds it into the file; returns the exit status."""
+        store: list[Store] = []
 
-    def finish() -> int:
-        if count or not store[0].finished():
-            additions: Sequence[Filled] = ()
-            if solver.finish is not None:
-                store[0].fold({})  # it needs all points in the file
-                additions = solver.finish(read_view(output))
-            store[0].fold(_ending(team, hosts or [], started, plan), additions)
-        counts = store[0].status_counts()
-        store[0].close()
-        each = 1e3 * seconds * team.size / max(count, 1)
-        spent = f"{count} points in {seconds:.2f} s on {team.size} ranks ({each:.3g} ms a point and rank)"
-        spent = spent if count else f"{output} is complete, nothing to do"
-        whole = set(counts) <= {status.name for status in solver.statuses if succeeded(status)}
-        _report(output, spent, counts, [failure for some in told or [] for failure in some])
-        if not whole:
-            click.echo(f"  `rodsweep show {output}` says what each status means")
-        return 0 if whole else 1
+        def open_store() -> list[Range]:
+            store.append(Store(self.output, self.plan, fresh))
+            return store[0].missing()
 
-    return team.on_first(finish)
+        missing = self.team.on_first(open_store)
+        units, count = self._units(missing)
+        if self.team.first:
+            self._announce(count, sum(stop - start for start, stop in missing))
+        failures, share = self._solve(units, missing, count) if count else ([], Share(0, 0.0, 0.0))
+        told = self.team.gather(failures)
+        shares = self.team.gather(share)
+        hosts = self.team.gather(socket.gethostname())
+        ending = {**self._ending(hosts or []), **_utilisation(shares or [])} if count else {}
+        return self.team.on_first(lambda: self._finish(store[0], count, ending, told or []))
+
+    def _units(self, missing: list[Range]) -> tuple[list[Range], int]:
+        """(the units of this shard that miss a point, the points that they miss)."""
+        chained = self.solver.chained
+        if chained is None:
+            units = self.shard.part(missing, self.job.points.count)
+            return units, sum(stop - start for start, stop in units)
+        lacks, chains = Missing(missing), chained.chains
+        units = self.shard.part(chains.todo(lacks), chains.count)
+        each = (lacks[chains.indices(chain)].sum() for unit in units for chain in range(*unit))
+        return units, int(sum(each))
+
+    def _announce(self, count: int, missing: int) -> None:
+        """Says what there is to do."""
+        total = self.job.points.count
+        text = f"{self.output}: {count} of {total} points to do"
+        if total > missing:
+            text += f", {total - missing} kept"
+        if self.shard.of > 1:
+            text += f"; shard {self.shard}"
+        click.echo(text)
+
+    def _solve(self, units: list[Range], missing: list[Range], count: int) -> tuple[list[str], Share]:
+        """This rank's share of the units, into its journal; and what to tell of failures."""
+        failures: list[str] = []
+        solver, plan = self.solver, self.plan
+
+        def keep(index: int, result: Any) -> None:
+            journal.append(index, solver.record(index, result))
+            if not succeeded(result.status) and len(failures) < FAILURES_TOLD:
+                where = ", ".join(
+                    f"{name}={value!r}" for name, value in self.job.points.values(index).items()
+                )
+                failures.append(f"{where}: {result.status.name} {result.message}".rstrip())
+
+        solver.warm_up()
+        tell = Teller(count, self.job.name) if self.team.first else None
+        try:
+            directory = journal_directory(self.output)
+            journal = Journal(directory, self.team.rank, plan.layout, plan.fingerprint)
+            solve = self._solve_unit(Missing(missing), Checkpoints(directory, plan.fingerprint))
+            share = sweep(self.team, units, solve, keep, tell or (lambda done: None), self.stop)
+            journal.close()
+        except OSError as error:
+            raise EnvironmentLacks(
+                f"cannot write beside {self.output}: {error.strerror or error}; what is done is kept: make "
+                "room and run again"
+            ) from error
+        finally:
+            if tell:
+                tell.close()
+        return failures, share
+
+    def _solve_unit(
+        self, missing: Missing, checkpoints: Checkpoints
+    ) -> Callable[[int], Iterable[tuple[int, Any]]]:
+        """How a unit is solved: a point, or a chain where points start one from the other."""
+        chained = self.solver.chained
+        if chained is None:
+            return lambda index: ((index, self.solver.solve(index)),)
+        return ChainSolver(chained.chains, missing, chained.solve_from, checkpoints, self.stop)
+
+    def _ending(self, hosts: list[str]) -> dict[str, Any]:
+        """Attributes that say where and by what the points of this run were computed."""
+        names = ("_version", "_commit", "_options")
+        return {k: v for k, v in self.plan.attributes.items() if k.endswith(names)} | {
+            "ranks": self.team.size,
+            "hosts": " ".join(sorted(set(hosts)))[:LONGEST_ATTRIBUTE],
+            "started": self.started,
+            "stopped": self.stop.name,
+            "shard": self.plan.attributes["shard"],
+            "mpi_library": self.team.MPI.Get_library_version().split("\n")[0].strip("\0 "),
+            "slurm_job": os.environ.get("SLURM_JOB_ID", ""),
+        }
+
+    def _finish(self, store: Store, count: int, ending: dict[str, Any], told: list[list[str]]) -> int:
+        """Folds everything into the file, says how the run ended, and with which status it exits."""
+        if count:
+            store.fold(ending)
+        missing = store.missing()
+        if not missing and not store.finished():
+            finish = self.solver.finish
+            store.fold({"finished": now()}, finish(read_view(self.output)) if finish else ())
+        counts = store.status_counts()
+        store.close()
+        left = self._units(missing)[1]
+        seconds = time.monotonic() - self.began
+        each = 1e3 * seconds * self.team.size / max(count - left, 1)
+        spent = f"{count - left} points in {seconds:.2f} s on {self.team.size} ranks"
+        spent += f" ({each:.3g} ms a point and rank)" if count > left else ""
+        click.echo(spent if count else f"{self.output} is complete, nothing to do")
+        click.echo(f"{self.output}: " + ", ".join(f"{n} {name}" for name, n in counts.items()))
+        for failure in [failure for some in told for failure in some][:FAILURES_TOLD]:
+            click.echo(f"  {failure}")
+        if left:
+            click.echo(f"stopped by {self.stop.name}; the same command continues")
+            return CONTINUE
+        expected = {status.name for status in self.solver.statuses if succeeded(status)} | {"missing"}
+        if set(counts) <= expected:
+            return 0
+        click.echo(f"  `rodsweep show {self.output}` says what each status means")
+        return 1
 
 
-def _solve_missing(
-    team: Team, job: Job, solver: Solver, plan: Plan, output: Path, todo: list[tuple[int, int]]
-) -> list[str]:
-    """This rank's share of the missing points, into its journal; returns what to tell of failures."""
-    failures: list[str] = []
-
-    def keep(index: int, result: Any) -> None:
-        journal.append(index, solver.record(index, result))
-        if not succeeded(result.status) and len(failures) < FAILURES_TOLD:
-            where = ", ".join(f"{name}={value!r}" for name, value in job.points.values(index).items())
-            failures.append(f"{where}: {result.status.name} {result.message}".rstrip())
-
-    solver.warm_up()
-    total = sum(stop - start for start, stop in todo)
-    tell = Teller(total, job.name) if team.first else None
-    try:
-        directory = journal_directory(output)
-        journal = Journal(directory, team.rank, plan.layout, plan.fingerprint)
-        units, solve = _units(job, solver, todo, Checkpoints(directory, plan.fingerprint))
-        sweep(team, units, solve, keep, tell or (lambda done: None))
-        journal.close()
-    except OSError as error:
-        raise EnvironmentLacks(
-            f"cannot write beside {output}: {error.strerror or error}; what is done is kept: make room and "
-            "run again"
-        ) from error
-    finally:
-        if tell:
-            tell.close()
-    return failures
+def _utilisation(shares: list[Share]) -> dict[str, NDArray[Any]]:
+    """What each rank did, as attributes, each of shape (ranks,)."""
+    shares = shares[:MOST_RANKS_TOLD]
+    return {
+        "rank_points": np.array([share.points for share in shares], dtype="i4"),
+        "rank_busy_seconds": np.array([share.busy for share in shares], dtype="f4"),
+        "rank_idle_seconds": np.array([share.idle for share in shares], dtype="f4"),
+    }
 
 
-def _units(
-    job: Job, solver: Solver, todo: list[Range], checkpoints: Checkpoints
-) -> tuple[list[Range], Callable[[int], Iterable[tuple[int, Any]]]]:
-    """(the units to do, how one is solved): points, or chains where points start one from the other."""
-    if solver.chained is None:
-        return todo, lambda index: ((index, solver.solve(index)),)
-    missing = mask(todo, job.points.count)
-    chains = solver.chained.chains
-    return chains.todo(missing), ChainSolver(chains, missing, solver.chained.solve_from, checkpoints)
-
-
-def _plan(job: Job, solver: Solver) -> Plan:
+def _plan(job: Job, solver: Solver, shard: Shard) -> Plan:
     from ..solve import petsc
 
     versions = {f"{name}_version": value for name, value in petsc.versions().items()}
@@ -143,6 +205,7 @@ def _plan(job: Job, solver: Solver) -> Plan:
             "time_unit": "tau2 = gamma2 L^4/k3",
             "config": job.text,
             "petsc_options": petsc.options(),
+            "shard": str(shard) if shard.of > 1 else "",
             "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in solver.statuses),
         }
         | job.config.constants
@@ -150,23 +213,3 @@ def _plan(job: Job, solver: Solver) -> Plan:
         | provenance(),
         flags=tuple((int(s), s.name) for s in solver.statuses),
     )
-
-
-def _ending(team: Team, hosts: list[str], started: str, plan: Plan) -> dict:
-    versions = {k: v for k, v in plan.attributes.items() if k.endswith(("_version", "_commit", "_options"))}
-    return versions | {
-        "ranks": team.size,
-        "hosts": " ".join(sorted(set(hosts))),
-        "started": started,
-        "finished": now(),
-        "mpi_library": team.MPI.Get_library_version().split("\n")[0].strip("\0 "),
-        "slurm_job": os.environ.get("SLURM_JOB_ID", ""),
-    }
-
-
-def _report(output: Path, spent: str, counts: dict[str, int], failures: list[str]) -> None:
-    """Prints how the run ended."""
-    click.echo(spent)
-    click.echo(f"{output}: " + ", ".join(f"{n} {name}" for name, n in counts.items()))
-    for failure in failures[:FAILURES_TOLD]:
-        click.echo(f"  {failure}")

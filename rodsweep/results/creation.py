@@ -92,7 +92,7 @@ def _write_parameters(file: h5py.File, plan: Plan) -> None:
         for name, column in zip(names, plan.columns, strict=True):
             _write_scale(file, name, column)
         return
-    _write_scale(file, "point", np.arange(plan.shape[0]))
+    _write_scale(file, "point", np.arange(plan.shape[0], dtype="<i4"))
     for name, column in zip(names, plan.columns, strict=True):
         units, long_name = DIMENSIONS[name]
         data = file.create_dataset(name, data=column)

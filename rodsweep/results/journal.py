@@ -15,8 +15,8 @@ import numpy as np
 from .schema import Layout
 
 MAGIC = b"rodsweep journal 1\n"
-BLOCK = 1 << 24
-"""Bytes read at once."""
+BLOCK = 1 << 18
+"""Bytes read at once, however many there are."""
 
 
 def journal_directory(file: Path) -> Path:

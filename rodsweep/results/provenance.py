@@ -11,6 +11,9 @@ import numpy as np
 
 from .. import __version__
 
+MOST_RANKS_TOLD, LONGEST_ATTRIBUTE = 10_000, 60_000
+"""Ranks whose share is stored, and characters of an attribute: HDF5 allows one 64 kB."""
+
 
 def now() -> str:
     """The time in ISO 8601, UTC."""

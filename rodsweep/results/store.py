@@ -10,7 +10,7 @@ import os
 import shutil
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from itertools import chain
+from itertools import chain, pairwise
 from math import prod
 from pathlib import Path
 from typing import Any
@@ -25,7 +25,7 @@ from .journal import journal_directory, read_journals
 from .lock import Lock
 from .schema import MISSING, Filled, Layout
 
-BLOCK = 1 << 20
+BLOCK = 1 << 16
 """Values read at once where a whole variable is scanned."""
 SPACE_FACTOR, SPACE_FIXED = 3, 300_000
 """Room that a run needs: the file, the journals and the copy in units of the file, and bytes besides."""
@@ -91,14 +91,13 @@ class Store:
     def missing(self) -> list[tuple[int, int]]:
         """Ranges of flat indices that are not computed yet, in order."""
         ranges: list[tuple[int, int]] = []
-        with h5py.File(self.path, "r") as file:
-            for start, status in _blocks(file["status"]):
-                edge = np.flatnonzero(np.diff(np.concatenate([[0], status == MISSING, [0]])))
-                for a, b in zip(edge[::2] + start, edge[1::2] + start, strict=True):
-                    if ranges and ranges[-1][1] == a:
-                        ranges[-1] = (ranges[-1][0], int(b))
-                    else:
-                        ranges.append((int(a), int(b)))
+        for start, status in _statuses(self.path):
+            edge = start + np.flatnonzero(np.diff(status == MISSING, prepend=False, append=False))
+            for a, b in zip(edge[::2].tolist(), edge[1::2].tolist(), strict=True):
+                if ranges and ranges[-1][1] == a:
+                    ranges[-1] = (ranges[-1][0], b)
+                else:
+                    ranges.append((a, b))
         return ranges
 
     def fold(self, attributes: dict[str, Any], additions: Sequence[Filled] = ()) -> None:
@@ -130,10 +129,9 @@ class Store:
         """How many points have each status, by the name of the status."""
         names = {MISSING: "missing", **dict(self.plan.flags)}
         counts: dict[str, int] = {}
-        with h5py.File(self.path, "r") as file:
-            for _, status in _blocks(file["status"]):
-                for value, n in zip(*np.unique(status, return_counts=True), strict=True):
-                    counts[names[int(value)]] = counts.get(names[int(value)], 0) + int(n)
+        for _, status in _statuses(self.path):
+            for value, n in zip(*np.unique(status, return_counts=True), strict=True):
+                counts[names[int(value)]] = counts.get(names[int(value)], 0) + int(n)
         return counts
 
     def close(self) -> None:
@@ -191,31 +189,34 @@ def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> No
     """Writes records, in any order, into the variables of a closed file.
 
     The variables are contiguous in the file, so a record goes to its place by arithmetic, whatever
-    the shape of the grid and without holding a variable in memory.
+    the shape of the grid; neighbours go by one call. Nothing is mapped: pages that are touched would
+    count as this process's memory, in the end the whole file.
     """
-    places = {}
     with h5py.File(path, "r") as file:
-        for variable in layout.variables:
-            data = file[variable.name]
-            inner = layout.inner(variable)
-            points = data.size // prod(inner)
-            places[variable.name] = (data.id.get_offset(), data.dtype, (points, *inner))
-    arrays = {
-        name: np.memmap(path, dtype, "r+", offset, shape) for name, (offset, dtype, shape) in places.items()
-    }
-    for records in blocks:
-        for name, array in arrays.items():
-            array[records["index"]] = records[name]
-    for array in arrays.values():
-        array.flush()
+        offsets = {variable.name: file[variable.name].id.get_offset() for variable in layout.variables}
+    with path.open("r+b") as stream:
+        for records in filter(len, blocks):
+            ordered = records[np.argsort(records["index"], kind="stable")]  # of a point twice, the last stays
+            index = ordered["index"]
+            edges = [0, *(np.flatnonzero(np.diff(index) != 1) + 1).tolist(), len(index)]
+            runs = [(a, b, int(index[a])) for a, b in pairwise(edges)]
+            for name, offset in offsets.items():
+                values = np.ascontiguousarray(ordered[name])
+                for a, b, first in runs:
+                    stream.seek(offset + first * values[0].nbytes)
+                    stream.write(values[a:b].data)
 
 
-def _blocks(data: h5py.Dataset) -> Iterable[tuple[int, np.ndarray]]:
-    """(flat index, values) of a point variable, a block at a time along its first dimension."""
-    step = max(1, BLOCK // max(1, prod(data.shape[1:])))
-    for first in range(0, data.shape[0], step):
-        block = data[first : first + step]
-        yield first * prod(data.shape[1:]), block.ravel()
+def _statuses(path: Path) -> Iterator[tuple[int, np.ndarray]]:
+    """(flat index of the first, statuses) of all points, a block at a time."""
+    with h5py.File(path, "r") as file:
+        data = file["status"]
+        offset, kind, count = data.id.get_offset(), data.dtype, data.size
+    # Not through HDF5, whose blocks follow the axes: along the first, which may have one value only.
+    with path.open("rb") as stream:
+        stream.seek(offset)
+        for first in range(0, count, BLOCK):
+            yield first, np.fromfile(stream, kind, min(BLOCK, count - first))
 
 
 def difference(theirs: Any, ours: Any, key: str = "") -> str:

@@ -1,6 +1,7 @@
 """A result file as it is, read only: what `show` and `plot` work on."""
 
 import json
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,13 +15,44 @@ from .layouts import layout_of
 from .schema import MISSING, NONLINEAR_NAMES
 
 
+class Variables(Mapping[str, np.ndarray]):
+    """The variables of an open file as NumPy arrays, each read when it is first asked for."""
+
+    def __init__(self, path: Path, file: h5py.File):
+        self.path, self.file = path, file
+        self.read: dict[str, np.ndarray] = {}
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self.read:
+            try:
+                self.read[name] = self.file[name][...]
+            except (OSError, RuntimeError) as error:
+                raise damaged(self.path, error) from None
+        return self.read[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.file
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.file)
+
+    def __len__(self) -> int:
+        return len(self.file)
+
+
+def damaged(path: Path, error: Exception) -> InputError:
+    """The refusal of a file that is no result, or cannot be read."""
+    reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+    return InputError(f"{path} is not a whole rodsweep result file ({reason})")
+
+
 @dataclass(frozen=True, slots=True)
 class View:
     """A file's attributes and its variables as NumPy arrays."""
 
     path: Path
     attributes: dict[str, Any]
-    variables: dict[str, np.ndarray]
+    variables: Mapping[str, np.ndarray]
     parameters: tuple[str, ...]
     """What makes a point: the dimensions of a grid, or what is given along `point`."""
     flags: dict[int, str]
@@ -42,27 +74,26 @@ class View:
         return {name: self.variables[name] for name in NONLINEAR_NAMES if name in self.variables}
 
 
-def read_view(path: Path, names: tuple[str, ...] = ()) -> View:
-    """The whole file, or the named variables beside the axes; InputError if it is no result."""
+def read_view(path: Path) -> View:
+    """The file, which stays open; InputError if it is no result."""
     if not path.exists():
         raise InputError(f"{path} does not exist")
     try:
-        with h5py.File(path, "r") as file:
-            attributes = dict(file.attrs)
-            layout = layout_of(json.loads(attributes["config_resolved"]))
-            wanted = [n for n in file if not names or n in names or n in NONLINEAR_NAMES or n == "point"]
-            variables = {name: file[name][...] for name in wanted}
-            status = file["status"].attrs
-            words = str(status["flag_meanings"]).split()
-            flags = dict(zip((int(v) for v in status["flag_values"]), words, strict=True))
+        file = h5py.File(path, "r")
+        attributes = dict(file.attrs)
+        layout = layout_of(json.loads(attributes["config_resolved"]))
+        status = file["status"]
+        words = str(status.attrs["flag_meanings"]).split()
+        flags = dict(zip((int(v) for v in status.attrs["flag_values"]), words, strict=True))
+        variables = Variables(path, file)
+        done = variables["status"].ravel() != MISSING
     except (OSError, KeyError, ValueError, TypeError, RuntimeError) as error:
-        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise InputError(f"{path} is not a whole rodsweep result file ({reason})") from None
-    waiting: set[int] = set()
+        raise damaged(path, error) from None
+    journalled = 0
     directory = journal_directory(path)
     if directory.is_dir():
         for block in read_journals(directory, layout, str(attributes["fingerprint"])):
-            waiting.update(block["index"].tolist())
-    done = variables.get("status", np.array([MISSING])).ravel()
-    journalled = sum(1 for i in waiting if i >= done.size or done[i] == MISSING)
+            indices = np.unique(block["index"])
+            journalled += int(np.count_nonzero(~done[indices]))
+            done[indices] = True
     return View(path, attributes, variables, layout.parameters, flags, journalled)

@@ -84,7 +84,7 @@ def attempt(rod: Rod, resolution: Resolution, wanted: int, shift: float, vectors
 
 def judge(rod: Rod, found: Found, modes: int) -> Verdict:
     """Counts the eigenvalues right of a line below the last wanted and below every unstable mode."""
-    for line in lines(found.w.real.tolist(), modes):
+    for line in lines(found.w.tolist(), modes):
         count = count_right_of(line, rod)
         if count.number is not None:
             break
@@ -93,13 +93,13 @@ def judge(rod: Rod, found: Found, modes: int) -> Verdict:
     return Verdict(count, here, clear)
 
 
-def lines(real: list[float], modes: int) -> list[float]:
+def lines(w: list[complex], modes: int) -> list[float]:
     """Where to draw the line, best first: in gaps between the real parts, the first wide one foremost.
 
     Behind the last of them it is drawn through the unknown, where the count may ask for more.
     """
-    target = min(real[modes - 1], 0.0)
-    below = [target] + [x for x in real if x < target]
+    target = min(w[modes - 1].real, 0.0)
+    below = [target] + [value.real for value in w if value.real < target]
     gaps = []
     for right, left in zip(below[:-1], below[1:], strict=True):
         width = (right - left) / abs(left)
@@ -107,5 +107,5 @@ def lines(real: list[float], modes: int) -> list[float]:
             gaps.append((min(width, WIDE_GAP), (left + right) / 2))
     gaps.sort(key=lambda gap: -gap[0])  # stable: of the wide ones the first stays foremost
     last = below[-1]
-    behind = last - WIDE_GAP * (abs(last) if last < 0 else abs(real[0]) + 1.0)
+    behind = last - WIDE_GAP * (abs(w[-1]) if last < 0 else abs(w[0].real) + 1.0)
     return [*(middle for _, middle in gaps[: MOST_LINES - 1]), behind]

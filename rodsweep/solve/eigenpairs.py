@@ -66,7 +66,7 @@ class EigenSolver:
         line = np.arange(n + 1, dtype=PETSc.IntType)
         self.B.createAIJ([n, n], csr=(line, line[:-1], np.ones(n)), comm=PETSc.COMM_SELF)
         self.line = line
-        self.gamma3, self.inertia = -1.0, np.ones(n)
+        self.gamma3, self.inertia, self.pace = -1.0, np.ones(n), 1.0
         first = np.zeros(n)
         distance = (1 - self.pencil.positions()) * self.pencil.nodes / START_WIDTH
         first[: self.pencil.nodes] = np.exp(-(distance**2)) * np.sqrt(self.pencil.mass)
@@ -98,6 +98,8 @@ class EigenSolver:
         Complex, shape (k,), in 1/tau2. tight: to the last digit of the mesh, not just to start from.
         Raises PETSc.Error where PETSc fails.
         """
+        rod, self.pace = _as_filament(rod)
+        shift *= self.pace**2
         coefficients = self.pencil.coefficients(rod)
         if not math.isfinite(coefficients.sum() + shift):
             raise FloatingPointError("the parameters overflow the matrix entries")
@@ -120,7 +122,7 @@ class EigenSolver:
         self.eps.solve()
         found = self.eps.getConverged()
         w: NDArray[np.complex128] = np.array([self.eps.getEigenvalue(i) for i in range(found)], complex)
-        return w + shift
+        return (w + shift) / self.pace**2
 
     def _set_inertia(self, rod: Rod) -> None:
         """B of the rod, which differs from the last one's only where gamma3 does."""
@@ -136,9 +138,21 @@ class EigenSolver:
         for i in range(found):
             self.eps.getEigenvector(i, real, imag)
             X[:, i] = real.array + 1j * imag.array
+        X[: self.pencil.nodes] *= self.pace
         real.destroy()
         imag.destroy()
         return X
+
+
+def _as_filament(rod: Rod) -> tuple[Rod, float]:
+    """(rod, pace): the rod whose eigenvalues in units of 1/pace^2 are those of `rod`, y in units of pace.
+
+    A partial beam (k2 = inf, gamma3 = 0) moves like the filament under the force F nu, slower by nu^2; close
+    to being crushed its own matrices are too badly scaled.
+    """
+    if rod.c2 == 0 and rod.gamma3 == 0 and rod.nu != 1:
+        return Rod(rod.F * rod.nu, math.inf, math.inf, 0.0), rod.nu
+    return rod, 1.0
 
 
 @lru_cache(maxsize=64)

@@ -8,7 +8,8 @@ try:
     import petsc4py
     import slepc4py
 
-    petsc4py.init(["rodsweep"])
+    # Its handlers would turn a reader's broken pipe into an abort of all ranks.
+    petsc4py.init(["rodsweep", "-no_signal_handler"])
     slepc4py.init(["rodsweep"])
     from petsc4py import PETSc
     from slepc4py import SLEPc
@@ -45,4 +46,5 @@ def versions() -> dict[str, str]:
 
 def options() -> str:
     """The options given to PETSc by PETSC_OPTIONS or a resource file, as one line."""
-    return " ".join(f"-{k} {v}".strip() for k, v in sorted(PETSc.Options().getAll().items()))
+    given = sorted((k, v) for k, v in PETSc.Options().getAll().items() if k != "no_signal_handler")
+    return " ".join(f"-{k} {v or ''}".strip() for k, v in given)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..model.bounds import box_of
 from ..model.compilation import compiled
-from ..model.determinant import newton_correction, scaled_determinant
+from ..model.determinant import TYPICAL_NOISE, newton_correction, scaled_determinant
 from ..model.rod import Coefficients
 
 A_ROOT = 1e-2
@@ -30,6 +30,8 @@ ON_THE_AXIS = 1e-13
 MOST_STEPS = 12
 DIFFERENCE = 1e-4
 """Relative step of the difference that gives D''."""
+BLURRED = 1e-11
+"""Relative Newton correction beyond which a double root may be the reason."""
 SAME = 4.0
 """Distance of two roots, in units of their errors, within which they may be the same."""
 
@@ -42,6 +44,24 @@ def _second(w: complex, S: float, coefficients: Coefficients) -> complex:
     _, before, S_before, _ = scaled_determinant(w - h, coefficients)
     second = (after * math.exp(S_after - S) - before * math.exp(S_before - S)) / (2 * h)
     return complex(second.real, 0.0) if w.imag == 0 else second
+
+
+@compiled
+def root_error(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
+    """(how far a root of D lies, length, wave number) at w, as `newton_correction`, next to a double root too.
+
+    With e the larger of |D| and its rounding, Newton's e/|D'| holds while |D'|^2 is large against e |D''|.
+    Nearer to a double root the two cannot be told apart within sqrt(2 e/|D''|) of their middle, which is
+    |D'/D''| away.
+    """
+    error, length, wave = newton_correction(w, coefficients)
+    if error > BLURRED * abs(w):
+        D, D1, S, noise = scaled_determinant(w, coefficients)
+        e, second = max(abs(D), TYPICAL_NOISE * noise), abs(_second(w, S, coefficients))
+        if abs(D1) ** 2 < 16 * e * second:
+            spread = math.sqrt(2 * e / second)
+            error = min(max(error, spread), abs(D1) / second + spread)
+    return error, length, wave
 
 
 @compiled
@@ -134,7 +154,7 @@ def roots(
             continue
         if abs(w.imag) <= REAL_BELOW * abs(w):
             w = complex(w.real, 0.0)
-        error[n], length[n], wave[n] = newton_correction(w, coefficients)
+        error[n], length[n], wave[n] = root_error(w, coefficients)
         real, imag = box_of(amplification, max(-w.real, 0.0))
         inside = w.real <= real and abs(w.imag) <= imag
         if inside and wave[n] <= most_waves and error[n] <= CLOSE_ROOTS * length[n]:
@@ -152,7 +172,7 @@ def roots(
             w[i], error[i], wave[i] = w[i - 1].conjugate(), error[i - 1], wave[i - 1]
         else:
             w[i] = refined(w[i], coefficients)
-            error[i], _, wave[i] = newton_correction(w[i], coefficients)
+            error[i], _, wave[i] = root_error(w[i], coefficients)
     order = np.flatnonzero(stands)
     order = order[_descending(w[order])]
     displacement = np.abs(w[order] - first[order]) / np.maximum(np.abs(w[order]), length[order])

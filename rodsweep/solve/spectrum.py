@@ -108,7 +108,7 @@ def _solve(rod: Rod, request: SpectrumRequest, started: float) -> Spectrum:
     aim = mesh_accuracy(request.accuracy, request.vector_nodes > 0) if bounded else request.accuracy
     resolution = resolution_for(expected_wave_number(request.modes, wave), aim)
     wanted = request.modes
-    best: tuple[float, Found, Verdict | None] | None = None
+    best: tuple[tuple[bool, float], Found, Verdict | None] | None = None
     lost: Verdict | None = None
     stalled = 0
     vectors = request.vector_nodes > 0
@@ -126,16 +126,17 @@ def _solve(rod: Rod, request: SpectrumRequest, started: float) -> Spectrum:
             wanted, resolution = _search_more(verdict, wanted, resolution)
             continue
         short = _shortfall(found, verdict, request, bounded)
-        stalled = 0 if best is None or short < 0.5 * best[0] else stalled + 1
-        if best is None or short <= best[0]:
-            best = short, found, verdict
+        rank = verdict is not None and verdict.count.number is None, short
+        stalled = 0 if best is None or rank < (best[0][0], 0.5 * best[0][1]) else stalled + 1
+        if best is None or rank <= best[0]:
+            best = rank, found, verdict
         if short <= SAFETY:
             return _result(Status.ok, rod, request, (found, verdict), started)
         if stalled >= STALLED:
             break
         resolution = _next_resolution(found, request.modes, aim)
     if best is not None:
-        short, found, verdict = best
+        (_, short), found, verdict = best
         status = Status.ok if short <= STALLED_SAFETY else Status.accuracy_not_reached
         return _result(status, rod, request, (found, verdict), started)
     if lost is not None:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .handout import Range
+from .stop import Stop
 
 State = NDArray[np.float64] | None
 """What a point starts from where its neighbour has something to offer; None otherwise."""
@@ -53,33 +54,45 @@ class Chains:
         along = outer * self.length * inner + rest + inner * np.arange(self.length)
         return along if self.upward else along[::-1]
 
-    def todo(self, missing: NDArray[np.bool_]) -> list[Range]:
-        """Ranges of the chains that miss a point; `missing` says it of every point, flat."""
-        lines = np.moveaxis(missing.reshape(self.shape), self.axis, -1).reshape(-1, self.length)
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], lines.any(axis=1), [False]])))
-        return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+    def todo(self, missing: "Missing") -> list[Range]:
+        """Ranges of the chains that miss a point."""
+        ranges: list[Range] = []
+        for chain in range(self.count):
+            if not missing[self.indices(chain)].any():
+                continue
+            if ranges and ranges[-1][1] == chain:
+                ranges[-1] = (ranges[-1][0], chain + 1)
+            else:
+                ranges.append((chain, chain + 1))
+        return ranges
 
 
-def mask(ranges: Sequence[Range], count: int) -> NDArray[np.bool_]:
-    """Which of `count` points lie in the ranges, shape (count,)."""
-    there = np.zeros(count, bool)
-    for start, stop in ranges:
-        there[start:stop] = True
-    return there
+class Missing:
+    """Which points lie in some ranges, which are sorted; takes no memory for the points themselves."""
+
+    def __init__(self, ranges: Sequence[Range]):
+        # The first one is empty: an index before all others has a range to be compared with.
+        self.starts, self.stops = np.array([(-1, -1), *ranges]).T
+
+    def __getitem__(self, indices: Any) -> Any:
+        """Whether a flat index lies in one of the ranges, or an array of it for an array of indices."""
+        place = np.searchsorted(self.starts, indices, side="right") - 1
+        return indices < self.stops[place]
 
 
 @dataclass(frozen=True, slots=True)
 class ChainSolver:
-    """Solves the chains of a run; `missing` says of every point, flat, whether it is to be kept."""
+    """Solves the chains of a run, of which only the `missing` points are to be kept."""
 
     chains: Chains
-    missing: NDArray[np.bool_]
+    missing: Missing
     solve_from: Callable[[int, State], tuple[Any, State]]
     """From an index and what the point starts from to its outcome and what its neighbour starts from."""
     checkpoints: Checkpoints
+    stop: Stop
 
     def __call__(self, chain: int) -> Iterator[tuple[int, Any]]:
-        """The missing points of a chain, each with its outcome.
+        """The missing points of a chain, each with its outcome; fewer once a stop is asked for.
 
         The state is kept after the point, so a kill in between costs one point that is solved again;
         the other way round its state could be lost.
@@ -87,6 +100,8 @@ class ChainSolver:
         order = self.chains.indices(chain).tolist()
         first, state = self._resume(chain, order)
         for index in order[first:]:
+            if self.stop:
+                return
             outcome, state = self.solve_from(index, state)
             if self.missing[index]:
                 yield index, outcome

@@ -9,10 +9,10 @@ from ..model.dispersion import most_amplified_wave
 from .grid import Points
 
 SAMPLE = 200
-FIXED_MS, LINEAR_MS, CUBIC_MS = 0.15, 1.0e-3, 1.2e-7
+FIXED_MS, LINEAR_MS, CUBIC_MS = 0.03, 2.2e-3, 1.5e-7
 """Time of a solve with n unknowns: overhead, orthogonalisation and dense factorisation, measured."""
 SPARSE_FROM, SPARSE_MS = 300, 8e-3
-CERTIFICATE_MS = 0.2
+CERTIFICATE_MS = 0.15
 LINE_MS, LINE_CERTIFICATE_MS = 24.0, 16.0
 """Time of a search for crossings along one parameter, a mean over 72 rods: some take four times as long."""
 MODES_MS, GROWTH_MS = 1.5, 20.0

@@ -2,9 +2,9 @@
 
 import csv
 import math
+from array import array
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,10 +35,13 @@ class Points:
 
     def values(self, index: int) -> dict[str, float]:
         """The parameters at a flat index, by name."""
-        places: tuple[Any, ...] = (index,) * len(self.columns)
-        if self.is_grid:
-            places = np.unravel_index(index, self.shape)
-        return {n: float(c[i]) for n, c, i in zip(self.names, self.columns, places, strict=True)}
+        values = {}
+        for name, column in zip(reversed(self.names), reversed(self.columns), strict=True):
+            place = index
+            if self.is_grid:  # NumPy's unravel_index takes three times as long
+                index, place = divmod(index, len(column))
+            values[name] = float(column[place])
+        return {name: values[name] for name in self.names}
 
     def rod(self, index: int) -> Rod:
         """The rod at a flat index, where the columns are all four parameters."""
@@ -63,9 +66,9 @@ def points_of(config: Config, directory: Path) -> Points:
         return Points(config.names, columns, is_grid=False)
     axes = {name: axis.array() for name, axis in parameters.axes.items()}
     for name, column in axes.items():
-        bad = [value for value in column.tolist() if not admissible(name, value)]
-        if bad:
-            raise InputError(f"parameters.{name} = {bad[0]:g} is not allowed; it must be {ALLOWED[name]}")
+        bad = next((value for value in map(float, column) if not admissible(name, value)), None)
+        if bad is not None:
+            raise InputError(f"parameters.{name} = {bad:g} is not allowed; it must be {ALLOWED[name]}")
     # A phase diagram may reach into the crushed rods, which are a class of their own.
     diagram = config.task == "phase_diagram"
     if diagram and axes["F"].min() >= axes["k1"].max():
@@ -92,15 +95,18 @@ def _read_csv(path: Path, names: tuple[str, ...]) -> tuple[NDArray[np.float64], 
             if sorted(header) != sorted(names):
                 given = ",".join(header)[:100]
                 raise InputError(f"{path}: the header is {given!r}; it must name {words(names, 'and')}")
-            values = [_row(row, header, f"{path}, line {rows.line_num}") for row in rows if row]
+            columns = [array("d") for _ in header]  # a list of numbers would take eight times the memory
+            for row in filter(None, rows):
+                numbers = _row(row, header, f"{path}, line {rows.line_num}")
+                for column, number in zip(columns, numbers, strict=True):
+                    column.append(number)
     except OSError as error:
         raise InputError(f"parameters.points: {path} cannot be read: {error.strerror}") from error
     except (UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"parameters.points: {path} is not CSV text ({error})") from error
-    if not values:
+    if not columns[0]:
         raise InputError(f"{path}: there is no point after the header")
-    table = np.array(values)
-    return tuple(table[:, header.index(name)] for name in names)
+    return tuple(np.array(columns[header.index(name)]) for name in names)
 
 
 def _row(row: list[str], header: list[str], where: str) -> list[float]:

@@ -3,7 +3,8 @@
 The first rank computes like any other; a thread of it answers the requests of the others, so they
 need not wait for its own solve to end. A rank that finds its chunk slower than foreseen gives the
 rest back with its next request. Nobody is told that the work is over while another rank may still
-give something back, so the ranks finish within one unit of each other.
+give something back, so the ranks finish within one unit of each other. A rank that is asked to stop
+tells the first, which tells all: each ends with the point that it is at.
 """
 
 import threading
@@ -11,14 +12,19 @@ import time
 from collections import deque
 from dataclasses import dataclass
 
+from .stop import Stop
 from .team import Team
 
-REQUEST, ANSWER = 71, 72
+REQUEST, ANSWER, STOP = 71, 72, 73
 CHUNK_SECONDS = 0.1
 """How long a chunk should take: long against a message (20 microseconds), short against a run."""
 GIVE_BACK_AFTER = 3 * CHUNK_SECONDS
 LARGEST_CHUNK = 4096
-POLL_SECONDS = 5e-4
+POLL_SECONDS, REST_SECONDS = 2e-3, 5e-3
+"""How long the thread sleeps: each waking takes the first rank 20 microseconds or more of its solve. Longer
+where that rank itself answers between its points."""
+ASK_SECONDS = 1e-4
+"""How often a rank that waits for its next chunk looks for it."""
 
 Range = tuple[int, int]
 OVER: Range = (0, 0)
@@ -45,6 +51,7 @@ class Handout:
         self.done = 0
         self.points = 0
         self.pace: dict[int, float] = {}
+        self.stopped = False
         self.change = threading.Condition()
 
     def settle(self, rank: int, report: Report) -> None:
@@ -56,7 +63,7 @@ class Handout:
             if report.done:
                 self.pace[rank] = report.seconds / report.done
             start, stop = report.rest
-            if stop > start:
+            if stop > start and not self.stopped:
                 self.pace[rank] = report.seconds  # as slow as its slowest unit may be: next, one unit
                 self.todo.appendleft(report.rest)
                 self.left += stop - start
@@ -66,7 +73,7 @@ class Handout:
         """The next chunk for a rank, OVER when all work is done, None when it has to wait."""
         with self.change:
             if not self.todo:
-                return None if self.busy else OVER
+                return None if self.busy and not self.stopped else OVER
             share = max(1, self.left // (2 * self.ranks))
             pace = self.pace.get(rank)
             size = 1 if pace is None else int(CHUNK_SECONDS / max(pace, 1e-7))
@@ -78,6 +85,13 @@ class Handout:
             self.busy.add(rank)
             return start, end
 
+    def stop(self) -> None:
+        """Leaves what has not been handed out for another run."""
+        with self.change:
+            self.stopped = True
+            self.todo.clear()
+            self.change.notify_all()
+
     def wait(self) -> None:
         """Waits a little for a change."""
         with self.change:
@@ -87,12 +101,13 @@ class Handout:
 class FirstRankClaims:
     """How the first rank gets its chunks, and how its thread serves the others."""
 
-    def __init__(self, team: Team, todo: list[Range]):
-        self.team, self.handout = team, Handout(todo, team.size)
+    def __init__(self, team: Team, todo: list[Range], stop: Stop):
+        self.team, self.handout, self.stop = team, Handout(todo, team.size), stop
         self.waiting: deque[int] = deque()
         self.working = set(range(1, team.size))
         self.status = team.MPI.Status()
         self.serving = threading.Lock()
+        self.served = 0.0
         self.thread: threading.Thread | None = None
         if team.size > 1:
             self.thread = threading.Thread(target=self._serve_until_over, name="handout", daemon=True)
@@ -105,23 +120,41 @@ class FirstRankClaims:
 
     def claim(self, report: Report) -> Range:
         self.handout.settle(0, report)
-        self.serve()
+        self.between_points()
         while (chunk := self.handout.take(0)) is None:
             self.handout.wait()
+            self.between_points()
         return chunk
 
     def close(self) -> None:
         if self.thread is not None:
             self.thread.join()
 
-    def serve(self) -> None:
-        """Answers what other ranks ask; called between points and, while a point is solved, by the thread.
+    def between_points(self) -> None:
+        """Answers what other ranks ask; while a long point is solved, the thread does.
 
         The thread alone would not do: a solve inside PETSc keeps Python's lock, and the thread might
         get it only once a point for each of its steps.
         """
+        if self.thread is not None:
+            self._serve()
+            self.served = time.monotonic()
+        else:
+            self._heed_stop()
+
+    def _heed_stop(self) -> None:
+        """Once this rank has been asked to stop, nothing more is handed out, and all are told."""
+        if self.stop and not self.handout.stopped:
+            self.handout.stop()
+            for rank in self.working:
+                self.team.comm.send(self.stop.name, dest=rank, tag=STOP)
+
+    def _serve(self) -> None:
         comm, MPI = self.team.comm, self.team.MPI
         with self.serving:
+            while comm.Iprobe(source=MPI.ANY_SOURCE, tag=STOP, status=self.status):
+                self.stop.name = comm.recv(source=self.status.Get_source(), tag=STOP)
+            self._heed_stop()
             while comm.Iprobe(source=MPI.ANY_SOURCE, tag=REQUEST, status=self.status):
                 rank = self.status.Get_source()
                 self.handout.settle(rank, comm.recv(source=rank, tag=REQUEST))
@@ -135,8 +168,9 @@ class FirstRankClaims:
     def _serve_until_over(self) -> None:
         with self.team.together():
             while self.working:
-                self.serve()
-                time.sleep(POLL_SECONDS)
+                self._serve()
+                answering = time.monotonic() - self.served < REST_SECONDS
+                time.sleep(REST_SECONDS if answering else POLL_SECONDS)
 
 
 class OtherRankClaims:
@@ -144,23 +178,29 @@ class OtherRankClaims:
 
     points = 0
 
-    def __init__(self, team: Team):
-        self.comm = team.comm
+    def __init__(self, team: Team, stop: Stop):
+        self.comm, self.stop, self.told = team.comm, stop, False
 
     def claim(self, report: Report) -> Range:
         self.comm.send(report, dest=0, tag=REQUEST)
         # A blocking receive would spin and take the processor from the ranks that compute.
         while not self.comm.Iprobe(source=0, tag=ANSWER):
-            time.sleep(POLL_SECONDS / 5)
+            self.between_points()
+            time.sleep(ASK_SECONDS)
         return self.comm.recv(source=0, tag=ANSWER)
 
-    def serve(self) -> None:
-        """Nobody asks this rank."""
+    def between_points(self) -> None:
+        """Passes a request to stop on to the first rank, or learns of it from there."""
+        if not self.told and self.comm.Iprobe(source=0, tag=STOP):
+            self.stop.name, self.told = self.comm.recv(source=0, tag=STOP), True
+        if not self.told and self.stop:
+            self.comm.send(self.stop.name, dest=0, tag=STOP)
+            self.told = True
 
     def close(self) -> None:
         """Nothing to close."""
 
 
-def claims_of(team: Team, todo: list[Range]) -> FirstRankClaims | OtherRankClaims:
+def claims_of(team: Team, todo: list[Range], stop: Stop) -> FirstRankClaims | OtherRankClaims:
     """This rank's way to its chunks; `todo` matters on the first rank only."""
-    return FirstRankClaims(team, todo) if team.first else OtherRankClaims(team)
+    return FirstRankClaims(team, todo, stop) if team.first else OtherRankClaims(team, stop)

@@ -2,12 +2,23 @@
 
 import time
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import TypeVar
 
 from .handout import GIVE_BACK_AFTER, OVER, Range, Report, claims_of
+from .stop import Stop
 from .team import Team
 
 Result = TypeVar("Result")
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """What one rank did: points, and seconds spent on them and on waiting for more or for the others."""
+
+    points: int
+    busy: float
+    idle: float
 
 
 def sweep(
@@ -16,30 +27,38 @@ def sweep(
     solve: Callable[[int], Iterable[tuple[int, Result]]],
     keep: Callable[[int, Result], None],
     tell: Callable[[int], None],
-) -> None:
+    stop: Stop,
+) -> Share:
     """Solves every unit of the ranges `todo`, each on some rank; returns when all ranks are done.
 
     `solve` maps a unit to its points, each an index and a result, one after another: a unit is a
     point or a chain of them. `keep` makes a point durable before the next is asked for, on the rank
     that solves it; `tell` hears on the first rank how many points are done in all. What they raise
-    ends all ranks.
+    ends all ranks. Once any rank has been asked to `stop`, each ends with the point that it is at.
     """
-    claims = claims_of(team, todo)
+    started = time.monotonic()
+    busy, points = 0.0, 0
+    claims = claims_of(team, todo, stop)
     chunk = claims.claim(Report())
     while chunk != OVER:
         began = time.monotonic()
-        at, stop = chunk
-        points = 0
-        while at < stop:
+        at, end = chunk
+        before = points
+        while at < end and not stop:
             for index, result in solve(at):
                 keep(index, result)
                 points += 1
-                claims.serve()
+                claims.between_points()
                 if team.first:
-                    tell(claims.points + points)
+                    tell(claims.points + points - before)
+            if stop:  # in the middle of the unit, perhaps
+                break
             at += 1
             if time.monotonic() - began > GIVE_BACK_AFTER:
                 break
-        chunk = claims.claim(Report(at - chunk[0], time.monotonic() - began, (at, stop), points))
+        spent = time.monotonic() - began
+        busy += spent
+        chunk = claims.claim(Report(at - chunk[0], spent, (at, end), points - before))
     claims.close()
     team.barrier()
+    return Share(points, busy, time.monotonic() - started - busy)

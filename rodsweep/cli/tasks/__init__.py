@@ -28,3 +28,8 @@ TASKS: dict[str, Callable[[Any, Points], Task]] = {
 def task_of(config: Config, points: Points) -> Task:
     """The task of a config on its points; InputError for what only the task can know to be wrong."""
     return TASKS[config.task](config, points)
+
+
+def needs_all_points(config: dict[str, Any]) -> bool:
+    """Whether a resolved config asks for variables that only all points together give: `Solver.finish`."""
+    return config["task"] == "phase_diagram" and bool(config["phase_diagram"]["curves"])

@@ -1,6 +1,7 @@
 """What `rodsweep show` prints: axes, statuses with their meaning, cost, and what the task has to tell."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from rich.console import Console
@@ -22,6 +23,8 @@ LINES: dict[str, Callable[[View, np.ndarray], list[str]]] = {
     "limit_cycle": limit_cycle_lines,
 }
 """What each task has to tell of its computed points, from (view, which points are computed)."""
+RANK_NUMBERS = ("points", "busy_seconds", "idle_seconds")
+"""What is kept of every rank of the last run, in attributes named rank_*."""
 
 
 def show_summary(view: View) -> None:
@@ -47,13 +50,28 @@ def show_summary(view: View) -> None:
         )
         for line in LINES[view.task](view, done):
             console.print(line, soft_wrap=True)
-    ran = (
-        f"{a['started']} to {a['finished']} on {a['ranks']} ranks" if "finished" in a else "not finished yet"
-    )
+    for line in _ranks(a):
+        console.print(line, soft_wrap=True)
+    ran = f"{a['started']} to {a['finished']}" if "finished" in a and "started" in a else "not finished yet"
     console.print(
         f"computed {ran}; rodsweep {a.get('rodsweep_version')}, PETSc {a.get('petsc_version')}, "
         f"SLEPc {a.get('slepc_version')}, commit {str(a.get('git_commit'))[:12]}"
     )
+
+
+def _ranks(a: dict[str, Any]) -> list[str]:
+    """What the ranks of the last run did: how much of the time they solved, and how many points."""
+    if "rank_points" not in a:
+        return []
+    points, busy, idle = (np.atleast_1d(a[f"rank_{name}"]) for name in RANK_NUMBERS)
+    hosts = len(str(a["hosts"]).split())
+    share = 100 * busy / np.maximum(busy + idle, 1e-9)
+    least = int(share.argmin())
+    text = f"last run: {a['ranks']} ranks on {hosts} host{'s' * (hosts != 1)}, {points.sum()} points"
+    text += f"; shard {a['shard']}" if a.get("shard") else ""
+    text += f"; stopped by {a['stopped']}" if a.get("stopped") else ""
+    solved = f"{np.median(share):.1f} % of its time (median; least {share[least]:.1f} %, rank {least})"
+    return [text, f"a rank was busy {solved} and finished {points.min()} to {points.max()} points"]
 
 
 def _axes(view: View) -> Table:

@@ -1,5 +1,7 @@
 """What `rodsweep show` says of limit cycles: their period and size, and how far they can be relied on."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from ...results.view import View
@@ -19,7 +21,7 @@ def limit_cycle_lines(view: View, done: np.ndarray) -> list[str]:
     return [*lines, *_cycle_lines(v, beats)] if beats.any() else lines
 
 
-def _cycle_lines(v: dict[str, np.ndarray], beats: np.ndarray) -> list[str]:
+def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
     """Ranges over the points that end in a cycle, and the worst of their errors."""
     period = f"period: {span(v['period'][beats])} tau2"
     if "period_tau1" in v:

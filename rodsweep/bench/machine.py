@@ -1,0 +1,19 @@
+"""Where and when a benchmark ran."""
+
+import platform
+
+from ..results.provenance import cpu_name, now, provenance
+from ..solve import petsc
+
+
+def machine() -> dict[str, str]:
+    """Processor, date and versions, as attributes of a file."""
+    return {"processor": cpu_name(), "created": now()} | provenance() | petsc.versions()
+
+
+def where_and_when() -> str:
+    """The machine, the date and the versions, in one line."""
+    versions = petsc.versions() | {k.removesuffix("_version"): v for k, v in provenance().items()}
+    shown = ("rodsweep", "petsc", "slepc", "numpy", "python")
+    where = ", ".join(f"{name} {versions[name]}" for name in shown)
+    return f"One core of {cpu_name()}, {platform.system()}, {now()[:10]}; {where}. Threads: one."

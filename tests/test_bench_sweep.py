@@ -1,0 +1,115 @@
+"""The benchmark of the sweep: it writes its tables; memory and file stay within what a point may take."""
+
+from dataclasses import replace
+from math import isnan
+
+import numpy as np
+import pytest
+
+from rodsweep.bench import sweep
+from rodsweep.bench.launch import Run, launcher, run
+from rodsweep.bench.sweep import Row, growth, instant_table, spectrum_case, sweep_study, uneven_forces
+from rodsweep.errors import EnvironmentLacks
+
+FEW_MEGABYTES = 4.0
+MOST_BYTES = 100
+
+
+def row(case, points, ranks, seconds, memory):
+    runs = tuple(
+        Run(s, s - 0.5, 0.0, tuple(memory[:ranks]), 1000 + 62 * points, 74 * (points - 1), 0.0)
+        for s in (seconds, 2 * seconds, seconds)
+    )
+    return Row(case, points, ranks, runs)
+
+
+def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch):
+    monkeypatch.setattr(sweep, "QUICK_SIZES", (200, 400))
+    monkeypatch.setattr(sweep, "QUICK_SPECTRA", 8)
+    monkeypatch.setattr(sweep, "works", lambda: False)
+    study = sweep_study(quick=True)
+    assert "| spectra | 8 | 1 |" in study.text
+    assert "| 400 | 1 |" in study.text
+    assert "From 200 to 400 points, 1 rank:" in study.text
+    assert "From 200 to 400 points, resumed:" in study.text
+    assert "Limit cycles are skipped" in study.text
+    assert ("| 400 | 2 |" in study.text) == bool(launcher(2))
+    assert not study.drawable
+    table = study.table()
+    instant = [i for i, case in enumerate(table["case"]) if case == "no solver"]
+    assert len(instant) == (4 if launcher(2) else 2)
+    for name in ("ranks", "points", "points_per_second", "rss_megabytes", "file_bytes_per_point"):
+        assert all(table[name][i] > 0 for i in instant), name
+    assert all(np.isfinite(table["microseconds_overhead"][i]) for i in instant)
+    killed = [i for i, case in enumerate(table["case"]) if case == "killed"]
+    assert [round(table["journal_bytes_per_point"][i]) for i in killed] == [74, 74]
+    assert all(isnan(error) for error in table["error"])
+
+
+def test_memory_of_a_rank_does_not_grow_with_the_grid(tmp_path):
+    """Up to a kill at the last point, and in the next run, which reads all that is there."""
+    peaks = {}
+    for points in (2_000, 200_000):
+        case = spectrum_case(tmp_path / str(points), "killed", points, "killed")
+        killed = run(case, 1)
+        assert killed.journal > 74 * (points - 1)
+        resumed = run(replace(case, kind="instant"), 1, fresh=False)
+        peaks[points] = [killed.memory[0], resumed.memory[0]]
+    for few, many in zip(*peaks.values(), strict=True):
+        assert 5e7 < few < many + 1e6 * FEW_MEGABYTES
+        assert many < few + 1e6 * FEW_MEGABYTES
+
+
+def test_file_takes_less_than_a_hundred_bytes_a_point(tmp_path):
+    case = spectrum_case(tmp_path / "grid", "no solver", 20_000, "instant")
+    taken = run(case, 1)
+    assert case.points == 20_000
+    assert taken.file < MOST_BYTES * case.points
+    table = "\n".join(f"{F!r},200,{1e3 + F!r},1e-4" for F in np.linspace(0, 90, 20_000).tolist())
+    (case.directory / "p.csv").write_text(f"F,k1,k2,gamma3\n{table}\n")
+    (case.directory / "c.yaml").write_text(
+        "task: spectrum\nparameters: {points: p.csv}\nspectrum: {modes: 2}\n"
+    )
+    assert run(case, 1).file < MOST_BYTES * case.points
+
+
+def test_a_run_that_fails_is_told(tmp_path):
+    case = spectrum_case(tmp_path / "grid", "no solver", 8, "instant")
+    (case.directory / "c.yaml").write_text("task: spectrum\n")
+    with pytest.raises(EnvironmentLacks, match="parameters"):
+        run(case, 1)
+
+
+def test_two_ranks_are_skipped_without_a_launcher(monkeypatch):
+    monkeypatch.setattr(sweep, "launcher", lambda ranks: [])
+    for name in ("solved_rows", "instant_rows"):
+        monkeypatch.setattr(
+            sweep, name, lambda place, quick, ranks, rounds: [row("a", 10, ranks[-1], 2, [1])]
+        )
+    monkeypatch.setattr(
+        sweep, "resumed_rows", lambda place, quick: [row(c, 10, 1, 2, [1]) for c in ("killed", "resumed")]
+    )
+    assert "Two ranks are skipped" in sweep_study(quick=True).text
+
+
+def test_growth_is_that_of_the_last_step():
+    rows = [
+        row("no solver", 10**k, n, 1 + 1e-5 * 10**k / n, [10**8, 2 * 10**8])
+        for k in (3, 4, 5)
+        for n in (1, 2)
+    ]
+    text = growth(rows, [])
+    assert "to the power 1.00; a further point takes 10 µs of a rank and 62 bytes of the file" in text
+    assert "the first rank's memory moves by +0.0 MB, +0.0 bytes a point; the peak of the other" in text
+    killed = [row(c, r.points, 1, 1.0, [10**8]) for r in rows for c in ("killed", "resumed")]
+    assert "| 100000 | 2 | 1.50 | 30.0 | 10.0 | 100.0 | 200.0 | 62.0 |" in instant_table(rows, killed)
+
+
+def test_uneven_forces_lie_on_both_sides_of_the_hopf_point_and_close_to_it():
+    forces = uneven_forces(60)
+    assert len(forces) == 60
+    distance = forces / sweep.HOPF - 1
+    assert distance.min() < -0.5
+    assert distance.max() > 1
+    assert 0 < distance[distance > 0].min() < 2e-7
+    assert not (np.diff(forces) > 0).all()
