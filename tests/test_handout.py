@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from rodsweep.sweep.handout import CHUNK_SECONDS, OVER, Handout, Report
+from rodsweep.sweep.handout import CHUNK_SECONDS, OVER, Handout, Report, chunk_seconds
 
 
 def test_every_point_is_handed_out_once():
@@ -81,3 +81,12 @@ def test_after_a_stop_nobody_gets_more_and_nobody_waits():
     assert handout.take(1) == OVER
     handout.settle(0, Report(0, 1.0, (0, 1)))
     assert handout.take(0) == OVER
+
+
+def test_many_ranks_ask_the_first_no_more_than_a_thousand_times_a_second():
+    assert chunk_seconds(2) == CHUNK_SECONDS
+    for ranks in (200, 10_000):
+        handout = Handout([(0, 10**9)], ranks)
+        handout.settle(1, Report(1000, 1.0))
+        start, stop = handout.take(1)
+        assert ranks / ((stop - start) * 1e-3) <= 1001

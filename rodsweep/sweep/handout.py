@@ -16,10 +16,12 @@ from .stop import Stop
 from .team import Team
 
 REQUEST, ANSWER, STOP = 71, 72, 73
-CHUNK_SECONDS = 0.1
-"""How long a chunk should take: long against a message (20 microseconds), short against a run."""
-GIVE_BACK_AFTER = 3 * CHUNK_SECONDS
-LARGEST_CHUNK = 4096
+CHUNK_SECONDS, CHUNK_SECONDS_A_RANK = 0.1, 1e-3
+"""How long a chunk should take: long against a message, short against a run; with many ranks so long that the
+first one, which answers a request in 50 microseconds, spends a twentieth of its time on answers."""
+GIVE_BACK_AFTER = 3.0
+"""Time after which a rank gives the rest of its chunk back, in units of what the chunk should take."""
+LARGEST_CHUNK = 1 << 16
 POLL_SECONDS, REST_SECONDS = 2e-3, 5e-3
 """How long the thread sleeps: each waking takes the first rank 20 microseconds or more of its solve. Longer
 where that rank itself answers between its points."""
@@ -28,6 +30,11 @@ ASK_SECONDS = 1e-4
 
 Range = tuple[int, int]
 OVER: Range = (0, 0)
+
+
+def chunk_seconds(ranks: int) -> float:
+    """How long a chunk should take where so many ranks ask for more."""
+    return max(CHUNK_SECONDS, ranks * CHUNK_SECONDS_A_RANK)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +83,7 @@ class Handout:
                 return None if self.busy and not self.stopped else OVER
             share = max(1, self.left // (2 * self.ranks))
             pace = self.pace.get(rank)
-            size = 1 if pace is None else int(CHUNK_SECONDS / max(pace, 1e-7))
+            size = 1 if pace is None else int(chunk_seconds(self.ranks) / max(pace, 1e-7))
             start, stop = self.todo.popleft()
             end = min(stop, start + max(1, min(size, share, LARGEST_CHUNK)))
             if end < stop:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TypeVar
 
-from .handout import GIVE_BACK_AFTER, OVER, Range, Report, claims_of
+from .handout import GIVE_BACK_AFTER, OVER, Range, Report, chunk_seconds, claims_of
 from .stop import Stop
 from .team import Team
 
@@ -39,6 +39,7 @@ def sweep(
     started = time.monotonic()
     busy, points = 0.0, 0
     claims = claims_of(team, todo, stop)
+    patience = GIVE_BACK_AFTER * chunk_seconds(team.size)
     chunk = claims.claim(Report())
     while chunk != OVER:
         began = time.monotonic()
@@ -54,7 +55,7 @@ def sweep(
             if stop:  # in the middle of the unit, perhaps
                 break
             at += 1
-            if time.monotonic() - began > GIVE_BACK_AFTER:
+            if time.monotonic() - began > patience:
                 break
         spent = time.monotonic() - began
         busy += spent
