@@ -5,10 +5,12 @@ import shutil
 import mpmath as mp
 import numpy as np
 import pytest
+from hard.exact import derivatives
 from reference import determinant as reference
 
 from rodsweep.model import compilation
-from rodsweep.model.determinant import newton_correction, scaled_determinant
+from rodsweep.model.determinant import TYPICAL_NOISE, newton_correction, scaled_determinant
+from rodsweep.model.path import determinant_along, direction_of
 from rodsweep.model.rod import Rod
 
 
@@ -36,6 +38,88 @@ def test_determinant_is_right_to_rounding(w, rod, evaluation):
         h = mp.mpf(10) ** -12 * abs(w)
         exact = (evaluation(w + h, *parameters) - evaluation(w - h, *parameters)) / (2 * h)
         assert abs(mp.mpc(slope) - exact * mp.exp(-mp.mpf(scale))) < 1e-11 * abs(slope) + 1e3 * noise / abs(w)
+
+
+def at(place, *rod):
+    """(w, rod) beside w = -g nu/(c2 gamma3), where P = 0; `place` is the relative distance."""
+    rod = Rod(*rod)
+    return -rod.g * rod.nu / (rod.c2 * rod.gamma3) * (1 + place), rod
+
+
+def hard_cases():
+    """Where terms of D cancel: P = 0, M = 0, z+- = 0, strong pulls, nearly crushed rods, next to w = 0."""
+    random = np.random.default_rng(11)
+    for i in range(400):
+        F, k1, k2, gamma3 = (float(10 ** random.uniform(*r)) for r in ((-1, 2), (2, 5), (-0.3, 4), (-4, 1.5)))
+        near = 1 + 10 ** random.uniform(-16, -0.5) * np.exp(2j * np.pi * random.random())
+        near = near.real if i % 3 == 0 else near
+        w = complex(*(random.normal(size=2) * 10 ** random.uniform(-3, 5)))
+        if i % 6 == 1:
+            F = -float(10 ** random.uniform(1, 4))
+        elif i % 6 == 2:
+            F = k1 * (1 - float(10 ** random.uniform(-9, -1)))
+        F = min(F, 0.999999 * k1)
+        rod = Rod(F, k1, k2, gamma3)
+        drag, shear = rod.c2 + gamma3, rod.c2 - gamma3
+        if i % 6 == 3:
+            w = complex(-rod.g * rod.nu / (rod.c2 * gamma3) * near)
+        elif i % 6 == 4:
+            w = complex(F * rod.g / drag * near)
+        elif i % 6 == 5:
+            product = [shear**2, -2 * rod.g * (drag * F + 2 * rod.nu), (F * rod.g) ** 2]
+            w = complex(random.choice(np.roots(product)) * near)
+        elif i % 6 == 0:
+            w *= 10 ** random.uniform(-14, 0)
+        if scaled_determinant(w, rod.coefficients)[2] < 200:
+            yield w, rod
+
+
+def rounding(w, rod):
+    """The error of D in units of its noise."""
+    value, _, scale, noise = scaled_determinant(w, rod.coefficients)
+    exact = reference.D_wedge(w, rod.F, rod.k1, rod.k2, rod.gamma3, 60) * mp.exp(-mp.mpf(scale))
+    return float(abs(mp.mpc(value) - exact)) / noise
+
+
+def test_the_noise_bounds_what_rounding_does_where_terms_cancel():
+    errors = [rounding(w, rod) for w, rod in hard_cases()]
+    assert len(errors) > 300
+    assert max(errors) < 1
+
+
+def test_the_typical_noise_is_typical():
+    errors = [rounding(*case.values) for case in cases()]
+    assert TYPICAL_NOISE / 10 < np.median(errors) < TYPICAL_NOISE
+
+
+PULLS_AND_PUSHES = [
+    (3.0, np.inf, 2.0, 0.0563),
+    (-5.0, 50.0, 20.0, 0.4),
+    (30.0, 1e4, 1e4, 3.0),
+    (5.0, 1e4, 10.0, 0.1),
+]
+
+
+@pytest.mark.parametrize("place", [0.0, 1e-15, -1e-12, 1e-8, 1e-5j, -1e-2])
+@pytest.mark.parametrize("rod", PULLS_AND_PUSHES, ids=str)
+def test_nothing_is_lost_where_exponents_vanish(rod, place):
+    """D and all of its derivatives, at P = 0 and beside it, where the slopes of z+ and z- are infinite."""
+    w, known = complex(at(place, *rod)[0]), Rod(*rod)
+    exact = derivatives(w, rod, ("w", "F", "c1", "c2", "gamma3"))
+    for name, along in zip(("F", "k1", "k2", "gamma3"), exact[1:], strict=True):
+        found = determinant_along(w, known.coefficients, direction_of(known, name))
+        size = mp.exp(-mp.mpf(found[3]))
+        assert abs(mp.mpc(found[0]) - reference.D(w, *rod, digits=40) * size) < min(found[4], 1e-12)
+        assert abs(mp.mpc(found[1]) - exact[0] * size) < 1e-12 * abs(found[1])
+        assert abs(mp.mpc(found[2]) - along * size) < 1e-12 * abs(found[2])
+
+
+def test_the_length_of_newtons_correction_does_not_shrink_where_exponents_vanish():
+    for rod in PULLS_AND_PUSHES:
+        beside, there = (
+            newton_correction(complex(at(d, *rod)[0]), Rod(*rod).coefficients)[1] for d in (0.3, 1e-14)
+        )
+        assert there > beside / 10
 
 
 def test_determinant_is_one_at_rest():

@@ -745,6 +745,15 @@ def test_of_a_pair_only_one_vector_is_computed(monkeypatch):
     assert calls[1:] == [pair[0], other]
 
 
+def test_the_distance_to_the_next_eigenvalue_is_sharp_where_it_is_small():
+    """Beside the onset F* = 20.008 the two lie close together."""
+    for force, tolerance in ((20.0080207, 1e-3), (20.0081, 1e-3), (20.0, 1e-2)):
+        rod = Rod(force, 1e4, 1e4, 1e-4)
+        w = solve_spectrum(rod, SpectrumRequest(2, 1e-10, True)).eigenvalues
+        found = vectors_module.distance_to_next(complex(w[0]), rod.coefficients)
+        assert found == pytest.approx(abs(w[0] - w[1]), rel=tolerance)
+
+
 def test_growth_on_a_coarse_mesh_is_refined_until_meshes_agree():
     rod = Rod(*FIG_2A)
     exact = solve_modes(rod, TIGHT)

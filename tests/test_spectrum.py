@@ -47,7 +47,7 @@ def test_pulled_rods_lose_no_digit(reference_spectra):
         assert result.status in ({Status.ok} if rod.g > 0 or rod.gamma3 > 0 else {Status.not_certified}), rod
         exact = leading(point, 4)
         assert (np.abs(result.eigenvalues - exact) < 1e-13 * np.abs(exact)).all(), rod
-        assert result.unstable_count == point["unstable"], rod
+        assert result.unstable_count == (point["unstable"] if result.certified else -1), rod
 
 
 def test_error_estimate_is_the_error_within_a_factor_of_ten(reference_spectra):
@@ -278,7 +278,8 @@ def test_hard_rods_have_the_right_leading_mode(parameters, modes, accuracy, firs
     result = solve_spectrum(Rod(*parameters), SpectrumRequest(modes, accuracy, certify))
     assert result.status in (Status.ok, Status.not_certified)
     assert abs(result.eigenvalues[0] - first) < max(2 * accuracy, 1e-8) * abs(first)
-    assert result.unstable_count == unstable or (not certify and result.unstable_count == -1)
+    # Without a proof the count is withheld: where it was asked for, and where the search did not go past.
+    assert result.unstable_count == unstable or (not result.certified and result.unstable_count == -1)
 
 
 def test_pair_at_the_onset_is_kept_without_a_certificate():

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from math import inf
 
 from .compilation import compiled
-from .determinant import exponentials
+from .even_parts import even_parts
 from .rod import Coefficients, Rod
 
 Changes = tuple[float, float, float, float, float, float, float]
@@ -116,15 +116,13 @@ def determinant_along(
     w: complex, coefficients: Coefficients, direction: Coefficients
 ) -> tuple[complex, complex, complex, float, float]:
     """(D, dD/dw, dD/dp, S, noise) at w != 0, the first three times exp(-S); noise as that of D."""
-    scale, noise, P, P1, P2, _, _, E_plus, E1_plus, E_minus, E1_minus = exponentials(w, coefficients)
-    change = changes(coefficients, direction)
-    along_plus, along_minus, _, P1p = root_changes(w, P, P1, coefficients, change)
-    drag = coefficients[2] + coefficients[3]
-    slope_plus = drag + 2 * P1
-    slope_minus = drag - 2 * P1
-    first = slope_plus * E_plus + slope_minus * E_minus
-    second = 2 * P2 * (E_plus - E_minus) + slope_plus**2 * E1_plus + slope_minus**2 * E1_minus
-    along = change[0] * (E_plus + E_minus) + 2 * P1p * (E_plus - E_minus)
-    along += slope_plus * along_plus * E1_plus + slope_minus * along_minus * E1_minus
-    one = math.exp(-scale)
-    return one + w / 2 * first, (first + w * second) / 2, w / 2 * along, scale, noise
+    F, nu, c2, gamma3 = coefficients
+    S, noise, first, s, d, s1, d1, dd = even_parts(w, coefficients)
+    T1, N1, _, G1, _, X1, _ = changes(coefficients, direction)
+    T, X = c2 + gamma3, c2 * gamma3
+    N = (nu + F * c2) * nu + 2 * X * w
+    second = T * (T * s1 + 8 * N * d1) + 8 * X * d + 16 * N * N * dd
+    M1, square1 = T1 * w - N1, w * (G1 + X1 * w)
+    along = T1 * s + 4 * (G1 + 2 * X1 * w) * d
+    along += M1 * (T * s1 + 4 * N * d1) + 4 * square1 * (T * d1 + 4 * N * dd)
+    return math.exp(-S) + w / 2 * first, (first + w * second) / 2, w / 2 * along, S, noise

@@ -33,7 +33,8 @@ class Found:
 
     w: complex, shape (k,); error: |D/D'| at each, displacement: how far off the mesh was, in units of |w|
     or of the length over which D changes, wave: largest |q|, on_the_axis: whether it lies on the imaginary
-    axis within its error, shape (k,); vectors: the mesh's, shape (unknowns, k), or None.
+    axis within its error, shape (k,); ahead: eigenvalues of the mesh right of all these that stand for no
+    root, though they lie where one may; vectors: the mesh's, shape (unknowns, k), or None.
     """
 
     resolution: Resolution
@@ -42,6 +43,7 @@ class Found:
     displacement: NDArray[np.float64]
     wave: NDArray[np.float64]
     on_the_axis: NDArray[np.bool_]
+    ahead: int
     vectors: NDArray[np.complex128] | None
 
     def worst(self, modes: int) -> float:
@@ -75,11 +77,11 @@ def attempt(rod: Rod, resolution: Resolution, wanted: int, shift: float, vectors
     solver = eigen_solver(resolution)
     raw = solver.solve(rod, shift, wanted, tight)
     most_waves = WAVES_A_NODE * solver.pencil.nodes
-    order, w, error, displacement, wave, axis = roots(
+    order, w, error, displacement, wave, axis, ahead = roots(
         raw, rod.coefficients, sqrt(squared_amplification(rod)), most_waves
     )
     kept = solver.vectors(len(raw))[:, order] if vectors else None
-    return Found(resolution, w, error, displacement, wave, axis, kept)
+    return Found(resolution, w, error, displacement, wave, axis, ahead, kept)
 
 
 def judge(rod: Rod, found: Found, modes: int) -> Verdict:

@@ -11,7 +11,7 @@ from ..model.path import Changes
 from ..model.rod import Coefficients
 
 ROUNDING_OF_D = 4.0
-"""Rounding error of D in units of its noise: below 0.5 at 2000 values chosen to be bad, and room."""
+"""Rounding error of D in units of its noise: at most 0.7 at 20 000 values chosen to be bad, and room."""
 CLEARANCE = 0.9
 """Share of |D| that a proved change may use up."""
 HUGE = 600.0

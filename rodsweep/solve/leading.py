@@ -41,11 +41,17 @@ class Untraceable(Exception):
 
 @dataclass(frozen=True)
 class Anchor:
-    """A rod of the path with its leading eigenvalues w and their slopes dw/dp, shape (MODES,)."""
+    """A rod of the path with its leading eigenvalues w and their slopes dw/dp, shape (MODES,).
+
+    time, lengthening: a time on which the rod relaxes, smooth along the path, and its slope. In its units w
+    is of order one; without shear and rotational drag it grows like nu^-2 where the rod is nearly crushed.
+    """
 
     p: float
     w: NDArray[np.complex128]
     slope: NDArray[np.complex128]
+    time: float = 1.0
+    lengthening: float = 0.0
 
     @cached_property
     def oscillates(self) -> bool:
@@ -53,20 +59,25 @@ class Anchor:
         return bool(self.w[0].imag != 0)
 
     def partner(self) -> tuple[float, float] | None:
-        """((w1 - w2)^2, its slope) of the two that lead, where both are real or both are a pair."""
+        """((w1 - w2)^2 time^2, its slope) of the two that lead, where both are real or both are a pair."""
         if self.oscillates:
-            return -4 * self.w[0].imag ** 2, -8 * self.w[0].imag * self.slope[0].imag
+            gap, slope = self._timed(2 * self.w[0].imag, 2 * self.slope[0].imag)
+            return -(gap**2), -2 * gap * slope
         if self.w[1].imag != 0:
             return None
-        gap, slope = (self.w[0] - self.w[1]).real, (self.slope[0] - self.slope[1]).real
+        gap, slope = self._timed((self.w[0] - self.w[1]).real, (self.slope[0] - self.slope[1]).real)
         return gap**2, 2 * gap * slope
 
     def rival(self) -> tuple[float, float] | None:
-        """(lead of the real part over the first eigenvalue of the other kind, its slope)."""
+        """(lead of the real part over the first eigenvalue of the other kind, times time, its slope)."""
         for w, slope in zip(self.w[1:], self.slope[1:], strict=True):
             if (w.imag != 0) != self.oscillates:
-                return float((self.w[0] - w).real), float((self.slope[0] - slope).real)
+                return self._timed((self.w[0] - w).real, (self.slope[0] - slope).real)
         return None
+
+    def _timed(self, value: float, slope: float) -> tuple[float, float]:
+        """(value time, its slope): zeros and signs stay where they are."""
+        return float(value * self.time), float(slope * self.time + value * self.lengthening)
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +124,13 @@ class Tracer:
             )
             if abs(polished - guess) <= max(10 * found.error_estimate[i], 1e-12 * abs(guess)):
                 w[i] = polished
-        return Anchor(p, w, slope)
+        return Anchor(p, w, slope, *self._relaxation(p))
+
+    def _relaxation(self, p: float) -> tuple[float, float]:
+        """(nu^2 + c2 + gamma3, its slope), in tau2; never zero."""
+        _, nu, c2, gamma3 = coefficients_at(p, self.path.origin, self.path.direction)
+        _, nu1, c21, gamma31 = self.path.direction
+        return nu * nu + c2 + gamma3, 2 * nu * nu1 + c21 + gamma31
 
     def changes(self, edges: list[float]) -> list[Change]:
         """All changes between the first and the last of `edges`, sorted by p."""
@@ -159,12 +176,11 @@ class Tracer:
         return None
 
     def _double(self, pair: Anchor, real: Anchor, to_pair: bool) -> Change | None:
-        partner = real.partner()
+        below, above = pair.partner(), real.partner()
         width = abs(pair.p - real.p)
-        if partner is None:
+        if below is None or above is None:
             return None
-        negative, positive = -4 * pair.w[0].imag ** 2, partner[0]
-        share = positive / (positive - negative)
+        share = above[0] / (above[0] - below[0])
         p = real.p + share * (pair.p - real.p)
         x = (1 - share) * float((real.w[0] + real.w[1]).real) / 2 + share * float(pair.w[0].real)
         x, p, _, error = double_newton(x, p, self.path.origin, self.path.direction, width)

@@ -48,7 +48,7 @@ def _second(w: complex, S: float, coefficients: Coefficients) -> complex:
 
 @compiled
 def root_error(w: complex, coefficients: Coefficients) -> tuple[float, float, float]:
-    """(how far a root of D lies, length, wave number) at w, as `newton_correction`, next to a double root too.
+    """(how far a root of D lies, length, wave number) at w: `newton_correction`, also next to a double root.
 
     With e the larger of |D| and its rounding, Newton's e/|D'| holds while |D'|^2 is large against e |D''|.
     Nearer to a double root the two cannot be told apart within sqrt(2 e/|D''|) of their middle, which is
@@ -137,8 +137,10 @@ def _descending(w: NDArray[np.complex128]) -> NDArray:
 @compiled
 def roots(
     raw: NDArray[np.complex128], coefficients: Coefficients, amplification: float, most_waves: float
-) -> tuple[NDArray, NDArray, NDArray, NDArray, NDArray, NDArray]:
+) -> tuple[NDArray, NDArray, NDArray, NDArray, NDArray, NDArray, int]:
     """(indices, w, error, displacement, wave number, on the axis) of what stands for a root of D, sorted.
+
+    And the number of those that do not, although they lie in the box and right of all that do.
 
     raw: eigenvalues of a mesh, complex, shape (n,). amplification: the root of
     `rodsweep.model.bounds.squared_amplification`; most_waves: |q| that the mesh can stand for.
@@ -147,7 +149,7 @@ def roots(
     """
     index, first = np.empty(len(raw), dtype=np.int64), np.empty(len(raw), dtype=np.complex128)
     error, length, wave = np.empty(len(raw)), np.empty(len(raw)), np.empty(len(raw))
-    n = 0
+    n, doubtful = 0, []
     for i in range(len(raw)):
         w = raw[i]
         if not (math.isfinite(w.real) and math.isfinite(w.imag)):
@@ -160,6 +162,8 @@ def roots(
         if inside and wave[n] <= most_waves and error[n] <= CLOSE_ROOTS * length[n]:
             index[n], first[n] = i, w
             n += 1
+        elif inside:
+            doubtful.append(w.real)
     index, first, error, length, wave = index[:n], first[:n], error[:n], length[:n], wave[:n]
     w = first.copy()
     moved = _separate(w, error, coefficients)
@@ -179,7 +183,11 @@ def roots(
     index, w, error, wave = index[order], w[order], error[order], wave[order]
     _tell_apart(w, error, coefficients)
     axis = np.abs(w.real) <= np.maximum(4 * error, ON_THE_AXIS * np.abs(w))
-    return index, w, error, displacement, wave, axis
+    first_real = w[0].real if len(w) else -math.inf
+    ahead = 0
+    for real_part in doubtful:
+        ahead += real_part > first_real
+    return index, w, error, displacement, wave, axis, ahead
 
 
 @compiled

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..discretization.pencil import Pencil, shear_force, slope
+from ..model.determinant import ROUND_OFF
 from ..model.rod import Rod
 from .dense import dense_operator
 from .spectrum import NO_TIP
@@ -24,7 +25,10 @@ CONJUGATE = 1e-12
 
 @dataclass(frozen=True, slots=True)
 class Shapes:
-    """The modes on one mesh: arrays as in `rodsweep.solve.modes.Modes`."""
+    """The modes on one mesh: arrays as in `rodsweep.solve.modes.Modes`.
+
+    rounding: how far that of (A - w B) x moves an eigenvalue of the mesh, in 1/tau2, shape (modes,).
+    """
 
     pencil: Pencil
     right: Complex
@@ -32,11 +36,12 @@ class Shapes:
     left: Complex
     pairing: Complex
     condition: NDArray[np.float64]
+    rounding: NDArray[np.float64]
 
 
 def mode_shapes(rod: Rod, pencil: Pencil, eigenvalues: Complex, points: NDArray[np.float64]) -> Shapes:
     """The modes of known eigenvalues on one mesh, at `points` in [0, 1]."""
-    X, Z = _vectors(rod, pencil, eigenvalues)
+    X, Z, rounding = _vectors(rod, pencil, eigenvalues)
     evaluation = pencil.evaluation(points)
     y, theta = pencil.fields(X, rod)
     right = np.stack([(evaluation @ y).T, (evaluation @ theta).T])
@@ -45,11 +50,12 @@ def mode_shapes(rod: Rod, pencil: Pencil, eigenvalues: Complex, points: NDArray[
     B = pencil.inertia(rod)[:, None]
     pairing = (B * Z * X).sum(axis=0)
     norms = [np.sqrt((B * np.abs(V) ** 2).sum(axis=0)) for V in (X, Z)]
-    return Shapes(pencil, right, deformation, adjoint, pairing, norms[0] * norms[1] / np.abs(pairing))
+    condition = norms[0] * norms[1] / np.abs(pairing)
+    return Shapes(pencil, right, deformation, adjoint, pairing, condition, rounding)
 
 
-def _vectors(rod: Rod, pencil: Pencil, eigenvalues: Complex) -> tuple[Complex, Complex]:
-    """The right and left vectors of the pencil, shape (unknowns, modes), scaled at the tip."""
+def _vectors(rod: Rod, pencil: Pencil, eigenvalues: Complex) -> tuple[Complex, Complex, NDArray[np.float64]]:
+    """The right and left vectors, shape (unknowns, modes), scaled at the tip, and `Shapes.rounding`."""
     A, B = dense_operator(rod, pencil)
     m = len(eigenvalues)
     X, Z = np.empty((pencil.unknowns, m), complex), np.empty((pencil.unknowns, m), complex)
@@ -58,7 +64,9 @@ def _vectors(rod: Rod, pencil: Pencil, eigenvalues: Complex) -> tuple[Complex, C
             X[:, i], Z[:, i] = X[:, i - 1].conj(), Z[:, i - 1].conj()
         else:
             X[:, i], Z[:, i] = null_vectors(A, B, complex(w))
-    return X * _tip_scale(rod, pencil, X), Z * _tip_scale(rod, pencil, Z)
+    squares = (np.abs(Z) ** 2 * (np.abs(A) ** 2 @ np.abs(X) ** 2)).sum(axis=0)
+    rounding = ROUND_OFF * np.sqrt(squares) / np.abs((B[:, None] * Z * X).sum(axis=0))
+    return X * _tip_scale(rod, pencil, X), Z * _tip_scale(rod, pencil, Z), rounding
 
 
 def null_vectors(A: NDArray, B: NDArray, w: complex) -> tuple[NDArray, NDArray]:

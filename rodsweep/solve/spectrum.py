@@ -33,7 +33,7 @@ SHIFT_ABOVE_GROWTH = 1.05
 """Shift in units of the growth rate of the most amplified wave, which bounds most spectra."""
 SPARE_MODES = 1
 """Eigenvalues asked for beyond those that the winding number counts."""
-MOST_ATTEMPTS = 14
+MOST_ATTEMPTS = 12
 STALLED = 2
 """Refinements without a better error after which rounding, not the mesh, is taken as the limit."""
 SAFETY, STALLED_SAFETY = 0.5, 0.8
@@ -61,7 +61,7 @@ class Spectrum:
     """The leading transverse eigenvalues of one rod, in the order that `rodsweep.model` states.
 
     eigenvalues: complex, shape (modes,), in 1/tau2; error_estimate: |D/D'|, shape (modes,).
-    unstable_count: eigenvalues with Re w > 0, or -1 where it is not known; a proof only if certified.
+    unstable_count: eigenvalues with Re w > 0, or -1 where it is not known; proved where that was asked for.
     certified: the winding number proves that none right of the last given mode is missing.
     vectors: (Y, Theta), complex, shape (2, modes, vector_nodes), scaled to Y(1) = 1; or None.
     """
@@ -110,7 +110,7 @@ def _solve(rod: Rod, request: SpectrumRequest, started: float) -> Spectrum:
     wanted = request.modes
     best: tuple[tuple[bool, float], Found, Verdict | None] | None = None
     lost: Verdict | None = None
-    stalled = 0
+    unresolved, stalled = False, 0
     vectors = request.vector_nodes > 0
     for turn in range(MOST_ATTEMPTS):
         if resolution.unknowns > MOST_UNKNOWNS:
@@ -124,6 +124,9 @@ def _solve(rod: Rod, request: SpectrumRequest, started: float) -> Spectrum:
         if verdict is not None and verdict.count.number is not None and not verdict.agrees:
             lost = verdict
             wanted, resolution = _search_more(verdict, wanted, resolution)
+            continue
+        if verdict is not None and verdict.count.number is None and found.ahead:
+            unresolved, resolution = True, finer(resolution)  # neither mesh nor count can tell what leads
             continue
         short = _shortfall(found, verdict, request, bounded)
         rank = verdict is not None and verdict.count.number is None, short
@@ -143,6 +146,8 @@ def _solve(rod: Rod, request: SpectrumRequest, started: float) -> Spectrum:
         return _nothing(
             Status.modes_missing, request, f"the winding number counts {lost.count.number}", started
         )
+    if unresolved:
+        return _nothing(Status.modes_missing, request, "no mesh resolves what may lead", started)
     return _nothing(Status.failed, request, "no mesh within the limit resolves the wanted modes", started)
 
 
@@ -196,8 +201,8 @@ def _result(
         elif not proved:
             status, message = Status.not_certified, verdict.count.why_not if verdict else ""
     unstable = int((found.w.real > 0).sum())
-    # Without a proof the unstable modes are counted only if the search went past them.
-    known = not undecided and (proved or unstable < len(found.w))
+    # Where no proof is asked for the unstable modes are counted if the search went past them.
+    known = not undecided and (proved if request.certify else unstable < len(found.w))
     return Spectrum(
         status=status,
         eigenvalues=found.w[:m],

@@ -1,0 +1,68 @@
+"""The one singular limit: gamma3 -> 0 where a pull exceeds the shear stiffness, g = nu + F c2 < 0.
+
+Known exactly: for w = X/gamma3 and gamma3 -> 0 the inertia of y leaves s = -nu theta/c2, and theta'' =
+(X + g nu k2) theta with theta(0) = theta'(1) = 0. So for every n with X_n = -g nu k2 - (pi (n - 1/2))^2 > 0
+one unstable mode runs away to infinity like X_n/gamma3, with layers of width sqrt(gamma3); all other modes
+tend to those of gamma3 = 0. No a-priori bound holds in the limit (physics.md, section 4): nothing is proved
+there.
+"""
+
+import numpy as np
+import pytest
+
+from rodsweep.model.rod import Rod
+from rodsweep.solve.certificate import count_right_of
+from rodsweep.solve.status import Status
+
+from .exact import leading, unstable
+from .promises import all_broken, broken_promises, spectrum
+
+PULLED = (-24.0, 1e4, 10.0)
+DRAGS = [1.0, 1e-1, 1e-2, 1e-3, 1e-4]
+
+
+def runaways(F, k1, k2):
+    """The positive X_n."""
+    nu = 1 - F / k1
+    X = -(nu + F / k2) * nu * k2 - (np.pi * (np.arange(1, 50) - 0.5)) ** 2
+    return X[X > 0]
+
+
+def test_pulled_rods_with_drag_are_right_and_proved():
+    rods = [(*PULLED, gamma3) for gamma3 in DRAGS]
+    assert all_broken(rods) == []
+    assert all(spectrum(rod).status == Status.ok for rod in rods)
+
+
+@pytest.mark.parametrize("pull", [PULLED, (-12.0, 1e3, 4.0)], ids=str)
+def test_one_mode_runs_away_as_the_drag_goes(pull):
+    """w gamma3 -> X at the rate of the layer, sqrt(gamma3), and the second mode to that without drag."""
+    (X,) = runaways(*pull)
+    here = [spectrum((*pull, gamma3)).eigenvalues for gamma3 in (1e-3, 1e-4, 1e-5)]
+    short = [X - w[0].real * gamma3 for w, gamma3 in zip(here, (1e-3, 1e-4, 1e-5), strict=True)]
+    assert np.divide(short[:-1], short[1:]) == pytest.approx([10**0.5] * 2, rel=0.1)
+    rest = spectrum((*pull, 0.0)).eigenvalues[0].real
+    assert np.abs([w[1].real - rest for w in here]).max() < 1e-2 * rest
+
+
+def test_the_count_falls_by_the_runaway_modes_in_the_limit_and_nothing_is_proved_there():
+    rod = (*PULLED, 0.0)
+    found = spectrum(rod)
+    assert found.status in (Status.not_certified, Status.accuracy_not_reached)
+    assert not found.certified
+    assert broken_promises(rod) == []
+    assert unstable((*PULLED, 1e-3)) - unstable(rod) == len(runaways(*PULLED)) == 1
+    assert count_right_of(0.0, Rod(*rod)).number is None
+    assert abs(found.eigenvalues[0] / complex(leading(rod, 1)[0]) - 1) < 1e-14
+
+
+@pytest.mark.parametrize("gamma3", [1e-6, 1e-14])
+def test_next_to_the_limit_numbers_are_right_or_withheld(gamma3):
+    """The layers outgrow every mesh in the end; the mode that is then missing must not go unnoticed."""
+    found = spectrum((*PULLED, gamma3))
+    if np.isfinite(found.eigenvalues).all():
+        assert found.unstable_count in (2, -1)
+        assert found.eigenvalues[0].real * gamma3 == pytest.approx(runaways(*PULLED)[0], rel=1e-2)
+    else:
+        assert found.status in (Status.failed, Status.modes_missing)
+        assert (found.certified, found.unstable_count) == (False, -1)
