@@ -324,26 +324,6 @@ def test_package_imports_start_neither_mpi_nor_petsc(command):
     assert run.stdout.strip() == "[]"
 
 
-def test_slurm_script_runs_a_config_and_continues_it(command):
-    command.write("c.yaml", SMALL)
-    (command.directory / ".venv").mkdir()
-    (command.directory / ".venv" / "bin").symlink_to(BIN)
-    environment = os.environ | {"SLURM_NTASKS": "2", "SLURM_SUBMIT_DIR": str(command.directory)}
-    for said in ("252 points in", "complete, nothing to do"):
-        run = subprocess.run(
-            ["bash", str(ROOT / "jobs" / "slurm.sh"), "c.yaml"],
-            cwd="/",
-            env=environment,
-            capture_output=True,
-            text=True,
-            timeout=120,
-            check=False,
-        )
-        assert run.returncode == 0, run.stderr
-        assert said in run.stdout
-    assert read_view(command.directory / "results" / "c.h5").attributes["ranks"] == 2
-
-
 @pytest.mark.parametrize("F", [1e30, 1e150])
 def test_forces_beyond_every_mesh_end_soon(command, F):
     command.write("c.yaml", f"task: spectrum\nparameters: {{F: {F:e}, k1: inf, k2: inf, gamma3: 0}}\n")

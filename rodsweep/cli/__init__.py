@@ -38,6 +38,10 @@ def commands() -> None:
 @click.option("--shard", metavar="I/N", default="1/1", help="Compute the I-th of N parts only, to be merged.")
 def run(config: Path, output: Path | None, overrides: tuple[str, ...], fresh: bool, shard: str) -> None:
     """Compute CONFIG, continuing an interrupted result file. Start it with mpiexec for many ranks."""
+    from ..sweep.stop import Stop
+
+    stop = Stop()
+    stop.listen()  # before everything that takes time: a warning may come early
     from ..sweep.shards import shard_of
     from .running import run_config
 
@@ -46,7 +50,7 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], fresh: bo
     output = output or Path(config.stem + suffix)
     if output.is_dir() or not output.name:
         raise InputError(f"--output {output} is a directory; name a file")
-    sys.exit(run_config(config, output, overrides, fresh, part))
+    sys.exit(run_config(config, output, overrides, fresh, part, stop))
 
 
 @commands.command()

@@ -35,10 +35,10 @@ CONTINUE = 75
 """Exit status of a run that was asked to stop: the same command continues it (EX_TEMPFAIL of sysexits.h)."""
 
 
-def run_config(path: Path, output: Path, overrides: tuple[str, ...], fresh: bool, shard: Shard) -> int:
+def run_config(
+    path: Path, output: Path, overrides: tuple[str, ...], fresh: bool, shard: Shard, stop: Stop
+) -> int:
     """Runs a config, or a shard of it, on all ranks; returns the exit status."""
-    stop = Stop()
-    stop.listen()
     team = Team()
     with team.together():
         job = team.on_first(lambda: make_job(path, overrides))

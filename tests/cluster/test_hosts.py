@@ -1,0 +1,115 @@
+"""A sweep over two hosts that have only TCP between them: network namespaces with a cable."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import BIN
+from contents import content, same
+
+from rodsweep.results.view import read_view
+
+SPECTRA = """
+task: spectrum
+parameters:
+  F: {start: 0, stop: 60, num: 500}
+  k1: [100, 1.0e4, .inf]
+  k2: [50, 1.0e4]
+  gamma3: [0, 1.0e-4]
+"""
+CYCLES = "task: limit_cycle\nparameters: {points: points.csv}\naccuracy: 1.0e-9\n"
+FIRST_RANK_FIRST = """
+import os, pathlib, time
+import rodsweep.sweep.loop as loop
+
+real, inside = loop.sweep, pathlib.Path("inside")
+
+def sweep(team, todo, solve, *words):
+    def solve_and_say_so(index):
+        inside.touch()
+        return solve(index)
+
+    while not team.first and not inside.exists():
+        time.sleep(0.01)
+    return real(team, todo, solve_and_say_so if team.first else solve, *words)
+
+loop.sweep = sweep
+"""
+"""A sitecustomize.py with which the other rank asks for work once the first is inside its first solve."""
+
+
+class TwoHosts:
+    """`rodsweep` on two hosts, a rank on each."""
+
+    def __init__(self, command, unshare: list[str]):
+        self.command = command
+        self.words = [*unshare, "bash", str(Path(__file__).with_name("two_hosts.sh"))]
+
+    def run(self, *words: object, **variables: str) -> subprocess.CompletedProcess:
+        """A run of the command with the given variables on both hosts."""
+        launcher, *rest = self.command.argv(*words, ranks=2)
+        passed = [word for name in variables for word in ("-x", name)]
+        foreign = ("SLURM", "OMPI_", "PMIX_")  # tests may themselves run inside a job, or beside ranks
+        return subprocess.run(
+            [*self.words, launcher, "--host", "10.0.0.1,10.0.0.2", *passed, *rest],
+            cwd=self.command.directory,
+            env={n: v for n, v in os.environ.items() if not n.startswith(foreign)} | variables,
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+
+
+@pytest.fixture
+def hosts(command):
+    """Two hosts, as root or as an ordinary user who may have user namespaces."""
+    launcher = subprocess.run([BIN / "mpiexec", "--version"], capture_output=True, text=True, check=False)
+    if "OpenRTE" not in launcher.stdout:
+        pytest.skip(
+            "no two hosts here: only for the mpiexec of Open MPI before 5 is known how it reaches the other"
+        )
+    # Whoever ends early, this process or `unshare`, takes all others with it.
+    unshare = ["setpriv", "--pdeathsig", "KILL", "unshare", "--pid", "--fork", "--kill-child", "--mount-proc"]
+    unshare += ["--net", "--uts"]
+    if os.geteuid():
+        unshare += ["--user", "--map-root-user"]
+    hosts = TwoHosts(command, unshare)
+    try:
+        tried = subprocess.run([*hosts.words, "true"], capture_output=True, text=True, check=False)
+    except FileNotFoundError as error:
+        pytest.skip(f"no two hosts here: {error}")
+    if tried.returncode:
+        pytest.skip(f"no two hosts here: {tried.stderr.strip().splitlines()[-1]}")
+    return hosts
+
+
+def test_sweep_over_two_hosts_gives_the_content_of_a_plain_run(hosts, command):
+    command.write("c.yaml", SPECTRA)
+    run = hosts.run("run", "c.yaml")
+    assert run.returncode == 0, run.stderr
+    attributes = read_view(command.directory / "c.h5").attributes
+    assert attributes["hosts"].split() == ["host-a", "host-b"]
+    points = attributes["rank_points"]
+    assert points.sum() == 6000
+    assert points.min() > 1500, points
+    assert command("run", "c.yaml", "-o", "plain.h5").returncode == 0
+    assert same(content(command.directory / "c.h5"), content(command.directory / "plain.h5"))
+
+
+def test_other_host_need_not_wait_while_the_first_rank_is_inside_a_long_solve(hosts, command, cycles_work):
+    """The first point is a cycle and takes a second; the other rank solves forty straight rods meanwhile."""
+    rods = [(50.0, 0.5), *((F, 1.0) for F in np.linspace(1, 20, 40))]
+    rows = [f"{F},1e4,100,1e-2,{gamma1}\n" for F, gamma1 in rods]
+    command.write("points.csv", "F,k1,k2,gamma3,gamma1\n" + "".join(rows))
+    command.write("c.yaml", CYCLES)
+    command.write("sitecustomize.py", FIRST_RANK_FIRST)
+    run = hosts.run("run", "c.yaml", PYTHONPATH=".")
+    assert run.returncode == 0, run.stderr
+    points = read_view(command.directory / "c.h5").attributes["rank_points"]
+    assert points.sum() == 41
+    assert points[1] > 35, points
+    assert command("run", "c.yaml", "-o", "plain.h5").returncode == 0
+    assert same(content(command.directory / "c.h5"), content(command.directory / "plain.h5"))

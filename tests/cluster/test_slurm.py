@@ -1,0 +1,245 @@
+"""The scripts in jobs/ under a real Slurm: submitted, cancelled, requeued, out of time; the same content."""
+
+import os
+import signal
+import subprocess
+from pathlib import Path
+
+import pytest
+from conftest import BIN, ROOT, Command
+from contents import content, same
+
+from rodsweep.results.schema import MISSING
+from rodsweep.results.view import read_view
+
+from .slurm import CannotStart, Slurm, started_slurm, wait_for
+
+CONFIG = """
+task: spectrum
+parameters:
+  F: {start: 0, stop: 60, num: 21}
+  k1: [100, 1.0e4, .inf]
+  k2: [50, 1.0e4]
+  gamma3: [0, 1.0e-4]
+spectrum: {modes: 4}
+"""
+
+SLOWLY = """
+import os, time
+from rodsweep.results.journal import Journal
+
+append = Journal.append
+
+def append_slowly(self, *words):
+    time.sleep(float(os.environ["PAUSE"]))
+    append(self, *words)
+
+if "PAUSE" in os.environ and "SLURM_RESTART_COUNT" not in os.environ:
+    Journal.append = append_slowly
+with open(f"threads-{os.getpid()}", "w") as note:
+    note.write(f"{os.environ['OMP_NUM_THREADS']} thread on {len(os.sched_getaffinity(0))} core")
+"""
+"""A sitecustomize.py that makes every point take PAUSE seconds longer until the job has been requeued, and
+notes where a rank may run."""
+
+STOPPED = "stopped by SIGUSR1; the same command continues"
+
+
+@pytest.fixture(scope="module")
+def running():
+    """Slurm, for all tests of this module."""
+    try:
+        with started_slurm() as slurm:
+            yield slurm
+    except CannotStart as reason:
+        pytest.skip(f"no Slurm here: {reason}")
+
+
+@pytest.fixture(scope="module")
+def expected(tmp_path_factory):
+    """The content that a plain run gives."""
+    plain = Command(tmp_path_factory.mktemp("plain"))
+    plain.write("c.yaml", CONFIG)
+    assert plain("run", "c.yaml").returncode == 0
+    return content(plain.directory / "c.h5")
+
+
+@pytest.fixture(scope="module")
+def out_of_time(running, tmp_path_factory):
+    """(directory, number) of a job that will run out of time: it is let run while other tests do.
+
+    Slurm looks twice a minute who is to be warned; two minutes before the end is 30 to 60 s from now.
+    """
+    running.directory = clone_in(tmp_path_factory.mktemp("out_of_time"))
+    words = ("--time=00:03:00", "--nodelist=n3", slow(0.8))
+    return running.directory, running.submit(*words, "jobs/one_node.sh", "c.yaml", "c.h5")
+
+
+@pytest.fixture
+def slurm(running, out_of_time, tmp_path):
+    """Slurm whose jobs are submitted from a directory that looks like the clone and holds a config."""
+    running.directory = clone_in(tmp_path)
+    return running
+
+
+def clone_in(directory: Path) -> Path:
+    (directory / ".venv").mkdir()
+    (directory / ".venv" / "bin").symlink_to(BIN)
+    (directory / "jobs").symlink_to(ROOT / "jobs")
+    (directory / "c.yaml").write_text(CONFIG)
+    (directory / "sitecustomize.py").write_text(SLOWLY)
+    return directory
+
+
+def slow(pause: float) -> str:
+    """The option of sbatch with which every point takes longer, until the job has been requeued."""
+    return f"--export=ALL,PAUSE={pause},PYTHONPATH=.,OMP_NUM_THREADS=8"
+
+
+def until_some_are_done(result: Path) -> None:
+    """Waits until the journal of a result file holds some points."""
+
+    def growing() -> bool:
+        pages = result.with_name(f"{result.name}.journal").glob("rank-*")
+        return sum(page.stat().st_size for page in pages) > 1000
+
+    wait_for(growing, 60, f"points in the journal of {result}")
+
+
+def log(slurm: Slurm) -> str:
+    return "".join(path.read_text() for path in sorted(slurm.directory.glob("rodsweep*.log")))
+
+
+def test_script_hands_the_warning_on_and_asks_for_a_requeue(tmp_path):
+    """Without Slurm: what the script does in it, with a `scontrol` that only notes how it is called."""
+    clone_in(tmp_path)
+    (tmp_path / "scontrol").write_text('#!/bin/sh\necho "$@" > asked\n')
+    (tmp_path / "scontrol").chmod(0o755)
+    variables = {"SLURM_SUBMIT_DIR": str(tmp_path), "SLURM_NTASKS": "2", "SLURM_JOB_ID": "7"}
+    variables |= {"PATH": f"{tmp_path}:{os.environ['PATH']}"}
+    words = ["bash", str(ROOT / "jobs" / "one_node.sh"), "c.yaml"]
+    warned = subprocess.Popen(
+        words, cwd="/", env=os.environ | variables | {"PAUSE": "0.1", "PYTHONPATH": str(tmp_path)}
+    )
+    until_some_are_done(tmp_path / "results" / "c.h5")
+    warned.send_signal(signal.SIGUSR1)
+    assert warned.wait(60) == 75
+    assert (tmp_path / "asked").read_text() == "requeue 7\n"
+    again = subprocess.run(words, cwd="/", env=os.environ | variables, check=False, timeout=60)
+    assert again.returncode == 0
+    assert read_view(tmp_path / "results" / "c.h5").attributes["ranks"] == 2
+
+
+def test_job_gives_the_content_of_a_plain_run_and_submitted_again_has_nothing_to_do(slurm, expected):
+    for said in ("252 of 252 points to do", "c.h5 is complete, nothing to do"):
+        job = slurm.submit("jobs/one_node.sh", "c.yaml", "c.h5")
+        assert slurm.end(job) == "COMPLETED 0:0", log(slurm)
+        assert said in (slurm.directory / f"rodsweep-{job}.log").read_text()
+    assert same(content(slurm.directory / "c.h5"), expected)
+    assert read_view(slurm.directory / "c.h5").attributes["ranks"] == 2
+
+
+def test_job_cancelled_in_the_middle_continues_when_submitted_again(slurm, expected):
+    job = slurm.submit(slow(0.05), "jobs/one_node.sh", "c.yaml", "c.h5")
+    until_some_are_done(slurm.directory / "c.h5")
+    slurm("scancel", job)
+    assert slurm.end(job).startswith("CANCELLED")
+    assert slurm.about(job, "Restarts") == "0"
+    again = slurm.submit("jobs/one_node.sh", "c.yaml", "c.h5")
+    assert slurm.end(again) == "COMPLETED 0:0", log(slurm)
+    assert " kept" in (slurm.directory / f"rodsweep-{again}.log").read_text()
+    assert same(content(slurm.directory / "c.h5"), expected)
+
+
+def test_job_requeued_in_the_middle_finishes_by_itself(slurm, expected):
+    job = slurm.submit(slow(0.05), "jobs/one_node.sh", "c.yaml", "c.h5")
+    until_some_are_done(slurm.directory / "c.h5")
+    slurm("scontrol", "requeue", job)
+    assert slurm.end(job) == "COMPLETED 0:0", log(slurm)
+    assert slurm.about(job, "Restarts") == "1"
+    assert log(slurm).count("252 points to do") == 2  # the log of both times
+    assert log(slurm).count(" kept") == 1
+    assert same(content(slurm.directory / "c.h5"), expected)
+
+
+def test_job_on_many_nodes_is_warned_on_all_of_them(slurm, expected):
+    words = ("--nodes=2", "--nodelist=n1,n2", "--ntasks-per-node=1", slow(0.05))
+    job = slurm.submit(*words, "jobs/many_nodes.sh", "c.yaml", "c.h5")
+    until_some_are_done(slurm.directory / "c.h5")
+    slurm.warn(job)
+    assert slurm.end(job) == "COMPLETED 0:0", log(slurm)
+    assert log(slurm).count(STOPPED) == 1
+    assert same(content(slurm.directory / "c.h5"), expected)
+    assert read_view(slurm.directory / "c.h5").attributes["ranks"] == 2
+    notes = [path.read_text() for path in slurm.directory.glob("threads-*")]
+    assert notes == ["1 thread on 1 core"] * 4  # two ranks, twice
+    if slurm.own_host_names:
+        assert read_view(slurm.directory / "c.h5").attributes["hosts"].split() == ["n1", "n2"]
+
+
+def test_shards_of_an_array_are_merged_when_all_have_ended(slurm, expected):
+    array = slurm.submit("--array=1-3", slow(0.05), "jobs/shards.sh", "c.yaml", "c.h5")
+    last = slurm.submit(f"--dependency=afterok:{array}", "jobs/merge.sh", "c.yaml", "c.h5")
+    until_some_are_done(slurm.directory / "c-2-of-3.h5")
+    slurm.warn(f"{array}_2")
+    assert slurm.end(last) == "COMPLETED 0:0", log(slurm)
+    assert log(slurm).count(STOPPED) == 1
+    assert "252 points from 3 files, 0 missing" in log(slurm)
+    parts = [content(path)["status"] for path in slurm.directory.glob("c-*-of-3.h5")]
+    assert [(part != MISSING).sum() for part in parts] == [84, 84, 84]
+    assert same(content(slurm.directory / "c.h5"), expected)
+
+
+def test_shard_with_a_failed_point_does_not_hold_up_the_merge(slurm):
+    """The onset F* cannot be had to 1e-12, so one shard exits with 1, and so does the merge."""
+    config = "task: spectrum\nparameters: {F: [10, 20.0080206921031], k1: 1e4, k2: 1e4, gamma3: 1e-4}\n"
+    (slurm.directory / "c.yaml").write_text(config + "accuracy: 1e-12\n")
+    array = slurm.submit("--array=1-2", "jobs/shards.sh", "c.yaml", "c.h5")
+    last = slurm.submit(f"--dependency=afterok:{array}", "jobs/merge.sh", "c.yaml", "c.h5")
+    assert slurm.end(last) == "FAILED 1:0", log(slurm)
+    assert "c.h5: 1 ok, 1 accuracy_not_reached" in log(slurm)
+
+
+def test_job_that_may_not_be_requeued_says_so_and_exits_with_75(slurm):
+    job = slurm.submit("--no-requeue", slow(0.1), "jobs/one_node.sh", "c.yaml", "c.h5")
+    until_some_are_done(slurm.directory / "c.h5")
+    slurm.warn(job)
+    assert slurm.end(job) == "FAILED 75:0", log(slurm)
+    assert "may not be requeued: submit it again to continue" in log(slurm)
+
+
+def test_job_with_a_bad_config_fails_and_is_not_repeated(slurm):
+    (slurm.directory / "c.yaml").write_text(CONFIG.replace("modes", "mods"))
+    job = slurm.submit("jobs/one_node.sh", "c.yaml", "c.h5")
+    assert slurm.end(job) == "FAILED 2:0", log(slurm)
+    assert slurm.about(job, "Restarts") == "0"
+    assert "did you mean modes?" in log(slurm)
+
+
+def test_srun_starts_the_ranks_where_it_can(slurm, expected):
+    if "pmix" not in slurm("srun", "--mpi=list").split():
+        pytest.skip("this Slurm has no PMIx")
+    words = (
+        "--export=ALL,LAUNCH=srun --mpi=pmix,PAUSE=0.05,PYTHONPATH=.",
+        "jobs/one_node.sh",
+        "c.yaml",
+        "c.h5",
+    )
+    stopped = slurm.submit("--no-requeue", *words)
+    until_some_are_done(slurm.directory / "c.h5")
+    slurm.warn(stopped)
+    assert slurm.end(stopped) == "FAILED 75:0", log(slurm)
+    assert log(slurm).count(STOPPED) == 1
+    again = slurm.submit(words[0].replace("PAUSE", "NONE"), *words[1:])
+    assert slurm.end(again) == "COMPLETED 0:0", log(slurm)
+    assert same(content(slurm.directory / "c.h5"), expected)
+    assert read_view(slurm.directory / "c.h5").attributes["ranks"] == 2
+
+
+def test_job_out_of_time_is_warned_and_requeues_itself(slurm, out_of_time, expected):
+    slurm.directory, job = out_of_time
+    assert slurm.end(job, 120) == "COMPLETED 0:0", log(slurm)
+    assert slurm.about(job, "Restarts") == "1"
+    assert STOPPED in log(slurm)
+    assert " kept" in log(slurm)
+    assert same(content(slurm.directory / "c.h5"), expected)
