@@ -11,7 +11,6 @@ import h5py
 import numpy as np
 import pytest
 import xarray
-from conftest import BIN, ROOT
 from contents import content, same
 
 from rodsweep.results.view import read_view

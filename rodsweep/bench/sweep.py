@@ -20,8 +20,8 @@ SIZES, QUICK_SIZES = (10**3, 10**4, 10**5, 10**6), (10**3, 10**4)
 """Points of the sweeps without a solver."""
 ONCE_FROM = 10**6
 """Points from which a sweep without a solver is run once: the start is little of it then."""
-SPECTRA, QUICK_SPECTRA = 100_000, 6_000
-CYCLES, QUICK_CYCLES = 160, 10
+SPECTRA, QUICK_SPECTRA = 200_000, 6_000
+CYCLES, QUICK_CYCLES = 110, 10
 ROUNDS, CYCLE_ROUNDS, QUICK_ROUNDS = 3, 2, 1
 HOPF = 27.4271941967592812
 """F of the Hopf point of k1 = 1e4, k2 = 1e2, gamma3 = 1e-2."""
@@ -207,13 +207,13 @@ def introduction(rounds: int) -> str:
         f"medians of {rounds} interleaved rounds ({CYCLE_ROUNDS} of limit cycles, 1 of {ONCE_FROM} points)"
     )
     return (
-        f"`mpiexec -n RANKS rodsweep run CONFIG` as a whole, {often if rounds > 1 else 'one round'}. Spectra: "
-        "`modes: 2`, certified, over F, k1, k2. Limit cycles: of k1 = 1e4, k2 = 1e2, gamma3 = 1e-2, at forces "
-        "far below the Hopf point, down to 1e-6 below and 1e-7 above it, and ordinary ones, mixed. Inside "
-        "is the time that the run itself states, without the start of Python and MPI. Beside the solver is "
-        "the ranks' time inside less the `seconds` in the file: loading what is compiled, handing out, "
-        "storing, and waiting for each other at the end. Memory is the peak of a rank's resident set. While "
-        "other programs keep processors busy, a second rank gains less."
+        f"`mpiexec -n RANKS rodsweep run CONFIG` as a whole, {often if rounds > 1 else 'one round'}. "
+        "Spectra: `modes: 2`, certified, over F, k1, k2. Limit cycles: of k1 = 1e4, k2 = 1e2, "
+        "gamma3 = 1e-2, at forces far below the Hopf point, down to 1e-6 below and 1e-7 above it, and "
+        "ordinary ones, mixed. Inside is the time that the run itself states, without the start of Python "
+        "and MPI. Beside the solver is the ranks' time inside less the `seconds` in the file: loading what "
+        "is compiled, handing out, storing, and waiting for each other at the end. Memory is the peak of a "
+        "rank's resident set. While other programs keep processors busy, a second rank gains less."
     )
 
 

@@ -2,35 +2,36 @@
 
 import difflib
 import json
+from collections.abc import Sequence
 from math import isinf
 from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
-from ruamel.yaml import YAML
-from ruamel.yaml.error import YAMLError
-from ruamel.yaml.events import AliasEvent
 
 from ..errors import InputError
+from .parsing import DEEPEST, parse, read_text
 from .schema import Config, words
 from .tasks import CONFIGS
-from .values import overflows, short
+from .values import named, short
 
-LARGEST_FILE = 1_000_000
-DEEPEST = 20
+KEY_SHOWN = 100
+"""Characters of a key that a sentence has room for."""
+CLOSE = 0.5
+"""How alike an unknown key must be to a known one for that to be meant."""
 
 
 def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, str]:
     """(config, its YAML text with the overrides listed); raises InputError for anything amiss."""
-    text = read_text(path)
-    tree = _parse(text, str(path))
+    text, where = read_text(path), named(path)
+    tree = parse(text, where)
     if not isinstance(tree, dict):
-        raise InputError(f"{path}: the config is {short(tree)}, not a mapping of keys to values")
+        raise InputError(f"{where}: the config is {short(tree)}, not a mapping of keys to values")
     for override in overrides:
         _override(tree, override)
         text += f"\n# --set {override}"
-    return _validated(tree, str(path)), text
+    return _validated(tree, where), text
 
 
 def canonical(config: Config) -> dict[str, Any]:
@@ -47,62 +48,24 @@ def _without_infinities(value: Any) -> Any:
     return str(value) if isinstance(value, float) and isinf(value) else value
 
 
-def read_text(path: Path) -> str:
-    """The text of a small UTF-8 file; InputError if it cannot be had."""
-    try:
-        with path.open("rb") as file:
-            data = file.read(LARGEST_FILE + 1)
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror}") from error
-    if len(data) > LARGEST_FILE:
-        raise InputError(f"{path} is larger than {LARGEST_FILE} bytes, which no config is")
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise InputError(f"{path} is not UTF-8 text") from None
-
-
-def _parse(text: str, where: str) -> Any:
-    """YAML 1.2 without tags, aliases or duplicate keys."""
-    yaml = YAML(typ="safe", pure=True)
-    if any(line.startswith("%") for line in text.splitlines()):
-        raise InputError(f"{where}: directives (%...) are not allowed in a config")
-    try:
-        depth = 0
-        for event in yaml.parse(text):
-            if isinstance(event, AliasEvent):
-                raise InputError(f"{where}: aliases (*{event.anchor}) are not allowed in a config")
-            if getattr(event, "tag", None):
-                raise InputError(f"{where}: tags ({event.tag}) are not allowed in a config")
-            if overflows(getattr(event, "value", "")):
-                raise InputError(f"{where}: {short(event.value)} is too large for a floating-point number")
-            name = type(event).__name__
-            depth += name.endswith("StartEvent") - name.endswith("EndEvent")
-            if depth > DEEPEST:
-                raise InputError(f"{where}: nested deeper than any config is")
-        return YAML(typ="safe", pure=True).load(text)
-    except YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        problem = " ".join(str(getattr(error, "problem", None) or error).split())
-        place = f", line {mark.line + 1}, column {mark.column + 1}" if mark else ""
-        raise InputError(f"{where}{place}: not valid YAML: {problem[:200]}") from None
-    except (ValueError, RecursionError, OverflowError) as error:
-        raise InputError(f"{where}: not valid YAML: {str(error)[:200]}") from None
-
-
 def _override(tree: dict, override: str) -> None:
     """Applies one `--set a.b=value` to the parsed tree; the value is YAML."""
+    where = named(f"--set {override}", KEY_SHOWN)
+    if not override.isprintable():
+        raise InputError(f"{where} has characters that cannot be printed")
     key, equals, value = override.partition("=")
     path = key.strip().split(".")
     if not equals or not all(path):
-        raise InputError(f"--set {override}: write it as key=value, for example parameters.F.num=50")
+        raise InputError(f"{where}: write it as key=value, for example parameters.F.num=50")
+    if len(path) > DEEPEST:
+        raise InputError(f"{where}: nested deeper than any config is")
     node = tree
     for i, name in enumerate(path[:-1]):
         node = node.setdefault(name, {})
         if not isinstance(node, dict):
-            parent = ".".join(path[: i + 1])
-            raise InputError(f"--set {override}: {parent} is {short(node)}, which has no key {path[i + 1]}")
-    node[path[-1]] = _parse(value, f"--set {override}")
+            parent, rest = _dotted(path[: i + 1]), _dotted(path[i + 1 :])
+            raise InputError(f"{where}: {parent} is {short(node)}, which has no key {rest}")
+    node[path[-1]] = parse(value, where)
 
 
 def _validated(tree: dict, where: str) -> Config:
@@ -110,7 +73,7 @@ def _validated(tree: dict, where: str) -> Config:
     try:
         return config.model_validate(tree)
     except ValidationError as error:
-        problems = error.errors(include_url=False)
+        problems = sorted(error.errors(include_url=False), key=lambda problem: problem["type"] == "missing")
         more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
         raise InputError(f"{where}: {_sentence(config, problems[0])}{more}") from None
 
@@ -119,7 +82,10 @@ def _task(tree: dict, where: str) -> str:
     """The task that the config names; InputError if it is none, or if a section belongs to another."""
     known = words(tuple(CONFIGS), "or")
     if "task" not in tree:
-        raise InputError(f"{where}: task is missing; it should be {known}")
+        others = [name for name in tree if isinstance(name, str) and name not in Config.model_fields]
+        close = difflib.get_close_matches("task", others, n=1, cutoff=CLOSE)
+        problem = f"unknown key {_dotted(close)}; did you mean task?" if close else "task is missing;"
+        raise InputError(f"{where}: {problem} it should be {known}")
     task = tree["task"]
     if not isinstance(task, str) or task not in CONFIGS:
         raise InputError(f"{where}: task = {short(task)} is not allowed; it should be {known}")
@@ -132,11 +98,11 @@ def _task(tree: dict, where: str) -> str:
 def _sentence(config: type[Config], problem: Any) -> str:
     """One pydantic problem as a sentence: which key, which value, what is allowed."""
     location = tuple(str(part) for part in problem["loc"])
-    key = ".".join(location)
+    key = _dotted(location)
     kind, value = problem["type"], problem["input"]
     if kind == "extra_forbidden":
         known = list(_section(config, location[:-1]).model_fields)
-        close = difflib.get_close_matches(location[-1], known, n=1, cutoff=0.5)
+        close = difflib.get_close_matches(location[-1], known, n=1, cutoff=CLOSE)
         hint = f"did you mean {close[0]}?" if close else f"known keys are {', '.join(known)}"
         return f"unknown key {key}; {hint}"
     if kind == "missing":
@@ -146,9 +112,14 @@ def _sentence(config: type[Config], problem: Any) -> str:
         return f"{key}: {text}" if key and not text.startswith(key) else text
     if kind == "invalid_key":
         return f"{short(value)} is not a key; keys are words"
-    field = _section(config, location[:-1]).model_fields.get(location[-1])
+    field = _section(config, location[:-1]).model_fields.get("".join(location[-1:]))
     allowed = what_is_allowed(field) if field else problem["msg"]
     return f"{key} = {short(value)} is not allowed; it should be {allowed}"
+
+
+def _dotted(location: Sequence[str]) -> str:
+    """A place in the config as the user writes it in --set."""
+    return named(".".join(location), KEY_SHOWN)
 
 
 def _section(config: type[Config], location: tuple[str, ...]) -> type[BaseModel]:

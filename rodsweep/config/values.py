@@ -41,9 +41,20 @@ def overflows(text: str) -> bool:
 
 
 def short(value: Any) -> str:
-    """`value` as the user may recognise it, cut to a line."""
-    text = repr(value)
+    """`value` as the user may recognise it, cut to a line of 60 characters."""
+    try:
+        text = repr(value)
+    except (ValueError, RecursionError):  # an integer of thousands of digits, a tree that is too deep
+        return f"a {type(value).__name__} too large to be shown"
     return text if len(text) <= 60 else text[:57] + "..."
+
+
+def named(name: object, most: int = 200) -> str:
+    """A key, a file or what others say, as it is where it can be printed; without its middle if long."""
+    text = str(name)
+    if not text.isprintable():
+        text = repr(text)
+    return text if len(text) <= most else f"{text[: most // 2]}...{text[3 - most // 2 :]}"
 
 
 def as_text(value: Any) -> Any:

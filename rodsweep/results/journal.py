@@ -28,18 +28,17 @@ class Journal:
     """The journal of one rank, open for appending."""
 
     def __init__(self, directory: Path, rank: int, layout: Layout, fingerprint: str):
-        self.record = layout.record
+        self.page = np.zeros((), layout.record)
+        self.names = tuple(variable.name for variable in layout.variables)
         name = f"rank-{rank:06d}-{os.getpid()}-{os.urandom(4).hex()}"
         self.handle = os.open(directory / name, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_APPEND, 0o644)
         self._write(MAGIC + fingerprint.encode() + b"\n")
 
     def append(self, index: int, values: dict) -> None:
-        """Writes the record of a finished point."""
-        record = np.zeros((), self.record)
-        record["index"] = index
-        for name, value in values.items():
-            record[name] = value
-        data = record.tobytes()
+        """Writes the record of a finished point, of which `values` has every variable."""
+        # One assignment, for that of single fields takes three times as long.
+        self.page[()] = (index, *(values[name] for name in self.names))
+        data = self.page.tobytes()
         self._write(data + zlib.crc32(data).to_bytes(4, "little"))
 
     def close(self) -> None:
