@@ -61,6 +61,7 @@ class Store:
     def _open(self, fresh: bool) -> None:
         if self.path.exists() and not fresh:
             self._refuse_another()
+            self._refuse_unfit()
             self.fold({})
             return
         if self.path.exists() and not is_ours(self.path):
@@ -171,6 +172,32 @@ class Store:
                 f"{self.path} was made from another config ({change}); choose another file with -o, or "
                 "replace it with --fresh"
             )
+
+    def _refuse_unfit(self) -> None:
+        """InputError unless every variable of the existing file has its type, its shape and its place."""
+        size, layout = self.path.stat().st_size, self.plan.layout
+        try:
+            with h5py.File(self.path, "r") as file:
+                for variable in layout.variables:
+                    offset, kind, shape = _place(file, variable.name)
+                    wanted = self.plan.shape + layout.inner(variable)
+                    if (kind, shape) != (np.dtype(variable.dtype), wanted):
+                        raise ValueError(f"{variable.name} is not what it should be")
+                    if offset + prod(shape) * kind.itemsize > size:
+                        raise ValueError(f"{variable.name} is cut off")
+                dict(file.attrs)
+        except (OSError, KeyError, ValueError, TypeError, RuntimeError, OverflowError) as error:
+            reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+            raise InputError(
+                f"{self.path} is damaged ({reason[:100]}); it is left as it is: choose another file with -o, "
+                "or replace it with --fresh"
+            ) from None
+
+
+def _place(file: h5py.File, name: str) -> tuple[int, np.dtype, tuple[int, ...]]:
+    """Offset, type and shape of a variable."""
+    data = file[name]
+    return data.id.get_offset(), data.dtype, data.shape
 
 
 def is_ours(path: Path) -> bool:

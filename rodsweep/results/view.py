@@ -14,6 +14,9 @@ from .journal import journal_directory, read_journals
 from .layouts import layout_of
 from .schema import MISSING, NONLINEAR_NAMES
 
+DAMAGES = (OSError, KeyError, ValueError, TypeError, RuntimeError, OverflowError, MemoryError)
+"""What h5py raises, and what reading goes on to raise, where a file is damaged."""
+
 
 class Variables(Mapping[str, np.ndarray]):
     """The variables of an open file as NumPy arrays, each read when it is first asked for."""
@@ -26,12 +29,15 @@ class Variables(Mapping[str, np.ndarray]):
         if name not in self.read:
             try:
                 self.read[name] = self.file[name][...]
-            except (OSError, RuntimeError) as error:
+            except DAMAGES as error:
                 raise damaged(self.path, error) from None
         return self.read[name]
 
     def __contains__(self, name: object) -> bool:
-        return name in self.file
+        try:
+            return name in self.file
+        except DAMAGES as error:
+            raise damaged(self.path, error) from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.file)
@@ -87,7 +93,7 @@ def read_view(path: Path) -> View:
         flags = dict(zip((int(v) for v in status.attrs["flag_values"]), words, strict=True))
         variables = Variables(path, file)
         done = variables["status"].ravel() != MISSING
-    except (OSError, KeyError, ValueError, TypeError, RuntimeError) as error:
+    except DAMAGES as error:
         raise damaged(path, error) from None
     journalled = 0
     directory = journal_directory(path)

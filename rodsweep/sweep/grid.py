@@ -93,8 +93,8 @@ def _read_csv(path: Path, names: tuple[str, ...]) -> tuple[NDArray[np.float64], 
             rows = csv.reader(file)
             header = [cell.strip() for cell in next(rows, [])]
             if sorted(header) != sorted(names):
-                given = ",".join(header)[:100]
-                raise InputError(f"{path}: the header is {given!r}; it must name {words(names, 'and')}")
+                given = repr(",".join(header)[:60])[:80]
+                raise InputError(f"{path}: the header is {given}; it must name {words(names, 'and')}")
             columns = [array("d") for _ in header]  # a list of numbers would take eight times the memory
             for row in filter(None, rows):
                 numbers = _row(row, header, f"{path}, line {rows.line_num}")

@@ -1,0 +1,117 @@
+"""Many runs of the command, each in a process of its own with a limit of time and of memory."""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+SERVER = Path(__file__).with_name("server.py")
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How one run ended."""
+
+    status: int
+    """Exit status; negative: the signal that ended it."""
+    slow: bool
+    """Whether it was ended because it took too long."""
+    out: str
+    err: str
+
+    @property
+    def fault(self) -> str:
+        """What no run may do, whatever its input; empty if it did nothing of the kind."""
+        if self.slow:
+            return "it hangs"
+        if self.status < 0:
+            return f"it crashes with signal {-self.status}"
+        if self.status not in (0, 1, 2, 3, 75) or "Traceback" in self.err + self.out:
+            return f"it ends with a traceback: {' '.join(self.err.split())[-300:]}"
+        return self.unclear if self.status in (2, 3) else ""
+
+    @property
+    def unclear(self) -> str:
+        """Why a refusal is not one clear sentence; empty if it is."""
+        if not self.err.startswith("rodsweep: ") or self.err.count("\n") != 1:
+            return f"a refusal of other than one line: {self.err[:300]!r}"
+        if len(self.err) > 400:
+            return f"a refusal of {len(self.err)} characters: {self.err[:300]!r}"
+        if not self.err[:-1].isprintable():
+            return f"a refusal that cannot be printed: {self.err!r}"
+        return ""
+
+
+class Isolated:
+    """The command, as a function of its arguments."""
+
+    def __init__(self, server: subprocess.Popen, directory: Path):
+        self.server, self.directory = server, directory
+
+    def __call__(
+        self,
+        directory: Path,
+        *words: object,
+        seconds: int = 2,
+        memory: float = 500e6,
+        points: int | None = None,
+        call: str = "command",
+    ) -> Outcome:
+        """Runs `rodsweep words...` in a directory, with `memory` bytes more than are taken when it starts.
+
+        `seconds` are of the processor's time; a run is killed when it has finished so many `points`.
+        """
+        streams = {name: self.directory / name for name in ("stdout", "stderr")}
+        request: dict[str, Any] = {
+            "call": call,
+            "directory": str(directory),
+            "words": [os.fsencode(str(word)).hex() for word in words],
+            "seconds": seconds,
+            "memory": int(memory),
+            "points": points,
+        }
+        answer = self._ask(json.dumps(request | {name: str(path) for name, path in streams.items()}))
+        out, err = (path.read_text(errors="backslashreplace") for path in streams.values())
+        return Outcome(answer["status"], answer["slow"], out, err)
+
+    def content(self, path: Path) -> dict[str, list]:
+        """Type, shape and bytes of each variable of a file but `seconds`; empty if it cannot be read."""
+        outcome = self(path.parent, path.name, call="content")
+        return {} if outcome.status else json.loads(outcome.out)
+
+    def _ask(self, request: str) -> dict:
+        self.server.stdin.write(request + "\n")
+        self.server.stdin.flush()
+        return self.answer()
+
+    def answer(self) -> dict:
+        """The server's next answer."""
+        line = self.server.stdout.readline()
+        assert line, f"the server of isolated runs ended with status {self.server.wait()}"
+        return json.loads(line)
+
+
+@contextmanager
+def isolated(configs: list[Path], solving: bool = False) -> Iterator[Isolated]:
+    """Isolated runs; what `configs` need is loaded before. Unless `solving`, no solver may be imported."""
+    with tempfile.TemporaryDirectory() as name:
+        server = subprocess.Popen(
+            [sys.executable, str(SERVER), "solving" if solving else "reading", *map(str, configs)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            env=dict(os.environ) | {"COLUMNS": "120"},
+        )
+        try:
+            run = Isolated(server, Path(name))
+            run.answer()
+            yield run
+        finally:
+            server.stdin.close()
+            server.wait(60)
