@@ -4,6 +4,8 @@ Exit status: 0 when every point succeeded, 1 when the run is whole but some poin
 input, 3 when the machine lacks something, 75 when a run was asked to stop and wants to be continued.
 """
 
+import errno
+import io
 import os
 import sys
 from pathlib import Path
@@ -19,6 +21,8 @@ from .. import __version__  # noqa: E402
 from ..errors import EnvironmentLacks, InputError  # noqa: E402
 
 FILE = click.Path(path_type=Path)
+LONGEST_MESSAGE = 350
+"""Characters of a refusal."""
 overrides_option = click.option(
     "--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Override a key, e.g. parameters.F.num=50."
 )
@@ -145,9 +149,18 @@ def _speaks() -> bool:
     return next((os.environ[n] for n in names if n in os.environ), "0") == "0"
 
 
+def _one_line(message: str) -> str:
+    """A message in one line of bounded length: what it quotes may be as long as a user likes."""
+    line = " ".join(message.split())
+    return line if len(line) <= LONGEST_MESSAGE else f"{line[: LONGEST_MESSAGE - 100]} ... {line[-90:]}"
+
+
 def main() -> None:
     """Runs the command line; every refusal is one sentence on standard error."""
     code, message = 0, ""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # a file's name may be any bytes
     if not _speaks() and "run" not in sys.argv[1:2]:
         sys.exit(0)  # under a launcher one rank shows or draws, and the others have nothing to add
     try:
@@ -165,7 +178,8 @@ def main() -> None:
     except OSError as error:  # a name too long, a directory that may not be looked into
         if error.filename is None:
             raise
-        code, message = 3, f"{error.filename}: {error.strerror}"
+        code = 2 if error.errno in (errno.ENAMETOOLONG, errno.ELOOP) else 3
+        message = f"{error.filename}: {error.strerror}"
     if message and _speaks():
-        click.echo(f"rodsweep: {message}", err=True)
+        click.echo(f"rodsweep: {_one_line(message)}", err=True)
     sys.exit(code)

@@ -100,6 +100,8 @@ def _read_csv(path: Path, names: tuple[str, ...]) -> tuple[NDArray[np.float64], 
                 numbers = _row(row, header, f"{path}, line {rows.line_num}")
                 for column, number in zip(columns, numbers, strict=True):
                     column.append(number)
+    except MemoryError:
+        raise InputError(f"{path} is too large to be read") from None
     except OSError as error:
         raise InputError(f"parameters.points: {path} cannot be read: {error.strerror}") from error
     except (UnicodeDecodeError, csv.Error) as error:
