@@ -180,6 +180,8 @@ def main() -> None:
             raise
         code = 2 if error.errno in (errno.ENAMETOOLONG, errno.ELOOP) else 3
         message = f"{error.filename}: {error.strerror}"
+    except MemoryError:
+        code, message = 3, "there is not enough memory"
     if message and _speaks():
         click.echo(f"rodsweep: {_one_line(message)}", err=True)
     sys.exit(code)

@@ -38,10 +38,9 @@ class Checkpoints:
 
     def read(self, chain: int) -> tuple[int, NDArray[np.float64] | None] | None:
         """(index, state) as written last, None where there is no whole checkpoint of this run."""
-        try:
-            data = self._path(chain).read_bytes()
-        except FileNotFoundError:
+        if not self._path(chain).is_file():
             return None
+        data = self._path(chain).read_bytes()
         content, checksum = data[:-SUM], data[-SUM:]
         start = len(self.header)
         whole = len(content) >= start + NUMBER and zlib.crc32(content).to_bytes(SUM, "little") == checksum
@@ -62,4 +61,5 @@ class Checkpoints:
 def drop_checkpoints(directory: Path) -> None:
     """Removes all checkpoints of a directory, also those that a kill left half written."""
     for path in directory.glob("chain-*"):
-        path.unlink()
+        if not path.is_dir():
+            path.unlink()

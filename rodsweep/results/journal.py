@@ -51,8 +51,13 @@ class Journal:
             data = data[os.write(self.handle, data) :]
 
 
-def read_journals(directory: Path, layout: Layout, fingerprint: str) -> Iterator[np.ndarray]:
-    """The whole records in all journals of a directory, in blocks; others' journals are skipped."""
+def read_journals(
+    directory: Path, layout: Layout, fingerprint: str, points: int = 2**62
+) -> Iterator[np.ndarray]:
+    """The whole records in all journals of a directory, in blocks; others' journals are skipped.
+
+    `points`: how many there are; a record of none of them is skipped too.
+    """
     size = layout.record.itemsize
     header = MAGIC + fingerprint.encode() + b"\n"
     for path in sorted(directory.glob("rank-*")):
@@ -66,4 +71,5 @@ def read_journals(directory: Path, layout: Layout, fingerprint: str) -> Iterator
                 raw = raw[: len(raw) // (size + 4) * (size + 4)].reshape(-1, size + 4)
                 sums = np.ascontiguousarray(raw[:, size:]).view("<u4").ravel()
                 whole = np.array([zlib.crc32(row[:size]) for row in raw], dtype=np.uint32) == sums
-                yield np.ascontiguousarray(raw[whole, :size]).view(layout.record).ravel()
+                records = np.ascontiguousarray(raw[whole, :size]).view(layout.record).ravel()
+                yield records[(records["index"] >= 0) & (records["index"] < points)]

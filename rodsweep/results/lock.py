@@ -3,6 +3,7 @@
 import fcntl
 import os
 import time
+from contextlib import suppress
 from pathlib import Path
 
 from ..errors import InputError
@@ -22,7 +23,7 @@ class Lock:
     def release(self) -> None:
         """Gives the lock back and removes the directory where nothing is left in it."""
         (self.directory / "lock").unlink(missing_ok=True)
-        if not any(self.directory.iterdir()):
+        with suppress(OSError):  # it is not empty, or a link that the user has made
             self.directory.rmdir()
         os.close(self.handle)
 
@@ -31,7 +32,7 @@ class Lock:
         while True:
             self.directory.mkdir(exist_ok=True)
             try:
-                handle = os.open(self.directory / "lock", os.O_RDWR | os.O_CREAT, 0o644)
+                handle = os.open(self.directory / "lock", os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
             except FileNotFoundError:  # a run that ended just now took the directory away
                 continue
             try:

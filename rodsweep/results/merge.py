@@ -22,7 +22,9 @@ from .lock import Lock
 from .provenance import LONGEST_ATTRIBUTE, MOST_RANKS_TOLD, now
 from .replacing import replace_whole
 from .schema import MISSING, Layout
+from .seal import check
 from .store import difference
+from .view import DAMAGES, damaged, refuse_misfit
 
 BLOCK = 1 << 16
 """Points taken together."""
@@ -90,20 +92,22 @@ def merge(output: Path, paths: Sequence[Path], needs_more: Callable[[dict[str, A
 
 def open_source(path: Path) -> Source:
     """What is needed to read a result file's points; InputError if it is none, or is not folded."""
-    if not path.exists():
-        raise InputError(f"{path} does not exist")
+    if not path.is_file():
+        raise InputError(f"{path} is not a file" if path.exists() else f"{path} does not exist")
     try:
+        check(path, values=True)
         with h5py.File(path, "r") as file:
             attributes = dict(file.attrs)
             layout = layout_of(json.loads(attributes["config_resolved"]))
+            refuse_misfit(file, layout)
             points = file["status"].size
             pieces = {}
             for variable in layout.variables:
                 data = file[variable.name]
                 pieces[variable.name] = (data.id.get_offset(), data.dtype, data.size // max(points, 1))
-    except (OSError, KeyError, ValueError, TypeError, RuntimeError) as error:
-        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise InputError(f"{path} is not a whole rodsweep result file ({reason})") from None
+            attributes["fingerprint"]  # KeyError where there is none
+    except DAMAGES as error:
+        raise damaged(path, error) from None
     if any(journal_directory(path).glob("rank-*")):
         raise InputError(
             f"{path} has points in its journal that are not in it yet: run its command again first"

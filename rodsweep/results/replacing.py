@@ -1,11 +1,14 @@
-"""A file exchanged for another in one instant, on the disk proper before anyone sees it."""
+"""A result file exchanged for another in one instant, sealed and on the disk proper before anyone sees it."""
 
 import os
 from pathlib import Path
 
+from .seal import seal
+
 
 def replace_whole(copy: Path, path: Path) -> None:
-    """Puts `copy`, which is closed and on the same disk, in the place of `path`."""
+    """Puts `copy`, a closed result file on the same disk, in the place of `path`."""
+    seal(copy)
     with copy.open("rb+") as file:
         os.fsync(file.fileno())
     os.replace(copy, path)

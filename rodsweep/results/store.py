@@ -6,7 +6,6 @@ in at the end of a run, or at the start of the next one where a run was killed.
 """
 
 import json
-import os
 import shutil
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -23,7 +22,10 @@ from .checkpoints import drop_checkpoints
 from .creation import SIGNATURE, Plan, add_variables, create_file
 from .journal import journal_directory, read_journals
 from .lock import Lock
+from .replacing import replace_whole
 from .schema import MISSING, Filled, Layout
+from .seal import check
+from .view import DAMAGES, reason_of, refuse_misfit
 
 BLOCK = 1 << 16
 """Values read at once where a whole variable is scanned."""
@@ -61,7 +63,6 @@ class Store:
     def _open(self, fresh: bool) -> None:
         if self.path.exists() and not fresh:
             self._refuse_another()
-            self._refuse_unfit()
             self.fold({})
             return
         if self.path.exists() and not is_ours(self.path):
@@ -70,8 +71,9 @@ class Store:
         self._drop_journals()
         drop_checkpoints(self.journals)
         copy = self._temporary()
+        copy.unlink(missing_ok=True)
         create_file(copy, self.plan)
-        self._replace(copy)
+        replace_whole(copy, self.path)
 
     def _need_room(self) -> None:
         """EnvironmentLacks unless the file, its journals and the copy that replaces it have room."""
@@ -110,10 +112,11 @@ class Store:
             self._fold(attributes, additions)
 
     def _fold(self, attributes: dict[str, Any], additions: Sequence[Filled]) -> None:
-        blocks = read_journals(self.journals, self.plan.layout, self.plan.fingerprint)
+        blocks = read_journals(self.journals, self.plan.layout, self.plan.fingerprint, prod(self.plan.shape))
         first = next(blocks, None)
         if first is not None or attributes or additions:
             copy = self._temporary()
+            copy.unlink(missing_ok=True)  # it may be a link
             shutil.copyfile(self.path, copy)
             if first is not None:
                 write_points(copy, chain([first], blocks), self.plan.layout)
@@ -121,7 +124,7 @@ class Store:
                 with h5py.File(copy, "r+") as file:
                     add_variables(file, additions)
                     file.attrs.update(attributes)
-            self._replace(copy)
+            replace_whole(copy, self.path)
         self._drop_journals()
         if not self.missing():
             drop_checkpoints(self.journals)
@@ -132,7 +135,8 @@ class Store:
         counts: dict[str, int] = {}
         for _, status in _statuses(self.path):
             for value, n in zip(*np.unique(status, return_counts=True), strict=True):
-                counts[names[int(value)]] = counts.get(names[int(value)], 0) + int(n)
+                name = names.get(int(value), f"unknown ({value})")
+                counts[name] = counts.get(name, 0) + int(n)
         return counts
 
     def close(self) -> None:
@@ -142,73 +146,48 @@ class Store:
 
     def _drop_journals(self) -> None:
         for path in self.journals.glob("rank-*"):
-            path.unlink()
+            if not path.is_dir():
+                path.unlink()
 
     def _temporary(self) -> Path:
         return self.journals / "next.h5"
 
-    def _replace(self, copy: Path) -> None:
-        with copy.open("rb+") as file:
-            os.fsync(file.fileno())
-        os.replace(copy, self.path)
-        directory = os.open(self.path.parent, os.O_RDONLY)
-        os.fsync(directory)
-        os.close(directory)
-
     def _refuse_another(self) -> None:
         """InputError unless the existing file answers the same config."""
+        if not self.path.is_file():
+            raise InputError(f"{self.path} is not a file; choose another with -o")
         try:
+            check(self.path, values=True)
             with h5py.File(self.path, "r") as file:
                 theirs = json.loads(file.attrs["config_resolved"])
                 fingerprint = file.attrs["fingerprint"]
-        except (OSError, KeyError, ValueError, TypeError, RuntimeError):
+                if fingerprint == self.plan.fingerprint:
+                    refuse_misfit(file, self.plan.layout)
+        except DAMAGES as error:
             raise InputError(
-                f"{self.path} exists and is not a whole rodsweep result; it is left as it is: choose another "
-                "file with -o, or replace it with --fresh"
+                f"{self.path} exists and is not a whole rodsweep result ({reason_of(error)}); it is left as "
+                "it is: choose another file with -o, or replace it with --fresh"
             ) from None
-        if fingerprint != self.plan.fingerprint:
+        if fingerprint != self.plan.fingerprint or theirs != self.plan.config:
             change = difference(theirs, self.plan.config) or "the points listed in parameters.points differ"
             raise InputError(
                 f"{self.path} was made from another config ({change}); choose another file with -o, or "
                 "replace it with --fresh"
             )
 
-    def _refuse_unfit(self) -> None:
-        """InputError unless every variable of the existing file has its type, its shape and its place."""
-        size, layout = self.path.stat().st_size, self.plan.layout
-        try:
-            with h5py.File(self.path, "r") as file:
-                for variable in layout.variables:
-                    offset, kind, shape = _place(file, variable.name)
-                    wanted = self.plan.shape + layout.inner(variable)
-                    if (kind, shape) != (np.dtype(variable.dtype), wanted):
-                        raise ValueError(f"{variable.name} is not what it should be")
-                    if offset + prod(shape) * kind.itemsize > size:
-                        raise ValueError(f"{variable.name} is cut off")
-                dict(file.attrs)
-        except (OSError, KeyError, ValueError, TypeError, RuntimeError, OverflowError) as error:
-            reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-            raise InputError(
-                f"{self.path} is damaged ({reason[:100]}); it is left as it is: choose another file with -o, "
-                "or replace it with --fresh"
-            ) from None
-
-
-def _place(file: h5py.File, name: str) -> tuple[int, np.dtype, tuple[int, ...]]:
-    """Offset, type and shape of a variable."""
-    data = file[name]
-    return data.id.get_offset(), data.dtype, data.shape
-
 
 def is_ours(path: Path) -> bool:
     """Whether a file is a rodsweep result, or HDF5 that is too damaged to say whose it is."""
+    if not path.is_file():
+        return False
     with path.open("rb") as stream:
         if stream.read(8) != b"\x89HDF\r\n\x1a\n":
             return False
     try:
+        check(path, values=False)
         with h5py.File(path, "r") as file:
             return bool(file.attrs.get("program") == SIGNATURE)
-    except OSError:
+    except DAMAGES:
         return True
 
 

@@ -12,9 +12,14 @@ import numpy as np
 from ..errors import InputError
 from .journal import journal_directory, read_journals
 from .layouts import layout_of
-from .schema import MISSING, NONLINEAR_NAMES
+from .schema import MISSING, NONLINEAR_NAMES, Layout
+from .seal import check
 
-DAMAGES = (OSError, KeyError, ValueError, TypeError, RuntimeError, OverflowError, MemoryError)
+CHECKED_WHOLE = 10**9
+"""Bytes up to which the numbers are checked too, not only HDF5's structures, before a file is shown."""
+LONGEST_REASON = 150
+"""Characters of what a library says."""
+DAMAGES = (OSError, LookupError, ValueError, TypeError, RuntimeError, OverflowError, MemoryError)
 """What h5py raises, and what reading goes on to raise, where a file is damaged."""
 
 
@@ -48,8 +53,28 @@ class Variables(Mapping[str, np.ndarray]):
 
 def damaged(path: Path, error: Exception) -> InputError:
     """The refusal of a file that is no result, or cannot be read."""
-    reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-    return InputError(f"{path} is not a whole rodsweep result file ({reason})")
+    return InputError(f"{path} is not a whole rodsweep result file ({reason_of(error)})")
+
+
+def reason_of(error: Exception) -> str:
+    """What a library says of a file, on one line."""
+    text = getattr(error, "strerror", None) or str(error) or type(error).__name__
+    text = "".join(c if c.isprintable() else " " for c in text)
+    return text if len(text) <= LONGEST_REASON else text[: LONGEST_REASON - 3] + "..."
+
+
+def refuse_misfit(file: h5py.File, layout: Layout) -> None:
+    """One of DAMAGES unless every variable of the layout is there, with its type, its shape and its place."""
+    names = ("point",) if "point" in file else layout.parameters
+    shape = tuple(len(file[name]) for name in names)
+    expected = {v.name: (shape + layout.inner(v), np.dtype(v.dtype)) for v in layout.variables}
+    expected |= {name: ((extent,), file[name].dtype) for name, extent in layout.extents.items()}
+    for name, (extents, kind) in expected.items():
+        data = file[name]
+        if not isinstance(data, h5py.Dataset) or data.shape != extents or data.dtype != kind:
+            raise ValueError(f"its variable {name} does not fit its config")
+        if data.id.get_offset() is None or data.chunks or not data.id.get_storage_size():
+            raise ValueError(f"its variable {name} does not lie in one piece")
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,12 +107,17 @@ class View:
 
 def read_view(path: Path) -> View:
     """The file, which stays open; InputError if it is no result."""
-    if not path.exists():
-        raise InputError(f"{path} does not exist")
+    if not path.is_file():
+        raise InputError(f"{path} is not a file" if path.exists() else f"{path} does not exist")
     try:
+        check(path, values=path.stat().st_size <= CHECKED_WHOLE)
         file = h5py.File(path, "r")
         attributes = dict(file.attrs)
-        layout = layout_of(json.loads(attributes["config_resolved"]))
+        config, fingerprint = json.loads(attributes["config_resolved"]), str(attributes["fingerprint"])
+        layout = layout_of(config)
+        refuse_misfit(file, layout)
+        if str(attributes.setdefault("task", config["task"])) != config["task"]:
+            raise ValueError("its task is not that of its config")
         status = file["status"]
         words = str(status.attrs["flag_meanings"]).split()
         flags = dict(zip((int(v) for v in status.attrs["flag_values"]), words, strict=True))
@@ -98,7 +128,7 @@ def read_view(path: Path) -> View:
     journalled = 0
     directory = journal_directory(path)
     if directory.is_dir():
-        for block in read_journals(directory, layout, str(attributes["fingerprint"])):
+        for block in read_journals(directory, layout, fingerprint, done.size):
             indices = np.unique(block["index"])
             journalled += int(np.count_nonzero(~done[indices]))
             done[indices] = True

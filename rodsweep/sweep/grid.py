@@ -3,8 +3,10 @@
 import csv
 import math
 from array import array
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +15,9 @@ from ..config.schema import Config, words
 from ..config.values import as_number, overflows
 from ..errors import InputError
 from ..model.rod import ALLOWED, Rod, admissible
+
+LONGEST_LINE = 10_000
+"""Characters of a line of a CSV file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,11 +91,11 @@ def points_of(config: Config, directory: Path) -> Points:
 
 def _read_csv(path: Path, names: tuple[str, ...]) -> tuple[NDArray[np.float64], ...]:
     """The columns `names` of a CSV file with that header, in any order."""
-    if path.exists() and not path.is_file():
-        raise InputError(f"parameters.points: {path} is not a file")
     try:
+        if path.exists() and not path.is_file():  # to open a pipe would be to wait for its other end
+            raise InputError(f"parameters.points: {path} is not a file")
         with path.open(newline="", encoding="utf-8-sig") as file:
-            rows = csv.reader(file)
+            rows = csv.reader(_lines(file, path))
             header = [cell.strip() for cell in next(rows, [])]
             if sorted(header) != sorted(names):
                 given = repr(",".join(header)[:60])[:80]
@@ -109,6 +114,14 @@ def _read_csv(path: Path, names: tuple[str, ...]) -> tuple[NDArray[np.float64], 
     if not columns[0]:
         raise InputError(f"{path}: there is no point after the header")
     return tuple(np.array(columns[header.index(name)]) for name in names)
+
+
+def _lines(file: TextIO, path: Path) -> Iterator[str]:
+    """The lines of a text; InputError at one that has no end in sight."""
+    while line := file.readline(LONGEST_LINE):
+        if len(line) == LONGEST_LINE:
+            raise InputError(f"{path}: a line has {LONGEST_LINE} characters or more, which no point needs")
+        yield line
 
 
 def _row(row: list[str], header: list[str], where: str) -> list[float]:

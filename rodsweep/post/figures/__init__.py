@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import matplotlib
+import numpy as np
 from matplotlib.figure import Figure
 
 from ...errors import EnvironmentLacks, InputError
@@ -54,7 +55,7 @@ def draw(
     taken = output.exists() and any(output.samefile(view.path) for view in views if view.path.exists())
     if output.is_dir() or taken:
         raise InputError(f"--output {output} is not a name for a figure; choose another")
-    with matplotlib.rc_context(STYLE):
+    with matplotlib.rc_context(STYLE), np.errstate(all="ignore"):
         try:
             if what == "animation":
                 return f"wrote {output}: {write_animation(views[0], points, output)}"
@@ -62,6 +63,10 @@ def draw(
             figure.savefig(output, dpi=160)
         except OSError as error:
             raise EnvironmentLacks(f"{output} cannot be written: {error.strerror}") from error
+        except (ValueError, ArithmeticError, MemoryError) as error:  # what another program wrote into it
+            raise InputError(
+                f"{views[0].path} holds numbers that no figure can show ({str(error)[:100]})"
+            ) from error
     return f"wrote {output}: {shown}"
 
 

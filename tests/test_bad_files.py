@@ -1,0 +1,250 @@
+"""Damaged result files and journals: `show`, `plot`, `run`, `merge` never crash, hang or lose what was whole.
+
+They do their work right, to the last bit, or refuse in one sentence and leave the file as it is. Some hundred
+damages here; RODSWEEP_CASES=N asks for N times as many of those drawn at random.
+"""
+
+import os
+import shutil
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+from random import Random
+
+import h5py
+import pytest
+from conftest import BIN
+from faults import small
+from faults.damages import (
+    BYTES,
+    EDITS,
+    JOURNALS,
+    MISFITS,
+    OF_CHAINS,
+    foreign,
+    obstacles,
+)
+from faults.isolated import Isolated, Outcome, isolated
+
+MORE = int(os.environ.get("RODSWEEP_CASES", "1"))
+FILES, PAGES, CYCLE_PAGES = 16 * MORE, 8 * MORE, 3 * MORE
+"""Damaged files of each config and state, and damaged journals of each config."""
+LONG = 30
+"""Seconds of processor time: a run with limit cycles takes two."""
+
+
+@dataclass(frozen=True)
+class Results:
+    """Files of every small config, whole and interrupted, and the command to try on damaged ones."""
+
+    run: Isolated
+    directory: Path
+    content: dict[str, dict]
+    """What the whole file of each config holds."""
+
+    def copied(self, name, state, to):
+        """A copy of a config and its file, in a state, in a directory of its own; the path of the file."""
+        shutil.rmtree(to, ignore_errors=True)
+        to.mkdir()
+        shutil.copy(self.directory / "points.csv", to)
+        shutil.copy(self.directory / f"{name}.yaml", to / "c.yaml")
+        path = self.directory / f"{name}-{state}.h5"
+        shutil.copy(path, to / "c.h5")
+        if state == "half":
+            shutil.copytree(path.with_name(path.name + ".journal"), to / "c.h5.journal")
+        return to / "c.h5"
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    directory = tmp_path_factory.mktemp("results")
+    (directory / "points.csv").write_text(small.POINTS)
+    paths = [directory / f"{name}.yaml" for name in small.CONFIGS]
+    for path in paths:
+        path.write_text(small.CONFIGS[path.stem])
+    content = {}
+    with isolated(paths, solving=True) as run:
+        for path in paths:
+            name = path.stem
+            whole = run(directory, "run", path.name, "-o", f"{name}-whole.h5", seconds=LONG)
+            if whole.status == 3 and name == "limit_cycle":  # this PETSc cannot integrate them
+                continue
+            assert whole.status == 0, whole.err
+            content[name] = run.content(directory / f"{name}-whole.h5")
+            assert len(content[name]) > 10
+            words = ("run", path.name, "-o", f"{name}-half.h5")
+            for _ in range(2):  # the second folds the point of the first: one is in the file, one beside it
+                assert run(directory, *words, seconds=LONG, points=1).status == -9
+        yield Results(run, directory, content)
+
+
+def shared(of, name, each):
+    """A config's share of all cases: each is tried on `each` configs, or on all where more are asked for."""
+    place = list(small.CONFIGS).index(name)
+    return [case for i, case in enumerate(of) if MORE > 1 or (place - i) % len(small.CONFIGS) < each]
+
+
+@pytest.fixture(params=list(small.CONFIGS))
+def name(request, results):
+    if request.param not in results.content:
+        pytest.skip("the ARKIMEX integrators of this PETSc fail on a rod whose cycle is known")
+    return request.param
+
+
+def after_run(results, path, name):
+    """What is wrong with a run on a damaged file; empty if nothing is."""
+    before = path.read_bytes()
+    outcome = results.run(path.parent, "run", "c.yaml", seconds=LONG)
+    if outcome.fault:
+        return outcome.fault
+    if outcome.status == 0:
+        return "" if results.run.content(path) == results.content[name] else "run gives another content"
+    if outcome.status not in (2, 3):
+        return f"run ends with status {outcome.status}"
+    return "" if path.read_bytes() == before else f"run refuses, yet changes the file: {outcome.err}"
+
+
+def after_look(results, path, name, words):
+    """What is wrong with showing or drawing a file: shown is only what is not damaged."""
+    outcome = results.run(path.parent, *words, seconds=LONG)
+    if outcome.fault:
+        return outcome.fault
+    if outcome.status == 0:
+        same = results.run.content(path) == results.content[name]
+        return "" if same else f"{words[0]} shows another content"
+    return "" if outcome.status == 2 else f"{words[0]} ends with status {outcome.status}: {outcome.err}"
+
+
+def report(complaints):
+    """The first complaints, each with its damage."""
+    return f"{len(complaints)} damages:\n" + "\n".join(complaints[:20])
+
+
+LOOKS = (("show", "c.h5"), ("plot", "c.h5", "-o", "c.png"))
+
+
+def test_damaged_file_is_refused_and_left_as_it_is_or_repaired(results, tmp_path, name):
+    complaints = []
+    rng = Random(f"files {name}")
+    for number in range(FILES):
+        damage = BYTES[number % len(BYTES)]
+        data = damage((results.directory / f"{name}-whole.h5").read_bytes(), rng)
+        half = damage((results.directory / f"{name}-half.h5").read_bytes(), rng)
+        path = results.copied(name, "whole", tmp_path / "a")
+        path.write_bytes(data)
+        looks = LOOKS if name != "list" else ()
+        found = [after_look(results, path, name, words) for words in looks]
+        found.append(after_run(results, path, name))
+        path = results.copied(name, "half", tmp_path / "b")
+        path.write_bytes(half)
+        found += [results.run(path.parent, "show", "c.h5").fault, after_run(results, path, name)]
+        complaints += [f"{damage.__name__} {number}: {why}" for why in found if why]
+    assert not complaints, report(complaints)
+
+
+def test_damaged_journal_is_used_as_far_as_it_is_whole(results, tmp_path, name):
+    complaints = []
+    rng = Random(f"pages {name}")
+    for number in range(CYCLE_PAGES if name == "limit_cycle" else PAGES):
+        path = results.copied(name, "half", tmp_path / "a")
+        pages = sorted(page for page in Path(f"{path}.journal").iterdir() if page.stat().st_size)
+        page, damage = rng.choice(pages), BYTES[number % len(BYTES)]
+        page.write_bytes(damage(page.read_bytes(), rng))
+        shown = results.run(path.parent, "show", "c.h5")
+        ended = results.run(path.parent, "run", "c.yaml", seconds=LONG)
+        what = f"{damage.__name__} {number} of {page.name[:5]}"
+        if shown.fault or ended.fault or (shown.status, ended.status) != (0, 0):
+            complaints.append(f"{what}: {shown.fault} {ended.fault} {shown.err} {ended.err[-200:]}")
+        elif results.run.content(path) != results.content[name]:
+            complaints.append(f"{what}: another content")
+        elif Path(f"{path}.journal").exists():
+            complaints.append(f"{what}: the journal is left")
+    assert not complaints, report(complaints)
+
+
+@pytest.mark.parametrize("name", ["spectrum", "limit_cycle"], indirect=True)
+def test_odd_things_among_the_journals_do_no_harm(results, tmp_path, name):
+    complaints = []
+    for oddity in OF_CHAINS if name == "limit_cycle" else JOURNALS:
+        path = results.copied(name, "half", tmp_path / "a")
+        journal = Path(f"{path}.journal")
+        JOURNALS[oddity](journal)
+        shown = results.run(path.parent, "show", "c.h5")
+        ended = results.run(path.parent, "run", "c.yaml", seconds=LONG)
+        why = shown.fault or ended.fault
+        if not why and ended.status:  # refused: the file is whole, and all is well once the oddity is gone
+            journal.unlink() if journal.is_symlink() or journal.is_file() else shutil.rmtree(journal)
+            ended = results.run(path.parent, "run", "c.yaml", seconds=LONG)
+        if not why and results.run.content(path) != results.content[name]:
+            why = f"another content: {ended.err}"
+        if why or shown.status not in (0, 3) or (tmp_path / "a" / "points.csv").read_text() != small.POINTS:
+            complaints.append(f"{oddity}: {why} {shown.err}")
+    assert not complaints, report(complaints)
+
+
+LINES = (
+    ("show", "FILE"), ("plot", "FILE"), ("merge", "m.h5", "FILE"), ("merge", "FILE", "c.h5"),
+    ("run", "c.yaml", "-o", "FILE"), ("run", "c.yaml", "--fresh", "-o", "FILE"),
+)  # fmt: skip
+
+
+def test_what_is_no_result_is_refused_and_left_alone(results, tmp_path):
+    directory = tmp_path / "a"
+    results.copied("spectrum", "whole", directory)
+    complaints = []
+    for path in [*foreign(directory, Random(1)), *obstacles(directory)]:
+        before = path.read_bytes() if path.suffix == ".h5" else b""
+        for line in LINES:
+            words = [word.replace("FILE", path.name) for word in line]
+            outcome = results.run(directory, *words)
+            ours = "--fresh" in words and outcome.status == 0 and before.startswith(b"\x89HDF")
+            if outcome.fault or (outcome.status not in (2, 3) and not ours):
+                complaints.append(f"{' '.join(words)}: {outcome.fault or outcome.status}")
+            elif not ours and path.suffix == ".h5" and path.read_bytes() != before:
+                complaints.append(f"{' '.join(words)} changes it")
+        assert not (directory / "m.h5").exists()
+    assert not complaints, report(complaints)
+
+
+def test_result_that_another_program_made_unfit_is_refused(results, tmp_path, name):
+    complaints = []
+    for edit, change in shared(MISFITS.items(), name, 2):
+        path = results.copied(name, "whole", tmp_path / "a")
+        with h5py.File(path, "r+") as file:
+            change(file)
+        before = path.read_bytes()
+        for words in (*LOOKS, ("run", "c.yaml"), ("merge", "m.h5", "c.h5")):
+            outcome = results.run(path.parent, *words, seconds=LONG)
+            if outcome.fault or outcome.status != 2 or path.read_bytes() != before:
+                complaints.append(f"{edit}, {words[0]}: {outcome.fault or outcome.status}")
+    assert not complaints, report(complaints)
+
+
+def test_result_that_another_program_edited_is_still_read(results, tmp_path, name):
+    complaints = []
+    for edit, change in shared(EDITS.items(), name, 1):
+        path = results.copied(name, "whole", tmp_path / "a")
+        with h5py.File(path, "r+") as file:
+            change(file)
+        for words in (*LOOKS, ("run", "c.yaml"), ("show", "c.h5")):
+            outcome = results.run(path.parent, *words, seconds=LONG)
+            expected = (0, 2) if words[0] == "plot" else (0, 1)
+            if outcome.fault or outcome.status not in expected:
+                complaints.append(f"{edit}, {words[0]}: {outcome.fault or outcome.status}")
+    assert not complaints, report(complaints)
+
+
+@pytest.mark.parametrize("number", range(6))
+def test_the_command_itself_refuses_a_damaged_file(results, tmp_path, number):
+    rng = Random(number)
+    path = results.copied("spectrum", "half" if number % 2 else "whole", tmp_path / "a")
+    path.write_bytes(BYTES[number % len(BYTES)](path.read_bytes(), rng))
+    before = path.read_bytes()
+    words = [("show", "c.h5"), ("plot", "c.h5"), ("run", "c.yaml")][number % 3]
+    ended = subprocess.run(
+        [BIN / "rodsweep", *words], cwd=path.parent, capture_output=True, text=True, timeout=60, check=False
+    )
+    outcome = Outcome(ended.returncode, False, ended.stdout, ended.stderr)
+    assert outcome.fault == ""
+    assert outcome.status == 2 or results.run.content(path) == results.content["spectrum"]
+    assert path.read_bytes() == before or outcome.status == 0
