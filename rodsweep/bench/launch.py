@@ -74,7 +74,8 @@ def run(case: Case, ranks: int, fresh: bool = True) -> Run:
             check=False,
         )
     said = re.search(r"points in ([\d.]+) s on", done.stdout)
-    if case.kind != "killed" and (done.returncode not in (0, 1) or said is None):
+    stopped = said is None or "stopped by" in done.stdout
+    if case.kind != "killed" and (stopped or done.returncode not in (0, 1)):
         raise EnvironmentLacks(f"a run of the benchmark failed: {' '.join(done.stderr.split())[-500:]}")
     memory = [
         max((int(note.read_text()) for note in notes.glob(f"{rank}-*")), default=0)

@@ -1,13 +1,14 @@
 """From a start to the neighbourhood of a cycle, or to rest: before Newton's method takes over.
 
 The motion is followed from return to return, theta of the tip rising through 0. Two returns that agree to a
-tenth go to Newton's method. Slow motions about the straight rod are not waited for: with growth g per
-period at amplitude a and the exact linear growth g0, a cycle of g = g0 (1 - a^2/a*^2) lies at a*^2 = a^2
-g0/(g0 - g), and the state is scaled to it; what decays slowly is scaled down until it decays at the linear
-rate.
+tenth go to Newton's method. Slow motions about the straight rod are not waited for. Per period they grow by
+g = g0 - c a^2 at amplitude a, with the exact linear growth g0, so that a cycle lies at a*^2 = g0/c and the
+state is scaled to it; c is measured where it shows in g, which near a* may be lost in the integrator's error.
+What decays slowly is scaled down until it decays at the linear rate.
 """
 
 from dataclasses import dataclass
+from math import isnan, nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,10 +28,13 @@ CHUNK = 5
 CLOSE = 0.1
 """Relative distance of two returns from which Newton's method starts; a tenth after each failure."""
 MOST_ATTEMPTS = 5
+"""Failures of Newton's method, after each of which twice as many chunks are waited for the next."""
 SLOW = 0.2
 """Linear growth per period below which an amplitude is predicted rather than waited for."""
 FAINT = 0.01
 """Linear growth per period below which the integration is a careful one."""
+NOISE, CAREFUL_NOISE = 1e-3, 1e-5
+"""Growth per period that the integrator may add: 3e-4 and 8e-6 were seen."""
 NEAR = 0.1
 """Relative distance from the predicted amplitude that is left to Newton's method."""
 MOST_JUMPS, SHRINK, LARGEST_JUMP = 60, 0.7, 4.0
@@ -81,7 +85,11 @@ class Approach:
     def __init__(self, beam: Beam, accuracy: float, most_periods: int) -> None:
         self.beam, self.accuracy, self.most_periods = beam, accuracy, most_periods
         self.mode, self.row = leading_mode(beam), angle_weights(beam)
-        self.waited = self.jumps = self.attempts = 0
+        self.faint = abs(self.mode.w.real) * self.mode.period < FAINT
+        self.noise = CAREFUL_NOISE if self.faint else NOISE
+        self.bend = nan
+        """c in g = g0 - c |z|^2, once it has shown."""
+        self.waited = self.jumps = self.attempts = self.next_attempt = 0
 
     def arrive(self, z: Array) -> Arrival:
         """Where the rod goes from z."""
@@ -127,8 +135,7 @@ class Approach:
             return count >= CHUNK
 
         period = self.mode.period
-        faint = abs(self.mode.w.real) * period < FAINT
-        method = integrator(self.beam.mesh, CAREFUL if faint else TRANSIENT)
+        method = integrator(self.beam.mesh, CAREFUL if self.faint else TRANSIENT)
         return method.run(self.beam, z, 3 * CHUNK * period, period / 1000, enough, STEPS_PER_CHUNK)
 
     def _growth(self, times: Array, states: Array) -> tuple[float, float]:
@@ -137,25 +144,38 @@ class Approach:
         return float(np.log(sizes[1] / sizes[0])), float(self.mode.w.real * (times[-1] - times[-2]))
 
     def _decays(self, times: Array, states: Array) -> bool:
-        """Whether the returns shrink steadily, at last as the leading mode does."""
+        """Whether the returns shrink steadily, at last as the leading mode does, or by c would."""
         growth, linear = self._growth(times, states)
-        steady = bool((np.diff(np.linalg.norm(states, axis=1)) < 0).all())
-        alike = abs(growth - linear) < LINEAR * abs(linear)
-        return linear < 0 and steady and alike and self._in_time(times)
+        sizes = np.linalg.norm(states, axis=1)
+        alike = bool((np.diff(sizes) < 0).all()) and abs(growth - linear) < LINEAR * abs(linear)
+        faded = abs(self.bend) * sizes[-1] ** 2 < LINEAR * abs(linear)
+        return linear < 0 and (alike or faded) and self._in_time(times)
 
     def _in_time(self, times: Array) -> bool:
         """Whether the tip returns as the leading mode does: elsewhere its growth predicts nothing."""
         return bool(abs((times[-1] - times[-2]) / self.mode.period - 1) < LINEAR)
 
+    def _slow(self, times: Array, growth: float, linear: float) -> bool:
+        """Whether the motion is a slowly growing or decaying leading mode."""
+        return max(abs(linear), abs(growth)) <= SLOW and self._in_time(times)
+
     def _predicted(self, times: Array, states: Array) -> Array | None:
         """The state scaled to where the growth should vanish; None if that is here, or cannot be said."""
         growth, linear = self._growth(times, states)
-        slow = max(abs(linear), abs(growth)) <= SLOW and self._in_time(times)
-        if not slow or linear <= growth or self.jumps >= MOST_JUMPS:
+        if not self._slow(times, growth, linear) or self.jumps >= MOST_JUMPS:
             return None
-        factor = SHRINK
-        if linear > 0:
-            factor = float(np.clip(np.sqrt(linear / (linear - growth)), 1 / LARGEST_JUMP, LARGEST_JUMP))
+        size = float(np.linalg.norm(states[-1]))
+        here = (linear - growth) / size**2
+        if abs(linear - growth) > self.noise:
+            self.bend = here
+        if isnan(self.bend) and linear > 0:
+            factor = LARGEST_JUMP  # too small to feel what bends its growth
+        elif (here if isnan(self.bend) else self.bend) <= 0:
+            return None
+        elif linear > 0:
+            factor = float(np.clip(np.sqrt(linear / self.bend) / size, 1 / LARGEST_JUMP, LARGEST_JUMP))
+        else:
+            factor = SHRINK
         if abs(factor - 1) < NEAR:
             return None
         scaled = factor * states[-1]
@@ -166,8 +186,11 @@ class Approach:
         """The cycle, if the returns repeat and Newton's method finds it from the end of the run."""
         growth, linear = self._growth(times, states)
         turns, distance = self._repetition(states)
-        if distance >= CLOSE / 10**self.attempts or not (linear > 0 or growth > linear * (1 - SLOW)):
+        known = self.bend > 0 and self._slow(times, growth, linear)
+        decays = linear < 0 and growth < linear * (1 - SLOW) + (self.noise if known else 0)
+        if decays or distance >= CLOSE / 10**self.attempts or self.waited < self.next_attempt:
             return None
+        self.next_attempt = self.waited + CHUNK * 2**self.attempts
         self.attempts = min(self.attempts + 1, MOST_ATTEMPTS)
         period = times[-1] - times[-1 - turns]
         found = resolve(self.beam, run.states[-1], period, turns, self.accuracy)

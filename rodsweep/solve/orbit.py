@@ -73,7 +73,7 @@ def shoot(beam: Beam, z: Array, period: float, steps: int, known: Tangent | None
     would see rates of 1e10/tau2 at gamma3 = 1e-6. known: a tangent to begin with, as of half as many steps.
     """
     row = angle_weights(beam)
-    section, closure, M = row @ z, np.inf, known
+    section, closure, M, fresh = row @ z, np.inf, known, False
     run: Run | None = None
     for _ in range(MOST_ITERATIONS):
         run = period_run(beam, z, period, steps)
@@ -82,9 +82,13 @@ def shoot(beam: Beam, z: Array, period: float, steps: int, known: Tangent | None
         size, last = np.abs(run.states).max(), closure
         residual = np.append(run.states[-1] - z, row @ z - section)
         closure = float(np.abs(residual).max() / size)
-        if closure <= ROUND_OFF or (closure < CLOSED and closure > STALLED * last):
+        # An amplitude is off by the closure in units of 1 - mu.
+        neutral = 1.0 if M is None else min(1.0, abs(1 - M.largest))
+        stalled = closure < (CLOSED if fresh else CLOSED * neutral) and closure > STALLED * last
+        if stalled or closure <= min(ROUND_OFF, CLOSED * neutral):
             break
-        if M is None or closure > SLOW * last:
+        fresh = M is None or closure > SLOW * last
+        if M is None or fresh:
             M = tangent(beam, run)
         step = np.linalg.solve(_matrix(beam, M, run.states[-1], row), -residual)
         bounds = LONGEST_STEP * size / np.abs(step[:-1]).max(), LONGEST_STRETCH * period / abs(step[-1])

@@ -1,0 +1,62 @@
+"""Cycles so close to their Hopf point that growth is lost in the integrator's error, and rods as close below.
+
+Known exactly: on which side there is a cycle, that its amplitude is as the square root of the distance, and
+that a perturbation of it decays twice as fast as one of the straight rod grows.
+"""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from rodsweep.solve.cycles import CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.thresholds import ThresholdsRequest, solve_thresholds
+
+RODS = [
+    (1e4, 1e2, 1e-2, 1.0), (557.1, 3933.0, 3.16e-3, 0.21), (4.878e4, 3997.0, 4.11e-4, 0.26),
+    (5.142e4, 288.4, 1.49e-4, 4.0),
+]  # fmt: skip
+ACCURACY = 1e-7
+
+pytestmark = pytest.mark.usefixtures("cycles_work")
+
+
+@cache
+def hopf(rod):
+    """F** of a rod."""
+    found = solve_thresholds(*rod[:3], ThresholdsRequest(60.0, 1e-12, False, 4))
+    return next(c.at for c in found.crossings if c.kind.name == "hopf")
+
+
+@cache
+def beside(rod, distance):
+    """What a rod does at a relative distance from its Hopf point."""
+    return solve_cycle(
+        hopf(rod) * (1 + distance), *rod, CycleRequest(ACCURACY, 0.01, 1, 0, 0, 0, most_periods=400)
+    )
+
+
+@pytest.mark.parametrize("rod", RODS)
+def test_amplitude_is_as_the_square_root_of_the_distance(rod):
+    distances = np.array([1e-7, 1e-6, 1e-5])
+    found = [beside(rod, distance) for distance in distances]
+    assert [c.status for c in found] == [CycleStatus.cycle] * 3
+    assert max(c.periods for c in found) <= 60
+    squares = np.array([c.tip_y_max**2 for c in found]) / distances
+    # What a relative distance of 1e-5 adds to the law, and what 1e-12 of the Hopf point takes at 1e-7.
+    assert squares / squares[1] == pytest.approx(1.0, abs=1e-4)
+    assert squares[0] / squares[1] == pytest.approx(1.0, abs=3e-5)
+
+
+@pytest.mark.parametrize("rod", RODS)
+def test_a_cycle_recovers_twice_as_fast_as_the_straight_rod_is_left(rod):
+    c = beside(rod, 1e-5)
+    assert -np.log(c.multiplier) / (c.linear_growth_rate * c.period) == pytest.approx(2.0, abs=0.02)
+
+
+@pytest.mark.parametrize("distance", [-1e-8, -1e-7, -1e-5])
+@pytest.mark.parametrize("rod", RODS)
+def test_a_rod_below_is_straight(rod, distance):
+    c = beside(rod, distance)
+    assert c.status == CycleStatus.straight
+    assert c.periods <= 150
