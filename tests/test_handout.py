@@ -2,10 +2,20 @@
 
 import threading
 import time
+from types import SimpleNamespace
 
 import pytest
 
-from rodsweep.sweep.handout import CHUNK_SECONDS, OVER, Handout, Report, chunk_seconds
+from rodsweep.sweep.handout import (
+    CHUNK_SECONDS,
+    OVER,
+    REQUEST,
+    FirstRankClaims,
+    Handout,
+    Report,
+    chunk_seconds,
+)
+from rodsweep.sweep.stop import Stop
 
 
 def test_every_point_is_handed_out_once():
@@ -90,3 +100,63 @@ def test_many_ranks_ask_the_first_no_more_than_a_thousand_times_a_second():
         handout.settle(1, Report(1000, 1.0))
         start, stop = handout.take(1)
         assert ranks / ((stop - start) * 1e-3) <= 1001
+
+
+def test_next_chunk_is_given_ahead_while_plenty_is_left():
+    handout = Handout([(0, 9)], ranks=2)
+    assert handout.take(1) == (0, 1)
+    assert handout.take_ahead(1) == (1, 2)
+    assert handout.take_ahead(0) is None  # seven units left, fewer than four a rank
+    handout.settle(1, Report(1, 9.0))
+    for _ in range(7):
+        handout.take(0)
+        handout.settle(0, Report(1, 9.0))
+    assert handout.take(0) is None  # rank 1 still has the one that it got ahead, and may give it back
+    handout.settle(1, Report(0, 9.0, (1, 2)))
+    assert handout.take(0) == (1, 2)
+    handout.settle(0, Report(1, 9.0))
+    assert handout.take(0) == OVER
+
+
+class Mail:
+    """In the place of MPI: what the first rank receives from rank 1, in order, and what it sends."""
+
+    ANY_SOURCE = -1
+
+    def __init__(self):
+        self.reports, self.sent = [], []
+
+    def Iprobe(self, source, tag, status):
+        return tag == REQUEST and bool(self.reports)
+
+    def Get_source(self):
+        return 1
+
+    def recv(self, source, tag):
+        return self.reports.pop(0)
+
+    def send(self, what, dest, tag):
+        self.sent.append(what)
+
+    def Status(self):
+        return self
+
+
+def claims(mail, todo, monkeypatch):
+    """The first rank's claims among two ranks, without a thread."""
+    monkeypatch.setattr(FirstRankClaims, "_serve_until_over", lambda self: None)
+    team = SimpleNamespace(MPI=mail, comm=mail, size=2, first=True)
+    return FirstRankClaims(team, todo, Stop())
+
+
+def test_each_chunk_is_answered_once_whether_asked_for_ahead_or_not(monkeypatch):
+    ahead, done = Report(ahead=True), Report(1, 9.0)
+    mail = Mail()
+    first = claims(mail, [(0, 10)], monkeypatch)
+    answers = []
+    for report in [Report(), ahead, done, ahead, done, ahead, done, ahead, done]:
+        mail.reports.append(report)
+        first.between_points()
+        answers.append(mail.sent.pop() if mail.sent else None)
+    # Ahead while eight units are left, then only once the last chunk is done.
+    assert answers == [(0, 1), (1, 2), None, (2, 3), None, None, (3, 4), None, (4, 5)]

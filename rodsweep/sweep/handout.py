@@ -1,15 +1,16 @@
 """Who solves which unit, a point or a chain of points: small chunks from the first rank, sized by pace.
 
 The first rank computes like any other; a thread of it answers the requests of the others, so they
-need not wait for its own solve to end. A rank that finds its chunk slower than foreseen gives the
-rest back with its next request. Nobody is told that the work is over while another rank may still
-give something back, so the ranks finish within one unit of each other. A rank that is asked to stop
+need not wait for its own solve to end. A solve may keep the thread waiting, so ranks ask for their next
+chunk when they begin one, and get it while plenty is left. A rank that finds its chunk slower than foreseen
+gives the rest back with its next request. Nobody is told that the work is over while another rank may still
+give something back, so the ranks finish within about one unit of each other. A rank that is asked to stop
 tells the first, which tells all: each ends with the point that it is at.
 """
 
 import threading
 import time
-from collections import deque
+from collections import Counter, deque
 from dataclasses import dataclass
 
 from .stop import Stop
@@ -22,6 +23,8 @@ first one, which answers a request in 50 microseconds, spends a twentieth of its
 GIVE_BACK_AFTER = 3.0
 """Time after which a rank gives the rest of its chunk back, in units of what the chunk should take."""
 LARGEST_CHUNK = 1 << 16
+PLENTY = 4
+"""Units a rank that have to be left for a rank to get its next chunk before it has done the last."""
 POLL_SECONDS, REST_SECONDS = 2e-3, 5e-3
 """How long the thread sleeps: each waking takes the first rank 20 microseconds or more of its solve. Longer
 where that rank itself answers between its points."""
@@ -39,12 +42,16 @@ def chunk_seconds(ranks: int) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """What a rank says when it wants more: units done, their seconds, what it gives back, points kept."""
+    """What a rank says when it wants more: units done, their seconds, what it gives back, points kept.
+
+    ahead: it says nothing but that it has begun a chunk, and would take the next.
+    """
 
     done: int = 0
     seconds: float = 0.0
     rest: Range = OVER
     points: int = 0
+    ahead: bool = False
 
 
 class Handout:
@@ -54,7 +61,8 @@ class Handout:
         self.todo = deque(todo)
         self.left = sum(stop - start for start, stop in todo)
         self.ranks = ranks
-        self.busy: set[int] = set()
+        self.held: Counter[int] = Counter()
+        """Chunks that each rank has and has not reported on."""
         self.done = 0
         self.points = 0
         self.pace: dict[int, float] = {}
@@ -64,7 +72,8 @@ class Handout:
     def settle(self, rank: int, report: Report) -> None:
         """Takes in a report: what is done, and what is given back."""
         with self.change:
-            self.busy.discard(rank)
+            if self.held[rank]:
+                self.held[rank] -= 1
             self.done += report.done
             self.points += report.points
             if report.done:
@@ -79,18 +88,26 @@ class Handout:
     def take(self, rank: int) -> Range | None:
         """The next chunk for a rank, OVER when all work is done, None when it has to wait."""
         with self.change:
-            if not self.todo:
-                return None if self.busy and not self.stopped else OVER
-            share = max(1, self.left // (2 * self.ranks))
-            pace = self.pace.get(rank)
-            size = 1 if pace is None else int(chunk_seconds(self.ranks) / max(pace, 1e-7))
-            start, stop = self.todo.popleft()
-            end = min(stop, start + max(1, min(size, share, LARGEST_CHUNK)))
-            if end < stop:
-                self.todo.appendleft((end, stop))
-            self.left -= end - start
-            self.busy.add(rank)
-            return start, end
+            if self.todo:
+                return self._take(rank)
+            return None if self.held.total() and not self.stopped else OVER
+
+    def take_ahead(self, rank: int) -> Range | None:
+        """The next chunk for a rank that still works on one, None unless plenty is left."""
+        with self.change:
+            return self._take(rank) if self.todo and self.left >= PLENTY * self.ranks else None
+
+    def _take(self, rank: int) -> Range:
+        share = max(1, self.left // (2 * self.ranks))
+        pace = self.pace.get(rank)
+        size = 1 if pace is None else int(chunk_seconds(self.ranks) / max(pace, 1e-7))
+        start, stop = self.todo.popleft()
+        end = min(stop, start + max(1, min(size, share, LARGEST_CHUNK)))
+        if end < stop:
+            self.todo.appendleft((end, stop))
+        self.left -= end - start
+        self.held[rank] += 1
+        return start, end
 
     def stop(self) -> None:
         """Leaves what has not been handed out for another run."""
@@ -111,6 +128,8 @@ class FirstRankClaims:
     def __init__(self, team: Team, todo: list[Range], stop: Stop):
         self.team, self.handout, self.stop = team, Handout(todo, team.size), stop
         self.waiting: deque[int] = deque()
+        self.ahead: set[int] = set()
+        """Ranks that have an answer to their next request already."""
         self.working = set(range(1, team.size))
         self.status = team.MPI.Status()
         self.serving = threading.Lock()
@@ -164,13 +183,25 @@ class FirstRankClaims:
             self._heed_stop()
             while comm.Iprobe(source=MPI.ANY_SOURCE, tag=REQUEST, status=self.status):
                 rank = self.status.Get_source()
-                self.handout.settle(rank, comm.recv(source=rank, tag=REQUEST))
-                self.waiting.append(rank)
+                self._hear(rank, comm.recv(source=rank, tag=REQUEST))
             while self.waiting and (chunk := self.handout.take(self.waiting[0])) is not None:
                 rank = self.waiting.popleft()
                 comm.send(chunk, dest=rank, tag=ANSWER)
                 if chunk == OVER:
                     self.working.discard(rank)
+
+    def _hear(self, rank: int, report: Report) -> None:
+        """A rank's report: it waits for an answer unless it has it; one to a request ahead is sent at once."""
+        if report.ahead:
+            if (chunk := self.handout.take_ahead(rank)) is not None:
+                self.team.comm.send(chunk, dest=rank, tag=ANSWER)
+                self.ahead.add(rank)
+            return
+        self.handout.settle(rank, report)
+        if rank in self.ahead:
+            self.ahead.remove(rank)
+        else:
+            self.waiting.append(rank)
 
     def _serve_until_over(self) -> None:
         with self.team.together():
@@ -194,7 +225,10 @@ class OtherRankClaims:
         while not self.comm.Iprobe(source=0, tag=ANSWER):
             self.between_points()
             time.sleep(ASK_SECONDS)
-        return self.comm.recv(source=0, tag=ANSWER)
+        chunk: Range = self.comm.recv(source=0, tag=ANSWER)
+        if chunk != OVER:
+            self.comm.send(Report(ahead=True), dest=0, tag=REQUEST)
+        return chunk
 
     def between_points(self) -> None:
         """Passes a request to stop on to the first rank, or learns of it from there."""
