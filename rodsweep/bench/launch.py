@@ -49,6 +49,8 @@ class Run:
     """Bytes of the journals that it left, which is none unless it was killed."""
     elsewhere: float
     """Processors that other programs kept busy meanwhile; nan where the system does not say."""
+    busy: float = nan
+    """Share of the ranks' time that went into points and not into waiting; nan without the real solver."""
 
 
 def launcher(ranks: int) -> list[str]:
@@ -82,15 +84,24 @@ def run(case: Case, ranks: int, fresh: bool = True) -> Run:
         for rank in ("first", "other")[:ranks]
     ]
     shutil.rmtree(notes)
+    solving, busy = _solving(file) if case.kind == "solved" else (0.0, nan)
     return Run(
         load.seconds,
         float(said[1]) if said else nan,
-        float(read_view(file).variables["seconds"].sum(dtype=float)) if case.kind == "solved" else 0.0,
+        solving,
         tuple(memory),
         file.stat().st_size,
         sum(page.stat().st_size for page in journal_directory(file).glob("rank-*")),
         load.elsewhere,
+        busy,
     )
+
+
+def _solving(file: Path) -> tuple[float, float]:
+    """(seconds in the solver, share of the ranks' time that went into points), as a result says."""
+    view = read_view(file)
+    busy, idle = (float(view.attributes[f"rank_{name}_seconds"].sum()) for name in ("busy", "idle"))
+    return float(view.variables["seconds"].sum(dtype=float)), busy / (busy + idle)
 
 
 @dataclass(slots=True)

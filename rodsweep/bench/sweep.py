@@ -21,7 +21,7 @@ SIZES, QUICK_SIZES = (10**3, 10**4, 10**5, 10**6), (10**3, 10**4)
 ONCE_FROM = 10**6
 """Points from which a sweep without a solver is run once: the start is little of it then."""
 SPECTRA, QUICK_SPECTRA = 200_000, 6_000
-CYCLES, QUICK_CYCLES = 110, 10
+CYCLES, QUICK_CYCLES = 200, 10
 ROUNDS, CYCLE_ROUNDS, QUICK_ROUNDS = 3, 2, 1
 HOPF = 27.4271941267592812
 """F of the Hopf point of k1 = 1e4, k2 = 1e2, gamma3 = 1e-2."""
@@ -84,6 +84,11 @@ class Row:
     @property
     def elsewhere(self) -> float:
         return self.median(lambda run: run.elsewhere)
+
+    @property
+    def busy(self) -> float:
+        """Share of the ranks' time that went into points."""
+        return self.median(lambda run: run.busy)
 
 
 def sweep_study(quick: bool) -> Study:
@@ -196,6 +201,7 @@ def measured(row: Row) -> Measurement:
         "file_bytes_per_point": row.file,
         "journal_bytes_per_point": row.journal if row.case == "killed" else nan,
         "processors_elsewhere": row.elsewhere,
+        "share_busy": row.busy,
     }
     method = f"{row.ranks} rank{'s' * (row.ranks > 1)}"
     return Measurement(row.case, method, f"{row.points} points", row.seconds, nan, "", extra)
@@ -211,18 +217,20 @@ def introduction(rounds: int) -> str:
         "Spectra: `modes: 2`, certified, over F, k1, k2. Limit cycles: of k1 = 1e4, k2 = 1e2, "
         "gamma3 = 1e-2, at forces far below the Hopf point, down to 1e-6 below and 1e-7 above it, and "
         "ordinary ones, mixed. Inside is the time that the run itself states, without the start of Python "
-        "and MPI. Beside the solver is the ranks' time inside less the `seconds` in the file: loading what "
-        "is compiled, handing out, storing, and waiting for each other at the end. Memory is the peak of a "
-        "rank's resident set. While other programs keep processors busy, a second rank gains less."
+        "and MPI; of the ranks' time in the sweep, % busy went into points, the rest into waiting for more or "
+        "for each other. Beside the solver is the ranks' time inside less the `seconds` in the "
+        "file: loading what is compiled, handing out, storing, and waiting. Memory is the peak of a rank's "
+        "resident set. While other programs, or the host of a virtual machine, keep processors busy, a "
+        "second rank gains less."
     )
 
 
 def solved_table(rows: Sequence[Row]) -> str:
     """Spectra and limit cycles with their solvers."""
     lines = [
-        "| sweep | points | ranks | s | points a second | gain | gain inside | µs a point beside the solver "
-        "| MB a rank | processors busy elsewhere |",
-        "|---|---|---|---|---|---|---|---|---|---|",
+        "| sweep | points | ranks | s | points a second | gain | gain inside | % busy "
+        "| µs a point beside the solver | MB a rank | processors busy elsewhere |",
+        "|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     alone = {row.case: row for row in rows if row.ranks == 1}
     for row in rows:
@@ -230,7 +238,8 @@ def solved_table(rows: Sequence[Row]) -> str:
         gains = " | " if row is one else f"{one.seconds / row.seconds:.2f} | {one.inside / row.inside:.2f}"
         lines.append(
             f"| {row.case} | {row.points} | {row.ranks} | {row.seconds:.2f} | {row.points / row.seconds:.4g} "
-            f"| {gains} | {row.beside:.0f} | {max(row.memory):.1f} | {row.elsewhere:.2f} |"
+            f"| {gains} | {100 * row.busy:.1f} | {row.beside:.0f} | {max(row.memory):.1f} "
+            f"| {row.elsewhere:.2f} |"
         )
     return "\n".join(lines)
 

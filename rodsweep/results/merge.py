@@ -8,6 +8,7 @@ import json
 import os
 import shutil
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -71,6 +72,7 @@ def merge(output: Path, paths: Sequence[Path], needs_more: Callable[[dict[str, A
         raise EnvironmentLacks(f"{output} cannot be written: {error.strerror or error}") from error
     copy = directory / "next.h5"
     try:
+        copy.unlink(missing_ok=True)  # it may be a link
         shutil.copyfile(sources[0].path, copy)
         with copy.open("r+b") as target:
             gave = [sources[0]] + [s for s in sources[1:] if _take_over(target, sources[0], s)]
@@ -85,7 +87,8 @@ def merge(output: Path, paths: Sequence[Path], needs_more: Callable[[dict[str, A
         reason = getattr(error, "strerror", None) or str(error).splitlines()[0]
         raise EnvironmentLacks(f"{output} cannot be written: {reason}; the shards are untouched") from error
     finally:
-        copy.unlink(missing_ok=True)
+        with suppress(OSError):
+            copy.unlink()
         lock.release()
     return Merged(sources[0].points - missing, missing, finished)
 

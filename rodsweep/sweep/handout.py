@@ -191,7 +191,7 @@ class FirstRankClaims:
                     self.working.discard(rank)
 
     def _hear(self, rank: int, report: Report) -> None:
-        """A rank's report: it waits for an answer unless it has it; one to a request ahead is sent at once."""
+        """A report: its rank waits for an answer unless it has it; one to a request ahead is sent at once."""
         if report.ahead:
             if (chunk := self.handout.take_ahead(rank)) is not None:
                 self.team.comm.send(chunk, dest=rank, tag=ANSWER)
