@@ -7,8 +7,9 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isnan, nan
 from pathlib import Path
 
@@ -29,6 +30,8 @@ class Case:
     directory: Path
     kind: str = "solved"
     """What takes the place of the solver: "solved", "instant" or "killed", see `rodsweep.cli.measured`."""
+    beside: "Case | None" = None
+    """Another sweep, which a command of its own runs at the same time; counted together with this one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +65,22 @@ def launcher(ranks: int) -> list[str]:
 
 def run(case: Case, ranks: int, fresh: bool = True) -> Run:
     """Runs a case on some ranks; EnvironmentLacks where that fails without having been killed."""
+    if case.beside is None:
+        return _run(case, ranks, fresh)
+    with _measured() as load, ThreadPoolExecutor(1) as pool:
+        beside = pool.submit(_run, case.beside, ranks, fresh)
+        own, other = _run(case, ranks, fresh), beside.result()
+    return replace(
+        own,
+        seconds=load.seconds,
+        inside=max(own.inside, other.inside),
+        solving=own.solving + other.solving,
+        elsewhere=load.elsewhere,
+    )
+
+
+def _run(case: Case, ranks: int, fresh: bool) -> Run:
+    """Runs a case, and nothing beside it."""
     directory, file, notes = case.directory, case.directory / RESULT, case.directory / NOTES
     notes.mkdir()
     start = [*launcher(ranks), sys.executable, "-m", "rodsweep.cli.measured", str(notes), case.kind]

@@ -5,7 +5,7 @@ that costs nothing takes the place of the real one.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import log, nan
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -37,6 +37,8 @@ parameters:
 spectrum: {{modes: 2}}
 """
 CYCLE = "limit cycles"
+APART = "spectra, two commands"
+"""Each with half of the spectra on one rank, at the same time: what the machine allows two ranks to gain."""
 CYCLE_CONFIG = "task: limit_cycle\nparameters: {points: points.csv}\n"
 
 
@@ -100,7 +102,9 @@ def sweep_study(quick: bool) -> Study:
         instant = instant_rows(Path(place), quick, ranks, rounds)
         resumed = resumed_rows(Path(place), quick)
     parts = [introduction(rounds), solved_table(solved)]
-    if len(ranks) == 1:
+    if len(ranks) > 1:
+        parts.append(ceiling(solved))
+    else:
         parts.append("Two ranks are skipped: there is no mpiexec beside this Python or on PATH.")
     if not any(row.case == CYCLE for row in solved):
         parts.append("Limit cycles are skipped: this PETSc cannot integrate them.")
@@ -153,6 +157,9 @@ def solved_rows(place: Path, quick: bool, ranks: Sequence[int], rounds: int) -> 
     for case in first:  # not timed: formulas may have to be compiled
         run(case, 1)
     pairs = [(case, n) for case in cases for n in ranks]
+    if len(ranks) > 1:
+        halves = [spectrum_case(place / f"half{i}", APART, count // 2, "solved") for i in (0, 1)]
+        pairs.insert(len(ranks), (replace(halves[0], points=count, beside=halves[1]), 1))
     return interleaved(pairs, [min(rounds, CYCLE_ROUNDS) if c.name == CYCLE else rounds for c, _ in pairs])
 
 
@@ -217,8 +224,8 @@ def introduction(rounds: int) -> str:
         "Spectra: `modes: 2`, certified, over F, k1, k2. Limit cycles: of k1 = 1e4, k2 = 1e2, "
         "gamma3 = 1e-2, at forces far below the Hopf point, down to 1e-6 below and 1e-7 above it, and "
         "ordinary ones, mixed. Inside is the time that the run itself states, without the start of Python "
-        "and MPI; of the ranks' time in the sweep, % busy went into points, the rest into waiting for more or "
-        "for each other. Beside the solver is the ranks' time inside less the `seconds` in the "
+        "and MPI; of the ranks' time in the sweep, % busy went into points, the rest into waiting for more "
+        "or for each other. Beside the solver is the ranks' time inside less the `seconds` in the "
         "file: loading what is compiled, handing out, storing, and waiting. Memory is the peak of a rank's "
         "resident set. While other programs, or the host of a virtual machine, keep processors busy, a "
         "second rank gains less."
@@ -233,7 +240,7 @@ def solved_table(rows: Sequence[Row]) -> str:
         "|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     alone = {row.case: row for row in rows if row.ranks == 1}
-    for row in rows:
+    for row in (row for row in rows if row.case != APART):
         one = alone[row.case]
         gains = " | " if row is one else f"{one.seconds / row.seconds:.2f} | {one.inside / row.inside:.2f}"
         lines.append(
@@ -242,6 +249,17 @@ def solved_table(rows: Sequence[Row]) -> str:
             f"| {row.elsewhere:.2f} |"
         )
     return "\n".join(lines)
+
+
+def ceiling(rows: Sequence[Row]) -> str:
+    """What two commands that know nothing of each other gain, the most that two ranks can."""
+    apart = next(row for row in rows if row.case == APART)
+    alone = next(row for row in rows if row.ranks == 1 and row.case != APART)
+    return (
+        f"Two commands side by side, each with half of the spectra on one rank, take {apart.seconds:.2f} s "
+        f"together, {alone.seconds / apart.seconds:.2f} times less than one command with all: this is what "
+        "two processors of this machine gain at most, and what two ranks have to be compared with."
+    )
 
 
 def instant_table(rows: Sequence[Row], resumed: Sequence[Row]) -> str:
