@@ -137,5 +137,6 @@ export WRAPPER
 	fi
 	{ echo "$$WRAPPER"; echo "exec '$$mpiexec' \"\$$@\""; } > $(BIN)/mpiexec
 	chmod +x $(BIN)/mpiexec
+	$(BIN)/python -c 'from rodsweep.solve.spectrum import warm_up; warm_up()'  # compile the formulas now, not in the first run
 	touch $@
 	echo 'Installed. Next: . .venv/bin/activate'

@@ -144,11 +144,11 @@ class Approach:
         return float(np.log(sizes[1] / sizes[0])), float(self.mode.w.real * (times[-1] - times[-2]))
 
     def _decays(self, times: Array, states: Array) -> bool:
-        """Whether the returns shrink steadily, at last as the leading mode does, or by c would."""
+        """Whether the returns shrink steadily, at last as the leading mode does, or would but for noise."""
         growth, linear = self._growth(times, states)
-        sizes = np.linalg.norm(states, axis=1)
-        alike = bool((np.diff(sizes) < 0).all()) and abs(growth - linear) < LINEAR * abs(linear)
-        faded = abs(self.bend) * sizes[-1] ** 2 < LINEAR * abs(linear)
+        sizes, margin = np.linalg.norm(states, axis=1), LINEAR * abs(linear)
+        alike = bool((np.diff(sizes) < 0).all()) and abs(growth - linear) < margin
+        faded = abs(self.bend) * sizes[-1] ** 2 < margin and growth - linear < margin + self.noise
         return linear < 0 and (alike or faded) and self._in_time(times)
 
     def _in_time(self, times: Array) -> bool:

@@ -23,6 +23,8 @@ PERIOD_MAP = Method("arkimex", "5", tolerance=1e-8, newton=1e-6, equal_steps=Tru
 MOST_ITERATIONS = 12
 ROUND_OFF = 3e-12
 """Relative closure below which Newton's method has nothing left to gain."""
+ROUNDING = 1e-14
+"""Relative closure that cannot be asked for, next to a Hopf point either."""
 CLOSED = 1e-8
 """Closure above which Newton's method has not converged."""
 SLOW, STALLED = 0.05, 0.3
@@ -83,9 +85,9 @@ def shoot(beam: Beam, z: Array, period: float, steps: int, known: Tangent | None
         residual = np.append(run.states[-1] - z, row @ z - section)
         closure = float(np.abs(residual).max() / size)
         # An amplitude is off by the closure in units of 1 - mu.
-        neutral = 1.0 if M is None else min(1.0, abs(1 - M.largest))
-        stalled = closure < (CLOSED if fresh else CLOSED * neutral) and closure > STALLED * last
-        if stalled or closure <= min(ROUND_OFF, CLOSED * neutral):
+        small = CLOSED if M is None else max(CLOSED * min(1.0, abs(1 - M.largest)), ROUNDING)
+        stalled = closure < (CLOSED if fresh else small) and closure > STALLED * last
+        if stalled or closure <= min(ROUND_OFF, small):
             break
         fresh = M is None or closure > SLOW * last
         if M is None or fresh:
