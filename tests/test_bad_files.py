@@ -16,6 +16,7 @@ import pytest
 from conftest import BIN
 from faults import small
 from faults.damages import (
+    ADDITIONS,
     BYTES,
     EDITS,
     JOURNALS,
@@ -231,6 +232,21 @@ def test_result_that_another_program_edited_is_still_read(results, tmp_path, nam
             expected = (0, 2) if words[0] == "plot" else (0, 1)
             if outcome.fault or outcome.status not in expected:
                 complaints.append(f"{edit}, {words[0]}: {outcome.fault or outcome.status}")
+    assert not complaints, report(complaints)
+
+
+def test_interrupted_result_to_which_another_program_added_is_continued(results, tmp_path, name):
+    complaints = []
+    for addition, add in shared(ADDITIONS.items(), name, 2):
+        path = results.copied(name, "half", tmp_path / "a")
+        with h5py.File(path, "r+") as file:
+            add(file)
+        for words in (("show", "c.h5"), ("run", "c.yaml"), *LOOKS, ("merge", "m.h5", "c.h5")):
+            outcome = results.run(path.parent, *words, seconds=LONG)
+            if outcome.fault or outcome.status not in ((0, 2) if words[0] == "plot" else (0,)):
+                complaints.append(f"{addition}, {words[0]}: {outcome.fault or outcome.err}")
+        if results.run.content(path) != results.content[name]:
+            complaints.append(f"{addition}: another content")
     assert not complaints, report(complaints)
 
 

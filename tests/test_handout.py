@@ -160,3 +160,22 @@ def test_each_chunk_is_answered_once_whether_asked_for_ahead_or_not(monkeypatch)
         answers.append(mail.sent.pop() if mail.sent else None)
     # Ahead while eight units are left, then only once the last chunk is done.
     assert answers == [(0, 1), (1, 2), None, (2, 3), None, None, (3, 4), None, (4, 5)]
+
+
+def test_what_a_stopped_rank_gives_back_is_for_another_run(monkeypatch):
+    """Its report may come before the message that it was asked to stop, and while others wait."""
+    mail = Mail()
+    first = claims(mail, [(0, 1)], monkeypatch)
+    for report in (Report(), Report(0, 9.0, (0, 1), 1, stop="SIGTERM")):
+        mail.reports.append(report)
+        first.between_points()
+    assert first.stop.name == "SIGTERM"
+    assert mail.sent == [(0, 1), "SIGTERM", OVER]
+    assert first.handout.take(0) == OVER
+
+
+def test_what_the_first_rank_gives_back_when_stopped_is_for_another_run(monkeypatch):
+    first = claims(Mail(), [(0, 1)], monkeypatch)
+    assert first.claim(Report()) == (0, 1)
+    first.stop.name = "SIGUSR1"
+    assert first.claim(Report(0, 9.0, (0, 1), 1)) == OVER

@@ -359,3 +359,31 @@ def test_transverse_spectrum_does_not_move_with_axial_drag(command):
     for name in ("growth_rate", "frequency", "unstable_count"):
         assert np.array_equal(half[name][:], seven[name][:])
     assert np.allclose(half["longitudinal_rate"][:] * 0.5, seven["longitudinal_rate"][:] * 7, rtol=1e-14)
+
+
+def test_link_as_output_is_followed(command):
+    command.write("c.yaml", SMALL)
+    (command.directory / "elsewhere").mkdir()
+    link, target = command.directory / "link.h5", command.directory / "elsewhere" / "real.h5"
+    link.symlink_to(target)
+    for _ in range(2):
+        assert command("run", "c.yaml", "-o", "link.h5").returncode == 0
+        assert link.is_symlink()
+        assert not target.is_symlink()
+    assert "complete, nothing to do" in command("run", "c.yaml", "-o", "link.h5").stdout
+    assert command("show", "link.h5").returncode == 0
+
+
+def test_full_disk_under_the_log_is_told_in_a_sentence(command):
+    command.write("c.yaml", SMALL)
+    with open("/dev/full", "w") as full:
+        run = subprocess.run(
+            command.argv("run", "c.yaml"),
+            cwd=command.directory,
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert (run.returncode, run.stderr) == (3, "rodsweep: standard output: No space left on device\n")
+    assert command("run", "c.yaml").returncode == 0

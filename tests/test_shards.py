@@ -1,6 +1,8 @@
 """Shards: every point in one of them, put together as if never divided; what merge refuses."""
 
 import shutil
+import time
+from concurrent.futures import ThreadPoolExecutor
 
 import h5py
 import numpy as np
@@ -8,6 +10,9 @@ import pytest
 from contents import content, same
 
 from rodsweep.errors import InputError
+from rodsweep.results.journal import journal_directory
+from rodsweep.results.lock import Lock
+from rodsweep.results.merge import merge
 from rodsweep.sweep.shards import Shard, shard_of
 
 SPECTRA = """
@@ -135,6 +140,21 @@ def test_what_does_not_belong_together_is_not_merged(command):
     shutil.rmtree(journal)
     assert shard.read_bytes() == before
     assert not (command.directory / "m.h5").exists()
+
+
+def test_merge_takes_over_what_another_wrote_while_it_waited(command):
+    command.write("c.yaml", SPECTRA)
+    for number in (1, 2):
+        assert command("run", "c.yaml", "--shard", f"{number}/2").returncode == 0
+    first, second, merged = (command.directory / f"{name}.h5" for name in ("c-1-of-2", "c-2-of-2", "m"))
+    lock = Lock(journal_directory(merged), merged)
+    with ThreadPoolExecutor(1) as pool:
+        waiting = pool.submit(merge, merged, [second], lambda config: False)
+        time.sleep(0.5)
+        assert not waiting.done()
+        shutil.copy(first, merged)
+        lock.release()
+        assert waiting.result().points == 492
 
 
 def test_damaged_shard_leaves_the_merged_file_as_it_was(command):

@@ -77,6 +77,22 @@ def test_stopped_run_ends_with_its_points_in_the_file_and_goes_on(command, numbe
     assert same(content(command.directory / "c.h5"), content(command.directory / "whole.h5"))
 
 
+def test_a_second_signal_does_not_change_the_status(command):
+    """Python forgets its handlers long before MPI is through with its end."""
+    command.write("c.yaml", SPECTRA)
+    process = started(command, "run", "c.yaml", ranks=0)
+    process.send_signal(signal.SIGUSR1)
+    said = ""
+    while "the same command continues" not in said:
+        line = process.stdout.readline()
+        assert line, process.communicate()
+        said += line
+    time.sleep(0.02)  # in the end of Python, on this machine or a slower one
+    process.send_signal(signal.SIGTERM)
+    process.communicate(timeout=60)
+    assert process.returncode == 75
+
+
 def test_launcher_passes_the_warning_on(command):
     command.write("c.yaml", SPECTRA)
     process = started(command, "run", "c.yaml", ranks=2)

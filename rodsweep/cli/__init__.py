@@ -51,10 +51,12 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], fresh: bo
 
     part = shard_of(shard)
     suffix = f"-{part.number}-of-{part.of}.h5" if part.of > 1 else ".h5"
-    output = output or Path(config.stem + suffix)
+    output = _followed(output or Path(config.stem + suffix))
     if output.is_dir() or not output.name:
         raise InputError(f"--output {output} is a directory; name a file")
-    sys.exit(run_config(config, output, overrides, fresh, part, stop))
+    code = run_config(config, output, overrides, fresh, part, stop)
+    stop.ignore()  # the status is decided
+    sys.exit(code)
 
 
 @commands.command()
@@ -66,7 +68,7 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
 
     if output.is_dir():
         raise InputError(f"{output} is a directory; name the file to write first")
-    sys.exit(merge_files(output, shards))
+    sys.exit(merge_files(_followed(output), tuple(map(_followed, shards))))
 
 
 @commands.command()
@@ -87,7 +89,7 @@ def show(file: Path) -> None:
     from ..post.summary import show_summary
     from ..results.view import read_view
 
-    show_summary(read_view(file))
+    show_summary(read_view(_followed(file)))
 
 
 @commands.command()
@@ -126,7 +128,7 @@ def plot(
     from ..results.view import read_view
 
     output = output or files[0].with_suffix(".gif" if what == "animation" else ".png")
-    click.echo(draw([read_view(file) for file in files], output, roots, what, points))
+    click.echo(draw([read_view(_followed(file)) for file in files], output, roots, what, points))
 
 
 @commands.command()
@@ -138,9 +140,15 @@ def bench(what: str | None, quick: bool, output: Path | None) -> None:
     from .benching import run_benchmarks
 
     output = output or Path("bench.md")
-    if output.is_dir() or not output.parent.is_dir() or output.suffix in {".png", ".h5"}:
+    unfit = output.exists() and not output.is_file()
+    if unfit or not output.parent.is_dir() or output.suffix in {".png", ".h5"}:
         raise InputError(f"--output {output} is no name for Markdown in an existing directory")
     run_benchmarks(what, quick, output)
+
+
+def _followed(path: Path) -> Path:
+    """What a link leads to, which has the journal and the lock; another path as it is."""
+    return Path(os.path.realpath(path)) if path.is_symlink() else path
 
 
 def _speaks() -> bool:
@@ -176,10 +184,10 @@ def main() -> None:
     except EnvironmentLacks as error:
         code, message = 3, str(error)
     except OSError as error:  # a name too long, a directory that may not be looked into
-        if error.filename is None:
+        if error.filename is None and error.errno not in (errno.ENOSPC, errno.EIO):
             raise
         code = 2 if error.errno in (errno.ENAMETOOLONG, errno.ELOOP) else 3
-        message = f"{error.filename}: {error.strerror}"
+        message = f"{error.filename or 'standard output'}: {error.strerror}"
     except MemoryError:
         code, message = 3, "there is not enough memory"
     if message and _speaks():

@@ -163,7 +163,8 @@ class _Run:
         each = 1e3 * seconds * self.team.size / max(count - left, 1)
         spent = f"{count - left} points in {seconds:.2f} s on {self.team.size} ranks"
         spent += f" ({each:.3g} ms a point and rank)" if count > left else ""
-        click.echo(spent if count else f"{self.output} is complete, nothing to do")
+        part = f"shard {self.shard} of {self.output}" if missing else f"{self.output}"
+        click.echo(spent if count else f"{part} is complete, nothing to do")
         click.echo(f"{self.output}: " + ", ".join(f"{n} {name}" for name, n in counts.items()))
         for failure in [failure for some in told for failure in some][:FAILURES_TOLD]:
             click.echo(f"  {failure}")

@@ -55,15 +55,11 @@ class Source:
 def merge(output: Path, paths: Sequence[Path], needs_more: Callable[[dict[str, Any]], bool]) -> Merged:
     """Writes `output` from all points of the result files `paths`; of a point given twice the first stays.
 
-    An existing `output` of the same config is one of them. needs_more: whether a resolved config asks for
-    what only all points together give. InputError if a file is no result, answers another config or has
+    An existing `output` of the same config is the first of them. needs_more: whether a resolved config asks
+    for what only all points together give. InputError if a file is no result, answers another config or has
     points in its journal; EnvironmentLacks where the disk refuses.
     """
-    sources = [open_source(path) for path in paths]
-    if output.exists() and not any(os.path.samefile(output, path) for path in paths):
-        sources.insert(0, open_source(output))
-    for source in sources[1:]:
-        _refuse_others(sources[0], source)
+    sources = _opened(paths)
     directory = journal_directory(output)
     try:
         output.parent.mkdir(parents=True, exist_ok=True)
@@ -72,6 +68,8 @@ def merge(output: Path, paths: Sequence[Path], needs_more: Callable[[dict[str, A
         raise EnvironmentLacks(f"{output} cannot be written: {error.strerror or error}") from error
     copy = directory / "next.h5"
     try:
+        if output.exists():  # it may have appeared while another run had the lock
+            sources = _opened([output, *(path for path in paths if not os.path.samefile(output, path))])
         copy.unlink(missing_ok=True)  # it may be a link
         shutil.copyfile(sources[0].path, copy)
         with copy.open("r+b") as target:
@@ -91,6 +89,14 @@ def merge(output: Path, paths: Sequence[Path], needs_more: Callable[[dict[str, A
             copy.unlink()
         lock.release()
     return Merged(sources[0].points - missing, missing, finished)
+
+
+def _opened(paths: Sequence[Path]) -> list[Source]:
+    """Sources of one and the same config; InputError if they are not."""
+    sources = [open_source(path) for path in paths]
+    for source in sources[1:]:
+        _refuse_others(sources[0], source)
+    return sources
 
 
 def open_source(path: Path) -> Source:

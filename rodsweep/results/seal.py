@@ -86,7 +86,8 @@ def _end(stream: BinaryIO) -> int:
 def _values(path: Path) -> list[Piece]:
     """(start, bytes) of all numbers that lie in one piece each, in order."""
     with h5py.File(path, "r") as file:
-        places = [(data.id.get_offset(), data.id.get_storage_size()) for data in file.values()]
+        variables = [data for data in map(file.get, file) if isinstance(data, h5py.Dataset)]
+        places = {(data.id.get_offset(), data.id.get_storage_size()) for data in variables}
     return sorted((start, size) for start, size in places if start is not None and size)
 
 

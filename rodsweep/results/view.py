@@ -45,10 +45,11 @@ class Variables(Mapping[str, np.ndarray]):
             raise damaged(self.path, error) from None
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self.file)
+        found = ((name, self.file.get(name)) for name in self.file)  # whatever another program put there
+        return (name for name, data in found if isinstance(data, h5py.Dataset) and data.shape is not None)
 
     def __len__(self) -> int:
-        return len(self.file)
+        return sum(1 for _ in self)
 
 
 def damaged(path: Path, error: Exception) -> InputError:

@@ -44,7 +44,8 @@ def chunk_seconds(ranks: int) -> float:
 class Report:
     """What a rank says when it wants more: units done, their seconds, what it gives back, points kept.
 
-    ahead: it says nothing but that it has begun a chunk, and would take the next.
+    ahead: it says nothing but that it has begun a chunk, and would take the next. stop: the signal by which
+    it was asked to stop; what it gives back then is for another run.
     """
 
     done: int = 0
@@ -52,6 +53,7 @@ class Report:
     rest: Range = OVER
     points: int = 0
     ahead: bool = False
+    stop: str = ""
 
 
 class Handout:
@@ -145,6 +147,8 @@ class FirstRankClaims:
         return self.handout.points
 
     def claim(self, report: Report) -> Range:
+        with self.serving:
+            self._heed_stop()
         self.handout.settle(0, report)
         self.between_points()
         while (chunk := self.handout.take(0)) is None:
@@ -197,6 +201,9 @@ class FirstRankClaims:
                 self.team.comm.send(chunk, dest=rank, tag=ANSWER)
                 self.ahead.add(rank)
             return
+        if report.stop:  # which may come before the message that says so
+            self.stop.name = report.stop
+            self._heed_stop()
         self.handout.settle(rank, report)
         if rank in self.ahead:
             self.ahead.remove(rank)

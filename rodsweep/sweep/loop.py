@@ -59,7 +59,7 @@ def sweep(
                 break
         spent = time.monotonic() - began
         busy += spent
-        chunk = claims.claim(Report(at - chunk[0], spent, (at, end), points - before))
+        chunk = claims.claim(Report(at - chunk[0], spent, (at, end), points - before, stop=stop.name))
     claims.close()
     team.barrier()
     return Share(points, busy, time.monotonic() - started - busy)

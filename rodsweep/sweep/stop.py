@@ -21,5 +21,11 @@ class Stop:
         for number in SIGNALS:
             signal.signal(number, self._note)
 
+    @staticmethod
+    def ignore() -> None:
+        """From here on the signals do nothing, also while Python and MPI end. Only for the main thread."""
+        for number in SIGNALS:
+            signal.signal(number, signal.SIG_IGN)
+
     def _note(self, number: int, _: FrameType | None) -> None:
         self.name = signal.Signals(number).name

@@ -237,3 +237,13 @@ EDITS: dict[str, Callable[[h5py.File], object]] = {
     "numbers random": _numbers(_random_bits),
 }
 """What another program may have made of a result file that may be shown all the same."""
+ADDITIONS: dict[str, Callable[[h5py.File], object]] = {
+    "a group": lambda file: file.create_group("mine"),
+    "a link to nowhere": lambda file: file.update(mine=h5py.SoftLink("/no")),
+    "a link to another file": lambda file: file.update(mine=h5py.ExternalLink("no.h5", "/no")),
+    "another name": lambda file: file.update(mine=file["seconds"]),
+    "a type": lambda file: file.update(mine=np.dtype("f8")),
+    "no numbers": lambda file: file.update(mine=h5py.Empty("f8")),
+    "chunks": lambda file: file.create_dataset("mine", data=np.arange(9.0), chunks=(3,)),
+}
+"""What another program may have put into a result file under a name of its own."""

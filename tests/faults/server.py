@@ -73,7 +73,8 @@ def content(path: Path) -> dict:
     import h5py
 
     with h5py.File(path) as file:
-        values = {name: data[...] for name, data in file.items() if name != "seconds"}
+        variables = {name: file.get(name) for name in file if name not in {"seconds", "mine"}}
+        values = {name: data[...] for name, data in variables.items()}
     return {name: [v.dtype.str, list(v.shape), v.tobytes().hex()] for name, v in values.items()}
 
 

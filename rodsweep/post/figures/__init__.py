@@ -53,7 +53,7 @@ def draw(
     if output.suffix not in formats:
         raise InputError(f"--output {output}: the name must end in {', '.join(formats)}")
     taken = output.exists() and any(output.samefile(view.path) for view in views if view.path.exists())
-    if output.is_dir() or taken:
+    if taken or (output.exists() and not output.is_file()):
         raise InputError(f"--output {output} is not a name for a figure; choose another")
     with matplotlib.rc_context(STYLE), np.errstate(all="ignore"):
         try:
@@ -62,7 +62,7 @@ def draw(
             figure, shown = _figure(views, roots, what, points)
             figure.savefig(output, dpi=160)
         except OSError as error:
-            raise EnvironmentLacks(f"{output} cannot be written: {error.strerror}") from error
+            raise EnvironmentLacks(f"{output} cannot be written: {error.strerror or error}") from error
         except (ValueError, ArithmeticError, MemoryError) as error:  # what another program wrote into it
             raise InputError(
                 f"{views[0].path} holds numbers that no figure can show ({str(error)[:100]})"
