@@ -28,7 +28,7 @@ from faults.damages import (
 from faults.isolated import Isolated, Outcome, isolated
 
 MORE = int(os.environ.get("RODSWEEP_CASES", "1"))
-FILES, PAGES, CYCLE_PAGES = 16 * MORE, 8 * MORE, 3 * MORE
+FILES, PAGES, CYCLE_PAGES = 8 * MORE, 8 * MORE, 3 * MORE
 """Damaged files of each config and state, and damaged journals of each config."""
 LONG = 30
 """Seconds of processor time: a run with limit cycles takes two."""

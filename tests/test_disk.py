@@ -12,7 +12,7 @@ from contents import content, same
 CONFIG = """
 task: spectrum
 parameters:
-  F: {start: 0, stop: 60, num: 3000}
+  F: {start: 0, stop: 60, num: 1500}
   k1: [100, 1.0e4, .inf]
   k2: [50, 1.0e4]
   gamma3: [0, 1.0e-4]
