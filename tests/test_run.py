@@ -366,10 +366,9 @@ def test_link_as_output_is_followed(command):
     (command.directory / "elsewhere").mkdir()
     link, target = command.directory / "link.h5", command.directory / "elsewhere" / "real.h5"
     link.symlink_to(target)
-    for _ in range(2):
-        assert command("run", "c.yaml", "-o", "link.h5").returncode == 0
-        assert link.is_symlink()
-        assert not target.is_symlink()
+    assert command("run", "c.yaml", "-o", "link.h5").returncode == 0
+    assert link.is_symlink()
+    assert target.is_file()
     assert "complete, nothing to do" in command("run", "c.yaml", "-o", "link.h5").stdout
     assert command("show", "link.h5").returncode == 0
 
