@@ -47,12 +47,3 @@ def command(tmp_path):
 @pytest.fixture(scope="session")
 def reference_spectra():
     return json.loads((ROOT / "tests" / "reference" / "spectra.json").read_text())
-
-
-@pytest.fixture(scope="session")
-def cycles_work():
-    """Skips what needs limit cycles where this PETSc cannot integrate them, as `run` refuses it there."""
-    from rodsweep.solve.cycles import works
-
-    if not works():
-        pytest.skip("the ARKIMEX integrators of this PETSc fail on a rod whose cycle is known")

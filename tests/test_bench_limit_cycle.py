@@ -28,8 +28,6 @@ ORDERS = {"ARKIMEX 2": 2, "ARKIMEX 3": 3, "ARKIMEX 4": 4, DEFAULT: 5, "ROSW ra34
 """One-step methods; steps of equal error per step show the order of the global error."""
 LOOSE_AND_TIGHT = {"ARKIMEX 2": (1e-4, 1e-5), "ARKIMEX 3": (1e-5, 1e-7), "BDF 5": (1e-7, 1e-9)}
 
-pytestmark = pytest.mark.usefixtures("cycles_work")
-
 
 @cache
 def cycle():

@@ -139,7 +139,6 @@ def test_a_phase_diagram_is_the_same_on_any_number_of_ranks(command):
             assert np.array_equal(one[name][()], three[name][()], equal_nan=True), name
 
 
-@pytest.mark.usefixtures("cycles_work")
 def test_figure_5(command):
     T_one, y_one, _, T_half, y_half = stated("fig5")
     with run(command, "fig5", "limit_cycle.samples=32", "limit_cycle.shapes=8") as file:
@@ -152,7 +151,6 @@ def test_figure_5(command):
     assert command("plot", "fig5.h5", "--what", "energy", "-o", "energy.png").returncode == 0
 
 
-@pytest.mark.usefixtures("cycles_work")
 def test_figure_6(command):
     hopf = stated("fig6")[0]
     forces = f"parameters.F=[27, {hopf + 0.01}, {hopf + 0.04}]"
@@ -162,7 +160,6 @@ def test_figure_6(command):
         assert np.log(y[2] / y[1]) / np.log(4) == pytest.approx(0.5, abs=1e-3)
 
 
-@pytest.mark.usefixtures("cycles_work")
 def test_what_a_restabilised_rod_does_depends_on_where_it_comes_from(command):
     """Beyond the paper, whose Discussion excludes oscillations outside the linear window of flutter."""
     hopf, period, y = stated("hysteresis_up")[:3]

@@ -102,7 +102,7 @@ def test_launcher_passes_the_warning_on(command):
     assert "stopped by SIGUSR1" in out
 
 
-def test_chain_stops_between_two_of_its_points_and_goes_on_from_there(command, cycles_work):
+def test_chain_stops_between_two_of_its_points_and_goes_on_from_there(command):
     command.write("c.yaml", CYCLES)
     process = started(command, "run", "c.yaml", ranks=2)
     process.send_signal(signal.SIGUSR1)

@@ -65,9 +65,7 @@ def points_on_disk(path):
 
 
 @pytest.mark.parametrize("config", [SPECTRA, CYCLES, CHAINS], ids=["spectra", "cycles", "chains"])
-def test_run_killed_at_random_ends_in_the_file_of_an_undisturbed_one(command, config, request):
-    if config is not SPECTRA:
-        request.getfixturevalue("cycles_work")
+def test_run_killed_at_random_ends_in_the_file_of_an_undisturbed_one(command, config):
     random.seed(config)
     command.write("c.yaml", config)
     path = command.directory / "c.h5"

@@ -12,7 +12,6 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from ..solve.cycles import works
 from .launch import CONFIG, Case, Run, launcher, run
 from .study import Measurement, Study
 
@@ -149,11 +148,9 @@ def uneven_forces(count: int) -> np.ndarray:
 def solved_rows(place: Path, quick: bool, ranks: Sequence[int], rounds: int) -> list[Row]:
     """Spectra and limit cycles on one rank and on two, in turn."""
     count = QUICK_SPECTRA if quick else SPECTRA
-    cases = [spectrum_case(place / "spectra", "spectra", count, "solved")]
-    if works():
-        cases.append(cycle_case(place / "cycles", QUICK_CYCLES if quick else CYCLES))
-    first = [spectrum_case(place / "first", "first", 8, "solved")]
-    first += [cycle_case(place / "first_cycle", 1) for case in cases[1:]]
+    spectra = spectrum_case(place / "spectra", "spectra", count, "solved")
+    cases = [spectra, cycle_case(place / "cycles", QUICK_CYCLES if quick else CYCLES)]
+    first = [spectrum_case(place / "first", "first", 8, "solved"), cycle_case(place / "first_cycle", 1)]
     for case in first:  # not timed: formulas may have to be compiled
         run(case, 1)
     pairs = [(case, n) for case in cases for n in ranks]

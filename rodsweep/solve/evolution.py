@@ -26,6 +26,9 @@ ROUNDING = 1e-9
 FIRST_STEP = 1e-3
 """First step in units of the duration, where none is given."""
 MOST_STEPS = 100_000
+MOST_REJECTIONS, MOST_FAILED_STAGES = 30, 1_000_000
+"""Rejections of one step in a row, and failures of Newton's method in a run."""
+RELAXATION = Method("beuler", "", tolerance=1e-3, prefix="cycle_relaxation_")
 MOST_KEPT = 8
 """Integrators kept for the next run on an equal mesh."""
 
@@ -82,7 +85,8 @@ class Integrator:
         ts = PETSc.TS().create(comm=PETSc.COMM_SELF)
         ts.setOptionsPrefix(prefix)
         ts.setProblemType(PETSc.TS.ProblemType.NONLINEAR)
-        self.workspace.attach(ts, self.matrix)
+        ts.setMaxStepRejections(MOST_REJECTIONS)
+        ts.setMaxSNESFailures(MOST_FAILED_STAGES)
         options = self.method.petsc_options(database.getString(prefix + "ts_type", self.method.family))
         ours = {
             prefix + name: value for name, value in options.items() if not database.hasName(prefix + name)
@@ -93,9 +97,12 @@ class Integrator:
         ts.setExactFinalTime(PETSc.TS.ExactFinalTime.MATCHSTEP)
         ts.setPreStep(self._start)
         ts.setPostStep(self._record)
-        ts.setFromOptions()
-        for name in ours:  # what is left is the user's, and recorded as such
-            database.delValue(name)
+        try:
+            ts.setFromOptions()
+        finally:
+            for name in ours:  # what is left is the user's, and recorded as such
+                database.delValue(name)
+        self.workspace.attach(ts, self.matrix)
         return ts
 
     def _start(self, ts: "PETSc.TS") -> None:
@@ -130,7 +137,7 @@ class Integrator:
         so that small motions are followed as well as large ones.
         """
         ts, method, began = self.ts, self.method, time.perf_counter()
-        rejected, counts = ts.getStepRejections(), self.workspace.counts.copy()
+        counts = self.workspace.counts.copy()
         self._times, self._states, self._left = [0.0], [z.copy()], False
         self._beam, self._stop = beam, stop
         size = float(np.abs(z).max()) or 1.0
@@ -155,7 +162,7 @@ class Integrator:
             ending=self._ending(message),
             times=np.array(self._times),
             states=np.array(self._states),
-            rejected=ts.getStepRejections() - rejected,
+            rejected=ts.getStepRejections(),
             rates=int(spent[0]),
             jacobians=int(spent[1]),
             factorisations=int(spent[2]),
@@ -198,6 +205,17 @@ def forget_integrators() -> None:
     """Drops every kept integrator, after an error, or so that the next one hears of new options."""
     while _kept:
         _kept.popitem()[1].destroy()
+
+
+def relaxed(beam: Beam, z: Array, period: float) -> Array:
+    """z after a thousandth of a period, its fast components decayed; z itself where that fails.
+
+    A state that no run led to, as one scaled or interpolated, has rates of 1e10/tau2 in the components that
+    k1, k2 and 1/gamma3 make fast. The first, explicit stage of ARKIMEX does not damp them, at no step length;
+    backward Euler does in two steps.
+    """
+    run = integrator(beam.mesh, RELAXATION).run(beam, z, period / 1000, period / 1e5)
+    return run.states[-1] if run.ending == Ending.reached else z
 
 
 def evolve(beam: Beam, z: Array, duration: float, method: Method | None = None) -> Run:

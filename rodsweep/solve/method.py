@@ -35,8 +35,6 @@ class Method:
         return {
             "ksp_type": "preonly",
             "pc_type": "lu",
-            "ts_max_reject": "30",
-            "ts_max_snes_failures": "1000000",
             "ts_adapt_type": "dsp",  # rejects next to nothing, where `basic` rejects a tenth
             "ts_adapt_clip": "0.2,4.0",
             "snes_type": "ksponly" if family == "rosw" else "newtonls",

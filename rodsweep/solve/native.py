@@ -24,6 +24,7 @@ CALLED = (
     "VecRestoreArray",
     "MatDenseGetArray",
     "MatDenseRestoreArray",
+    "PetscObjectStateGet",
 )
 """What compiled code calls."""
 LIBRARY = ctypes.CDLL(PETSc.__file__)  # a module's symbols include those of the libraries it is linked to

@@ -44,7 +44,7 @@ def versions() -> dict[str, str]:
     }
 
 
-def options() -> str:
-    """The options given to PETSc by PETSC_OPTIONS or a resource file, as one line."""
+def options(prefix: str = "") -> str:
+    """The options of that prefix given to PETSc by PETSC_OPTIONS or a resource file, as one line."""
     given = sorted((k, v) for k, v in PETSc.Options().getAll().items() if k != "no_signal_handler")
-    return " ".join(f"-{k} {v or ''}".strip() for k, v in given)
+    return " ".join(f"-{k} {v or ''}".strip() for k, v in given if k.startswith(prefix))

@@ -99,7 +99,7 @@ def test_sweep_over_two_hosts_gives_the_content_of_a_plain_run(hosts, command):
     assert same(content(command.directory / "c.h5"), content(command.directory / "plain.h5"))
 
 
-def test_other_host_need_not_wait_while_the_first_rank_is_inside_a_long_solve(hosts, command, cycles_work):
+def test_other_host_need_not_wait_while_the_first_rank_is_inside_a_long_solve(hosts, command):
     """The first point is a cycle and takes a second; the other rank solves forty straight rods meanwhile."""
     rods = [(50.0, 0.5), *((F, 1.0) for F in np.linspace(1, 20, 40))]
     rows = [f"{F},1e4,100,1e-2,{gamma1}\n" for F, gamma1 in rods]

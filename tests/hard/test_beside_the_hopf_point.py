@@ -18,8 +18,6 @@ RODS = [
 ]  # fmt: skip
 ACCURACY = 1e-7
 
-pytestmark = pytest.mark.usefixtures("cycles_work")
-
 
 @cache
 def hopf(rod):
