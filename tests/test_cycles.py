@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,11 +11,12 @@ from rodsweep.discretization.beam import Beam, mesh
 from rodsweep.discretization.quadrature import lobatto_points
 from rodsweep.errors import EnvironmentLacks
 from rodsweep.model.rod import Rod
-from rodsweep.solve import approach, cycles
+from rodsweep.solve import approach
 from rodsweep.solve.cycles import CycleRequest, CycleStatus, received, solve_cycle, warm_up
 from rodsweep.solve.evolution import forget_integrators
 from rodsweep.solve.measures import derivative, maximum, measure, resampled
 from rodsweep.solve.orbit import shoot
+from rodsweep.solve.period import common_divisor, in_doubt, shortened
 from rodsweep.solve.petsc import PETSc
 from rodsweep.solve.resolved import _on_mesh
 from rodsweep.solve.thresholds import ThresholdsRequest, solve_thresholds
@@ -25,8 +27,6 @@ STRETCHABLE = (200.0, 1e4, 1e-4, 1.0)
 REQUEST = CycleRequest(
     accuracy=1e-8, amplitude=0.1, harmonics=5, samples=100, shapes=8, nodes=33, most_periods=300
 )
-
-pytestmark = pytest.mark.usefixtures("cycles_work")
 
 
 @cache
@@ -292,7 +292,91 @@ def test_within_rounding_of_the_hopf_point_no_cycle_is_claimed():
     assert np.isnan(cycle.period)
 
 
-def test_a_petsc_that_loses_the_cycle_is_refused(monkeypatch):
-    monkeypatch.setattr(cycles, "KNOWN_PERIOD", 0.05)
-    with pytest.raises(EnvironmentLacks, match="limit_cycle cannot run"):
-        cycles.warm_up()
+def test_options_that_lose_the_cycle_are_refused_in_one_sentence():
+    PETSc.Options()["cycle_ts_type"] = "nosuch"
+    forget_integrators()
+    try:
+        with pytest.raises(EnvironmentLacks, match="options '-cycle_ts_type nosuch' .* cannot run; remove"):
+            warm_up()
+    finally:
+        PETSc.Options().delValue("cycle_ts_type")
+        forget_integrators()
+    warm_up()
+
+
+# Their periods came out twice or three times as long: the motion settles by thirds of a turn (multipliers
+# near exp(2 pi i/3)), or what the steps miss of the stiff components outweighed the distance of two returns.
+@pytest.mark.parametrize("amplitude", [0.1, 0.01])
+@pytest.mark.parametrize(
+    "rod, period, accuracy",
+    [
+        ((55.18, 15694879, 875, 4.168693834703355e-06, 1.0), 0.0254862109, 1e-5),
+        ((55.18, 15694879, 875, 4.168693834703355e-06, 1.0), 0.0254862109, 1e-6),
+        ((55.18, 15694879, 875, 4.168693834703355e-06, 1.0), 0.0254862109, 1e-8),
+        ((128.624, 4408.5, 34.034, 0.0016928, 0.85995), 0.0058406659, 1e-6),
+    ],
+)
+def test_period_is_the_minimal_one(rod, period, accuracy, amplitude):
+    c = solve_cycle(*rod, CycleRequest(accuracy, amplitude, 9, 0, 0, 0, 400))
+    assert c.status == CycleStatus.cycle
+    assert c.period == pytest.approx(period, rel=1e-5)
+    assert np.argmax(c.harmonics) == 0
+
+
+def test_three_periods_are_recognised_and_cut_to_one():
+    beam = Beam(Rod(50.0, *SOFT[:3]), 1.0, mesh(1, 16))
+    once = shoot(beam, received(beam, reference().state), reference().period, 64)
+    thrice = shoot(beam, once.state, 3 * once.period, 192)
+    assert thrice.period == pytest.approx(3 * once.period)
+    assert [common_divisor(orbit, 1e-3) for orbit in (once, thrice)] == [1, 3]
+    assert [in_doubt(orbit, 1e-8) for orbit in (once, thrice)] == [1, 3]
+    assert shortened(once) is once
+    assert shortened(thrice).period == pytest.approx(once.period, rel=1e-9)
+    assert shortened(thrice).tangent.largest == pytest.approx(once.tangent.largest, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    "sizes, error, divisor",
+    [
+        ({1: 1.0}, 1e-8, 1),
+        ({2: 1.0, 6: 0.1}, 1e-8, 2),
+        ({3: 1.0, 9: 0.1, 15: 1e-3}, 1e-8, 3),
+        ({2: 1.0, 3: 0.01}, 1e-8, 1),
+        ({3: 1.0, 1: 1e-4}, 1e-8, 1),
+        ({3: 1.0, 1: 1e-4}, 1e-4, 3),  # the first harmonic may be an error
+        ({6: 1.0, 9: 0.5}, 1e-8, 3),
+        ({}, 1e-8, 0),
+    ],
+)
+def test_harmonics_in_common_are_a_shorter_period_for_all_that_is_known(sizes, error, divisor):
+    beam = Beam(Rod(50.0, *SOFT[:3]), 1.0, mesh(1, 4))
+    phase = 2 * np.pi * np.arange(65)[:, None] / 64
+    states = sum((size * np.cos(k * phase + np.arange(12)) for k, size in sizes.items()), np.zeros((65, 12)))
+    orbit = SimpleNamespace(beam=beam, run=SimpleNamespace(states=states))
+    assert in_doubt(orbit, error) == divisor
+
+
+def test_a_period_in_doubt_is_not_called_a_cycle(monkeypatch):
+    resolve = approach.resolve
+    monkeypatch.setattr(approach, "resolve", lambda *given: replace(resolve(*given), in_doubt=2))
+    c = solve_cycle(50.0, *SOFT, CycleRequest(1e-4, 0.1, 3, 0, 0, 0, 300))
+    assert c.status == CycleStatus.not_settled
+    assert "2 times shorter cannot be excluded" in c.message
+
+
+def test_a_start_off_the_slow_manifold_does_not_fail():
+    """The fast components of k2 = 6e5, gamma3 = 6e-6 turn a scaled state into a rate of 1e7."""
+    rod = (38.7203737525035, 893.9849423743017, 608319.4594422684, 5.91245928044301e-06, 0.7551516248693426)
+    for amplitude in (0.1, 0.01):
+        c = solve_cycle(*rod, CycleRequest(1e-6, amplitude, 3, 0, 0, 0, 400))
+        assert c.status == CycleStatus.straight
+
+
+def test_what_grows_the_faster_the_larger_it_is_need_not_be_waited_for():
+    """85.54 is just beyond a Hopf point where motions grow the faster the larger, by 1e-3 a period at first."""
+    rod = (85.54, 150.0, 1e4, 1e-4, 1.0)
+    far, near = (solve_cycle(*rod, CycleRequest(1e-6, a, 3, 0, 0, 0, 400)) for a in (0.1, 0.01))
+    assert far.status == near.status == CycleStatus.cycle
+    assert near.period == pytest.approx(far.period, rel=1e-6)
+    assert near.tip_y_max == pytest.approx(far.tip_y_max, rel=1e-6)
+    assert near.periods < 200

@@ -4,7 +4,8 @@ The motion is followed from return to return, theta of the tip rising through 0.
 tenth go to Newton's method. Slow motions about the straight rod are not waited for. Per period they grow by
 g = g0 - c a^2 at amplitude a, with the exact linear growth g0, so that a cycle lies at a*^2 = g0/c and the
 state is scaled to it; c is measured where it shows in g, which near a* may be lost in the integrator's error.
-What decays slowly is scaled down until it decays at the linear rate.
+What decays slowly is scaled down until it decays at the linear rate; what grows slowly, and the faster the
+larger it is (c < 0), is scaled up.
 """
 
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from ..discretization.beam import Beam
 from .cycle_status import CycleStatus
-from .evolution import Ending, Run, integrator
+from .evolution import Ending, Run, integrator, relaxed
 from .floquet import hermite
 from .orbit import angle_weights
 from .resolved import CAREFUL, TRANSIENT, Resolved, resolve
@@ -38,7 +39,8 @@ NOISE, CAREFUL_NOISE = 1e-3, 1e-5
 NEAR = 0.1
 """Relative distance from the predicted amplitude that is left to Newton's method."""
 MOST_JUMPS, SHRINK, LARGEST_JUMP = 60, 0.7, 4.0
-"""Jumps; the factor for what decays slowly, near enough to 1 to meet a cycle on the way; the largest."""
+"""Jumps; the factor for what decays slowly (its inverse for what grows so), near enough to 1 to meet a cycle on
+the way; the largest."""
 LINEAR = 0.05
 """Relative distance from the linear decay rate and frequency at which a decaying rod is called straight."""
 REST = 1e-6
@@ -89,10 +91,13 @@ class Approach:
         self.noise = CAREFUL_NOISE if self.faint else NOISE
         self.bend = nan
         """c in g = g0 - c |z|^2, once it has shown."""
+        self.step = self.mode.period / 1000
+        """With which the next chunk begins."""
         self.waited = self.jumps = self.attempts = self.next_attempt = 0
 
     def arrive(self, z: Array) -> Arrival:
         """Where the rod goes from z."""
+        z = relaxed(self.beam, z, self.mode.period)
         while self.waited < self.most_periods:
             run = self._chunk(z)
             if run.ending not in (Ending.reached, Ending.stopped):
@@ -106,9 +111,9 @@ class Approach:
                 continue
             if self._decays(times, states):
                 return Arrival(CycleStatus.straight, "decays at the rate of the leading mode", self.waited)
-            ahead = self._predicted(times, states)
-            if ahead is not None:
-                z, self.jumps = ahead, self.jumps + 1
+            factor = self._jump(times, states)
+            if factor is not None:
+                z, self.jumps = self._scaled(z, factor), self.jumps + 1
                 continue
             arrival = self._closed(run, times, states)
             if arrival is not None:
@@ -136,7 +141,10 @@ class Approach:
 
         period = self.mode.period
         method = integrator(self.beam.mesh, CAREFUL if self.faint else TRANSIENT)
-        return method.run(self.beam, z, 3 * CHUNK * period, period / 1000, enough, STEPS_PER_CHUNK)
+        run = method.run(self.beam, z, 3 * CHUNK * period, self.step, enough, STEPS_PER_CHUNK)
+        if len(run.times) > 2:
+            self.step = run.times[-1] - run.times[-2]
+        return run
 
     def _growth(self, times: Array, states: Array) -> tuple[float, float]:
         """(growth of |z| over the last return, that of the leading mode)."""
@@ -159,8 +167,8 @@ class Approach:
         """Whether the motion is a slowly growing or decaying leading mode."""
         return max(abs(linear), abs(growth)) <= SLOW and self._in_time(times)
 
-    def _predicted(self, times: Array, states: Array) -> Array | None:
-        """The state scaled to where the growth should vanish; None if that is here, or cannot be said."""
+    def _jump(self, times: Array, states: Array) -> float | None:
+        """The factor to where the growth should vanish, or towards it; None if that is here, or not known."""
         growth, linear = self._growth(times, states)
         if not self._slow(times, growth, linear) or self.jumps >= MOST_JUMPS:
             return None
@@ -168,19 +176,24 @@ class Approach:
         here = (linear - growth) / size**2
         if abs(linear - growth) > self.noise:
             self.bend = here
+        bend = here if isnan(self.bend) else self.bend
         if isnan(self.bend) and linear > 0:
             factor = LARGEST_JUMP  # too small to feel what bends its growth
-        elif (here if isnan(self.bend) else self.bend) <= 0:
-            return None
-        elif linear > 0:
-            factor = float(np.clip(np.sqrt(linear / self.bend) / size, 1 / LARGEST_JUMP, LARGEST_JUMP))
-        else:
+        elif linear > 0 and bend > 0:
+            factor = float(np.clip(np.sqrt(linear / bend) / size, 1 / LARGEST_JUMP, LARGEST_JUMP))
+        elif linear > 0 or (bend < 0 and growth > self.noise):
+            factor = 1 / SHRINK  # it grows the faster the larger it is
+        elif bend > 0 or growth < -self.noise:
             factor = SHRINK
-        if abs(factor - 1) < NEAR:
+        else:
             return None
-        scaled = factor * states[-1]
+        return factor if abs(factor - 1) >= NEAR else None
+
+    def _scaled(self, z: Array, factor: float) -> Array:
+        """z, the end of a run, with its deflection scaled."""
+        scaled = factor * z
         scaled[: self.beam.mesh.nodes] *= factor  # the stretch is quadratic in the deflection
-        return scaled
+        return relaxed(self.beam, scaled, self.mode.period)
 
     def _closed(self, run: Run, times: Array, states: Array) -> Arrival | None:
         """The cycle, if the returns repeat and Newton's method finds it from the end of the run."""
@@ -196,15 +209,23 @@ class Approach:
         found = resolve(self.beam, run.states[-1], period, turns, self.accuracy)
         if found is None:
             return None
-        if max(found.errors.period, found.errors.amplitude) <= self.accuracy:
+        if max(found.errors.period, found.errors.amplitude) > self.accuracy:
+            why = "the cycle is less accurate than asked for"
+        elif found.in_doubt != 1:
+            why = f"that its period is {found.in_doubt} times shorter cannot be excluded"
+        else:
             return Arrival(CycleStatus.cycle, "", self.waited, found)
-        why = "the cycle is less accurate than asked for"
         return Arrival(CycleStatus.not_settled, why, self.waited, found)
 
     def _repetition(self, states: Array) -> tuple[int, float]:
-        """(m, relative distance): after how many returns the state comes closest to itself."""
-        size = np.linalg.norm(states[-1])
+        """(m, relative distance): after how many returns the state comes closest to itself.
+
+        By the bending moments: what the interpolation between two steps misses of the stiff components, 1e-2
+        at k1 = 1e7, is no distance.
+        """
+        moments = states[:, 2 * self.beam.mesh.nodes :]
+        size = np.linalg.norm(moments[-1])
         longest = min(LONGEST_ORBIT, len(states) - 1)
-        found = [(np.linalg.norm(states[-1] - states[-1 - m]) / size, m) for m in range(1, longest + 1)]
+        found = [(np.linalg.norm(moments[-1] - moments[-1 - m]) / size, m) for m in range(1, longest + 1)]
         enough = max(2 * min(found)[0], SAME)
         return next((m, float(distance)) for distance, m in found if distance <= enough)

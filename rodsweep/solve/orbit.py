@@ -20,6 +20,8 @@ from .method import Method
 Array = NDArray[np.float64]
 
 PERIOD_MAP = Method("arkimex", "5", tolerance=1e-8, newton=1e-6, equal_steps=True, prefix="cycle_map_")
+FIRST_STEPS = 64
+"""Steps per return to the section to begin with."""
 MOST_ITERATIONS = 12
 ROUND_OFF = 3e-12
 """Relative closure below which Newton's method has nothing left to gain."""

@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 from ..discretization.beam import Beam, Mesh, mesh
 from ..discretization.resolution import LARGEST_ORDER
-from .evolution import Ending, integrator
+from .evolution import Ending, integrator, relaxed
 from .floquet import tangent
 from .measures import Measures, measure
 from .method import Method
-from .orbit import Orbit, shoot
+from .orbit import FIRST_STEPS, Orbit, shoot
+from .period import in_doubt, shortened
 
 Array = NDArray[np.float64]
 
@@ -24,7 +25,7 @@ TRANSIENT = Method("arkimex", "4", tolerance=1e-5)
 """The way to a cycle needs no accuracy: Newton's method supplies it."""
 CAREFUL = Method("arkimex", "5", tolerance=1e-9)
 """Where the growth per period is small its sign has to be right."""
-FIRST_STEPS, MOST_FIRST_STEPS, MOST_STEPS = 64, 256, 2048
+MOST_FIRST_STEPS, MOST_STEPS = 256, 2048
 """Steps per return to the section."""
 FINER_ORDER, FINER_SHARE = 4, 1.25
 """Of one element the order grows by this much; of several the unknowns by this share."""
@@ -66,11 +67,15 @@ class Errors:
 
 @dataclass(frozen=True, eq=False)
 class Resolved:
-    """An orbit with its measures and the errors of both."""
+    """An orbit with its measures and the errors of both.
+
+    in_doubt: how many times shorter its period may be for all that is known; 1 is a proof that it is minimal.
+    """
 
     orbit: Orbit
     measures: Measures
     errors: Errors
+    in_doubt: int = 0
 
 
 def resolve(beam: Beam, z: Array, period: float, turns: int, accuracy: float) -> Resolved | None:
@@ -83,13 +88,19 @@ def resolve(beam: Beam, z: Array, period: float, turns: int, accuracy: float) ->
     while orbit is None and steps < MOST_FIRST_STEPS * turns:
         steps *= 2  # Newton's method fails in a stage of a step too long, or of the period map
         orbit = shoot(beam, z, period, steps)
+    if orbit is None or drifted(orbit, size):
+        return None
+    orbit = shortened(orbit)
     if orbit is None or drifted(orbit, size) or not stable(orbit) or 1 - orbit.tangent.largest < NEUTRAL:
         return None
+    turns = max(1, round(turns * orbit.period / period))
     orbit, space = _in_space(orbit, accuracy / 2, MOST_STEPS * turns // 2)
     if drifted(orbit, size):
         return None
     found = _in_time(orbit, space, accuracy, MOST_STEPS * turns)
-    return found if stable(found.orbit) else None
+    if not stable(found.orbit):
+        return None
+    return replace(found, in_doubt=in_doubt(found.orbit, found.errors.amplitude))
 
 
 def stable(orbit: Orbit) -> bool:
@@ -134,10 +145,13 @@ def drifted(orbit: Orbit, size: float) -> bool:
 def _in_time(orbit: Orbit, space: Errors, accuracy: float, most_steps: int) -> Resolved:
     """The orbit with steps so small that the errors of space and time together are within the accuracy."""
     best = Resolved(orbit, measure(orbit.beam, orbit.run), Errors(np.inf, np.inf, np.inf))
-    size, last = float(np.linalg.norm(orbit.state)), np.inf
-    while 2 * orbit.steps <= most_steps:
-        finer_orbit = shoot(orbit.beam, orbit.state, orbit.period, 2 * orbit.steps, orbit.tangent)
-        if finer_orbit is None or drifted(finer_orbit, size):
+    size, last, steps = float(np.linalg.norm(orbit.state)), np.inf, 2 * orbit.steps
+    while steps <= most_steps:
+        finer_orbit = shoot(orbit.beam, orbit.state, orbit.period, steps, orbit.tangent)
+        steps *= 2
+        if finer_orbit is None:  # Newton's method failed in a stage of one of the steps
+            continue
+        if drifted(finer_orbit, size):
             break
         orbit = finer_orbit
         if orbit.tangent.trivial_error > TANGENT_ERROR and orbit.steps <= TANGENT_STEPS:
@@ -188,6 +202,7 @@ def moved(beam: Beam, z: Array, to: Mesh) -> tuple[Beam, Array]:
 def _on_mesh(orbit: Orbit, grid: Mesh) -> Orbit | None:
     """The orbit on another mesh; a period of transient brings what was interpolated to the slow manifold."""
     beam, z = moved(orbit.beam, orbit.state, grid)
+    z = relaxed(beam, z, orbit.period)
     run = integrator(grid, TRANSIENT).run(beam, z, orbit.period, orbit.period / 1000)
     if run.ending != Ending.reached:
         return None
