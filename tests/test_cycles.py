@@ -373,7 +373,7 @@ def test_a_start_off_the_slow_manifold_does_not_fail():
 
 
 def test_what_grows_the_faster_the_larger_it_is_need_not_be_waited_for():
-    """85.54 is just beyond a Hopf point where motions grow the faster the larger, by 1e-3 a period at first."""
+    """Just beyond the Hopf point motions grow the faster the larger they are, by 1e-3 a period at first."""
     rod = (85.54, 150.0, 1e4, 1e-4, 1.0)
     far, near = (solve_cycle(*rod, CycleRequest(1e-6, a, 3, 0, 0, 0, 400)) for a in (0.1, 0.01))
     assert far.status == near.status == CycleStatus.cycle

@@ -8,6 +8,7 @@ What decays slowly is scaled down until it decays at the linear rate; what grows
 larger it is (c < 0), is scaled up.
 """
 
+from collections import deque
 from dataclasses import dataclass
 from math import isnan, nan
 
@@ -39,15 +40,15 @@ NOISE, CAREFUL_NOISE = 1e-3, 1e-5
 NEAR = 0.1
 """Relative distance from the predicted amplitude that is left to Newton's method."""
 MOST_JUMPS, SHRINK, LARGEST_JUMP = 60, 0.7, 4.0
-"""Jumps; the factor for what decays slowly (its inverse for what grows so), near enough to 1 to meet a cycle on
-the way; the largest."""
+"""Jumps; the factor for what decays slowly (its inverse for what grows so), near enough to 1 to meet a cycle
+on the way; the largest."""
 LINEAR = 0.05
 """Relative distance from the linear decay rate and frequency at which a decaying rod is called straight."""
 REST = 1e-6
 """Norm of z at which a rod that is stable when straight is called straight."""
 SAME = 0.03
 """Relative distance of two returns that are one and the same crossing of the orbit."""
-LONGEST_ORBIT = 4
+LONGEST_ORBIT = 8
 """Returns to the section that one period may take."""
 STEPS_PER_CHUNK = 20_000
 BISECTIONS = 50
@@ -93,6 +94,9 @@ class Approach:
         """c in g = g0 - c |z|^2, once it has shown."""
         self.step = self.mode.period / 1000
         """With which the next chunk begins."""
+        self.past: deque[tuple[float, Array]] = deque(maxlen=LONGEST_ORBIT + 1)
+        """Times and bending moments of the last returns of one motion."""
+        self.clock = 0.0
         self.waited = self.jumps = self.attempts = self.next_attempt = 0
 
     def arrive(self, z: Array) -> Arrival:
@@ -104,6 +108,8 @@ class Approach:
                 return self._broken(run)
             times, states = returns(self.beam, run)
             self.waited += max(len(times), 1)
+            self._remember(times, states)
+            self.clock += run.times[-1]
             z = run.states[-1]
             if self.mode.w.real < 0 and np.linalg.norm(z) < REST:
                 return Arrival(CycleStatus.straight, "decayed to rounding", self.waited)
@@ -114,8 +120,9 @@ class Approach:
             factor = self._jump(times, states)
             if factor is not None:
                 z, self.jumps = self._scaled(z, factor), self.jumps + 1
+                self.past.clear()
                 continue
-            arrival = self._closed(run, times, states)
+            arrival = self._closed(z, times, states)
             if arrival is not None:
                 return arrival
         why = f"{self.waited} returns of the tip, none periodic"
@@ -195,18 +202,22 @@ class Approach:
         scaled[: self.beam.mesh.nodes] *= factor  # the stretch is quadratic in the deflection
         return relaxed(self.beam, scaled, self.mode.period)
 
-    def _closed(self, run: Run, times: Array, states: Array) -> Arrival | None:
-        """The cycle, if the returns repeat and Newton's method finds it from the end of the run."""
+    def _remember(self, times: Array, states: Array) -> None:
+        moments = states[:, 2 * self.beam.mesh.nodes :]
+        self.past.extend(zip((self.clock + times).tolist(), moments, strict=True))
+
+    def _closed(self, z: Array, times: Array, states: Array) -> Arrival | None:
+        """The cycle, if the returns repeat and Newton's method finds it from z, the end of the run."""
         growth, linear = self._growth(times, states)
-        turns, distance = self._repetition(states)
+        turns, distance = self._repetition()
         known = self.bend > 0 and self._slow(times, growth, linear)
         decays = linear < 0 and growth < linear * (1 - SLOW) + (self.noise if known else 0)
         if decays or distance >= CLOSE / 10**self.attempts or self.waited < self.next_attempt:
             return None
         self.next_attempt = self.waited + CHUNK * 2**self.attempts
         self.attempts = min(self.attempts + 1, MOST_ATTEMPTS)
-        period = times[-1] - times[-1 - turns]
-        found = resolve(self.beam, run.states[-1], period, turns, self.accuracy)
+        period = self.past[-1][0] - self.past[-1 - turns][0]
+        found = resolve(self.beam, z, period, turns, self.accuracy)
         if found is None:
             return None
         if max(found.errors.period, found.errors.amplitude) > self.accuracy:
@@ -217,15 +228,14 @@ class Approach:
             return Arrival(CycleStatus.cycle, "", self.waited, found)
         return Arrival(CycleStatus.not_settled, why, self.waited, found)
 
-    def _repetition(self, states: Array) -> tuple[int, float]:
+    def _repetition(self) -> tuple[int, float]:
         """(m, relative distance): after how many returns the state comes closest to itself.
 
         By the bending moments: what the interpolation between two steps misses of the stiff components, 1e-2
         at k1 = 1e7, is no distance.
         """
-        moments = states[:, 2 * self.beam.mesh.nodes :]
+        moments = [state for _, state in self.past]
         size = np.linalg.norm(moments[-1])
-        longest = min(LONGEST_ORBIT, len(states) - 1)
-        found = [(np.linalg.norm(moments[-1] - moments[-1 - m]) / size, m) for m in range(1, longest + 1)]
+        found = [(np.linalg.norm(moments[-1] - moments[-1 - m]) / size, m) for m in range(1, len(moments))]
         enough = max(2 * min(found)[0], SAME)
         return next((m, float(distance)) for distance, m in found if distance <= enough)
