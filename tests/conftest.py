@@ -4,9 +4,13 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from faults import small
+from faults.isolated import Isolated, isolated
+from ranks import kill, ranks_in
 
 ROOT = Path(__file__).parents[1]
 BIN = Path(sys.executable).parent
@@ -15,23 +19,63 @@ BIN = Path(sys.executable).parent
 class Command:
     """`rodsweep` in a directory of its own, alone or under mpiexec."""
 
-    def __init__(self, directory: Path):
-        self.directory = directory
+    def __init__(self, directory: Path, loaded: Callable[[], Isolated] | None = None):
+        """`loaded`: gives the processes that runs without a launcher are forked from, which saves their start."""
+        self.directory, self.loaded = directory, loaded
+
+    def in_directory(self, directory: Path) -> "Command":
+        """The same in another directory."""
+        return Command(directory, self.loaded)
 
     def argv(self, *words: object, ranks: int = 0) -> list[str]:
         launcher = [str(BIN / "mpiexec"), "-n", str(ranks)] if ranks else []
         return [*launcher, str(BIN / "rodsweep"), *map(str, words)]
 
-    def __call__(self, *words: object, ranks: int = 0, timeout: float = 300) -> subprocess.CompletedProcess:
-        return subprocess.run(
+    def __call__(
+        self, *words: object, ranks: int = 0, timeout: float = 300, patch: str = "", **variables: str
+    ) -> subprocess.CompletedProcess:
+        """Runs the command to its end. Every process executes `patch` first, with the variables added."""
+        if ranks or not self.loaded:
+            return self.afresh(*words, ranks=ranks, timeout=timeout, patch=patch, **variables)
+        run, limits = self.loaded(), {"seconds": None, "memory": None, "patience": timeout}
+        ended = run(self.directory, *words, patch=patch, environment=variables, **limits)
+        if ended.slow:
+            raise subprocess.TimeoutExpired(list(map(str, words)), timeout, ended.out, ended.err)
+        return subprocess.CompletedProcess(list(map(str, words)), ended.status, ended.out, ended.err)
+
+    def afresh(self, *words: object, timeout: float = 300, **how) -> subprocess.CompletedProcess:
+        """The same in processes of its own, without a launcher too."""
+        process = self.started(*words, **how)
+        try:
+            out, err = process.communicate(timeout=timeout)
+        except subprocess.TimeoutExpired:
+            kill(process.pid, *ranks_in(self.directory).values())
+            raise
+        return subprocess.CompletedProcess(process.args, process.returncode, out, err)
+
+    def started(
+        self, *words: object, ranks: int = 0, patch: str = "", stdout=subprocess.PIPE, **variables: str
+    ) -> subprocess.Popen:
+        """The processes, started and left running, in a session of their own."""
+        return subprocess.Popen(
             self.argv(*words, ranks=ranks),
             cwd=self.directory,
-            capture_output=True,
+            # As this process got it: MPI, once started in here, adds to the one in C.
+            env=os.environ | {"COLUMNS": "120"} | self._path_of(patch) | variables,
+            stdout=stdout,
+            stderr=subprocess.PIPE,
             text=True,
-            timeout=timeout,
-            check=False,
-            env=os.environ | {"COLUMNS": "120"},
+            start_new_session=True,
         )
+
+    def _path_of(self, patch: str) -> dict[str, str]:
+        """PYTHONPATH with which every process executes `patch` when it starts."""
+        if not patch:
+            return {}
+        place = self.directory / "patch"
+        place.mkdir(exist_ok=True)
+        (place / "sitecustomize.py").write_text(patch)
+        return {"PYTHONPATH": os.pathsep.join(filter(None, [str(place), os.environ.get("PYTHONPATH")]))}
 
     def write(self, name: str, text: str) -> Path:
         path = self.directory / name
@@ -39,9 +83,20 @@ class Command:
         return path
 
 
+@pytest.fixture(scope="session")
+def loaded(tmp_path_factory) -> Iterator[Isolated]:
+    """Runs that are forked from a process which has loaded what every task needs."""
+    directory = tmp_path_factory.mktemp("loaded")
+    (directory / "points.csv").write_text(small.POINTS)
+    for name, text in small.CONFIGS.items():
+        (directory / f"{name}.yaml").write_text(text)
+    with isolated([directory / f"{name}.yaml" for name in small.CONFIGS], solving=True) as run:
+        yield run
+
+
 @pytest.fixture
-def command(tmp_path):
-    return Command(tmp_path)
+def command(tmp_path, request):
+    return Command(tmp_path, lambda: request.getfixturevalue("loaded"))
 
 
 @pytest.fixture(scope="session")

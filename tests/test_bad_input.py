@@ -200,8 +200,8 @@ def test_command_line_is_refused_in_one_short_sentence(run, tmp_path, words):
     assert (outcome.fault, outcome.status in (2, 3)) == ("", True)
 
 
-REAL = 20
-"""Cases that are given to the command itself, every second one to `run`."""
+REAL = 2 * len([*DRAWN, *SPREAD])
+"""Cases that are given to the command itself: two of every kind, one to `check` and one to `run`."""
 MET_SOLVER = 99
 
 
@@ -220,7 +220,7 @@ def the_command(directory, no_solver, *words):
         [BIN / "rodsweep", *map(os.fsencode, words)],
         cwd=directory,
         capture_output=True,
-        timeout=60,
+        timeout=300,
         check=False,
         env=os.environ | {"PYTHONPATH": f"{no_solver}:{os.environ.get('PYTHONPATH', '')}"},
     )

@@ -1,15 +1,14 @@
 """The task limit_cycle between config and file, with a solver of closed form in place of the real one."""
 
-import os
 import subprocess
 import sys
-import time
 from types import SimpleNamespace
 
 import h5py
 import numpy as np
 import pytest
 import xarray
+from ranks import wait_for_end
 
 from rodsweep.cli.checking import describe_job
 from rodsweep.cli.job import make_job
@@ -518,18 +517,8 @@ sys.modules[fake.__name__] = fake
 '''
 
 
-def run_fake(command, *words, ranks=0, **environment):
-    command.write("sitecustomize.py", FAKE)
-    path = os.pathsep.join(filter(None, [str(command.directory), os.environ.get("PYTHONPATH")]))
-    return subprocess.run(
-        command.argv("run", "c.yaml", *words, ranks=ranks),
-        cwd=command.directory,
-        env=os.environ | {"PYTHONPATH": path} | environment,
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
+def run_fake(command, *words, ranks=0, **variables):
+    return command("run", "c.yaml", *words, ranks=ranks, patch=FAKE, **variables)
 
 
 def solved(command):
@@ -590,7 +579,7 @@ def test_resume_in_the_middle_of_a_chain_gives_the_same_file(command, ranks, dir
     solved(command)
     killed = run_fake(command, *words, DIE_AT="4 20", ranks=ranks)
     assert killed.returncode not in (0, 1, 2)
-    time.sleep(0.5)  # ranks outlive a killed launcher for a moment
+    wait_for_end(command.directory)
     journalled = read_view(command.directory / "c.h5").journalled
     assert 3 <= journalled < 27
     before = solved(command)

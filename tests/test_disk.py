@@ -2,17 +2,17 @@
 
 import os
 import subprocess
-import time
 from contextlib import contextmanager
 
 import pytest
-from conftest import Command
 from contents import content, same
+from ranks import PATIENCE
+from slow_runs import pause_until_journalled, slowly
 
 CONFIG = """
 task: spectrum
 parameters:
-  F: {start: 0, stop: 60, num: 1500}
+  F: {start: 0, stop: 60, num: 500}
   k1: [100, 1.0e4, .inf]
   k2: [50, 1.0e4]
   gamma3: [0, 1.0e-4]
@@ -20,15 +20,15 @@ parameters:
 
 
 @contextmanager
-def disk(tmp_path, options):
+def disk(command, options):
     """A file system of its own in a directory; skips where nobody may mount one."""
-    place = tmp_path / "disk"
+    place = command.directory / "disk"
     place.mkdir()
     mount = ["mount", "-t", "tmpfs", "-o", options, "none", place]
     if subprocess.run(mount, capture_output=True, check=False).returncode:
         pytest.skip("mounting a small file system is not allowed here")
     try:
-        yield Command(place)
+        yield command.in_directory(place)
     finally:
         subprocess.run(["umount", "-l", place], check=True)
 
@@ -41,8 +41,8 @@ def one_sentence(done, what):
 
 
 @pytest.mark.parametrize("ranks", [0, 2])
-def test_read_only_directory_is_refused_before_anything_is_solved(tmp_path, ranks):
-    with disk(tmp_path, "size=64m") as command:
+def test_read_only_directory_is_refused_before_anything_is_solved(command, ranks):
+    with disk(command, "size=64m") as command:
         command.write("c.yaml", CONFIG)
         subprocess.run(["mount", "-o", "remount,ro", command.directory], check=True)
         one_sentence(command("run", "c.yaml", ranks=ranks), "c.h5 cannot be written: Read-only file system")
@@ -60,31 +60,19 @@ def test_directory_without_permission_is_refused(command):
         command.directory.chmod(0o700)
 
 
-def test_too_small_a_disk_is_refused_before_anything_is_solved(tmp_path):
-    with disk(tmp_path, "size=4m") as command:
+def test_too_small_a_disk_is_refused_before_anything_is_solved(command):
+    with disk(command, "size=1m") as command:
         command.write("c.yaml", CONFIG)
         one_sentence(command("run", "c.yaml"), "MB are free")
         assert [path.name for path in command.directory.iterdir()] == ["c.yaml"]
 
 
 @pytest.mark.parametrize("ranks", [0, 2])
-def test_disk_that_fills_up_in_the_middle_costs_no_point(tmp_path, ranks):
-    with disk(tmp_path, "size=64m") as command:
+def test_disk_that_fills_up_in_the_middle_costs_no_point(command, ranks):
+    with disk(command, "size=64m") as command:
         command.write("c.yaml", CONFIG)
-        process = subprocess.Popen(
-            command.argv("run", "c.yaml", ranks=ranks),
-            cwd=command.directory,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            env=dict(os.environ),
-        )
-        pages = command.directory / "c.h5.journal"
-        deadline = time.monotonic() + 60
-        while not any(page.stat().st_size > 2000 for page in pages.glob("rank-*")):
-            assert process.poll() is None, process.communicate()
-            assert time.monotonic() < deadline
-            time.sleep(0.01)
+        process = command.started("run", "c.yaml", ranks=ranks, patch=slowly(0.05))
+        pause_until_journalled(process, command.directory / "c.h5", 10)
         hog = command.directory / "hog"
         with hog.open("wb", buffering=0) as file:
             try:
@@ -92,14 +80,14 @@ def test_disk_that_fills_up_in_the_middle_costs_no_point(tmp_path, ranks):
                     file.write(bytes(1 << 12))
             except OSError:
                 pass
-        _, err = process.communicate(timeout=60)
+        _, err = process.communicate(timeout=PATIENCE)
         assert process.returncode == 3, err
         assert "No space left on device" in err
         assert "make room and run again" in err
         assert "Traceback" not in err
         hog.unlink()
-        again = command("run", "c.yaml", ranks=2)
+        again = command("run", "c.yaml")
         assert again.returncode == 0, again.stderr
         assert " kept" in again.stdout
-        assert command("run", "c.yaml", "-o", "whole.h5", ranks=2).returncode == 0
+        assert command("run", "c.yaml", "-o", "whole.h5").returncode == 0
         assert same(content(command.directory / "c.h5"), content(command.directory / "whole.h5"))

@@ -1,17 +1,16 @@
 """`rodsweep run` as a user starts it: ranks, kills, refusals, exit statuses, the file in other hands."""
 
-import os
-import signal
+import re
 import subprocess
 import sys
-import time
-from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 import xarray
 from contents import content, same
+from ranks import PATIENCE, kill, ranks_in, wait_for_end
+from slow_runs import FOR_EVER, pause_until_journalled, slowly
 
 from rodsweep.results.view import read_view
 
@@ -40,61 +39,30 @@ def test_any_number_of_ranks_gives_the_same_file(command, ranks):
         assert file.attrs["ranks"] == ranks
 
 
-def settled(measure):
-    """A value once it has stayed the same for a second: ranks outlive a killed launcher for a moment."""
-    last, since = measure(), time.monotonic()
-    while time.monotonic() < since + 1:
-        time.sleep(0.1)
-        if (now := measure()) != last:
-            last, since = now, time.monotonic()
-    return last
-
-
-SLOW = SMALL.replace("num: 21", "num: 1000")
-
-
-def kill_when(process, condition, sign, whole_job):
-    """Sends the signal once the condition holds: to the whole process group or to one of its ranks."""
-    deadline = time.monotonic() + 60
-    while not condition() and process.poll() is None:
-        assert time.monotonic() < deadline
-        time.sleep(0.01)
-    if whole_job:
-        os.killpg(process.pid, sign)
-    else:
-        children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
-        os.kill(int(children[-1]), sign)
-    process.wait(60)
+MANY = SMALL.replace("num: 21", "num: 100")
 
 
 @pytest.mark.parametrize("whole_job", [True, False], ids=["all ranks", "one rank"])
 def test_resume_after_a_kill_gives_the_same_file(command, whole_job):
-    command.write("c.yaml", SLOW)
+    """Killed while each rank waits behind its fiftieth point: all of these are there, and no other."""
+    command.write("c.yaml", MANY)
     path = command.directory / "c.h5"
-    pages = command.directory / "c.h5.journal"
-
-    def some_are_done():
-        return sum(page.stat().st_size for page in pages.glob("rank-*")) > 20_000 if pages.is_dir() else False
-
-    process = subprocess.Popen(
-        command.argv("run", "c.yaml", ranks=2),
-        cwd=command.directory,
-        start_new_session=True,
-        env=dict(os.environ),  # as this process got it: MPI, once started in here, adds to the one in C
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
-    kill_when(process, some_are_done, signal.SIGKILL, whole_job)
-    done = settled(lambda: read_view(path).journalled)
-    assert 100 < done < 12_000
-    assert f"{done} are done and wait" in " ".join(command("show", "c.h5").stdout.split())
+    process = command.started("run", "c.yaml", ranks=2, patch=slowly(FOR_EVER, 50))
+    pause_until_journalled(process, path, 100)
+    ranks = ranks_in(command.directory)
+    assert set(ranks) == {0, 1}
+    kill(*([process.pid, *ranks.values()] if whole_job else [ranks[1]]))
+    _, err = process.communicate(timeout=PATIENCE)
+    assert process.returncode not in (0, 1, 2, 75), err
+    wait_for_end(command.directory)
+    assert read_view(path).journalled == 100
+    assert "100 are done and wait" in " ".join(command("show", "c.h5").stdout.split())
     again = command("run", "c.yaml", ranks=2)
     assert again.returncode == 0, again.stderr
-    assert f"{12_000 - done} of 12000 points to do, {done} kept" in again.stdout
-    whole = command("run", "c.yaml", "-o", "whole.h5", ranks=2)
-    assert whole.returncode == 0
+    assert "1100 of 1200 points to do, 100 kept" in again.stdout
+    assert command("run", "c.yaml", "-o", "whole.h5").returncode == 0
     assert same(content(path), content(command.directory / "whole.h5"))
-    assert not pages.exists()
+    assert not (command.directory / "c.h5.journal").exists()
     third = command("run", "c.yaml")
     assert "complete, nothing to do" in third.stdout
     assert third.returncode == 0
@@ -151,23 +119,14 @@ def test_failed_point_is_a_status_and_not_the_end(command):
 
 def run_patched(command, patch, ranks=2):
     """A run whose every rank wraps `solve(index)` by the function `patched(rank, solve)` of `patch`."""
-    command.write(
-        "sitecustomize.py",
-        "import time\nimport rodsweep.sweep.loop as loop\nreal = loop.sweep\n"
+    patch = (
+        "import time\nimport rodsweep.cli.running as running\nreal = running.sweep\n"
         + patch
         + "\ndef sweep(team, todo, solve, keep, tell, stop):\n"
         "    return real(team, todo, patched(team.rank, solve), keep, tell, stop)\n"
-        "loop.sweep = sweep\n",
+        "running.sweep = sweep\n"
     )
-    return subprocess.run(
-        command.argv("run", "c.yaml", ranks=ranks),
-        cwd=command.directory,
-        env=os.environ | {"PYTHONPATH": str(command.directory)},
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
+    return command("run", "c.yaml", ranks=ranks, patch=patch)
 
 
 def test_bug_while_the_file_is_opened_ends_all_ranks(command):
@@ -246,8 +205,7 @@ def test_run_killed_before_its_end_was_written_writes_it_the_next_time(command):
         "store.Store._fold = lambda self, a, more: die(self, a) if a else fold(self, a, more)\n"
         "def patched(rank, solve): return solve\n"
     )
-    assert run_patched(command, patch, ranks=1).returncode == 9
-    (command.directory / "sitecustomize.py").unlink()
+    assert run_patched(command, patch, ranks=0).returncode == 9
     again = command("run", "c.yaml")
     assert again.returncode == 0, again.stderr
     assert "complete" in again.stdout
@@ -256,7 +214,7 @@ def test_run_killed_before_its_end_was_written_writes_it_the_next_time(command):
 
 @pytest.mark.parametrize("rank", [0, 1])
 def test_bug_on_one_rank_ends_all_ranks(command, rank):
-    command.write("c.yaml", SLOW)
+    command.write("c.yaml", MANY)
     patch = f"def patched(rank, solve):\n    return (lambda index: 1 / 0) if rank == {rank} else solve\n"
     run = run_patched(command, patch)
     assert run.returncode not in (0, 1, 2)
@@ -265,16 +223,28 @@ def test_bug_on_one_rank_ends_all_ranks(command, rank):
 
 
 def test_only_the_first_rank_talks_and_logs_have_plain_lines(command):
-    command.write("c.yaml", SLOW)
-    run = command("run", "c.yaml", ranks=3)
-    assert run.stdout.count("12000 points in") == 1
-    assert "of 12000 points, " in run.stderr
-    assert "\x1b" not in run.stdout + run.stderr
+    command.write("c.yaml", SMALL)
+    patch = (
+        "import rodsweep.sweep.progress as progress\n"
+        "class Clock:\n"
+        "    seconds = 0.0\n"
+        "    def monotonic(self):\n"
+        "        self.seconds += 1.0\n"
+        "        return self.seconds\n"
+        "progress.time = Clock()\n"
+        "def patched(rank, solve): return solve\n"
+    )
+    run = run_patched(command, patch, ranks=3)
+    assert run.stdout.count("252 points in") == 1
+    lines = run.stderr.splitlines()
+    assert lines
+    assert all(re.fullmatch(r"\d+ of 252 points, \d+/s, \d+ s left", line) for line in lines), lines
+    assert "\x1b" not in run.stdout
 
 
 def test_file_opens_in_xarray_with_named_coordinates_and_no_argument(command):
     command.write("c.yaml", SMALL)
-    command("run", "c.yaml", ranks=2)
+    command("run", "c.yaml")
     with xarray.open_dataset(command.directory / "c.h5", engine="h5netcdf") as data:
         assert dict(data.sizes) == {"F": 21, "k1": 3, "k2": 2, "gamma3": 2, "mode": 4}
         point = data.sel(F=30, k1=1e4, k2=1e4, gamma3=1e-4)
@@ -376,13 +346,6 @@ def test_link_as_output_is_followed(command):
 def test_full_disk_under_the_log_is_told_in_a_sentence(command):
     command.write("c.yaml", SMALL)
     with open("/dev/full", "w") as full:
-        run = subprocess.run(
-            command.argv("run", "c.yaml"),
-            cwd=command.directory,
-            stdout=full,
-            stderr=subprocess.PIPE,
-            text=True,
-            check=False,
-        )
+        run = command.afresh("run", "c.yaml", stdout=full)
     assert (run.returncode, run.stderr) == (3, "rodsweep: standard output: No space left on device\n")
     assert command("run", "c.yaml").returncode == 0

@@ -1,15 +1,18 @@
 """Shards: every point in one of them, put together as if never divided; what merge refuses."""
 
 import shutil
-import time
+import threading
 from concurrent.futures import ThreadPoolExecutor
+from types import SimpleNamespace
 
 import h5py
 import numpy as np
 import pytest
 from contents import content, same
+from ranks import PATIENCE
 
 from rodsweep.errors import InputError
+from rodsweep.results import lock
 from rodsweep.results.journal import journal_directory
 from rodsweep.results.lock import Lock
 from rodsweep.results.merge import merge
@@ -142,19 +145,21 @@ def test_what_does_not_belong_together_is_not_merged(command):
     assert not (command.directory / "m.h5").exists()
 
 
-def test_merge_takes_over_what_another_wrote_while_it_waited(command):
+def test_merge_takes_over_what_another_wrote_while_it_waited(command, monkeypatch):
     command.write("c.yaml", SPECTRA)
     for number in (1, 2):
         assert command("run", "c.yaml", "--shard", f"{number}/2").returncode == 0
     first, second, merged = (command.directory / f"{name}.h5" for name in ("c-1-of-2", "c-2-of-2", "m"))
-    lock = Lock(journal_directory(merged), merged)
+    held = Lock(journal_directory(merged), merged)
+    waits = threading.Event()
+    clock = SimpleNamespace(monotonic=lambda: 0.0, sleep=lambda seconds: waits.set())  # patient without end
+    monkeypatch.setattr(lock, "time", clock)
     with ThreadPoolExecutor(1) as pool:
         waiting = pool.submit(merge, merged, [second], lambda config: False)
-        time.sleep(0.5)
-        assert not waiting.done()
+        assert waits.wait(PATIENCE)
         shutil.copy(first, merged)
-        lock.release()
-        assert waiting.result().points == 492
+        held.release()
+        assert waiting.result(PATIENCE).points == 492
 
 
 def test_damaged_shard_leaves_the_merged_file_as_it_was(command):

@@ -6,21 +6,25 @@ A few kills here; RODSWEEP_KILLS=N asks for N on each task (`make stress`).
 import os
 import random
 import signal
-import subprocess
-from pathlib import Path
+from contextlib import suppress
 
 import h5py
 import pytest
 from contents import content, same
+from ranks import PATIENCE, kill, pause_until, ranks_in, wait_for_end
 
+from rodsweep.cli.job import make_job
+from rodsweep.results.journal import MAGIC, journal_directory
 from rodsweep.results.schema import MISSING
 from rodsweep.results.view import read_view
 
 KILLS = int(os.environ.get("RODSWEEP_KILLS", "4"))
+HEADER = len(MAGIC) + 65
+"""Bytes of a journal before its first point."""
 SPECTRA = """
 task: spectrum
 parameters:
-  F: {start: 0, stop: 60, num: 3000}
+  F: {start: 0, stop: 60, num: 500}
   k1: [100, 1.0e4, .inf]
   k2: [50, 1.0e4]
   gamma3: [0, 1.0e-4]
@@ -33,27 +37,49 @@ limit_cycle: {samples: 8}
 """
 CHAINS = CYCLES.replace("samples: 8", "samples: 8, continue_from: previous")
 FAULTS = ("kill a rank", "kill all", "kill the launcher", "SIGTERM to a rank", "SIGUSR1 to the launcher")
-LONGEST_RUN = 5.0
-"""Seconds after which a fault strikes at the latest, the start of the processes included."""
 
 
-def strike(process, fault):
+def strike(process, directory, fault):
     """Does what the fault says to a run under mpiexec, if it still runs."""
-    children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
-    try:
-        ranks = list(map(int, children.read_text().split()))
-        if fault == "kill all":
-            os.killpg(process.pid, signal.SIGKILL)
-            for rank in ranks:  # each rank has a process group of its own
-                os.kill(rank, signal.SIGKILL)
-        elif fault == "kill the launcher":
-            os.kill(process.pid, signal.SIGKILL)
-        elif fault == "SIGUSR1 to the launcher":
-            os.kill(process.pid, signal.SIGUSR1)
-        elif ranks:
+    ranks = list(ranks_in(directory).values())
+    if fault == "kill all":
+        kill(process.pid, *ranks)
+    elif fault == "kill the launcher":
+        kill(process.pid)
+    elif fault == "SIGUSR1 to the launcher":
+        process.send_signal(signal.SIGUSR1)
+    elif ranks:
+        with suppress(ProcessLookupError):
             os.kill(random.choice(ranks), signal.SIGKILL if fault == "kill a rank" else signal.SIGTERM)
-    except (FileNotFoundError, ProcessLookupError):
-        pass
+
+
+def points_in(pages, record):
+    """Points of `record` bytes in each journal of a directory, which the end of a run takes away."""
+    points = {}
+    with suppress(FileNotFoundError):
+        for page in pages.glob("rank-*"):
+            points[page.name] = (page.stat().st_size - HEADER) // record
+    return points
+
+
+def random_instant(todo):
+    """After how many points a fault strikes; below none: as the first rank starts; all: as the run ends."""
+    return min(random.randint(-todo // 4, todo * 5 // 4), todo)
+
+
+def wait_for(instant, process, path, record):
+    """Waits for an instant in a run that starts now; returns whether it came before the run's end."""
+    pages = journal_directory(path)
+    before = points_in(pages, record)
+
+    def is_there():
+        if instant < 0:
+            return bool(ranks_in(path.parent))
+        now = points_in(pages, record)
+        return sum(now[name] for name in now.keys() - before.keys()) >= instant
+
+    pause_until(lambda: process.poll() is not None or is_there(), f"{path} does not get to point {instant}")
+    return process.poll() is None
 
 
 def points_on_disk(path):
@@ -69,37 +95,29 @@ def test_run_killed_at_random_ends_in_the_file_of_an_undisturbed_one(command, co
     random.seed(config)
     command.write("c.yaml", config)
     path = command.directory / "c.h5"
-    whole = command("run", "c.yaml", "-o", "whole.h5", ranks=2)
+    points = make_job(command.directory / "c.yaml", ()).points.count
+    record = make_job(command.directory / "c.yaml", ()).layout.record.itemsize + 4
+    whole = command("run", "c.yaml", "-o", "whole.h5")
     assert whole.returncode == 0, whole.stderr
     struck, kept, told = 0, 0, []
     while struck < KILLS:
-        ranks, fault = random.randint(1, 4), random.choice(FAULTS)
-        process = subprocess.Popen(
-            command.argv("run", "c.yaml", ranks=ranks),
-            cwd=command.directory,
-            start_new_session=True,
-            env=dict(os.environ),
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-        try:
-            _, said = process.communicate(timeout=random.uniform(0.3, LONGEST_RUN))
-        except subprocess.TimeoutExpired:
-            strike(process, fault)
+        ranks, fault, instant = random.randint(1, 4), random.choice(FAULTS), random_instant(points - kept)
+        process = command.started("run", "c.yaml", ranks=ranks)
+        if is_struck := wait_for(instant, process, path, record):
+            strike(process, command.directory, fault)
             struck += 1
-            _, said = process.communicate(timeout=120)
-            told.append((ranks, fault, process.returncode))
-        else:
-            assert process.returncode == 0, said
+        _, said = process.communicate(timeout=PATIENCE)
+        told.append((ranks, fault, instant, process.returncode))
+        assert is_struck or process.returncode == 0, (said, told)
+        wait_for_end(command.directory)
         assert "Traceback" not in said, told
-        assert (now := points_on_disk(path)) >= kept, told
+        assert (now := points_on_disk(path)) >= kept + max(instant, 0), told
         kept = now
         if process.returncode == 0:
             assert same(content(path), content(command.directory / "whole.h5")), told
             path.unlink()
             kept = 0
-    again = command("run", "c.yaml", ranks=2)
+    again = command("run", "c.yaml")
     assert again.returncode == 0, (again.stderr, told)
     assert same(content(path), content(command.directory / "whole.h5")), told
     assert [p.name for p in command.directory.glob("*.journal")] == []

@@ -1,6 +1,5 @@
 """What each task stores: files as other programs open them, records that fit them, runs that continue."""
 
-import os
 import subprocess
 import sys
 from types import SimpleNamespace
@@ -311,15 +310,16 @@ def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
         "import sys\nfrom pathlib import Path\n"
         "from rodsweep.cli.checking import describe_job\nfrom rodsweep.cli.job import make_job\n"
         "from rodsweep.post.summary import show_summary\nfrom rodsweep.results.view import read_view\n"
-        "describe_job(make_job(Path(sys.argv[1]), ()))\nshow_summary(read_view(Path(sys.argv[2])))\n"
-        "print([m for m in ('mpi4py.MPI', 'petsc4py', 'slepc4py') if m in sys.modules])"
+        "for place in map(Path, sys.argv[1:]):\n"
+        "    describe_job(make_job(place / 'c.yaml', ()))\n    show_summary(read_view(place / 'c.h5'))\n"
+        "    print([m for m in ('mpi4py.MPI', 'petsc4py', 'slepc4py') if m in sys.modules])"
     )
     for task in TASKS:
-        file = filled_file(tmp_path, task)
-        argv = [sys.executable, "-c", code, str(tmp_path / "c.yaml"), str(file)]
-        run = subprocess.run(argv, capture_output=True, text=True, check=True)
-        assert run.stdout.splitlines()[-1] == "[]"
-        file.unlink()
+        (tmp_path / task).mkdir()
+        filled_file(tmp_path / task, task)
+    argv = [sys.executable, "-c", code, *(str(tmp_path / task) for task in TASKS)]
+    run = subprocess.run(argv, capture_output=True, text=True, check=True)
+    assert [line for line in run.stdout.splitlines() if line.startswith("[")] == ["[]"] * len(TASKS)
 
 
 FAKE = """
@@ -340,17 +340,8 @@ real.warm_up = lambda: None
 """
 
 
-def run_fake(command, *words, **environment):
-    command.write("sitecustomize.py", FAKE)
-    return subprocess.run(
-        command.argv("run", "c.yaml", *words),
-        cwd=command.directory,
-        env=os.environ | {"PYTHONPATH": str(command.directory)} | environment,
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
+def run_fake(command, *words, **variables):
+    return command("run", "c.yaml", *words, patch=FAKE, **variables)
 
 
 def test_killed_search_for_thresholds_is_continued_to_the_same_file(command):

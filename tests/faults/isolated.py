@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import Any
 
 SERVER = Path(__file__).with_name("server.py")
+PATIENCE = 300.0
+"""Seconds by the clock after which a run counts as one that hangs: far more than any takes on a busy machine."""
 
 
 @dataclass(frozen=True)
@@ -58,14 +60,18 @@ class Isolated:
         self,
         directory: Path,
         *words: object,
-        seconds: int = 2,
-        memory: float = 500e6,
+        seconds: int | None = 2,
+        memory: float | None = 500e6,
         points: int | None = None,
+        patch: str = "",
+        environment: dict[str, str] | None = None,
+        patience: float = PATIENCE,
         call: str = "command",
     ) -> Outcome:
         """Runs `rodsweep words...` in a directory, with `memory` bytes more than are taken when it starts.
 
-        `seconds` are of the processor's time; a run is killed when it has finished so many `points`.
+        `seconds` are of the processor's time, and no limit if None; a run is killed when it has finished so
+        many `points`. `patch` is Python that it executes first, as a sitecustomize.py would.
         """
         streams = {name: self.directory / name for name in ("stdout", "stderr")}
         request: dict[str, Any] = {
@@ -73,8 +79,11 @@ class Isolated:
             "directory": str(directory),
             "words": [os.fsencode(str(word)).hex() for word in words],
             "seconds": seconds,
-            "memory": int(memory),
+            "memory": None if memory is None else int(memory),
             "points": points,
+            "patch": patch,
+            "environment": environment or {},
+            "patience": patience,
         }
         answer = self._ask(json.dumps(request | {name: str(path) for name, path in streams.items()}))
         out, err = (path.read_text(errors="backslashreplace") for path in streams.values())

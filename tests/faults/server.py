@@ -1,8 +1,9 @@
 """The command `rodsweep` in forked children of one process that has everything loaded already.
 
-A case takes milliseconds instead of a start-up, and one that hangs, takes too much memory or crashes
+A run takes milliseconds instead of a start-up, and one that hangs, takes too much memory or crashes
 natively ends only its own child. Requests come as lines of JSON on standard input and are answered by
-lines on standard output, one each; `faults.isolated` is the other end.
+lines on standard output, one each; `faults.isolated` is the other end. `test_start.py` holds what comes
+of it against the command that is started afresh.
 """
 
 import json
@@ -19,9 +20,6 @@ from typing import NoReturn
 SOLVERS = ("petsc4py", "slepc4py")
 UNCAUGHT = 70
 """Exit status of a child that an exception ended: the interpreter's own, 1, has a meaning."""
-
-PATIENCE = 10
-"""How many times longer than its limit of processor time a case may take by the clock of a busy machine."""
 
 
 class NoSolver:
@@ -41,13 +39,8 @@ def child(request: dict) -> NoReturn:
     code = UNCAUGHT
     try:
         os.chdir(request["directory"])
-        taken = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
-        for limit, most in (
-            (resource.RLIMIT_AS, taken + request["memory"]),
-            (resource.RLIMIT_CPU, request["seconds"]),
-            (resource.RLIMIT_CORE, 0),
-        ):
-            resource.setrlimit(limit, (most, most + (limit == resource.RLIMIT_CPU)))
+        os.environ.update(request["environment"])
+        limit_resources(request["seconds"], request["memory"])
         request["words"] = [os.fsdecode(bytes.fromhex(word)) for word in request["words"]]
         if request["call"] == "content":
             print(json.dumps(content(Path(request["words"][0]))))
@@ -55,6 +48,7 @@ def child(request: dict) -> NoReturn:
         else:
             die_after(request["points"])
             sys.argv = ["rodsweep", *request["words"]]
+            exec(request["patch"], {"__name__": "sitecustomize"})
             from rodsweep.cli import main
 
             main()
@@ -66,6 +60,16 @@ def child(request: dict) -> NoReturn:
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(code)
+
+
+def limit_resources(seconds: int | None, memory: int | None) -> None:
+    """Lets this process take so many seconds of the processor, and so many bytes more than it has."""
+    taken = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    if memory is not None:
+        resource.setrlimit(resource.RLIMIT_AS, (taken + memory, taken + memory))
+    if seconds is not None:
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
 
 
 def content(path: Path) -> dict:
@@ -100,7 +104,7 @@ def answer(request: dict) -> dict:
     if not pid:
         child(request)
     handle = os.pidfd_open(pid)
-    waits = not select.select([handle], [], [], PATIENCE * request["seconds"])[0]
+    waits = not select.select([handle], [], [], request["patience"])[0]
     if waits:
         os.kill(pid, signal.SIGKILL)
     os.close(handle)

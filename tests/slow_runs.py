@@ -1,0 +1,45 @@
+"""Runs that take their time, so that what a test does to them hits them at a counted point, not at a time."""
+
+from pathlib import Path
+from subprocess import Popen
+
+from ranks import pause_until
+
+from rodsweep.results.view import read_view
+
+FOR_EVER = 1e9
+
+
+def slowly(pause: float, points: int = 1) -> str:
+    """What every rank executes first: behind so many points it waits after each, until it is asked to stop."""
+    return f"""
+import time
+from rodsweep.results.journal import Journal
+from rodsweep.sweep.stop import Stop
+
+append, note = Journal.append, Stop._note
+kept, heard = [], []
+
+def append_and_wait(self, index, values):
+    append(self, index, values)
+    kept.append(index)
+    until = time.monotonic() + {pause!r}
+    while len(kept) >= {points} and not heard and time.monotonic() < until:
+        time.sleep(0.01)
+
+def note_and_go_on(self, number, frame):
+    heard.append(number)
+    note(self, number, frame)
+
+Journal.append, Stop._note = append_and_wait, note_and_go_on
+"""
+
+
+def pause_until_journalled(process: Popen, path: Path, points: int) -> None:
+    """Waits until so many points are in the journals of a run that goes on meanwhile."""
+
+    def are_there() -> bool:
+        assert process.poll() is None, process.communicate()
+        return path.exists() and read_view(path).journalled >= points
+
+    pause_until(are_there, f"{points} points are not in the journals of {path}")

@@ -1,0 +1,39 @@
+"""The command started afresh, as users start it, beside the loaded one from which other tests fork their runs."""
+
+import re
+
+import pytest
+from contents import content, same
+from faults import small
+
+TASKS = [name for name in small.CONFIGS if name != "list"]
+LINES = (("check", "c.yaml"), ("run", "c.yaml"), ("show", "c.h5"), ("plot", "c.h5"), ("run", "c.yaml"))
+PROGRESS = re.compile(r"\d+ of \d+ points, \d+/s, \d+ s left")
+"""The only thing that belongs on standard error, where a run takes its time."""
+
+
+def without_numbers(text):
+    """A text without what differs from run to run: times, dates, and the room that they take."""
+    return " ".join(re.sub(r"[\d.:+-]+(e[+-]?\d+)?", "#", text).split())
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_every_command_does_the_same_started_afresh_and_loaded(command, task, request):
+    """What is imported late is imported by whoever needs it, for every task."""
+    if task == "limit_cycle":
+        request.getfixturevalue("cycles_work")
+    ends = []
+    for name in ("afresh", "loaded"):
+        there = command.in_directory(command.directory / name)
+        there.directory.mkdir()
+        there.write("c.yaml", small.CONFIGS[task])
+        start = there.afresh if name == "afresh" else there
+        done = [start(*words) for words in LINES]
+        assert [end.returncode for end in done] == [0] * len(LINES)
+        assert all(PROGRESS.fullmatch(line) for end in done for line in end.stderr.splitlines())
+        ends.append([without_numbers(end.stdout) for end in done])
+    assert ends[0] == ends[1]
+    files = [command.directory / name / "c.h5" for name in ("afresh", "loaded")]
+    assert same(*map(content, files))
+    pictures = [path.with_name("c.png").read_bytes() for path in files]
+    assert pictures[0] == pictures[1]
