@@ -56,7 +56,7 @@ figures: .venv/installed  ## compute every config on two ranks and draw its figu
 	$$draw results/fig5.h5 -o docs/fig5.gif
 
 test: .venv/installed  ## run the tests
-	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n auto --maxprocesses 4 --dist loadgroup
 lint: .venv/installed  ## check style, types and who may import whom
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check

@@ -1,5 +1,6 @@
 """What tests share: the command as a user runs it, and the reference spectra."""
 
+import compileall
 import json
 import os
 import subprocess
@@ -14,6 +15,26 @@ from ranks import kill, ranks_in
 
 ROOT = Path(__file__).parents[1]
 BIN = Path(sys.executable).parent
+
+TOGETHER = {"test_bad_files", "test_bench_limit_cycle", "test_cycles", "test_slurm"}
+"""Modules whose tests share what one of them makes: they stay on one worker of pytest-xdist."""
+LONGEST = ("test_stress", "test_bench_sweep")
+"""Modules whose tests are begun first, so that no worker is left alone with one of them."""
+
+
+def pytest_configure(config):
+    """Compiles the package's modules, lest each process that a test starts does where bytecode is not written."""
+    if not hasattr(config, "workerinput"):  # the workers of pytest-xdist come later
+        compileall.compile_dir(ROOT / "rodsweep", quiet=2)
+
+
+def pytest_collection_modifyitems(config, items):
+    """Tells pytest-xdist, where it is used, which tests belong together, and what takes longest."""
+    items.sort(key=lambda item: item.path.stem not in LONGEST)
+    if config.pluginmanager.hasplugin("xdist"):
+        for item in items:
+            if item.path.stem in TOGETHER:
+                item.add_marker(pytest.mark.xdist_group(item.path.stem))
 
 
 class Command:

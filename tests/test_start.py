@@ -7,7 +7,7 @@ from contents import content, same
 from faults import small
 
 TASKS = [name for name in small.CONFIGS if name != "list"]
-LINES = (("check", "c.yaml"), ("run", "c.yaml"), ("show", "c.h5"), ("plot", "c.h5"), ("run", "c.yaml"))
+LINES = (("check", "c.yaml"), ("run", "c.yaml"), ("show", "c.h5"), ("plot", "c.h5"))
 PROGRESS = re.compile(r"\d+ of \d+ points, \d+/s, \d+ s left")
 """The only thing that belongs on standard error, where a run takes its time."""
 
