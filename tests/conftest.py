@@ -23,7 +23,7 @@ LONGEST = ("test_stress", "test_bench_sweep")
 
 
 def pytest_configure(config):
-    """Compiles the package's modules, lest each process that a test starts does where bytecode is not written."""
+    """Compiles the package: where bytecode is not written, each process that a test starts would do it."""
     if not hasattr(config, "workerinput"):  # the workers of pytest-xdist come later
         compileall.compile_dir(ROOT / "rodsweep", quiet=2)
 
@@ -41,7 +41,7 @@ class Command:
     """`rodsweep` in a directory of its own, alone or under mpiexec."""
 
     def __init__(self, directory: Path, loaded: Callable[[], Isolated] | None = None):
-        """`loaded`: gives the processes that runs without a launcher are forked from, which saves their start."""
+        """`loaded`: gives the process from which runs without a launcher are forked, to save their start."""
         self.directory, self.loaded = directory, loaded
 
     def in_directory(self, directory: Path) -> "Command":

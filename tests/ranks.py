@@ -1,4 +1,4 @@
-"""The ranks of a run under mpiexec: which processes they are, whoever started them, and when they are gone."""
+"""The ranks of a run under mpiexec: which processes they are, whoever started them, and when they end."""
 
 import os
 import signal

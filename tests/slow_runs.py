@@ -11,7 +11,7 @@ FOR_EVER = 1e9
 
 
 def slowly(pause: float, points: int = 1) -> str:
-    """What every rank executes first: behind so many points it waits after each, until it is asked to stop."""
+    """What every rank executes first: from so many points on it waits after each, until asked to stop."""
     return f"""
 import time
 from rodsweep.results.journal import Journal

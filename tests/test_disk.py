@@ -42,11 +42,11 @@ def one_sentence(done, what):
 
 @pytest.mark.parametrize("ranks", [0, 2])
 def test_read_only_directory_is_refused_before_anything_is_solved(command, ranks):
-    with disk(command, "size=64m") as command:
-        command.write("c.yaml", CONFIG)
-        subprocess.run(["mount", "-o", "remount,ro", command.directory], check=True)
-        one_sentence(command("run", "c.yaml", ranks=ranks), "c.h5 cannot be written: Read-only file system")
-        assert [path.name for path in command.directory.iterdir()] == ["c.yaml"]
+    with disk(command, "size=64m") as small:
+        small.write("c.yaml", CONFIG)
+        subprocess.run(["mount", "-o", "remount,ro", small.directory], check=True)
+        one_sentence(small("run", "c.yaml", ranks=ranks), "c.h5 cannot be written: Read-only file system")
+        assert [path.name for path in small.directory.iterdir()] == ["c.yaml"]
 
 
 def test_directory_without_permission_is_refused(command):
@@ -61,19 +61,19 @@ def test_directory_without_permission_is_refused(command):
 
 
 def test_too_small_a_disk_is_refused_before_anything_is_solved(command):
-    with disk(command, "size=1m") as command:
-        command.write("c.yaml", CONFIG)
-        one_sentence(command("run", "c.yaml"), "MB are free")
-        assert [path.name for path in command.directory.iterdir()] == ["c.yaml"]
+    with disk(command, "size=1m") as small:
+        small.write("c.yaml", CONFIG)
+        one_sentence(small("run", "c.yaml"), "MB are free")
+        assert [path.name for path in small.directory.iterdir()] == ["c.yaml"]
 
 
 @pytest.mark.parametrize("ranks", [0, 2])
 def test_disk_that_fills_up_in_the_middle_costs_no_point(command, ranks):
-    with disk(command, "size=64m") as command:
-        command.write("c.yaml", CONFIG)
-        process = command.started("run", "c.yaml", ranks=ranks, patch=slowly(0.05))
-        pause_until_journalled(process, command.directory / "c.h5", 10)
-        hog = command.directory / "hog"
+    with disk(command, "size=64m") as small:
+        small.write("c.yaml", CONFIG)
+        process = small.started("run", "c.yaml", ranks=ranks, patch=slowly(0.05))
+        pause_until_journalled(process, small.directory / "c.h5", 10)
+        hog = small.directory / "hog"
         with hog.open("wb", buffering=0) as file:
             try:
                 while True:
@@ -86,8 +86,8 @@ def test_disk_that_fills_up_in_the_middle_costs_no_point(command, ranks):
         assert "make room and run again" in err
         assert "Traceback" not in err
         hog.unlink()
-        again = command("run", "c.yaml")
+        again = small("run", "c.yaml")
         assert again.returncode == 0, again.stderr
         assert " kept" in again.stdout
-        assert command("run", "c.yaml", "-o", "whole.h5").returncode == 0
-        assert same(content(command.directory / "c.h5"), content(command.directory / "whole.h5"))
+        assert small("run", "c.yaml", "-o", "whole.h5").returncode == 0
+        assert same(content(small.directory / "c.h5"), content(small.directory / "whole.h5"))

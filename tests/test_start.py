@@ -1,4 +1,4 @@
-"""The command started afresh, as users start it, beside the loaded one from which other tests fork their runs."""
+"""The command started afresh, as users start it, beside the loaded one from which other tests fork it."""
 
 import re
 

@@ -13,7 +13,7 @@ from typing import Any
 
 SERVER = Path(__file__).with_name("server.py")
 PATIENCE = 300.0
-"""Seconds by the clock after which a run counts as one that hangs: far more than any takes on a busy machine."""
+"""Seconds by the clock after which a run counts as one that hangs: more than any takes on a busy machine."""
 
 
 @dataclass(frozen=True)
