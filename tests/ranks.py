@@ -9,7 +9,7 @@ from pathlib import Path
 
 VARIABLES = (b"OMPI_COMM_WORLD_RANK", b"PMIX_RANK", b"PMI_RANK")
 """Variables of the environment in which a launcher tells a process its rank."""
-PATIENCE = 300.0
+PATIENCE = 120.0
 """Seconds after which a wait is given up: what hangs is to fail, and nothing else on the busiest machine."""
 
 
