@@ -26,14 +26,14 @@ def row(case, points, ranks, seconds, memory):
 def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch):
     monkeypatch.setattr(sweep, "QUICK_SIZES", (200, 400))
     monkeypatch.setattr(sweep, "QUICK_SPECTRA", 16)
-    monkeypatch.setattr(sweep, "works", lambda: False)
+    monkeypatch.setattr(sweep, "QUICK_CYCLES", 2)
     study = sweep_study(quick=True)
     assert "| spectra | 16 | 1 |" in study.text
     assert ("Two commands side by side" in study.text) == bool(launcher(2))
     assert "| 400 | 1 |" in study.text
     assert "From 200 to 400 points, 1 rank:" in study.text
     assert "From 200 to 400 points, resumed:" in study.text
-    assert "Limit cycles are skipped" in study.text
+    assert f"| {sweep.CYCLE} | 2 | 1 |" in study.text
     assert ("| 400 | 2 |" in study.text) == bool(launcher(2))
     assert not study.drawable
     table = study.table()

@@ -18,10 +18,8 @@ def without_numbers(text):
 
 
 @pytest.mark.parametrize("task", TASKS)
-def test_every_command_does_the_same_started_afresh_and_loaded(command, task, request):
+def test_every_command_does_the_same_started_afresh_and_loaded(command, task):
     """What is imported late is imported by whoever needs it, for every task."""
-    if task == "limit_cycle":
-        request.getfixturevalue("cycles_work")
     ends = []
     for name in ("afresh", "loaded"):
         there = command.in_directory(command.directory / name)
