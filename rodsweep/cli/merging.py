@@ -13,6 +13,8 @@ def merge_files(output: Path, shards: tuple[Path, ...]) -> int:
     """Merges, says what came of it; returns the exit status: CONTINUE while points are missing."""
     merged = merge(output, shards, needs_all_points)
     click.echo(f"{output}: {merged.points} points from {len(shards)} files, {merged.missing} missing")
+    if merged.kernels:
+        click.echo(f"{output}: {merged.kernels}")
     if merged.missing:
         click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing ones")
         return CONTINUE

@@ -15,6 +15,7 @@ from ..errors import EnvironmentLacks
 from ..results.checkpoints import Checkpoints
 from ..results.creation import Plan
 from ..results.journal import Journal, journal_directory
+from ..results.kernels import KERNELS, kernels_of, told, united
 from ..results.provenance import LONGEST_ATTRIBUTE, MOST_RANKS_TOLD, now, provenance
 from ..results.store import Store
 from ..results.view import read_view
@@ -53,7 +54,8 @@ class _Run:
         self.team, self.job, self.output, self.shard, self.stop = team, job, output, shard, stop
         self.began, self.started = time.monotonic(), now()
         self.solver = job.task.solver()
-        self.plan = _plan(job, self.solver, shard)
+        self.kernels = united(team.gather(_blas()) or [])
+        self.plan = _plan(job, self.solver, shard, self.kernels)
 
     def run(self, fresh: bool) -> int:
         """Solves what is missing and folds it into the file; returns the exit status."""
@@ -67,6 +69,8 @@ class _Run:
         units, count = self._units(missing)
         if self.team.first:
             self._announce(count, sum(stop - start for start, stop in missing))
+        if count:
+            self.team.on_first(lambda: self._note_kernels(store[0]))
         failures, share = self._solve(units, missing, count) if count else ([], Share(0, 0.0, 0.0))
         told = self.team.gather(failures)
         shares = self.team.gather(share)
@@ -94,6 +98,15 @@ class _Run:
         if self.shard.of > 1:
             text += f"; shard {self.shard}"
         click.echo(text)
+
+    def _note_kernels(self, store: Store) -> None:
+        """Keeps in the file which BLAS kernels compute its points, and says so where there are several."""
+        before = store.attributes()
+        kernels = united(kernels_of(before), self.kernels.splitlines())
+        if kernels != before.get(KERNELS):
+            store.fold({KERNELS: kernels})
+        if sentence := told(kernels):
+            click.echo(f"{self.output}: {sentence}")
 
     def _solve(self, units: list[Range], missing: list[Range], count: int) -> tuple[list[str], Share]:
         """This rank's share of the units, into its journal; and what to tell of failures."""
@@ -188,7 +201,13 @@ def _utilisation(shares: list[Share]) -> dict[str, NDArray[Any]]:
     }
 
 
-def _plan(job: Job, solver: Solver, shard: Shard) -> Plan:
+def _blas() -> str:
+    from ..solve.blas import blas
+
+    return blas()
+
+
+def _plan(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
     from ..solve import petsc
 
     versions = {f"{name}_version": value for name, value in petsc.versions().items()}
@@ -207,6 +226,7 @@ def _plan(job: Job, solver: Solver, shard: Shard) -> Plan:
             "config": job.text,
             "petsc_options": petsc.options(),
             "shard": str(shard) if shard.of > 1 else "",
+            KERNELS: kernels,
             "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in solver.statuses),
         }
         | job.config.constants

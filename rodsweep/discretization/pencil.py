@@ -60,6 +60,10 @@ class Pencil:
     def unknowns(self) -> int:
         return 3 * self.nodes
 
+    def finite(self, rod: Rod) -> int:
+        """The number of finite eigenvalues: without shear or rotational drag theta follows y."""
+        return self.nodes if rod.c2 == 0 or rod.gamma3 == 0 else 2 * self.nodes
+
     def positions(self) -> Array:
         """u of the nodes of y and theta, shape (nodes,)."""
         local = (gauss_lobatto(self.order)[0][1:] + 1) / 2

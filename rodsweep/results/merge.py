@@ -18,6 +18,7 @@ import numpy as np
 
 from ..errors import EnvironmentLacks, InputError
 from .journal import journal_directory
+from .kernels import KERNELS, kernels_of, told, united
 from .layouts import layout_of
 from .lock import Lock
 from .provenance import LONGEST_ATTRIBUTE, MOST_RANKS_TOLD, now
@@ -33,11 +34,13 @@ BLOCK = 1 << 16
 
 @dataclass(frozen=True, slots=True)
 class Merged:
-    """What came of a merge: points in the file, those still missing, and whether nothing else is."""
+    """What came of a merge: points in the file, those still missing, whether nothing else is, and by what."""
 
     points: int
     missing: int
     finished: bool
+    kernels: str
+    """What is to be said of the BLAS kernels that computed the points, where they are several; else empty."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +80,8 @@ def merge(output: Path, paths: Sequence[Path], needs_more: Callable[[dict[str, A
         missing = _missing(copy, sources[0])
         finished = not missing and not needs_more(json.loads(sources[0].attributes["config_resolved"]))
         with h5py.File(copy, "r+") as file:
-            file.attrs.update(_history(gave))
+            history = _history(gave)
+            file.attrs.update(history)
             if finished:
                 file.attrs["finished"] = now()
         replace_whole(copy, output)
@@ -88,7 +92,7 @@ def merge(output: Path, paths: Sequence[Path], needs_more: Callable[[dict[str, A
         with suppress(OSError):
             copy.unlink()
         lock.release()
-    return Merged(sources[0].points - missing, missing, finished)
+    return Merged(sources[0].points - missing, missing, finished, told(history[KERNELS]))
 
 
 def _opened(paths: Sequence[Path]) -> list[Source]:
@@ -137,12 +141,14 @@ def _refuse_others(first: Source, other: Source) -> None:
 
 def _history(sources: Sequence[Source]) -> dict[str, Any]:
     """Attributes that say by whom the points of these sources were computed."""
+    kernels = united(*(kernels_of(source.attributes) for source in sources))[:LONGEST_ATTRIBUTE]
     have = [s.attributes for s in sources if "ranks" in s.attributes]
     if not have:
-        return {"shard": ""}
+        return {"shard": "", KERNELS: kernels}
     hosts = {host for a in have for host in str(a.get("hosts", "")).split()}
     history = {
         "shard": "",
+        KERNELS: kernels,
         "stopped": "",
         "ranks": sum(int(a["ranks"]) for a in have),
         "hosts": " ".join(sorted(hosts))[:LONGEST_ATTRIBUTE],

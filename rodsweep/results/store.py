@@ -86,10 +86,14 @@ class Store:
                 f"{free / 1e6:.3g} MB are free"
             )
 
+    def attributes(self) -> dict[str, Any]:
+        """What the file says of itself."""
+        with h5py.File(self.path, "r") as file:
+            return dict(file.attrs)
+
     def finished(self) -> bool:
         """Whether the file says when its run ended."""
-        with h5py.File(self.path, "r") as file:
-            return "finished" in file.attrs
+        return "finished" in self.attributes()
 
     def missing(self) -> list[tuple[int, int]]:
         """Ranges of flat indices that are not computed yet, in order."""

@@ -14,7 +14,8 @@ from ..discretization.resolution import Resolution
 from ..model.bounds import squared_amplification
 from ..model.rod import Rod
 from .certificate import Count, count_right_of
-from .eigenpairs import eigen_solver
+from .eigenpairs import eigen_solver, forget_solvers
+from .petsc import PETSc
 from .polish import largest, roots
 
 WAVES_A_NODE = 2.0
@@ -25,6 +26,8 @@ NO_GAP = 1e-6
 """Relative gap below which two real parts count as equal."""
 MOST_LINES = 3
 """Lines tried before the count is given up."""
+PETSC_ERRORS = (PETSc.Error, SystemError)
+"""SystemError is how some releases of petsc4py wrap a PETSc.Error."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +37,8 @@ class Found:
     w: complex, shape (k,); error: |D/D'| at each, displacement: how far off the mesh was, in units of |w|
     or of the length over which D changes, wave: largest |q|, on_the_axis: whether it lies on the imaginary
     axis within its error, shape (k,); ahead: eigenvalues of the mesh right of all these that stand for no
-    root, though they lie where one may; vectors: the mesh's, shape (unknowns, k), or None.
+    root, though they lie where one may; vectors: the mesh's, shape (unknowns, k), or None; failure: why SLEPc
+    or LAPACK gave nothing, or empty.
     """
 
     resolution: Resolution
@@ -45,6 +49,7 @@ class Found:
     on_the_axis: NDArray[np.bool_]
     ahead: int
     vectors: NDArray[np.complex128] | None
+    failure: str = ""
 
     def worst(self, modes: int) -> float:
         """Largest relative error estimate of the leading modes."""
@@ -72,16 +77,29 @@ class Verdict:
 def attempt(rod: Rod, resolution: Resolution, wanted: int, shift: float, vectors: bool, tight: bool) -> Found:
     """The eigenvalues nearest the shift, at least `wanted` where they converge, without impostors.
 
-    tight: to the last digit of the mesh before they are refined on D.
+    tight: to the last digit of the mesh before they are refined on D. An error inside PETSc, SLEPc or LAPACK
+    is no eigenvalue found: to them another mesh is another matrix, on which the same need not happen.
     """
-    solver = eigen_solver(resolution)
-    raw = solver.solve(rod, shift, wanted, tight)
-    most_waves = WAVES_A_NODE * solver.pencil.nodes
-    order, w, error, displacement, wave, axis, ahead = roots(
+    raw, kept, failure = np.empty(0, complex), None, ""
+    try:
+        solver = eigen_solver(resolution)
+        raw = solver.solve(rod, shift, wanted, tight)
+        kept = solver.vectors(len(raw)) if vectors else None
+    except PETSC_ERRORS as error:
+        forget_solvers()
+        failure = cause_of(error)
+    most_waves = WAVES_A_NODE * resolution.elements * resolution.order
+    order, w, errors, displacement, wave, axis, ahead = roots(
         raw, rod.coefficients, sqrt(squared_amplification(rod)), most_waves
     )
-    kept = solver.vectors(len(raw))[:, order] if vectors else None
-    return Found(resolution, w, error, displacement, wave, axis, ahead, kept)
+    kept = kept[:, order] if kept is not None else None
+    return Found(resolution, w, errors, displacement, wave, axis, ahead, kept, failure)
+
+
+def cause_of(error: BaseException) -> str:
+    """The last line of an error's message, which in PETSc's says what is wrong."""
+    cause = error.__cause__ or error
+    return (str(cause) or type(cause).__name__).splitlines()[-1]
 
 
 def judge(rod: Rod, found: Found, modes: int) -> Verdict:

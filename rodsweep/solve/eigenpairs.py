@@ -26,6 +26,9 @@ START_TOLERANCE, START_SPARE = 1e-4, 5
 TIGHT_TOLERANCE, TIGHT_SPARE = 1e-14, 13
 """The same where nothing refines them, nor their vectors: the mesh is to be the only error."""
 MOST_RESTARTS = 200
+STEPS_OF_INFINITY = 2
+"""Steps of shift-and-invert after which nothing of infinite eigenvalues is left: one, or two where k2 = inf.
+All that a Krylov space has beyond these and the finite ones is rounding, in which LAPACK may fail (trexc)."""
 START_WIDTH = 3.3
 """Width of the first Krylov vector in units of the distance of nodes: a displacement next to the tip, which
 every mode moves, as smooth as the wanted modes are. It saves two steps of eleven."""
@@ -112,11 +115,12 @@ class EigenSolver:
             self.A.setValuesCSR(self.indptr, self.indices, values)
         self.A.assemble()
         self.eps.setOperators(self.A, self.B)
-        wanted = min(wanted, self.pencil.unknowns - 2)
+        most = self.pencil.finite(rod)
+        wanted = min(wanted, most - 1)  # a pair may be one more
         spare, tolerance = (TIGHT_SPARE, TIGHT_TOLERANCE) if tight else (START_SPARE, START_TOLERANCE)
         krylov = self.users_krylov or max(2 * wanted, wanted + spare)
         self.eps.setTolerances(self.users_tolerance or tolerance, MOST_RESTARTS)
-        krylov = min(krylov, self.pencil.unknowns)
+        krylov = min(krylov, most + STEPS_OF_INFINITY)
         self.eps.setDimensions(wanted, krylov, krylov)
         self.eps.setInitialSpace(self.start)
         self.eps.solve()
@@ -162,5 +166,5 @@ def eigen_solver(resolution: Resolution) -> EigenSolver:
 
 
 def forget_solvers() -> None:
-    """Drops every kept solver, after an error inside PETSc has left one in an unknown state."""
+    """Drops every kept solver: a PETSc object is not usable after an error inside it."""
     eigen_solver.cache_clear()

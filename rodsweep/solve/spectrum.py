@@ -24,9 +24,8 @@ from ..discretization.resolution import (
 from ..model.bounds import squared_amplification
 from ..model.dispersion import most_amplified_wave
 from ..model.rod import Rod
-from .attempt import Found, Verdict, attempt, judge
+from .attempt import PETSC_ERRORS, Found, Verdict, attempt, cause_of, judge
 from .eigenpairs import eigen_solver, forget_solvers
-from .petsc import PETSc
 from .status import Status
 
 SHIFT_ABOVE_GROWTH = 1.05
@@ -34,6 +33,8 @@ SHIFT_ABOVE_GROWTH = 1.05
 SPARE_MODES = 1
 """Eigenvalues asked for beyond those that the winding number counts."""
 MOST_ATTEMPTS = 12
+MOST_FAILURES = 3
+"""Attempts that may end with an error inside PETSc, SLEPc or LAPACK."""
 STALLED = 2
 """Refinements without a better error after which rounding, not the mesh, is taken as the limit."""
 SAFETY, STALLED_SAFETY = 0.5, 0.8
@@ -84,16 +85,9 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
     try:
         with np.errstate(all="ignore"):
             return _solve(rod, request, started)
-    except (PETSc.Error, SystemError, ArithmeticError, MemoryError) as error:
-        # SystemError is how some releases of petsc4py wrap a PETSc.Error.
-        forget_solvers()  # a PETSc object is not usable after an error inside it
-        return _nothing(Status.failed, request, _reason(error), started)
-
-
-def _reason(error: BaseException) -> str:
-    """The last line of an error's message, which in PETSc's says what is wrong."""
-    cause = error.__cause__ or error
-    return (str(cause) or type(cause).__name__).splitlines()[-1]
+    except (*PETSC_ERRORS, ArithmeticError, MemoryError) as error:
+        forget_solvers()
+        return _nothing(Status.failed, request, cause_of(error), started)
 
 
 def warm_up() -> None:
@@ -110,14 +104,17 @@ def _solve(rod: Rod, request: SpectrumRequest, started: float) -> Spectrum:
     wanted = request.modes
     best: tuple[tuple[bool, float], Found, Verdict | None] | None = None
     lost: Verdict | None = None
-    unresolved, stalled = False, 0
+    unresolved, stalled, failures = False, 0, 0
+    why = "no mesh within the limit resolves the wanted modes"
     vectors = request.vector_nodes > 0
     for turn in range(MOST_ATTEMPTS):
-        if resolution.unknowns > MOST_UNKNOWNS:
+        if resolution.unknowns > MOST_UNKNOWNS or failures > MOST_FAILURES:
             break
         found = attempt(rod, resolution, wanted, shift, vectors, tight=vectors or turn > 0)
         if len(found.w) < request.modes:
-            # Either too few converged, or what converged stands for no root yet: do both more.
+            # Too few converged, what converged stands for no root yet, or SLEPc failed: do both more.
+            failures += bool(found.failure)
+            why = found.failure or why
             wanted, resolution = wanted + request.modes, finer(resolution)
             continue
         verdict = judge(rod, found, request.modes) if request.certify else None
@@ -148,7 +145,7 @@ def _solve(rod: Rod, request: SpectrumRequest, started: float) -> Spectrum:
         )
     if unresolved:
         return _nothing(Status.modes_missing, request, "no mesh resolves what may lead", started)
-    return _nothing(Status.failed, request, "no mesh within the limit resolves the wanted modes", started)
+    return _nothing(Status.failed, request, why, started)
 
 
 def _shortfall(found: Found, verdict: Verdict | None, request: SpectrumRequest, bounded: bool) -> float:

@@ -7,6 +7,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from ...results.kernels import kernels_of
 from ...results.schema import DIMENSIONS, MISSING
 from ...results.view import View
 from .limit_cycle import limit_cycle_lines
@@ -57,6 +58,8 @@ def show_summary(view: View) -> None:
         f"computed {ran}; rodsweep {a.get('rodsweep_version')}, PETSc {a.get('petsc_version')}, "
         f"SLEPc {a.get('slepc_version')}, commit {str(a.get('git_commit'))[:12]}"
     )
+    kernels = kernels_of(a)
+    console.print(f"BLAS: {'; '.join(kernels)}", soft_wrap=True, markup=False)
 
 
 def _ranks(a: dict[str, Any]) -> list[str]:

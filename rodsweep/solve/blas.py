@@ -1,0 +1,40 @@
+"""The BLAS libraries of this process, and the kernel that each has taken for the processor.
+
+A library such as OpenBLAS carries a kernel for every kind of processor and chooses one when it is loaded.
+Kernels add in different orders, so that the results of two agree within rounding only. PETSc and NumPy may
+have a library each.
+"""
+
+from pathlib import Path
+from typing import Any
+
+from threadpoolctl import threadpool_info
+
+from . import petsc  # noqa: F401 - what is not loaded yet is not seen
+
+UNKNOWN = "unknown"
+"""What is said of a library that does not tell its name, such as the reference BLAS."""
+
+
+def blas() -> str:
+    """Name, version and kernel of PETSc's BLAS, and of NumPy's where NumPy has another, in one line."""
+    found: dict[str, set[str]] = {"PETSc": set(), "NumPy": set(), "SciPy": set()}
+    for library in threadpool_info():
+        if library["user_api"] == "blas":
+            found[_owner(library["filepath"])].add(_described(library))
+    petscs, numpys = (" and ".join(sorted(found[name])) for name in ("PETSc", "NumPy"))
+    if numpys in ("", petscs):
+        return petscs or UNKNOWN
+    return f"PETSc {petscs or UNKNOWN}, NumPy {numpys}"
+
+
+def _owner(path: str) -> str:
+    """Whose a library is: wheels of NumPy and SciPy bring their own, any other is the system's or PETSc's."""
+    names = {part.removesuffix(".libs") for part in Path(path).parts}
+    return "NumPy" if "numpy" in names else "SciPy" if "scipy" in names else "PETSc"
+
+
+def _described(library: dict[str, Any]) -> str:
+    """Such as openblas 0.3.21 Haswell."""
+    words = (library["internal_api"], library["version"], library.get("architecture"))
+    return " ".join(str(word) for word in words if word)
