@@ -72,11 +72,23 @@ def _vectors(rod: Rod, pencil: Pencil, eigenvalues: Complex) -> tuple[Complex, C
 def null_vectors(A: NDArray, B: NDArray, w: complex) -> tuple[NDArray, NDArray]:
     """The right and the left vector of the eigenvalue w, of largest entry 1; real where w is."""
     inverse = np.linalg.inv(A - np.diag((w if w.imag else w.real) * B))
-    x = z = np.ones(len(B))
+    return _iterated(inverse, B), _iterated(inverse.T, B)
+
+
+def _iterated(inverse: NDArray, B: NDArray) -> NDArray:
+    """The null vector of a nearly singular matrix, largest entry 1, by inverse iteration from its inverse.
+
+    What grows most in a step has the smallest residual after it. At a double eigenvalue the inverse all but
+    annihilates the vector that it has just given, and the next step gives rounding: hence the better of two.
+    """
+    x, last, growth = np.ones(len(B)), 0.0, 0.0
+    before = x
     for _ in range(ITERATIONS):
-        x, z = inverse @ (B * x), inverse.T @ (B * z)
-        x, z = x / np.abs(x).max(), z / np.abs(z).max()
-    return x, z
+        before, last = x, growth
+        x = inverse @ (B * x)
+        growth = float(np.abs(x).max())
+        x = x / growth
+    return x if growth >= last else before
 
 
 def _tip_scale(rod: Rod, pencil: Pencil, vectors: Complex) -> Complex:
