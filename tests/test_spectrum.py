@@ -58,8 +58,8 @@ def test_pulled_rods_lose_no_digit(reference_spectra):
 def by_luck(w, rod):
     """Errors up to here may be small by luck, whatever the estimate of what rounding can do: in 1/tau2.
 
-    D is rounded as if the force were, by half a unit in its last place or more. What that does to the eigenvalue
-    is, next to a double one, a hundred times what it is elsewhere: a few units in the eigenvalue's last place.
+    D is rounded as if the force were, by half a unit in its last place or more. What that does to an
+    eigenvalue is a few units in its own last place, and a hundred times as much next to a double one.
     """
     half_a_unit = np.finfo(float).eps / 2
     return abs(w) * max(4e-15, half_a_unit * sensitivity(complex(w), (rod.F, rod.k1, rod.k2, rod.gamma3)))

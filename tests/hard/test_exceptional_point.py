@@ -91,10 +91,11 @@ def solve(rod, accuracy=1e-8):
 def least_condition(place, there):
     """What rounding leaves at least of the condition numbers at F*, which are infinite.
 
-    With c = |psi| |xi| and (psi, xi) = b (w1 - w2) of two eigenvalues close to each other the condition number
-    is K = c/|b (w1 - w2)|, so that K |w1 - w2| = c/|b| beside F* is that of F*. There rounding of (A - w B) x
-    moves the two apart to |w1 - w2| = 2 sqrt(e/|b|), e = |(psi, rounding)|, which leaves K = sqrt((c/|b|) (c/e))/2.
-    c/e is the mesh's condition number over its `Shapes.rounding`, in both of which (psi, xi) cancels.
+    With c = |psi| |xi| and (psi, xi) = b (w1 - w2) of two close eigenvalues the condition number is
+    K = c/|b (w1 - w2)|, so that K |w1 - w2| = c/|b| beside F* is that of F*. There rounding of (A - w B) x
+    moves the two apart to |w1 - w2| = 2 sqrt(e/|b|), e = |(psi, rounding)|, which leaves
+    K = sqrt((c/|b|) (c/e))/2. c/e is the mesh's condition number over its `Shapes.rounding`, in both of
+    which (psi, xi) cancels.
     """
     beside = rod_at(place, 1e-8)
     first, second = leading(beside, 4)[:2]
