@@ -26,5 +26,5 @@ def told(attribute: str) -> str:
         return ""
     return (
         f"computed in parts by {len(kernels)} BLAS kernels ({'; '.join(kernels)}), between which numbers "
-        "differ in rounding, within their error estimates"
+        "differ in the last digits"
     )
