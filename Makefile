@@ -25,7 +25,7 @@ else
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: install demo figures test lint check stress bench clean distclean help FORCE
+.PHONY: install demo figures test test-kernels lint check stress bench clean distclean help FORCE
 .ONESHELL:
 .SHELLFLAGS := -euc
 # An activated .venv must pass neither its wrapper off as the machine's mpiexec nor its Python as the one to start from.
@@ -57,6 +57,8 @@ figures: .venv/installed  ## compute every config on two ranks and draw its figu
 
 test: .venv/installed  ## run the tests
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n auto --maxprocesses 4 --dist loadgroup
+test-kernels: .venv/installed  ## run what depends on the BLAS under other OpenBLAS kernels, or those in KERNELS
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tests/kernels.py $(KERNELS)
 lint: .venv/installed  ## check style, types and who may import whom
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
@@ -75,7 +77,7 @@ clean:  ## remove caches and build leftovers; results and .venv stay
 distclean: clean  ## remove .venv too; results stay
 	rm -rf .venv
 help:
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-10s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' Makefile
 
 # `mpiexec` in .venv is the machine's own with defaults that let it run as root, in containers and with more ranks than
 # cores; what the user has set stays. Ranks are not bound: two runs at a time would be bound to the same cores. The PRTE

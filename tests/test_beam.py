@@ -43,6 +43,7 @@ def test_jacobian_is_the_derivative_of_the_rate(elements, order):
         assert np.abs(J[:, k] - column).max() <= 1e-10 * np.abs(J[:, k]).max()
 
 
+@pytest.mark.kernel
 @MESHES
 def test_energy_law_holds_on_the_mesh_to_rounding(elements, order):
     beam = Beam(ROD, 0.7, mesh(elements, order))
@@ -95,6 +96,7 @@ def test_velocity_of_the_tip_is_that_of_its_reconstruction():
     assert beam.tip_velocity(z, rate) == pytest.approx(difference, rel=1e-6)
 
 
+@pytest.mark.kernel
 @pytest.mark.parametrize("rod", [ROD, Rod(27.43, 1e4, 1e2, 1e-2), Rod(60.0, 200.0, 1e4, 1e-4)])
 def test_linearisation_has_the_spectrum_of_the_straight_rod(rod):
     beam = Beam(rod, 0.8, mesh(1, 20))
@@ -112,6 +114,7 @@ def test_shape_converges_with_order_and_with_elements():
         assert beam.tip(bent(beam)) == pytest.approx(exact.tip(bent(exact)), abs=1e-12)
 
 
+@pytest.mark.kernel
 def test_small_start_grows_like_the_leading_eigenvalue():
     beam = Beam(ROD, 1.0, mesh(1, 20))
     mode, duration = leading_mode(beam), 0.02

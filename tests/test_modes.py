@@ -195,6 +195,7 @@ def test_at_rest_left_and_right_modes_are_equal(k1, k2, gamma3):
     assert (result.transient_growth, result.transient_time) == (1.0, 0.0)
 
 
+@pytest.mark.kernel
 @pytest.mark.parametrize("parameters", RODS)
 def test_modes_are_those_of_appendix_c(parameters):
     """The closed form, deformations included, and condition numbers."""
@@ -231,6 +232,7 @@ def test_printed_form_of_appendix_c():
     assert relative(result.right[1, 1], Theta / Y[-1]) < 1e-9
 
 
+@pytest.mark.kernel
 @pytest.mark.parametrize("parameters", RODS)
 def test_left_and_right_modes_are_biorthogonal(parameters):
     rod = Rod(*parameters)
@@ -275,6 +277,7 @@ def test_left_null_vector_of_the_pencil_has_the_adjoint_ends():
     assert left_over[2] < 1e-10
 
 
+@pytest.mark.kernel
 def test_condition_diverges_at_the_onset_like_a_square_root():
     distances = [1e-2, 1e-4]
     condition = []
@@ -288,6 +291,7 @@ def test_condition_diverges_at_the_onset_like_a_square_root():
     assert condition[1].min() > 50
 
 
+@pytest.mark.kernel
 def test_a_rod_at_the_onset_says_that_its_modes_are_inaccurate():
     result = solve_modes(Rod(ONSET, 1e4, 1e4, 1e-4), TIGHT)
     assert result.status == Status.accuracy_not_reached
@@ -296,6 +300,7 @@ def test_a_rod_at_the_onset_says_that_its_modes_are_inaccurate():
     assert result.condition_error[2:].max() < 1e-11
 
 
+@pytest.mark.kernel
 def test_modes_next_to_the_onset_are_not_called_accurate():
     """The eigenvalues are right to 1e-10 there, their condition numbers are not."""
     request = ModesRequest(modes=4, accuracy=1e-10, nodes=9, growth=False)
@@ -424,6 +429,7 @@ def test_abscissa_is_continuous_where_theta_is_no_state_of_its_own():
     assert shears[0] / shears[1] == pytest.approx(10, rel=0.02)
 
 
+@pytest.mark.kernel
 @pytest.mark.parametrize(
     "parameters",
     [

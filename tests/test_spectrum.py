@@ -18,6 +18,8 @@ from rodsweep.solve.status import Status
 
 TIGHT = SpectrumRequest(modes=4, accuracy=1e-12, certify=True)
 
+pytestmark = pytest.mark.kernel
+
 
 def rod_of(point):
     return Rod(*(float(point[name]) for name in ("F", "k1", "k2", "gamma3")))

@@ -25,6 +25,7 @@ def thresholds(k1, k2, gamma3, F_max=200.0, accuracy=1e-11):
     return solve_thresholds(k1, k2, gamma3, ThresholdsRequest(F_max, accuracy, True, 200))
 
 
+@pytest.mark.kernel
 @pytest.mark.parametrize("rod", REFERENCE, ids=lambda r: f"{r['k1']}-{r['k2']}-{r['gamma3']}-{r['F_end']}")
 def test_every_change_of_the_reference_and_no_other_to_twelve_digits(rod):
     found = thresholds(*(float(rod[name]) for name in ("k1", "k2", "gamma3", "F_end")))

@@ -20,6 +20,8 @@ from .exact import leading
 from .promises import all_broken, broken_promises, spectrum, true_errors
 from .rods import BESIDE, DOUBLE, EXCEPTIONAL, at_force
 
+pytestmark = pytest.mark.kernel
+
 
 def rod_at(place, offset=0.0):
     *rod, event = place
