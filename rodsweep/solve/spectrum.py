@@ -61,7 +61,8 @@ class SpectrumRequest:
 class Spectrum:
     """The leading transverse eigenvalues of one rod, in the order that `rodsweep.model` states.
 
-    eigenvalues: complex, shape (modes,), in 1/tau2; error_estimate: |D/D'|, shape (modes,).
+    eigenvalues: complex, shape (modes,), in 1/tau2; error_estimate: |D/D'|, shape (modes,): at least a tenth
+    of the error, and at most ten times it where that is no less than rounding of the force or of w makes it.
     unstable_count: eigenvalues with Re w > 0, or -1 where it is not known; proved where that was asked for.
     certified: the winding number proves that none right of the last given mode is missing.
     vectors: (Y, Theta), complex, shape (2, modes, vector_nodes), scaled to Y(1) = 1; or None.
