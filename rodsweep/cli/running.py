@@ -4,6 +4,7 @@ import os
 import socket
 import time
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -55,7 +56,8 @@ class _Run:
         self.began, self.started = time.monotonic(), now()
         self.solver = job.task.solver()
         self.kernels = united(team.gather(_blas()) or [])
-        self.plan = _plan(job, self.solver, shard, self.kernels)
+        plan = _plan(job, self.solver, shard)
+        self.plan = replace(plan, attributes=plan.attributes | {KERNELS: self.kernels})
 
     def run(self, fresh: bool) -> int:
         """Solves what is missing and folds it into the file; returns the exit status."""
@@ -207,7 +209,7 @@ def _blas() -> str:
     return blas()
 
 
-def _plan(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
+def _plan(job: Job, solver: Solver, shard: Shard) -> Plan:
     from ..solve import petsc
 
     versions = {f"{name}_version": value for name, value in petsc.versions().items()}
@@ -226,7 +228,6 @@ def _plan(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
             "config": job.text,
             "petsc_options": petsc.options(),
             "shard": str(shard) if shard.of > 1 else "",
-            KERNELS: kernels,
             "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in solver.statuses),
         }
         | job.config.constants
