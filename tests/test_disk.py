@@ -91,3 +91,13 @@ def test_disk_that_fills_up_in_the_middle_costs_no_point(command, ranks):
         assert " kept" in again.stdout
         assert small("run", "c.yaml", "-o", "whole.h5").returncode == 0
         assert same(content(small.directory / "c.h5"), content(small.directory / "whole.h5"))
+
+
+@pytest.mark.parametrize("word", ["check", "run"])
+def test_full_disk_under_a_log_of_both_streams_ends_with_3(command, word):
+    """Nothing can be said any more; at exit Python flushes again, which must not change the status."""
+    command.write("c.yaml", CONFIG.replace("1500", "2"))
+    with open("/dev/full", "w") as full:
+        argv = command.argv(word, "c.yaml")
+        run = subprocess.run(argv, cwd=command.directory, stdout=full, stderr=full, check=False)
+    assert run.returncode == 3

@@ -8,6 +8,7 @@ import errno
 import io
 import os
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 # Each rank is one process on one core: threads inside its BLAS would compete with the other ranks.
@@ -191,5 +192,16 @@ def main() -> None:
     except MemoryError:
         code, message = 3, "there is not enough memory"
     if message and _speaks():
-        click.echo(f"rodsweep: {_one_line(message)}", err=True)
+        with suppress(OSError):  # both streams may go into one log on one full disk
+            click.echo(f"rodsweep: {_one_line(message)}", err=True)
+    _drop_what_cannot_be_written()
     sys.exit(code)
+
+
+def _drop_what_cannot_be_written() -> None:
+    """Gives what cannot be flushed /dev/null: Python flushes at exit, and would end with 120."""
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except OSError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

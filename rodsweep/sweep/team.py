@@ -3,7 +3,7 @@
 import sys
 import traceback
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any, NoReturn, TypeVar
 
 from ..errors import EnvironmentLacks, Refusal
@@ -87,7 +87,8 @@ class Team:
 
     def abort(self) -> NoReturn:
         """Ends all ranks now, with exit status 3, after whoever calls has said why."""
-        sys.stdout.flush()
-        sys.stderr.flush()
+        for stream in (sys.stdout, sys.stderr):
+            with suppress(OSError):  # a full disk under the log must not keep the others waiting
+                stream.flush()
         self.comm.Abort(3)
         raise SystemExit(3)
