@@ -66,7 +66,17 @@ class Slurm:
 
     def __call__(self, *words: object) -> str:
         """What a command of Slurm prints."""
-        run = subprocess.run(
+        run = self._run(words)
+        assert run.returncode == 0, f"{words}: {run.stderr}"
+        return run.stdout.strip()
+
+    def refuses(self, *words: object) -> str:
+        """What a command of Slurm that fails says last; nothing where it succeeds."""
+        run = self._run(words)
+        return (run.stderr.splitlines() or ["(nothing)"])[-1] if run.returncode else ""
+
+    def _run(self, words: tuple[object, ...]) -> "subprocess.CompletedProcess[str]":
+        return subprocess.run(
             [*map(str, words)],
             cwd=self.directory,
             env=self.environment,
@@ -75,8 +85,6 @@ class Slurm:
             timeout=30,
             check=False,
         )
-        assert run.returncode == 0, f"{words}: {run.stderr}"
-        return run.stdout.strip()
 
     def submit(self, *words: object) -> str:
         """Submits a job; returns its number."""
