@@ -218,7 +218,7 @@ def _near(times: Array, values: Array, k: int) -> Polynomial:
 
 
 def _nearest_root(polynomial: Polynomial, when: float) -> float:
-    roots = polynomial.roots()
+    roots: NDArray[Any] = polynomial.roots()
     return float(roots[np.argmin(abs(roots - when))].real)
 
 

@@ -241,7 +241,7 @@ def errors(at: Reference, steps: Steps) -> tuple[float, float]:
     return _rms(np.diff(found.times)[1:] / at.period - 1), _rms(found.heights[1:] / at.tip_y_max - 1)
 
 
-def _rms(values: Array) -> float:
+def _rms(values: NDArray[np.floating]) -> float:
     return float(np.sqrt(np.mean(values**2))) if len(values) else inf
 
 

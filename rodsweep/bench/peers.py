@@ -143,8 +143,8 @@ def _displacement_pieces(elements: int, order: int) -> tuple[Array, Array, Array
         masses[here] += w / (2 * elements)
         stiff[here, here] += 2 * elements * (slope.T * wg) @ slope
         cross[here, here] += (slope.T * wg) @ value
-    stiff, cross, masses = stiff[1:, 1:], cross[1:, 1:], masses[1:]
-    return stiff, cross, stiff, cross.T, masses
+    free = slice(1, None)
+    return stiff[free, free], cross[free, free], stiff[free, free], cross[free, free].T, masses[free]
 
 
 @lru_cache(maxsize=64)

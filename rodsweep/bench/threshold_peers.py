@@ -66,7 +66,7 @@ class Spectra:
 
 def _grid(problem: Problem, points: int) -> tuple[Array, NDArray[np.complex128]]:
     """Equal steps of F from 0 to the top, and the leading eigenvalue at each."""
-    forces, spectra = np.linspace(0.0, problem.top, points), Spectra(problem)
+    forces, spectra = np.linspace(0.0, problem.top, points, dtype=np.float64), Spectra(problem)
     return forces, np.array([spectra(float(F))[0] for F in forces])
 
 

@@ -94,8 +94,8 @@ class Axis(Strict):
         if self.values is not None:
             return np.array(self.values)
         if self.spacing == "log":
-            return np.geomspace(self.start, self.stop, self.num)
-        return np.linspace(self.start, self.stop, self.num)
+            return np.geomspace(self.start, self.stop, self.num, dtype=np.float64)
+        return np.linspace(self.start, self.stop, self.num, dtype=np.float64)
 
 
 def as_axis(value: Any) -> Axis:

@@ -141,7 +141,7 @@ class Beam:
 
     def tip_velocity(self, z: Array, direction: Array) -> Array:
         """d/dt of the tip's (x, y, theta) for dz/dt = direction, by complex step, shape (3,)."""
-        velocity: Array = self.tip(z + 1j * TINY * direction).imag / TINY
+        velocity: Array = np.divide(self.tip(z + 1j * TINY * direction).imag, TINY)
         return velocity
 
     def least_stretch(self, z: Array) -> float:

@@ -152,7 +152,7 @@ def assemble(elements: int, order: int) -> Pencil:
     value = interpolation(x, xg)
     slope = value @ differentiation(x)
     mass = np.zeros(n + 1)
-    entries: list[tuple[int, NDArray[np.intp], NDArray[np.intp], Array]] = []
+    entries: list[tuple[int, NDArray[np.integer], NDArray[np.integer], NDArray[np.floating]]] = []
     for e in range(elements):
         local = np.arange(e * order, (e + 1) * order + 1)
         mass[local] += w * h / 2

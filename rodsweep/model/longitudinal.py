@@ -11,4 +11,5 @@ def longitudinal_rates(k1: float, gamma1: float, modes: int) -> NDArray[np.float
     """
     if np.isinf(k1):
         raise ValueError("an inextensible rod (k1 = inf) has no longitudinal modes")
-    return -(k1 / gamma1) * (np.pi * (np.arange(1, modes + 1) - 0.5)) ** 2
+    number = np.arange(1, modes + 1, dtype=np.float64)
+    return -(k1 / gamma1) * (np.pi * (number - 0.5)) ** 2

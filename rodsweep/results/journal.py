@@ -70,6 +70,6 @@ def read_journals(
                 raw = np.frombuffer(block, np.uint8)
                 raw = raw[: len(raw) // (size + 4) * (size + 4)].reshape(-1, size + 4)
                 sums = np.ascontiguousarray(raw[:, size:]).view("<u4").ravel()
-                whole = np.array([zlib.crc32(row[:size]) for row in raw], dtype=np.uint32) == sums
+                whole = np.array([zlib.crc32(row[:size].data) for row in raw], dtype=np.uint32) == sums
                 records = np.ascontiguousarray(raw[whole, :size]).view(layout.record).ravel()
                 yield records[(records["index"] >= 0) & (records["index"] < points)]

@@ -100,7 +100,7 @@ class Store:
         ranges: list[tuple[int, int]] = []
         for start, status in _statuses(self.path):
             edge = start + np.flatnonzero(np.diff(status == MISSING, prepend=False, append=False))
-            for a, b in zip(edge[::2].tolist(), edge[1::2].tolist(), strict=True):
+            for a, b in zip(map(int, edge[::2]), map(int, edge[1::2]), strict=True):
                 if ranges and ranges[-1][1] == a:
                     ranges[-1] = (ranges[-1][0], b)
                 else:
@@ -208,7 +208,7 @@ def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> No
         for records in filter(len, blocks):
             ordered = records[np.argsort(records["index"], kind="stable")]  # of a point twice, the last stays
             index = ordered["index"]
-            edges = [0, *(np.flatnonzero(np.diff(index) != 1) + 1).tolist(), len(index)]
+            edges = [0, *map(int, np.flatnonzero(np.diff(index) != 1) + 1), len(index)]
             runs = [(a, b, int(index[a])) for a, b in pairwise(edges)]
             for name, offset in offsets.items():
                 values = np.ascontiguousarray(ordered[name])

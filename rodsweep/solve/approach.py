@@ -236,6 +236,8 @@ class Approach:
         """
         moments = [state for _, state in self.past]
         size = np.linalg.norm(moments[-1])
-        found = [(np.linalg.norm(moments[-1] - moments[-1 - m]) / size, m) for m in range(1, len(moments))]
+        found = [
+            (float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))
+        ]
         enough = max(2 * min(found)[0], SAME)
-        return next((m, float(distance)) for distance, m in found if distance <= enough)
+        return next((m, distance) for distance, m in found if distance <= enough)

@@ -104,7 +104,7 @@ def cause_of(error: BaseException) -> str:
 
 def judge(rod: Rod, found: Found, modes: int) -> Verdict:
     """Counts the eigenvalues right of a line below the last wanted and below every unstable mode."""
-    for line in lines(found.w.tolist(), modes):
+    for line in lines(list(map(complex, found.w)), modes):
         count = count_right_of(line, rod)
         if count.number is not None:
             break

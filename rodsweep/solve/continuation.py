@@ -123,7 +123,7 @@ def tangent(jacobian: NDArray[np.float64]) -> Vector:
 
 
 def corrected(
-    equations: Equations, plane: Plane, guess: Vector, normal: Vector
+    equations: Equations, plane: Plane, guess: Vector, normal: NDArray[np.floating]
 ) -> tuple[Vector, NDArray[np.float64], float] | None:
     """(point, Jacobian, its error) of the curve in the plane through `guess` with that normal, or None."""
     v, last = guess.copy(), math.inf

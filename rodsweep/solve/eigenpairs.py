@@ -69,7 +69,8 @@ class EigenSolver:
         line = np.arange(n + 1, dtype=PETSc.IntType)
         self.B.createAIJ([n, n], csr=(line, line[:-1], np.ones(n)), comm=PETSc.COMM_SELF)
         self.line = line
-        self.gamma3, self.inertia, self.pace = -1.0, np.ones(n), 1.0
+        self.gamma3, self.pace = -1.0, 1.0
+        self.inertia: NDArray[np.float64] = np.ones(n)
         first = np.zeros(n)
         distance = (1 - self.pencil.positions()) * self.pencil.nodes / START_WIDTH
         first[: self.pencil.nodes] = np.exp(-(distance**2)) * np.sqrt(self.pencil.mass)

@@ -38,7 +38,7 @@ def highest(
     """
     low, high = span
     count = max(2, int(np.ceil(np.log(high / low) / np.log(START_RATIO))) + 1)
-    times = np.geomspace(low, high, count)
+    times = np.geomspace(low, high, count, dtype=np.float64)
     times[[0, -1]] = span
     squares, bends = _squares(propagator, times)
     i = int(squares.argmax())

@@ -147,8 +147,11 @@ def roots(
     displacement: in units of |w| or of the length over which D changes, whichever is larger. Rounding
     makes infinite eigenvalues finite: they lie outside the box or beyond the mesh, or have no root near.
     """
-    index, first = np.empty(len(raw), dtype=np.int64), np.empty(len(raw), dtype=np.complex128)
-    error, length, wave = np.empty(len(raw)), np.empty(len(raw)), np.empty(len(raw))
+    index: NDArray[np.int64] = np.empty(len(raw), dtype=np.int64)
+    first: NDArray[np.complex128] = np.empty(len(raw), dtype=np.complex128)
+    error: NDArray[np.float64] = np.empty(len(raw))
+    length: NDArray[np.float64] = np.empty(len(raw))
+    wave: NDArray[np.float64] = np.empty(len(raw))
     n, doubtful = 0, []
     for i in range(len(raw)):
         w = raw[i]

@@ -34,7 +34,8 @@ class Propagator:
         self.w: NDArray[np.complex128] = w[order].astype(complex)
         self.right = right[:, finite[order]]
         self.left = np.linalg.inv(right)[finite[order]].T
-        self.generator, self.overlap = np.zeros((0, 0)), np.zeros((0, 0))
+        self.generator: Array = np.zeros((0, 0))
+        self.overlap: Array = np.zeros((0, 0))
 
     def keep(self, k: int) -> int:
         """Represents exp(L t) P_k as Q exp(L_k t) (Z^T Q)^-1 Z^T, with orthonormal real Q and Z.
@@ -68,7 +69,7 @@ class Propagator:
         E = self.at(times)
         first = self.generator @ E
         half = np.swapaxes(E, 1, 2) @ (self.generator @ first) + np.swapaxes(first, 1, 2) @ first
-        size = np.linalg.eigvalsh(np.swapaxes(E, 1, 2) @ E)[:, -1]
+        size = np.asarray(np.linalg.eigvalsh(np.swapaxes(E, 1, 2) @ E)[:, -1], np.float64)
         return size, np.maximum(-np.linalg.eigvalsh(half + np.swapaxes(half, 1, 2))[:, 0], 0.0)
 
     def left_over(self, m: int, time: float) -> float:

@@ -81,8 +81,8 @@ def _iterated(inverse: NDArray, B: NDArray) -> NDArray:
     What grows most in a step has the smallest residual after it. At a double eigenvalue the inverse all but
     annihilates the vector that it has just given, and the next step gives rounding: hence the better of two.
     """
-    x, last, growth = np.ones(len(B)), 0.0, 0.0
-    before = x
+    x: NDArray = np.ones(len(B))
+    before, last, growth = x, 0.0, 0.0
     for _ in range(ITERATIONS):
         before, last = x, growth
         x = inverse @ (B * x)

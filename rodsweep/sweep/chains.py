@@ -97,7 +97,7 @@ class ChainSolver:
         The state is kept after the point, so a kill in between costs one point that is solved again;
         the other way round its state could be lost.
         """
-        order = self.chains.indices(chain).tolist()
+        order = list(map(int, self.chains.indices(chain)))
         first, state = self._resume(chain, order)
         for index in order[first:]:
             if self.stop:

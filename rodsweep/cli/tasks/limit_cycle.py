@@ -34,7 +34,7 @@ class LimitCycleTask:
     def __post_init__(self) -> None:
         needs = {"k1": "a finite number", "k2": "a finite number", "gamma3": "a number above 0"}
         for name, need in needs.items():
-            for value in self._columns[name].tolist():
+            for value in map(float, self._columns[name]):
                 if not isfinite(value) or (name == "gamma3" and value <= 0):
                     raise InputError(
                         f"parameters.{name} = {value:g} is not allowed in the task limit_cycle; it must be "

@@ -90,7 +90,7 @@ def chosen_figure(views: Sequence[View], output: Path, what: str | None, points:
     if what is None and output.suffix in FILMS:
         what = "animation"
     if what is None:
-        varies = len(set(point_columns(first)["F"].tolist())) > 1
+        varies = len(set(map(float, point_columns(first)["F"]))) > 1
         few = len(points) > 0 or (outcomes(first) == "cycle").sum() <= MOST_CYCLES
         shapes = few and not others and SHAPES[0] in first.variables
         what = "amplitude" if others or (varies and not points and not shapes) else "cycle"

@@ -121,7 +121,7 @@ def left_out(view: View, points: Sequence[int], cycles: Sequence[Cycle]) -> str:
     return f", the first {len(cycles)} of {number} cycles (--point chooses others)"
 
 
-def periodic(samples: Array, phase: Array) -> Array:
+def periodic(samples: Array, phase: NDArray[np.floating]) -> Array:
     """The trigonometric interpolant of samples over one period, shape (n,), at any phases t/T."""
     n = len(samples)
     c = np.fft.rfft(samples) / n
