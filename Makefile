@@ -25,7 +25,7 @@ else
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: install demo figures test test-kernels lint check stress bench clean distclean help FORCE
+.PHONY: install demo figures test test-kernels test-peers survey lint check stress bench clean distclean help FORCE
 .ONESHELL:
 .SHELLFLAGS := -euc
 # An activated .venv must pass neither its wrapper off as the machine's mpiexec nor its Python as the one to start from.
@@ -59,6 +59,10 @@ test: .venv/installed  ## run the tests
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n auto --maxprocesses 4 --dist loadgroup
 test-kernels: .venv/installed  ## run what depends on the BLAS under other OpenBLAS kernels, or those in KERNELS
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tests/kernels.py $(KERNELS)
+test-peers: private NO_APT := this system has no apt-get; Slurm, AUTO-07p and gfortran are found where they are on PATH
+test-peers: .venv/installed  ## install what the tests use where it is there: Slurm, AUTO-07p, gfortran (Debian)
+	@$(APT_INSTALL)
+	apt_install slurm-wlm munge libpmix-dev auto-07p gfortran iproute2
 lint: .venv/installed  ## check style, types and who may import whom
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
@@ -80,38 +84,50 @@ help:
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' Makefile
 
 # `mpiexec` in .venv is the machine's own with defaults that let it run as root, in containers and with more ranks than
-# cores; what the user has set stays. Ranks are not bound: two runs at a time would be bound to the same cores. The PRTE
-# names are Open MPI 5's; MPICH knows none of them.
+# cores; what the user has set stays. Ranks are not bound: two runs at a time would be bound to the same cores. They are
+# mapped by slot: Open MPI 5 would map them by core, and fill the cores of the first node whatever its slots. The PRTE names
+# are Open MPI 6's; for 5 they are changed below, 4 and MPICH know none of them. Between IPv6 addresses of one host
+# Open MPI 5 finds no way and says so, once a rank; several nodes may need theirs.
 define WRAPPER
 #!/bin/sh
 # Written by `make install`; the Makefile says why.
+case " $$* $${SLURM_JOB_NUM_NODES:-1}$$PBS_NODEFILE$$LSB_HOSTS$$PE_HOSTFILE " in
+  *host*|*" -H "*|*machinefile*) ;;
+  *" 1 ") ipv6=6 ;;
+esac
 for default in OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 \
     OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_orte_execute_quiet=1 HWLOC_HIDE_ERRORS=2 \
-    PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe PRTE_MCA_hwloc_default_binding_policy=none \
-    OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1; do
+    PRTE_MCA_mapby=slot:oversubscribe 'PRTE_MCA_bindto=$$OMPI_MCA_hwloc_base_binding_policy' \
+    $${ipv6:+OMPI_MCA_btl_tcp_disable_family=6} OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1; do
   eval "export $${default%%=*}=\"\$${$${default%%=*}:-$${default#*=}}\""
 done
 endef
 export WRAPPER
 
+define APT_INSTALL
+die() { echo "make: $$*" >&2; exit 1; }
+apt_install() {  # those of the packages that are missing
+  missing=$$(for p; do
+    [ "$$(dpkg-query -Wf '$${db:Status-Status}' $$p 2>/dev/null)" = installed ] || printf ' %s' $$p; done)
+  [ "$$missing" ] || return 0
+  advice="these packages are missing, let an administrator install them:$$missing"
+  command -v apt-get >/dev/null || die "$(NO_APT)"
+  [ $$(id -u) != 0 ] && sudo=sudo || sudo=
+  command -v $${sudo:-env} >/dev/null || die "$$advice"
+  $$sudo apt-get -q update || :  # a broken third-party source need not matter
+  $$sudo env DEBIAN_FRONTEND=noninteractive apt-get -qy -o DPkg::Lock::Timeout=300 install \
+    --no-install-recommends $$missing || die "$$advice"
+}
+endef
+
 # The stamp comes last: an interrupted installation is taken up again, a finished one costs nothing.
 .venv/installed: pyproject.toml Makefile $(if $(filter-out $(PETSC),$(ROUTE)),FORCE)
-	@die() { echo "make install: $$*" >&2; exit 1; }
+	@$(APT_INSTALL)
 	need="$(APT)"  # nothing, if MPI, LAPACK and Python's headers are there by other means
 	if [ $(PETSC) = pypi ] && printf '#include <mpi.h>\n#include <Python.h>\nint main(void) { MPI_Finalize(); }\n' |
 	  mpicc -I"$$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("include"))')" -o /dev/null -xc - -llapack
 	then need=; fi 2>/dev/null
-	missing=$$(for p in $$need; do
-	  [ "$$(dpkg-query -Wf '$${db:Status-Status}' $$p 2>/dev/null)" = installed ] || printf ' %s' $$p; done)
-	if [ "$$missing" ]; then
-	  advice="these packages are missing, let an administrator install them:$$missing"
-	  command -v apt-get >/dev/null || die "$(NO_APT)"
-	  [ $$(id -u) != 0 ] && sudo=sudo || sudo=
-	  command -v $${sudo:-env} >/dev/null || die "$$advice"
-	  $$sudo apt-get -q update || :  # a broken third-party source need not matter
-	  $$sudo env DEBIAN_FRONTEND=noninteractive apt-get -qy -o DPkg::Lock::Timeout=300 install \
-	    --no-install-recommends $$missing || die "$$advice"
-	fi
+	apt_install $$need
 	mpiexec=$$(command -v $(MPIEXEC))  # now, while .venv/bin is not on PATH
 	[ "$(ROUTE)" = $(PETSC) ] || rm -rf .venv
 	$(PYTHON) -m venv $(VENV_OPTIONS) .venv
@@ -137,7 +153,11 @@ export WRAPPER
 	  for p in petsc slepc petsc4py slepc4py; do $$pip install --no-build-isolation --no-deps $$p; done
 	  $$pip install -e '.[solvers]'
 	fi
-	{ echo "$$WRAPPER"; echo "exec '$$mpiexec' \"\$$@\""; } > $(BIN)/mpiexec
+	case $$("$$mpiexec" --version) in
+	  *'(Open MPI) 5.'*) names='s/PRTE_MCA_mapby/PRTE_MCA_rmaps_default_mapping_policy/; s/PRTE_MCA_bindto/PRTE_MCA_hwloc_default_binding_policy/' ;;
+	  *) names= ;;
+	esac
+	{ echo "$$WRAPPER"; echo "exec '$$mpiexec' \"\$$@\""; } | sed "$$names" > $(BIN)/mpiexec
 	chmod +x $(BIN)/mpiexec
 	$(BIN)/python -c 'from rodsweep.solve.spectrum import warm_up; warm_up()'  # compile the formulas now, not in the first run
 	touch $@
