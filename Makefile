@@ -85,7 +85,8 @@ help:
 
 # `mpiexec` in .venv is the machine's own with defaults that let it run as root, in containers and with more ranks than
 # cores; what the user has set stays. Ranks are not bound: two runs at a time would be bound to the same cores. They are
-# mapped by slot: Open MPI 5 would map them by core, and fill the cores of the first node whatever its slots. The PRTE names
+# mapped by slot: Open MPI 5 would map them by core, and fill the cores of the first node whatever its slots; and where more
+# ranks than slots are allowed it binds none, so where they shall be bound (jobs/many_nodes.sh) they are not. The PRTE names
 # are Open MPI 6's; for 5 they are changed below, 4 and MPICH know none of them. Between IPv6 addresses of one host
 # Open MPI 5 finds no way and says so, once a rank; several nodes may need theirs.
 define WRAPPER
@@ -95,9 +96,12 @@ case " $$* $${SLURM_JOB_NUM_NODES:-1}$$PBS_NODEFILE$$LSB_HOSTS$$PE_HOSTFILE " in
   *host*|*" -H "*|*machinefile*) ;;
   *" 1 ") ipv6=6 ;;
 esac
+case $${OMPI_MCA_hwloc_base_binding_policy:-none} in
+  none) more=:oversubscribe ;;
+esac
 for default in OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 \
     OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_orte_execute_quiet=1 HWLOC_HIDE_ERRORS=2 \
-    PRTE_MCA_mapby=slot:oversubscribe 'PRTE_MCA_bindto=$$OMPI_MCA_hwloc_base_binding_policy' \
+    PRTE_MCA_mapby=slot$$more 'PRTE_MCA_bindto=$$OMPI_MCA_hwloc_base_binding_policy' \
     $${ipv6:+OMPI_MCA_btl_tcp_disable_family=6} OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1; do
   eval "export $${default%%=*}=\"\$${$${default%%=*}:-$${default#*=}}\""
 done

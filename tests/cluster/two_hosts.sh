@@ -30,4 +30,6 @@ exec ${on_b[*]} env --ignore-environment HOME="$HOME" PATH="$PATH" sh -c "\$*"
 END
 export OMPI_MCA_plm_rsh_agent="sh $own/agent" OMPI_MCA_plm=rsh OMPI_MCA_orte_tmpdir_base=$own
 export OMPI_MCA_btl=tcp,self OMPI_MCA_btl_tcp_if_include=cable OMPI_MCA_oob_tcp_if_include=cable
+# The same for Open MPI from 5 on.
+export PRTE_MCA_plm_ssh_agent="sh $own/agent" PRTE_MCA_plm=ssh PRTE_MCA_prte_tmpdir_base=$own PRTE_MCA_prte_if_include=cable
 "$@" {alive}>&-
