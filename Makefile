@@ -59,16 +59,16 @@ test: .venv/installed  ## run the tests
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n auto --maxprocesses 4 --dist loadgroup
 test-kernels: .venv/installed  ## run what depends on the BLAS under other OpenBLAS kernels, or those in KERNELS
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tests/kernels.py $(KERNELS)
-test-peers: private NO_APT := this system has no apt-get; Slurm, AUTO-07p and gfortran are found where they are on PATH
-test-peers: .venv/installed  ## install what the tests use where it is there: Slurm, AUTO-07p, gfortran (Debian)
-	@$(APT_INSTALL)
-	apt_install slurm-wlm munge libpmix-dev auto-07p gfortran iproute2
 lint: .venv/installed  ## check style, types and who may import whom
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 check: lint test  ## lint and test: what must pass before a commit
+test-peers: private NO_APT := this system has no apt-get; Slurm, AUTO-07p and gfortran are found where they are on PATH
+test-peers: .venv/installed  ## install what the tests use where it is there: Slurm, AUTO-07p, gfortran (Debian)
+	@$(APT_INSTALL)
+	apt_install slurm-wlm munge libpmix-dev auto-07p gfortran iproute2
 stress: .venv/installed  ## kill runs at random 120 times and more, and compare what comes of them (half an hour)
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_KILLS=$${RODSWEEP_KILLS:-40} $(BIN)/python -m pytest tests/test_stress.py
 bench: .venv/installed  ## run the benchmarks: results/bench.md, its numbers (.h5) and figures
