@@ -204,7 +204,7 @@ class Approach:
 
     def _remember(self, times: Array, states: Array) -> None:
         moments = states[:, 2 * self.beam.mesh.nodes :]
-        self.past.extend(zip((self.clock + times).tolist(), moments, strict=True))
+        self.past.extend(zip(map(float, self.clock + times), moments, strict=True))
 
     def _closed(self, z: Array, times: Array, states: Array) -> Arrival | None:
         """The cycle, if the returns repeat and Newton's method finds it from z, the end of the run."""

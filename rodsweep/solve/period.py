@@ -24,7 +24,7 @@ def common_divisor(orbit: Orbit, present: float) -> int:
     """g of the harmonics larger than `present` times the largest; 1 proves that the period is minimal."""
     moments = orbit.run.states[:-1, 2 * orbit.beam.mesh.nodes :]
     sizes = np.linalg.norm(np.fft.rfft(moments, axis=0)[1:], axis=1)
-    return gcd(*(np.nonzero(sizes > present * sizes.max())[0] + 1).tolist())
+    return gcd(*map(int, np.nonzero(sizes > present * sizes.max())[0] + 1))
 
 
 def in_doubt(orbit: Orbit, error: float) -> int:
