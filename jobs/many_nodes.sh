@@ -20,7 +20,7 @@
 set -euo pipefail
 cd "$SLURM_SUBMIT_DIR"
 . jobs/requeue.sh
-# Each rank stays on its core; nobody else is on these nodes.
+# Each rank stays on its core; nobody else is on these nodes. (The mpiexec of .venv hands it on to Open MPI 5 and 6.)
 export OMPI_MCA_hwloc_base_binding_policy=${OMPI_MCA_hwloc_base_binding_policy:-core:overload-allowed}
 config=${1:?usage: sbatch jobs/many_nodes.sh CONFIG [RESULT.h5 [OPTION...]]}
 result=${2:-results/$(basename "${config%.*}").h5}
