@@ -8,7 +8,11 @@ import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-import pytest
+# One core each, as the command has it: threads of BLAS in two workers would compete, and NumPy asks when it is loaded.
+for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")
+
+import pytest  # noqa: E402
 from faults import small
 from faults.isolated import Isolated, isolated
 from ranks import kill, ranks_in
