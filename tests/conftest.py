@@ -8,11 +8,7 @@ import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-# One core each, as the command has it: threads of BLAS in two workers would compete, and NumPy asks when it is loaded.
-for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
-    os.environ.setdefault(_name, "1")
-
-import pytest  # noqa: E402
+import pytest
 from faults import small
 from faults.isolated import Isolated, isolated
 from ranks import kill, ranks_in
@@ -27,7 +23,12 @@ LONGEST = ("test_stress", "test_bench_sweep")
 
 
 def pytest_configure(config):
-    """Compiles the package: where bytecode is not written, each process that a test starts would do it."""
+    """Compiles the package: where bytecode is not written, each process that a test starts would do it.
+
+    Before NumPy is loaded BLAS is given one core, as by the command: two workers' threads would compete.
+    """
+    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(name, "1")
     if not hasattr(config, "workerinput"):  # the workers of pytest-xdist come later
         compileall.compile_dir(ROOT / "rodsweep", quiet=2)
 
