@@ -47,6 +47,7 @@ def hopf():
 
 
 # physics.md, section 6: an independent displacement-form code.
+@pytest.mark.kernel
 @pytest.mark.parametrize(
     "gamma1, period, y, x, theta",
     [
@@ -306,6 +307,7 @@ def test_options_that_lose_the_cycle_are_refused_in_one_sentence():
 
 # Their periods came out twice or three times as long: the motion settles by thirds of a turn (multipliers
 # near exp(2 pi i/3)), or what the steps miss of the stiff components outweighed the distance of two returns.
+@pytest.mark.kernel
 @pytest.mark.parametrize("amplitude", [0.1, 0.01])
 @pytest.mark.parametrize(
     "rod, period, accuracy",
