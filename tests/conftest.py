@@ -48,10 +48,21 @@ class Command:
     def __init__(self, directory: Path, loaded: Callable[[], Isolated] | None = None):
         """`loaded`: gives the process from which runs without a launcher are forked, to save their start."""
         self.directory, self.loaded = directory, loaded
+        self.left: list[tuple[subprocess.Popen, Path]] = []
+        """Processes that were started, and where."""
 
     def in_directory(self, directory: Path) -> "Command":
         """The same in another directory."""
-        return Command(directory, self.loaded)
+        there = Command(directory, self.loaded)
+        there.left = self.left
+        return there
+
+    def clear(self) -> None:
+        """Ends what a failing test has left running: ranks may wait for ever for what it would have done."""
+        for process, directory in self.left:
+            if process.poll() is None:
+                kill(process.pid)
+            kill(*ranks_in(directory).values())
 
     def argv(self, *words: object, ranks: int = 0) -> list[str]:
         launcher = [str(BIN / "mpiexec"), "-n", str(ranks)] if ranks else []
@@ -75,7 +86,7 @@ class Command:
         try:
             out, err = process.communicate(timeout=timeout)
         except subprocess.TimeoutExpired:
-            kill(process.pid, *ranks_in(self.directory).values())
+            self.clear()
             raise
         return subprocess.CompletedProcess(process.args, process.returncode, out, err)
 
@@ -83,7 +94,7 @@ class Command:
         self, *words: object, ranks: int = 0, patch: str = "", stdout=subprocess.PIPE, **variables: str
     ) -> subprocess.Popen:
         """The processes, started and left running, in a session of their own."""
-        return subprocess.Popen(
+        process = subprocess.Popen(
             self.argv(*words, ranks=ranks),
             cwd=self.directory,
             # As this process got it: MPI, once started in here, adds to the one in C.
@@ -93,6 +104,8 @@ class Command:
             text=True,
             start_new_session=True,
         )
+        self.left.append((process, self.directory))
+        return process
 
     def _path_of(self, patch: str) -> dict[str, str]:
         """PYTHONPATH with which every process executes `patch` when it starts."""
@@ -122,7 +135,9 @@ def loaded(tmp_path_factory) -> Iterator[Isolated]:
 
 @pytest.fixture
 def command(tmp_path, request):
-    return Command(tmp_path, lambda: request.getfixturevalue("loaded"))
+    command = Command(tmp_path, lambda: request.getfixturevalue("loaded"))
+    yield command
+    command.clear()
 
 
 @pytest.fixture(scope="session")
