@@ -67,8 +67,6 @@ def results(tmp_path_factory, loaded):
     for path in paths:
         name = path.stem
         whole = run(directory, "run", path.name, "-o", f"{name}-whole.h5", seconds=LONG)
-        if whole.status == 3 and name == "limit_cycle":  # this PETSc cannot integrate them
-            continue
         assert whole.status == 0, whole.err
         content[name] = run.content(directory / f"{name}-whole.h5")
         assert len(content[name]) > 10
@@ -86,8 +84,6 @@ def shared(of, name, each):
 
 @pytest.fixture(params=list(small.CONFIGS))
 def name(request, results):
-    if request.param not in results.content:
-        pytest.skip("the ARKIMEX integrators of this PETSc fail on a rod whose cycle is known")
     return request.param
 
 
