@@ -83,7 +83,7 @@ def shared(of, name, each):
 
 
 @pytest.fixture(params=list(small.CONFIGS))
-def name(request, results):
+def name(request):
     return request.param
 
 
