@@ -80,7 +80,8 @@ def attempt(rod: Rod, resolution: Resolution, wanted: int, shift: float, vectors
     tight: to the last digit of the mesh before they are refined on D. An error inside PETSc, SLEPc or LAPACK
     is no eigenvalue found: to them another mesh is another matrix, on which the same need not happen.
     """
-    raw, kept, failure = np.empty(0, complex), None, ""
+    raw: NDArray[np.complex128] = np.empty(0, complex)
+    kept, failure = None, ""
     try:
         solver = eigen_solver(resolution)
         raw = solver.solve(rod, shift, wanted, tight)
