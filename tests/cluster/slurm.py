@@ -187,11 +187,16 @@ def _configure(directory: Path, own_host_names: bool) -> dict[str, str]:
         raise CannotStart(f"user {os.geteuid()} has no name") from None
     path = directory / "slurm.conf"
     path.write_text(CONFIGURATION.format(directory=directory, host=host, port=port, nodes=nodes, user=user))
-    (directory / "cgroup.conf").write_text("CgroupPlugin=disabled\n")  # not everybody may make control groups
     foreign = ("SLURM", "SBATCH", "OMPI_", "PMIX_")  # tests may themselves run inside a job, or beside ranks
     kept = {name: value for name, value in os.environ.items() if not name.startswith(foreign)}
     # The nodes have the same addresses, and Open MPI 5 finds no way from an IPv6 address to itself.
-    return kept | {"SLURM_CONF": str(path), "OMPI_MCA_btl_tcp_disable_family": "6"}
+    environment = kept | {"SLURM_CONF": str(path), "OMPI_MCA_btl_tcp_disable_family": "6"}
+    version = subprocess.run(
+        ["sbatch", "--version"], env=environment, capture_output=True, text=True, check=True
+    )
+    if int(version.stdout.split()[1].split(".")[0]) >= 23:  # before, it does without control groups by itself
+        (directory / "cgroup.conf").write_text("CgroupPlugin=disabled\n")
+    return environment
 
 
 class _Daemons:
