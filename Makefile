@@ -56,7 +56,7 @@ figures: .venv/installed  ## compute every config on two ranks and draw its figu
 	$$draw results/fig5.h5 -o docs/fig5.gif
 
 test: .venv/installed  ## run the tests
-	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n auto --maxprocesses 4 --dist loadgroup
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n auto --dist loadgroup
 test-kernels: .venv/installed  ## run what depends on the BLAS under other OpenBLAS kernels, or those in KERNELS
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tests/kernels.py $(KERNELS)
 lint: .venv/installed  ## check style, types and who may import whom
@@ -70,7 +70,7 @@ test-peers: .venv/installed  ## install what the tests use where it is there: Sl
 	@$(APT_INSTALL)
 	apt_install slurm-wlm munge libpmix-dev auto-07p gfortran iproute2
 survey: .venv/installed  ## limit cycles of 300 random stiff rods, or RODSWEEP_RODS, from two starts (some minutes)
-	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$${RODSWEEP_RODS:-300} $(BIN)/python -m pytest -n auto --maxprocesses 4 tests/hard/test_minimal_periods.py
+	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$${RODSWEEP_RODS:-300} $(BIN)/python -m pytest -n auto tests/hard/test_minimal_periods.py
 stress: .venv/installed  ## kill runs at random 120 times and more, and compare what comes of them (half an hour)
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_KILLS=$${RODSWEEP_KILLS:-40} $(BIN)/python -m pytest tests/test_stress.py
 bench: .venv/installed  ## run the benchmarks: results/bench.md, its numbers (.h5) and figures

@@ -33,6 +33,12 @@ def pytest_configure(config):
         compileall.compile_dir(ROOT / "rodsweep", quiet=2)
 
 
+@pytest.hookimpl(optionalhook=True)  # of pytest-xdist, which need not be there
+def pytest_xdist_auto_num_workers(config):
+    """One worker more than cores, four at most: some tests wait for other processes, or sleep."""
+    return min(len(os.sched_getaffinity(0)) + 1, 4)
+
+
 def pytest_collection_modifyitems(config, items):
     """Tells pytest-xdist, where it is used, which tests belong together, and what takes longest."""
     items.sort(key=lambda item: item.path.stem not in LONGEST)

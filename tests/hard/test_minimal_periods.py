@@ -12,7 +12,7 @@ import pytest
 
 from rodsweep.solve.cycles import CycleRequest, CycleStatus, solve_cycle
 
-RODS, BATCH = int(os.environ.get("RODSWEEP_RODS", "16")), 8
+RODS, BATCH = int(os.environ.get("RODSWEEP_RODS", "12")), 4
 SETTLED = (CycleStatus.cycle, CycleStatus.straight)
 
 
