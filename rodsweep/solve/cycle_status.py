@@ -25,8 +25,8 @@ class CycleStatus(IntEnum):
 
 SENTENCES = {
     CycleStatus.cycle: (
-        "the rod beats: the cycle closes, all its Floquet multipliers lie inside the circle, and its period "
-        "and extrema are as accurate as asked for"
+        "the rod beats: the cycle closes, and no sooner, all its Floquet multipliers lie inside the circle, "
+        "and its period and extrema are as accurate as asked for"
     ),
     CycleStatus.straight: "the rod is straight again, and stays so: nothing beats from this start",
     CycleStatus.not_settled: (
