@@ -23,7 +23,7 @@ done
 
 # What Open MPI calls instead of ssh, with the host and the command line as words. Like ssh it passes no variables on.
 own=$(mktemp -d)
-trap 'rm -r "$own"' EXIT
+trap 'until rm -rf "$own"; do sleep 0.1; done' EXIT  # host-b's daemon may still be clearing up in there
 cat > "$own/agent" <<END
 shift
 exec ${on_b[*]} env --ignore-environment HOME="$HOME" PATH="$PATH" sh -c "\$*"
