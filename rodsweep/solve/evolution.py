@@ -212,7 +212,7 @@ def relaxed(beam: Beam, z: Array, period: float) -> Array:
 
     A state that no run led to, as one scaled or interpolated, has rates of 1e10/tau2 in the components that
     k1, k2 and 1/gamma3 make fast. The first, explicit stage of ARKIMEX does not damp them, at no step length;
-    backward Euler does in two steps.
+    backward Euler does within ten steps.
     """
     run = integrator(beam.mesh, RELAXATION).run(beam, z, period / 1000, period / 1e5)
     return run.states[-1] if run.ending == Ending.reached else z
