@@ -165,6 +165,6 @@ endef
 	esac
 	{ echo "$$WRAPPER"; echo "exec '$$mpiexec' \"\$$@\""; } | sed "$$names" > $(BIN)/mpiexec
 	chmod +x $(BIN)/mpiexec
-	$(BIN)/python -c 'from rodsweep.solve.spectrum import warm_up; warm_up()'  # compile the formulas now, not in the first run
+	$(BIN)/python -c 'from rodsweep.solve.spectrum.search import warm_up; warm_up()'  # compile the formulas now, not in the first run
 	touch $@
 	echo 'Installed. Next: . .venv/bin/activate'

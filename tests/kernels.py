@@ -20,8 +20,8 @@ ROUNDING_APART = {
 TRY = """
 import numpy as np
 from rodsweep.model.rod import Rod
-from rodsweep.solve.blas import blas
-from rodsweep.solve.spectrum import SpectrumRequest, solve_spectrum
+from rodsweep.solve.backend.blas_kernel import blas
+from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 found = solve_spectrum(Rod(2000.0, 1e4, 1e4, 1e-4), SpectrumRequest(4, 1e-10, True))
 assert abs(found.eigenvalues[0].real - 965025.548182) < 1e-6

@@ -5,7 +5,7 @@ from subprocess import Popen
 
 from ranks import pause_until
 
-from rodsweep.results.view import read_view
+from rodsweep.results.file.view import read_view
 
 FOR_EVER = 1e9
 
@@ -14,7 +14,7 @@ def slowly(pause: float, points: int = 1) -> str:
     """What every rank executes first: from so many points on it waits after each, until asked to stop."""
     return f"""
 import time
-from rodsweep.results.journal import Journal
+from rodsweep.results.run.journal import Journal
 from rodsweep.sweep.stop import Stop
 
 append, note = Journal.append, Stop._note

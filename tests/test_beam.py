@@ -8,12 +8,12 @@ from rodsweep.discretization.beam import Beam, configuration, mesh
 from rodsweep.discretization.quadrature import gauss_lobatto
 from rodsweep.model.longitudinal import longitudinal_rates
 from rodsweep.model.rod import Rod
-from rodsweep.solve.evolution import Ending, evolve, forget_integrators, integrator
-from rodsweep.solve.method import Method
-from rodsweep.solve.orbit import PERIOD_MAP
-from rodsweep.solve.petsc import PETSc
-from rodsweep.solve.rest import leading_mode
-from rodsweep.solve.spectrum import SpectrumRequest, solve_spectrum
+from rodsweep.solve.backend.petsc import PETSc
+from rodsweep.solve.cycle.shooting import PERIOD_MAP
+from rodsweep.solve.motion.integrator import Ending, evolve, forget_integrators, integrator
+from rodsweep.solve.motion.leading_mode import leading_mode
+from rodsweep.solve.motion.time_scheme import Method
+from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 ROD = Rod(50.0, 1e4, 1e2, 1e-2)
 MESHES = pytest.mark.parametrize("elements, order", [(1, 16), (3, 8)])

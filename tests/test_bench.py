@@ -5,13 +5,13 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from rodsweep.bench import spectrum
-from rodsweep.bench.exact import exact_spectrum, relative_error
-from rodsweep.bench.peers import PEERS, chebyshev_first_order, dense_inverse, displacement_elements
-from rodsweep.bench.spectrum import HARD, MODES, every_size, spectrum_study
+from rodsweep.bench.spectrum import study as spectrum
+from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
+from rodsweep.bench.spectrum.peers import PEERS, chebyshev_first_order, dense_inverse, displacement_elements
+from rodsweep.bench.spectrum.study import HARD, MODES, every_size, spectrum_study
 from rodsweep.bench.study import Measurement, Study, race
 from rodsweep.model.rod import Rod
-from rodsweep.results.measurements import write_measurements
+from rodsweep.results.file.measurements import write_measurements
 
 EASY = Rod(30.0, 1e4, 1e4, 1e-4)
 

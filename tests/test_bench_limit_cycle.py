@@ -6,9 +6,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from rodsweep.bench import cycle_peers
-from rodsweep.bench.cycle_peers import CVODE, DEFAULT, Steps, cvode_module, families, returns
-from rodsweep.bench.limit_cycle import (
+from rodsweep.bench.limit_cycle import integrators as cycle_peers
+from rodsweep.bench.limit_cycle.integrators import CVODE, DEFAULT, Steps, cvode_module, families, returns
+from rodsweep.bench.limit_cycle.study import (
     PERIODS,
     Row,
     Wait,
@@ -21,8 +21,8 @@ from rodsweep.bench.limit_cycle import (
     waits_table,
     work_precision,
 )
-from rodsweep.solve.evolution import integrator
-from rodsweep.solve.orbit import PERIOD_MAP
+from rodsweep.solve.cycle.shooting import PERIOD_MAP
+from rodsweep.solve.motion.integrator import integrator
 
 ORDERS = {
     "ARKIMEX 2": (2, 1e-4, 1e-5),
@@ -145,7 +145,7 @@ def test_the_benchmark_writes_its_tables_and_its_figure(monkeypatch, tmp_path):
     few = [replace(f, tolerances=f.tolerances[1:4:2], settling=f.settling[-3:]) for f in families()[3:4]]
     radau = next(f for f in families() if f.name == "SciPy Radau")
     few.append(replace(radau, tolerances=(1e-3, 1e-5), settling=(1e-5,)))
-    monkeypatch.setattr("rodsweep.bench.limit_cycle.families", lambda: few)
+    monkeypatch.setattr("rodsweep.bench.limit_cycle.study.families", lambda: few)
     study = limit_cycle_study(quick=True)
     text = study.text
     assert "| 50 | solve_cycle |" in text

@@ -6,9 +6,9 @@ from math import isnan
 import numpy as np
 import pytest
 
-from rodsweep.bench import sweep
-from rodsweep.bench.launch import Run, launcher, run
-from rodsweep.bench.sweep import Row, growth, instant_table, spectrum_case, sweep_study, uneven_forces
+from rodsweep.bench.sweep import study as sweep
+from rodsweep.bench.sweep.launch import Run, launcher, run
+from rodsweep.bench.sweep.study import Row, growth, instant_table, spectrum_case, sweep_study, uneven_forces
 from rodsweep.errors import EnvironmentLacks
 
 FEW_MEGABYTES = 4.0

@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 from conftest import ROOT
 
-from rodsweep.bench import continuation_peers, threshold_methods, thresholds
-from rodsweep.bench.continuation_peers import (
+from rodsweep.bench.thresholds import continuation_codes as continuation_peers
+from rodsweep.bench.thresholds import study as thresholds
+from rodsweep.bench.thresholds.cases import CASES, Found, Problem, error_of
+from rodsweep.bench.thresholds.continuation_codes import (
     auto_program,
     auto_version,
     hopf_by_auto,
@@ -19,9 +21,8 @@ from rodsweep.bench.continuation_peers import (
     pycont_module,
     reduced,
 )
-from rodsweep.bench.threshold_cases import CASES, Found, Problem, error_of
-from rodsweep.bench.threshold_methods import CONTINUATION, HOPF, ONSET, Method, methods
-from rodsweep.bench.threshold_peers import (
+from rodsweep.bench.thresholds.methods import CONTINUATION, HOPF, ONSET, Method, methods
+from rodsweep.bench.thresholds.peers import (
     Spectra,
     hopf_by_brent,
     hopf_interpolated,
@@ -30,7 +31,8 @@ from rodsweep.bench.threshold_peers import (
     onset_by_brent,
     onset_by_square_root,
 )
-from rodsweep.bench.thresholds import measure, table, thresholds_study
+from rodsweep.bench.thresholds.study import measure, table, thresholds_study
+from rodsweep.bench.thresholds.study import methods as threshold_methods
 from rodsweep.discretization.resolution import Resolution
 
 CASE = {case.name: case for case in CASES}

@@ -4,10 +4,10 @@ import pytest
 from contents import content, same_spectra
 from kernels import other_kernels
 
-from rodsweep.results.kernels import KERNELS, kernels_of, told, united
-from rodsweep.results.view import read_view
-from rodsweep.solve import blas as blas_module
-from rodsweep.solve.blas import blas
+from rodsweep.results.file.kernels import KERNELS, kernels_of, told, united
+from rodsweep.results.file.view import read_view
+from rodsweep.solve.backend import blas_kernel as blas_module
+from rodsweep.solve.backend.blas_kernel import blas
 
 SPECTRA = """
 task: spectrum

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from rodsweep.model.bounds import eigenvalue_box
-from rodsweep.model.determinant import scaled_determinant
+from rodsweep.determinant.box import eigenvalue_box
+from rodsweep.determinant.certified_count import MOST_NODES, count_right_of, phase_change, stepped_change
+from rodsweep.determinant.dominance import dominant_factors, dominated
+from rodsweep.determinant.value import scaled_determinant
 from rodsweep.model.rod import Rod
-from rodsweep.solve.certificate import MOST_NODES, count_right_of, phase_change, stepped_change
-from rodsweep.solve.dominance import dominant_factors, dominated
 
 CROWDED = Rod(2000.0, 1e4, 1e4, 1e-4)
 

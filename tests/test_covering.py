@@ -7,17 +7,17 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from rodsweep.model.bounds import (
+from rodsweep.determinant.box import (
     quiet_radius,
     squared_amplification,
     squared_amplification_over,
 )
-from rodsweep.model.determinant import branches, scaled_determinant
-from rodsweep.model.path import Path, changes, coefficients_at, determinant_along, root_changes
+from rodsweep.determinant.covering import cover, distance, examine, first_boxes, slabs
+from rodsweep.determinant.discs import bound_on_bidisc
+from rodsweep.determinant.newton import eigenvalue_newton
+from rodsweep.determinant.path import Path, changes, coefficients_at, determinant_along, root_changes
+from rodsweep.determinant.value import branches, scaled_determinant
 from rodsweep.model.rod import Rod
-from rodsweep.solve.covering import cover, distance, examine, first_boxes, slabs
-from rodsweep.solve.discs import bound_on_bidisc
-from rodsweep.solve.newton import eigenvalue_newton
 
 RODS = [
     Rod(30.0, 1e4, 1e4, 1e-4),
@@ -85,7 +85,7 @@ def test_bound_on_a_bidisc_holds_for_the_determinant_in_complex_p(path):
 
 
 def complex_determinant(w, path, p):
-    """D at complex w and p, from the formula in `rodsweep.model.determinant`, in 30 digits."""
+    """D at complex w and p, from the formula in `rodsweep.determinant.value`, in 30 digits."""
     with mp.workdps(30):
         w, p = mp.mpmathify(complex(w)), mp.mpmathify(complex(p))
         F, nu, c2, gamma3 = (mp.mpf(a) + p * b for a, b in zip(path.origin, path.direction, strict=True))

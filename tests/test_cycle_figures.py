@@ -12,13 +12,13 @@ from PIL import Image
 
 from rodsweep.errors import EnvironmentLacks, InputError
 from rodsweep.post.figures import chosen_figure, draw
-from rodsweep.post.figures.amplitude import broken_at_onset, draw_amplitude, lines_of
-from rodsweep.post.figures.cycles import chosen_cycles, derivative, periodic
-from rodsweep.post.figures.energy import draw_energy
-from rodsweep.post.figures.limit_cycle import ARROW, draw_cycle, drawn_shapes
-from rodsweep.results.creation import Plan, create_file
-from rodsweep.results.limit_cycle import limit_cycle_layout
-from rodsweep.results.view import View
+from rodsweep.post.figures.cycle.amplitude import broken_at_onset, draw_amplitude, lines_of
+from rodsweep.post.figures.cycle.chosen import chosen_cycles, derivative, periodic
+from rodsweep.post.figures.cycle.energy import draw_energy
+from rodsweep.post.figures.cycle.portrait import ARROW, draw_cycle, drawn_shapes
+from rodsweep.results.file.creation import Plan, create_file
+from rodsweep.results.file.view import View
+from rodsweep.results.layouts.limit_cycle import limit_cycle_layout
 
 pytestmark = pytest.mark.filterwarnings("error::UserWarning")  # a layout that fails is only a warning
 

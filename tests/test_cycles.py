@@ -11,15 +11,15 @@ from rodsweep.discretization.beam import Beam, mesh
 from rodsweep.discretization.quadrature import lobatto_points
 from rodsweep.errors import EnvironmentLacks
 from rodsweep.model.rod import Rod
-from rodsweep.solve import approach
-from rodsweep.solve.cycles import CycleRequest, CycleStatus, received, solve_cycle, warm_up
-from rodsweep.solve.evolution import forget_integrators
-from rodsweep.solve.measures import derivative, maximum, measure, resampled
-from rodsweep.solve.orbit import shoot
-from rodsweep.solve.period import common_divisor, in_doubt, shortened
-from rodsweep.solve.petsc import PETSc
-from rodsweep.solve.resolved import _on_mesh
-from rodsweep.solve.thresholds import ThresholdsRequest, solve_thresholds
+from rodsweep.solve.backend.petsc import PETSc
+from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
+from rodsweep.solve.cycle import transient as approach
+from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, received, solve_cycle, warm_up
+from rodsweep.solve.cycle.measures import derivative, maximum, measure, resampled
+from rodsweep.solve.cycle.minimal_period import common_divisor, in_doubt, shortened
+from rodsweep.solve.cycle.refinement import _on_mesh
+from rodsweep.solve.cycle.shooting import shoot
+from rodsweep.solve.motion.integrator import forget_integrators
 
 SOFT = (1e4, 1e2, 1e-2, 1.0)
 """(k1, k2, gamma3, gamma1) of the paper's Fig. 5."""

@@ -15,11 +15,11 @@ from rodsweep.cli.job import make_job
 from rodsweep.cli.tasks.protocol import succeeded
 from rodsweep.errors import InputError
 from rodsweep.post.summary import show_summary
-from rodsweep.results.checkpoints import Checkpoints, drop_checkpoints
-from rodsweep.results.creation import Plan
-from rodsweep.results.journal import Journal
-from rodsweep.results.store import Store
-from rodsweep.results.view import read_view
+from rodsweep.results.file.creation import Plan
+from rodsweep.results.file.store import Store
+from rodsweep.results.file.view import read_view
+from rodsweep.results.run.checkpoints import Checkpoints, drop_checkpoints
+from rodsweep.results.run.journal import Journal
 from rodsweep.sweep.chains import Chains, ChainSolver, Missing
 from rodsweep.sweep.stop import Stop
 
@@ -336,7 +336,7 @@ def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
     code = (
         "import sys\nfrom pathlib import Path\n"
         "from rodsweep.cli.checking import describe_job\nfrom rodsweep.cli.job import make_job\n"
-        "from rodsweep.post.summary import show_summary\nfrom rodsweep.results.view import read_view\n"
+        "from rodsweep.post.summary import show_summary\nfrom rodsweep.results.file.view import read_view\n"
         "describe_job(make_job(Path(sys.argv[1]), ()))\nshow_summary(read_view(Path(sys.argv[2])))\n"
         "print([m for m in ('mpi4py.MPI', 'petsc4py', 'slepc4py') if m in sys.modules])"
     )
@@ -473,7 +473,7 @@ def test_damaged_checkpoint_counts_as_none(tmp_path):
 # --- runs -------------------------------------------------------------------------------------------------
 
 FAKE = '''
-"""rodsweep.solve.cycles without PETSc: what a point gives depends on what it started from."""
+"""rodsweep.solve.cycle.limit_cycle without PETSc: what a point gives depends on what it started from."""
 
 import os, sys, time
 from enum import IntEnum
@@ -510,7 +510,7 @@ def solve_cycle(F, k1, k2, gamma3, gamma1, request, start=None):
         tip=None, energy=None, shape=None, state=np.array([memory, F, k2]),
     )
 
-fake = ModuleType("rodsweep.solve.cycles")
+fake = ModuleType("rodsweep.solve.cycle.limit_cycle")
 fake.CycleStatus, fake.CycleRequest, fake.solve_cycle = CycleStatus, SimpleNamespace, solve_cycle
 fake.warm_up = lambda: None
 sys.modules[fake.__name__] = fake
@@ -654,14 +654,14 @@ def test_straight_rods_are_no_failure_and_failed_ones_are(command):
 
 
 def test_statuses_of_the_other_tasks_succeed_when_they_are_ok():
-    from rodsweep.solve.status import Status
-    from rodsweep.solve.thresholds import ThresholdStatus
+    from rodsweep.solve.changes.thresholds import ThresholdStatus
+    from rodsweep.solve.spectrum.status import Status
 
     for kind in (Status, ThresholdStatus):
         assert [status.name for status in kind if succeeded(status)] == ["ok"]
 
 
 def test_statuses_of_a_cycle_are_those_of_the_file():
-    solver = pytest.importorskip("rodsweep.solve.cycles", reason="the solver is not there yet")
+    solver = pytest.importorskip("rodsweep.solve.cycle.limit_cycle", reason="the solver is not there yet")
     assert tuple((int(status), status.name) for status in solver.CycleStatus) == FLAGS
     assert [status.name for status in solver.CycleStatus if succeeded(status)] == ["cycle", "straight"]

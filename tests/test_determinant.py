@@ -8,9 +8,9 @@ import pytest
 from hard.exact import derivatives
 from reference import determinant as reference
 
+from rodsweep.determinant.path import determinant_along, direction_of
+from rodsweep.determinant.value import TYPICAL_NOISE, newton_correction, scaled_determinant
 from rodsweep.model import compilation
-from rodsweep.model.determinant import TYPICAL_NOISE, newton_correction, scaled_determinant
-from rodsweep.model.path import determinant_along, direction_of
 from rodsweep.model.rod import Rod
 
 
@@ -157,8 +157,11 @@ def test_compiled_code_is_kept_for_one_content_of_the_sources(tmp_path, monkeypa
     before = compilation.cache_directory()
     assert before == compilation.cache_directory()
     assert copy in before.parents
-    discs = copy / "solve" / "discs.py"
-    discs.write_text(discs.read_text() + "# changed\n")
-    assert compilation.cache_directory() != before
+    digests = {before}
+    for formula in [path for name in compilation.COMPILED_IN for path in (copy / name).rglob("*.py")]:
+        formula.write_text(formula.read_text() + "# changed\n")
+        digests.add(compilation.cache_directory())
+    assert len(digests) == 1 + sum(1 for name in compilation.COMPILED_IN for _ in (copy / name).rglob("*.py"))
+    assert any("compiled" in path.read_text() for path in copy.glob("*/*/*.py")), "rooms have formulas too"
     monkeypatch.setenv("NUMBA_CACHE_DIR", "/elsewhere")
     assert str(compilation.cache_directory()).startswith("/elsewhere/compiled-")

@@ -5,13 +5,13 @@ from math import inf
 import numpy as np
 import pytest
 
-from rodsweep.model.plane import Axis, Plane
+from rodsweep.determinant.certified_count import count_right_of
+from rodsweep.determinant.curves import trace
+from rodsweep.determinant.plane import Axis, Plane
 from rodsweep.model.rod import Rod
-from rodsweep.solve.certificate import count_right_of
-from rodsweep.solve.continuation import trace
-from rodsweep.solve.counts import Kind
-from rodsweep.solve.diagram import Motion, RowRequest, curves_through, seed_of, solve_row
-from rodsweep.solve.thresholds import ThresholdStatus
+from rodsweep.solve.changes.diagram import Motion, RowRequest, curves_through, seed_of, solve_row
+from rodsweep.solve.changes.thresholds import ThresholdStatus
+from rodsweep.solve.changes.unstable_modes import Kind
 
 FOLDS = [
     # k2, gamma3, k1, F, frequency: 30-digit roots of D = 0 and of the vanishing Jacobian

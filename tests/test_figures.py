@@ -8,8 +8,8 @@ from rodsweep.cli.job import make_job
 from rodsweep.errors import InputError
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.spectrum import broken, followed_roots
-from rodsweep.results.view import read_view
-from rodsweep.solve.spectrum import SpectrumRequest, solve_spectrum
+from rodsweep.results.file.view import read_view
+from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 
 def test_rightmost_and_smallest_roots_differ():

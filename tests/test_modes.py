@@ -13,18 +13,18 @@ from rodsweep.discretization.pencil import assemble, shear_force
 from rodsweep.discretization.quadrature import gauss_lobatto, lobatto_points
 from rodsweep.discretization.resolution import Resolution
 from rodsweep.model.rod import Rod
-from rodsweep.solve import growth as growth_module
-from rodsweep.solve import peak as peak_module
-from rodsweep.solve import shapes as shapes_module
-from rodsweep.solve import vectors as vectors_module
-from rodsweep.solve.abscissa import numerical_abscissa
-from rodsweep.solve.dense import dense_operator
-from rodsweep.solve.modes import ModesRequest, solve_modes
-from rodsweep.solve.peak import highest
-from rodsweep.solve.propagator import Propagator, exponential
-from rodsweep.solve.shapes import mode_shapes, null_vectors
-from rodsweep.solve.spectrum import SpectrumRequest, solve_spectrum
-from rodsweep.solve.status import Status
+from rodsweep.solve.modes import convergence as vectors_module
+from rodsweep.solve.modes import inverse_iteration as shapes_module
+from rodsweep.solve.modes import norm_maximum as peak_module
+from rodsweep.solve.modes import transient_growth as growth_module
+from rodsweep.solve.modes.dense_operator import dense_operator
+from rodsweep.solve.modes.inverse_iteration import mode_shapes, null_vectors
+from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
+from rodsweep.solve.modes.norm_maximum import highest
+from rodsweep.solve.modes.numerical_abscissa import numerical_abscissa
+from rodsweep.solve.modes.propagator import Propagator, exponential
+from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
+from rodsweep.solve.spectrum.status import Status
 
 INF = float("inf")
 NODES = 65

@@ -12,7 +12,7 @@ from contents import content, same
 from ranks import PATIENCE, kill, ranks_in, wait_for_end
 from slow_runs import FOR_EVER, pause_until_journalled, slowly
 
-from rodsweep.results.view import read_view
+from rodsweep.results.file.view import read_view
 
 SMALL = """
 title: small
@@ -132,7 +132,7 @@ def run_patched(command, patch, ranks=2):
 def test_bug_while_the_file_is_opened_ends_all_ranks(command):
     command.write("c.yaml", SMALL)
     patch = (
-        "import rodsweep.results.store as store\n"
+        "import rodsweep.results.file.store as store\n"
         "def broken(self, *words): raise ValueError('a bug')\n"
         "store.Store.__init__ = broken\n"
         "def patched(rank, solve): return solve\n"
@@ -210,7 +210,7 @@ def test_fresh_leaves_a_file_that_is_no_result(command):
 def test_run_killed_before_its_end_was_written_writes_it_the_next_time(command):
     command.write("c.yaml", SMALL)
     patch = (
-        "import os, rodsweep.results.store as store\n"
+        "import os, rodsweep.results.file.store as store\n"
         "def die(self, attributes): os._exit(9)\n"
         "fold = store.Store._fold\n"
         "store.Store._fold = lambda self, a, more: die(self, a) if a else fold(self, a, more)\n"
@@ -296,7 +296,7 @@ def test_longitudinal_modes_are_added_only_where_asked(command):
 def test_package_imports_start_neither_mpi_nor_petsc(command):
     code = (
         "import sys, rodsweep, rodsweep.cli\n"
-        "from rodsweep.cli.job import make_job\nfrom rodsweep.results.view import read_view\n"
+        "from rodsweep.cli.job import make_job\nfrom rodsweep.results.file.view import read_view\n"
         "from rodsweep.post.figures import draw\nfrom rodsweep.post.summary import show_summary\n"
         "print([m for m in ('mpi4py.MPI', 'petsc4py.PETSc', 'slepc4py.SLEPc') if m in sys.modules])"
     )

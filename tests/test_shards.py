@@ -12,10 +12,10 @@ from contents import content, same
 from ranks import PATIENCE
 
 from rodsweep.errors import InputError
-from rodsweep.results import lock
-from rodsweep.results.journal import journal_directory
-from rodsweep.results.lock import Lock
-from rodsweep.results.merge import merge
+from rodsweep.results.file.merge import merge
+from rodsweep.results.run import lock
+from rodsweep.results.run.journal import journal_directory
+from rodsweep.results.run.lock import Lock
 from rodsweep.sweep.shards import Shard, shard_of
 
 SPECTRA = """

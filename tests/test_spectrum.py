@@ -10,11 +10,11 @@ from rodsweep.discretization.quadrature import lobatto_points
 from rodsweep.discretization.resolution import Resolution
 from rodsweep.model.dispersion import most_amplified_wave
 from rodsweep.model.rod import Rod
-from rodsweep.solve import attempt
-from rodsweep.solve.eigenpairs import eigen_solver
-from rodsweep.solve.petsc import PETSc
-from rodsweep.solve.spectrum import SpectrumRequest, solve_spectrum
-from rodsweep.solve.status import Status
+from rodsweep.solve.backend.petsc import PETSc
+from rodsweep.solve.spectrum import candidates as attempt
+from rodsweep.solve.spectrum.krylov_schur import eigen_solver
+from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
+from rodsweep.solve.spectrum.status import Status
 
 TIGHT = SpectrumRequest(modes=4, accuracy=1e-12, certify=True)
 

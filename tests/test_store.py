@@ -5,14 +5,14 @@ import numpy as np
 import pytest
 
 from rodsweep.errors import InputError
-from rodsweep.results import journal as pages_of
-from rodsweep.results import lock
-from rodsweep.results import store as stores
-from rodsweep.results.creation import Plan
-from rodsweep.results.journal import Journal, journal_directory, read_journals
+from rodsweep.results.file import store as stores
+from rodsweep.results.file.creation import Plan
+from rodsweep.results.file.store import Store, difference
+from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts import spectrum_layout
-from rodsweep.results.store import Store, difference
-from rodsweep.results.view import read_view
+from rodsweep.results.run import journal as pages_of
+from rodsweep.results.run import lock
+from rodsweep.results.run.journal import Journal, journal_directory, read_journals
 
 LAYOUT = spectrum_layout(2, 0)
 

@@ -14,9 +14,9 @@ from contents import content, same
 from ranks import PATIENCE, kill, pause_until, ranks_in, wait_for_end
 
 from rodsweep.cli.job import make_job
-from rodsweep.results.journal import MAGIC, journal_directory
-from rodsweep.results.schema import MISSING
-from rodsweep.results.view import read_view
+from rodsweep.results.file.view import read_view
+from rodsweep.results.layouts.variables import MISSING
+from rodsweep.results.run.journal import MAGIC, journal_directory
 
 KILLS = int(os.environ.get("RODSWEEP_KILLS", "4"))
 HEADER = len(MAGIC) + 65

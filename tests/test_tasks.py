@@ -13,12 +13,12 @@ from rodsweep.cli.job import make_job
 from rodsweep.cli.tasks import modes, spectrum, thresholds
 from rodsweep.cli.tasks.crossings import search_record
 from rodsweep.post.summary import show_summary
-from rodsweep.results.creation import Plan
-from rodsweep.results.journal import Journal
+from rodsweep.results.file.creation import Plan
+from rodsweep.results.file.store import Store
+from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts import CROSSING_KINDS
-from rodsweep.results.schema import Variable
-from rodsweep.results.store import Store
-from rodsweep.results.view import read_view
+from rodsweep.results.layouts.variables import Variable
+from rodsweep.results.run.journal import Journal
 
 CONFIGS = {
     "spectrum": "parameters: {F: [1, 2], k1: 9, k2: [1, 2], gamma3: 0}\nspectrum: {modes: 3, vectors: true}",
@@ -185,7 +185,7 @@ def test_words_are_stored_as_flags_with_their_meanings(tmp_path, task):
 
 
 def test_kinds_of_crossings_have_the_numbers_of_the_solver():
-    from rodsweep.solve.counts import Kind
+    from rodsweep.solve.changes.unstable_modes import Kind
 
     assert {kind.name: int(kind) for kind in Kind} == {
         name: number for number, name in enumerate(CROSSING_KINDS) if number
@@ -194,7 +194,7 @@ def test_kinds_of_crossings_have_the_numbers_of_the_solver():
 
 def test_classes_of_a_phase_diagram_have_the_numbers_of_the_solver():
     from rodsweep.results.layouts import CLASSES
-    from rodsweep.solve.diagram import Motion
+    from rodsweep.solve.changes.diagram import Motion
 
     assert {int(motion): motion.name for motion in Motion} == {v: name for v, name in CLASSES if v >= 0}
 
@@ -309,7 +309,7 @@ def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
     code = (
         "import sys\nfrom pathlib import Path\n"
         "from rodsweep.cli.checking import describe_job\nfrom rodsweep.cli.job import make_job\n"
-        "from rodsweep.post.summary import show_summary\nfrom rodsweep.results.view import read_view\n"
+        "from rodsweep.post.summary import show_summary\nfrom rodsweep.results.file.view import read_view\n"
         "for place in map(Path, sys.argv[1:]):\n"
         "    describe_job(make_job(place / 'c.yaml', ()))\n    show_summary(read_view(place / 'c.h5'))\n"
         "    print([m for m in ('mpi4py.MPI', 'petsc4py', 'slepc4py') if m in sys.modules])"
@@ -324,7 +324,7 @@ def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
 
 FAKE = """
 import os
-import rodsweep.solve.thresholds as real
+import rodsweep.solve.changes.thresholds as real
 from types import SimpleNamespace as Value
 
 def solve_thresholds(k1, k2, gamma3, request):

@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from conftest import ROOT
 
-from rodsweep.model.path import Path
+from rodsweep.determinant.certified_count import count_right_of
+from rodsweep.determinant.path import Path
 from rodsweep.model.rod import Rod
-from rodsweep.solve import transitions as transitions_module
-from rodsweep.solve.certificate import count_right_of
-from rodsweep.solve.counts import Kind
-from rodsweep.solve.diagram import classes
-from rodsweep.solve.spectrum import SpectrumRequest, solve_spectrum
-from rodsweep.solve.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
-from rodsweep.solve.transitions import transitions
+from rodsweep.solve.changes import along_path as transitions_module
+from rodsweep.solve.changes.along_path import transitions
+from rodsweep.solve.changes.diagram import classes
+from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
+from rodsweep.solve.changes.unstable_modes import Kind
+from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 REFERENCE = json.loads((ROOT / "tests" / "reference" / "thresholds.json").read_text())
 SAME_KIND = {"restabilization": "hopf_reverse"}

@@ -9,8 +9,8 @@ from rodsweep.cli.running import _plan
 from rodsweep.errors import InputError
 from rodsweep.post.figures import draw
 from rodsweep.post.summary import show_summary
-from rodsweep.results.store import Store
-from rodsweep.results.view import read_view
+from rodsweep.results.file.store import Store
+from rodsweep.results.file.view import read_view
 from rodsweep.sweep.shards import Shard
 
 CONFIGS = {

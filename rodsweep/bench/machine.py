@@ -2,8 +2,8 @@
 
 import platform
 
-from ..results.provenance import cpu_name, now, provenance
-from ..solve import petsc
+from ..results.file.provenance import cpu_name, now, provenance
+from ..solve.backend import petsc
 
 
 def machine() -> dict[str, str]:

@@ -10,7 +10,7 @@ from typing import TypeVar
 import numpy as np
 
 from ..post.figures.work_precision import Curve, Panel, draw_work_precision
-from ..results.measurements import Table
+from ..results.file.measurements import Table
 
 Outcome = TypeVar("Outcome")
 

@@ -88,7 +88,7 @@ def check(config: Path, overrides: tuple[str, ...]) -> None:
 def show(file: Path) -> None:
     """Summarise the result FILE."""
     from ..post.summary import show_summary
-    from ..results.view import read_view
+    from ..results.file.view import read_view
 
     show_summary(read_view(_followed(file)))
 
@@ -126,7 +126,7 @@ def plot(
 ) -> None:
     """Draw the result FILE, or the amplitudes of several limit_cycle FILEs in one figure."""
     from ..post.figures import draw
-    from ..results.view import read_view
+    from ..results.file.view import read_view
 
     output = output or files[0].with_suffix(".gif" if what == "animation" else ".png")
     click.echo(draw([read_view(_followed(file)) for file in files], output, roots, what, points))

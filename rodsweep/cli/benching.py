@@ -11,15 +11,15 @@ from ..errors import EnvironmentLacks
 def run_benchmarks(what: str | None, quick: bool, output: Path) -> None:
     """Runs one benchmark, or all; writes OUTPUT (Markdown), OUTPUT.h5 and OUTPUT_STUDY.png."""
     try:
-        from ..bench.limit_cycle import limit_cycle_study
+        from ..bench.limit_cycle.study import limit_cycle_study
         from ..bench.machine import machine, where_and_when
-        from ..bench.spectrum import spectrum_study
+        from ..bench.spectrum.study import spectrum_study
         from ..bench.study import Study
-        from ..bench.sweep import sweep_study
-        from ..bench.thresholds import thresholds_study
+        from ..bench.sweep.study import sweep_study
+        from ..bench.thresholds.study import thresholds_study
     except ModuleNotFoundError as error:
         raise EnvironmentLacks(f"the benchmark needs {error.name}: pip install 'rodsweep[bench]'") from None
-    from ..results.measurements import write_measurements
+    from ..results.file.measurements import write_measurements
 
     studies: dict[str, Callable[[bool], Study]] = {
         "spectrum": spectrum_study,

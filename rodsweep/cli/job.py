@@ -8,7 +8,7 @@ from ..config import Config, load_config
 from ..config.reading import canonical
 from ..errors import InputError
 from ..results.layouts import layout_of
-from ..results.schema import Layout
+from ..results.layouts.variables import Layout
 from ..sweep.grid import Points, grid_size, points_of
 from .tasks import task_of
 from .tasks.protocol import Task

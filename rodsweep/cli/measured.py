@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from ..config import SpectrumConfig
-from ..results.schema import Filled
+from ..results.layouts.variables import Filled
 from ..sweep.estimate import Estimate
 from ..sweep.grid import Points
 from . import _speaks, main
@@ -54,8 +54,8 @@ class InstantSpectra:
         return self.spectra.cost()
 
     def solver(self) -> Solver:
-        from ..solve.spectrum import Spectrum
-        from ..solve.status import Status
+        from ..solve.spectrum.search import Spectrum
+        from ..solve.spectrum.status import Status
 
         points, modes = self.spectra.points, self.spectra.config.spectrum.modes
         parts = np.random.default_rng(1).standard_normal((TABLE, 3, modes))

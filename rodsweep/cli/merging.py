@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from ..results.merge import merge
+from ..results.file.merge import merge
 from .running import CONTINUE
 from .tasks import needs_all_points
 

@@ -13,14 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import EnvironmentLacks
-from ..results.checkpoints import Checkpoints
-from ..results.creation import Plan
-from ..results.journal import Journal, journal_directory
-from ..results.kernels import KERNELS, kernels_of, told, united
-from ..results.provenance import LONGEST_ATTRIBUTE, MOST_RANKS_TOLD, now, provenance
-from ..results.store import Store
-from ..results.view import read_view
-from ..solve.presence import require_petsc
+from ..results.file.creation import Plan
+from ..results.file.kernels import KERNELS, kernels_of, told, united
+from ..results.file.provenance import LONGEST_ATTRIBUTE, MOST_RANKS_TOLD, now, provenance
+from ..results.file.store import Store
+from ..results.file.view import read_view
+from ..results.run.checkpoints import Checkpoints
+from ..results.run.journal import Journal, journal_directory
+from ..solve.backend.availability import require_petsc
 from ..sweep.chains import ChainSolver, Missing
 from ..sweep.handout import Range
 from ..sweep.loop import Share, sweep
@@ -204,13 +204,13 @@ def _utilisation(shares: list[Share]) -> dict[str, NDArray[Any]]:
 
 
 def _blas() -> str:
-    from ..solve.blas import blas
+    from ..solve.backend.blas_kernel import blas
 
     return blas()
 
 
 def _plan(job: Job, solver: Solver, shard: Shard) -> Plan:
-    from ..solve import petsc
+    from ..solve.backend import petsc
 
     versions = {f"{name}_version": value for name, value in petsc.versions().items()}
     return Plan(

@@ -19,13 +19,13 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 PACKAGE = Path(__file__).parents[1]
-COMPILED_IN = ("model", "discretization", "solve")
+COMPILED_IN = ("model", "determinant", "discretization", "solve")
 
 
 def cache_directory() -> Path:
     """Where numba keeps what it compiled from the present sources; NUMBA_CACHE_DIR moves it."""
     digest = sha256()
-    for module in sorted(path for name in COMPILED_IN for path in (PACKAGE / name).glob("*.py")):
+    for module in sorted(path for name in COMPILED_IN for path in (PACKAGE / name).rglob("*.py")):
         digest.update(module.read_bytes())
     place = os.environ.get("NUMBA_CACHE_DIR")
     if place is None:

@@ -10,7 +10,7 @@ from conftest import BIN
 from contents import content, same, same_spectra
 from kernels import other_kernels
 
-from rodsweep.results.view import read_view
+from rodsweep.results.file.view import read_view
 
 SPECTRA = """
 task: spectrum

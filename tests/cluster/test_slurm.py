@@ -9,8 +9,8 @@ import pytest
 from conftest import BIN, ROOT, Command
 from contents import content, same
 
-from rodsweep.results.schema import MISSING
-from rodsweep.results.view import read_view
+from rodsweep.results.file.view import read_view
+from rodsweep.results.layouts.variables import MISSING
 
 from .slurm import CannotStart, Slurm, started_slurm, wait_for
 
@@ -26,7 +26,7 @@ spectrum: {modes: 4}
 
 SLOWLY = """
 import os, time
-from rodsweep.results.journal import Journal
+from rodsweep.results.run.journal import Journal
 
 append = Journal.append
 

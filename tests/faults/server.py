@@ -84,7 +84,7 @@ def content(path: Path) -> dict:
 
 def die_after(points: int | None) -> None:
     """Lets the run be killed once it has finished so many points."""
-    from rodsweep.results.journal import Journal
+    from rodsweep.results.run.journal import Journal
 
     append, done = Journal.append, []
 

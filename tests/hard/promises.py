@@ -6,8 +6,8 @@ import mpmath as mp
 import numpy as np
 
 from rodsweep.model.rod import Rod
-from rodsweep.solve.spectrum import SpectrumRequest, solve_spectrum
-from rodsweep.solve.status import Status
+from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
+from rodsweep.solve.spectrum.status import Status
 
 from .exact import leading, sensitivity, unstable
 

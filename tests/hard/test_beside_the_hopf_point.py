@@ -9,8 +9,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from rodsweep.solve.cycles import CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.thresholds import ThresholdsRequest, solve_thresholds
+from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
+from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 
 RODS = [
     (1e4, 1e2, 1e-2, 1.0), (557.1, 3933.0, 3.16e-3, 0.21), (4.878e4, 3997.0, 4.11e-4, 0.26),

@@ -13,9 +13,9 @@ from math import inf
 import numpy as np
 import pytest
 
+from rodsweep.determinant.certified_count import count_right_of
 from rodsweep.model.rod import Rod
-from rodsweep.solve.certificate import count_right_of
-from rodsweep.solve.status import Status
+from rodsweep.solve.spectrum.status import Status
 
 from .exact import leading
 from .promises import all_broken, not_ok, spectrum

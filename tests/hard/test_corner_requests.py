@@ -10,7 +10,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from rodsweep.solve.status import Status
+from rodsweep.solve.spectrum.status import Status
 
 from .exact import derivatives, leading
 from .promises import all_broken, broken_promises, not_ok, spectrum

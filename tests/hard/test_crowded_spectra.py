@@ -8,9 +8,9 @@ bounded, so in long soft rods they crowd below it: their real parts agree in sev
 import numpy as np
 import pytest
 
+from rodsweep.determinant.certified_count import count_right_of
 from rodsweep.model.rod import Rod
-from rodsweep.solve.certificate import count_right_of
-from rodsweep.solve.status import Status
+from rodsweep.solve.spectrum.status import Status
 
 from .exact import candidates, leading, unstable
 from .integral_equation import fastest_wave

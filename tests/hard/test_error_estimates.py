@@ -10,7 +10,7 @@ from math import inf
 import numpy as np
 import pytest
 
-from rodsweep.solve.status import Status
+from rodsweep.solve.spectrum.status import Status
 
 from .limits import EPSILONS, PATHS, rod_on
 from .promises import all_broken, spectrum, true_errors

@@ -10,10 +10,10 @@ import pytest
 
 from rodsweep.discretization.pencil import assemble
 from rodsweep.model.rod import Rod
-from rodsweep.solve.modes import ModesRequest, solve_modes
-from rodsweep.solve.shapes import mode_shapes
-from rodsweep.solve.status import Status
-from rodsweep.solve.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
+from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
+from rodsweep.solve.modes.inverse_iteration import mode_shapes
+from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
+from rodsweep.solve.spectrum.status import Status
 
 from .adjoint import condition
 from .exact import leading

@@ -6,10 +6,10 @@ unstable to either side. At the point itself nobody can say which, and a relativ
 
 import pytest
 
+from rodsweep.determinant.certified_count import count_right_of
 from rodsweep.model.rod import Rod
-from rodsweep.solve.certificate import count_right_of
-from rodsweep.solve.modes import ModesRequest, solve_modes
-from rodsweep.solve.status import Status
+from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
+from rodsweep.solve.spectrum.status import Status
 
 from .promises import spectrum
 from .rods import CROSSING, STORED, at_force

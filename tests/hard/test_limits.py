@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 
 from rodsweep.model.rod import Rod
-from rodsweep.solve.counts import Kind
-from rodsweep.solve.modes import ModesRequest, solve_modes
-from rodsweep.solve.status import Status
-from rodsweep.solve.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
+from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
+from rodsweep.solve.changes.unstable_modes import Kind
+from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
+from rodsweep.solve.spectrum.status import Status
 
 from .adjoint import condition
 from .exact import leading

@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from rodsweep.solve.cycles import CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 
 RODS, BATCH = int(os.environ.get("RODSWEEP_RODS", "12")), 4
 SETTLED = (CycleStatus.cycle, CycleStatus.straight)

@@ -11,9 +11,9 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from rodsweep.solve.counts import Kind
-from rodsweep.solve.status import Status
-from rodsweep.solve.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
+from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
+from rodsweep.solve.changes.unstable_modes import Kind
+from rodsweep.solve.spectrum.status import Status
 
 from .exact import leading
 from .promises import all_broken, not_ok, spectrum

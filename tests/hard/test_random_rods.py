@@ -10,8 +10,8 @@ from math import inf
 import numpy as np
 import pytest
 
+from rodsweep.determinant.certified_count import count_right_of
 from rodsweep.model.rod import Rod
-from rodsweep.solve.certificate import count_right_of
 
 from .exact import SHIFT
 from .integral_equation import coefficients_of, dense_eigenvalues, fastest_wave, nodes_for

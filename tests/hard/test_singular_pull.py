@@ -10,9 +10,9 @@ there.
 import numpy as np
 import pytest
 
+from rodsweep.determinant.certified_count import count_right_of
 from rodsweep.model.rod import Rod
-from rodsweep.solve.certificate import count_right_of
-from rodsweep.solve.status import Status
+from rodsweep.solve.spectrum.status import Status
 
 from .exact import leading, unstable
 from .promises import all_broken, broken_promises, spectrum

@@ -8,8 +8,8 @@ import numpy as np
 from ...results.layouts import CROSSING_KINDS
 
 if TYPE_CHECKING:
-    from ...solve.counts import Crossing
-    from ...solve.thresholds import Thresholds
+    from ...solve.changes.thresholds import Thresholds
+    from ...solve.changes.unstable_modes import Crossing
 
 
 def search_record(result: "Thresholds", most: int, at: str) -> dict[str, Any]:

@@ -9,8 +9,8 @@ import numpy as np
 from ...config import LimitCycleConfig
 from ...discretization.quadrature import lobatto_points
 from ...errors import InputError
-from ...results.limit_cycle import CYCLE, ENERGY, PERIOD_TAU1, SHAPE, TIP
-from ...results.schema import Filled, Variable
+from ...results.layouts.limit_cycle import CYCLE, ENERGY, PERIOD_TAU1, SHAPE, TIP
+from ...results.layouts.variables import Filled, Variable
 from ...sweep.chains import Chains, State
 from ...sweep.estimate import Estimate, estimate_cycles
 from ...sweep.grid import Points
@@ -18,7 +18,7 @@ from .parts import count_of, rod_parts
 from .protocol import Chained, Part, Solver
 
 if TYPE_CHECKING:
-    from ...solve.cycles import Cycle, CycleRequest
+    from ...solve.cycle.limit_cycle import Cycle, CycleRequest
 
 RENAMED = {"harmonic_amplitude": "harmonics"}
 """Variables of the file whose field of a cycle has another name."""
@@ -104,7 +104,7 @@ class LimitCycleTask:
         return estimate_cycles(self.points.count)
 
     def solver(self) -> Solver:
-        from ...solve.cycles import CycleStatus, solve_cycle, warm_up
+        from ...solve.cycle.limit_cycle import CycleStatus, solve_cycle, warm_up
 
         request = self._request()
 
@@ -125,7 +125,7 @@ class LimitCycleTask:
         )
 
     def _request(self) -> "CycleRequest":
-        from ...solve.cycles import CycleRequest
+        from ...solve.cycle.limit_cycle import CycleRequest
 
         options = self.config.limit_cycle
         return CycleRequest(

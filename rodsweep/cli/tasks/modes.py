@@ -10,14 +10,14 @@ from ...discretization.quadrature import lobatto_points
 from ...discretization.resolution import mesh_accuracy
 from ...model.rod import Rod
 from ...results.layouts import GROWTH
-from ...results.schema import Filled
+from ...results.layouts.variables import Filled
 from ...sweep.estimate import Estimate, estimate_modes, estimate_spectra
 from ...sweep.grid import Points
 from .parts import LEFT_OUT, certificate_part, count_of, rod_parts
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
-    from ...solve.modes import Modes
+    from ...solve.modes.leading_modes import Modes
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,8 +60,8 @@ class ModesTask:
         return estimate_modes(spectra, self.points.count, options.modes, options.growth)
 
     def solver(self) -> Solver:
-        from ...solve.modes import ModesRequest, solve_modes
-        from ...solve.status import Status
+        from ...solve.modes.leading_modes import ModesRequest, solve_modes
+        from ...solve.spectrum.status import Status
 
         options = self.config.modes
         request = ModesRequest(

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...config import PhaseDiagramConfig
-from ...model.plane import Axis, Plane
+from ...determinant.plane import Axis, Plane
 from ...model.rod import Rod
+from ...results.file.view import View
 from ...results.layouts import curve_variables
-from ...results.schema import Filled
-from ...results.view import View
+from ...results.layouts.variables import Filled
 from ...sweep.estimate import Estimate, estimate_lines
 from ...sweep.grid import Points
 from .crossings import search_record
@@ -19,8 +19,8 @@ from .parts import LEFT_OUT, certificate_part, rod_parts
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
-    from ...solve.continuation import Curve
-    from ...solve.diagram import Curves, Row
+    from ...determinant.curves import Curve
+    from ...solve.changes.diagram import Curves, Row
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,8 +62,8 @@ class PhaseDiagramTask:
         return estimate_lines(self.points.count, self.config.phase_diagram.certify)
 
     def solver(self) -> Solver:
-        from ...solve.diagram import RowRequest, solve_row
-        from ...solve.thresholds import ThresholdStatus, warm_up
+        from ...solve.changes.diagram import RowRequest, solve_row
+        from ...solve.changes.thresholds import ThresholdStatus, warm_up
 
         options = self.config.phase_diagram
         request = RowRequest(
@@ -79,7 +79,7 @@ class PhaseDiagramTask:
 
     def curves(self, view: View) -> list[Filled]:
         """The boundaries through the crossings of all rows, with their folds, as variables of the file."""
-        from ...solve.diagram import curves_through, seed_of
+        from ...solve.changes.diagram import curves_through, seed_of
 
         line, row = self.config.plane
         rows = self.points.columns[self.points.names.index(row)]
@@ -117,7 +117,7 @@ class PhaseDiagramTask:
     @staticmethod
     def _partial_beam() -> dict[str, float]:
         """Where the partial beam limit has the fold of the Hopf curve (Sec. VIII): k1 = 4 Fc, F = 2 Fc."""
-        from ...solve.thresholds import filament_hopf
+        from ...solve.changes.thresholds import filament_hopf
 
         Fc = filament_hopf()
         return {"filament_F_hopf": Fc, "partial_beam_k1": 4 * Fc, "partial_beam_F": 2 * Fc}

@@ -10,8 +10,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ...results.schema import Filled
-from ...results.view import View
+from ...results.file.view import View
+from ...results.layouts.variables import Filled
 from ...sweep.chains import Chains, State
 from ...sweep.estimate import Estimate
 

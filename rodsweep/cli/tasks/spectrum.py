@@ -10,14 +10,14 @@ from ...discretization.quadrature import lobatto_points
 from ...discretization.resolution import mesh_accuracy
 from ...errors import InputError
 from ...model.longitudinal import longitudinal_rates
-from ...results.schema import Filled, Variable
+from ...results.layouts.variables import Filled, Variable
 from ...sweep.estimate import Estimate, estimate_spectra
 from ...sweep.grid import Points
 from .parts import LEFT_OUT, certificate_part, count_of, rod_parts
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
-    from ...solve.spectrum import Spectrum
+    from ...solve.spectrum.search import Spectrum
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,8 +82,8 @@ class SpectrumTask:
         return estimate_spectra(self.points, options.modes, accuracy, options.certify)
 
     def solver(self) -> Solver:
-        from ...solve.spectrum import SpectrumRequest, solve_spectrum, warm_up
-        from ...solve.status import Status
+        from ...solve.spectrum.search import SpectrumRequest, solve_spectrum, warm_up
+        from ...solve.spectrum.status import Status
 
         options = self.config.spectrum
         request = SpectrumRequest(options.modes, self.config.accuracy, options.certify, self._vector_nodes)

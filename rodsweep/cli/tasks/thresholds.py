@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...config import ThresholdsConfig
-from ...results.schema import Filled
+from ...results.layouts.variables import Filled
 from ...sweep.estimate import Estimate, estimate_lines
 from ...sweep.grid import Points
 from .crossings import first_of, search_record
@@ -14,7 +14,7 @@ from .parts import LEFT_OUT, certificate_part, count_of, rod_parts
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
-    from ...solve.thresholds import Thresholds
+    from ...solve.changes.thresholds import Thresholds
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ class ThresholdsTask:
         return estimate_lines(self.points.count, self.config.thresholds.certify)
 
     def solver(self) -> Solver:
-        from ...solve.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds, warm_up
+        from ...solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds, warm_up
 
         options = self.config.thresholds
         request = ThresholdsRequest(options.F_max, self.config.accuracy, options.certify, options.crossings)

@@ -8,12 +8,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ...errors import EnvironmentLacks, InputError
-from ...results.view import View
-from .amplitude import draw_amplitude
-from .animation import FILMS, write_animation
-from .cycles import MOST_CYCLES, SHAPES, outcomes, point_columns
-from .energy import draw_energy
-from .limit_cycle import draw_cycle
+from ...results.file.view import View
+from .cycle.amplitude import draw_amplitude
+from .cycle.animation import FILMS, write_animation
+from .cycle.chosen import MOST_CYCLES, SHAPES, outcomes, point_columns
+from .cycle.energy import draw_energy
+from .cycle.portrait import draw_cycle
 from .modes import draw_modes
 from .phase_diagram import draw_phase_diagram
 from .spectrum import draw_spectrum

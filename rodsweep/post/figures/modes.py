@@ -5,7 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ...errors import InputError
-from ...results.view import View
+from ...results.file.view import View
 from .style import FIRST, SECOND, SYMBOLS, heading
 
 MOST_POINTS = 4

@@ -8,9 +8,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...errors import InputError
+from ...results.file.view import View
 from ...results.layouts import CLASSES
-from ...results.schema import PARAMETER_NAMES
-from ...results.view import View
+from ...results.layouts.variables import PARAMETER_NAMES
 from .style import LABELS, SYMBOLS, heading, scale
 
 COLOURS = {

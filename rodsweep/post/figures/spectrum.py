@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ...errors import InputError
-from ...results.view import View
+from ...results.file.view import View
 from .style import FIRST, LABELS, SECOND, SYMBOLS, heading, scale
 
 ROOTS = {

@@ -7,9 +7,9 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from ...results.kernels import kernels_of
-from ...results.schema import DIMENSIONS, MISSING
-from ...results.view import View
+from ...results.file.kernels import kernels_of
+from ...results.file.view import View
+from ...results.layouts.variables import DIMENSIONS, MISSING
 from .limit_cycle import limit_cycle_lines
 from .modes import modes_lines
 from .phase_diagram import phase_diagram_lines

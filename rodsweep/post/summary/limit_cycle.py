@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...results.view import View
+from ...results.file.view import View
 from .ranges import span
 
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from ...results.file.view import View
 from ...results.layouts import CLASSES
-from ...results.schema import PARAMETER_NAMES
-from ...results.view import View
+from ...results.layouts.variables import PARAMETER_NAMES
 from .thresholds import search_lines
 
 SHARP = 1e-8

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...results.view import View
+from ...results.file.view import View
 from .ranges import span
 
 EVENTS = {

@@ -1,0 +1,1 @@
+"""Cycles timed beside other time integrators, and beside waiting."""

@@ -1,0 +1,1 @@
+"""Spectra timed beside dense QZ, Chebyshev and Arnoldi codes."""

@@ -1,0 +1,68 @@
+"""Eigenvalues to 30 digits: the roots of D in multiple precision (mpmath), none missed by the certificate."""
+
+from collections.abc import Callable
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+
+from ...model.rod import Rod
+from ...solve.spectrum.search import SpectrumRequest, solve_spectrum
+from ...solve.spectrum.status import Status
+
+DIGITS = 30
+GUARD = 25
+"""Digits that the cancellation in D may take, and more."""
+STEP = mp.mpf(10) ** -12
+"""Relative distance of the two first points of the secant method."""
+FARTHEST = 20
+"""Distance of the root, in units of the estimated error of where the search begins, that is believed."""
+
+
+def determinant(rod: Rod) -> Callable[[Any], Any]:
+    """D(w) of `rodsweep.determinant.value` for numbers of mpmath; the parameters are exact."""
+    F, gamma3 = mp.mpf(rod.F), mp.mpf(rod.gamma3)
+    c1, c2 = (0 if np.isinf(k) else 1 / mp.mpf(k) for k in (rod.k1, rod.k2))
+    nu = 1 - F * c1
+    g = nu + F * c2
+
+    def term(z: Any, slope: Any) -> Any:
+        return slope * (mp.cosh(mp.sqrt(z)) - 1) / z
+
+    def D(w: Any) -> Any:
+        P = mp.sqrt(w * (g * nu + c2 * gamma3 * w))
+        slope = (g * nu + 2 * c2 * gamma3 * w) / (2 * P)
+        middle, drag = (c2 + gamma3) * w - F * g, c2 + gamma3
+        return 1 + w / 2 * (term(middle + 2 * P, drag + 2 * slope) + term(middle - 2 * P, drag - 2 * slope))
+
+    return D
+
+
+def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
+    """The leading eigenvalues to 30 digits, as numbers of mpmath.
+
+    Raises ArithmeticError where the leading eigenvalues are not certified or one cannot be refined.
+    """
+    found = solve_spectrum(rod, SpectrumRequest(modes, 1e-11, certify=True))
+    if found.status != Status.ok or not found.certified:
+        raise ArithmeticError(f"{rod}: {found.status.name} {found.message}")
+    roots = []
+    with mp.workdps(DIGITS + GUARD):
+        D = determinant(rod)
+        for w, error in zip(found.eigenvalues, found.error_estimate, strict=True):
+            start = mp.mpc(complex(w))
+            root = mp.findroot(D, (start, start * (1 + STEP)), tol=STEP**5, verify=False)
+            nearby = abs(D(root * (1 + STEP)))
+            if abs(root - start) > FARTHEST * error or abs(D(root)) > nearby * mp.mpf(10) ** -DIGITS / STEP:
+                raise ArithmeticError(f"{rod}: {complex(w)} does not lead to a root of D")
+            roots.append(root)
+    return roots
+
+
+def relative_error(w: np.ndarray, exact: list[Any]) -> float:
+    """Largest relative distance of an exact eigenvalue to the nearest computed one; inf for none."""
+    if not len(w):
+        return float("inf")
+    with mp.workdps(DIGITS):
+        computed = [mp.mpc(complex(value)) for value in w]
+        return max(float(min(abs(value - root) for value in computed) / abs(root)) for root in exact)

@@ -1,0 +1,1 @@
+"""Thresholds timed beside bisection, continuation codes and the pencil in F."""

@@ -1,0 +1,111 @@
+"""Where transverse eigenvalues can lie: an a-priori box for every eigenvalue with Re w >= -depth.
+
+Testing the eigenproblem of Sec. VI with its own eigenfunction, y with weight 1 and theta with a
+weight rho > 0, gives, with N^2 = |y|^2 + rho gamma3 |theta|^2 (L2 norms over the rod),
+
+    w N^2 = -c2 |s|^2 - rho |theta'|^2 + (rho g - nu) <theta, s> - F <y, theta'>.
+
+With n^2 = (c2 |s|^2 + rho |theta'|^2)/N^2 the last two terms are at most a n N^2 in modulus, where
+a^2 = max(F^2/rho, (rho g - nu)^2/(c2 rho gamma3)), so that
+
+    Re w <= a n - n^2 <= a^2/4,   |Im w| <= a n,   and Re w >= -depth forces n^2 <= a n + depth.
+
+The weight is free; the best one makes both entries of the maximum equal.
+
+Beside w = 0 no eigenvalue lies on the imaginary axis: |E(z)| <= exp(Re sqrt z)/2 bounds D - 1 there.
+"""
+
+from math import exp, inf, log, sqrt
+
+from ..model.compilation import compiled
+from ..model.rod import Coefficients, Rod
+from .path import Path, changes, coefficients_at
+
+MARGIN = 1.01
+"""Factor on every bound, so that rounding in the bound itself cannot matter."""
+QUIET = 0.5
+"""Largest |D - 1| that counts as near 1."""
+
+
+def eigenvalue_box(rod: Rod, depth: float = 0.0) -> tuple[float, float]:
+    """(max Re w, max |Im w|) over all eigenvalues with Re w >= -depth, depth >= 0; inf if unknown."""
+    return box_of(sqrt(squared_amplification(rod)), depth)
+
+
+@compiled
+def box_of(a: float, depth: float) -> tuple[float, float]:
+    """`eigenvalue_box` from a, the root of `squared_amplification`."""
+    n = (a + sqrt(a * a + 4 * depth)) / 2
+    # A pad in proportion to the depth keeps the box open where F = 0 makes the bound vanish.
+    pad = 0.01 * depth + 1e-6
+    return MARGIN * a * a / 4 + pad, MARGIN * a * n + pad
+
+
+def squared_amplification(rod: Rod) -> float:
+    """The smallest a^2 over all weights rho.
+
+    For g > 0 it is F^2 g/(nu + |F| sqrt(c2 gamma3)), in every limit. For g < 0 (a pull beyond the
+    shear stiffness) rho g - nu has no zero, and with gamma3 = 0 there is no bound at all.
+    """
+    drag = rod.c2 * rod.gamma3
+    level = abs(rod.F) * sqrt(drag)
+    if rod.g >= 0:
+        return rod.F**2 * rod.g / (rod.nu + level)
+    if drag == 0:
+        return inf
+    weights = [rod.nu / -rod.g] + ([(level - rod.nu) / -rod.g] if level > rod.nu else [])
+    return min(max(rod.F**2 / rho, (rho * rod.g - rod.nu) ** 2 / (drag * rho)) for rho in weights)
+
+
+def squared_amplification_over(path: Path, start: float, stop: float) -> float:
+    """An upper bound of `squared_amplification` over all rods of a path from p = start to stop; inf if none.
+
+    Every factor is monotone along a path but for nu g, which is not used: ends are extremes.
+    """
+    ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
+    load = max(abs(F) for F, *_ in ends)
+    least_load = 0.0 if start < 0 < stop and path.name == "F" else min(abs(F) for F, *_ in ends)
+    weak = inf if any(c2 > 0 and gamma3 == 0 for *_, c2, gamma3 in ends) else 1.0
+    if weak < inf:
+        weak = max(1.0, *(c2 / gamma3 if c2 else 1.0 for *_, c2, gamma3 in ends))
+    g = [nu + F * c2 for F, nu, c2, _ in ends]
+    denominator = min(nu for _, nu, _, _ in ends) + least_load * min(sqrt(c2 * g3) for *_, c2, g3 in ends)
+    strong = max(g) / denominator if min(g) >= 0 and denominator > 0 else inf
+    return load**2 * min(weak, strong)
+
+
+def quiet_radius(path: Path, start: float, stop: float, largest: float) -> float:
+    """r <= largest with |D(i eta) - 1| < 1/2 for |eta| <= r and all p from start to stop."""
+    ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
+    T = max(c2 + gamma3 for *_, c2, gamma3 in ends)
+    X = max(c2 * gamma3 for *_, c2, gamma3 in ends)
+    bends = [changes(c, path.direction) for c in ends]
+    span = (stop - start) ** 2 / 8
+    G = max(abs(nu * (nu + F * c2)) for F, nu, c2, _ in ends) + span * max(abs(b[4]) for b in bends)
+    pull = max(max(-F * (nu + F * c2) for F, nu, c2, _ in ends) + span * max(abs(b[2]) for b in bends), 0.0)
+    if all(F >= 0 and nu + F * c2 >= 0 for F, nu, c2, _ in ends):
+        pull = 0.0  # a product of two factors that are linear, or one of which does not change
+    return _quiet(largest, T, X, G, pull)
+
+
+def quiet_radius_of(coefficients: Coefficients, largest: float) -> float:
+    """`quiet_radius` of a single rod."""
+    F, nu, c2, gamma3 = coefficients
+    g = nu + F * c2
+    return _quiet(largest, c2 + gamma3, c2 * gamma3, abs(g * nu), max(-F * g, 0.0))
+
+
+def _quiet(r: float, T: float, X: float, G: float, pull: float) -> float:
+    """r, halved until D is near 1 up to there; 0 where numbers underflow."""
+    while _departure(r, T, X, G, pull) >= QUIET:
+        r /= 2
+    return r
+
+
+def _departure(r: float, T: float, X: float, G: float, pull: float) -> float:
+    """A bound of |D(i eta) - 1| for |eta| <= r."""
+    exponent = sqrt(pull + T * r + 2 * sqrt(r * (G + X * r)))
+    if exponent > 1 + sqrt(pull):
+        return inf
+    factor = (T * r + sqrt(r * G) + 2 * r * sqrt(X)) / 2
+    return exp(min(exponent + log(factor), 1.0)) if factor > 0 else 0.0

@@ -1,0 +1,294 @@
+"""What D(w) is made of, free of the branch point P = 0: functions even in P.
+
+With the names of `rodsweep.determinant.value`, D = 1 + (w/2) [z+' E(z+) + z-' E(z-)], where z+-' is
+infinite at P = 0 and the sum is not:
+
+    z+' E(z+) + z-' E(z-) = T s + 4 N d,   s = E(z+) + E(z-),   d = (E(z+) - E(z-))/(z+ - z-),
+
+N = g nu + 2 X w. Both s and d are entire in M and P^2. With s' = ds/dM, d' = dd/dM and d* = (dd/dP^2)/4 every
+derivative of D is at hand, because ds/dP^2 = 4 d'. There are three ways to them: a series where z+ and z- are
+small, closed forms in the roots q where neither is, and z+ and z- themselves where only one is.
+"""
+
+import cmath
+import math
+
+from ..model.compilation import compiled
+from ..model.rod import Coefficients
+
+UNIT = 4.440892098500626e-16
+"""Unit of the noise, two roundings."""
+SERIES_BELOW = 0.1
+"""abs(z) below which E is summed as a series: the closed form of dE/dz would cancel there."""
+FEW_TERMS_BELOW = 0.25
+"""abs(v) below which sinh(q)/q, v = q^2, is summed as a series."""
+SUMMED_BELOW = 1.5
+"""abs(M) + 2 abs(P) below which all is summed as a series in z+ and z-."""
+MOST_TERMS = 13
+APART_BELOW = 0.1
+"""abs(z+ z-), in units of abs(M)^2 + 4 abs(P)^2, below which each of them is taken alone."""
+
+Triple = tuple[complex, complex, complex]
+Even = tuple[float, complex, complex, complex, complex, complex, float, float]
+"""(S, s, d, s', d', d*, noise of s, of d), all but S times exp(-S), noise in units of UNIT."""
+
+
+@compiled
+def modulus(z: complex) -> float:
+    """|z|, faster than abs, where z^2 neither overflows nor matters when it underflows."""
+    return math.sqrt(z.real * z.real + z.imag * z.imag)
+
+
+@compiled
+def entire_cosh(z: complex, root: complex, scale: float) -> tuple[complex, complex]:
+    """E(z) = (cosh sqrt(z) - 1)/z and dE/dz, both times exp(-scale); root = sqrt(z)."""
+    if abs(z) < SERIES_BELOW:
+        value = 1 + z / 30 * (1 + z / 56 * (1 + z / 90 * (1 + z / 132 * (1 + z / 182))))
+        slope = 1 + 3 * z / 112 * (1 + 4 * z / 270 * (1 + 5 * z / 528 * (1 + 6 * z / 910)))
+        size = math.exp(-scale)
+        return size * (0.5 + z / 24 * value), size * (1 + z / 15 * slope) / 24
+    grow = cmath.exp((root - scale) / 2)
+    decay = cmath.exp((-root - scale) / 2)
+    value = (grow - decay) ** 2 / (2 * z)
+    return value, ((grow**2 - decay**2) / (4 * root) - value) / z
+
+
+@compiled
+def exponents(w: complex, coefficients: Coefficients) -> tuple[complex, complex, complex]:
+    """(P, z+, z-) at w != 0; the smaller z comes from the product, which does not cancel."""
+    F, nu, c2, gamma3 = coefficients
+    g = nu + F * c2
+    P = cmath.sqrt(w * (g * nu + c2 * gamma3 * w))
+    total = (c2 + gamma3) * w - F * g
+    plus = total + 2 * P
+    minus = total - 2 * P
+    product = ((c2 - gamma3) * w) ** 2 - 2 * g * w * ((c2 + gamma3) * F + 2 * nu) + (F * g) ** 2
+    if abs(plus) >= abs(minus):
+        if plus != 0:
+            minus = product / plus
+    else:
+        plus = product / minus  # not zero, being the larger
+    return P, plus, minus
+
+
+@compiled
+def hyperbolic(v: complex, root: complex) -> tuple[complex, complex, complex]:
+    """(cosh q, sinh(q)/q, d(sinh(q)/q)/dq/q) times exp(-Re q), all entire in v = q^2; root = q."""
+    if modulus(v) < FEW_TERMS_BELOW:
+        first = 1 + v / 6 * (1 + v / 20 * (1 + v / 42 * (1 + v / 72 * (1 + v / 110 * (1 + v / 156)))))
+        second = 1 + v / 28 * (1 + v / 54 * (1 + v / 88 * (1 + v / 130 * (1 + v / 180))))
+        second = (1 + v / 10 * second) / 3
+        size = math.exp(-root.real)
+        return size * (first + v * second), size * first, size * second
+    decay = math.exp(-2 * root.real)
+    even, odd = (1 + decay) / 2, (1 - decay) / 2
+    cosine, sine = math.cos(root.imag), math.sin(root.imag)
+    cosh = complex(even * cosine, odd * sine)
+    first = complex(odd * cosine, even * sine) / root
+    return cosh, first, (cosh - first) / v
+
+
+@compiled
+def _noise_together(
+    squares: tuple[complex, complex, complex, complex],
+    apart: complex,
+    of_u: Triple,
+    of_v: Triple,
+    results: tuple[complex, complex],
+    blurs: tuple[float, float, float],
+) -> tuple[float, float]:
+    """What rounding does to s and d of `together`, to first order: blurs = (exp(-S), of M, of P^2)."""
+    M, square, u, v = modulus(squares[0]), modulus(squares[1]), modulus(squares[2]), modulus(squares[3])
+    s, d = modulus(results[0]), modulus(results[1])
+    one, blur_M, blur_square = blurs
+    c1, f1, g1 = modulus(of_u[0]), modulus(of_u[1]), modulus(of_u[2])
+    c2, f2, g2 = modulus(of_v[0]), modulus(of_v[1]), modulus(of_v[2])
+    per_root = 1 / modulus(apart)
+    blur_u = (u * blur_M + blur_square) * per_root + u
+    blur_v = (v * blur_M + blur_square) * per_root + v
+    C, H = c1 * c2 + one, f1 * f2
+    blur_C = (f1 * c2 * blur_u + c1 * f2 * blur_v) / 2 + C
+    blur_H = (g1 * f2 * blur_u + f1 * g2 * blur_v) / 2 + H
+    blur_R = 2 * M * (blur_M + M) + 4 * (blur_square + square)
+    noise_s = 2 * (blur_M * C + M * blur_C + 2 * (blur_square * H + square * blur_H)) + s * blur_R
+    noise_d = (blur_M * H + M * blur_H) / 2 + blur_C + d * blur_R
+    return noise_s * per_root * per_root, noise_d * per_root * per_root
+
+
+@compiled
+def together(M: complex, square: complex, blur_M: float, blur_square: float) -> Even:
+    """`Even` from M and square = P^2, where neither z+ nor z- is small: by the roots q themselves.
+
+    u = q1^2 and v = q2^2 solve t^2 - M t + P^2 = 0; with C = cosh q1 cosh q2 - 1, H = sinh q1 sinh q2/(q1 q2)
+    and R = z+ z- = M^2 - 4 P^2 = (u - v)^2,
+
+        s = 2 (M C - 2 P^2 H)/R,   d = (M H/2 - C)/R.
+    """
+    R = M * M - 4 * square
+    apart = cmath.sqrt(R)
+    if (M.conjugate() * apart).real < 0:
+        apart = -apart
+    u = (M + apart) / 2
+    v = square / u
+    q1, q2 = cmath.sqrt(u), cmath.sqrt(v)
+    S = q1.real + q2.real
+    one = math.exp(-S)
+    cosh1, first1, second1 = hyperbolic(u, q1)
+    cosh2, first2, second2 = hyperbolic(v, q2)
+    C = cosh1 * cosh2 - one
+    H = first1 * first2
+    per_R = 1 / R
+    half = 1 / (2 * apart)
+    C_M = (first1 * cosh2 * u - cosh1 * first2 * v) * half
+    H_M = (second1 * first2 * u - first1 * second2 * v) * half
+    C_square = (cosh1 * first2 - first1 * cosh2) * half
+    H_square = (first1 * second2 - second1 * first2) * half
+    s = 2 * (M * C - 2 * square * H) * per_R
+    d = (M * H / 2 - C) * per_R
+    s1 = 2 * (C + M * (C_M - s) - 2 * square * H_M) * per_R
+    d1 = (H / 2 + M * (H_M / 2 - 2 * d) - C_M) * per_R
+    dd = (M * H_square / 2 - C_square + 4 * d) * per_R / 4
+    noise_s, noise_d = _noise_together(
+        (M, square, u, v),
+        apart,
+        (cosh1, first1, second1),
+        (cosh2, first2, second2),
+        (s, d),
+        (one, blur_M, blur_square),
+    )
+    return S, s, d, s1, d1, dd, noise_s, noise_d
+
+
+@compiled
+def _noise_each(
+    sizes: tuple[float, float],
+    coefficients: Coefficients,
+    roots: tuple[complex, complex],
+    slopes: tuple[complex, complex],
+    blurs: tuple[float, float],
+) -> float:
+    """What rounding does to the sum of z' E(z) in `each`; sizes: |w|, |P|, roots: sqrt z, slopes: z'.
+
+    An error of z in units of the terms that cancel in it, half of that and a quarter of |q| in each exponent.
+    """
+    F, nu, c2, gamma3 = coefficients
+    g, T, X = nu + F * c2, c2 + gamma3, c2 * gamma3
+    size, size_P = sizes
+    blur_M, blur_square = blurs
+    S = max(roots[0].real, roots[1].real)
+    soft, unlike = abs(g) + abs(F) * c2 / 2, abs(c2 - gamma3) * (abs(c2 - gamma3) + c2 / 2)
+    large, blur_P = max(modulus(roots[0]), modulus(roots[1])) ** 2, blur_square / size_P
+    blur_large = blur_M + 2 * blur_P
+    blur_product = unlike * size * size + 2 * soft * size * (T * abs(F) + 2 * nu) + (F * soft) ** 2
+    steepest = T + (nu * soft + 2 * X * size) / size_P * (1 + blur_P / size_P / 2)
+    noise = 0.0
+    for i in range(2):
+        root, slope = roots[i], slopes[i]
+        q = modulus(root)
+        z = q * q
+        blur, steep, blur_slope = blur_large, modulus(slope), steepest
+        if z < large / 2:
+            blur = (blur_product + z * blur_large) / large
+            blur_slope = 2 * unlike * size + 2 * soft * (T * abs(F) + 2 * nu) + z * steepest
+            blur_slope = blur_slope / large + steep * blur_large / large
+        bound = math.exp(root.real - S) / 2 * min(1.0, 2 / max(z, 1e-300))
+        noise += bound * (blur_slope + steep * (1 + q / 4 + blur / 2 / max(1.0, q)))
+    return noise
+
+
+@compiled
+def each(
+    w: complex, coefficients: Coefficients, blur_M: float, blur_square: float
+) -> tuple[float, complex, complex, complex, complex, complex, complex, float]:
+    """(S, s, d, s', d', d*, sum of z' E(z), its noise) from z+ and z-, of which one is the smaller by far.
+
+    The slope of that one comes from the product z+ z-, too: where w is large its two terms all but cancel.
+    """
+    F, nu, c2, gamma3 = coefficients
+    P, plus, minus = exponents(w, coefficients)
+    g, T, X = nu + F * c2, c2 + gamma3, c2 * gamma3
+    turn = (g * nu + 2 * X * w) / P
+    slope_plus, slope_minus = T + turn, T - turn
+    product_slope = 2 * (c2 - gamma3) ** 2 * w - 2 * g * (T * F + 2 * nu)
+    if modulus(plus) < modulus(minus):
+        slope_plus = (product_slope - plus * slope_minus) / minus
+    else:
+        slope_minus = (product_slope - minus * slope_plus) / plus
+    root_plus, root_minus = cmath.sqrt(plus), cmath.sqrt(minus)
+    S = max(root_plus.real, root_minus.real)
+    E_plus, E1_plus = entire_cosh(plus, root_plus, S)
+    E_minus, E1_minus = entire_cosh(minus, root_minus, S)
+    difference = 1 / (4 * P)
+    s, s1 = E_plus + E_minus, E1_plus + E1_minus
+    d, d1 = (E_plus - E_minus) * difference, (E1_plus - E1_minus) * difference
+    dd = (s1 - 2 * d) * difference * difference
+    noise = _noise_each(
+        (modulus(w), modulus(P)),
+        coefficients,
+        (root_plus, root_minus),
+        (slope_plus, slope_minus),
+        (blur_M, blur_square),
+    )
+    return S, s, d, s1, d1, dd, slope_plus * E_plus + slope_minus * E_minus, noise
+
+
+@compiled
+def summed(M: complex, P: complex, blur_M: float, blur_square: float) -> Even:
+    """`Even` by its series in z+ and z-, where both are small: E = sum z^n/(2n + 2)!."""
+    plus, minus = M + 2 * P, M - 2 * P
+    S = max(cmath.sqrt(plus).real, cmath.sqrt(minus).real)
+    size = math.exp(-S)
+    s, s1, d, d1, dd = complex(size), 0j, 0j, 0j, 0j
+    power_plus, power_minus = 1 + 0j, 1 + 0j
+    # Complete homogeneous sums: of z+ and z-, the one before, with z+ twice, with both twice.
+    pair, last, three, four = 1 + 0j, 0j, 0j, 0j
+    factor = size / 2
+    for n in range(1, MOST_TERMS):
+        factor /= (2 * n + 1) * (2 * n + 2)
+        s1 += n * factor * (power_plus + power_minus)
+        d += factor * pair
+        d1 += n * factor * last
+        dd += factor * four
+        three = plus * three + last
+        four = minus * four + three
+        last = pair
+        power_plus, power_minus = plus * power_plus, minus * power_minus
+        pair = minus * pair + power_plus
+        s += factor * (power_plus + power_minus)
+    noise_s = size * (1 + blur_M / 10 + blur_square / 80)
+    noise_d = size * (0.1 + blur_M / 300 + blur_square / 8000)
+    return S, s, d, s1, d1, dd, noise_s, noise_d
+
+
+@compiled
+def even_parts(
+    w: complex, coefficients: Coefficients
+) -> tuple[float, float, complex, complex, complex, complex, complex, complex]:
+    """(S, noise, sum of z' E(z), s, d, s', d', d*) at w != 0, all but S times exp(-S); noise is that of D.
+
+    It adds up, to first order and through moduli that do not all vanish where D does, what rounding does to
+    M, to P^2 and to each step from there.
+    """
+    F, nu, c2, gamma3 = coefficients
+    g = nu + F * c2
+    T, X, G = c2 + gamma3, c2 * gamma3, g * nu
+    M = T * w - F * g
+    square = w * (G + X * w)
+    N = G + 2 * X * w
+    size = modulus(w)
+    soft = abs(g) + abs(F) * c2 / 2  # c2 is rounded, and so is F c2, which nu may all but cancel
+    stiffness = nu * soft + X * size
+    blur_M, blur_square = T * size + abs(F) * soft, size * stiffness
+    size_M, size_square = modulus(M), modulus(square)
+    small = size_M + 2 * math.sqrt(size_square) < SUMMED_BELOW
+    if small or modulus(M * M - 4 * square) > APART_BELOW * (size_M * size_M + 4 * size_square):
+        if small:
+            S, s, d, s1, d1, dd, noise_s, noise_d = summed(M, cmath.sqrt(square), blur_M, blur_square)
+        else:
+            S, s, d, s1, d1, dd, noise_s, noise_d = together(M, square, blur_M, blur_square)
+        first = T * s + 4 * N * d
+        noise = T * noise_s + 4 * (stiffness + X * size) * noise_d
+    else:
+        S, s, d, s1, d1, dd, first, noise = each(w, coefficients, blur_M, blur_square)
+    noise = UNIT * (math.exp(-S) + size / 2 * noise)
+    return S, noise, first, s, d, s1, d1, dd

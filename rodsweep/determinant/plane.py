@@ -1,0 +1,100 @@
+"""Planes of rods: two parameters vary, each on a linear or a logarithmic axis scaled to [0, 1]."""
+
+from dataclasses import dataclass
+from math import exp, inf, log
+
+from ..model.rod import PARAMETERS, Rod
+from .path import determinant_along, direction_of
+from .value import ROUND_OFF
+
+ROUNDED = 1e-12
+"""Distance beyond the end of an axis that is rounding."""
+LITTLE = 0.01
+"""Share of the distance from a crushed rod that a small step may use."""
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """One axis of a plane: a parameter from `start` to `stop`, both finite, in equal steps or ratios."""
+
+    name: str
+    start: float
+    stop: float
+    logarithmic: bool = False
+
+    def value(self, x: float) -> float:
+        """The parameter at the scaled coordinate x; 0 is start and 1 is stop, also when x is rounded."""
+        if -ROUNDED < x < 0 or 1 < x < 1 + ROUNDED:
+            x = round(x)
+        if self.logarithmic:
+            return exp(log(self.start) + x * (log(self.stop) - log(self.start)))
+        return self.start + x * (self.stop - self.start)
+
+    def scaled(self, value: float) -> float:
+        """The coordinate of a value of the parameter."""
+        if self.logarithmic:
+            return (log(value) - log(self.start)) / (log(self.stop) - log(self.start))
+        return (value - self.start) / (self.stop - self.start)
+
+    def stretch(self, value: float) -> float:
+        """d(parameter)/dx at a value of the parameter."""
+        return value * (log(self.stop) - log(self.start)) if self.logarithmic else self.stop - self.start
+
+    def slope(self, value: float) -> float:
+        """d(path variable)/dx at a value of the parameter; the variable of k1 and k2 is 1/k."""
+        along = self.stretch(value)
+        return -along / value**2 if self.name in ("k1", "k2") else along
+
+
+@dataclass(frozen=True, slots=True)
+class Plane:
+    """All rods that differ from `rod` in the parameters of two axes only."""
+
+    rod: Rod
+    axes: tuple[Axis, Axis]
+
+    def at(self, x: float, y: float) -> Rod:
+        """The rod at scaled coordinates; ValueError where the model has none."""
+        values = {name: getattr(self.rod, name) for name in PARAMETERS}
+        values[self.axes[0].name] = self.axes[0].value(x)
+        values[self.axes[1].name] = self.axes[1].value(y)
+        return Rod(**values)
+
+    def determinant(
+        self, w: complex, x: float, y: float
+    ) -> tuple[complex, complex, complex, complex, float, float]:
+        """(D, dD/dw, dD/dx, dD/dy, S, rounding error) at w, all but S times exp(-S)."""
+        rod = self.at(x, y)
+        D, D_w, D_x, S, noise = self._along(w, rod, 0)
+        _, _, D_y, _, _ = self._along(w, rod, 1)
+        # The coordinates are rounded numbers: D cannot tell them from their neighbours.
+        blur = noise + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
+        return D, D_w, D_x, D_y, S, blur
+
+    def _along(self, w: complex, rod: Rod, which: int) -> tuple[complex, complex, complex, float, float]:
+        axis = self.axes[which]
+        D, D_w, D_p, S, noise = determinant_along(w, rod.coefficients, direction_of(rod, axis.name))
+        return D, D_w, D_p * axis.slope(getattr(rod, axis.name)), S, noise
+
+    def small_step(self, x: float, y: float, which: int, largest: float) -> float:
+        """A step along an axis, at most `largest`, that changes the distance k1 - F from crushing little."""
+        rod, axis = self.at(x, y), self.axes[which]
+        if axis.name not in ("F", "k1"):
+            return largest
+        return min(largest, LITTLE * (rod.k1 - rod.F) / axis.stretch(getattr(rod, axis.name)))
+
+    def holds(self, x: float, y: float) -> bool:
+        """Whether the model has a rod at these coordinates."""
+        try:
+            self.at(x, y)
+        except ValueError:
+            return False
+        return True
+
+    def inside(self, x: float, y: float) -> bool:
+        """Whether the coordinates lie on the plane and the rod is not crushed."""
+        if not (0 <= x <= 1 and 0 <= y <= 1):
+            return False
+        values = {axis.name: axis.value(v) for axis, v in zip(self.axes, (x, y), strict=True)}
+        k1, F = values.get("k1", self.rod.k1), values.get("F", self.rod.F)
+        return F < k1 <= inf

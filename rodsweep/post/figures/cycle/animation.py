@@ -1,0 +1,91 @@
+"""The beating arm in motion: a GIF, or an MP4 where ffmpeg is installed."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ....errors import EnvironmentLacks, InputError
+from ....results.file.view import View
+from ..style import FIRST, SECOND
+from .chosen import SHAPES, Cycle, chosen_cycles, headings, left_out
+from .portrait import clamp, force_arrow, frame, tip_path
+
+FILMS = (".gif", ".mp4")
+SECONDS = 2.4
+"""Time on the screen of one period."""
+FEWEST_SHAPES = 8
+"""Frames below which nothing seems to move."""
+GHOSTS = 6
+"""Earlier shapes that fade away behind the arm."""
+GHOSTS_BACK = 0.2
+"""How far back in periods the last of them is."""
+
+
+def write_animation(view: View, points: Sequence[int], output: Path) -> str:
+    """One period of up to three cycles side by side, each in its own time; returns what it shows."""
+    cycles = chosen_cycles(view, points, SHAPES)
+    frames = len(cycles[0].values["shape_x"])
+    if frames < FEWEST_SHAPES:
+        raise InputError(
+            f"{view.path} holds {frames} shapes of a cycle, too few for an animation; "
+            "run with limit_cycle.shapes: 48"
+        )
+    writer = _writer(output, max(1, round(frames / SECONDS)))
+    figure = Figure(figsize=(2.7 * len(cycles) + 0.9, 4.4), layout="constrained")
+    panels = figure.subplots(1, len(cycles), squeeze=False, sharey=True)[0]
+    title, each = headings(view, cycles)
+    figure.suptitle(title, fontsize=10)
+    panels[0].set_ylabel("$y/L$")
+    arms = [Arm(axes, cycle, text) for axes, cycle, text in zip(panels, cycles, each, strict=True)]
+    frame(panels, cycles)
+    with writer.saving(figure, str(output), dpi=100):
+        for k in range(frames):
+            for arm in arms:
+                arm.show(k)
+            writer.grab_frame()
+            figure.set_layout_engine("none")  # laid out once: nothing else may move
+    return f"one period in {frames} frames" + left_out(view, points, cycles)
+
+
+def _writer(output: Path, rate: int) -> AbstractMovieWriter:
+    """The writer for the file's suffix; EnvironmentLacks where the machine has none."""
+    if output.suffix == ".gif":
+        return PillowWriter(fps=rate)
+    if not matplotlib.animation.writers.is_available("ffmpeg"):
+        raise EnvironmentLacks(f"{output}: an .mp4 needs ffmpeg, which is not installed; a .gif does not")
+    return FFMpegWriter(fps=rate)
+
+
+class Arm:
+    """One arm in its panel."""
+
+    def __init__(self, axes: Axes, cycle: Cycle, text: str) -> None:
+        self.axes, self.cycle = axes, cycle
+        self.frames = len(cycle.values["shape_x"])
+        tip_path(axes, cycle)
+        clamp(axes)
+        fading = np.linspace(0.85, 0.45, GHOSTS)
+        self.ghosts = [axes.plot([], [], color=str(grey), lw=1.2, zorder=1.5)[0] for grey in fading]
+        (self.rod,) = axes.plot([], [], color=FIRST, lw=3.0, solid_capstyle="round", zorder=3)
+        self.arrow = force_arrow(axes, np.zeros(1), np.zeros(1), np.zeros(1), SECOND)
+        self.text = axes.text(0.02, 0.02, "", transform=axes.transAxes, fontsize=9)
+        axes.set_xlabel("$x/L$")
+        axes.set_title("\n".join(filter(None, (text, rf"$T$ = {cycle.period:.6g} $\tau_2$"))), fontsize=9)
+
+    def show(self, k: int) -> None:
+        """Moves the arm to its k-th shape."""
+        shapes = [self.cycle.values[name] for name in SHAPES]
+        back = np.linspace(GHOSTS_BACK * self.frames, 0, GHOSTS, endpoint=False).round().astype(int)
+        for ghost, steps in zip(self.ghosts, back, strict=True):
+            ghost.set_data(shapes[0][k - steps], shapes[1][k - steps])
+        x, y, theta = (values[k] for values in shapes)
+        self.rod.set_data(x, y)
+        self.arrow.remove()
+        self.arrow = force_arrow(self.axes, x, y, theta, SECOND)
+        time = self.cycle.period * k / self.frames
+        self.text.set_text(rf"$t$ = {time:.4f} $\tau_2$ = {k / self.frames:.2f} $T$")

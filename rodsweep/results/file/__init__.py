@@ -1,0 +1,1 @@
+"""The result file: made whole, exchanged whole, sealed; read, merged and told where it came from."""

@@ -1,0 +1,138 @@
+"""A new result file: netCDF-4-compatible HDF5 with every variable in its place, filled as missing.
+
+Also what is added to a file once its points are known, such as curves.
+"""
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from ..layouts.variables import DIMENSIONS, MISSING, Filled, Layout, Variable
+
+SIGNATURE = "rodsweep"
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What makes a file: the points, the layout, and the config that it answers."""
+
+    columns: Sequence[NDArray[np.float64]]
+    """Values of the layout's parameters: axes of a grid, or columns of a list."""
+    is_grid: bool
+    layout: Layout
+    coordinates: dict[str, NDArray[np.float64]]
+    """Values of extra dimensions that have some, such as u."""
+    constants: tuple[Filled, ...]
+    """Variables known without solving, such as those along (k1, mode) on a grid, (point, mode) else."""
+    config: dict[str, Any]
+    """The resolved config."""
+    attributes: dict[str, Any]
+    flags: tuple[tuple[int, str], ...]
+    """Values and meanings of `status`, beside MISSING."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return tuple(len(c) for c in self.columns) if self.is_grid else (len(self.columns[0]),)
+
+    @property
+    def dimensions(self) -> tuple[str, ...]:
+        """Names of the dimensions of the points."""
+        return self.layout.parameters if self.is_grid else ("point",)
+
+    @property
+    def fingerprint(self) -> str:
+        """What two files must share for the one to continue the other."""
+        digest = sha256(json.dumps(self.config, sort_keys=True).encode())
+        for column in self.columns:
+            digest.update(np.ascontiguousarray(column).tobytes())
+        return digest.hexdigest()
+
+
+def create_file(path: Path, plan: Plan) -> None:
+    """Writes the file that `plan` asks for, without any point."""
+    with h5py.File(path, "w") as file:
+        _write_parameters(file, plan)
+        for name, extent in plan.layout.extents.items():
+            _write_scale(file, name, plan.coordinates.get(name, np.arange(1, extent + 1)))
+        for variable in plan.layout.variables:
+            shape = plan.shape + plan.layout.inner(variable)
+            data = _contiguous(file, variable, shape)
+            _describe(data, variable)
+            _attach(file, data, (*plan.dimensions, *variable.extra))
+        add_variables(file, plan.constants)
+        _describe_flags(file["status"], ((MISSING, "missing"), *plan.flags))
+        file.attrs["program"] = SIGNATURE
+        file.attrs["fingerprint"] = plan.fingerprint
+        file.attrs["config_resolved"] = json.dumps(plan.config)
+        file.attrs.update(plan.attributes)
+
+
+def add_variables(file: h5py.File, filled: Sequence[Filled]) -> None:
+    """Adds whole variables to an open file, with those of their dimensions that it does not have yet."""
+    for variable, values in filled:
+        for name, extent in zip(variable.extra, values.shape, strict=True):
+            if name not in file:
+                _write_scale(file, name, np.arange(1, extent + 1))
+        data = file.create_dataset(variable.name, data=values.astype(variable.dtype))
+        _describe(data, variable)
+        _attach(file, data, variable.extra)
+
+
+def _write_parameters(file: h5py.File, plan: Plan) -> None:
+    """The parameters, each a dimension of its own or all along `point`."""
+    names = plan.layout.parameters
+    if plan.is_grid:
+        for name, column in zip(names, plan.columns, strict=True):
+            _write_scale(file, name, column)
+        return
+    _write_scale(file, "point", np.arange(plan.shape[0], dtype="<i4"))
+    for name, column in zip(names, plan.columns, strict=True):
+        units, long_name = DIMENSIONS[name]
+        data = file.create_dataset(name, data=column)
+        data.attrs.update(units=units, long_name=long_name)
+        data.dims[0].attach_scale(file["point"])
+    file.attrs["coordinates"] = " ".join(names)
+
+
+def _write_scale(file: h5py.File, name: str, values: NDArray[Any]) -> None:
+    """A dimension with its coordinate."""
+    units, long_name = DIMENSIONS[name]
+    data = file.create_dataset(name, data=values)
+    data.make_scale(name)
+    data.attrs.update(units=units, long_name=long_name)
+
+
+def _contiguous(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> h5py.Dataset:
+    """A dataset in one piece that has its place in the file, filled, from the start."""
+    creation = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    creation.set_layout(h5py.h5d.CONTIGUOUS)
+    creation.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
+    creation.set_fill_value(np.array(variable.fill, variable.dtype))
+    kind = h5py.h5t.py_create(np.dtype(variable.dtype), logical=True)
+    space = h5py.h5s.create_simple(shape)
+    return h5py.Dataset(h5py.h5d.create(file.id, variable.name.encode(), kind, space, creation))
+
+
+def _describe(data: h5py.Dataset, variable: Variable) -> None:
+    data.attrs.update(units=variable.units, long_name=variable.long_name)
+    if variable.flags:
+        _describe_flags(data, variable.flags)
+
+
+def _describe_flags(data: h5py.Dataset, flags: Sequence[tuple[int, str]]) -> None:
+    data.attrs["flag_values"] = np.array([value for value, _ in flags], dtype="i1")
+    data.attrs["flag_meanings"] = " ".join(meaning for _, meaning in flags)
+
+
+def _attach(file: h5py.File, data: h5py.Dataset, dimensions: Sequence[str]) -> None:
+    for axis, name in enumerate(dimensions):
+        data.dims[axis].attach_scale(file[name])
+    if "point" in dimensions:
+        data.attrs["coordinates"] = file.attrs["coordinates"]

@@ -1,0 +1,38 @@
+"""The file of a benchmark: a group of columns for each study, and where they were measured."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from ...errors import EnvironmentLacks
+
+Table = dict[str, Sequence[str] | Sequence[float]]
+"""Columns of equal length, by name."""
+
+UNITS = {"seconds": "s", "error": "1"}
+
+
+def write_measurements(path: Path, tables: Mapping[str, Table], attributes: Mapping[str, str]) -> None:
+    """Writes /STUDY/COLUMN for every study, each column of shape (measurement,).
+
+    Raises EnvironmentLacks where the file cannot be written.
+    """
+    try:
+        with h5py.File(path, "w") as file:
+            file.attrs.update(attributes)
+            for study, table in tables.items():
+                group = file.create_group(study)
+                for n, (name, values) in enumerate(table.items()):
+                    words = bool(values) and isinstance(values[0], str)
+                    column = np.array(values, dtype=h5py.string_dtype() if words else float)
+                    dataset = group.create_dataset(name, data=column)
+                    if n == 0:
+                        count = group.create_dataset("measurement", data=np.arange(len(values)))
+                        count.make_scale("measurement")
+                    dataset.dims[0].attach_scale(count)
+                    if name in UNITS:
+                        dataset.attrs["units"] = UNITS[name]
+    except OSError as error:
+        raise EnvironmentLacks(f"{path} cannot be written: {error}") from error

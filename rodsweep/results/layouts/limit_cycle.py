@@ -1,0 +1,61 @@
+"""What the file of the task limit_cycle holds."""
+
+from typing import Any
+
+from .variables import MESH, NONLINEAR_NAMES, SECONDS, STATUS, Layout, Variable, real, whole
+
+POWER = "k3/(L tau2)"
+CYCLE = (
+    real("period", "tau2", "period of the limit cycle"),
+    real("frequency", "1/tau2", "angular frequency of the limit cycle, 2 pi/period"),
+    real("linear_growth_rate", "1/tau2", "real part of the leading eigenvalue of the straight rod"),
+    real("linear_frequency", "1/tau2", "imaginary part of the leading eigenvalue of the straight rod"),
+    real("tip_x_min", "L", "smallest x of the tip over a period"),
+    real("tip_x_max", "L", "largest x of the tip over a period"),
+    real("tip_y_max", "L", "largest deflection y of the tip over a period"),
+    real("tip_theta_max", "rad", "largest angle of the tip over a period"),
+    real("period_error", "1", "estimate of the relative error of period"),
+    real("amplitude_error", "1", "estimate of the relative error of the extrema of the tip"),
+    real("harmonic_amplitude", "L", "amplitude of a harmonic of the tip's deflection y", "harmonic"),
+    real("injection_mean", POWER, "power of the follower force, mean over a period"),
+    real("injection_rms", POWER, "power of the follower force, root mean square of its fluctuation"),
+    real("dissipation_mean", POWER, "power lost to the fluid, mean over a period"),
+    real("dissipation_rms", POWER, "power lost to the fluid, root mean square of its fluctuation"),
+    real("energy_imbalance", "1", "relative difference of energy injected and dissipated over a period"),
+    real("multiplier", "1", "modulus of the largest Floquet multiplier but the one that is 1"),
+    real("closure", "1", "relative distance of the state to itself one period later"),
+    real("least_stretch", "1", "smallest stretch h1 along the rod over a period"),
+    whole("periods", "returns to the section that were waited for"),
+    *MESH,
+    SECONDS,
+    STATUS,
+)
+PERIOD_TAU1 = real("period_tau1", "tau1", "period of the limit cycle in units of tau1, period k2/gamma3")
+TIP = tuple(
+    real(f"tip_{name}", units, f"{name} of the tip", "sample")
+    for name, units in (("x", "L"), ("y", "L"), ("theta", "rad"))
+)
+ENERGY = (
+    real("energy", "k3/L", "elastic energy", "sample"),
+    real("injection", POWER, "power of the follower force", "sample"),
+    real("dissipation", POWER, "power lost to the fluid", "sample"),
+)
+SHAPE = tuple(
+    real(f"shape_{name}", units, f"{name} along the rod", "shape", "u")
+    for name, units in (("x", "L"), ("y", "L"), ("theta", "rad"))
+)
+
+
+def limit_cycle_layout(options: dict[str, Any]) -> Layout:
+    """The layout of the task limit_cycle for its resolved options; traces and shapes only where asked for."""
+    variables: tuple[Variable, ...] = CYCLE
+    extents = {"harmonic": options["harmonics"]}
+    if options["time"] == "tau1":
+        variables += (PERIOD_TAU1,)
+    if options["samples"]:
+        variables += TIP + ENERGY
+        extents |= {"sample": options["samples"]}
+    if options["shapes"]:
+        variables += SHAPE
+        extents |= {"shape": options["shapes"], "u": options["nodes"]}
+    return Layout(variables, extents, tuple(NONLINEAR_NAMES))

@@ -1,0 +1,1 @@
+"""PETSc, SLEPc and the BLAS themselves; nothing here knows the rod."""

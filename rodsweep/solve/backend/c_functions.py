@@ -1,0 +1,78 @@
+"""Compiled code and libpetsc: C functions made by numba, C functions that it may call, memory by address.
+
+Nothing here knows the rod.
+"""
+
+import ctypes
+from collections.abc import Callable
+from typing import Any
+
+import numba
+import numpy as np
+from llvmlite import binding
+from numba import types
+from numba.core import typing
+from numba.extending import intrinsic
+
+from ...model.compilation import compiled
+from .petsc import PETSc
+
+CALLED = (
+    "VecGetArrayRead",
+    "VecRestoreArrayRead",
+    "VecGetArray",
+    "VecRestoreArray",
+    "MatDenseGetArray",
+    "MatDenseRestoreArray",
+    "PetscObjectStateGet",
+)
+"""What compiled code calls."""
+LIBRARY = ctypes.CDLL(PETSc.__file__)  # a module's symbols include those of the libraries it is linked to
+for _name in CALLED:
+    binding.add_symbol(_name, ctypes.cast(getattr(LIBRARY, _name), ctypes.c_void_p).value)
+
+POINTER, INT = types.intp, types.int32 if PETSc.IntType == np.int32 else types.int64
+
+
+def c_function(*arguments: Any) -> Callable[[Callable], Any]:
+    """Compiles a function of these arguments into one that C can call and that returns an error code."""
+    signature = types.int32(*arguments)
+
+    def decorate(function: Callable) -> Any:
+        try:
+            return numba.cfunc(signature, cache=True)(function)
+        except (RuntimeError, OSError):  # there is no directory that may be written
+            return numba.cfunc(signature)(function)
+
+    return decorate
+
+
+def petsc_function(name: str) -> Any:
+    """int name(object, array*) of libpetsc for compiled callers; unlike one of ctypes it can be cached."""
+    return types.ExternalFunction(name, typing.signature(types.int32, POINTER, POINTER))
+
+
+@intrinsic
+def pointer(context: Any, address: Any) -> Any:
+    """An integer as a pointer."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.inttoptr(arguments[0], context.get_value_type(types.voidptr))
+
+    return types.voidptr(address), generate
+
+
+@compiled
+def floats(address: int, size: int) -> Any:
+    return numba.carray(pointer(address), (size,), np.float64)
+
+
+@compiled
+def integers(address: int, size: int) -> Any:
+    return numba.carray(pointer(address), (size,), np.int64)
+
+
+def call(name: str, *arguments: int) -> None:
+    """A function of libpetsc whose arguments are all pointers."""
+    if getattr(LIBRARY, name)(*map(ctypes.c_void_p, arguments)):
+        raise RuntimeError(f"{name} failed")

@@ -1,0 +1,50 @@
+"""The one place that starts PETSc and SLEPc, and says what they can do."""
+
+from functools import cache
+
+from ...errors import EnvironmentLacks
+
+try:
+    import petsc4py
+    import slepc4py
+
+    # Its handlers would turn a reader's broken pipe into an abort of all ranks.
+    petsc4py.init(["rodsweep", "-no_signal_handler"])
+    slepc4py.init(["rodsweep"])
+    from petsc4py import PETSc
+    from slepc4py import SLEPc
+except ImportError as error:
+    raise EnvironmentLacks(
+        f"petsc4py and slepc4py cannot be imported ({error}); `make install` provides them, or set "
+        "PETSC_DIR and SLEPC_DIR to where they are installed"
+    ) from error
+
+__all__ = ["PETSc", "SLEPc", "options", "sparse_package", "versions"]
+
+SPARSE_PACKAGES = ("superlu", "umfpack", "klu", "mumps")
+"""Sparse factorisations that pivot, the fastest on these matrices first. PETSc's own does not."""
+
+
+@cache
+def sparse_package() -> str | None:
+    """The first of SPARSE_PACKAGES that this PETSc has; None if it has none."""
+    for name in SPARSE_PACKAGES:
+        if PETSc.Sys.hasExternalPackage({"umfpack": "suitesparse", "klu": "suitesparse"}.get(name, name)):
+            return name
+    return None
+
+
+def versions() -> dict[str, str]:
+    """Versions of PETSc, SLEPc and their Python bindings."""
+    return {
+        "petsc": ".".join(map(str, PETSc.Sys.getVersion())),
+        "slepc": ".".join(map(str, SLEPc.Sys.getVersion())),
+        "petsc4py": petsc4py.__version__,
+        "slepc4py": slepc4py.__version__,
+    }
+
+
+def options(prefix: str = "") -> str:
+    """The options of that prefix given to PETSc by PETSC_OPTIONS or a resource file, as one line."""
+    given = sorted((k, v) for k, v in PETSc.Options().getAll().items() if k != "no_signal_handler")
+    return " ".join(f"-{k} {v or ''}".strip() for k, v in given if k.startswith(prefix))

@@ -1,0 +1,132 @@
+"""Everything that changes along a path of rods: crossings of the imaginary axis, and who leads.
+
+The crossings come from `rodsweep.determinant.covering`, which proves that there are no others, the changes
+of the leading eigenvalue from `leading_eigenvalue`. Here they become one list in increasing order of the
+parameter, and the winding number confirms how many modes are unstable at both ends and in between.
+"""
+
+import math
+from dataclasses import dataclass
+
+from ...determinant.covering import Box, Zero, cover, first_boxes, slabs
+from ...determinant.path import Path, coefficients_at, determinant_along
+from .leading_eigenvalue import Change, Tracer, Untraceable
+from .unstable_modes import Counts, Crossing, Kind
+
+BESIDE = 1e-4
+"""Distance from a crossing, in units of the path, of an anchor where the pair must lead."""
+ONE_RANGE = 1e-5
+"""Relative distance of open boxes below which they make one range."""
+
+
+@dataclass(frozen=True, slots=True)
+class Transitions:
+    """All changes along a path, in increasing order of its parameter.
+
+    open_range: the interval that holds every place where two crossings may lie, or none; nan if there
+    is no such place. oscillates_at_start: whether a pair leads there. proved: the covering is complete,
+    every count agrees, and nothing lies right of an eigenvalue said to lead. boxes: evaluations of D that
+    the covering took; solves: eigenproblems.
+    """
+
+    crossings: tuple[Crossing, ...]
+    open_range: tuple[float, float]
+    unstable_at_start: int
+    unstable_at_end: int
+    oscillates_at_start: bool
+    proved: bool
+    boxes: int
+    solves: int
+    why_not: str = ""
+
+
+def transitions(path: Path, start: float, stop: float, certify: bool = True) -> Transitions:
+    """All changes from the value `start` of the path's parameter up to `stop`.
+
+    Raises Untraceable where no a-priori bound applies or a spectrum cannot be had.
+    """
+    low, high = sorted((path.variable(start), path.variable(stop)))
+    boxes = first_boxes(path, low, high)
+    if boxes is None:
+        raise Untraceable("no a-priori bound on the eigenvalues applies")
+    zeros, left, examined = cover(boxes, path.origin, path.direction)
+    hopfs = [_hopf(path, zero) for zero in zeros if low <= zero[1] <= high]
+    gaps = _gaps(path, left)
+    tracer, counts = Tracer(path, certify), Counts(path, gaps, certify)
+    unstable = 0 if path.name == "F" and start == 0 else counts.first(start, stop, hopfs)
+    oscillates = tracer.anchor(path.variable(start)).oscillates
+    edges = [a for a, _ in slabs(path, low, high)] + [high]
+    for _ in range(2):
+        leads = [_lead(path, change) for change in tracer.changes(edges)]
+        crossings, at_end = counts.along(sorted(leads + hopfs, key=lambda c: c.at), (start, stop), unstable)
+        missed = _pairs_that_do_not_lead(path, crossings, oscillates, unstable)
+        if not missed:
+            break
+        near = [(p + side * BESIDE * (high - low)) for p in missed for side in (-1, 1)]
+        edges = sorted({*edges, *(p for p in near if low < p < high)})
+    else:
+        counts.doubts.append("the leading eigenvalue is not the pair that crosses the axis")
+    if certify and not tracer.proved:
+        counts.doubts.append("it is not proved which eigenvalue leads everywhere")
+    known = all(number >= 0 for number in (unstable, at_end, *(c.unstable_after for c in crossings)))
+    return Transitions(
+        crossings,
+        (min(a for a, _ in gaps), max(b for _, b in gaps)) if gaps else (math.nan, math.nan),
+        unstable,
+        at_end,
+        oscillates,
+        certify and not gaps and not counts.doubts and known,
+        examined,
+        tracer.solves,
+        "; ".join(counts.doubts),
+    )
+
+
+def _pairs_that_do_not_lead(
+    path: Path, crossings: tuple[Crossing, ...], oscillates: bool, unstable: int
+) -> list[float]:
+    """Path variables of crossings whose pair is alone on the axis and so must lead, but is said not to."""
+    missed = []
+    for crossing in crossings:
+        if crossing.kind in (Kind.onset, Kind.pair_leads, Kind.real_again, Kind.real_leads):
+            oscillates = crossing.kind in (Kind.onset, Kind.pair_leads)
+        else:
+            if min(unstable, crossing.unstable_after) == 0 and not oscillates:
+                missed.append(path.variable(crossing.at))
+            unstable = crossing.unstable_after
+    return missed
+
+
+def _value(path: Path, p: float, error: float) -> tuple[float, float]:
+    """(value of the parameter, its error) from the path variable's."""
+    return (1 / p, error / p**2) if path.inverse else (p, error)
+
+
+def _hopf(path: Path, zero: Zero) -> Crossing:
+    """A crossing, hopf or hopf_reverse by the direction in which the pair moves."""
+    eta, p, _, error = zero
+    _, D_w, D_p, _, _ = determinant_along(
+        complex(0.0, eta), coefficients_at(p, path.origin, path.direction), path.direction
+    )
+    growing = (-D_p / D_w).real > 0
+    kind = Kind.hopf if growing != path.inverse else Kind.hopf_reverse
+    value, error = _value(path, p, error)
+    return Crossing(value, kind, eta, 0.0, error)
+
+
+def _lead(path: Path, change: Change) -> Crossing:
+    to_pair = change.to_pair != path.inverse
+    double, single = (Kind.onset, Kind.pair_leads) if to_pair else (Kind.real_again, Kind.real_leads)
+    value, error = _value(path, change.p, change.error)
+    return Crossing(value, double if change.double else single, change.frequency, change.growth_rate, error)
+
+
+def _gaps(path: Path, left: list[Box]) -> list[tuple[float, float]]:
+    """Disjoint intervals of the parameter that the open boxes cover."""
+    gaps: list[tuple[float, float]] = []
+    for a, b in sorted(sorted((_value(path, p0, 0.0)[0], _value(path, p1, 0.0)[0])) for _, _, p0, p1 in left):
+        if gaps and a <= gaps[-1][1] * (1 + ONE_RANGE):
+            gaps[-1] = gaps[-1][0], max(b, gaps[-1][1])
+        else:
+            gaps.append((a, b))
+    return gaps

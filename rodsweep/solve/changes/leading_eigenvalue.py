@@ -1,0 +1,268 @@
+"""Which eigenvalue leads along a path of rods, a real one or a pair, and where that changes.
+
+Two things change the character of the rightmost eigenvalue: two real ones meet and become a pair, or
+the other way round (a double eigenvalue, where D = D_w = 0), or one overtakes the other without
+meeting it. Anchors are rods whose leading eigenvalues the spectrum solver gives, certified where
+asked for; between two anchors the squared difference of the two leading ones and the lead over the
+next, which are smooth, must be explained by their slopes, or an anchor is put between. The points
+themselves are found by Newton's method on D, and the winding number says that nothing lies right of
+them.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...determinant.certified_count import count_right_of
+from ...determinant.newton import double_newton, eigenvalue_newton
+from ...determinant.path import Path, coefficients_at
+from ..spectrum.search import SpectrumRequest, solve_spectrum
+
+MODES = 4
+"""Leading eigenvalues that an anchor knows: two that lead, and their rivals."""
+ANCHOR_ACCURACY = 1e-6
+"""What is asked of the spectrum solver; Newton's method on D does the rest."""
+EXPLAINED = 0.25
+"""Share of a quantity that its cubic model may miss between two anchors."""
+CLOSEST, CLOSEST_NEAR_ZERO = 2e-4, 1e-9
+"""Distance of anchors, in units of the path, below which no more are put between; and where two changes
+may hide between them."""
+MOST_STEPS = 60
+CARRIED = 8
+"""Steps in which an eigenvalue is carried from an anchor to the middle between two."""
+
+
+class Untraceable(Exception):
+    """The leading eigenvalues of a rod on the path could not be computed; says why."""
+
+
+@dataclass(frozen=True)
+class Anchor:
+    """A rod of the path with its leading eigenvalues w and their slopes dw/dp, shape (MODES,).
+
+    time, lengthening: a time on which the rod relaxes, smooth along the path, and its slope. In its units w
+    is of order one; without shear and rotational drag it grows like nu^-2 where the rod is nearly crushed.
+    """
+
+    p: float
+    w: NDArray[np.complex128]
+    slope: NDArray[np.complex128]
+    time: float = 1.0
+    lengthening: float = 0.0
+
+    @cached_property
+    def oscillates(self) -> bool:
+        """Whether a pair leads."""
+        return bool(self.w[0].imag != 0)
+
+    def partner(self) -> tuple[float, float] | None:
+        """((w1 - w2)^2 time^2, its slope) of the two that lead, where both are real or both are a pair."""
+        if self.oscillates:
+            gap, slope = self._timed(2 * self.w[0].imag, 2 * self.slope[0].imag)
+            return -(gap**2), -2 * gap * slope
+        if self.w[1].imag != 0:
+            return None
+        gap, slope = self._timed((self.w[0] - self.w[1]).real, (self.slope[0] - self.slope[1]).real)
+        return gap**2, 2 * gap * slope
+
+    def rival(self) -> tuple[float, float] | None:
+        """(lead of the real part over the first eigenvalue of the other kind, times time, its slope)."""
+        for w, slope in zip(self.w[1:], self.slope[1:], strict=True):
+            if (w.imag != 0) != self.oscillates:
+                return self._timed((self.w[0] - w).real, (self.slope[0] - slope).real)
+        return None
+
+    def _timed(self, value: float, slope: float) -> tuple[float, float]:
+        """(value time, its slope): zeros and signs stay where they are."""
+        return float(value * self.time), float(slope * self.time + value * self.lengthening)
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """The rightmost eigenvalue becomes a pair, or real, at p: by a double root or by an overtaking."""
+
+    p: float
+    error: float
+    growth_rate: float
+    frequency: float
+    """Of the pair, where it overtakes or is overtaken; 0 at a double root."""
+    to_pair: bool
+    double: bool
+
+
+class Tracer:
+    """Follows the leading eigenvalue along one path; anchors are kept."""
+
+    def __init__(self, path: Path, certify: bool):
+        self.path, self.certify = path, certify
+        self.anchors: dict[float, Anchor] = {}
+        self.solves = 0
+        self.proved = certify
+        """Whether every anchor is certified and nothing lies right of any change."""
+
+    def anchor(self, p: float) -> Anchor:
+        """The anchor at p; Untraceable where its eigenvalues cannot be had."""
+        if p not in self.anchors:
+            self.anchors[p] = self._solve(p)
+        return self.anchors[p]
+
+    def _solve(self, p: float) -> Anchor:
+        request = SpectrumRequest(MODES, ANCHOR_ACCURACY, self.certify)
+        rod = self.path.at(p)
+        found = solve_spectrum(rod, request)
+        self.solves += 1
+        self.proved = self.proved and found.certified
+        if not np.isfinite(found.eigenvalues).all():
+            raise Untraceable(f"{rod}: {found.status.name} {found.message}".rstrip())
+        w, slope = found.eigenvalues.copy(), np.empty(MODES, dtype=complex)
+        for i, guess in enumerate(found.eigenvalues):
+            polished, slope[i], _ = eigenvalue_newton(
+                complex(guess), coefficients_at(p, self.path.origin, self.path.direction), self.path.direction
+            )
+            if abs(polished - guess) <= max(10 * found.error_estimate[i], 1e-12 * abs(guess)):
+                w[i] = polished
+        return Anchor(p, w, slope, *self._relaxation(p))
+
+    def _relaxation(self, p: float) -> tuple[float, float]:
+        """(nu^2 + c2 + gamma3, its slope), in tau2; never zero."""
+        _, nu, c2, gamma3 = coefficients_at(p, self.path.origin, self.path.direction)
+        _, nu1, c21, gamma31 = self.path.direction
+        return nu * nu + c2 + gamma3, 2 * nu * nu1 + c21 + gamma31
+
+    def changes(self, edges: list[float]) -> list[Change]:
+        """All changes between the first and the last of `edges`, sorted by p."""
+        found: list[Change] = []
+        stack = [(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True)][::-1]
+        length = abs(edges[-1] - edges[0])
+        while stack:
+            a, b = stack.pop()
+            left, right = self.anchor(a), self.anchor(b)
+            if left.oscillates == right.oscillates:
+                share, hides = unexplained(left, right)
+                if share == 0.0:
+                    continue
+                if b - a <= (CLOSEST_NEAR_ZERO if hides else CLOSEST) * length:
+                    self.proved = False
+                    continue
+            else:
+                change = self._between(left, right)
+                if change is not None:
+                    found.append(change)
+                    continue
+                if b - a <= 1e-12 * max(abs(a), abs(b)):
+                    raise Untraceable(
+                        f"the change of the leading eigenvalue near {self.path.at(a)} is not found"
+                    )
+                share = 0.5
+            middle = a + share * (b - a)
+            stack += [(middle, b), (a, middle)]
+        return found
+
+    def _between(self, left: Anchor, right: Anchor) -> Change | None:
+        """The one change between two anchors of different character, if it is found there and leads."""
+        pair, real = (left, right) if left.oscillates else (right, left)
+        for attempt in (self._double, self._overtaking):
+            change = attempt(pair, real, right.oscillates)
+            if change is not None and left.p <= change.p <= right.p:
+                meeting = 2 if change.double else 3
+                behind = max(left.w[meeting].real, right.w[meeting].real)
+                count = count_right_of((change.growth_rate + behind) / 2, self.path.at(change.p))
+                if count.number in (meeting, None):
+                    self.proved = self.proved and count.number == meeting
+                    return change
+        return None
+
+    def _double(self, pair: Anchor, real: Anchor, to_pair: bool) -> Change | None:
+        below, above = pair.partner(), real.partner()
+        width = abs(pair.p - real.p)
+        if below is None or above is None:
+            return None
+        share = above[0] / (above[0] - below[0])
+        p = real.p + share * (pair.p - real.p)
+        x = (1 - share) * float((real.w[0] + real.w[1]).real) / 2 + share * float(pair.w[0].real)
+        x, p, _, error = double_newton(x, p, self.path.origin, self.path.direction, width)
+        return None if math.isnan(p) else Change(p, error, x, 0.0, to_pair, True)
+
+    def _overtaking(self, pair: Anchor, real: Anchor, to_pair: bool) -> Change | None:
+        """Newton's method on the lead of the real eigenvalue over the pair, each followed by its own."""
+        if all(w.imag != 0 for w in pair.w) or all(w.imag == 0 for w in real.w):
+            return None  # there is nothing of the other kind to overtake
+        w_real, w_pair = complex(real.w[0]), complex(pair.w[0])
+        p, ends = (pair.p + real.p) / 2, sorted((pair.p, real.p))
+        # Start each eigenvalue from the anchor where it leads and carry it to the middle.
+        w_real = self._carried(w_real, real.p, p)
+        w_pair = self._carried(w_pair, pair.p, p)
+        for _ in range(MOST_STEPS):
+            coefficients = coefficients_at(p, self.path.origin, self.path.direction)
+            w_real, s_real, e_real = eigenvalue_newton(w_real, coefficients, self.path.direction)
+            w_pair, s_pair, e_pair = eigenvalue_newton(w_pair, coefficients, self.path.direction)
+            slope = s_real.real - s_pair.real
+            if w_real.imag != 0 or w_pair.imag == 0 or slope == 0 or not math.isfinite(slope):
+                return None
+            step = -(w_real.real - w_pair.real) / slope
+            error = (e_real + e_pair) / abs(slope) + 4e-16 * abs(p)
+            p += step
+            if not ends[0] <= p <= ends[1]:
+                return None
+            if abs(step) <= 4 * error:
+                return Change(p, max(error, abs(step)), w_pair.real, abs(w_pair.imag), to_pair, False)
+            w_real, w_pair = w_real + step * s_real, w_pair + step * s_pair
+            if w_real.imag != 0:
+                w_real = complex(w_real.real, 0.0)
+        return None
+
+    def _carried(self, w: complex, start: float, stop: float) -> complex:
+        """An eigenvalue followed from p = start to stop in small steps."""
+        p = start
+        for i in range(1, CARRIED + 1):
+            coefficients = coefficients_at(p, self.path.origin, self.path.direction)
+            w, slope, _ = eigenvalue_newton(w, coefficients, self.path.direction)
+            following = start + (stop - start) * i / CARRIED
+            real = w.imag == 0
+            w = w + slope * (following - p)
+            w = complex(w.real, 0.0) if real else w
+            p = following
+        return w
+
+
+def _lowest(a: float, b: float, slope_a: float, slope_b: float) -> tuple[float, float]:
+    """(least value on [0, 1] of the cubic with these values and slopes at its ends, where)."""
+    square, cube = 3 * (b - a) - 2 * slope_a - slope_b, slope_a + slope_b - 2 * (b - a)
+    lowest, at = min(a, b), 0.5
+    spread = square * square - 3 * cube * slope_a
+    if spread >= 0 and (square or cube):
+        # The root of slope_a + 2 square t + 3 cube t^2 at which the slope grows, without cancellation.
+        root = math.sqrt(spread)
+        t = -slope_a / (square + root) if square + root > 0 else (root - square) / (3 * cube) if cube else 0.5
+        value = a + t * (slope_a + t * (square + t * cube))
+        if 0 < t < 1 and value < lowest:
+            lowest, at = value, t
+    return lowest, at
+
+
+def unexplained(left: Anchor, right: Anchor) -> tuple[float, bool]:
+    """(where to put an anchor between two of equal character, whether two changes may hide between them).
+
+    The place is a share of the interval, 0 where slopes explain what lies between and no change fits in.
+    """
+    h = right.p - left.p
+    for a, b in ((left.partner(), right.partner()), (left.rival(), right.rival())):
+        if a is None and b is None:
+            continue
+        if a is None or b is None:
+            value, slope = a or b or (0.0, 0.0)
+            if abs(value) < 2 * abs(slope) * h:
+                return 0.5, False
+            continue
+        smallest = min(abs(a[0]), abs(b[0]))
+        missed = abs(b[0] - a[0] - h * (a[1] + b[1]) / 2)
+        sign = math.copysign(h, a[0])
+        lowest, share = _lowest(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
+        if a[0] * b[0] <= 0 or lowest < EXPLAINED * smallest:
+            return share, True
+        if missed > EXPLAINED * max(smallest, abs(b[0] - a[0])):
+            return 0.5, False
+    return 0.0, False

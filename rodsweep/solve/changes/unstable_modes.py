@@ -1,0 +1,113 @@
+"""The changes along a path as a list, and how many modes are unstable between them.
+
+The covering and the directions in which pairs cross the axis give the number after every crossing; the
+winding number confirms it at both ends and between.
+"""
+
+from dataclasses import dataclass, replace
+from enum import IntEnum
+
+from ...determinant.certified_count import count_right_of
+from ...determinant.path import Path
+
+PLACES = (0.5, 0.3, 0.7)
+"""Where between two crossings the unstable modes are counted, until a count is decided."""
+TOGETHER = 1e-3
+"""Relative distance of crossings below which nothing is counted between: the pair is too near the axis."""
+
+
+class Kind(IntEnum):
+    """What happens at a point of a path, in the direction in which the parameter grows."""
+
+    onset = 1
+    hopf = 2
+    hopf_reverse = 3
+    restabilization = 4
+    real_again = 5
+    real_leads = 6
+    pair_leads = 7
+
+
+@dataclass(frozen=True, slots=True)
+class Crossing:
+    """One change: the value of the parameter with its error, and the eigenvalue there, in 1/tau2.
+
+    unstable_after: unstable modes just beyond it, -1 where that is not known.
+    """
+
+    at: float
+    kind: Kind
+    frequency: float
+    growth_rate: float
+    error: float
+    unstable_after: int = -1
+
+
+class Counts:
+    """The number of unstable modes along a path, carried from crossing to crossing and counted beside.
+
+    gaps: intervals of the parameter in which crossings may lie that are not in the list. doubts: what
+    the counts do not confirm.
+    """
+
+    def __init__(self, path: Path, gaps: list[tuple[float, float]], certify: bool):
+        self.path, self.gaps, self.certify = path, gaps, certify
+        self.doubts: list[str] = []
+
+    def at(self, value: float) -> int:
+        """The winding number at a value of the parameter; -1 where it is undecided."""
+        number = count_right_of(0.0, self.path.at(self.path.variable(value))).number
+        return -1 if number is None else number
+
+    def amid(self, a: float, b: float) -> int:
+        """The winding number somewhere between two values; -1 where it is undecided at each of PLACES."""
+        for share in PLACES:
+            number = self.at(a + share * (b - a))
+            if number >= 0:
+                return number
+        return -1
+
+    def first(self, start: float, stop: float, hopfs: list[Crossing]) -> int:
+        """The number at the start, counted there or, where that is undecided, before anything changes."""
+        number = self.at(start)
+        until = min([stop, *(c.at for c in hopfs), *(a for a, _ in self.gaps)])
+        return number if number >= 0 else self.amid(start, until)
+
+    def along(
+        self, ordered: list[Crossing], ends: tuple[float, float], unstable: int
+    ) -> tuple[tuple[Crossing, ...], int]:
+        """(crossings with the unstable modes after each, the number at the end); doubts anew."""
+        self.doubts = []
+        out: list[Crossing] = []
+        place = ends[0]
+        for crossing in ordered:
+            kind = crossing.kind
+            if kind in (Kind.hopf, Kind.hopf_reverse):
+                unstable = self._between(place, crossing.at, unstable)
+                place = crossing.at
+                if unstable >= 0:
+                    unstable += 2 if kind == Kind.hopf else -2
+                if kind == Kind.hopf_reverse and unstable == 0:
+                    kind = Kind.restabilization
+            out.append(replace(crossing, kind=kind, unstable_after=unstable))
+        return tuple(out), self._between(place, ends[1], unstable)
+
+    def _between(self, a: float, b: float, unstable: int) -> int:
+        """The number just before b, carried from just after a and confirmed by a count between."""
+        inside = [gap for gap in self.gaps if gap[1] > a and gap[0] < b]
+        if inside:
+            a = max(gap[1] for gap in inside)
+        elif not self.certify:
+            return unstable
+        if b - a <= TOGETHER * abs(b):
+            return -1 if inside else unstable
+        counted = self.amid(a, b)
+        if inside or unstable < 0:
+            return counted
+        if counted != unstable:
+            found = f"{counted} modes are unstable" if counted >= 0 else "the unstable modes are not counted"
+            self.doubts.append(
+                f"{found} between {self.path.name} = {a:.12g} and {b:.12g}"
+                + (f", not {unstable}" if counted >= 0 else "")
+            )
+        return unstable

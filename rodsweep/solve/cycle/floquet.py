@@ -1,0 +1,77 @@
+"""The tangent of the flow along a run, and with it the multipliers of a cycle.
+
+M(T) of M' = J(z(t)) M, M(0) = 1 is the derivative of the period map z -> phi_T(z). Of its eigenvalues, the
+Floquet multipliers, one is 1 (a shift along the cycle); the cycle is stable if all others lie inside the
+circle.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...discretization.beam import Beam
+from ..motion.integrator import Run
+
+Array = NDArray[np.float64]
+
+SDIRK = np.array(
+    [
+        [1 / 4, 0, 0, 0, 0],
+        [1 / 2, 1 / 4, 0, 0, 0],
+        [17 / 50, -1 / 25, 1 / 4, 0, 0],
+        [371 / 1360, -137 / 2720, 15 / 544, 1 / 4, 0],
+        [25 / 24, -49 / 48, 125 / 16, -85 / 12, 1 / 4],
+    ]
+)
+"""Order 4, L-stable, stiffly accurate (Hairer & Wanner II, Table IV.6.5)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tangent:
+    """matrix: M(T), (unknowns, unknowns); multipliers: by descending modulus, the trivial one taken out.
+
+    trivial_error: the distance of the trivial one from 1, an estimate of the error of the others.
+    """
+
+    matrix: Array
+    multipliers: NDArray[np.complex128]
+    trivial_error: float
+
+    @property
+    def largest(self) -> float:
+        """Modulus of the largest multiplier but the trivial one."""
+        return float(abs(self.multipliers[0]))
+
+
+def tangent(beam: Beam, run: Run) -> Tangent:
+    """The tangent along one period, by SDIRK on the steps of its run."""
+    M = tangent_flow(beam, run)
+    mu = np.linalg.eigvals(M)
+    mu = mu[np.argsort(-np.abs(mu))]
+    one = int(np.argmin(np.abs(mu - 1)))
+    return Tangent(M, np.delete(mu, one), float(abs(mu[one] - 1)))
+
+
+def tangent_flow(beam: Beam, run: Run) -> Array:
+    """M(T); between the steps z is the cubic through z and z' at both ends."""
+    n, stages = beam.mesh.unknowns, len(SDIRK)
+    identity, nodes = np.eye(n), SDIRK.sum(axis=1)
+    rates = np.array([beam.rate(z) for z in run.states])
+    M, slopes = np.eye(n), np.zeros((stages, n, n))
+    for k, h in enumerate(np.diff(run.times)):
+        gamma, Z = SDIRK[0, 0] * h, M
+        here = hermite(run.states[k : k + 2], h * rates[k : k + 2], nodes)
+        for i in range(stages):
+            right = M + np.tensordot(h * SDIRK[i, :i], slopes[:i], 1)
+            Z = np.linalg.solve(identity - gamma * beam.jacobian(here[i]), right)
+            slopes[i] = (Z - right) / gamma
+        M = Z
+    return M
+
+
+def hermite(ends: Array, slopes: Array, at: Array | float) -> Array:
+    """The cubic with values and slopes (per unit of `at`) at 0 and 1, shapes (2, n), at `at`: (..., n)."""
+    x = np.asarray(at)[..., None]
+    value: Array = ends[0] + x * x * (3 - 2 * x) * (ends[1] - ends[0])
+    return value + x * (1 - x) * ((1 - x) * slopes[0] - x * slopes[1])

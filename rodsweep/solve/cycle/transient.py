@@ -1,0 +1,243 @@
+"""From a start to the neighbourhood of a cycle, or to rest: before Newton's method takes over.
+
+The motion is followed from return to return, theta of the tip rising through 0. Two returns that agree to a
+tenth go to Newton's method. Slow motions about the straight rod are not waited for. Per period they grow by
+g = g0 - c a^2 at amplitude a, with the exact linear growth g0, so that a cycle lies at a*^2 = g0/c and the
+state is scaled to it; c is measured where it shows in g, which near a* may be lost in the integrator's error.
+What decays slowly is scaled down until it decays at the linear rate; what grows slowly, and the faster the
+larger it is (c < 0), is scaled up.
+"""
+
+from collections import deque
+from dataclasses import dataclass
+from math import isnan, nan
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...discretization.beam import Beam
+from ..motion.integrator import Ending, Run, integrator, relaxed
+from ..motion.leading_mode import leading_mode
+from .floquet import hermite
+from .refinement import CAREFUL, TRANSIENT, Resolved, resolve
+from .shooting import angle_weights
+from .status import CycleStatus
+
+Array = NDArray[np.float64]
+
+CHUNK = 5
+"""Returns to the section per run; then the sequence is judged."""
+CLOSE = 0.1
+"""Relative distance of two returns from which Newton's method starts; a tenth after each failure."""
+MOST_ATTEMPTS = 5
+"""Failures of Newton's method, after each of which twice as many chunks are waited for the next."""
+SLOW = 0.2
+"""Linear growth per period below which an amplitude is predicted rather than waited for."""
+FAINT = 0.01
+"""Linear growth per period below which the integration is a careful one."""
+NOISE, CAREFUL_NOISE = 1e-3, 1e-5
+"""Growth per period that the integrator may add: 3e-4 and 8e-6 were seen."""
+NEAR = 0.1
+"""Relative distance from the predicted amplitude that is left to Newton's method."""
+MOST_JUMPS, SHRINK, LARGEST_JUMP = 60, 0.7, 4.0
+"""Jumps; the factor for what decays slowly (its inverse for what grows so), near enough to 1 to meet a cycle
+on the way; the largest."""
+LINEAR = 0.05
+"""Relative distance from the linear decay rate and frequency at which a decaying rod is called straight."""
+REST = 1e-6
+"""Norm of z at which a rod that is stable when straight is called straight."""
+SAME = 0.03
+"""Relative distance of two returns that are one and the same crossing of the orbit."""
+LONGEST_ORBIT = 8
+"""Returns to the section that one period may take."""
+STEPS_PER_CHUNK = 20_000
+BISECTIONS = 50
+
+
+@dataclass(frozen=True, eq=False)
+class Arrival:
+    """What became of the rod, and the cycle if there is one; periods: returns that were waited for."""
+
+    status: CycleStatus
+    message: str
+    periods: int
+    found: Resolved | None = None
+
+
+def returns(beam: Beam, run: Run) -> tuple[Array, Array]:
+    """Times, (k,), and states, (k, unknowns), at which theta of the tip rises through 0 between steps."""
+    row = angle_weights(beam)
+    angle = run.states @ row
+    times: list[float] = []
+    states: list[Array] = []
+    for k in np.nonzero((angle[:-1] < 0) & (angle[1:] >= 0))[0]:
+        h, ends = run.times[k + 1] - run.times[k], run.states[k : k + 2]
+        slopes = h * np.array([beam.rate(z) for z in ends])
+        low, high = 0.0, 1.0
+        for _ in range(BISECTIONS):
+            middle = (low + high) / 2
+            low, high = (middle, high) if row @ hermite(ends, slopes, middle) < 0 else (low, middle)
+        times.append(run.times[k] + h * low)
+        states.append(hermite(ends, slopes, low))
+    return np.array(times), np.array(states).reshape(len(times), beam.mesh.unknowns)
+
+
+class Approach:
+    """The way of one rod from a start; `arrive` is called once."""
+
+    def __init__(self, beam: Beam, accuracy: float, most_periods: int) -> None:
+        self.beam, self.accuracy, self.most_periods = beam, accuracy, most_periods
+        self.mode, self.row = leading_mode(beam), angle_weights(beam)
+        self.faint = abs(self.mode.w.real) * self.mode.period < FAINT
+        self.noise = CAREFUL_NOISE if self.faint else NOISE
+        self.bend = nan
+        """c in g = g0 - c |z|^2, once it has shown."""
+        self.step = self.mode.period / 1000
+        """With which the next chunk begins."""
+        self.past: deque[tuple[float, Array]] = deque(maxlen=LONGEST_ORBIT + 1)
+        """Times and bending moments of the last returns of one motion."""
+        self.clock = 0.0
+        self.waited = self.jumps = self.attempts = self.next_attempt = 0
+
+    def arrive(self, z: Array) -> Arrival:
+        """Where the rod goes from z."""
+        z = relaxed(self.beam, z, self.mode.period)
+        while self.waited < self.most_periods:
+            run = self._chunk(z)
+            if run.ending not in (Ending.reached, Ending.stopped):
+                return self._broken(run)
+            times, states = returns(self.beam, run)
+            self.waited += max(len(times), 1)
+            self._remember(times, states)
+            self.clock += run.times[-1]
+            z = run.states[-1]
+            if self.mode.w.real < 0 and np.linalg.norm(z) < REST:
+                return Arrival(CycleStatus.straight, "decayed to rounding", self.waited)
+            if len(times) < 3:
+                continue
+            if self._decays(times, states):
+                return Arrival(CycleStatus.straight, "decays at the rate of the leading mode", self.waited)
+            factor = self._jump(times, states)
+            if factor is not None:
+                z, self.jumps = self._scaled(z, factor), self.jumps + 1
+                self.past.clear()
+                continue
+            arrival = self._closed(z, times, states)
+            if arrival is not None:
+                return arrival
+        why = f"{self.waited} returns of the tip, none periodic"
+        return Arrival(CycleStatus.not_settled, why, self.waited)
+
+    def _broken(self, run: Run) -> Arrival:
+        if run.ending == Ending.left_the_model:
+            least = self.beam.least_stretch(run.states[-1])
+            where = f"h1 = {least:.3g} somewhere, {self.waited} returns from the start"
+            return Arrival(CycleStatus.left_the_model, where, self.waited)
+        why = run.message or ("too many steps" if run.ending == Ending.too_many_steps else "no step succeeds")
+        return Arrival(CycleStatus.failed, why, self.waited)
+
+    def _chunk(self, z: Array) -> Run:
+        """A run of CHUNK returns, or of three times the time they should take."""
+        count, last = 0, float(self.row @ z)
+
+        def enough(_: float, state: Array) -> bool:
+            nonlocal count, last
+            here = float(self.row @ state)
+            count, last = count + int(last < 0 <= here), here
+            return count >= CHUNK
+
+        period = self.mode.period
+        method = integrator(self.beam.mesh, CAREFUL if self.faint else TRANSIENT)
+        run = method.run(self.beam, z, 3 * CHUNK * period, self.step, enough, STEPS_PER_CHUNK)
+        if len(run.times) > 2:
+            self.step = run.times[-1] - run.times[-2]
+        return run
+
+    def _growth(self, times: Array, states: Array) -> tuple[float, float]:
+        """(growth of |z| over the last return, that of the leading mode)."""
+        sizes = np.linalg.norm(states[-2:], axis=1)
+        return float(np.log(sizes[1] / sizes[0])), float(self.mode.w.real * (times[-1] - times[-2]))
+
+    def _decays(self, times: Array, states: Array) -> bool:
+        """Whether the returns shrink steadily, at last as the leading mode does, or would but for noise."""
+        growth, linear = self._growth(times, states)
+        sizes, margin = np.linalg.norm(states, axis=1), LINEAR * abs(linear)
+        alike = bool((np.diff(sizes) < 0).all()) and abs(growth - linear) < margin
+        faded = abs(self.bend) * sizes[-1] ** 2 < margin and growth - linear < margin + self.noise
+        return linear < 0 and (alike or faded) and self._in_time(times)
+
+    def _in_time(self, times: Array) -> bool:
+        """Whether the tip returns as the leading mode does: elsewhere its growth predicts nothing."""
+        return bool(abs((times[-1] - times[-2]) / self.mode.period - 1) < LINEAR)
+
+    def _slow(self, times: Array, growth: float, linear: float) -> bool:
+        """Whether the motion is a slowly growing or decaying leading mode."""
+        return max(abs(linear), abs(growth)) <= SLOW and self._in_time(times)
+
+    def _jump(self, times: Array, states: Array) -> float | None:
+        """The factor to where the growth should vanish, or towards it; None if that is here, or not known."""
+        growth, linear = self._growth(times, states)
+        if not self._slow(times, growth, linear) or self.jumps >= MOST_JUMPS:
+            return None
+        size = float(np.linalg.norm(states[-1]))
+        here = (linear - growth) / size**2
+        if abs(linear - growth) > self.noise:
+            self.bend = here
+        bend = here if isnan(self.bend) else self.bend
+        if isnan(self.bend) and linear > 0:
+            factor = LARGEST_JUMP  # too small to feel what bends its growth
+        elif linear > 0 and bend > 0:
+            factor = float(np.clip(np.sqrt(linear / bend) / size, 1 / LARGEST_JUMP, LARGEST_JUMP))
+        elif linear > 0 or (bend < 0 and growth > self.noise):
+            factor = 1 / SHRINK  # it grows the faster the larger it is
+        elif bend > 0 or growth < -self.noise:
+            factor = SHRINK
+        else:
+            return None
+        return factor if abs(factor - 1) >= NEAR else None
+
+    def _scaled(self, z: Array, factor: float) -> Array:
+        """z, the end of a run, with its deflection scaled."""
+        scaled = factor * z
+        scaled[: self.beam.mesh.nodes] *= factor  # the stretch is quadratic in the deflection
+        return relaxed(self.beam, scaled, self.mode.period)
+
+    def _remember(self, times: Array, states: Array) -> None:
+        moments = states[:, 2 * self.beam.mesh.nodes :]
+        self.past.extend(zip(map(float, self.clock + times), moments, strict=True))
+
+    def _closed(self, z: Array, times: Array, states: Array) -> Arrival | None:
+        """The cycle, if the returns repeat and Newton's method finds it from z, the end of the run."""
+        growth, linear = self._growth(times, states)
+        turns, distance = self._repetition()
+        known = self.bend > 0 and self._slow(times, growth, linear)
+        decays = linear < 0 and growth < linear * (1 - SLOW) + (self.noise if known else 0)
+        if decays or distance >= CLOSE / 10**self.attempts or self.waited < self.next_attempt:
+            return None
+        self.next_attempt = self.waited + CHUNK * 2**self.attempts
+        self.attempts = min(self.attempts + 1, MOST_ATTEMPTS)
+        period = self.past[-1][0] - self.past[-1 - turns][0]
+        found = resolve(self.beam, z, period, turns, self.accuracy)
+        if found is None:
+            return None
+        if max(found.errors.period, found.errors.amplitude) > self.accuracy:
+            why = "the cycle is less accurate than asked for"
+        elif found.in_doubt != 1:
+            why = f"that its period is {found.in_doubt} times shorter cannot be excluded"
+        else:
+            return Arrival(CycleStatus.cycle, "", self.waited, found)
+        return Arrival(CycleStatus.not_settled, why, self.waited, found)
+
+    def _repetition(self) -> tuple[int, float]:
+        """(m, relative distance): after how many returns the state comes closest to itself.
+
+        By the bending moments: what the interpolation between two steps misses of the stiff components, 1e-2
+        at k1 = 1e7, is no distance.
+        """
+        moments = [state for _, state in self.past]
+        size = np.linalg.norm(moments[-1])
+        found = [
+            (float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))
+        ]
+        enough = max(2 * min(found)[0], SAME)
+        return next((m, distance) for distance, m in found if distance <= enough)

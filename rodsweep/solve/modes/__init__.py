@@ -1,0 +1,1 @@
+"""The leading modes of one rod, their adjoints, and the growth that non-normality allows."""

@@ -1,0 +1,1 @@
+"""The nonlinear rod in time, by PETSc TS."""

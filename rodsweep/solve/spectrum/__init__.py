@@ -1,0 +1,1 @@
+"""The leading eigenvalues of one rod: found on a mesh, refined on D, counted."""

@@ -1,0 +1,132 @@
+"""One attempt at a rod's leading eigenvalues, and its judge, which knows nothing of meshes.
+
+A mesh finds them, Newton's method on D refines them, the winding number of D judges whether one is
+missing. What to do about it is `rodsweep.solve.spectrum.search`'s to decide.
+"""
+
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...determinant.box import squared_amplification
+from ...determinant.certified_count import Count, count_right_of
+from ...determinant.roots import largest, roots
+from ...discretization.resolution import Resolution
+from ...model.rod import Rod
+from ..backend.petsc import PETSc
+from .krylov_schur import eigen_solver, forget_solvers
+
+WAVES_A_NODE = 2.0
+"""Largest |q| of an eigenvalue, in units of the nodes, that a mesh can stand for."""
+WIDE_GAP = 0.05
+"""Relative gap between two real parts that is wide enough to draw a line through."""
+NO_GAP = 1e-6
+"""Relative gap below which two real parts count as equal."""
+MOST_LINES = 3
+"""Lines tried before the count is given up."""
+PETSC_ERRORS = (PETSc.Error, SystemError)
+"""SystemError is how some releases of petsc4py wrap a PETSc.Error."""
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What one attempt found and what stands for a root of D: sorted as `rodsweep.model` states.
+
+    w: complex, shape (k,); error: |D/D'| at each, displacement: how far off the mesh was, in units of |w|
+    or of the length over which D changes, wave: largest |q|, on_the_axis: whether it lies on the imaginary
+    axis within its error, shape (k,); ahead: eigenvalues of the mesh right of all these that stand for no
+    root, though they lie where one may; vectors: the mesh's, shape (unknowns, k), or None; failure: why SLEPc
+    or LAPACK gave nothing, or empty.
+    """
+
+    resolution: Resolution
+    w: NDArray[np.complex128]
+    error: NDArray[np.float64]
+    displacement: NDArray[np.float64]
+    wave: NDArray[np.float64]
+    on_the_axis: NDArray[np.bool_]
+    ahead: int
+    vectors: NDArray[np.complex128] | None
+    failure: str = ""
+
+    def worst(self, modes: int) -> float:
+        """Largest relative error estimate of the leading modes."""
+        return largest(self.error, self.w, modes)
+
+    def coarseness(self, modes: int) -> float:
+        """Largest displacement of the leading modes."""
+        return float(self.displacement[:modes].max())
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """The count right of a line, and how many of the found eigenvalues lie there."""
+
+    count: Count
+    here: int
+    clear: bool
+    """Whether every found eigenvalue is farther from the line than twice its error."""
+
+    @property
+    def agrees(self) -> bool:
+        return self.clear and self.count.number == self.here
+
+
+def attempt(rod: Rod, resolution: Resolution, wanted: int, shift: float, vectors: bool, tight: bool) -> Found:
+    """The eigenvalues nearest the shift, at least `wanted` where they converge, without impostors.
+
+    tight: to the last digit of the mesh before they are refined on D. An error inside PETSc, SLEPc or LAPACK
+    is no eigenvalue found: to them another mesh is another matrix, on which the same need not happen.
+    """
+    raw: NDArray[np.complex128] = np.empty(0, complex)
+    kept, failure = None, ""
+    try:
+        solver = eigen_solver(resolution)
+        raw = solver.solve(rod, shift, wanted, tight)
+        kept = solver.vectors(len(raw)) if vectors else None
+    except PETSC_ERRORS as error:
+        forget_solvers()
+        failure = cause_of(error)
+    most_waves = WAVES_A_NODE * resolution.elements * resolution.order
+    order, w, errors, displacement, wave, axis, ahead = roots(
+        raw, rod.coefficients, sqrt(squared_amplification(rod)), most_waves
+    )
+    kept = kept[:, order] if kept is not None else None
+    return Found(resolution, w, errors, displacement, wave, axis, ahead, kept, failure)
+
+
+def cause_of(error: BaseException) -> str:
+    """The last line of an error's message, which in PETSc's says what is wrong."""
+    cause = error.__cause__ or error
+    return (str(cause) or type(cause).__name__).splitlines()[-1]
+
+
+def judge(rod: Rod, found: Found, modes: int) -> Verdict:
+    """Counts the eigenvalues right of a line below the last wanted and below every unstable mode."""
+    for line in lines(list(map(complex, found.w)), modes):
+        count = count_right_of(line, rod)
+        if count.number is not None:
+            break
+    here = int((found.w.real > line).sum())
+    clear = bool((np.abs(found.w.real - line) > 2 * found.error).all())
+    return Verdict(count, here, clear)
+
+
+def lines(w: list[complex], modes: int) -> list[float]:
+    """Where to draw the line, best first: in gaps between the real parts, the first wide one foremost.
+
+    Behind the last of them it is drawn through the unknown, where the count may ask for more.
+    """
+    target = min(w[modes - 1].real, 0.0)
+    below = [target] + [value.real for value in w if value.real < target]
+    gaps = []
+    for right, left in zip(below[:-1], below[1:], strict=True):
+        width = (right - left) / abs(left)
+        if width > NO_GAP:
+            gaps.append((min(width, WIDE_GAP), (left + right) / 2))
+    gaps.sort(key=lambda gap: -gap[0])  # stable: of the wide ones the first stays foremost
+    last = below[-1]
+    behind = last - WIDE_GAP * (abs(w[-1]) if last < 0 else abs(w[0].real) + 1.0)
+    return [*(middle for _, middle in gaps[: MOST_LINES - 1]), behind]
