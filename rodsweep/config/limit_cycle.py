@@ -42,6 +42,7 @@ class LimitCycleOptions(Strict):
     direction: Annotated[Literal["up", "down"], Field(description="up or down")] = "up"
     """Whether that parameter grows or falls from a point to the next."""
     harmonics: Annotated[int, Field(ge=1, le=100)] = 8
+    """Harmonics of the tip's y that are stored."""
     samples: Annotated[int, Field(ge=0, le=100_000)] = 0
     """Times over a period at which the tip and the energy are stored; 0 stores none."""
     shapes: Annotated[int, Field(ge=0, le=10_000)] = 0
@@ -60,6 +61,7 @@ class LimitCycleConfig(Config):
     task: Literal["limit_cycle"]
     parameters: NonlinearParameters
     accuracy: Annotated[Number, Field(ge=1e-10, le=1e-2)] = 1e-7
+    """Relative error of the period and of the tip's extrema."""
     limit_cycle: LimitCycleOptions = LimitCycleOptions()
 
     @property

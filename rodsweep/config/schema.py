@@ -27,6 +27,7 @@ class Axes(Strict):
     k2: Values | None = None
     gamma3: Values | None = None
     points: Annotated[Text | None, Field(description="the name of a CSV file")] = None
+    """A list of points instead of axes; the header names the parameters."""
 
     @property
     def axes(self) -> dict[str, Axis]:
@@ -55,9 +56,11 @@ class Config(Strict, ABC):
     """What the config of every task has."""
 
     title: Annotated[Text, Field(max_length=200)] = ""
+    """The name of the run, as `check` and `show` print it."""
     task: str
     parameters: Axes
     accuracy: Annotated[Number, Field(ge=1e-13, le=1e-2)] = 1e-10
+    """Relative error of each eigenvalue, threshold and mode."""
 
     @property
     @abstractmethod
@@ -89,11 +92,15 @@ class SpectrumOptions(Strict):
     """What the task spectrum computes at each point."""
 
     modes: Modes = 4
+    """Leading modes at each point."""
     certify: bool = True
+    """Prove by the winding number that none of them is missing."""
     vectors: bool = False
+    """Store (Y, Theta), scaled to Y(1) = 1, to about `accuracy`."""
     nodes: Nodes = 33
     """Lobatto nodes on which (Y, Theta) are given, where `vectors` asks for them."""
     longitudinal: bool = False
+    """Add the longitudinal modes, -(k1/gamma1) (pi (n - 1/2))^2, in closed form."""
 
 
 class SpectrumConfig(LinearConfig):
@@ -129,6 +136,7 @@ class ThresholdsOptions(Strict):
     crossings: Crossings = 16
     """The most crossings that are stored."""
     certify: bool = True
+    """Confirm by winding numbers between the changes, and certify every spectrum."""
 
 
 class ThresholdsConfig(LinearConfig):
@@ -158,6 +166,7 @@ class PhaseDiagramOptions(Strict):
     crossings: Crossings = 16
     """The most crossings that are stored for a row."""
     certify: bool = True
+    """Confirm by winding numbers between the changes, and certify every spectrum."""
     curves: bool = True
     """Whether the boundaries between the rows are followed as curves."""
 
@@ -205,11 +214,13 @@ class ModesOptions(Strict):
     """What the task modes computes at each point."""
 
     modes: Modes = 2
+    """Leading modes at each point."""
     nodes: Nodes = 65
     """Lobatto nodes on which the modes are given."""
     growth: bool = True
     """Whether the numerical abscissa and the transient growth are computed."""
     certify: bool = True
+    """Prove by the winding number that no leading mode is missing."""
 
 
 class ModesConfig(LinearConfig):

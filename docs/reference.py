@@ -1,0 +1,334 @@
+"""Writes docs/file-format.md from the models of the config and the layouts of the result files.
+
+    python docs/reference.py
+
+What a key or a variable means stands where it is declared; here is only how it is laid out on the page, and
+the meaning of the words and attributes that no declaration explains. `tests/test_docs.py` compares the page
+with this.
+"""
+
+import ast
+import inspect
+import tempfile
+import textwrap
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from rodsweep.cli.job import Job, make_job
+from rodsweep.config.reading import what_is_allowed
+from rodsweep.config.tasks import CONFIGS
+from rodsweep.model.rod import ALLOWED
+from rodsweep.results.layouts import CLASSES, CROSSING_KINDS, curve_variables
+from rodsweep.results.layouts.variables import DIMENSIONS, MISSING, Variable
+
+PAGE = Path(__file__).with_name("file-format.md")
+
+WHOLE = {
+    "spectrum": """
+        parameters: {F: 30, k1: 200, k2: 1.0e+4, gamma3: 1.0e-4, gamma1: 1}
+        spectrum: {vectors: true, longitudinal: true}""",
+    "thresholds": "parameters: {k1: 200, k2: 1.0e+4, gamma3: 1.0e-4}",
+    "phase_diagram": "parameters: {F: [0, 100], k1: [200, 300], k2: 1.0e+4, gamma3: 1.0e-4}",
+    "modes": "parameters: {F: 30, k1: 200, k2: 1.0e+4, gamma3: 1.0e-4}",
+    "limit_cycle": """
+        parameters: {F: 50, k1: 1.0e+4, k2: 100, gamma3: 0.01, gamma1: 1}
+        limit_cycle: {samples: 64, shapes: 8, time: tau1}""",
+}
+"""A config of every task with all its parameters and everything that may be asked for."""
+WITHOUT = {
+    "spectrum.vectors: true": ("spectrum.vectors=false",),
+    "spectrum.longitudinal: true": ("spectrum.longitudinal=false", "parameters.gamma1=null"),
+    "modes.growth: true": ("modes.growth=false",),
+    "limit_cycle.samples > 0": ("limit_cycle.samples=0",),
+    "limit_cycle.shapes > 0": ("limit_cycle.shapes=0",),
+    "limit_cycle.time: tau1": ("limit_cycle.time=tau2",),
+}
+"""What some variables depend on, and how to ask for a file without them."""
+LENGTHS = {
+    "point": "lines of the CSV file",
+    "mode": "`spectrum.modes`, `modes.modes`",
+    "u": "`spectrum.nodes`, `modes.nodes`, `limit_cycle.nodes`",
+    "crossing": "`thresholds.crossings`, `phase_diagram.crossings`",
+    "curve_point": "as found",
+    "fold": "as found",
+    "harmonic": "`limit_cycle.harmonics`",
+    "sample": "`limit_cycle.samples`",
+    "shape": "`limit_cycle.shapes`",
+}
+"""What says how long a dimension is that is not a parameter."""
+KINDS = {
+    "none": "no crossing: the list is longer than what was found",
+    "onset": "two real leading eigenvalues meet and become a pair: oscillations set in",
+    "hopf": "a pair becomes unstable",
+    "hopf_reverse": "an unstable pair becomes stable, and others stay unstable",
+    "restabilization": "the last unstable pair becomes stable",
+    "real_again": "the leading pair meets on the real axis and becomes two real eigenvalues",
+    "real_leads": "a real eigenvalue overtakes the leading pair, without meeting it",
+    "pair_leads": "a pair overtakes the leading real eigenvalue, without meeting it",
+}
+"""What happens at a crossing, as the parameter grows."""
+MOTIONS = {
+    "missing": "not computed",
+    "monotone": "stable; the slowest mode decays without oscillations",
+    "oscillatory": "stable; the slowest mode decays with oscillations",
+    "flutter": "at least one mode grows",
+    "undecided": "on a boundary within its error, or not known",
+    "crushed": "F >= k1: there is no rod",
+}
+"""What the rod does at a point of a phase diagram."""
+ATTRIBUTES = {
+    "program": "`rodsweep`: what a result file is recognised by",
+    "Conventions": "`CF-1.8`",
+    "title, task": "of the config; the file's name where it has no title",
+    "config": "the text of the config, with what `--set` changed at its end",
+    "config_resolved": "the config with all defaults, as JSON",
+    "fingerprint": "of `config_resolved` and all points: what a file must share to be continued",
+    "time_unit": "`tau2 = gamma2 L^4/k3`",
+    "gamma1": "of a spectrum with `spectrum.longitudinal: true`",
+    "coordinates": "names of the parameters along `point`, in a list of points",
+    "status_sentences": "the sentence of every status, one a line",
+    "rodsweep_version, git_commit": "of the program; a commit that ends in `-dirty` was changed",
+    "python_version, numpy_version, numba_version": "of the libraries",
+    "mpi4py_version, h5py_version, hdf5_version": "of the libraries",
+    "petsc_version, petsc4py_version, slepc_version, slepc4py_version": "of the solvers",
+    "petsc_options": "what PETSC_OPTIONS said",
+    "blas_kernels": "the BLAS libraries and kernels that computed points of the file, one a line",
+    "system, mpi_library": "the operating system, and MPI",
+    "ranks, hosts": "of the last run: how many ranks, on which hosts",
+    "rank_points, rank_busy_seconds, rank_idle_seconds": "of the last run: what each rank did",
+    "started, finished": "of the last run, UTC; `finished` only where no point is missing",
+    "stopped": "the signal that stopped the last run, or empty",
+    "shard": "the part `i/n` that the file is, or empty",
+    "slurm_job": "the number of the last run's job, or empty",
+}
+"""The attributes of a file."""
+
+HEAD = """\
+# Config and result file
+
+<!-- Written by `python docs/reference.py` from the code; change it there. -->
+
+Every key of a config, and every variable of a result file. [guide.md](guide.md) shows them in use.
+
+## Units
+
+Lengths are in L, forces in k3/L^2, time in tau2 = gamma2 L^4/k3. So the bending stiffness k3 and the
+transverse drag gamma2 are 1.
+
+## The config
+
+YAML 1.2, at most 100 kB, without anchors, tags and directives. Unknown keys are refused with the nearest
+known one, and so are options of another task.
+"""
+RANGES = """
+An axis is
+
+- a number: `k1: 200`, `k1: inf`;
+- a list in increasing order, each number once: `k1: [200, 1.0e4, inf]`;
+- a range: `{start: 10, stop: 1.0e6, num: 31, spacing: log}`; `spacing` is `linear` (the default) or `log`.
+
+F must be below every k1; only a phase diagram may reach into the crushed rods, F >= k1. A limit cycle needs
+finite k1 and k2, and gamma3 > 0. A phase diagram needs exactly two parameters with more than one value.
+"""
+FILE = """
+## The result file
+
+netCDF-4-compatible HDF5. Below, `...` stands for the dimensions of the points: the parameters of the task in
+their order, or `point` for a list of points, in whose file each parameter is a variable along `point`. The file
+ends with checksums of its bytes behind HDF5's own end, where other programs do not see them.
+"""
+TAIL = """
+### Attributes
+
+"""
+
+
+def text() -> str:
+    """The whole page."""
+    parts = [HEAD, "\n### Parameters\n\n", parameters(), RANGES, common_keys()]
+    parts += [task_keys(task) for task in CONFIGS]
+    parts += [FILE, "\n### Dimensions\n\n", dimensions(), words("Kinds of a crossing", KINDS, kinds())]
+    parts += [words("Classes of a phase diagram", MOTIONS, CLASSES)]
+    parts += [task_variables(task) for task in CONFIGS]
+    parts += [
+        TAIL,
+        table(("attribute", "meaning"), (([code(names), what]) for names, what in ATTRIBUTES.items())),
+    ]
+    return "".join(parts)
+
+
+def parameters() -> str:
+    """The parameters, and the tasks that have them."""
+    tasks = {task: whole(task).config.parameters for task in CONFIGS}
+    names = [name for name in DIMENSIONS if name in ALLOWED]
+    rows = []
+    for name in names:
+        units, meaning = DIMENSIONS[name]
+        having = [task for task, given in tasks.items() if getattr(given, name) is not None]
+        default = "1 in a grid of `limit_cycle`" if name == "gamma1" else ""
+        rows.append([f"`parameters.{name}`", ALLOWED[name], default, units, meaning, code(", ".join(having))])
+    return table(("key", "allowed", "default", "unit", "meaning", "tasks"), rows)
+
+
+def common_keys() -> str:
+    """The keys that every task has."""
+    config = CONFIGS["spectrum"]
+    meanings = meanings_of(config)
+    points = config.model_fields["parameters"].annotation
+    assert isinstance(points, type)
+    rows = [["`task`", code(", ".join(CONFIGS)), "", "What is computed."]]
+    rows += [key_row(name, config.model_fields[name], meanings[name]) for name in ("title", "accuracy")]
+    rows.append(key_row("parameters.points", points.model_fields["points"], meanings_of(points)["points"]))
+    return "\n### Keys of every task\n\n" + key_table(rows)
+
+
+def task_keys(task: str) -> str:
+    """The keys of one task: its options, and what it has otherwise than the others."""
+    config = CONFIGS[task]
+    rows = []
+    if config.model_fields["accuracy"].default != CONFIGS["spectrum"].model_fields["accuracy"].default:
+        rows.append(key_row("accuracy", config.model_fields["accuracy"], meanings_of(config)["accuracy"]))
+    section = config.model_fields[task].annotation
+    assert isinstance(section, type)
+    meanings = meanings_of(section)
+    rows += [key_row(f"{task}.{name}", field, meanings[name]) for name, field in section.model_fields.items()]
+    return f"\n### Keys of the task {task}\n\n{inspect.getdoc(config)}\n\n" + key_table(rows)
+
+
+def key_row(name: str, field: FieldInfo, meaning: str) -> list[str]:
+    """A key as a row of a table."""
+    return [f"`{name}`", what_is_allowed(field), yaml_of(field.default), meaning]
+
+
+def yaml_of(value: object) -> str:
+    """A default as it would stand in a config; nothing where there is none."""
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def key_table(rows: Sequence[Sequence[str]]) -> str:
+    return table(("key", "allowed", "default", "meaning"), rows)
+
+
+def meanings_of(section: type[BaseModel]) -> dict[str, str]:
+    """The docstring below every key of a section, those of the sections it is made from included."""
+    found: dict[str, str] = {}
+    for kind in reversed(section.__mro__):
+        if not (issubclass(kind, BaseModel) and kind.__module__.startswith("rodsweep.")):
+            continue
+        body = ast.parse(textwrap.dedent(inspect.getsource(kind))).body[0]
+        assert isinstance(body, ast.ClassDef)
+        for key, below in zip(body.body, body.body[1:], strict=False):
+            documented = isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant)
+            if isinstance(key, ast.AnnAssign) and isinstance(key.target, ast.Name) and documented:
+                found[key.target.id] = inspect.cleandoc(below.value.value)
+    return found
+
+
+def dimensions() -> str:
+    """All dimensions but those that are parameters."""
+    rows = [
+        [f"`{name}`", LENGTHS[name], meaning]
+        for name, (_, meaning) in DIMENSIONS.items()
+        if name not in ALLOWED
+    ]
+    return table(("dimension", "length", "its coordinate"), rows)
+
+
+def kinds() -> list[tuple[int, str]]:
+    return list(enumerate(CROSSING_KINDS))
+
+
+def words(title: str, meanings: dict[str, str], flags: Iterable[tuple[int, str]]) -> str:
+    """What the values of a variable mean that stands for a word."""
+    rows = [[str(value), f"`{word}`", meanings[word]] for value, word in flags]
+    return f"\n### {title}\n\n" + table(("value", "word", "meaning"), rows)
+
+
+def task_variables(task: str) -> str:
+    """The variables and the statuses of one task."""
+    job = whole(task)
+    given = variables_of(job)
+    only = {
+        name: condition
+        for condition, overrides in WITHOUT.items()
+        if condition.startswith(f"{task}.")
+        for name in given.keys() - variables_of(whole(task, overrides)).keys()
+    }
+    rows = [variable_row(variable, dims, only.get(name, "")) for name, (variable, dims) in given.items()]
+    points = f"`...` is ({', '.join(job.layout.parameters)}), or (point)."
+    parts = [f"\n### File of the task {task}\n\n{points}\n\n", variable_table(rows)]
+    if task == "phase_diagram":
+        parts += ["\n#### Curves\n", CURVES, variable_table(curve_rows(job))]
+    statuses = [[str(MISSING), "`missing`", "not computed yet"]]
+    statuses += [[str(int(s)), f"`{s.name}`", s.sentence] for s in job.task.solver().statuses]
+    return "".join(
+        [*parts, f"\n#### Status of the task {task}\n\n", table(("value", "word", "meaning"), statuses)]
+    )
+
+
+CURVES = """
+With `phase_diagram.curves: true` the file has these too, once all rows are done. A row is a line along the
+first of the two parameters with more than one value, in the order F, k1, k2, gamma3. The tables here are those
+of a diagram over F and k1; in others the two parameters take the places of `F` and `k1`, with their units.
+
+"""
+
+
+def curve_rows(job: Job) -> Iterator[list[str]]:
+    line, row = job.config.plane  # type: ignore[attr-defined]
+    for variable in curve_variables(line, row).values():
+        beam = variable.name.startswith(("partial_beam", "filament"))
+        yield variable_row(variable, list(variable.extra), "diagrams over F and k1" if beam else "")
+
+
+def variables_of(job: Job) -> dict[str, tuple[Variable, list[str]]]:
+    """The variables of a job's file by name, each with its dimensions."""
+    found = {v.name: (v, ["...", *v.extra]) for v in job.layout.variables}
+    return found | {v.name: (v, list(v.extra)) for v, _ in job.task.constants()}
+
+
+def variable_row(variable: Variable, dims: list[str], only: str) -> list[str]:
+    """A variable as a row of a table."""
+    meaning = variable.long_name
+    if variable.flags:
+        meaning += ": " + ", ".join(f"{value} {word}" for value, word in variable.flags)
+    if only:
+        meaning += f" (only with {only})" if only.startswith("diagrams") else f" (only with `{only}`)"
+    fill = "NaN" if np.isnan(variable.fill) else f"{variable.fill:g}"
+    shape = f"({', '.join(dims)})" if dims else "one number"
+    return [f"`{variable.name}`", shape, np.dtype(variable.dtype).name, fill, variable.units, meaning]
+
+
+def variable_table(rows: Iterable[Sequence[str]]) -> str:
+    return table(("variable", "dimensions", "type", "where there is none", "unit", "meaning"), rows)
+
+
+def whole(task: str, overrides: tuple[str, ...] = ()) -> Job:
+    """The job of the task's config in WHOLE."""
+    with tempfile.TemporaryDirectory() as directory:
+        path = Path(directory) / f"{task}.yaml"
+        path.write_text(f"task: {task}\n{textwrap.dedent(WHOLE[task])}\n")
+        return make_job(path, overrides)
+
+
+def table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A Markdown table."""
+    lines = [headings, ["---"] * len(headings), *rows]
+    return "".join(f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in line)} |\n" for line in lines)
+
+
+def code(names: str) -> str:
+    """Each of the names as code."""
+    return ", ".join(f"`{name}`" for name in names.split(", "))
+
+
+if __name__ == "__main__":
+    PAGE.write_text(text())
