@@ -138,8 +138,8 @@ FILE = """
 ## The result file
 
 netCDF-4-compatible HDF5. Below, `...` stands for the dimensions of the points: the parameters of the task in
-their order, or `point` for a list of points, in whose file each parameter is a variable along `point`. The file
-ends with checksums of its bytes behind HDF5's own end, where other programs do not see them.
+their order, or `point` for a list of points, in whose file each parameter is a variable along `point`. The
+file ends with checksums of its bytes behind HDF5's own end, where other programs do not see them.
 """
 TAIL = """
 ### Attributes
@@ -226,8 +226,9 @@ def meanings_of(section: type[BaseModel]) -> dict[str, str]:
         body = ast.parse(textwrap.dedent(inspect.getsource(kind))).body[0]
         assert isinstance(body, ast.ClassDef)
         for key, below in zip(body.body, body.body[1:], strict=False):
-            documented = isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant)
-            if isinstance(key, ast.AnnAssign) and isinstance(key.target, ast.Name) and documented:
+            if not (isinstance(key, ast.AnnAssign) and isinstance(key.target, ast.Name)):
+                continue
+            if isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant):
                 found[key.target.id] = inspect.cleandoc(below.value.value)
     return found
 
@@ -276,8 +277,8 @@ def task_variables(task: str) -> str:
 
 CURVES = """
 With `phase_diagram.curves: true` the file has these too, once all rows are done. A row is a line along the
-first of the two parameters with more than one value, in the order F, k1, k2, gamma3. The tables here are those
-of a diagram over F and k1; in others the two parameters take the places of `F` and `k1`, with their units.
+first of the two parameters with more than one value, in the order F, k1, k2, gamma3. The tables here are
+those of a diagram over F and k1; in others the two parameters take the places of `F` and `k1`.
 
 """
 
