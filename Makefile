@@ -11,7 +11,7 @@ BIN    := .venv/bin
 ifeq ($(PETSC),debian)
   # Without libopenblas0-serial PETSc and NumPy would get the slow reference BLAS.
   APT ?= python3-petsc4py python3-slepc4py python3-mpi4py python3-h5py python3-venv openmpi-bin libopenblas0-serial
-  NO_APT := this system has no apt-get: use 'make install PETSC=pypi' or conda-forge, see README.md
+  NO_APT := this system has no apt-get: use 'make install PETSC=pypi' or conda-forge, see docs/install.md
   # Debian's modules are visible to Debian's Python only, whatever comes first on PATH.
   override PYTHON := /usr/bin/python3
   VENV_OPTIONS := --system-site-packages

@@ -19,6 +19,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from rodsweep.cli.job import Job, make_job
+from rodsweep.config import PhaseDiagramConfig
 from rodsweep.config.reading import what_is_allowed
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.rod import ALLOWED
@@ -229,7 +230,7 @@ def meanings_of(section: type[BaseModel]) -> dict[str, str]:
             if not (isinstance(key, ast.AnnAssign) and isinstance(key.target, ast.Name)):
                 continue
             if isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant):
-                found[key.target.id] = inspect.cleandoc(below.value.value)
+                found[key.target.id] = inspect.cleandoc(str(below.value.value))
     return found
 
 
@@ -284,7 +285,8 @@ those of a diagram over F and k1; in others the two parameters take the places o
 
 
 def curve_rows(job: Job) -> Iterator[list[str]]:
-    line, row = job.config.plane  # type: ignore[attr-defined]
+    assert isinstance(job.config, PhaseDiagramConfig)
+    line, row = job.config.plane
     for variable in curve_variables(line, row).values():
         beam = variable.name.startswith(("partial_beam", "filament"))
         yield variable_row(variable, list(variable.extra), "diagrams over F and k1" if beam else "")

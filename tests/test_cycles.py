@@ -46,7 +46,7 @@ def hopf():
     return next(c.at for c in found.crossings if c.kind.name == "hopf")
 
 
-# physics.md, section 6: an independent displacement-form code.
+# An independent displacement-form code: docs/method.md, reference values.
 @pytest.mark.kernel
 @pytest.mark.parametrize(
     "gamma1, period, y, x, theta",

@@ -79,7 +79,7 @@ EXPECTED = {
 
 @pytest.mark.parametrize("name", EXPECTED)
 def test_config_changes_stability_where_its_head_comment_says(name):
-    """Flutter sets in (+1) and ends (-1) at the forces of physics.md, to ten digits, and nowhere else."""
+    """Flutter sets in (+1) and ends (-1) at the forces of docs/method.md, to ten digits, and nowhere else."""
     path = ROOT / "configs" / f"{name}.yaml"
     head = path.read_text()
     job = make_job(path, ())

@@ -34,7 +34,7 @@ POINTS = lobatto_points(NODES)
 WEIGHTS = gauss_lobatto(NODES - 1)[1] / 2
 SLOPE = 2 * differentiation(gauss_lobatto(NODES - 1)[0])
 ONSET = 20.0080206921031
-"""F* of (1e4, 1e4, 1e-4), where the first two eigenvalues meet (physics.md, section 5)."""
+"""F* of (1e4, 1e4, 1e-4), where the first two eigenvalues meet (docs/method.md, reference values)."""
 
 FIG_2A = (15.0, 1e4, 1e4, 1e-4)
 RODS = [
@@ -60,7 +60,7 @@ def digits():
 class ClosedForm:
     """sum_j a_j exp(q_j u) (y, theta, s, m)_j at an eigenvalue, Y(1) = 1; `ends` 0 of L, 1 of its adjoint.
 
-    The roots q are those of the corrected quartic (physics.md, section 2): only the end conditions tell
+    The roots q are those of the corrected quartic (docs/method.md): only the end conditions tell
     L, its adjoint and its Hermitian part (ends 1/2, tip stiffness `layer`) apart.
     """
 

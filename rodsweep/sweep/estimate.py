@@ -26,7 +26,7 @@ BASE_MEMORY = 200_000_000
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """For one core like that of the README's benchmark."""
+    """For one core like that of docs/performance.md."""
 
     seconds: float
     """Time of the whole sweep on one rank."""

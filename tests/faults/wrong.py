@@ -1,4 +1,4 @@
-"""What the README allows for no key, or not for a certain key, as YAML."""
+"""What docs/file-format.md allows for no key, or not for a certain key, as YAML."""
 
 LONG_INTEGER = "9" * 90_000
 NEVER = [

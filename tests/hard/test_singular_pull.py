@@ -3,7 +3,7 @@
 Known exactly: for w = X/gamma3 and gamma3 -> 0 the inertia of y leaves s = -nu theta/c2, and theta'' =
 (X + g nu k2) theta with theta(0) = theta'(1) = 0. So for every n with X_n = -g nu k2 - (pi (n - 1/2))^2 > 0
 one unstable mode runs away to infinity like X_n/gamma3, with layers of width sqrt(gamma3); all other modes
-tend to those of gamma3 = 0. No a-priori bound holds in the limit (physics.md, section 4): nothing is proved
+tend to those of gamma3 = 0. No a-priori bound holds in the limit (docs/method.md): nothing is proved
 there.
 """
 

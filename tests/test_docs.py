@@ -1,0 +1,183 @@
+"""README.md and docs/: links lead somewhere, commands and configs are accepted, tables are the code's."""
+
+import importlib.util
+import re
+import shlex
+import textwrap
+from functools import cache
+from pathlib import Path
+
+import click
+import h5py
+import pytest
+from conftest import ROOT
+
+from rodsweep.cli import commands
+from rodsweep.config import load_config
+from rodsweep.config.tasks import CONFIGS
+from rodsweep.errors import InputError
+
+DOCS = ROOT / "docs"
+PAGES = [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]
+MOST_LINES = 150
+"""Lines of the README."""
+LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
+PLACE = re.compile(r"(rodsweep|tests|docs|configs|jobs|install|\.ci)/[\w./*-]*")
+TASKS = "|".join(CONFIGS)
+NOT_OURS = "--array"
+"""An option of another program."""
+SOMETIMES = {"gamma1", "coordinates"}
+"""Attributes that some files have not."""
+
+each_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+
+
+@cache
+def reference():
+    """The script that writes docs/file-format.md."""
+    spec = importlib.util.spec_from_file_location("reference", DOCS / "reference.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def blocks(page: Path, language: str) -> list[str]:
+    """The fenced blocks of a language."""
+    return re.findall(rf"^```{language}\n(.*?)^```", page.read_text(), re.MULTILINE | re.DOTALL)
+
+
+def code_of(page: Path) -> list[str]:
+    """Inline code, and the lines of blocks of commands without their comments."""
+    text = re.sub(r"^```.*?^```", "", page.read_text(), flags=re.MULTILINE | re.DOTALL)
+    lines = [line[4:].split("  #")[0] for line in text.splitlines() if line.startswith("    ")]
+    return lines + re.findall(r"`([^`\n]+)`", text)
+
+
+def anchors(page: Path) -> set[str]:
+    """The anchors of a page's headings, as GitHub makes them."""
+    text = re.sub(r"^```.*?^```", "", page.read_text(), flags=re.MULTILINE | re.DOTALL)
+    headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def accepts(words: list[str]) -> bool:
+    """Whether a command of rodsweep takes these words; none at all name the command."""
+    name, *rest = words
+    command = commands.commands.get(name)
+    if command is None or not rest:
+        return command is not None
+    try:
+        command.make_context(name, rest)
+    except click.UsageError:
+        return False
+    return True
+
+
+def is_option(words: list[str]) -> bool:
+    """Whether some command has the option, with the value if there is one."""
+    if len(words) == 1:
+        return any(
+            words[0] in option.opts for command in commands.commands.values() for option in command.params
+        )
+    return any(accepts([name, *files, *words]) for name in commands.commands for files in ([], ["x"]))
+
+
+def test_readme_is_short():
+    assert len((ROOT / "README.md").read_text().splitlines()) <= MOST_LINES
+
+
+def test_readme_names_every_task_and_every_page():
+    text = (ROOT / "README.md").read_text()
+    assert all(f"`{task}`" in text for task in CONFIGS)
+    assert all(f"(docs/{page.name})" in text for page in PAGES[1:])
+
+
+def test_headline_numbers_are_those_of_the_tables():
+    text = (ROOT / "README.md").read_text().split("## Speed\n")[1].split("\n## ")[0]
+    tables = (DOCS / "performance.md").read_text()
+    numbers = re.findall(r"\d[\d.e-]*\d", text)
+    assert len(numbers) > 4
+    assert [number for number in numbers if number not in tables] == []
+
+
+@each_page
+def test_links_lead_somewhere(page):
+    for link in LINK.findall(page.read_text()):
+        target, _, anchor = link.partition("#")
+        if target.startswith(("http:", "https:")):
+            continue
+        there = (page.parent / target).resolve() if target else page
+        assert there.exists(), link
+        assert not anchor or anchor in anchors(there), link
+
+
+@each_page
+def test_files_that_are_named_exist(page):
+    for text in code_of(page):
+        if PLACE.fullmatch(text):
+            assert list(ROOT.glob(text.rstrip("/"))), text
+
+
+@each_page
+def test_configs_are_accepted(page, tmp_path):
+    for number, text in enumerate(blocks(page, "yaml")):
+        path = tmp_path / f"{number}.yaml"
+        path.write_text(text)
+        load_config(path)
+
+
+@each_page
+def test_python_is_python(page):
+    for text in blocks(page, "python"):
+        compile(text, page.name, "exec")
+
+
+@each_page
+def test_commands_are_accepted(page):
+    for text in code_of(page):
+        for words in re.findall(r"\brodsweep ((?:run|merge|check|show|plot|bench)\b.*)", text):
+            assert accepts(shlex.split(words)), text
+        if text.startswith("--") and not text.startswith(NOT_OURS):
+            assert is_option(shlex.split(text)), text
+
+
+@each_page
+def test_targets_of_make_exist(page):
+    targets = re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
+    for text in code_of(page):
+        for target in re.findall(r"\bmake ([a-z-]+)", text):
+            assert target in targets, text
+
+
+@each_page
+def test_keys_exist(page):
+    for text in code_of(page):
+        found = re.fullmatch(rf"(parameters|{TASKS})\.(\w+)([:=> ].*)?", text)
+        if found:
+            section, key = found.group(1, 2)
+            owners = CONFIGS.values() if section == "parameters" else [CONFIGS[section]]
+            assert any(key in owner.model_fields[section].annotation.model_fields for owner in owners), text
+
+
+def test_reference_is_that_of_the_code():
+    assert reference().PAGE.read_text() == reference().text(), "write it anew: python docs/reference.py"
+
+
+@pytest.mark.parametrize("task", CONFIGS)
+def test_other_parameters_are_refused(task, tmp_path):
+    """What the table of parameters does not list for a task its config does not take."""
+    config = reference().whole(task).config
+    path = tmp_path / "config.yaml"
+    path.write_text(f"task: {task}\n{textwrap.dedent(reference().WHOLE[task])}\n")
+    for name in ("F", "k1", "k2", "gamma3", "gamma1"):
+        if getattr(config.parameters, name) is None:
+            with pytest.raises(InputError, match=name):
+                load_config(path, (f"parameters.{name}=1",))
+
+
+def test_every_attribute_of_a_file_is_explained(command):
+    command.write("a.yaml", "task: spectrum\nparameters: {F: 1, k1: 9, k2: 9, gamma3: 1}")
+    assert command.afresh("run", "a.yaml").returncode == 0
+    explained = {name for names in reference().ATTRIBUTES for name in names.split(", ")}
+    with h5py.File(command.directory / "a.h5") as file:
+        assert set(file.attrs) | SOMETIMES == explained
