@@ -133,14 +133,17 @@ An axis is
 - a range: `{start: 10, stop: 1.0e6, num: 31, spacing: log}`; `spacing` is `linear` (the default) or `log`.
 
 F must be below every k1; only a phase diagram may reach into the crushed rods, F >= k1. A limit cycle needs
-finite k1 and k2, and gamma3 > 0. A phase diagram needs exactly two parameters with more than one value.
+finite k1 and k2, and gamma3 > 0. A phase diagram needs exactly two parameters with more than one value. A
+spectrum takes gamma1 with `spectrum.longitudinal: true` only, and as one number. The header of a CSV file names
+the parameters of the task, in any order.
 """
 FILE = """
 ## The result file
 
 netCDF-4-compatible HDF5. Below, `...` stands for the dimensions of the points: the parameters of the task in
 their order, or `point` for a list of points, in whose file each parameter is a variable along `point`. The
-file ends with checksums of its bytes behind HDF5's own end, where other programs do not see them.
+file ends with checksums of its bytes behind HDF5's own end, where other programs do not see them. Words are
+stored as numbers, with the attributes `flag_values` and `flag_meanings`.
 """
 TAIL = """
 ### Attributes
