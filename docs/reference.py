@@ -134,8 +134,8 @@ An axis is
 
 F must be below every k1; only a phase diagram may reach into the crushed rods, F >= k1. A limit cycle needs
 finite k1 and k2, and gamma3 > 0. A phase diagram needs exactly two parameters with more than one value. A
-spectrum takes gamma1 with `spectrum.longitudinal: true` only, and as one number. The header of a CSV file names
-the parameters of the task, in any order.
+spectrum takes gamma1 with `spectrum.longitudinal: true` only, and as one number. The header of a CSV file
+names the parameters of the task, in any order.
 """
 FILE = """
 ## The result file
