@@ -19,11 +19,12 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from rodsweep.cli.job import Job, make_job
-from rodsweep.config import PhaseDiagramConfig
+from rodsweep.config.phase_diagram import PhaseDiagramConfig
 from rodsweep.config.reading import what_is_allowed
 from rodsweep.config.tasks import CONFIGS
-from rodsweep.model.rod import ALLOWED
-from rodsweep.results.layouts import CLASSES, CROSSING_KINDS, curve_variables
+from rodsweep.model.parameters import PARAMETERS
+from rodsweep.results.layouts.crossings import CROSSING_KINDS
+from rodsweep.results.layouts.phase_diagram import CLASSES, curve_variables
 from rodsweep.results.layouts.variables import DIMENSIONS, MISSING, Variable
 
 PAGE = Path(__file__).with_name("file-format.md")
@@ -168,13 +169,12 @@ def text() -> str:
 def parameters() -> str:
     """The parameters, and the tasks that have them."""
     tasks = {task: whole(task).config.parameters for task in CONFIGS}
-    names = [name for name in DIMENSIONS if name in ALLOWED]
     rows = []
-    for name in names:
-        units, meaning = DIMENSIONS[name]
+    for name, p in PARAMETERS.items():
         having = [task for task, given in tasks.items() if getattr(given, name) is not None]
-        default = "1 in a grid of `limit_cycle`" if name == "gamma1" else ""
-        rows.append([f"`parameters.{name}`", ALLOWED[name], default, units, meaning, code(", ".join(having))])
+        default = "" if p.default is None else f"{p.default:g} in a grid of `limit_cycle`"
+        key, allowed = f"`parameters.{name}`", p.allowed.phrase
+        rows.append([key, allowed, default, p.unit, p.long_name, code(", ".join(having))])
     return table(("key", "allowed", "default", "unit", "meaning", "tasks"), rows)
 
 
@@ -227,7 +227,11 @@ def meanings_of(section: type[BaseModel]) -> dict[str, str]:
     for kind in reversed(section.__mro__):
         if not (issubclass(kind, BaseModel) and kind.__module__.startswith("rodsweep.")):
             continue
-        body = ast.parse(textwrap.dedent(inspect.getsource(kind))).body[0]
+        try:
+            source = inspect.getsource(kind)
+        except OSError:  # made of the table of parameters
+            continue
+        body = ast.parse(textwrap.dedent(source)).body[0]
         assert isinstance(body, ast.ClassDef)
         for key, below in zip(body.body, body.body[1:], strict=False):
             if not (isinstance(key, ast.AnnAssign) and isinstance(key.target, ast.Name)):
@@ -242,7 +246,7 @@ def dimensions() -> str:
     rows = [
         [f"`{name}`", LENGTHS[name], meaning]
         for name, (_, meaning) in DIMENSIONS.items()
-        if name not in ALLOWED
+        if name not in PARAMETERS
     ]
     return table(("dimension", "length", "its coordinate"), rows)
 

@@ -11,8 +11,9 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from ..errors import InputError
+from .axes import words
 from .parsing import DEEPEST, parse, read_text
-from .schema import Config, words
+from .schema import Config
 from .tasks import CONFIGS
 from .values import named, short
 

@@ -1,5 +1,6 @@
 """What all figures share: symbols, labels, colours, and how an axis is scaled."""
 
+import re
 import textwrap
 from typing import Literal
 
@@ -7,22 +8,20 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-SYMBOLS = {
-    "F": r"\tilde F",
-    "k1": r"\tilde k_1",
-    "k2": r"\tilde k_2",
-    "gamma3": r"\tilde\gamma_3",
-    "gamma1": r"\tilde\gamma_1",
-}
-FORCE, DRAG = r"[$k_3/L^2$]", r"\gamma_2 L^2"
-LABELS = {
-    "F": rf"follower force ${SYMBOLS['F']}$  {FORCE}",
-    "k1": rf"stretch stiffness ${SYMBOLS['k1']}$  {FORCE}",
-    "k2": rf"shear stiffness ${SYMBOLS['k2']}$  {FORCE}",
-    "gamma3": rf"rotational drag ${SYMBOLS['gamma3']}$  [${DRAG}$]",
-    "gamma1": rf"axial drag ${SYMBOLS['gamma1']}$  [$\gamma_2$]",
-}
-INVERSE_DRAG = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$  [$1/({DRAG})$]"
+from ...model.parameters import PARAMETERS
+
+GREEK = {"gamma": r"\gamma"}
+
+
+def tex(unit: str) -> str:
+    """A unit of the table of parameters, such as gamma2 L^2, in TeX."""
+    return re.sub(r"(gamma|k)(\d)", lambda found: f"{GREEK.get(found[1], found[1])}_{found[2]}", unit)
+
+
+SYMBOLS = {name: parameter.symbol for name, parameter in PARAMETERS.items()}
+LABELS = {name: f"{p.meaning} ${p.symbol}$  [${tex(p.unit)}$]" for name, p in PARAMETERS.items()}
+FORCE = f"[${tex(PARAMETERS['F'].unit)}$]"
+INVERSE_DRAG = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$  [$1/({tex(PARAMETERS['gamma3'].unit)})$]"
 FIRST, SECOND, THIRD = "#0072B2", "#D55E00", "#009E73"
 """Blue, vermilion and green of Okabe and Ito: told apart by the colour-blind."""
 TITLE_WIDTH = 70

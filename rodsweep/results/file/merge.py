@@ -7,7 +7,7 @@ appears whole, by a rename.
 import json
 import os
 import shutil
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -55,12 +55,11 @@ class Source:
     points: int
 
 
-def merge(output: Path, paths: Sequence[Path], needs_more: Callable[[dict[str, Any]], bool]) -> Merged:
+def merge(output: Path, paths: Sequence[Path]) -> Merged:
     """Writes `output` from all points of the result files `paths`; of a point given twice the first stays.
 
-    An existing `output` of the same config is the first of them. needs_more: whether a resolved config asks
-    for what only all points together give. InputError if a file is no result, answers another config or has
-    points in its journal; EnvironmentLacks where the disk refuses.
+    An existing `output` of the same config is the first of them. InputError if a file is no result, answers
+    another config or has points in its journal; EnvironmentLacks where the disk refuses.
     """
     sources = _opened(paths)
     directory = journal_directory(output)
@@ -78,7 +77,7 @@ def merge(output: Path, paths: Sequence[Path], needs_more: Callable[[dict[str, A
         with copy.open("r+b") as target:
             gave = [sources[0]] + [s for s in sources[1:] if _take_over(target, sources[0], s)]
         missing = _missing(copy, sources[0])
-        finished = not missing and not needs_more(json.loads(sources[0].attributes["config_resolved"]))
+        finished = not missing and not sources[0].layout.needs_all_points
         with h5py.File(copy, "r+") as file:
             history = _history(gave)
             file.attrs.update(history)

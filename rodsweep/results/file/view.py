@@ -10,8 +10,9 @@ import h5py
 import numpy as np
 
 from ...errors import InputError
+from ...model.parameters import NONLINEAR_PARAMETERS
 from ..layouts import layout_of
-from ..layouts.variables import MISSING, NONLINEAR_NAMES, Layout
+from ..layouts.variables import MISSING, Layout
 from ..run.journal import journal_directory, read_journals
 from .seal import check
 
@@ -103,7 +104,7 @@ class View:
     @property
     def axes(self) -> dict[str, np.ndarray]:
         """The parameters that the file knows: axes of a grid, or columns of a point list."""
-        return {name: self.variables[name] for name in NONLINEAR_NAMES if name in self.variables}
+        return {name: self.variables[name] for name in NONLINEAR_PARAMETERS if name in self.variables}
 
 
 def read_view(path: Path) -> View:

@@ -1,0 +1,120 @@
+"""The table of parameters: all that is known of each, stated once.
+
+Axes of a config, headers of point lists, ranges and refusals, dimensions and units in result files, labels of
+figures are made of this table. `rodsweep.config` reads it too, and nothing else of the model.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import inf, isfinite
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """What a value may be, for the program and, as a phrase, for the user; NaN lies in no range."""
+
+    contains: Callable[[float], bool]
+    phrase: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parameter:
+    """One parameter of the rod; the nonlinear rod has all of them."""
+
+    name: str
+    symbol: str
+    """As the paper writes it, in TeX."""
+    unit: str
+    meaning: str
+    remark: str = ""
+    """What follows the meaning in the result file."""
+    allowed: Range
+    nonlinear: Range | None = None
+    """What the nonlinear rod asks for beyond `allowed`."""
+    linear: bool = True
+    """Whether the transverse linear problem contains it."""
+    by_compliance: bool = False
+    """Whether the equations are linear in 1/value instead of the value."""
+    default: float | None = None
+    """Value in a grid of the nonlinear rod that does not name it; None where it must be named."""
+
+    @property
+    def long_name(self) -> str:
+        """The meaning as the result file states it."""
+        return self.meaning + self.remark
+
+    def require(self, value: float) -> None:
+        """ValueError where the value is not allowed; F < k1 is for `Rod` to check."""
+        if not self.allowed.contains(value):
+            raise ValueError(f"{self.name} = {value} is not {self.allowed.phrase}")
+
+
+PARAMETERS = {
+    parameter.name: parameter
+    for parameter in (
+        Parameter(
+            name="F",
+            symbol=r"\tilde F",
+            unit="k3/L^2",
+            meaning="follower force",
+            remark=" at the tip, along -e1",
+            allowed=Range(isfinite, "a finite number below k1 (negative values pull)"),
+        ),
+        Parameter(
+            name="k1",
+            symbol=r"\tilde k_1",
+            unit="k3/L^2",
+            meaning="stretch stiffness",
+            remark="; inf is inextensible",
+            allowed=Range(
+                lambda value: value > 0 and 1 / value < inf,
+                "a number above 0, or inf for an inextensible rod",
+            ),
+            nonlinear=Range(isfinite, "a finite number"),
+            by_compliance=True,
+        ),
+        Parameter(
+            name="k2",
+            symbol=r"\tilde k_2",
+            unit="k3/L^2",
+            meaning="shear stiffness",
+            remark="; inf is unshearable",
+            allowed=Range(
+                lambda value: value > 0 and 1 / value < inf,
+                "a number above 0, or inf for an unshearable rod",
+            ),
+            nonlinear=Range(isfinite, "a finite number"),
+            by_compliance=True,
+        ),
+        Parameter(
+            name="gamma3",
+            symbol=r"\tilde\gamma_3",
+            unit="gamma2 L^2",
+            meaning="rotational drag",
+            allowed=Range(lambda value: 0 <= value < inf, "a finite number, 0 or above"),
+            nonlinear=Range(lambda value: value > 0, "a number above 0"),
+        ),
+        Parameter(
+            name="gamma1",
+            symbol=r"\tilde\gamma_1",
+            unit="gamma2",
+            meaning="axial drag",
+            allowed=Range(lambda value: 0 < value < inf, "a finite number above 0"),
+            linear=False,
+            default=1.0,
+        ),
+    )
+}
+"""All parameters by name, in the order used everywhere."""
+
+NONLINEAR_PARAMETERS = tuple(PARAMETERS)
+"""Names of the parameters of the nonlinear rod."""
+LINEAR_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if parameter.linear)
+"""Names of the parameters of the linear problem."""
+CRUSHING = ("F", "k1")
+"""The parameters that crush the rod where the first reaches the second."""
+
+
+def all_but(varied: str) -> tuple[str, ...]:
+    """The parameters of the linear problem that stay where one varies."""
+    return tuple(name for name in LINEAR_PARAMETERS if name != varied)
