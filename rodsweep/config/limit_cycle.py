@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from ..model.parameters import NONLINEAR_PARAMETERS
-from .axes import NonlinearParameters, words
+from .axes import NonlinearParameters
 from .schema import Config, Nodes
 from .values import Number, Strict
 
@@ -20,11 +20,11 @@ class LimitCycleOptions(Strict):
 
     amplitude: Annotated[Number, Field(gt=0, le=1, description="a number above 0, at most 1")] = 0.01
     """Tip deflection of the leading mode from which a point starts, in L."""
-    continue_from: Annotated[Literal["none", "previous"], Field(description="none or previous")] = "none"
+    continue_from: Literal["none", "previous"] = "none"
     """Whether each point starts from the cycle of its neighbour."""
-    along: Annotated[Along, Field(description=words(NONLINEAR_PARAMETERS, "or"))] = "F"
+    along: Along = "F"
     """The parameter along which neighbours follow each other."""
-    direction: Annotated[Literal["up", "down"], Field(description="up or down")] = "up"
+    direction: Literal["up", "down"] = "up"
     """Whether that parameter grows or falls from a point to the next."""
     harmonics: Annotated[int, Field(ge=1, le=100)] = 8
     """Harmonics of the tip's y that are stored."""
@@ -36,7 +36,7 @@ class LimitCycleOptions(Strict):
     """Lobatto nodes on which shapes are given."""
     most_periods: Annotated[int, Field(ge=1, le=1_000_000)] = 400
     """Periods after which a point that is not settled is given up."""
-    time: Annotated[Literal["tau2", "tau1"], Field(description="tau2 or tau1")] = "tau2"
+    time: Literal["tau2", "tau1"] = "tau2"
     """tau1 adds the period in units of tau1; all else stays in tau2."""
 
 
