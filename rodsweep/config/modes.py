@@ -4,7 +4,6 @@ from typing import Literal
 
 from pydantic import model_validator
 
-from ..model.parameters import LINEAR_PARAMETERS
 from .schema import LinearConfig, Modes, Nodes
 from .values import Strict
 
@@ -27,10 +26,6 @@ class ModesConfig(LinearConfig):
 
     task: Literal["modes"]
     modes: ModesOptions = ModesOptions()
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        return LINEAR_PARAMETERS
 
     @model_validator(mode="after")
     def _whole_points(self) -> "ModesConfig":

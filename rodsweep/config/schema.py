@@ -9,6 +9,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field, model_validator
 
+from ..model.parameters import LINEAR_PARAMETERS
 from .axes import Axes, LinearParameters
 from .values import Number, Strict, Text
 
@@ -55,6 +56,10 @@ class LinearConfig(Config, ABC):
 
     beyond: ClassVar[tuple[str, ...]] = ()
     """Parameters that only the nonlinear rod has and yet the task can use."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return LINEAR_PARAMETERS
 
     @model_validator(mode="after")
     def _only_parameters_that_are_used(self) -> "LinearConfig":

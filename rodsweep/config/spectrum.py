@@ -4,7 +4,6 @@ from typing import ClassVar, Literal
 
 from pydantic import model_validator
 
-from ..model.parameters import LINEAR_PARAMETERS
 from .schema import LinearConfig, Modes, Nodes
 from .values import Strict
 
@@ -31,10 +30,6 @@ class SpectrumConfig(LinearConfig):
     spectrum: SpectrumOptions = SpectrumOptions()
 
     beyond: ClassVar[tuple[str, ...]] = ("gamma1",)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        return LINEAR_PARAMETERS
 
     @model_validator(mode="after")
     def _only_what_is_used(self) -> "SpectrumConfig":

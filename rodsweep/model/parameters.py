@@ -4,7 +4,7 @@ Axes of a config, headers of point lists, ranges and refusals, dimensions and un
 figures are made of this table. `rodsweep.config` reads it too, and nothing else of the model.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import inf, isfinite
 
@@ -15,6 +15,13 @@ class Range:
 
     contains: Callable[[float], bool]
     phrase: str
+
+    def first_outside(self, values: Iterable[float]) -> float | None:
+        """The first of the values that may not be; None where all may."""
+        return next((value for value in map(float, values) if not self.contains(value)), None)
+
+
+ANYTHING = Range(lambda value: True, "any number")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,7 +36,7 @@ class Parameter:
     remark: str = ""
     """What follows the meaning in the result file."""
     allowed: Range
-    nonlinear: Range | None = None
+    nonlinear: Range = ANYTHING
     """What the nonlinear rod asks for beyond `allowed`."""
     linear: bool = True
     """Whether the transverse linear problem contains it."""

@@ -77,7 +77,7 @@ def points_of(config: Config, directory: Path) -> Points:
         return Points(config.names, columns, is_grid=False)
     axes = {name: axis.array() for name, axis in parameters.axes.items()}
     for name, column in axes.items():
-        _refuse_outside(name, map(float, column))
+        _refuse_outside(name, column)
     if "F" in axes:
         _refuse_crushed(axes["F"], axes["k1"], config.into_crushed)
     return Points(config.names, tuple(axes[name] for name in config.names), is_grid=True)
@@ -86,9 +86,9 @@ def points_of(config: Config, directory: Path) -> Points:
 def _refuse_outside(name: str, values: Iterable[float]) -> None:
     """InputError for the first value of a parameter that the model does not allow."""
     allowed = PARAMETERS[name].allowed
-    for value in values:
-        if not allowed.contains(value):
-            raise InputError(f"parameters.{name} = {value:g} is not allowed; it must be {allowed.phrase}")
+    bad = allowed.first_outside(values)
+    if bad is not None:
+        raise InputError(f"parameters.{name} = {bad:g} is not allowed; it must be {allowed.phrase}")
 
 
 def _refuse_crushed(F: NDArray[np.float64], k1: NDArray[np.float64], some: bool) -> None:

@@ -32,8 +32,8 @@ class LimitCycleTask(Task):
     def __post_init__(self) -> None:
         for name, column in self.points.by_name.items():
             needed = PARAMETERS[name].nonlinear
-            bad = needed and next((value for value in map(float, column) if not needed.contains(value)), None)
-            if needed and bad is not None:
+            bad = needed.first_outside(column)
+            if bad is not None:
                 raise InputError(
                     f"parameters.{name} = {bad:g} is not allowed in the task limit_cycle; it must be "
                     f"{needed.phrase}, because the nonlinear rod stretches, shears and turns against drag"
