@@ -5,7 +5,7 @@ from typing import ClassVar, Literal
 
 from pydantic import model_validator
 
-from ..model.parameters import LINEAR_PARAMETERS, all_but
+from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS, all_but
 from .axes import words
 from .schema import Crossings, LinearConfig
 from .values import Strict
@@ -62,8 +62,9 @@ class PhaseDiagramConfig(LinearConfig):
             )
         line = self.parameters.axes[long[0]]
         if inf in (line.values or ()):
+            stiff = words(tuple(name for name in LINEAR_PARAMETERS if PARAMETERS[name].rigid), "and")
             raise ValueError(
                 f"parameters.{long[0]} contains inf, which is not allowed on the axis along which a phase "
-                f"diagram is searched; remove it (on the other axis, {long[1]}, k1 and k2 may be inf)"
+                f"diagram is searched; remove it (on the other axis, {long[1]}, {stiff} may be inf)"
             )
         return self

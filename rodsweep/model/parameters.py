@@ -40,10 +40,15 @@ class Parameter:
     """What the nonlinear rod asks for beyond `allowed`."""
     linear: bool = True
     """Whether the transverse linear problem contains it."""
-    by_compliance: bool = False
-    """Whether the equations are linear in 1/value instead of the value."""
+    rigid: str = ""
+    """What a rod is called whose value is inf; empty where inf is not allowed."""
     default: float | None = None
     """Value in a grid of the nonlinear rod that does not name it; None where it must be named."""
+
+    @property
+    def by_compliance(self) -> bool:
+        """Whether the equations are linear in 1/value, which may be 0, instead of the value."""
+        return bool(self.rigid)
 
     @property
     def long_name(self) -> str:
@@ -54,6 +59,22 @@ class Parameter:
         """ValueError where the value is not allowed; F < k1 is for `Rod` to check."""
         if not self.allowed.contains(value):
             raise ValueError(f"{self.name} = {value} is not {self.allowed.phrase}")
+
+
+def stiffness(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
+    """A stiffness, which is inf for a rod that is called `rigid`; its compliance is a finite number."""
+    return Parameter(
+        name=name,
+        symbol=symbol,
+        unit="k3/L^2",
+        meaning=meaning,
+        remark=f"; inf is {rigid}",
+        allowed=Range(
+            lambda value: value > 0 and 1 / value < inf, f"a number above 0, or inf for an {rigid} rod"
+        ),
+        nonlinear=Range(isfinite, "a finite number"),
+        rigid=rigid,
+    )
 
 
 PARAMETERS = {
@@ -67,32 +88,8 @@ PARAMETERS = {
             remark=" at the tip, along -e1",
             allowed=Range(isfinite, "a finite number below k1 (negative values pull)"),
         ),
-        Parameter(
-            name="k1",
-            symbol=r"\tilde k_1",
-            unit="k3/L^2",
-            meaning="stretch stiffness",
-            remark="; inf is inextensible",
-            allowed=Range(
-                lambda value: value > 0 and 1 / value < inf,
-                "a number above 0, or inf for an inextensible rod",
-            ),
-            nonlinear=Range(isfinite, "a finite number"),
-            by_compliance=True,
-        ),
-        Parameter(
-            name="k2",
-            symbol=r"\tilde k_2",
-            unit="k3/L^2",
-            meaning="shear stiffness",
-            remark="; inf is unshearable",
-            allowed=Range(
-                lambda value: value > 0 and 1 / value < inf,
-                "a number above 0, or inf for an unshearable rod",
-            ),
-            nonlinear=Range(isfinite, "a finite number"),
-            by_compliance=True,
-        ),
+        stiffness("k1", r"\tilde k_1", "stretch stiffness", "inextensible"),
+        stiffness("k2", r"\tilde k_2", "shear stiffness", "unshearable"),
         Parameter(
             name="gamma3",
             symbol=r"\tilde\gamma_3",

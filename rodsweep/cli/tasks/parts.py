@@ -7,6 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from ...model.parameters import PARAMETERS, Parameter
 from ...sweep.grid import Points
 from .protocol import Part, Task
 
@@ -44,14 +45,14 @@ def rod_parts(columns: Mapping[str, np.ndarray]) -> list[Part]:
     """Which of the rod's parts the values of k1, k2 and gamma3 make move."""
     dragged = bool((columns["gamma3"] > 0).any())
     return [
-        _compliance("stretch", "k1", columns["k1"], "inextensible"),
-        _compliance("shear", "k2", columns["k2"], "unshearable"),
+        *(_deformation(p, columns[p.name]) for p in PARAMETERS.values() if p.rigid),
         ("rotational drag", dragged, "gamma3 > 0" if dragged else "gamma3 = 0"),
     ]
 
 
-def _compliance(part: str, name: str, values: np.ndarray, word: str) -> Part:
+def _deformation(parameter: Parameter, values: np.ndarray) -> Part:
+    name, what = parameter.name, parameter.meaning.removesuffix(" stiffness")
     rigid = np.isinf(values)
     if rigid.all():
-        return part, False, f"{name} = inf: the rod is {word}"
-    return part, True, f"{name} is finite" + (f" at all but {int(rigid.sum())} values" if rigid.any() else "")
+        return what, False, f"{name} = inf: the rod is {parameter.rigid}"
+    return what, True, f"{name} is finite" + (f" at all but {int(rigid.sum())} values" if rigid.any() else "")
