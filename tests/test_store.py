@@ -5,9 +5,10 @@ import numpy as np
 import pytest
 
 from rodsweep.errors import InputError
-from rodsweep.results.file import store as stores
+from rodsweep.results.file import points
 from rodsweep.results.file.creation import Plan
-from rodsweep.results.file.store import Store, difference
+from rodsweep.results.file.store import Store
+from rodsweep.results.file.validation import difference
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts import spectrum_layout
 from rodsweep.results.run import journal as pages_of
@@ -71,8 +72,8 @@ def test_blocks_of_any_size_give_the_same_file(tmp_path, monkeypatch, is_grid):
     count = whole.missing()[0][1]
     journal(whole, range(count))
     whole.fold({})
-    monkeypatch.setattr(pages_of, "BLOCK", 3 * (LAYOUT.record.itemsize + 4))
-    monkeypatch.setattr(stores, "BLOCK", 2)
+    monkeypatch.setattr(pages_of, "BYTES_A_BLOCK", 3 * (LAYOUT.record.itemsize + 4))
+    monkeypatch.setattr(points, "POINTS_AT_ONCE", 2)
     store = Store(tmp_path / "a.h5", plan(is_grid))
     order = np.random.default_rng(1).permutation(count).tolist()
     journal(store, order[1:], rank=0)

@@ -13,10 +13,11 @@ import time
 from collections import Counter, deque
 from dataclasses import dataclass
 
-from .stop import Stop
+from .ranges import Range, total
+from .stop import StopRequest
 from .team import Team
 
-REQUEST, ANSWER, STOP = 71, 72, 73
+REQUEST_TAG, ANSWER_TAG, STOP_TAG = 71, 72, 73
 CHUNK_SECONDS, CHUNK_SECONDS_A_RANK = 0.1, 1e-3
 """How long a chunk should take: long against a message, short against a run; with many ranks so long that the
 first one, which answers a request in 50 microseconds, spends a twentieth of its time on answers."""
@@ -31,7 +32,6 @@ where that rank itself answers between its points."""
 ASK_SECONDS = 1e-4
 """How often a rank that waits for its next chunk looks for it."""
 
-Range = tuple[int, int]
 OVER: Range = (0, 0)
 
 
@@ -61,11 +61,10 @@ class Handout:
 
     def __init__(self, todo: list[Range], ranks: int):
         self.todo = deque(todo)
-        self.left = sum(stop - start for start, stop in todo)
+        self.left = total(todo)
         self.ranks = ranks
         self.held: Counter[int] = Counter()
         """Chunks that each rank has and has not reported on."""
-        self.done = 0
         self.points = 0
         self.pace: dict[int, float] = {}
         self.stopped = False
@@ -76,7 +75,6 @@ class Handout:
         with self.change:
             if self.held[rank]:
                 self.held[rank] -= 1
-            self.done += report.done
             self.points += report.points
             if report.done:
                 self.pace[rank] = report.seconds / report.done
@@ -127,7 +125,7 @@ class Handout:
 class FirstRankClaims:
     """How the first rank gets its chunks, and how its thread serves the others."""
 
-    def __init__(self, team: Team, todo: list[Range], stop: Stop):
+    def __init__(self, team: Team, todo: list[Range], stop: StopRequest):
         self.team, self.handout, self.stop = team, Handout(todo, team.size), stop
         self.waiting: deque[int] = deque()
         self.ahead: set[int] = set()
@@ -177,20 +175,20 @@ class FirstRankClaims:
         if self.stop and not self.handout.stopped:
             self.handout.stop()
             for rank in self.working:
-                self.team.comm.send(self.stop.name, dest=rank, tag=STOP)
+                self.team.comm.send(self.stop.name, dest=rank, tag=STOP_TAG)
 
     def _serve(self) -> None:
         comm, MPI = self.team.comm, self.team.MPI
         with self.serving:
-            while comm.Iprobe(source=MPI.ANY_SOURCE, tag=STOP, status=self.status):
-                self.stop.name = comm.recv(source=self.status.Get_source(), tag=STOP)
+            while comm.Iprobe(source=MPI.ANY_SOURCE, tag=STOP_TAG, status=self.status):
+                self.stop.name = comm.recv(source=self.status.Get_source(), tag=STOP_TAG)
             self._heed_stop()
-            while comm.Iprobe(source=MPI.ANY_SOURCE, tag=REQUEST, status=self.status):
+            while comm.Iprobe(source=MPI.ANY_SOURCE, tag=REQUEST_TAG, status=self.status):
                 rank = self.status.Get_source()
-                self._hear(rank, comm.recv(source=rank, tag=REQUEST))
+                self._hear(rank, comm.recv(source=rank, tag=REQUEST_TAG))
             while self.waiting and (chunk := self.handout.take(self.waiting[0])) is not None:
                 rank = self.waiting.popleft()
-                comm.send(chunk, dest=rank, tag=ANSWER)
+                comm.send(chunk, dest=rank, tag=ANSWER_TAG)
                 if chunk == OVER:
                     self.working.discard(rank)
 
@@ -198,7 +196,7 @@ class FirstRankClaims:
         """A report: its rank waits for an answer unless it has it; one to a request ahead is sent at once."""
         if report.ahead:
             if (chunk := self.handout.take_ahead(rank)) is not None:
-                self.team.comm.send(chunk, dest=rank, tag=ANSWER)
+                self.team.comm.send(chunk, dest=rank, tag=ANSWER_TAG)
                 self.ahead.add(rank)
             return
         if report.stop:  # which may come before the message that says so
@@ -223,32 +221,32 @@ class OtherRankClaims:
 
     points = 0
 
-    def __init__(self, team: Team, stop: Stop):
+    def __init__(self, team: Team, stop: StopRequest):
         self.comm, self.stop, self.told = team.comm, stop, False
 
     def claim(self, report: Report) -> Range:
-        self.comm.send(report, dest=0, tag=REQUEST)
+        self.comm.send(report, dest=0, tag=REQUEST_TAG)
         # A blocking receive would spin and take the processor from the ranks that compute.
-        while not self.comm.Iprobe(source=0, tag=ANSWER):
+        while not self.comm.Iprobe(source=0, tag=ANSWER_TAG):
             self.between_points()
             time.sleep(ASK_SECONDS)
-        chunk: Range = self.comm.recv(source=0, tag=ANSWER)
+        chunk: Range = self.comm.recv(source=0, tag=ANSWER_TAG)
         if chunk != OVER:
-            self.comm.send(Report(ahead=True), dest=0, tag=REQUEST)
+            self.comm.send(Report(ahead=True), dest=0, tag=REQUEST_TAG)
         return chunk
 
     def between_points(self) -> None:
         """Passes a request to stop on to the first rank, or learns of it from there."""
-        if not self.told and self.comm.Iprobe(source=0, tag=STOP):
-            self.stop.name, self.told = self.comm.recv(source=0, tag=STOP), True
+        if not self.told and self.comm.Iprobe(source=0, tag=STOP_TAG):
+            self.stop.name, self.told = self.comm.recv(source=0, tag=STOP_TAG), True
         if not self.told and self.stop:
-            self.comm.send(self.stop.name, dest=0, tag=STOP)
+            self.comm.send(self.stop.name, dest=0, tag=STOP_TAG)
             self.told = True
 
     def close(self) -> None:
         """Nothing to close."""
 
 
-def claims_of(team: Team, todo: list[Range], stop: Stop) -> FirstRankClaims | OtherRankClaims:
+def claims_of(team: Team, todo: list[Range], stop: StopRequest) -> FirstRankClaims | OtherRankClaims:
     """This rank's way to its chunks; `todo` matters on the first rank only."""
     return FirstRankClaims(team, todo, stop) if team.first else OtherRankClaims(team, stop)

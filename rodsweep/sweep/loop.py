@@ -5,8 +5,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TypeVar
 
-from .handout import GIVE_BACK_AFTER, OVER, Range, Report, chunk_seconds, claims_of
-from .stop import Stop
+from .handout import GIVE_BACK_AFTER, OVER, Report, chunk_seconds, claims_of
+from .ranges import Range
+from .stop import StopRequest
 from .team import Team
 
 Result = TypeVar("Result")
@@ -27,7 +28,7 @@ def sweep(
     solve: Callable[[int], Iterable[tuple[int, Result]]],
     keep: Callable[[int, Result], None],
     tell: Callable[[int], None],
-    stop: Stop,
+    stop: StopRequest,
 ) -> Share:
     """Solves every unit of the ranges `todo`, each on some rank; returns when all ranks are done.
 

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..errors import InputError
-from .handout import Range
+from .ranges import Range
 
-BLOCKS = 64
+BLOCKS_A_SHARD = 64
 """Blocks of neighbouring units that a shard consists of: many, so that shards cost alike, but no more, so
 that neighbours stay together in its file."""
 
@@ -25,7 +25,7 @@ class Shard:
         """What of the ranges `todo` among all `units` is this shard's: blocks dealt out in turn."""
         if self.of == 1:
             return list(todo)
-        block = max(1, units // (self.of * BLOCKS))
+        block = max(1, units // (self.of * BLOCKS_A_SHARD))
         mine: list[Range] = []
         for start, stop in todo:
             turn = start // block

@@ -1,11 +1,16 @@
-"""What all figures share: symbols, labels, colours, and how an axis is scaled."""
+"""What all figures share: symbols, labels, colours, titles, how an axis is scaled, what cannot be drawn."""
 
 import textwrap
-from typing import Literal
+from collections.abc import Mapping
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from ...errors import InputError
+from ...results.file.view import View
 
 SYMBOLS = {
     "F": r"\tilde F",
@@ -14,15 +19,15 @@ SYMBOLS = {
     "gamma3": r"\tilde\gamma_3",
     "gamma1": r"\tilde\gamma_1",
 }
-FORCE, DRAG = r"[$k_3/L^2$]", r"\gamma_2 L^2"
+FORCE_UNIT, DRAG_UNIT = r"[$k_3/L^2$]", r"\gamma_2 L^2"
 LABELS = {
-    "F": rf"follower force ${SYMBOLS['F']}$  {FORCE}",
-    "k1": rf"stretch stiffness ${SYMBOLS['k1']}$  {FORCE}",
-    "k2": rf"shear stiffness ${SYMBOLS['k2']}$  {FORCE}",
-    "gamma3": rf"rotational drag ${SYMBOLS['gamma3']}$  [${DRAG}$]",
+    "F": rf"follower force ${SYMBOLS['F']}$  {FORCE_UNIT}",
+    "k1": rf"stretch stiffness ${SYMBOLS['k1']}$  {FORCE_UNIT}",
+    "k2": rf"shear stiffness ${SYMBOLS['k2']}$  {FORCE_UNIT}",
+    "gamma3": rf"rotational drag ${SYMBOLS['gamma3']}$  [${DRAG_UNIT}$]",
     "gamma1": rf"axial drag ${SYMBOLS['gamma1']}$  [$\gamma_2$]",
 }
-INVERSE_DRAG = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$  [$1/({DRAG})$]"
+INVERSE_DRAG = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$  [$1/({DRAG_UNIT})$]"
 FIRST, SECOND, THIRD = "#0072B2", "#D55E00", "#009E73"
 """Blue, vermilion and green of Okabe and Ito: told apart by the colour-blind."""
 TITLE_WIDTH = 70
@@ -37,9 +42,50 @@ def plain(text: object) -> str:
     return str(text).replace("$", r"\$")
 
 
-def heading(title: object, *lines: str) -> str:
-    """A user's title, broken where it is long, above other lines."""
-    return "\n".join([*textwrap.wrap(plain(title), TITLE_WIDTH), *(line for line in lines if line)])
+def heading(view: View, *lines: str) -> str:
+    """The title of a user's file, broken where it is long, above other lines."""
+    title = plain(view.attributes.get("title", ""))
+    return "\n".join([*textwrap.wrap(title, TITLE_WIDTH), *filter(None, lines)])
+
+
+def parameter_text(parameters: Mapping[str, float], digits: int = 6) -> str:
+    """Parameters and their values, in one line."""
+    return ", ".join(f"${SYMBOLS[name]}$ = {value:.{digits}g}" for name, value in parameters.items())
+
+
+def fixed_text(view: View, *drawn: str) -> str:
+    """The parameters that are not along an axis of the figure, with their values."""
+    return parameter_text({name: values[0] for name, values in view.axes.items() if name not in drawn})
+
+
+def long_axes(view: View) -> list[str]:
+    """The parameters of a grid that take several values; InputError unless they are one or two."""
+    long = [name for name, values in view.axes.items() if len(values) > 1]
+    if not 1 <= len(long) <= 2:
+        raise InputError(
+            f"{view.path} has {len(long)} axes with more than one value ({', '.join(long) or 'none'}); a "
+            "figure needs one or two"
+        )
+    return long
+
+
+def need_grid(view: View, points: str) -> None:
+    """InputError where the file is a list; `points` says of what."""
+    if not view.is_grid:
+        raise InputError(
+            f"{view.path} is a list of {points}; a figure needs a grid with one or two long axes"
+        )
+
+
+def need(view: View, there: object, what: str) -> None:
+    """InputError unless something is there that could be drawn."""
+    if not there:
+        raise InputError(f"{view.path} holds no {what} that could be drawn")
+
+
+def legend_below(figure: Figure, handles: list[Any], columns: int, size: float = 8) -> None:
+    """The legend of a whole figure, below its panels."""
+    figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False, fontsize=size)
 
 
 def is_logarithmic(values: np.ndarray) -> bool:

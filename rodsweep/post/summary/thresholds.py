@@ -5,19 +5,19 @@ import numpy as np
 from ...results.file.view import View
 from .ranges import span
 
-EVENTS = {
+FORCES_AND_RATES = {
     "onset": ("F_onset", "growth rate", "onset_growth_rate"),
     "Hopf": ("F_hopf", "frequency", "hopf_frequency"),
     "restabilization": ("F_restabilization", "frequency", "restabilization_frequency"),
 }
 
 
-def thresholds_lines(view: View, done: np.ndarray) -> list[str]:
+def thresholds_summary(view: View, done: np.ndarray) -> list[str]:
     """The task's lines about the points that are `done`."""
     v = view.variables
     points = int(done.sum())
     lines = []
-    for event, (force, word, number) in EVENTS.items():
+    for event, (force, word, number) in FORCES_AND_RATES.items():
         F = v[force][done]
         there = int(np.isfinite(F).sum())
         where = f": F = {span(F)}, {word} {span(v[number][done])}" if there else ""

@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..layouts.variables import DIMENSIONS, MISSING, Filled, Layout, Variable
-
-SIGNATURE = "rodsweep"
+from .validation import PROGRAM
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +67,7 @@ def create_file(path: Path, plan: Plan) -> None:
             _attach(file, data, (*plan.dimensions, *variable.extra))
         add_variables(file, plan.constants)
         _describe_flags(file["status"], ((MISSING, "missing"), *plan.flags))
-        file.attrs["program"] = SIGNATURE
+        file.attrs["program"] = PROGRAM
         file.attrs["fingerprint"] = plan.fingerprint
         file.attrs["config_resolved"] = json.dumps(plan.config)
         file.attrs.update(plan.attributes)

@@ -12,31 +12,32 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.quiver import Quiver
 
+from ....discretization.periodic import resampled
 from ....results.file.view import View
 from ..style import FIRST, SECOND
-from .chosen import SHAPES, Array, Cycle, chosen_cycles, headings, left_out, periodic
+from .selection import SHAPES, Array, StoredCycle, chosen_cycles
 
 MOST_SHAPES = 12
 """Shapes of one cycle that can still be told apart."""
 ARROW = 0.14
 """Length of the force's arrow in L."""
-PERIODS = 2
-"""Of the slowest cycle: the time that the tip is followed."""
+TIP_PERIODS = 2
+"""How long the tip is followed, in periods of the slowest cycle."""
 FEW_SAMPLES = 48
 """Below this number the samples themselves are marked on the curve through them."""
 LIGHTEST = 0.14
 """The part of the colour map left out: yellow that does not show on white."""
 
 
-def draw_cycle(view: View, points: Sequence[int]) -> tuple[Figure, str]:
+def draw_portrait(view: View, points: Sequence[int]) -> tuple[Figure, str]:
     """A column for each cycle: the shapes, later ones darker, above x and y of the tip against time."""
-    cycles = chosen_cycles(view, points, SHAPES)
+    selection = chosen_cycles(view, points, SHAPES)
+    cycles = selection.cycles
     figure, shapes, tips = _panels(len(cycles))
-    title, each = headings(view, cycles)
-    end = PERIODS * max(c.period for c in cycles)
+    end = TIP_PERIODS * max(c.period for c in cycles)
     drawn, step = drawn_shapes(len(cycles[0].values["shape_x"]))
     colours = _colours(len(drawn))
-    for axes, (upper, lower), cycle, text in zip(shapes, tips, cycles, each, strict=True):
+    for axes, (upper, lower), cycle in zip(shapes, tips, cycles, strict=True):
         tip_path(axes, cycle)
         clamp(axes)
         for k, place in enumerate(drawn):
@@ -44,15 +45,15 @@ def draw_cycle(view: View, points: Sequence[int]) -> tuple[Figure, str]:
             axes.plot(x, y, color=colours(k), lw=1.8, solid_capstyle="round", zorder=2 + k / 100)
             force_arrow(axes, x, y, theta, colours(k))
         axes.set_xlabel("$x/L$")
-        axes.set_title("\n".join(filter(None, (text, period_text(cycle)))), fontsize=9)
+        axes.set_title(cycle.heading(period_text(cycle)), fontsize=9)
         _tip(upper, lower, cycle, end)
     frame(shapes, cycles)
     shapes[0].set_ylabel("$y/L$")
     tips[0][0].set_ylabel("tip $x/L$", color=FIRST)
     tips[0][1].set_ylabel("tip $y/L$", color=SECOND)
     _phase_bar(figure, shapes, colours, step)
-    figure.suptitle(title, fontsize=10)
-    return figure, "shapes through the cycle and the tip in time" + left_out(view, points, cycles)
+    figure.suptitle(selection.title, fontsize=10)
+    return figure, "shapes through the cycle and the tip in time" + selection.left_out
 
 
 def _panels(count: int) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
@@ -73,7 +74,7 @@ def _panels(count: int) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
     return figure, list(rows[0]), list(zip(rows[1], rows[2], strict=True))
 
 
-def period_text(cycle: Cycle) -> str:
+def period_text(cycle: StoredCycle) -> str:
     """The period in tau2, and in tau1 where there is one."""
     text = rf"$T$ = {cycle.period:.6g} $\tau_2$"
     return text + (rf" = {cycle.period / cycle.tau1:.6g} $\tau_1$" if 0 < cycle.tau1 < np.inf else "")
@@ -102,10 +103,10 @@ def _phase_bar(figure: Figure, panels: list[Axes], colours: ListedColormap, step
     bar.ax.minorticks_off()
 
 
-def tip_path(axes: Axes, cycle: Cycle) -> None:
+def tip_path(axes: Axes, cycle: StoredCycle) -> None:
     """The closed path of the tip."""
     phase = np.linspace(0, 1, 401)
-    axes.plot(*(periodic(v, phase) for v in cycle.tip), color="0.6", lw=0.8, ls=(0, (4, 2)), zorder=1)
+    axes.plot(*(resampled(v, phase) for v in cycle.tip), color="0.6", lw=0.8, ls=(0, (4, 2)), zorder=1)
 
 
 def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any) -> Quiver:
@@ -124,7 +125,7 @@ def clamp(axes: Axes) -> None:
     axes.plot([0, 0], [-0.13, 0.13], color="k", lw=1.4, zorder=5)
 
 
-def frame(panels: Sequence[Axes], cycles: Sequence[Cycle]) -> None:
+def frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
     """The same region in all panels: every shape and arrow, one length for x and y."""
     corner = np.array([np.inf, np.inf, -np.inf, -np.inf])
     for cycle in cycles:
@@ -140,11 +141,11 @@ def frame(panels: Sequence[Axes], cycles: Sequence[Cycle]) -> None:
         )
 
 
-def _tip(upper: Axes, lower: Axes, cycle: Cycle, end: float) -> None:
+def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
     """x and y of the tip against time in tau2, and in the paper's tau1 where there is one."""
     time = np.linspace(0, end, 801)
     for axes, values, colour in zip((upper, lower), cycle.tip, (FIRST, SECOND), strict=True):
-        axes.plot(time, periodic(values, time / cycle.period), color=colour, lw=1.4)
+        axes.plot(time, resampled(values, time / cycle.period), color=colour, lw=1.4)
         if len(values) < FEW_SAMPLES:
             at = np.arange(int(end / cycle.period * len(values)) + 1)
             axes.plot(at * cycle.period / len(values), values[at % len(values)], "o", color=colour, ms=2.5)
