@@ -208,7 +208,7 @@ FEW = {"stored": ()}
     ],
 )
 def test_the_file_suggests_its_figure(view, output, points, what):
-    assert figure_name(FigureRequest([view], Path(output).suffix, points=points)) == what
+    assert figure_name(FigureRequest([view], Path(output), points=points)) == what
 
 
 @pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])

@@ -11,18 +11,8 @@ import click
 import numpy as np
 
 from ..errors import EnvironmentLacks
+from ..results.file import provenance
 from ..results.file.creation import Plan
-from ..results.file.provenance import (
-    KERNELS,
-    LONGEST_ATTRIBUTE,
-    MOST_RANKS_TOLD,
-    RANK_SHARES,
-    kernels_of,
-    kernels_sentence,
-    now,
-    provenance,
-    united_kernels,
-)
 from ..results.file.store import Store
 from ..results.file.view import read_view
 from ..results.run.checkpoints import Checkpoints
@@ -68,9 +58,9 @@ class _Run:
         from ..solve.backend.blas_kernel import blas
 
         self.team, self.job, self.output, self.shard, self.stop = team, job, output, shard, stop
-        self.began, self.started = time.monotonic(), now()
+        self.began, self.started = time.monotonic(), provenance.now()
         self.solver = job.task.solver()
-        self.kernels = united_kernels(team.gather(blas()) or [])
+        self.kernels = provenance.united_kernels(team.gather(blas()) or [])
         self.plan = plan_of(job, self.solver, shard, self.kernels)
 
     def run(self, fresh: bool) -> int:
@@ -115,10 +105,10 @@ class _Run:
     def _note_kernels(self) -> None:
         """Keeps in the file which BLAS kernels compute its points, and says so where there are several."""
         before = self.store.attributes()
-        kernels = united_kernels(kernels_of(before), self.kernels.splitlines())
-        if kernels != before.get(KERNELS):
-            self.store.fold({KERNELS: kernels})
-        if sentence := kernels_sentence(kernels):
+        kernels = provenance.united_kernels(provenance.kernels_of(before), self.kernels.splitlines())
+        if kernels != before.get(provenance.KERNELS):
+            self.store.fold({provenance.KERNELS: kernels})
+        if sentence := provenance.kernels_sentence(kernels):
             click.echo(f"{self.output}: {sentence}")
 
     def _solve(self, units: list[Range], missing: list[Range], count: int) -> tuple[list[str], Share]:
@@ -167,7 +157,7 @@ class _Run:
         missing = self.store.missing()
         if not missing and "finished" not in self.store.attributes():
             finish = self.solver.finish
-            self.store.fold({"finished": now()}, finish(read_view(self.output)) if finish else ())
+            self.store.fold({"finished": provenance.now()}, finish(read_view(self.output)) if finish else ())
         counts = self.store.status_counts()
         self.store.close()
         left = self._units(missing)[1]
@@ -196,18 +186,18 @@ class _Run:
         """Attributes that say where, by what and by whom the points of this run were computed."""
         names = ("_version", "_commit", "_options")
         hosts = {host for host, *_ in contributions}
-        shares = [share for *_, share in contributions[:MOST_RANKS_TOLD]]
+        shares = [share for *_, share in contributions[: provenance.MOST_RANKS_TOLD]]
         points, busy, idle = zip(*((share.points, share.busy, share.idle) for share in shares), strict=True)
         numbers = (np.array(points, "i4"), np.array(busy, "f4"), np.array(idle, "f4"))
         return {k: v for k, v in self.plan.attributes.items() if k.endswith(names)} | {
             "ranks": self.team.size,
-            "hosts": " ".join(sorted(hosts))[:LONGEST_ATTRIBUTE],
+            "hosts": " ".join(sorted(hosts))[: provenance.LONGEST_ATTRIBUTE],
             "started": self.started,
             "stopped": self.stop.name,
             "shard": self.plan.attributes["shard"],
             "mpi_library": self.team.MPI.Get_library_version().split("\n")[0].strip("\0 "),
             "slurm_job": os.environ.get("SLURM_JOB_ID", ""),
-            **dict(zip(RANK_SHARES, numbers, strict=True)),
+            **dict(zip(provenance.RANK_SHARES, numbers, strict=True)),
         }
 
 
@@ -224,7 +214,7 @@ def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
         "petsc_options": petsc.options(),
         "shard": str(shard) if shard.of > 1 else "",
         "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in solver.statuses),
-        KERNELS: kernels,
+        provenance.KERNELS: kernels,
     }
     versions = {f"{name}_version": value for name, value in petsc.versions().items()}
     return Plan(
@@ -234,6 +224,6 @@ def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
         coordinates=job.task.coordinates(),
         constants=job.task.constants(),
         config=job.resolved,
-        attributes=attributes | job.config.constants | versions | provenance(),
+        attributes=attributes | job.config.constants | versions | provenance.provenance(),
         flags=tuple((int(s), s.name) for s in solver.statuses),
     )

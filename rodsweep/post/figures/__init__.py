@@ -8,22 +8,22 @@ import numpy as np
 
 from ...errors import EnvironmentLacks, InputError
 from ...results.file.view import View
-from .limit_cycle import limit_cycle_figure
-from .modes import modes_figure
-from .phase_diagram import phase_diagram_figure
-from .request import Drawing, FigureRequest
-from .spectrum import spectrum_figure
+from .limit_cycle import draw_limit_cycle
+from .modes import draw_modes
+from .phase_diagram import draw_phase_diagram
+from .request import FigureRequest
+from .spectrum import draw_spectrum
 from .style import STYLE
-from .thresholds import thresholds_figure
+from .thresholds import draw_thresholds
 
-FIGURES: dict[str, Callable[[FigureRequest], Drawing]] = {
-    "spectrum": spectrum_figure,
-    "thresholds": thresholds_figure,
-    "phase_diagram": phase_diagram_figure,
-    "modes": modes_figure,
-    "limit_cycle": limit_cycle_figure,
+FIGURES: dict[str, Callable[[FigureRequest], str]] = {
+    "spectrum": draw_spectrum,
+    "thresholds": draw_thresholds,
+    "phase_diagram": draw_phase_diagram,
+    "modes": draw_modes,
+    "limit_cycle": draw_limit_cycle,
 }
-"""What the task of the first file draws."""
+"""How each task draws, which the first file names: writes the figure and returns what it shows."""
 
 
 def draw(
@@ -35,22 +35,21 @@ def draw(
 ) -> str:
     """Draws the figure of a file, or of several, into `output`; returns a sentence about it.
 
-    `roots`, `what` and `points`: see `FigureRequest`. Raises InputError where there is nothing that a figure
-    could show.
+    `what` and `points`, numbered from 1, choose for tasks with several figures. Raises InputError where there
+    is nothing that a figure could show.
     """
     views = [views] if isinstance(views, View) else views
-    drawing = FIGURES[views[0].task](FigureRequest(views, output.suffix, roots, what, points))
-    if output.suffix not in drawing.suffixes:
-        raise InputError(f"--output {output}: the name must end in {', '.join(drawing.suffixes)}")
-    taken = output.exists() and any(output.samefile(view.path) for view in views if view.path.exists())
-    if taken or (output.exists() and not output.is_file()):
-        raise InputError(f"--output {output} is not a name for a figure; choose another")
+    taken = output.exists() and (
+        not output.is_file() or any(output.samefile(view.path) for view in views if view.path.exists())
+    )
+    request = FigureRequest(views, output, roots, what, points, taken)
     with matplotlib.rc_context(STYLE), np.errstate(all="ignore"):
         try:
-            return f"wrote {output}: {drawing.write(output)}"
+            shown = FIGURES[views[0].task](request)
         except OSError as error:
             raise EnvironmentLacks(f"{output} cannot be written: {error.strerror or error}") from error
         except (ValueError, ArithmeticError, MemoryError) as error:  # what another program wrote into it
             raise InputError(
                 f"{views[0].path} holds numbers that no figure can show ({str(error)[:100]})"
             ) from error
+    return f"wrote {output}: {shown}"

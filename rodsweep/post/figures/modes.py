@@ -5,7 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ...results.file.view import View
-from .request import Drawing, FigureRequest, image
+from .request import FigureRequest
 from .style import FIRST, SECOND, heading, need, parameter_text
 
 MOST_RODS = 4
@@ -17,14 +17,9 @@ PANELS = (
 )
 
 
-def modes_figure(request: FigureRequest) -> Drawing:
-    """The figure of the file that is asked for."""
-    view = request.only_view()
-    return image(lambda: draw_modes(view))
-
-
-def draw_modes(view: View) -> tuple[Figure, str]:
+def draw_modes(request: FigureRequest) -> str:
     """A row of panels for each point: the leading mode, its deformations, its adjoint."""
+    view = request.only_view()
     v = view.variables
     growth = v["growth_rate"][..., 0].ravel()
     points = np.flatnonzero(np.isfinite(growth))
@@ -41,7 +36,7 @@ def draw_modes(view: View) -> tuple[Figure, str]:
         panel.set_xlabel("material coordinate $u/L$")
     figure.suptitle(heading(view), fontsize=9)
     left = f" of the first {len(drawn)} of {points.size} points" if points.size > len(drawn) else ""
-    return figure, f"the leading mode{left}: real part solid, imaginary part dotted"
+    return request.write(figure, f"the leading mode{left}: real part solid, imaginary part dotted")
 
 
 def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], ...]) -> None:

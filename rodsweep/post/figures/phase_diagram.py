@@ -11,7 +11,7 @@ from ...errors import InputError
 from ...results.file.view import View
 from ...results.layouts import CLASSES
 from ...results.layouts.variables import PARAMETER_NAMES
-from .request import Drawing, FigureRequest, image
+from .request import FigureRequest
 from .style import LABELS, SYMBOLS, fixed_text, heading, legend_below, need, scale
 
 CLASS_COLOURS = {
@@ -28,14 +28,9 @@ CURVE_LOOKS = {1: ("Hopf points", 1.4, "-"), 0: ("double eigenvalue", 1.0, "--")
 """Legend, width and style of a curve, by its kind in the file."""
 
 
-def phase_diagram_figure(request: FigureRequest) -> Drawing:
-    """The figure of the file that is asked for."""
-    view = request.only_view()
-    return image(lambda: draw_phase_diagram(view))
-
-
-def draw_phase_diagram(view: View) -> tuple[Figure, str]:
+def draw_phase_diagram(request: FigureRequest) -> str:
     """The class of every point, the boundaries where they were traced, and their folds."""
+    view = request.only_view()
     line = next(name for name in PARAMETER_NAMES if name not in view.parameters)
     row = next(name for name in view.parameters if len(view.axes[name]) > 1)
     values = view.variables["class"]
@@ -67,7 +62,7 @@ def draw_phase_diagram(view: View) -> tuple[Figure, str]:
         handles += _curves(axes, view, line, row)
     legend_below(figure, handles, columns=3)
     axes.set_title(heading(view, fixed_text(view, line, row)), fontsize=9)
-    return figure, f"what the rod does over {line} and {row}"
+    return request.write(figure, f"what the rod does over {line} and {row}")
 
 
 def _curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from ...errors import InputError
 from ...results.file.view import View
-from .request import Drawing, FigureRequest, image
+from .request import FigureRequest
 from .style import FIRST, LABELS, SECOND, fixed_text, heading, long_axes, need, need_grid, scale
 
 FOLLOWED_ROOTS = {
@@ -17,21 +17,16 @@ FOLLOWED_ROOTS = {
 }
 
 
-def spectrum_figure(request: FigureRequest) -> Drawing:
-    """The figure of the file that is asked for, with the roots that are asked for."""
-    view = request.only_view()
-    return image(lambda: draw_spectrum(view, request.roots))
-
-
-def draw_spectrum(view: View, roots: str) -> tuple[Figure, str]:
-    """The figure and what it shows; InputError where there is nothing that a figure could show."""
+def draw_spectrum(request: FigureRequest) -> str:
+    """A line or a map, as the file has one long axis or two."""
+    view, roots = request.only_view(), request.roots
     need_grid(view, "points")
     need(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
     view = without_infinite(view)
     long = long_axes(view)
     if len(long) == 1:
-        return _line(view, long[0], roots), FOLLOWED_ROOTS[roots]
-    return _map(view, long), "the leading growth rate"
+        return request.write(_line(view, long[0], roots), FOLLOWED_ROOTS[roots])
+    return request.write(_map(view, long), "the leading growth rate")
 
 
 def without_infinite(view: View) -> View:

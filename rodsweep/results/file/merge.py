@@ -4,7 +4,6 @@ Streamed a block of points at a time, so that memory does not grow with the file
 appears whole, by a rename.
 """
 
-import json
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -15,14 +14,11 @@ import h5py
 
 from ...errors import InputError
 from ...sweep.ranges import total
-from ..layouts import layout_of
-from ..layouts.variables import Layout
 from ..run.journal import journal_directory
 from .exchange import Exchange, disk_refusals
 from .points import missing_ranges, points_to_add, write_points
 from .provenance import KERNELS, kernels_sentence, merged_history, now
-from .seal import check
-from .validation import change_between, need_file, reading, refuse_misfit
+from .validation import Header, change_between, read_header
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,17 +30,6 @@ class Merged:
     finished: bool
     kernels: str
     """What is to be said of the BLAS kernels that computed the points, where they are several; else empty."""
-
-
-@dataclass(frozen=True, slots=True)
-class Source:
-    """A result file that is merged."""
-
-    path: Path
-    attributes: dict[str, Any]
-    config: dict[str, Any]
-    layout: Layout
-    points: int
 
 
 def merge(output: Path, paths: Sequence[Path], needs_more: Callable[[dict[str, Any]], bool]) -> Merged:
@@ -67,7 +52,7 @@ def merge(output: Path, paths: Sequence[Path], needs_more: Callable[[dict[str, A
 
 
 def _merge(
-    exchange: Exchange, sources: Sequence[Source], needs_more: Callable[[dict[str, Any]], bool]
+    exchange: Exchange, sources: Sequence[Header], needs_more: Callable[[dict[str, Any]], bool]
 ) -> Merged:
     """Exchanges the file for the first source with the points that the others add."""
     first = sources[0]
@@ -84,37 +69,19 @@ def _merge(
     return Merged(first.points - missing, missing, finished, kernels_sentence(history[KERNELS]))
 
 
-def _opened(paths: Sequence[Path]) -> list[Source]:
-    """Sources of one and the same config; InputError if they are not."""
-    sources = [_open_source(path) for path in paths]
-    for source in sources[1:]:
-        _refuse_others(sources[0], source)
-    return sources
-
-
-def _open_source(path: Path) -> Source:
-    """What is needed to read a result file's points; InputError if it is none, or is not folded."""
-    need_file(path)
-    with reading(path):
-        check(path, values=True)
-        with h5py.File(path, "r") as file:
-            attributes = dict(file.attrs)
-            config = json.loads(attributes["config_resolved"])
-            layout = layout_of(config)
-            refuse_misfit(file, layout)
-            points = file["status"].size
-            attributes["fingerprint"]  # KeyError where there is none
-    if any(journal_directory(path).glob("rank-*")):
-        raise InputError(
-            f"{path} has points in its journal that are not in it yet: run its command again first"
-        )
-    return Source(path, attributes, config, layout, points)
-
-
-def _refuse_others(first: Source, other: Source) -> None:
-    """InputError unless two files answer the same config on the same points, with the same variables."""
-    if first.attributes["fingerprint"] != other.attributes["fingerprint"]:
-        change = change_between(first.config, other.config)
-        raise InputError(f"{other.path} was made from another config than {first.path} ({change})")
-    if (first.layout.record, first.points) != (other.layout.record, other.points):
-        raise InputError(f"{other.path} was written by another version of rodsweep than {first.path}")
+def _opened(paths: Sequence[Path]) -> list[Header]:
+    """The files, all of one config, each with all of its points in it; else InputError."""
+    files = [read_header(path) for path in paths]
+    for file in files:
+        if any(journal_directory(file.path).glob("rank-*")):
+            raise InputError(
+                f"{file.path} has points in its journal that are not in it yet: run its command again first"
+            )
+    first, *others = files
+    for other in others:
+        if first.fingerprint != other.fingerprint:
+            change = change_between(first.config, other.config)
+            raise InputError(f"{other.path} was made from another config than {first.path} ({change})")
+        if (first.layout.record, first.points) != (other.layout.record, other.points):
+            raise InputError(f"{other.path} was written by another version of rodsweep than {first.path}")
+    return files

@@ -3,6 +3,8 @@
 import json
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +12,7 @@ import h5py
 import numpy as np
 
 from ...errors import InputError
+from ..layouts import layout_of
 from ..layouts.variables import Layout
 from .seal import HDF5_SIGNATURE, check
 
@@ -37,10 +40,31 @@ def reason_of(error: Exception) -> str:
     return text if len(text) <= LONGEST_REASON else text[: LONGEST_REASON - 3] + "..."
 
 
-def need_file(path: Path) -> None:
-    """InputError unless there is a file."""
+@dataclass(frozen=True, slots=True)
+class Header:
+    """What a whole result file says of itself; `config` is the resolved one, `points` their number."""
+
+    path: Path
+    attributes: dict[str, Any]
+    config: dict[str, Any]
+    fingerprint: str
+    layout: Layout
+    points: int
+
+
+def read_header(path: Path, checked: float = inf) -> Header:
+    """InputError unless the file is a whole result: with its numbers, if it has at most `checked` bytes."""
     if not path.is_file():
         raise InputError(f"{path} is not a file" if path.exists() else f"{path} does not exist")
+    with reading(path):
+        check(path, values=path.stat().st_size <= checked)
+        with h5py.File(path, "r") as file:
+            attributes = dict(file.attrs)
+            config = json.loads(attributes["config_resolved"])
+            layout = layout_of(config)
+            refuse_misfit(file, layout)
+            fingerprint = str(attributes["fingerprint"])
+            return Header(path, attributes, config, fingerprint, layout, file["status"].size)
 
 
 def refuse_misfit(file: h5py.File, layout: Layout) -> None:

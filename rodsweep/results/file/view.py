@@ -1,6 +1,5 @@
 """A result file as it is, read only: what `show` and `plot` work on."""
 
-import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,11 +8,9 @@ from typing import Any
 import h5py
 import numpy as np
 
-from ..layouts import layout_of
 from ..layouts.variables import MISSING, NONLINEAR_NAMES
 from ..run.journal import journal_directory, read_journals
-from .seal import check
-from .validation import need_file, reading, refuse_misfit
+from .validation import read_header, reading
 
 CHECKED_WHOLE = 10**9
 """Bytes up to which the numbers are checked too, not only HDF5's structures, before a file is shown."""
@@ -82,15 +79,11 @@ class View:
 
 def read_view(path: Path) -> View:
     """The file, which stays open; InputError if it is no result."""
-    need_file(path)
+    header = read_header(path, CHECKED_WHOLE)
+    task, layout = header.config["task"], header.layout
     with reading(path):
-        check(path, values=path.stat().st_size <= CHECKED_WHOLE)
         file = h5py.File(path, "r")
-        attributes = dict(file.attrs)
-        config, fingerprint = json.loads(attributes["config_resolved"]), str(attributes["fingerprint"])
-        layout = layout_of(config)
-        refuse_misfit(file, layout)
-        if str(attributes.setdefault("task", config["task"])) != config["task"]:
+        if str(header.attributes.setdefault("task", task)) != task:
             raise ValueError("its task is not that of its config")
         status = file["status"]
         words = str(status.attrs["flag_meanings"]).split()
@@ -100,8 +93,8 @@ def read_view(path: Path) -> View:
     journalled = 0
     directory = journal_directory(path)
     if directory.is_dir():
-        for block in read_journals(directory, layout, fingerprint, done.size):
+        for block in read_journals(directory, layout, header.fingerprint, done.size):
             indices = np.unique(block["index"])
             journalled += int(np.count_nonzero(~done[indices]))
             done[indices] = True
-    return View(path, attributes, variables, layout.parameters, flags, journalled)
+    return View(path, header.attributes, variables, layout.parameters, flags, journalled)

@@ -1,6 +1,6 @@
 """The beating arm, as the paper's Fig. 5: shapes through the cycle with the force, and the tip in time."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import matplotlib
@@ -155,11 +155,9 @@ def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
     lower.axhline(0, color="0.8", lw=0.6, zorder=0)
     lower.set_xlabel(r"time $t/\tau_2$")
     if 0 < cycle.tau1 < np.inf:
-        top = upper.secondary_xaxis("top", functions=_scaling(cycle.tau1))
+        unit = cycle.tau1
+        top = upper.secondary_xaxis(
+            "top", functions=(lambda t: np.asarray(t) / unit, lambda t: np.asarray(t) * unit)
+        )
         top.set_xlabel(r"time $t/\tau_1$", fontsize=9)
         top.tick_params(labelsize=8)
-
-
-def _scaling(unit: float) -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:
-    """Time in tau2 to time in another unit, and back."""
-    return lambda time: time / unit, lambda time: time * unit
