@@ -50,8 +50,8 @@ class Chains:
     def indices(self, chain: int) -> NDArray[np.int64]:
         """The flat indices of a chain's points in the order in which they are solved, shape (length,)."""
         inner = math.prod(self.shape[self.axis + 1 :])
-        outer, rest = divmod(chain, inner)
-        along = outer * self.length * inner + rest + inner * np.arange(self.length)
+        outer, within = divmod(chain, inner)
+        along = outer * self.length * inner + within + inner * np.arange(self.length)
         return along if self.upward else along[::-1]
 
     def todo(self, missing: RangeSet) -> list[Range]:

@@ -3,7 +3,7 @@
 The first rank computes like any other; a thread of it answers the requests of the others, so they
 need not wait for its own solve to end. A solve may keep the thread waiting, so ranks ask for their next
 chunk when they begin one, and get it while plenty is left. A rank that finds its chunk slower than foreseen
-gives the rest back with its next request. Nobody is told that the work is over while another rank may still
+gives back what is left of it with its next request. Nobody is told that the work is over while another rank may still
 give something back, so the ranks finish within about one unit of each other. A rank that is asked to stop
 tells the first, which tells all: each ends with the point that it is at.
 """
@@ -22,11 +22,11 @@ CHUNK_SECONDS, CHUNK_SECONDS_A_RANK = 0.1, 1e-3
 """How long a chunk should take: long against a message, short against a run; with many ranks so long that the
 first one, which answers a request in 50 microseconds, spends a twentieth of its time on answers."""
 GIVE_BACK_AFTER = 3.0
-"""Time after which a rank gives the rest of its chunk back, in units of what the chunk should take."""
+"""Time after which a rank gives back what is left of its chunk, in units of what the chunk should take."""
 LARGEST_CHUNK = 1 << 16
 PLENTY = 4
 """Units a rank that have to be left for a rank to get its next chunk before it has done the last."""
-POLL_SECONDS, REST_SECONDS = 2e-3, 5e-3
+POLL_SECONDS, RELIEVED_POLL_SECONDS = 2e-3, 5e-3
 """How long the thread sleeps: each waking takes the first rank 20 microseconds or more of its solve. Longer
 where that rank itself answers between its points."""
 ASK_SECONDS = 1e-4
@@ -50,7 +50,7 @@ class Report:
 
     done: int = 0
     seconds: float = 0.0
-    rest: Range = OVER
+    given_back: Range = OVER
     points: int = 0
     ahead: bool = False
     stop: str = ""
@@ -78,11 +78,11 @@ class Handout:
             self.points += report.points
             if report.done:
                 self.pace[rank] = report.seconds / report.done
-            start, stop = report.rest
-            if stop > start and not self.stopped:
+            first, end = report.given_back
+            if end > first and not self.stopped:
                 self.pace[rank] = report.seconds  # as slow as its slowest unit may be: next, one unit
-                self.todo.appendleft(report.rest)
-                self.left += stop - start
+                self.todo.appendleft(report.given_back)
+                self.left += end - first
             self.change.notify_all()
 
     def take(self, rank: int) -> Range | None:
@@ -101,13 +101,13 @@ class Handout:
         share = max(1, self.left // (2 * self.ranks))
         pace = self.pace.get(rank)
         size = 1 if pace is None else int(chunk_seconds(self.ranks) / max(pace, 1e-7))
-        start, stop = self.todo.popleft()
-        end = min(stop, start + max(1, min(size, share, LARGEST_CHUNK)))
-        if end < stop:
-            self.todo.appendleft((end, stop))
-        self.left -= end - start
+        first, last = self.todo.popleft()
+        end = min(last, first + max(1, min(size, share, LARGEST_CHUNK)))
+        if end < last:
+            self.todo.appendleft((end, last))
+        self.left -= end - first
         self.held[rank] += 1
-        return start, end
+        return first, end
 
     def stop(self) -> None:
         """Leaves what has not been handed out for another run."""
@@ -212,8 +212,8 @@ class FirstRankClaims:
         with self.team.together():
             while self.working:
                 self._serve()
-                answering = time.monotonic() - self.served < REST_SECONDS
-                time.sleep(REST_SECONDS if answering else POLL_SECONDS)
+                answering = time.monotonic() - self.served < RELIEVED_POLL_SECONDS
+                time.sleep(RELIEVED_POLL_SECONDS if answering else POLL_SECONDS)
 
 
 class OtherRankClaims:

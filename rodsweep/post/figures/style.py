@@ -30,7 +30,7 @@ LABELS = {
 INVERSE_DRAG = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$  [$1/({DRAG_UNIT})$]"
 FIRST, SECOND, THIRD = "#0072B2", "#D55E00", "#009E73"
 """Blue, vermilion and green of Okabe and Ito: told apart by the colour-blind."""
-TITLE_WIDTH = 70
+TITLE_CHARACTERS = 70
 """Characters of a title in one line of a figure."""
 FEW_DECADES = 50
 """Ratio of the ends of a logarithmic axis below which 1, 2 and 5 of each decade are labelled."""
@@ -45,7 +45,7 @@ def plain(text: object) -> str:
 def heading(view: View, *lines: str) -> str:
     """The title of a user's file, broken where it is long, above other lines."""
     title = plain(view.attributes.get("title", ""))
-    return "\n".join([*textwrap.wrap(title, TITLE_WIDTH), *filter(None, lines)])
+    return "\n".join([*textwrap.wrap(title, TITLE_CHARACTERS), *filter(None, lines)])
 
 
 def parameter_text(parameters: Mapping[str, float], digits: int = 6) -> str:

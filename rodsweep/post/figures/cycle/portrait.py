@@ -127,18 +127,16 @@ def clamp(axes: Axes) -> None:
 
 def frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
     """The same region in all panels: every shape and arrow, one length for x and y."""
-    corner = np.array([np.inf, np.inf, -np.inf, -np.inf])
+    wall = -0.05
+    along_x, along_y = [np.array([wall])], []
     for cycle in cycles:
         x, y, theta = (cycle.values[name] for name in SHAPES)
-        start = x[:, -1] + ARROW * np.cos(theta[:, -1]), y[:, -1] + ARROW * np.sin(theta[:, -1])
-        low = [min(v.min(), s.min()) for v, s in zip((x, y), start, strict=True)]
-        high = [max(v.max(), s.max()) for v, s in zip((x, y), start, strict=True)]
-        corner = np.concatenate([np.minimum(corner[:2], low), np.maximum(corner[2:], high)])
+        along_x += [x.ravel(), x[:, -1] + ARROW * np.cos(theta[:, -1])]
+        along_y += [y.ravel(), y[:, -1] + ARROW * np.sin(theta[:, -1])]
+    x, y = np.concatenate(along_x), np.concatenate(along_y)
     for axes in panels:
         axes.set_aspect("equal")
-        axes.set(
-            xlim=(min(corner[0], -0.05) - 0.04, corner[2] + 0.04), ylim=(corner[1] - 0.04, corner[3] + 0.04)
-        )
+        axes.set(xlim=(x.min() - 0.04, x.max() + 0.04), ylim=(y.min() - 0.04, y.max() + 0.04))
 
 
 def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
