@@ -3,9 +3,9 @@
 The first rank computes like any other; a thread of it answers the requests of the others, so they
 need not wait for its own solve to end. A solve may keep the thread waiting, so ranks ask for their next
 chunk when they begin one, and get it while plenty is left. A rank that finds its chunk slower than foreseen
-gives back what is left of it with its next request. Nobody is told that the work is over while another rank may still
-give something back, so the ranks finish within about one unit of each other. A rank that is asked to stop
-tells the first, which tells all: each ends with the point that it is at.
+gives back what is left of it with its next request. Nobody is told that the work is over while another rank
+may still give something back, so the ranks finish within about one unit of each other. A rank that is asked
+to stop tells the first, which tells all: each ends with the point that it is at.
 """
 
 import threading

@@ -1,4 +1,4 @@
-"""The loop that every rank runs: claim a chunk, solve its units, keep each point, give back what a slow rank has left."""
+"""The loop that every rank runs: claim a chunk, solve its units, keep each point, give back what is left."""
 
 import time
 from collections.abc import Callable, Iterable
