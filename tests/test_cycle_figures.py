@@ -21,7 +21,7 @@ from rodsweep.post.figures.limit_cycle import figure_name
 from rodsweep.post.figures.request import FigureRequest
 from rodsweep.results.file.creation import Plan, create_file
 from rodsweep.results.file.view import View
-from rodsweep.results.layouts.limit_cycle import limit_cycle_layout
+from rodsweep.results.layouts import layout_of
 
 pytestmark = pytest.mark.filterwarnings("error::UserWarning")  # a layout that fails is only a warning
 
@@ -313,7 +313,7 @@ def test_file_as_the_task_lays_it_out_is_drawn(command, as_list):
     flags = tuple(item for item in FLAGS.items() if item[0] >= 0)
     title = {"task": "limit_cycle", "title": "arms"}
     columns = [np.asarray(c, float) for c in columns]
-    layout = limit_cycle_layout(OPTIONS)
+    layout = layout_of(config)
     path = command.directory / "arms.h5"
     create_file(path, Plan(columns, not as_list, layout, {}, (), config, title, flags))
     with h5py.File(path, "r+") as file:

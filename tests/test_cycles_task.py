@@ -21,7 +21,7 @@ from rodsweep.results.file.view import read_view
 from rodsweep.results.run.checkpoints import Checkpoints, drop_checkpoints
 from rodsweep.results.run.journal import Journal
 from rodsweep.sweep.chains import Chains, ChainSolver
-from rodsweep.sweep.ranges import RangeSet
+from rodsweep.sweep.ranges import IndexSet
 from rodsweep.sweep.stop import StopRequest
 
 GRID = {"F": "[1, 2]", "k1": "100", "k2": "[10, 20]", "gamma3": "0.5", "gamma1": "[0.5, 1]"}
@@ -364,9 +364,9 @@ def test_chains_hold_every_point_once_in_order_along_their_axis(axis, upward):
 
 def test_chains_that_miss_a_point_are_to_be_done():
     chains = Chains((3, 4), 0, True)
-    assert chains.todo(RangeSet([(0, 12)])) == [(0, 4)]
-    assert chains.todo(RangeSet([(4, 5), (10, 11)])) == [(0, 1), (2, 3)]
-    assert chains.todo(RangeSet([])) == []
+    assert chains.todo(IndexSet([(0, 12)])) == [(0, 4)]
+    assert chains.todo(IndexSet([(4, 5), (10, 11)])) == [(0, 1), (2, 3)]
+    assert chains.todo(IndexSet([])) == []
 
 
 class Kept:
@@ -394,7 +394,7 @@ def chain_solver(missing, kept, solved, stop=None):
         return outcome, np.array([0.0 if state is None else state[0] + 1])
 
     stop = StopRequest() if stop is None else stop
-    return ChainSolver(Chains((6,), 0, True), RangeSet(missing), solve_from, kept, stop)
+    return ChainSolver(Chains((6,), 0, True), IndexSet(missing), solve_from, kept, stop)
 
 
 @pytest.mark.parametrize("points", range(1, 6))

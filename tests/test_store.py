@@ -10,18 +10,18 @@ from rodsweep.results.file.creation import Plan
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.validation import difference
 from rodsweep.results.file.view import read_view
-from rodsweep.results.layouts import spectrum_layout
+from rodsweep.results.layouts import layout_of
 from rodsweep.results.run import journal as pages_of
 from rodsweep.results.run import lock
 from rodsweep.results.run.journal import Journal, journal_directory, read_journals
 
-LAYOUT = spectrum_layout(2, 0)
+CONFIG = {"task": "spectrum", "spectrum": {"modes": 2, "vectors": False, "nodes": 33}}
+LAYOUT = layout_of(CONFIG)
 
 
 def plan(is_grid=True, **config):
     columns = tuple(np.arange(1.0, n + 1) for n in ((3, 2, 1, 2) if is_grid else (5, 5, 5, 5)))
-    resolved = {"task": "spectrum", "spectrum": {"modes": 2, "vectors": False, "nodes": 33}} | config
-    return Plan(columns, is_grid, LAYOUT, {}, (), resolved, {"title": "t"}, ((0, "ok"), (5, "failed")))
+    return Plan(columns, is_grid, LAYOUT, {}, (), CONFIG | config, {"title": "t"}, ((0, "ok"), (5, "failed")))
 
 
 def record(index):

@@ -16,7 +16,7 @@ from rodsweep.post.summary import show_summary
 from rodsweep.results.file.creation import Plan
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.view import read_view
-from rodsweep.results.layouts import CROSSING_KINDS
+from rodsweep.results.layouts.crossings import CROSSING_KINDS
 from rodsweep.results.layouts.variables import Variable
 from rodsweep.results.run.journal import Journal
 
@@ -193,7 +193,7 @@ def test_kinds_of_crossings_have_the_numbers_of_the_solver():
 
 
 def test_classes_of_a_phase_diagram_have_the_numbers_of_the_solver():
-    from rodsweep.results.layouts import CLASSES
+    from rodsweep.results.layouts.phase_diagram import CLASSES
     from rodsweep.solve.changes.diagram import Motion
 
     assert {int(motion): motion.name for motion in Motion} == {v: name for v, name in CLASSES if v >= 0}

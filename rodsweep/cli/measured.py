@@ -17,13 +17,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..config import SpectrumConfig
-from ..results.layouts.variables import Filled
-from ..sweep.estimate import Estimate
-from ..sweep.grid import Points
 from . import _speaks, main
 from .tasks import TASKS
-from .tasks.protocol import Part, Solver
+from .tasks.protocol import Solver
 from .tasks.spectrum import SpectrumTask
 
 TABLE = 4096
@@ -31,33 +27,17 @@ TABLE = 4096
 
 
 @dataclass(frozen=True, slots=True)
-class InstantSpectra:
+class InstantSpectra(SpectrumTask):
     """The task spectrum with random outcomes from a table, so that all time is the sweep's own."""
 
-    spectra: SpectrumTask
-    killed: Path | None
+    killed: Path | None = None
     """Where the rank that gets the last point notes its memory before it is killed there; None: nobody is."""
-
-    def coordinates(self) -> dict[str, np.ndarray]:
-        return self.spectra.coordinates()
-
-    def constants(self) -> tuple[Filled, ...]:
-        return self.spectra.constants()
-
-    def headline(self) -> str:
-        return self.spectra.headline()
-
-    def parts(self) -> list[Part]:
-        return self.spectra.parts()
-
-    def cost(self) -> Estimate:
-        return self.spectra.cost()
 
     def solver(self) -> Solver:
         from ..solve.spectrum.search import Spectrum
         from ..solve.spectrum.status import Status
 
-        points, modes = self.spectra.points, self.spectra.config.spectrum.modes
+        points, modes = self.points, self.config.spectrum.modes
         parts = np.random.default_rng(1).standard_normal((TABLE, 3, modes))
         table = [
             Spectrum(Status.ok, 100 * (a + 1j * b), 1e-12 * c, 1, True, 1, 20, 1e-7) for a, b, c in parts
@@ -70,12 +50,7 @@ class InstantSpectra:
                 os.kill(os.getpid(), signal.SIGKILL)
             return table[index % TABLE]
 
-        return replace(self.spectra.solver(), warm_up=lambda: None, solve=solve)
-
-
-def instant_spectra(killed: Path | None, config: SpectrumConfig, points: Points) -> InstantSpectra:
-    """The task of a config on its points."""
-    return InstantSpectra(SpectrumTask(config, points), killed)
+        return replace(SpectrumTask.solver(self), warm_up=lambda: None, solve=solve)
 
 
 def note_memory(directory: Path) -> None:
@@ -101,7 +76,7 @@ def run_measured() -> None:
     directory, kind, *words = sys.argv[1:]
     notes = Path(directory)
     if kind != "solved":
-        TASKS["spectrum"] = partial(instant_spectra, notes if kind == "killed" else None)
+        TASKS["spectrum"] = partial(InstantSpectra, killed=notes if kind == "killed" else None)
     sys.argv = ["rodsweep", *words]
     try:
         main()

@@ -6,12 +6,11 @@ import click
 
 from ..results.file.merge import merge
 from .running import CONTINUE
-from .tasks import needs_all_points
 
 
 def merge_files(output: Path, shards: tuple[Path, ...]) -> int:
     """Merges, says what came of it; returns the exit status: CONTINUE while points are missing."""
-    merged = merge(output, shards, needs_all_points)
+    merged = merge(output, shards)
     click.echo(f"{output}: {merged.points} points from {len(shards)} files, {merged.missing} missing")
     if merged.kernels:
         click.echo(f"{output}: {merged.kernels}")

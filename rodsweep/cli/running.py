@@ -21,7 +21,7 @@ from ..solve.backend.availability import require_petsc
 from ..sweep.chains import ChainSolver
 from ..sweep.loop import Share, sweep
 from ..sweep.progress import Teller
-from ..sweep.ranges import Range, RangeSet, total
+from ..sweep.ranges import IndexRange, IndexSet, total
 from ..sweep.shards import Shard
 from ..sweep.stop import StopRequest
 from ..sweep.team import Team
@@ -76,18 +76,18 @@ class _Run:
             contributions = self.team.gather((socket.gethostname(), failures, share)) or []
         return self.team.on_first(lambda: self._finish(count, contributions))
 
-    def _open(self, fresh: bool) -> list[Range]:
+    def _open(self, fresh: bool) -> list[IndexRange]:
         """Opens the file; returns the points that it misses."""
         self.store = Store(self.output, self.plan, fresh)
         return self.store.missing()
 
-    def _units(self, missing: list[Range]) -> tuple[list[Range], int]:
+    def _units(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
         """(the units of this shard that miss a point, the points that they miss)."""
         chained = self.solver.chained
         if chained is None:
             units = self.shard.part(missing, self.job.points.count)
             return units, total(units)
-        lacks, chains = RangeSet(missing), chained.chains
+        lacks, chains = IndexSet(missing), chained.chains
         units = self.shard.part(chains.todo(lacks), chains.count)
         each = (lacks[chains.indices(chain)].sum() for unit in units for chain in range(*unit))
         return units, int(sum(each))
@@ -111,7 +111,9 @@ class _Run:
         if sentence := provenance.kernels_sentence(kernels):
             click.echo(f"{self.output}: {sentence}")
 
-    def _solve(self, units: list[Range], missing: list[Range], count: int) -> tuple[list[str], Share]:
+    def _solve(
+        self, units: list[IndexRange], missing: list[IndexRange], count: int
+    ) -> tuple[list[str], Share]:
         """This rank's share of the units, into its journal; and what to tell of failures."""
         failures: list[str] = []
         solver, plan = self.solver, self.plan
@@ -128,7 +130,7 @@ class _Run:
         try:
             directory = journal_directory(self.output)
             journal = Journal(directory, self.team.rank, plan.layout, plan.fingerprint)
-            solve = self._solve_unit(RangeSet(missing), Checkpoints(directory, plan.fingerprint))
+            solve = self._solve_unit(IndexSet(missing), Checkpoints(directory, plan.fingerprint))
             share = sweep(self.team, units, solve, keep, tell or (lambda done: None), self.stop)
             journal.close()
         except OSError as error:
@@ -142,7 +144,7 @@ class _Run:
         return failures, share
 
     def _solve_unit(
-        self, missing: RangeSet, checkpoints: Checkpoints
+        self, missing: IndexSet, checkpoints: Checkpoints
     ) -> Callable[[int], Iterable[tuple[int, Any]]]:
         """How a unit is solved: a point, or a chain where points start one from the other."""
         chained = self.solver.chained

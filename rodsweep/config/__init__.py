@@ -1,15 +1,6 @@
-"""What the user asks for: YAML to a validated, frozen `Config`. Knows no physics and no files but YAML."""
+"""What the user asks for: YAML to a validated, frozen `Config`. Knows the names of parameters, no physics."""
 
-from .limit_cycle import LimitCycleConfig
 from .reading import load_config
-from .schema import Config, ModesConfig, PhaseDiagramConfig, SpectrumConfig, ThresholdsConfig
+from .schema import Config
 
-__all__ = [
-    "Config",
-    "LimitCycleConfig",
-    "ModesConfig",
-    "PhaseDiagramConfig",
-    "SpectrumConfig",
-    "ThresholdsConfig",
-    "load_config",
-]
+__all__ = ["Config", "load_config"]

@@ -3,29 +3,16 @@
 Ranges that are physics (finite k1 and k2, gamma3 > 0) belong to the task; here is form only.
 """
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from .schema import PARAMETERS, Axes, Config, Nodes
-from .values import Number, Strict, Values
+from ..model.parameters import NONLINEAR_PARAMETERS
+from .axes import NonlinearParameters
+from .schema import Config, Nodes
+from .values import Number, Strict
 
-NONLINEAR_PARAMETERS = (*PARAMETERS, "gamma1")
-"""The parameters of the nonlinear rod, in the order used everywhere."""
-
-
-class NonlinearParameters(Axes):
-    """The parameters of the nonlinear rod: axes, or the name of a CSV file that lists points."""
-
-    gamma1: Values | None = None
-
-    @model_validator(mode="before")
-    @classmethod
-    def _isotropic_unless_said(cls, given: Any) -> Any:
-        """gamma1 is 1 on a grid that does not name it; a file of points has a column for it."""
-        if not isinstance(given, dict) or given.get("points") is not None:
-            return given
-        return {"gamma1": 1.0} | given
+Along = Literal[NONLINEAR_PARAMETERS]  # type: ignore[valid-type]  # pydantic reads it at run time, from the table
 
 
 class LimitCycleOptions(Strict):
@@ -33,15 +20,14 @@ class LimitCycleOptions(Strict):
 
     amplitude: Annotated[Number, Field(gt=0, le=1, description="a number above 0, at most 1")] = 0.01
     """Tip deflection of the leading mode from which a point starts, in L."""
-    continue_from: Annotated[Literal["none", "previous"], Field(description="none or previous")] = "none"
+    continue_from: Literal["none", "previous"] = "none"
     """Whether each point starts from the cycle of its neighbour."""
-    along: Annotated[
-        Literal["F", "k1", "k2", "gamma3", "gamma1"], Field(description="F, k1, k2, gamma3 or gamma1")
-    ] = "F"
+    along: Along = "F"
     """The parameter along which neighbours follow each other."""
-    direction: Annotated[Literal["up", "down"], Field(description="up or down")] = "up"
+    direction: Literal["up", "down"] = "up"
     """Whether that parameter grows or falls from a point to the next."""
     harmonics: Annotated[int, Field(ge=1, le=100)] = 8
+    """Harmonics of the tip's y that are stored."""
     samples: Annotated[int, Field(ge=0, le=100_000)] = 0
     """Times over a period at which the tip and the energy are stored; 0 stores none."""
     shapes: Annotated[int, Field(ge=0, le=10_000)] = 0
@@ -50,7 +36,7 @@ class LimitCycleOptions(Strict):
     """Lobatto nodes on which shapes are given."""
     most_periods: Annotated[int, Field(ge=1, le=1_000_000)] = 400
     """Periods after which a point that is not settled is given up."""
-    time: Annotated[Literal["tau2", "tau1"], Field(description="tau2 or tau1")] = "tau2"
+    time: Literal["tau2", "tau1"] = "tau2"
     """tau1 adds the period in units of tau1; all else stays in tau2."""
 
 
@@ -60,6 +46,7 @@ class LimitCycleConfig(Config):
     task: Literal["limit_cycle"]
     parameters: NonlinearParameters
     accuracy: Annotated[Number, Field(ge=1e-10, le=1e-2)] = 1e-7
+    """Relative error of the period and of the tip's extrema."""
     limit_cycle: LimitCycleOptions = LimitCycleOptions()
 
     @property
@@ -68,20 +55,15 @@ class LimitCycleConfig(Config):
 
     @model_validator(mode="after")
     def _only_what_is_used(self) -> "LimitCycleConfig":
-        self.parameters.require(NONLINEAR_PARAMETERS)
-        options = self.limit_cycle
-        if options.continue_from == "none":
-            for name in ("along", "direction"):
-                if name in options.model_fields_set:
-                    raise ValueError(
-                        f"limit_cycle.{name} is given but not used; set limit_cycle.continue_from: previous "
-                        "or remove it"
-                    )
+        self.parameters.require(self.names)
+        if self.limit_cycle.continue_from == "none":
+            self.refuse_unused("along", remedy="continue_from: previous")
+            self.refuse_unused("direction", remedy="continue_from: previous")
         elif self.parameters.points is not None:
             raise ValueError(
                 "limit_cycle.continue_from: previous needs a grid, in which a point has neighbours; remove "
                 "it, or give axes instead of parameters.points"
             )
-        if "nodes" in options.model_fields_set and not options.shapes:
-            raise ValueError("limit_cycle.nodes is given but not used; set limit_cycle.shapes or remove it")
+        if not self.limit_cycle.shapes:
+            self.refuse_unused("nodes", remedy="shapes")
         return self

@@ -1,18 +1,17 @@
 """From a YAML file and --set overrides to a Config; every refusal is one sentence that names the key."""
 
 import difflib
-import json
 from collections.abc import Sequence
-from math import isinf
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from ..errors import InputError
+from .axes import words
 from .parsing import DEEPEST, parse, read_text
-from .schema import Config, words
+from .schema import Config
 from .tasks import CONFIGS
 from .values import named, short
 
@@ -36,16 +35,7 @@ def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, st
 
 def canonical(config: Config) -> dict[str, Any]:
     """The config with all defaults filled in, as JSON-compatible values; inf becomes "inf"."""
-    return json.loads(json.dumps(_without_infinities(config.model_dump(exclude_none=True)), default=str))
-
-
-def _without_infinities(value: Any) -> Any:
-    """The value with every infinite number, at any depth, as the text that a config would have."""
-    if isinstance(value, dict):
-        return {key: _without_infinities(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_without_infinities(item) for item in value]
-    return str(value) if isinstance(value, float) and isinf(value) else value
+    return config.model_dump(mode="json", exclude_none=True)
 
 
 def _override(tree: dict, override: str) -> None:
@@ -144,13 +134,14 @@ def what_is_allowed(field: FieldInfo) -> str:
     }
     if field.description:
         return field.description
+    if get_origin(kind) is Literal:
+        return words(get_args(kind), "or")
     if kind is bool:
         return "true or false"
     if kind is str:
         return f"text of at most {bound['max_length']} characters"
     if kind is int or kind is float:
         number = "a whole number" if kind is int else "a number"
-        if "gt" in bound:
-            return f"a finite number above {bound['gt']:g}"
-        return f"{number} from {bound['ge']:g} to {bound['le']:g}"
+        span = f"{number} from {bound['ge']:g} to {bound['le']:g}" if "ge" in bound else ""
+        return span or f"a finite number above {bound['gt']:g}"
     return "a mapping of keys to values"

@@ -1,7 +1,11 @@
 """The config of every task, by its name; the section of a task's options has that name too."""
 
 from .limit_cycle import LimitCycleConfig
-from .schema import Config, ModesConfig, PhaseDiagramConfig, SpectrumConfig, ThresholdsConfig
+from .modes import ModesConfig
+from .phase_diagram import PhaseDiagramConfig
+from .schema import Config
+from .spectrum import SpectrumConfig
+from .thresholds import ThresholdsConfig
 
 CONFIGS: dict[str, type[Config]] = {
     "spectrum": SpectrumConfig,

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, BeforeValidator, ConfigDict
+from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainSerializer
 
 MOST_VALUES = 1_000_000_000
 """Values on one axis."""
@@ -65,13 +65,18 @@ def as_text(value: Any) -> Any:
 
 
 Text = Annotated[str, BeforeValidator(as_text)]
-Number = Annotated[float, BeforeValidator(as_number)]
+Number = Annotated[
+    float,
+    BeforeValidator(as_number),
+    PlainSerializer(lambda number: str(number) if isinf(number) else number, when_used="json"),
+]
+"""A number, which JSON has only if it is finite."""
 
 
 class Axis(Strict):
     """Values of one parameter: one number, a list, or `num` values from start to stop."""
 
-    values: tuple[float, ...] | None = None
+    values: tuple[Number, ...] | None = None
     start: float = 0.0
     stop: float = 0.0
     num: int = 0

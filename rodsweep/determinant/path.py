@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from math import inf
 
 from ..model.compilation import compiled
+from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS
 from ..model.rod import Coefficients, Rod
 from .even_parts import even_parts
 
@@ -26,7 +27,7 @@ class Path:
     @property
     def inverse(self) -> bool:
         """Whether the path variable is the compliance 1/k instead of the parameter itself."""
-        return self.name in ("k1", "k2")
+        return PARAMETERS[self.name].by_compliance
 
     @property
     def direction(self) -> Coefficients:
@@ -52,7 +53,7 @@ class Path:
 
     def at(self, p: float) -> Rod:
         """The rod at p; ValueError where the model has none."""
-        parameters = {name: getattr(self.rod, name) for name in ("F", "k1", "k2", "gamma3")}
+        parameters = {name: getattr(self.rod, name) for name in LINEAR_PARAMETERS}
         return Rod(**parameters | {self.name: self.variable(p)})
 
 

@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from math import exp, inf, log
 
-from ..model.rod import PARAMETERS, Rod
+from ..model.parameters import CRUSHING, LINEAR_PARAMETERS, PARAMETERS
+from ..model.rod import Rod
 from .path import determinant_along, direction_of
 from .value import ROUND_OFF
 
@@ -41,9 +42,9 @@ class Axis:
         return value * (log(self.stop) - log(self.start)) if self.logarithmic else self.stop - self.start
 
     def slope(self, value: float) -> float:
-        """d(path variable)/dx at a value of the parameter; the variable of k1 and k2 is 1/k."""
+        """d(path variable)/dx at a value of the parameter; the variable of a stiffness k is 1/k."""
         along = self.stretch(value)
-        return -along / value**2 if self.name in ("k1", "k2") else along
+        return -along / value**2 if PARAMETERS[self.name].by_compliance else along
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +56,7 @@ class Plane:
 
     def at(self, x: float, y: float) -> Rod:
         """The rod at scaled coordinates; ValueError where the model has none."""
-        values = {name: getattr(self.rod, name) for name in PARAMETERS}
+        values = {name: getattr(self.rod, name) for name in LINEAR_PARAMETERS}
         values[self.axes[0].name] = self.axes[0].value(x)
         values[self.axes[1].name] = self.axes[1].value(y)
         return Rod(**values)
@@ -79,7 +80,7 @@ class Plane:
     def small_step(self, x: float, y: float, which: int, largest: float) -> float:
         """A step along an axis, at most `largest`, that changes the distance k1 - F from crushing little."""
         rod, axis = self.at(x, y), self.axes[which]
-        if axis.name not in ("F", "k1"):
+        if axis.name not in CRUSHING:
             return largest
         return min(largest, LITTLE * (rod.k1 - rod.F) / axis.stretch(getattr(rod, axis.name)))
 

@@ -1,42 +1,19 @@
-"""The four parameters of the linear problem, what they may be, and what follows from them."""
+"""The rod of the linear problem: its four parameters, and what follows from them."""
 
 from dataclasses import dataclass
-from math import inf, isfinite, isnan
+from math import inf
+
+from .parameters import LINEAR_PARAMETERS, PARAMETERS
 
 Coefficients = tuple[float, float, float, float]
 """(F, nu, c2, gamma3): all that the transverse operator contains, as compiled functions take it."""
-
-PARAMETERS = ("F", "k1", "k2", "gamma3")
-"""Names of the parameters of the linear problem, in the order used everywhere."""
-
-ALLOWED = {
-    "F": "a finite number below k1 (negative values pull)",
-    "k1": "a number above 0, or inf for an inextensible rod",
-    "k2": "a number above 0, or inf for an unshearable rod",
-    "gamma3": "a finite number, 0 or above",
-    "gamma1": "a finite number above 0",
-}
-"""What each parameter may be, as a phrase for the user."""
-
-
-def admissible(name: str, value: float) -> bool:
-    """Whether `value` lies in the range of parameter `name` (Table I); F < k1 is `Rod`'s to check."""
-    if isnan(value):
-        return False
-    if name in ("k1", "k2"):
-        return value > 0 and (value == inf or isfinite(1 / value))
-    if name == "gamma1":
-        return 0 < value < inf
-    if name == "gamma3":
-        return 0 <= value < inf
-    return isfinite(value)
 
 
 @dataclass(frozen=True, slots=True)
 class Rod:
     """A straight rod under its follower force: one point of parameter space.
 
-    Raises ValueError for a parameter outside the range that `ALLOWED` states.
+    Raises ValueError for a parameter outside the range that the table states.
     """
 
     F: float
@@ -45,9 +22,8 @@ class Rod:
     gamma3: float
 
     def __post_init__(self) -> None:
-        for name in PARAMETERS:
-            if not admissible(name, getattr(self, name)):
-                raise ValueError(f"{name} = {getattr(self, name)} is not {ALLOWED[name]}")
+        for name in LINEAR_PARAMETERS:
+            PARAMETERS[name].require(getattr(self, name))
         if not self.k1 > self.F:
             raise ValueError(f"F = {self.F} is not below k1 = {self.k1}")
 

@@ -12,7 +12,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from .ranges import Range, RangeSet, joined
+from .ranges import IndexRange, IndexSet, joined
 from .stop import StopRequest
 
 State = NDArray[np.float64] | None
@@ -54,7 +54,7 @@ class Chains:
         along = outer * self.length * inner + within + inner * np.arange(self.length)
         return along if self.upward else along[::-1]
 
-    def todo(self, missing: RangeSet) -> list[Range]:
+    def todo(self, missing: IndexSet) -> list[IndexRange]:
         """Ranges of the chains that miss a point."""
         chains = (n for n in range(self.count) if missing[self.indices(n)].any())
         return joined((n, n + 1) for n in chains)
@@ -65,7 +65,7 @@ class ChainSolver:
     """Solves the chains of a run, of which only the `missing` points are to be kept."""
 
     chains: Chains
-    missing: RangeSet
+    missing: IndexSet
     solve_from: Callable[[int, State], tuple[Any, State]]
     """From an index and what the point starts from to its outcome and what its neighbour starts from."""
     checkpoints: ChainStates

@@ -3,7 +3,7 @@
 import csv
 import math
 from array import array
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
@@ -11,10 +11,12 @@ from typing import TextIO
 import numpy as np
 from numpy.typing import NDArray
 
-from ..config.schema import Config, words
+from ..config.axes import words
+from ..config.schema import Config
 from ..config.values import as_number, overflows
 from ..errors import InputError
-from ..model.rod import ALLOWED, Rod, admissible
+from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS
+from ..model.rod import Rod
 
 LONGEST_LINE = 10_000
 """Characters of a line of a CSV file."""
@@ -33,6 +35,11 @@ class Points:
     def shape(self) -> tuple[int, ...]:
         """Shape of a result variable: one dimension per column, or (point,)."""
         return tuple(len(c) for c in self.columns) if self.is_grid else (len(self.columns[0]),)
+
+    @property
+    def by_name(self) -> dict[str, NDArray[np.float64]]:
+        """The columns by their parameters."""
+        return dict(zip(self.names, self.columns, strict=True))
 
     @property
     def count(self) -> int:
@@ -64,29 +71,38 @@ def points_of(config: Config, directory: Path) -> Points:
     """The points that the config asks for; InputError for any value that the model does not allow."""
     parameters = config.parameters
     for name, value in config.constants.items():
-        if not admissible(name, value):
-            raise InputError(f"parameters.{name} = {value:g} is not allowed; it must be {ALLOWED[name]}")
+        _refuse_outside(name, (value,))
     if parameters.points is not None:
         columns = _read_csv(directory / parameters.points, config.names)
         return Points(config.names, columns, is_grid=False)
     axes = {name: axis.array() for name, axis in parameters.axes.items()}
     for name, column in axes.items():
-        bad = next((value for value in map(float, column) if not admissible(name, value)), None)
-        if bad is not None:
-            raise InputError(f"parameters.{name} = {bad:g} is not allowed; it must be {ALLOWED[name]}")
-    # A phase diagram may reach into the crushed rods, which are a class of their own.
-    diagram = config.task == "phase_diagram"
-    if diagram and axes["F"].min() >= axes["k1"].max():
-        raise InputError(
-            f"parameters.F starts at {axes['F'].min():.15g} and parameters.k1 ends at "
-            f"{axes['k1'].max():.15g}; the rod is crushed where F >= k1, which is everywhere here"
-        )
-    if not diagram and "F" in axes and axes["F"].max() >= axes["k1"].min():
-        raise InputError(
-            f"parameters.F reaches {axes['F'].max():.15g} and parameters.k1 starts at "
-            f"{axes['k1'].min():.15g}; F must stay below every k1, because the rod is crushed at F = k1"
-        )
+        _refuse_outside(name, column)
+    if "F" in axes:
+        _refuse_crushed(axes["F"], axes["k1"], config.into_crushed)
     return Points(config.names, tuple(axes[name] for name in config.names), is_grid=True)
+
+
+def _refuse_outside(name: str, values: Iterable[float]) -> None:
+    """InputError for the first value of a parameter that the model does not allow."""
+    allowed = PARAMETERS[name].allowed
+    bad = allowed.first_outside(values)
+    if bad is not None:
+        raise InputError(f"parameters.{name} = {bad:g} is not allowed; it must be {allowed.phrase}")
+
+
+def _refuse_crushed(F: NDArray[np.float64], k1: NDArray[np.float64], some: bool) -> None:
+    """InputError where a grid has crushed rods; where `some` may be, only if it has no other."""
+    if some and F.min() >= k1.max():
+        raise InputError(
+            f"parameters.F starts at {F.min():.15g} and parameters.k1 ends at {k1.max():.15g}; the rod is "
+            "crushed where F >= k1, which is everywhere here"
+        )
+    if not some and F.max() >= k1.min():
+        raise InputError(
+            f"parameters.F reaches {F.max():.15g} and parameters.k1 starts at {k1.min():.15g}; F must stay "
+            "below every k1, because the rod is crushed at F = k1"
+        )
 
 
 def _read_csv(path: Path, names: tuple[str, ...]) -> tuple[NDArray[np.float64], ...]:
@@ -135,11 +151,10 @@ def _row(row: list[str], header: list[str], where: str) -> list[float]:
             numbers.append(as_number(float(cell)))
         except ValueError:
             raise InputError(f"{where}: {name} = {cell.strip()[:40]!r} is not a number") from None
-    values = {"F": 0.0, "gamma1": 1.0} | dict(zip(header, numbers, strict=True))  # where they are no column
-    gamma1 = values.pop("gamma1")
-    if not admissible("gamma1", gamma1):
-        raise InputError(f"{where}: gamma1 = {gamma1} is not {ALLOWED['gamma1']}")
+    values = {"F": 0.0} | dict(zip(header, numbers, strict=True))  # where F is no column
     try:
+        for name in set(header).difference(LINEAR_PARAMETERS):
+            PARAMETERS[name].require(values.pop(name))
         Rod(**values)
     except ValueError as error:
         raise InputError(f"{where}: {error}") from None

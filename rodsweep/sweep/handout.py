@@ -13,7 +13,7 @@ import time
 from collections import Counter, deque
 from dataclasses import dataclass
 
-from .ranges import Range, total
+from .ranges import IndexRange, total
 from .stop import StopRequest
 from .team import Team
 
@@ -32,7 +32,7 @@ where that rank itself answers between its points."""
 ASK_SECONDS = 1e-4
 """How often a rank that waits for its next chunk looks for it."""
 
-OVER: Range = (0, 0)
+OVER: IndexRange = (0, 0)
 
 
 def chunk_seconds(ranks: int) -> float:
@@ -50,7 +50,7 @@ class Report:
 
     done: int = 0
     seconds: float = 0.0
-    given_back: Range = OVER
+    given_back: IndexRange = OVER
     points: int = 0
     ahead: bool = False
     stop: str = ""
@@ -59,7 +59,7 @@ class Report:
 class Handout:
     """The units still to do, on the first rank; safe to use from its two threads."""
 
-    def __init__(self, todo: list[Range], ranks: int):
+    def __init__(self, todo: list[IndexRange], ranks: int):
         self.todo = deque(todo)
         self.left = total(todo)
         self.ranks = ranks
@@ -85,19 +85,19 @@ class Handout:
                 self.left += end - first
             self.change.notify_all()
 
-    def take(self, rank: int) -> Range | None:
+    def take(self, rank: int) -> IndexRange | None:
         """The next chunk for a rank, OVER when all work is done, None when it has to wait."""
         with self.change:
             if self.todo:
                 return self._take(rank)
             return None if self.held.total() and not self.stopped else OVER
 
-    def take_ahead(self, rank: int) -> Range | None:
+    def take_ahead(self, rank: int) -> IndexRange | None:
         """The next chunk for a rank that still works on one, None unless plenty is left."""
         with self.change:
             return self._take(rank) if self.todo and self.left >= PLENTY * self.ranks else None
 
-    def _take(self, rank: int) -> Range:
+    def _take(self, rank: int) -> IndexRange:
         share = max(1, self.left // (2 * self.ranks))
         pace = self.pace.get(rank)
         size = 1 if pace is None else int(chunk_seconds(self.ranks) / max(pace, 1e-7))
@@ -125,7 +125,7 @@ class Handout:
 class FirstRankClaims:
     """How the first rank gets its chunks, and how its thread serves the others."""
 
-    def __init__(self, team: Team, todo: list[Range], stop: StopRequest):
+    def __init__(self, team: Team, todo: list[IndexRange], stop: StopRequest):
         self.team, self.handout, self.stop = team, Handout(todo, team.size), stop
         self.waiting: deque[int] = deque()
         self.ahead: set[int] = set()
@@ -144,7 +144,7 @@ class FirstRankClaims:
         """Points that all ranks have reported kept."""
         return self.handout.points
 
-    def claim(self, report: Report) -> Range:
+    def claim(self, report: Report) -> IndexRange:
         with self.serving:
             self._heed_stop()
         self.handout.settle(0, report)
@@ -224,13 +224,13 @@ class OtherRankClaims:
     def __init__(self, team: Team, stop: StopRequest):
         self.comm, self.stop, self.told = team.comm, stop, False
 
-    def claim(self, report: Report) -> Range:
+    def claim(self, report: Report) -> IndexRange:
         self.comm.send(report, dest=0, tag=REQUEST_TAG)
         # A blocking receive would spin and take the processor from the ranks that compute.
         while not self.comm.Iprobe(source=0, tag=ANSWER_TAG):
             self.between_points()
             time.sleep(ASK_SECONDS)
-        chunk: Range = self.comm.recv(source=0, tag=ANSWER_TAG)
+        chunk: IndexRange = self.comm.recv(source=0, tag=ANSWER_TAG)
         if chunk != OVER:
             self.comm.send(Report(ahead=True), dest=0, tag=REQUEST_TAG)
         return chunk
@@ -247,6 +247,6 @@ class OtherRankClaims:
         """Nothing to close."""
 
 
-def claims_of(team: Team, todo: list[Range], stop: StopRequest) -> FirstRankClaims | OtherRankClaims:
+def claims_of(team: Team, todo: list[IndexRange], stop: StopRequest) -> FirstRankClaims | OtherRankClaims:
     """This rank's way to its chunks; `todo` matters on the first rank only."""
     return FirstRankClaims(team, todo, stop) if team.first else OtherRankClaims(team, stop)

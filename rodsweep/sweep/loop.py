@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from .handout import GIVE_BACK_AFTER, OVER, Report, chunk_seconds, claims_of
-from .ranges import Range
+from .ranges import IndexRange
 from .stop import StopRequest
 from .team import Team
 
@@ -24,7 +24,7 @@ class Share:
 
 def sweep(
     team: Team,
-    todo: list[Range],
+    todo: list[IndexRange],
     solve: Callable[[int], Iterable[tuple[int, Result]]],
     keep: Callable[[int, Result], None],
     tell: Callable[[int], None],

@@ -1,7 +1,7 @@
 """What each task brings to the generic parts of the command line: one module per task.
 
-A new task needs its config (`rodsweep.config.schema`), its layout (`rodsweep.results.layouts`), a module
-here, and a summary and a figure in `rodsweep.post`.
+A new task needs a module of its name here, in `rodsweep.config`, `rodsweep.results.layouts`,
+`rodsweep.post.summary` and `rodsweep.post.figures`, each with an entry in the registry of its package.
 """
 
 from collections.abc import Callable
@@ -28,8 +28,3 @@ TASKS: dict[str, Callable[[Any, Points], Task]] = {
 def task_of(config: Config, points: Points) -> Task:
     """The task of a config on its points; InputError for what only the task can know to be wrong."""
     return TASKS[config.task](config, points)
-
-
-def needs_all_points(config: dict[str, Any]) -> bool:
-    """Whether a resolved config asks for variables that only all points together give: `Solver.finish`."""
-    return config["task"] == "phase_diagram" and bool(config["phase_diagram"]["curves"])

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...results.layouts import CROSSING_KINDS
+from ...results.layouts.crossings import CROSSING_KINDS
 
 if TYPE_CHECKING:
     from ...solve.changes.thresholds import Thresholds

@@ -1,21 +1,20 @@
 """The task limit_cycle: the beating of the nonlinear rod at every point, or that it straightens."""
 
-from dataclasses import dataclass
-from math import isfinite
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...config import LimitCycleConfig
+from ...config.limit_cycle import LimitCycleConfig
 from ...discretization.quadrature import lobatto_points
 from ...errors import InputError
+from ...model.parameters import PARAMETERS
 from ...results.layouts.limit_cycle import CYCLE, ENERGY, PERIOD_TAU1, SHAPE, TIP
-from ...results.layouts.variables import Filled, Variable
+from ...results.layouts.variables import Variable
 from ...sweep.chains import Chains, State
 from ...sweep.estimate import Estimate, estimate_cycles
-from ...sweep.grid import Points
 from .parts import count_of, rod_parts
-from .protocol import Chained, Part, Solver
+from .protocol import Chained, Part, Solver, Task
 
 if TYPE_CHECKING:
     from ...solve.cycle.limit_cycle import Cycle, CycleRequest
@@ -25,25 +24,20 @@ RENAMED = {"harmonic_amplitude": "harmonics"}
 
 
 @dataclass(frozen=True, slots=True)
-class LimitCycleTask:
+class LimitCycleTask(Task):
     """Limit cycles on their points."""
 
     config: LimitCycleConfig
-    points: Points
 
     def __post_init__(self) -> None:
-        needs = {"k1": "a finite number", "k2": "a finite number", "gamma3": "a number above 0"}
-        for name, need in needs.items():
-            for value in map(float, self._columns[name]):
-                if not isfinite(value) or (name == "gamma3" and value <= 0):
-                    raise InputError(
-                        f"parameters.{name} = {value:g} is not allowed in the task limit_cycle; it must be "
-                        f"{need}, because the nonlinear rod stretches, shears and turns against drag"
-                    )
-
-    @property
-    def _columns(self) -> dict[str, np.ndarray]:
-        return dict(zip(self.points.names, self.points.columns, strict=True))
+        for name, column in self.points.by_name.items():
+            needed = PARAMETERS[name].nonlinear
+            bad = needed.first_outside(column)
+            if bad is not None:
+                raise InputError(
+                    f"parameters.{name} = {bad:g} is not allowed in the task limit_cycle; it must be "
+                    f"{needed.phrase}, because the nonlinear rod stretches, shears and turns against drag"
+                )
 
     @property
     def chains(self) -> Chains | None:
@@ -61,9 +55,6 @@ class LimitCycleTask:
         times = {name: np.arange(count) / count for name, count in extents.items() if count}
         return times | ({"u": lobatto_points(options.nodes)} if options.shapes else {})
 
-    def constants(self) -> tuple[Filled, ...]:
-        return ()
-
     def headline(self) -> str:
         options, chains = self.config.limit_cycle, self.chains
         start = f"the leading mode with tip deflection {options.amplitude:g} L"
@@ -77,11 +68,10 @@ class LimitCycleTask:
 
     def parts(self) -> list[Part]:
         options = self.config.limit_cycle
-        columns = self._columns
-        gamma1 = columns["gamma1"]
+        gamma1 = np.unique(self.points.by_name["gamma1"])[:5]
         return [
-            *rod_parts(columns),
-            ("axial drag", True, f"gamma1 = {', '.join(f'{value:g}' for value in np.unique(gamma1)[:5])}"),
+            *rod_parts(self.points.by_name),
+            ("axial drag", True, f"gamma1 = {', '.join(f'{value:g}' for value in gamma1)}"),
             ("nonlinear motion", True, "task: limit_cycle; in the plane, geometrically exact"),
             ("energy budget", True, "means and fluctuations over a cycle"),
             self._stored("tip and energy over a cycle", "samples", TIP + ENERGY),
@@ -127,15 +117,9 @@ class LimitCycleTask:
     def _request(self) -> "CycleRequest":
         from ...solve.cycle.limit_cycle import CycleRequest
 
-        options = self.config.limit_cycle
+        names = {field.name for field in fields(CycleRequest)}
         return CycleRequest(
-            accuracy=self.config.accuracy,
-            amplitude=options.amplitude,
-            harmonics=options.harmonics,
-            samples=options.samples,
-            shapes=options.shapes,
-            nodes=options.nodes,
-            most_periods=options.most_periods,
+            accuracy=self.config.accuracy, **self.config.limit_cycle.model_dump(include=names)
         )
 
     def record(self, point: dict[str, float], cycle: "Cycle") -> dict[str, Any]:

@@ -1,19 +1,17 @@
 """The task modes: the leading modes with their adjoints, and what non-normality makes of them."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ...config import ModesConfig
+from ...config.modes import ModesConfig
 from ...discretization.quadrature import lobatto_points
 from ...discretization.resolution import mesh_accuracy
 from ...model.rod import Rod
-from ...results.layouts import GROWTH
-from ...results.layouts.variables import Filled
+from ...results.layouts.modes import GROWTH
 from ...sweep.estimate import Estimate, estimate_modes, estimate_spectra
-from ...sweep.grid import Points
-from .parts import LEFT_OUT, certificate_part, count_of, rod_parts
+from .parts import LinearTask, count_of
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
@@ -21,35 +19,27 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class ModesTask:
+class ModesTask(LinearTask):
     """Modes on their points."""
 
     config: ModesConfig
-    points: Points
+
+    not_proved: ClassVar[str] = "modes may be missed"
 
     def coordinates(self) -> dict[str, np.ndarray]:
         return {"u": lobatto_points(self.config.modes.nodes)}
-
-    def constants(self) -> tuple[Filled, ...]:
-        return ()
 
     def headline(self) -> str:
         options = self.config.modes
         return f"{count_of(self.points)}, {options.modes} leading modes each, on {options.nodes} nodes"
 
-    def parts(self) -> list[Part]:
-        options = self.config.modes
+    def asked(self) -> list[Part]:
+        growth = self.config.modes.growth
+        why = "in the norm of the dissipation" if growth else "modes.growth: false"
         return [
-            *rod_parts(dict(zip(self.points.names, self.points.columns, strict=True))),
             ("transverse modes and their adjoints", True, "task: modes"),
-            (
-                "transient growth, numerical abscissa",
-                options.growth,
-                "in the norm of the dissipation" if options.growth else "modes.growth: false",
-            ),
+            ("transient growth, numerical abscissa", growth, why),
             ("longitudinal modes", False, "they decouple; the task spectrum has them"),
-            certificate_part("modes", options.certify, "modes may be missed"),
-            LEFT_OUT,
         ]
 
     def cost(self) -> Estimate:

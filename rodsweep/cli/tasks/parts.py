@@ -1,17 +1,38 @@
-"""What `check` says in the same words for several tasks."""
+"""What `check` says in the same words of every rod, and what the tasks of the linear problem share."""
 
+from abc import abstractmethod
 from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
+from ...model.parameters import PARAMETERS, Parameter
 from ...sweep.grid import Points
-from .protocol import Part
+from .protocol import Part, Task
 
-LEFT_OUT: Part = (
-    "gravity, inertia, nonlinear motion",
-    False,
-    "not part of the linear overdamped problem",
-)
+
+@dataclass(frozen=True, slots=True)
+class LinearTask(Task):
+    """A task of the linear problem: what it asks for stands between what rods can do and what is left out."""
+
+    not_proved: ClassVar[str]
+    """What may happen without a certificate."""
+
+    @abstractmethod
+    def asked(self) -> list[Part]:
+        """What the task's options ask for."""
+
+    def parts(self) -> list[Part]:
+        task = self.config.task
+        certify = getattr(self.config, task).certify
+        why = "winding number of D" if certify else f"{task}.certify: false; {self.not_proved}"
+        return [
+            *rod_parts(self.points.by_name | self.coordinates()),
+            *self.asked(),
+            ("certificate", certify, why),
+            ("gravity, inertia, nonlinear motion", False, "not part of the linear overdamped problem"),
+        ]
 
 
 def count_of(points: Points) -> str:
@@ -24,19 +45,14 @@ def rod_parts(columns: Mapping[str, np.ndarray]) -> list[Part]:
     """Which of the rod's parts the values of k1, k2 and gamma3 make move."""
     dragged = bool((columns["gamma3"] > 0).any())
     return [
-        _compliance("stretch", "k1", columns["k1"], "inextensible"),
-        _compliance("shear", "k2", columns["k2"], "unshearable"),
+        *(_deformation(p, columns[p.name]) for p in PARAMETERS.values() if p.rigid),
         ("rotational drag", dragged, "gamma3 > 0" if dragged else "gamma3 = 0"),
     ]
 
 
-def certificate_part(task: str, certify: bool, missed: str) -> Part:
-    """Whether the winding number proves that nothing is missed."""
-    return ("certificate", certify, "winding number of D" if certify else f"{task}.certify: false; {missed}")
-
-
-def _compliance(part: str, name: str, values: np.ndarray, word: str) -> Part:
+def _deformation(parameter: Parameter, values: np.ndarray) -> Part:
+    name, what = parameter.name, parameter.meaning.removesuffix(" stiffness")
     rigid = np.isinf(values)
     if rigid.all():
-        return part, False, f"{name} = inf: the rod is {word}"
-    return part, True, f"{name} is finite" + (f" at all but {int(rigid.sum())} values" if rigid.any() else "")
+        return what, False, f"{name} = inf: the rod is {parameter.rigid}"
+    return what, True, f"{name} is finite" + (f" at all but {int(rigid.sum())} values" if rigid.any() else "")

@@ -2,20 +2,20 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ...config import PhaseDiagramConfig
+from ...config.phase_diagram import PhaseDiagramConfig
 from ...determinant.plane import Axis, Plane
+from ...model.parameters import CRUSHING
 from ...model.rod import Rod
 from ...results.file.view import View
-from ...results.layouts import curve_variables
+from ...results.layouts.phase_diagram import curve_variables
 from ...results.layouts.variables import Filled
 from ...sweep.estimate import Estimate, estimate_lines
-from ...sweep.grid import Points
 from .crossings import search_record
-from .parts import LEFT_OUT, certificate_part, rod_parts
+from .parts import LinearTask
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
@@ -24,11 +24,12 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class PhaseDiagramTask:
+class PhaseDiagramTask(LinearTask):
     """A phase diagram; its points are the rows, each a line of values of the first of its two parameters."""
 
     config: PhaseDiagramConfig
-    points: Points
+
+    not_proved: ClassVar[str] = "crossings may be missed"
 
     @property
     def line(self) -> np.ndarray:
@@ -38,24 +39,17 @@ class PhaseDiagramTask:
     def coordinates(self) -> dict[str, np.ndarray]:
         return {self.config.plane[0]: self.line}
 
-    def constants(self) -> tuple[Filled, ...]:
-        return ()
-
     def headline(self) -> str:
         line, row = self.config.plane
         return f"{self.points.count} rows, one for each {row}, of {len(self.line)} values of {line} each"
 
-    def parts(self) -> list[Part]:
+    def asked(self) -> list[Part]:
         options = self.config.phase_diagram
-        columns = dict(zip(self.points.names, self.points.columns, strict=True)) | self.coordinates()
         curves = "followed from row to row" if options.curves else "phase_diagram.curves: false"
         return [
-            *rod_parts(columns),
             ("monotone, oscillatory, flutter", True, "task: phase_diagram"),
             ("crossings along each row", True, f"at most {options.crossings} are stored for each row"),
             ("boundaries as curves", options.curves, curves),
-            certificate_part("phase_diagram", options.certify, "crossings may be missed"),
-            LEFT_OUT,
         ]
 
     def cost(self) -> Estimate:
@@ -82,7 +76,7 @@ class PhaseDiagramTask:
         from ...solve.changes.diagram import curves_through, seed_of
 
         line, row = self.config.plane
-        rows = self.points.columns[self.points.names.index(row)]
+        rows = self.points.by_name[row]
         finite = rows[np.isfinite(rows)]
         if len(finite) < 2:
             return []
@@ -101,7 +95,7 @@ class PhaseDiagramTask:
         # Where a list is full its last crossings are not stored, and no curve starts from them.
         cut = view.variables["crossing_count"].ravel() - np.count_nonzero(kind, axis=1)
         found = replace(found, untraced=found.untraced + int(cut[np.isfinite(rows)].clip(min=0).sum()))
-        values = curve_record(found, line, row) | (self._partial_beam() if {line, row} == {"F", "k1"} else {})
+        values = curve_record(found, line, row) | (self._partial_beam() if (line, row) == CRUSHING else {})
         return [(variables[name], np.asarray(value)) for name, value in values.items()]
 
     def _axis(self, name: str, values: np.ndarray) -> Axis:

@@ -1,9 +1,6 @@
-"""What a task is, for `check` and `run`: neither knows more of it than is said here.
+"""What a task is, for `check` and `run`: neither knows more of it than is said here."""
 
-A task is made from its config and its points, is sent to all ranks, and knows no PETSc until its
-solver is asked for.
-"""
-
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -14,6 +11,7 @@ from ...results.file.view import View
 from ...results.layouts.variables import Filled
 from ...sweep.chains import Chains, State
 from ...sweep.estimate import Estimate
+from ...sweep.grid import Points
 
 Part = tuple[str, bool, str]
 """(what, whether it is modelled, why): a row of what `check` prints."""
@@ -61,23 +59,34 @@ class Solver:
     """Where points start one from the other: how they are solved, instead of by `solve`."""
 
 
-class Task(Protocol):
-    """One task on its points."""
+@dataclass(frozen=True, slots=True)
+class Task(ABC):
+    """One task on its points: sent to all ranks, and without PETSc until its solver is asked for."""
+
+    config: Any
+    """Of the task's own kind."""
+    points: Points
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """Values of the layout's extra dimensions that have some."""
+        return {}
 
     def constants(self) -> tuple[Filled, ...]:
         """Variables that are known without solving."""
+        return ()
 
+    @abstractmethod
     def headline(self) -> str:
         """How many points there are, and what is asked of each."""
 
+    @abstractmethod
     def parts(self) -> list[Part]:
         """What is modelled and what is left out."""
 
+    @abstractmethod
     def cost(self) -> Estimate:
         """What the run will cost."""
 
+    @abstractmethod
     def solver(self) -> Solver:
         """Starts PETSc, which only a valid config is worth."""

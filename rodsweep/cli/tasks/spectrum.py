@@ -1,19 +1,18 @@
 """The task spectrum: the leading eigenvalues at every point."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ...config import SpectrumConfig
+from ...config.spectrum import SpectrumConfig
 from ...discretization.quadrature import lobatto_points
 from ...discretization.resolution import mesh_accuracy
 from ...errors import InputError
 from ...model.longitudinal import longitudinal_rates
 from ...results.layouts.variables import Filled, Variable
 from ...sweep.estimate import Estimate, estimate_spectra
-from ...sweep.grid import Points
-from .parts import LEFT_OUT, certificate_part, count_of, rod_parts
+from .parts import LinearTask, count_of
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
@@ -21,19 +20,16 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class SpectrumTask:
+class SpectrumTask(LinearTask):
     """Spectra on their points."""
 
     config: SpectrumConfig
-    points: Points
+
+    not_proved: ClassVar[str] = "modes may be missed"
 
     def __post_init__(self) -> None:
-        if self.config.spectrum.longitudinal and np.isinf(self._k1).any():
+        if self.config.spectrum.longitudinal and np.isinf(self.points.by_name["k1"]).any():
             raise InputError("spectrum.longitudinal needs finite k1: a rod with k1 = inf cannot stretch")
-
-    @property
-    def _k1(self) -> np.ndarray:
-        return self.points.columns[self.points.names.index("k1")]
 
     @property
     def _vector_nodes(self) -> int:
@@ -45,10 +41,11 @@ class SpectrumTask:
 
     def constants(self) -> tuple[Filled, ...]:
         """The longitudinal rates, where they are asked for: along k1 on a grid, along the points else."""
-        gamma1 = self.config.parameters.gamma1
+        gamma1 = self.config.constants.get("gamma1")
         if gamma1 is None:
             return ()
-        rates = np.array([longitudinal_rates(float(k), gamma1, self.config.spectrum.modes) for k in self._k1])
+        k1, modes = self.points.by_name["k1"], self.config.spectrum.modes
+        rates = np.array([longitudinal_rates(float(k), gamma1, modes) for k in k1])
         dims = ("k1" if self.points.is_grid else "point", "mode")
         meaning = f"longitudinal eigenvalue, real, for gamma1 = {gamma1:g}"
         return ((Variable("longitudinal_rate", "<f8", np.nan, "1/tau2", meaning, dims), rates),)
@@ -56,24 +53,17 @@ class SpectrumTask:
     def headline(self) -> str:
         return f"{count_of(self.points)}, {self.config.spectrum.modes} leading modes each"
 
-    def parts(self) -> list[Part]:
+    def asked(self) -> list[Part]:
         options = self.config.spectrum
-        closed = "closed form, no mesh"
+        vectors, longitudinal = "spectrum.vectors adds them", "they decouple; spectrum.longitudinal adds them"
+        if options.vectors:
+            vectors = f"on {options.nodes} nodes"
+        if options.longitudinal:
+            longitudinal = "closed form, no mesh"
         return [
-            *rod_parts(dict(zip(self.points.names, self.points.columns, strict=True))),
             ("transverse modes", True, "task: spectrum"),
-            (
-                "longitudinal modes",
-                options.longitudinal,
-                closed if options.longitudinal else "they decouple; spectrum.longitudinal adds them",
-            ),
-            (
-                "eigenvectors",
-                options.vectors,
-                f"on {options.nodes} nodes" if options.vectors else "spectrum.vectors adds them",
-            ),
-            certificate_part("spectrum", options.certify, "modes may be missed"),
-            LEFT_OUT,
+            ("longitudinal modes", options.longitudinal, longitudinal),
+            ("eigenvectors", options.vectors, vectors),
         ]
 
     def cost(self) -> Estimate:

@@ -1,16 +1,14 @@
 """The task thresholds: the forces at which the spectrum of every rod changes its kind."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ...config import ThresholdsConfig
-from ...results.layouts.variables import Filled
+from ...config.thresholds import ThresholdsConfig
 from ...sweep.estimate import Estimate, estimate_lines
-from ...sweep.grid import Points
 from .crossings import first_of, search_record
-from .parts import LEFT_OUT, certificate_part, count_of, rod_parts
+from .parts import LinearTask, count_of
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
@@ -18,30 +16,22 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class ThresholdsTask:
+class ThresholdsTask(LinearTask):
     """Thresholds of every rod."""
 
     config: ThresholdsConfig
-    points: Points
 
-    def coordinates(self) -> dict[str, np.ndarray]:
-        return {}
-
-    def constants(self) -> tuple[Filled, ...]:
-        return ()
+    not_proved: ClassVar[str] = "crossings may be missed"
 
     def headline(self) -> str:
         F_max = self.config.thresholds.F_max
         return f"{count_of(self.points)}, each searched from F = 0 to {F_max:g}, or to just below k1"
 
-    def parts(self) -> list[Part]:
-        options = self.config.thresholds
+    def asked(self) -> list[Part]:
+        most = self.config.thresholds.crossings
         return [
-            *rod_parts(dict(zip(self.points.names, self.points.columns, strict=True))),
             ("onset, Hopf points, restabilization", True, "task: thresholds"),
-            ("all other crossings", True, f"at most {options.crossings} are stored for each point"),
-            certificate_part("thresholds", options.certify, "crossings may be missed"),
-            LEFT_OUT,
+            ("all other crossings", True, f"at most {most} are stored for each point"),
         ]
 
     def cost(self) -> Estimate:

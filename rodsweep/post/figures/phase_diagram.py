@@ -8,9 +8,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...errors import InputError
+from ...model.parameters import CRUSHING, LINEAR_PARAMETERS
 from ...results.file.view import View
-from ...results.layouts import CLASSES
-from ...results.layouts.variables import PARAMETER_NAMES
+from ...results.layouts.phase_diagram import CLASSES
 from .request import FigureRequest
 from .style import LABELS, SYMBOLS, fixed_text, heading, legend_below, need, scale
 
@@ -31,7 +31,7 @@ CURVE_LOOKS = {1: ("Hopf points", 1.4, "-"), 0: ("double eigenvalue", 1.0, "--")
 def draw_phase_diagram(request: FigureRequest) -> str:
     """The class of every point, the boundaries where they were traced, and their folds."""
     view = request.only_view()
-    line = next(name for name in PARAMETER_NAMES if name not in view.parameters)
+    line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
     row = next(name for name in view.parameters if len(view.axes[name]) > 1)
     values = view.variables["class"]
     need(view, (values >= 0).any(), "computed row")
@@ -49,7 +49,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     axes.pcolormesh(x, y, table, cmap=colours, norm=norm, shading="nearest", rasterized=True)
     scale(axes, "x", x)
     scale(axes, "y", y)
-    if (line, row) == ("F", "k1"):  # the map's points leave a staircase
+    if (line, row) == CRUSHING:  # the map's points leave a staircase
         crushed = np.linspace(y[0], y[-1], 1000)
         axes.fill_between(crushed, crushed, y[0], color=CLASS_COLOURS["crushed"], lw=0)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=LABELS[line], ylabel=LABELS[row])

@@ -1,5 +1,6 @@
 """What all figures share: symbols, labels, colours, titles, how an axis is scaled, what cannot be drawn."""
 
+import re
 import textwrap
 from collections.abc import Mapping
 from typing import Any, Literal
@@ -10,24 +11,21 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from ...errors import InputError
+from ...model.parameters import PARAMETERS
 from ...results.file.view import View
 
-SYMBOLS = {
-    "F": r"\tilde F",
-    "k1": r"\tilde k_1",
-    "k2": r"\tilde k_2",
-    "gamma3": r"\tilde\gamma_3",
-    "gamma1": r"\tilde\gamma_1",
-}
-FORCE_UNIT, DRAG_UNIT = r"[$k_3/L^2$]", r"\gamma_2 L^2"
-LABELS = {
-    "F": rf"follower force ${SYMBOLS['F']}$  {FORCE_UNIT}",
-    "k1": rf"stretch stiffness ${SYMBOLS['k1']}$  {FORCE_UNIT}",
-    "k2": rf"shear stiffness ${SYMBOLS['k2']}$  {FORCE_UNIT}",
-    "gamma3": rf"rotational drag ${SYMBOLS['gamma3']}$  [${DRAG_UNIT}$]",
-    "gamma1": rf"axial drag ${SYMBOLS['gamma1']}$  [$\gamma_2$]",
-}
-INVERSE_DRAG = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$  [$1/({DRAG_UNIT})$]"
+GREEK = {"gamma": r"\gamma"}
+
+
+def tex(unit: str) -> str:
+    """A unit of the table of parameters, such as gamma2 L^2, in TeX."""
+    return re.sub(r"(gamma|k)(\d)", lambda found: f"{GREEK.get(found[1], found[1])}_{found[2]}", unit)
+
+
+SYMBOLS = {name: parameter.symbol for name, parameter in PARAMETERS.items()}
+LABELS = {name: f"{p.meaning} ${p.symbol}$  [${tex(p.unit)}$]" for name, p in PARAMETERS.items()}
+FORCE_UNIT = f"[${tex(PARAMETERS['F'].unit)}$]"
+INVERSE_DRAG = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$  [$1/({tex(PARAMETERS['gamma3'].unit)})$]"
 FIRST, SECOND, THIRD = "#0072B2", "#D55E00", "#009E73"
 """Blue, vermilion and green of Okabe and Ito: told apart by the colour-blind."""
 TITLE_CHARACTERS = 70

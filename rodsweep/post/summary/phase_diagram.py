@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
-from ...results.layouts import CLASSES
-from ...results.layouts.variables import PARAMETER_NAMES
+from ...results.layouts.phase_diagram import CLASSES
 from .thresholds import search_lines
 
 SHARP = 1e-8
@@ -17,7 +17,7 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> list[str]:
     found = v["class"][done]
     counts = [f"{int((found == value).sum())} {word}" for value, word in CLASSES if (found == value).any()]
     lines = [f"of {found.size} points: {', '.join(counts)}", *search_lines(view, done, int(done.sum()))]
-    line = next(name for name in PARAMETER_NAMES if name not in view.parameters)
+    line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
     row = next(name for name in view.parameters if len(view.axes[name]) > 1)
     solves, boxes = int(v["solves"][done].sum()), int(v["boxes"][done].sum())
     uniform = float(np.ptp(v[line])) / SHARP * int(done.sum())

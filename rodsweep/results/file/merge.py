@@ -5,10 +5,9 @@ appears whole, by a rename.
 """
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import h5py
 
@@ -32,12 +31,11 @@ class Merged:
     """What is to be said of the BLAS kernels that computed the points, where they are several; else empty."""
 
 
-def merge(output: Path, paths: Sequence[Path], needs_more: Callable[[dict[str, Any]], bool]) -> Merged:
+def merge(output: Path, paths: Sequence[Path]) -> Merged:
     """Writes `output` from all points of the result files `paths`; of a point given twice the first stays.
 
-    An existing `output` of the same config is the first of them. needs_more: whether a resolved config asks
-    for what only all points together give. InputError if a file is no result, answers another config or has
-    points in its journal; EnvironmentLacks where the disk refuses.
+    An existing `output` of the same config is the first of them. InputError if a file is no result, answers
+    another config or has points in its journal; EnvironmentLacks where the disk refuses.
     """
     sources = _opened(paths)
     with disk_refusals(output):
@@ -46,14 +44,12 @@ def merge(output: Path, paths: Sequence[Path], needs_more: Callable[[dict[str, A
         with disk_refusals(output, "; the shards are untouched"):
             if output.exists():  # it may have appeared while another run had the lock
                 sources = _opened([output, *(path for path in paths if not os.path.samefile(output, path))])
-            return _merge(exchange, sources, needs_more)
+            return _merge(exchange, sources)
     finally:
         exchange.close()
 
 
-def _merge(
-    exchange: Exchange, sources: Sequence[Header], needs_more: Callable[[dict[str, Any]], bool]
-) -> Merged:
+def _merge(exchange: Exchange, sources: Sequence[Header]) -> Merged:
     """Exchanges the file for the first source with the points that the others add."""
     first = sources[0]
     with exchange.replacing(first.path) as copy:
@@ -62,7 +58,7 @@ def _merge(
             if write_points(copy, points_to_add(copy, source.path, first.layout), first.layout):
                 gave.append(source)
         missing = total(missing_ranges(copy))
-        finished = not missing and not needs_more(first.config)
+        finished = not missing and not first.layout.needs_all_points
         history = merged_history([source.attributes for source in gave])
         with h5py.File(copy, "r+") as file:
             file.attrs.update(history | ({"finished": now()} if finished else {}))

@@ -13,7 +13,7 @@ from typing import BinaryIO
 import h5py
 import numpy as np
 
-from ...sweep.ranges import Range, joined
+from ...sweep.ranges import IndexRange, joined
 from ..layouts.variables import MISSING, Layout
 
 POINTS_AT_ONCE = 1 << 16
@@ -33,9 +33,9 @@ def statuses(path: Path, at_once: int | None = None) -> Iterator[tuple[int, np.n
             yield first, np.fromfile(stream, kind, min(at_once, count - first))
 
 
-def missing_ranges(path: Path) -> list[Range]:
+def missing_ranges(path: Path) -> list[IndexRange]:
     """Ranges of flat indices that are not computed yet, in order."""
-    ranges: list[Range] = []
+    ranges: list[IndexRange] = []
     for start, status in statuses(path):
         edges = start + np.flatnonzero(np.diff(status == MISSING, prepend=False, append=False))
         ranges += zip(map(int, edges[::2]), map(int, edges[1::2]), strict=True)

@@ -17,7 +17,7 @@ import h5py
 import numpy as np
 
 from ...errors import EnvironmentLacks, InputError
-from ...sweep.ranges import Range
+from ...sweep.ranges import IndexRange
 from ..layouts.variables import MISSING, Filled
 from ..run.checkpoints import drop_checkpoints
 from ..run.journal import drop_journals, read_journals
@@ -76,7 +76,7 @@ class Store:
         with h5py.File(self.path, "r") as file:
             return dict(file.attrs)
 
-    def missing(self) -> list[Range]:
+    def missing(self) -> list[IndexRange]:
         """Ranges of flat indices that are not computed yet, in order."""
         return missing_ranges(self.path)
 

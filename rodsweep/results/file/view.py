@@ -8,7 +8,8 @@ from typing import Any
 import h5py
 import numpy as np
 
-from ..layouts.variables import MISSING, NONLINEAR_NAMES
+from ...model.parameters import NONLINEAR_PARAMETERS
+from ..layouts.variables import MISSING
 from ..run.journal import journal_directory, read_journals
 from .validation import read_header, reading
 
@@ -66,7 +67,7 @@ class View:
     @property
     def axes(self) -> dict[str, np.ndarray]:
         """The parameters that the file knows: axes of a grid, or columns of a point list."""
-        return {name: self.variables[name] for name in NONLINEAR_NAMES if name in self.variables}
+        return {name: self.variables[name] for name in NONLINEAR_PARAMETERS if name in self.variables}
 
     @property
     def point_columns(self) -> dict[str, np.ndarray]:

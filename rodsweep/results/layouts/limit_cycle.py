@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from .variables import MESH, NONLINEAR_NAMES, SECONDS, STATUS, Layout, Variable, real, whole
+from ...model.parameters import NONLINEAR_PARAMETERS
+from .variables import MESH, SECONDS, STATUS, Layout, Variable, real, whole
 
 POWER = "k3/(L tau2)"
 CYCLE = (
@@ -31,23 +32,21 @@ CYCLE = (
     STATUS,
 )
 PERIOD_TAU1 = real("period_tau1", "tau1", "period of the limit cycle in units of tau1, period k2/gamma3")
-TIP = tuple(
-    real(f"tip_{name}", units, f"{name} of the tip", "sample")
-    for name, units in (("x", "L"), ("y", "L"), ("theta", "rad"))
-)
+PLACE = {"x": "L", "y": "L", "theta": "rad"}
+TIP = tuple(real(f"tip_{name}", units, f"{name} of the tip", "sample") for name, units in PLACE.items())
 ENERGY = (
     real("energy", "k3/L", "elastic energy", "sample"),
     real("injection", POWER, "power of the follower force", "sample"),
     real("dissipation", POWER, "power lost to the fluid", "sample"),
 )
 SHAPE = tuple(
-    real(f"shape_{name}", units, f"{name} along the rod", "shape", "u")
-    for name, units in (("x", "L"), ("y", "L"), ("theta", "rad"))
+    real(f"shape_{name}", units, f"{name} along the rod", "shape", "u") for name, units in PLACE.items()
 )
 
 
-def limit_cycle_layout(options: dict[str, Any]) -> Layout:
-    """The layout of the task limit_cycle for its resolved options; traces and shapes only where asked for."""
+def layout(config: dict[str, Any]) -> Layout:
+    """The layout that a resolved config asks for; traces and shapes only where asked for."""
+    options = config["limit_cycle"]
     variables: tuple[Variable, ...] = CYCLE
     extents = {"harmonic": options["harmonics"]}
     if options["time"] == "tau1":
@@ -58,4 +57,4 @@ def limit_cycle_layout(options: dict[str, Any]) -> Layout:
     if options["shapes"]:
         variables += SHAPE
         extents |= {"shape": options["shapes"], "u": options["nodes"]}
-    return Layout(variables, extents, tuple(NONLINEAR_NAMES))
+    return Layout(variables, extents, NONLINEAR_PARAMETERS)

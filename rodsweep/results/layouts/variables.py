@@ -11,21 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
+
 MISSING = -1
 """Status of a point that has not been computed."""
 
-PARAMETER_NAMES = {
-    "F": ("k3/L^2", "follower force at the tip, along -e1"),
-    "k1": ("k3/L^2", "stretch stiffness; inf is inextensible"),
-    "k2": ("k3/L^2", "shear stiffness; inf is unshearable"),
-    "gamma3": ("gamma2 L^2", "rotational drag"),
-}
-"""Units and long names of the parameters of the linear problem."""
-
-NONLINEAR_NAMES = PARAMETER_NAMES | {"gamma1": ("gamma2", "axial drag")}
-"""Units and long names of the parameters of the nonlinear rod."""
-
-DIMENSIONS = NONLINEAR_NAMES | {
+DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
     "point": ("1", "row of the point list, from 0"),
     "mode": ("1", "leading first: descending growth rate, of a pair the positive frequency first"),
     "u": ("1", "material coordinate along the rod"),
@@ -82,8 +73,10 @@ class Layout:
     variables: tuple[Variable, ...]
     extents: dict[str, int]
     """Lengths of the extra dimensions."""
-    parameters: tuple[str, ...] = tuple(PARAMETER_NAMES)
+    parameters: tuple[str, ...] = LINEAR_PARAMETERS
     """What makes a point: the dimensions of a grid, or what is given along `point`."""
+    needs_all_points: bool = False
+    """Whether the file is whole only with variables that all points together give."""
 
     @property
     def record(self) -> np.dtype:

@@ -1,0 +1,70 @@
+"""The keys of the task phase_diagram."""
+
+from math import inf
+from typing import ClassVar, Literal
+
+from pydantic import model_validator
+
+from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS, all_but
+from .axes import words
+from .schema import Crossings, LinearConfig
+from .values import Strict
+
+
+class PhaseDiagramOptions(Strict):
+    """What the task phase_diagram computes along each row."""
+
+    crossings: Crossings = 16
+    """The most crossings that are stored for a row."""
+    certify: bool = True
+    """Confirm by winding numbers between the changes, and certify every spectrum."""
+    curves: bool = True
+    """Whether the boundaries between the rows are followed as curves."""
+
+
+class PhaseDiagramConfig(LinearConfig):
+    """What the rod does over two parameters, row by row: a row is a line in the first of the two."""
+
+    task: Literal["phase_diagram"]
+    phase_diagram: PhaseDiagramOptions = PhaseDiagramOptions()
+
+    into_crushed: ClassVar[bool] = True
+
+    @property
+    def plane(self) -> tuple[str, str]:
+        """(line axis, row axis): the two parameters with more than one value, in their usual order."""
+        line, row = self._long_axes
+        return line, row
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return all_but(self.plane[0])
+
+    @property
+    def _long_axes(self) -> list[str]:
+        """The parameters with more than one value."""
+        return [name for name, axis in self.parameters.axes.items() if axis.size > 1]
+
+    @model_validator(mode="after")
+    def _two_axes(self) -> "PhaseDiagramConfig":
+        every = words(LINEAR_PARAMETERS, "and")
+        if self.parameters.points is not None:
+            raise ValueError(
+                "parameters.points is given but the task phase_diagram needs axes; remove it and give "
+                f"{every}"
+            )
+        self.parameters.require(LINEAR_PARAMETERS, or_points=False)
+        long = self._long_axes
+        if len(long) != 2:
+            raise ValueError(
+                f"parameters has {len(long)} axes with more than one value ({', '.join(long) or 'none'}); a "
+                f"phase diagram needs exactly two of {every}"
+            )
+        line = self.parameters.axes[long[0]]
+        if inf in (line.values or ()):
+            stiff = words(tuple(name for name in LINEAR_PARAMETERS if PARAMETERS[name].rigid), "and")
+            raise ValueError(
+                f"parameters.{long[0]} contains inf, which is not allowed on the axis along which a phase "
+                f"diagram is searched; remove it (on the other axis, {long[1]}, {stiff} may be inf)"
+            )
+        return self

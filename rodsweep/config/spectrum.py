@@ -1,0 +1,46 @@
+"""The keys of the task spectrum."""
+
+from typing import ClassVar, Literal
+
+from pydantic import model_validator
+
+from .schema import LinearConfig, Modes, Nodes
+from .values import Strict
+
+
+class SpectrumOptions(Strict):
+    """What the task spectrum computes at each point."""
+
+    modes: Modes = 4
+    """Leading modes at each point."""
+    certify: bool = True
+    """Prove by the winding number that none of them is missing."""
+    vectors: bool = False
+    """Store (Y, Theta), scaled to Y(1) = 1, to about `accuracy`."""
+    nodes: Nodes = 33
+    """Lobatto nodes on which (Y, Theta) are given, where `vectors` asks for them."""
+    longitudinal: bool = False
+    """Add the longitudinal modes, -(k1/gamma1) (pi (n - 1/2))^2, in closed form."""
+
+
+class SpectrumConfig(LinearConfig):
+    """The leading eigenvalues at every point."""
+
+    task: Literal["spectrum"]
+    spectrum: SpectrumOptions = SpectrumOptions()
+
+    beyond: ClassVar[tuple[str, ...]] = ("gamma1",)
+
+    @model_validator(mode="after")
+    def _only_what_is_used(self) -> "SpectrumConfig":
+        self.parameters.require(self.names)
+        if "gamma1" in self.constants and not self.spectrum.longitudinal:
+            raise ValueError(
+                "parameters.gamma1 is given but not used: the transverse spectrum does not contain it; "
+                "remove it or set spectrum.longitudinal: true"
+            )
+        if self.spectrum.longitudinal and "gamma1" not in self.constants:
+            raise ValueError("parameters.gamma1 is missing; spectrum.longitudinal: true needs it")
+        if not self.spectrum.vectors:
+            self.refuse_unused("nodes", remedy="vectors: true")
+        return self

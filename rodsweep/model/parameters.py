@@ -1,0 +1,124 @@
+"""The table of parameters: all that is known of each, stated once.
+
+Axes of a config, headers of point lists, ranges and refusals, dimensions and units in result files, labels of
+figures are made of this table. `rodsweep.config` reads it too, and nothing else of the model.
+"""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from math import inf, isfinite
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """What a value may be, for the program and, as a phrase, for the user; NaN lies in no range."""
+
+    contains: Callable[[float], bool]
+    phrase: str
+
+    def first_outside(self, values: Iterable[float]) -> float | None:
+        """The first of the values that may not be; None where all may."""
+        return next((value for value in map(float, values) if not self.contains(value)), None)
+
+
+ANYTHING = Range(lambda value: True, "any number")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parameter:
+    """One parameter of the rod; the nonlinear rod has all of them."""
+
+    name: str
+    symbol: str
+    """As the paper writes it, in TeX."""
+    unit: str
+    meaning: str
+    remark: str = ""
+    """What follows the meaning in the result file."""
+    allowed: Range
+    nonlinear: Range = ANYTHING
+    """What the nonlinear rod asks for beyond `allowed`."""
+    linear: bool = True
+    """Whether the transverse linear problem contains it."""
+    rigid: str = ""
+    """What a rod is called whose value is inf; empty where inf is not allowed."""
+    default: float | None = None
+    """Value in a grid of the nonlinear rod that does not name it; None where it must be named."""
+
+    @property
+    def by_compliance(self) -> bool:
+        """Whether the equations are linear in 1/value, which may be 0, instead of the value."""
+        return bool(self.rigid)
+
+    @property
+    def long_name(self) -> str:
+        """The meaning as the result file states it."""
+        return self.meaning + self.remark
+
+    def require(self, value: float) -> None:
+        """ValueError where the value is not allowed; F < k1 is for `Rod` to check."""
+        if not self.allowed.contains(value):
+            raise ValueError(f"{self.name} = {value} is not {self.allowed.phrase}")
+
+
+def stiffness(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
+    """A stiffness, which is inf for a rod that is called `rigid`; its compliance is a finite number."""
+    return Parameter(
+        name=name,
+        symbol=symbol,
+        unit="k3/L^2",
+        meaning=meaning,
+        remark=f"; inf is {rigid}",
+        allowed=Range(
+            lambda value: value > 0 and 1 / value < inf, f"a number above 0, or inf for an {rigid} rod"
+        ),
+        nonlinear=Range(isfinite, "a finite number"),
+        rigid=rigid,
+    )
+
+
+PARAMETERS = {
+    parameter.name: parameter
+    for parameter in (
+        Parameter(
+            name="F",
+            symbol=r"\tilde F",
+            unit="k3/L^2",
+            meaning="follower force",
+            remark=" at the tip, along -e1",
+            allowed=Range(isfinite, "a finite number below k1 (negative values pull)"),
+        ),
+        stiffness("k1", r"\tilde k_1", "stretch stiffness", "inextensible"),
+        stiffness("k2", r"\tilde k_2", "shear stiffness", "unshearable"),
+        Parameter(
+            name="gamma3",
+            symbol=r"\tilde\gamma_3",
+            unit="gamma2 L^2",
+            meaning="rotational drag",
+            allowed=Range(lambda value: 0 <= value < inf, "a finite number, 0 or above"),
+            nonlinear=Range(lambda value: value > 0, "a number above 0"),
+        ),
+        Parameter(
+            name="gamma1",
+            symbol=r"\tilde\gamma_1",
+            unit="gamma2",
+            meaning="axial drag",
+            allowed=Range(lambda value: 0 < value < inf, "a finite number above 0"),
+            linear=False,
+            default=1.0,
+        ),
+    )
+}
+"""All parameters by name, in the order used everywhere."""
+
+NONLINEAR_PARAMETERS = tuple(PARAMETERS)
+"""Names of the parameters of the nonlinear rod."""
+LINEAR_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if parameter.linear)
+"""Names of the parameters of the linear problem."""
+CRUSHING = ("F", "k1")
+"""The parameters that crush the rod where the first reaches the second."""
+
+
+def all_but(varied: str) -> tuple[str, ...]:
+    """The parameters of the linear problem that stay where one varies."""
+    return tuple(name for name in LINEAR_PARAMETERS if name != varied)

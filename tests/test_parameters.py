@@ -1,0 +1,50 @@
+"""The table of parameters: every place that lists them has what the table says, in its order."""
+
+from dataclasses import fields
+from math import inf, nan
+from pathlib import Path
+
+import pytest
+
+import rodsweep
+from rodsweep.config.tasks import CONFIGS
+from rodsweep.model.parameters import CRUSHING, LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, PARAMETERS, all_but
+from rodsweep.model.rod import Rod
+from rodsweep.results.layouts.variables import DIMENSIONS
+
+
+def test_the_rod_has_the_parameters_of_the_linear_problem():
+    assert tuple(field.name for field in fields(Rod)) == LINEAR_PARAMETERS == NONLINEAR_PARAMETERS[:4]
+    assert all_but("F") == LINEAR_PARAMETERS[1:]
+    assert set(CRUSHING) <= set(LINEAR_PARAMETERS)
+
+
+def test_every_config_has_every_parameter_as_a_key_and_every_file_as_a_dimension():
+    for config in CONFIGS.values():
+        keys = config.model_fields["parameters"].annotation.model_fields
+        assert {*NONLINEAR_PARAMETERS, "points"} == set(keys)
+    assert {DIMENSIONS[name] for name in PARAMETERS} == {(p.unit, p.long_name) for p in PARAMETERS.values()}
+
+
+@pytest.mark.parametrize(
+    ("name", "good", "bad"),
+    [
+        ("F", (-1e300, 0, 3.0), (inf, -inf)),
+        ("k1", (1e-300, 1, inf), (0, -1.0, 1e-320, -inf)),
+        ("k2", (1e-300, 1, inf), (0, -1.0, 1e-320, -inf)),
+        ("gamma3", (0, 1e-320, 1e300), (-1e-320, inf)),
+        ("gamma1", (1e-320, 1e300), (0, -1.0, inf)),
+    ],
+)
+def test_ranges(name, good, bad):
+    for value in good:
+        PARAMETERS[name].require(value)
+    for value in (*bad, nan):
+        with pytest.raises(ValueError, match=f"{name} = .* is not a .*number"):
+            PARAMETERS[name].require(value)
+
+
+def test_the_sequence_of_parameters_stands_once():
+    package = Path(rodsweep.__file__).parent
+    written = [path for path in package.rglob("*.py") if '"F", "k1"' in path.read_text()]
+    assert written == [package / "model" / "parameters.py"]
