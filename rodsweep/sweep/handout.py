@@ -116,11 +116,6 @@ class Handout:
             self.todo.clear()
             self.change.notify_all()
 
-    def wait(self) -> None:
-        """Waits a little for a change."""
-        with self.change:
-            self.change.wait(0.05)
-
 
 class FirstRankClaims:
     """How the first rank gets its chunks, and how its thread serves the others."""
@@ -150,7 +145,8 @@ class FirstRankClaims:
         self.handout.settle(0, report)
         self.between_points()
         while (chunk := self.handout.take(0)) is None:
-            self.handout.wait()
+            with self.handout.change:
+                self.handout.change.wait(0.05)
             self.between_points()
         return chunk
 
@@ -245,8 +241,3 @@ class OtherRankClaims:
 
     def close(self) -> None:
         """Nothing to close."""
-
-
-def claims_of(team: Team, todo: list[IndexRange], stop: StopRequest) -> FirstRankClaims | OtherRankClaims:
-    """This rank's way to its chunks; `todo` matters on the first rank only."""
-    return FirstRankClaims(team, todo, stop) if team.first else OtherRankClaims(team, stop)

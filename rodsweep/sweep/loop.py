@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TypeVar
 
-from .handout import GIVE_BACK_AFTER, OVER, Report, chunk_seconds, claims_of
+from .handout import GIVE_BACK_AFTER, OVER, FirstRankClaims, OtherRankClaims, Report, chunk_seconds
 from .ranges import IndexRange
 from .stop import StopRequest
 from .team import Team
@@ -39,7 +39,7 @@ def sweep(
     """
     started = time.monotonic()
     busy, points = 0.0, 0
-    claims = claims_of(team, todo, stop)
+    claims = FirstRankClaims(team, todo, stop) if team.first else OtherRankClaims(team, stop)
     patience = GIVE_BACK_AFTER * chunk_seconds(team.size)
     chunk = claims.claim(Report())
     while chunk != OVER:
