@@ -8,7 +8,7 @@ from rodsweep.errors import InputError
 from rodsweep.results.file import points
 from rodsweep.results.file.creation import Plan
 from rodsweep.results.file.store import Store
-from rodsweep.results.file.validation import difference
+from rodsweep.results.file.validation import config_difference
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts import layout_of
 from rodsweep.results.run import journal as pages_of
@@ -178,6 +178,6 @@ def test_two_runs_on_one_file_are_refused(tmp_path, monkeypatch):
 
 
 def test_difference_names_the_first_key_that_differs():
-    assert difference({"a": {"b": 1}}, {"a": {"b": 1}}) == ""
-    assert difference({"a": {"b": 1}}, {"a": {"b": 2}}) == "a.b is 1 in the file and 2 in the config"
-    assert difference({"a": 1, "c": 2}, {"a": 1}) == "c is 2 in the file and null in the config"
+    assert config_difference({"a": {"b": 1}}, {"a": {"b": 1}}) == ""
+    assert config_difference({"a": {"b": 1}}, {"a": {"b": 2}}) == "a.b is 1 in the file and 2 in the config"
+    assert config_difference({"a": 1, "c": 2}, {"a": 1}) == "c is 2 in the file and null in the config"

@@ -13,9 +13,8 @@ CRITICAL_FORCES = (
     ("F_hopf", r"Hopf $\tilde F_{**}$", style.SECOND, "s"),
     ("F_restabilization", "restabilization", style.THIRD, "^"),
 )
-MOST_VALUES = 3
-"""Values of the other parameter for which lines are drawn in one panel."""
 LINE_STYLES = ("-", "--", ":")
+"""For the values of the other parameter for which lines are drawn in one panel."""
 
 
 def draw_thresholds(request: FigureRequest) -> str:
@@ -65,4 +64,4 @@ def _panel(panel: Axes, view: View, name: str, others: list[str]) -> None:
 
 def _spread(values: np.ndarray) -> list[int]:
     """Places of the first, the middle and the last value, each once."""
-    return sorted({0, (len(values) - 1) // 2, len(values) - 1})[:MOST_VALUES]
+    return sorted({0, (len(values) - 1) // 2, len(values) - 1})

@@ -41,7 +41,7 @@ def seal(path: Path) -> None:
         stream.write(SEAL_HEAD + json.dumps({"end": end, "pieces": pieces} | sums).encode() + b"\n")
 
 
-def check(path: Path, values: bool) -> None:
+def check_seal(path: Path, values: bool) -> None:
     """BrokenSeal unless the file, with the numbers in it if `values`, is as it was sealed; or OSError.
 
     The numbers take a second for each GB, the rest a millisecond.

@@ -24,7 +24,7 @@ from ..run.journal import drop_journals, read_journals
 from .creation import Plan, add_variables, create_file
 from .exchange import Exchange, disk_refusals
 from .points import missing_ranges, statuses, write_points
-from .seal import check
+from .seal import check_seal
 from .validation import DAMAGES, change_between, is_ours, reason_of, refuse_misfit
 
 SPACE_FACTOR, SPACE_FIXED = 3, 300_000
@@ -120,7 +120,7 @@ class Store:
         if not self.path.is_file():
             raise InputError(f"{self.path} is not a file; choose another with -o")
         try:
-            check(self.path, values=True)
+            check_seal(self.path, values=True)
             with h5py.File(self.path, "r") as file:
                 theirs = json.loads(file.attrs["config_resolved"])
                 fingerprint = file.attrs["fingerprint"]

@@ -14,7 +14,7 @@ import numpy as np
 from ...errors import InputError
 from ..layouts import layout_of
 from ..layouts.variables import Layout
-from .seal import HDF5_SIGNATURE, check
+from .seal import HDF5_SIGNATURE, check_seal
 
 PROGRAM = "rodsweep"
 """The attribute `program` of our files."""
@@ -57,7 +57,7 @@ def read_header(path: Path, checked: float = inf) -> Header:
     if not path.is_file():
         raise InputError(f"{path} is not a file" if path.exists() else f"{path} does not exist")
     with reading(path):
-        check(path, values=path.stat().st_size <= checked)
+        check_seal(path, values=path.stat().st_size <= checked)
         with h5py.File(path, "r") as file:
             attributes = dict(file.attrs)
             config = json.loads(attributes["config_resolved"])
@@ -89,7 +89,7 @@ def is_ours(path: Path) -> bool:
         if stream.read(8) != HDF5_SIGNATURE:
             return False
     try:
-        check(path, values=False)
+        check_seal(path, values=False)
         with h5py.File(path, "r") as file:
             return bool(file.attrs.get("program") == PROGRAM)
     except DAMAGES:
@@ -98,14 +98,14 @@ def is_ours(path: Path) -> bool:
 
 def change_between(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
     """How two resolved configs differ that do not ask for the same points, in words."""
-    return difference(theirs, ours) or "the points listed in parameters.points differ"
+    return config_difference(theirs, ours) or "the points listed in parameters.points differ"
 
 
-def difference(theirs: Any, ours: Any, key: str = "") -> str:
+def config_difference(theirs: Any, ours: Any, key: str = "") -> str:
     """The first key in which two resolved configs differ, with both values; empty if none does."""
     if isinstance(theirs, dict) and isinstance(ours, dict):
         for name in [*ours, *(n for n in theirs if n not in ours)]:
-            found = difference(theirs.get(name), ours.get(name), f"{key}.{name}" if key else name)
+            found = config_difference(theirs.get(name), ours.get(name), f"{key}.{name}" if key else name)
             if found:
                 return found
         return ""

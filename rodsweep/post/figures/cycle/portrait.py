@@ -36,7 +36,8 @@ def draw_portrait(view: View, points: Sequence[int]) -> tuple[Figure, str]:
     figure, shapes, tips = _panels(len(cycles))
     end = TIP_PERIODS * max(c.period for c in cycles)
     drawn, step = drawn_shapes(len(cycles[0].values["shape_x"]))
-    colours = _colours(len(drawn))
+    # Light to dark, in steps that the colour-blind see.
+    colours = ListedColormap(matplotlib.colormaps["viridis_r"](np.linspace(LIGHTEST, 1, len(drawn))))
     for axes, (upper, lower), cycle in zip(shapes, tips, cycles, strict=True):
         tip_path(axes, cycle)
         clamp(axes)
@@ -84,11 +85,6 @@ def drawn_shapes(stored: int) -> tuple[range, float]:
     """(which of the stored shapes are drawn, the time from one to the next in periods): equal steps."""
     stride = -(-stored // MOST_SHAPES)
     return range(0, stored, stride), stride / stored
-
-
-def _colours(count: int) -> ListedColormap:
-    """One colour for each shape of a cycle, light to dark, in steps that the colour-blind see."""
-    return ListedColormap(matplotlib.colormaps["viridis_r"](np.linspace(LIGHTEST, 1, count)))
 
 
 def _phase_bar(figure: Figure, panels: list[Axes], colours: ListedColormap, step: float) -> None:
