@@ -15,9 +15,9 @@ def slowly(pause: float, points: int = 1) -> str:
     return f"""
 import time
 from rodsweep.results.run.journal import Journal
-from rodsweep.sweep.stop import Stop
+from rodsweep.sweep.stop import StopRequest
 
-append, note = Journal.append, Stop._note
+append, note = Journal.append, StopRequest._note
 kept, heard = [], []
 
 def append_and_wait(self, index, values):
@@ -31,7 +31,7 @@ def note_and_go_on(self, number, frame):
     heard.append(number)
     note(self, number, frame)
 
-Journal.append, Stop._note = append_and_wait, note_and_go_on
+Journal.append, StopRequest._note = append_and_wait, note_and_go_on
 """
 
 

@@ -10,12 +10,15 @@ from matplotlib.colors import to_rgb
 from matplotlib.quiver import Quiver
 from PIL import Image
 
+from rodsweep.discretization.periodic import derivative, resampled
 from rodsweep.errors import EnvironmentLacks, InputError
-from rodsweep.post.figures import chosen_figure, draw
-from rodsweep.post.figures.cycle.amplitude import broken_at_onset, draw_amplitude, lines_of
-from rodsweep.post.figures.cycle.chosen import chosen_cycles, derivative, periodic
+from rodsweep.post.figures import draw
+from rodsweep.post.figures.cycle.amplitude import branches_of, draw_amplitude
 from rodsweep.post.figures.cycle.energy import draw_energy
-from rodsweep.post.figures.cycle.portrait import ARROW, draw_cycle, drawn_shapes
+from rodsweep.post.figures.cycle.portrait import ARROW, draw_portrait, drawn_shapes
+from rodsweep.post.figures.cycle.selection import chosen_cycles
+from rodsweep.post.figures.limit_cycle import figure_name
+from rodsweep.post.figures.request import FigureRequest
 from rodsweep.results.file.creation import Plan, create_file
 from rodsweep.results.file.view import View
 from rodsweep.results.layouts import layout_of
@@ -87,7 +90,7 @@ def test_interpolant_and_derivative_are_exact_for_harmonics(n):
 
     t = np.linspace(-0.3, 1.9, 50)
     samples = np.arange(n) / n
-    assert periodic(f(samples), t) == pytest.approx(f(t), abs=1e-12)
+    assert resampled(f(samples), t) == pytest.approx(f(t), abs=1e-12)
     exact = -2 * np.pi * np.sin(2 * np.pi * samples) - 30 * np.pi * np.cos(10 * np.pi * samples)
     assert derivative(f(samples)) == pytest.approx(exact, abs=1e-10)
 
@@ -102,7 +105,7 @@ def test_drawn_shapes_are_equally_spaced_in_time(stored):
 
 def test_force_presses_on_the_tip_against_e1_in_the_colour_of_its_shape_and_later_is_darker():
     view = make_view(([50.0], [1e4], [1e2], [1e-2], [1.0]), [0])
-    axes = draw_cycle(view, ())[0].axes[0]
+    axes = draw_portrait(view, ())[0].axes[0]
     arrows = [a for a in axes.collections if isinstance(a, Quiver)]
     drawn, _ = drawn_shapes(SHAPES)
     assert len(arrows) == len(drawn) == 12
@@ -120,7 +123,7 @@ def test_force_presses_on_the_tip_against_e1_in_the_colour_of_its_shape_and_late
 
 
 def test_tip_is_drawn_in_its_own_period_with_the_clock_of_the_slowest():
-    figure = draw_cycle(two_cycles(), ())[0]
+    figure = draw_portrait(two_cycles(), ())[0]
     for number, (size, period) in enumerate(((50**0.5 / 16, 0.034), (50**0.5 / 12, 0.026))):
         upper, lower = figure.axes[2 + number], figure.axes[4 + number]
         time = lower.lines[0].get_xdata()
@@ -153,13 +156,13 @@ def test_amplitudes_are_zero_where_straight_and_unknown_where_there_is_no_cycle(
     grid = make_view(SWEEP, SWEPT)
     columns = [c.ravel() for c in np.meshgrid(*SWEEP, indexing="ij")]
     for view in (grid, make_view(columns, SWEPT, as_list=True)):
-        lines = lines_of(view, "F")
+        lines = branches_of(view, "F")
         assert [line.parameters["gamma1"] for line in lines] == [1.0, 0.5]
         for line in lines:
             wanted = expected[line.parameters["gamma1"]]
             assert line.amplitude_y == pytest.approx(wanted, nan_ok=True)
             assert line.amplitude_x == pytest.approx(wanted, nan_ok=True)
-            x, y = broken_at_onset(line, line.amplitude_y)
+            x, y = line.broken_at_onset(line.amplitude_y)
             assert np.isnan([x[1], y[1]]).all()
             assert x[[0, 2]].tolist() == [20, 30]
 
@@ -175,7 +178,7 @@ def test_points_without_a_known_amplitude_are_marked_and_named_but_missing_ones_
 def test_a_list_that_goes_up_and_down_stays_in_its_order():
     F = [20.0, 30.0, 40.0, 30.0, 20.0]
     columns = (F, [1e4] * 5, [1e2] * 5, [1e-2] * 5, [1.0] * 5)
-    (line,) = lines_of(make_view(columns, [1, 1, 0, 0, 1], as_list=True), "F")
+    (line,) = branches_of(make_view(columns, [1, 1, 0, 0, 1], as_list=True), "F")
     assert line.x.tolist() == F
     assert line.amplitude_y == pytest.approx([0, 0, 40**0.5 / 16, 30**0.5 / 16, 0])
 
@@ -205,7 +208,7 @@ FEW = {"stored": ()}
     ],
 )
 def test_the_file_suggests_its_figure(view, output, points, what):
-    assert chosen_figure([view], Path(output), None, points) == what
+    assert figure_name(FigureRequest([view], Path(output), points=points)) == what
 
 
 @pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])
@@ -240,8 +243,8 @@ def test_mp4_without_ffmpeg_says_what_is_missing(tmp_path, monkeypatch):
 
 def test_first_cycles_are_drawn_unless_points_are_chosen(tmp_path):
     view = make_view(SWEEP, SWEPT)
-    assert [c.number for c in chosen_cycles(view, (), ())] == [3, 4, 5]
-    (cycle,) = chosen_cycles(view, (7,), ())
+    assert [c.number for c in chosen_cycles(view, (), ()).cycles] == [3, 4, 5]
+    (cycle,) = chosen_cycles(view, (7,), ()).cycles
     assert (cycle.parameters["F"], cycle.parameters["gamma1"], cycle.period) == (50.0, 1.0, 0.034)
     assert cycle.tau1 == pytest.approx(1e-4)
     assert "the first 3 of 4 cycles" in draw(view, tmp_path / "f.png", what="cycle")
@@ -250,7 +253,7 @@ def test_first_cycles_are_drawn_unless_points_are_chosen(tmp_path):
 
 def test_points_of_a_grid_are_numbered_with_the_last_axis_fastest():
     view = make_view(([40.0, 50.0], [1e3, 1e4, 1e5], [1e2], [1e-2], [1.0, 0.5]), [0] * 12)
-    (cycle,) = chosen_cycles(view, (10,), ())
+    (cycle,) = chosen_cycles(view, (10,), ()).cycles
     assert [cycle.parameters[n] for n in NAMES] == [50.0, 1e4, 1e2, 1e-2, 0.5]
     assert float(cycle.values["tip_y_max"]) == pytest.approx(50**0.5 / 12)
 

@@ -20,8 +20,9 @@ from rodsweep.results.file.store import Store
 from rodsweep.results.file.view import read_view
 from rodsweep.results.run.checkpoints import Checkpoints, drop_checkpoints
 from rodsweep.results.run.journal import Journal
-from rodsweep.sweep.chains import Chains, ChainSolver, Missing
-from rodsweep.sweep.stop import Stop
+from rodsweep.sweep.chains import Chains, ChainSolver
+from rodsweep.sweep.ranges import IndexSet
+from rodsweep.sweep.stop import StopRequest
 
 GRID = {"F": "[1, 2]", "k1": "100", "k2": "[10, 20]", "gamma3": "0.5", "gamma1": "[0.5, 1]"}
 
@@ -363,9 +364,9 @@ def test_chains_hold_every_point_once_in_order_along_their_axis(axis, upward):
 
 def test_chains_that_miss_a_point_are_to_be_done():
     chains = Chains((3, 4), 0, True)
-    assert chains.todo(Missing([(0, 12)])) == [(0, 4)]
-    assert chains.todo(Missing([(4, 5), (10, 11)])) == [(0, 1), (2, 3)]
-    assert chains.todo(Missing([])) == []
+    assert chains.todo(IndexSet([(0, 12)])) == [(0, 4)]
+    assert chains.todo(IndexSet([(4, 5), (10, 11)])) == [(0, 1), (2, 3)]
+    assert chains.todo(IndexSet([])) == []
 
 
 class Kept:
@@ -392,14 +393,14 @@ def chain_solver(missing, kept, solved, stop=None):
         outcome = (index, None if state is None else float(state[0]))
         return outcome, np.array([0.0 if state is None else state[0] + 1])
 
-    stop = Stop() if stop is None else stop
-    return ChainSolver(Chains((6,), 0, True), Missing(missing), solve_from, kept, stop)
+    stop = StopRequest() if stop is None else stop
+    return ChainSolver(Chains((6,), 0, True), IndexSet(missing), solve_from, kept, stop)
 
 
 @pytest.mark.parametrize("points", range(1, 6))
 def test_stopped_chain_goes_on_with_the_next_point(points):
     whole = [outcome for _, outcome in chain_solver([(0, 6)], Kept(), [])(0)]
-    kept, stop, done = Kept(), Stop(), []
+    kept, stop, done = Kept(), StopRequest(), []
     for _, outcome in chain_solver([(0, 6)], kept, [], stop)(0):
         done.append(outcome)
         if len(done) == points:

@@ -5,11 +5,17 @@ import pytest
 from conftest import ROOT
 
 from rodsweep.cli.job import make_job
+from rodsweep.cli.tasks import TASKS
 from rodsweep.errors import InputError
-from rodsweep.post.figures import draw
+from rodsweep.post.figures import FIGURES, draw
 from rodsweep.post.figures.spectrum import broken, followed_roots
+from rodsweep.post.summary import SUMMARIES
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
+
+
+def test_every_task_has_a_summary_and_a_figure():
+    assert SUMMARIES.keys() == FIGURES.keys() == TASKS.keys()
 
 
 def test_rightmost_and_smallest_roots_differ():

@@ -155,7 +155,7 @@ def test_merge_takes_over_what_another_wrote_while_it_waited(command, monkeypatc
     clock = SimpleNamespace(monotonic=lambda: 0.0, sleep=lambda seconds: waits.set())  # patient without end
     monkeypatch.setattr(lock, "time", clock)
     with ThreadPoolExecutor(1) as pool:
-        waiting = pool.submit(merge, merged, [second], lambda config: False)
+        waiting = pool.submit(merge, merged, [second])
         assert waits.wait(PATIENCE)
         shutil.copy(first, merged)
         held.release()

@@ -5,9 +5,10 @@ import numpy as np
 import pytest
 
 from rodsweep.errors import InputError
-from rodsweep.results.file import store as stores
+from rodsweep.results.file import points
 from rodsweep.results.file.creation import Plan
-from rodsweep.results.file.store import Store, difference
+from rodsweep.results.file.store import Store
+from rodsweep.results.file.validation import config_difference
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts import layout_of
 from rodsweep.results.run import journal as pages_of
@@ -71,8 +72,8 @@ def test_blocks_of_any_size_give_the_same_file(tmp_path, monkeypatch, is_grid):
     count = whole.missing()[0][1]
     journal(whole, range(count))
     whole.fold({})
-    monkeypatch.setattr(pages_of, "BLOCK", 3 * (LAYOUT.record.itemsize + 4))
-    monkeypatch.setattr(stores, "BLOCK", 2)
+    monkeypatch.setattr(pages_of, "BYTES_A_BLOCK", 3 * (LAYOUT.record.itemsize + 4))
+    monkeypatch.setattr(points, "POINTS_AT_ONCE", 2)
     store = Store(tmp_path / "a.h5", plan(is_grid))
     order = np.random.default_rng(1).permutation(count).tolist()
     journal(store, order[1:], rank=0)
@@ -177,6 +178,6 @@ def test_two_runs_on_one_file_are_refused(tmp_path, monkeypatch):
 
 
 def test_difference_names_the_first_key_that_differs():
-    assert difference({"a": {"b": 1}}, {"a": {"b": 1}}) == ""
-    assert difference({"a": {"b": 1}}, {"a": {"b": 2}}) == "a.b is 1 in the file and 2 in the config"
-    assert difference({"a": 1, "c": 2}, {"a": 1}) == "c is 2 in the file and null in the config"
+    assert config_difference({"a": {"b": 1}}, {"a": {"b": 1}}) == ""
+    assert config_difference({"a": {"b": 1}}, {"a": {"b": 2}}) == "a.b is 1 in the file and 2 in the config"
+    assert config_difference({"a": 1, "c": 2}, {"a": 1}) == "c is 2 in the file and null in the config"

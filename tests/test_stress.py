@@ -16,10 +16,10 @@ from ranks import PATIENCE, kill, pause_until, ranks_in, wait_for_end
 from rodsweep.cli.job import make_job
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.variables import MISSING
-from rodsweep.results.run.journal import MAGIC, journal_directory
+from rodsweep.results.run.journal import JOURNAL_HEAD, journal_directory
 
 KILLS = int(os.environ.get("RODSWEEP_KILLS", "4"))
-HEADER = len(MAGIC) + 65
+HEADER = len(JOURNAL_HEAD) + 65
 """Bytes of a journal before its first point."""
 SPECTRA = """
 task: spectrum

@@ -5,7 +5,7 @@ from random import Random
 import pytest
 
 from rodsweep.cli.job import make_job
-from rodsweep.cli.running import _plan
+from rodsweep.cli.running import plan_of
 from rodsweep.errors import InputError
 from rodsweep.post.figures import draw
 from rodsweep.post.summary import show_summary
@@ -39,7 +39,7 @@ def test_file_cut_off_anywhere_is_refused_and_left_as_it_is(command, name, monke
     whole = path.read_bytes()
     monkeypatch.chdir(command.directory)
     job = make_job(config, ())
-    plan = _plan(job, job.task.solver(), Shard())
+    plan = plan_of(job, job.task.solver(), Shard(), "")
     rng, refused = Random(name), 0
     for size in [0, 1, 8, 100, len(whole) - 1, *(rng.randrange(len(whole)) for _ in range(CUTS))]:
         path.write_bytes(whole[:size])

@@ -43,9 +43,9 @@ def commands() -> None:
 @click.option("--shard", metavar="I/N", default="1/1", help="Compute the I-th of N parts only, to be merged.")
 def run(config: Path, output: Path | None, overrides: tuple[str, ...], fresh: bool, shard: str) -> None:
     """Compute CONFIG, continuing an interrupted result file. Start it with mpiexec for many ranks."""
-    from ..sweep.stop import Stop
+    from ..sweep.stop import StopRequest
 
-    stop = Stop()
+    stop = StopRequest()
     stop.listen()  # before everything that takes time: a warning may come early
     from ..sweep.shards import shard_of
     from .running import run_config

@@ -4,29 +4,26 @@ import os
 import socket
 import time
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import click
 import numpy as np
-from numpy.typing import NDArray
 
 from ..errors import EnvironmentLacks
+from ..results.file import provenance
 from ..results.file.creation import Plan
-from ..results.file.kernels import KERNELS, kernels_of, told, united
-from ..results.file.provenance import LONGEST_ATTRIBUTE, MOST_RANKS_TOLD, now, provenance
 from ..results.file.store import Store
 from ..results.file.view import read_view
 from ..results.run.checkpoints import Checkpoints
 from ..results.run.journal import Journal, journal_directory
 from ..solve.backend.availability import require_petsc
-from ..sweep.chains import ChainSolver, Missing
-from ..sweep.handout import Range
+from ..sweep.chains import ChainSolver
 from ..sweep.loop import Share, sweep
 from ..sweep.progress import Teller
+from ..sweep.ranges import IndexRange, IndexSet, total
 from ..sweep.shards import Shard
-from ..sweep.stop import Stop
+from ..sweep.stop import StopRequest
 from ..sweep.team import Team
 from .job import Job, make_job
 from .tasks.protocol import Solver, succeeded
@@ -36,9 +33,12 @@ FAILURES_TOLD = 3
 CONTINUE = 75
 """Exit status of a run that was asked to stop: the same command continues it (EX_TEMPFAIL of sysexits.h)."""
 
+Contribution = tuple[str, list[str], Share]
+"""A rank's host, the failures that it tells, and what it did."""
+
 
 def run_config(
-    path: Path, output: Path, overrides: tuple[str, ...], fresh: bool, shard: Shard, stop: Stop
+    path: Path, output: Path, overrides: tuple[str, ...], fresh: bool, shard: Shard, stop: StopRequest
 ) -> int:
     """Runs a config, or a shard of it, on all ranks; returns the exit status."""
     team = Team()
@@ -51,66 +51,69 @@ def run_config(
 class _Run:
     """One run of a job on this rank."""
 
-    def __init__(self, team: Team, job: Job, output: Path, shard: Shard, stop: Stop):
+    store: Store
+    """On the first rank, once it is open."""
+
+    def __init__(self, team: Team, job: Job, output: Path, shard: Shard, stop: StopRequest):
+        from ..solve.backend.blas_kernel import blas
+
         self.team, self.job, self.output, self.shard, self.stop = team, job, output, shard, stop
-        self.began, self.started = time.monotonic(), now()
+        self.began, self.started = time.monotonic(), provenance.now()
         self.solver = job.task.solver()
-        self.kernels = united(team.gather(_blas()) or [])
-        plan = _plan(job, self.solver, shard)
-        self.plan = replace(plan, attributes=plan.attributes | {KERNELS: self.kernels})
+        self.kernels = provenance.united_kernels(team.gather(blas()) or [])
+        self.plan = plan_of(job, self.solver, shard, self.kernels)
 
     def run(self, fresh: bool) -> int:
         """Solves what is missing and folds it into the file; returns the exit status."""
-        store: list[Store] = []
-
-        def open_store() -> list[Range]:
-            store.append(Store(self.output, self.plan, fresh))
-            return store[0].missing()
-
-        missing = self.team.on_first(open_store)
+        missing = self.team.on_first(lambda: self._open(fresh))
         units, count = self._units(missing)
         if self.team.first:
-            self._announce(count, sum(stop - start for start, stop in missing))
+            self._announce(count, total(missing))
+        contributions: list[Contribution] = []
         if count:
-            self.team.on_first(lambda: self._note_kernels(store[0]))
-        failures, share = self._solve(units, missing, count) if count else ([], Share(0, 0.0, 0.0))
-        told = self.team.gather(failures)
-        shares = self.team.gather(share)
-        hosts = self.team.gather(socket.gethostname())
-        ending = {**self._ending(hosts or []), **_utilisation(shares or [])} if count else {}
-        return self.team.on_first(lambda: self._finish(store[0], count, ending, told or []))
+            self.team.on_first(self._note_kernels)
+            failures, share = self._solve(units, missing, count)
+            contributions = self.team.gather((socket.gethostname(), failures, share)) or []
+        return self.team.on_first(lambda: self._finish(count, contributions))
 
-    def _units(self, missing: list[Range]) -> tuple[list[Range], int]:
+    def _open(self, fresh: bool) -> list[IndexRange]:
+        """Opens the file; returns the points that it misses."""
+        self.store = Store(self.output, self.plan, fresh)
+        return self.store.missing()
+
+    def _units(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
         """(the units of this shard that miss a point, the points that they miss)."""
         chained = self.solver.chained
         if chained is None:
             units = self.shard.part(missing, self.job.points.count)
-            return units, sum(stop - start for start, stop in units)
-        lacks, chains = Missing(missing), chained.chains
+            return units, total(units)
+        lacks, chains = IndexSet(missing), chained.chains
         units = self.shard.part(chains.todo(lacks), chains.count)
         each = (lacks[chains.indices(chain)].sum() for unit in units for chain in range(*unit))
         return units, int(sum(each))
 
     def _announce(self, count: int, missing: int) -> None:
         """Says what there is to do."""
-        total = self.job.points.count
-        text = f"{self.output}: {count} of {total} points to do"
-        if total > missing:
-            text += f", {total - missing} kept"
+        points = self.job.points.count
+        text = f"{self.output}: {count} of {points} points to do"
+        if points > missing:
+            text += f", {points - missing} kept"
         if self.shard.of > 1:
             text += f"; shard {self.shard}"
         click.echo(text)
 
-    def _note_kernels(self, store: Store) -> None:
+    def _note_kernels(self) -> None:
         """Keeps in the file which BLAS kernels compute its points, and says so where there are several."""
-        before = store.attributes()
-        kernels = united(kernels_of(before), self.kernels.splitlines())
-        if kernels != before.get(KERNELS):
-            store.fold({KERNELS: kernels})
-        if sentence := told(kernels):
+        before = self.store.attributes()
+        kernels = provenance.united_kernels(provenance.kernels_of(before), self.kernels.splitlines())
+        if kernels != before.get(provenance.KERNELS):
+            self.store.fold({provenance.KERNELS: kernels})
+        if sentence := provenance.kernels_sentence(kernels):
             click.echo(f"{self.output}: {sentence}")
 
-    def _solve(self, units: list[Range], missing: list[Range], count: int) -> tuple[list[str], Share]:
+    def _solve(
+        self, units: list[IndexRange], missing: list[IndexRange], count: int
+    ) -> tuple[list[str], Share]:
         """This rank's share of the units, into its journal; and what to tell of failures."""
         failures: list[str] = []
         solver, plan = self.solver, self.plan
@@ -118,9 +121,8 @@ class _Run:
         def keep(index: int, result: Any) -> None:
             journal.append(index, solver.record(index, result))
             if not succeeded(result.status) and len(failures) < FAILURES_TOLD:
-                where = ", ".join(
-                    f"{name}={value!r}" for name, value in self.job.points.values(index).items()
-                )
+                values = self.job.points.values(index)
+                where = ", ".join(f"{name}={value!r}" for name, value in values.items())
                 failures.append(f"{where}: {result.status.name} {result.message}".rstrip())
 
         solver.warm_up()
@@ -128,7 +130,7 @@ class _Run:
         try:
             directory = journal_directory(self.output)
             journal = Journal(directory, self.team.rank, plan.layout, plan.fingerprint)
-            solve = self._solve_unit(Missing(missing), Checkpoints(directory, plan.fingerprint))
+            solve = self._solve_unit(IndexSet(missing), Checkpoints(directory, plan.fingerprint))
             share = sweep(self.team, units, solve, keep, tell or (lambda done: None), self.stop)
             journal.close()
         except OSError as error:
@@ -142,7 +144,7 @@ class _Run:
         return failures, share
 
     def _solve_unit(
-        self, missing: Missing, checkpoints: Checkpoints
+        self, missing: IndexSet, checkpoints: Checkpoints
     ) -> Callable[[int], Iterable[tuple[int, Any]]]:
         """How a unit is solved: a point, or a chain where points start one from the other."""
         chained = self.solver.chained
@@ -150,38 +152,22 @@ class _Run:
             return lambda index: ((index, self.solver.solve(index)),)
         return ChainSolver(chained.chains, missing, chained.solve_from, checkpoints, self.stop)
 
-    def _ending(self, hosts: list[str]) -> dict[str, Any]:
-        """Attributes that say where and by what the points of this run were computed."""
-        names = ("_version", "_commit", "_options")
-        return {k: v for k, v in self.plan.attributes.items() if k.endswith(names)} | {
-            "ranks": self.team.size,
-            "hosts": " ".join(sorted(set(hosts)))[:LONGEST_ATTRIBUTE],
-            "started": self.started,
-            "stopped": self.stop.name,
-            "shard": self.plan.attributes["shard"],
-            "mpi_library": self.team.MPI.Get_library_version().split("\n")[0].strip("\0 "),
-            "slurm_job": os.environ.get("SLURM_JOB_ID", ""),
-        }
-
-    def _finish(self, store: Store, count: int, ending: dict[str, Any], told: list[list[str]]) -> int:
+    def _finish(self, count: int, contributions: list[Contribution]) -> int:
         """Folds everything into the file, says how the run ended, and with which status it exits."""
         if count:
-            store.fold(ending)
-        missing = store.missing()
-        if not missing and not store.finished():
+            self.store.fold(self._history(contributions))
+        missing = self.store.missing()
+        if not missing and "finished" not in self.store.attributes():
             finish = self.solver.finish
-            store.fold({"finished": now()}, finish(read_view(self.output)) if finish else ())
-        counts = store.status_counts()
-        store.close()
+            self.store.fold({"finished": provenance.now()}, finish(read_view(self.output)) if finish else ())
+        counts = self.store.status_counts()
+        self.store.close()
         left = self._units(missing)[1]
-        seconds = time.monotonic() - self.began
-        each = 1e3 * seconds * self.team.size / max(count - left, 1)
-        spent = f"{count - left} points in {seconds:.2f} s on {self.team.size} ranks"
-        spent += f" ({each:.3g} ms a point and rank)" if count > left else ""
         part = f"shard {self.shard} of {self.output}" if missing else f"{self.output}"
-        click.echo(spent if count else f"{part} is complete, nothing to do")
+        click.echo(self._time_spent(count - left) if count else f"{part} is complete, nothing to do")
         click.echo(f"{self.output}: " + ", ".join(f"{n} {name}" for name, n in counts.items()))
-        for failure in [failure for some in told for failure in some][:FAILURES_TOLD]:
+        told = [failure for _, failures, _ in contributions for failure in failures]
+        for failure in told[:FAILURES_TOLD]:
             click.echo(f"  {failure}")
         if left:
             click.echo(f"stopped by {self.stop.name}; the same command continues")
@@ -192,26 +178,46 @@ class _Run:
         click.echo(f"  `rodsweep show {self.output}` says what each status means")
         return 1
 
+    def _time_spent(self, points: int) -> str:
+        seconds = time.monotonic() - self.began
+        text = f"{points} points in {seconds:.2f} s on {self.team.size} ranks"
+        each = 1e3 * seconds * self.team.size / max(points, 1)
+        return text + (f" ({each:.3g} ms a point and rank)" if points else "")
 
-def _utilisation(shares: list[Share]) -> dict[str, NDArray[Any]]:
-    """What each rank did, as attributes, each of shape (ranks,)."""
-    shares = shares[:MOST_RANKS_TOLD]
-    return {
-        "rank_points": np.array([share.points for share in shares], dtype="i4"),
-        "rank_busy_seconds": np.array([share.busy for share in shares], dtype="f4"),
-        "rank_idle_seconds": np.array([share.idle for share in shares], dtype="f4"),
-    }
+    def _history(self, contributions: list[Contribution]) -> dict[str, Any]:
+        """Attributes that say where, by what and by whom the points of this run were computed."""
+        names = ("_version", "_commit", "_options")
+        hosts = {host for host, *_ in contributions}
+        shares = [share for *_, share in contributions[: provenance.MOST_RANKS_TOLD]]
+        points, busy, idle = zip(*((share.points, share.busy, share.idle) for share in shares), strict=True)
+        numbers = (np.array(points, "i4"), np.array(busy, "f4"), np.array(idle, "f4"))
+        return {k: v for k, v in self.plan.attributes.items() if k.endswith(names)} | {
+            "ranks": self.team.size,
+            "hosts": " ".join(sorted(hosts))[: provenance.LONGEST_ATTRIBUTE],
+            "started": self.started,
+            "stopped": self.stop.name,
+            "shard": self.plan.attributes["shard"],
+            "mpi_library": self.team.MPI.Get_library_version().split("\n")[0].strip("\0 "),
+            "slurm_job": os.environ.get("SLURM_JOB_ID", ""),
+            **dict(zip(provenance.RANK_SHARES, numbers, strict=True)),
+        }
 
 
-def _blas() -> str:
-    from ..solve.backend.blas_kernel import blas
-
-    return blas()
-
-
-def _plan(job: Job, solver: Solver, shard: Shard) -> Plan:
+def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
+    """The file that a run of the job, with these BLAS kernels, makes or continues."""
     from ..solve.backend import petsc
 
+    attributes = {
+        "Conventions": "CF-1.8",
+        "title": job.name,
+        "task": job.config.task,
+        "time_unit": "tau2 = gamma2 L^4/k3",
+        "config": job.text,
+        "petsc_options": petsc.options(),
+        "shard": str(shard) if shard.of > 1 else "",
+        "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in solver.statuses),
+        provenance.KERNELS: kernels,
+    }
     versions = {f"{name}_version": value for name, value in petsc.versions().items()}
     return Plan(
         columns=job.points.columns,
@@ -220,18 +226,6 @@ def _plan(job: Job, solver: Solver, shard: Shard) -> Plan:
         coordinates=job.task.coordinates(),
         constants=job.task.constants(),
         config=job.resolved,
-        attributes={
-            "Conventions": "CF-1.8",
-            "title": job.name,
-            "task": job.config.task,
-            "time_unit": "tau2 = gamma2 L^4/k3",
-            "config": job.text,
-            "petsc_options": petsc.options(),
-            "shard": str(shard) if shard.of > 1 else "",
-            "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in solver.statuses),
-        }
-        | job.config.constants
-        | versions
-        | provenance(),
+        attributes=attributes | job.config.constants | versions | provenance.provenance(),
         flags=tuple((int(s), s.name) for s in solver.statuses),
     )

@@ -5,21 +5,21 @@ so a chain that was killed goes on where it stood and ends in the same numbers.
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .handout import Range
-from .stop import Stop
+from .ranges import IndexRange, IndexSet, joined
+from .stop import StopRequest
 
 State = NDArray[np.float64] | None
 """What a point starts from where its neighbour has something to offer; None otherwise."""
 
 
-class Checkpoints(Protocol):
+class ChainStates(Protocol):
     """Where the state of a chain's last point is kept."""
 
     def write(self, chain: int, index: int, state: State) -> None: ...
@@ -50,34 +50,14 @@ class Chains:
     def indices(self, chain: int) -> NDArray[np.int64]:
         """The flat indices of a chain's points in the order in which they are solved, shape (length,)."""
         inner = math.prod(self.shape[self.axis + 1 :])
-        outer, rest = divmod(chain, inner)
-        along = outer * self.length * inner + rest + inner * np.arange(self.length)
+        outer, within = divmod(chain, inner)
+        along = outer * self.length * inner + within + inner * np.arange(self.length)
         return along if self.upward else along[::-1]
 
-    def todo(self, missing: "Missing") -> list[Range]:
+    def todo(self, missing: IndexSet) -> list[IndexRange]:
         """Ranges of the chains that miss a point."""
-        ranges: list[Range] = []
-        for chain in range(self.count):
-            if not missing[self.indices(chain)].any():
-                continue
-            if ranges and ranges[-1][1] == chain:
-                ranges[-1] = (ranges[-1][0], chain + 1)
-            else:
-                ranges.append((chain, chain + 1))
-        return ranges
-
-
-class Missing:
-    """Which points lie in some ranges, which are sorted; takes no memory for the points themselves."""
-
-    def __init__(self, ranges: Sequence[Range]):
-        # The first one is empty: an index before all others has a range to be compared with.
-        self.starts, self.stops = np.array([(-1, -1), *ranges]).T
-
-    def __getitem__(self, indices: Any) -> Any:
-        """Whether a flat index lies in one of the ranges, or an array of it for an array of indices."""
-        place = np.searchsorted(self.starts, indices, side="right") - 1
-        return indices < self.stops[place]
+        chains = (n for n in range(self.count) if missing[self.indices(n)].any())
+        return joined((n, n + 1) for n in chains)
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,17 +65,17 @@ class ChainSolver:
     """Solves the chains of a run, of which only the `missing` points are to be kept."""
 
     chains: Chains
-    missing: Missing
+    missing: IndexSet
     solve_from: Callable[[int, State], tuple[Any, State]]
     """From an index and what the point starts from to its outcome and what its neighbour starts from."""
-    checkpoints: Checkpoints
-    stop: Stop
+    checkpoints: ChainStates
+    stop: StopRequest
 
     def __call__(self, chain: int) -> Iterator[tuple[int, Any]]:
         """The missing points of a chain, each with its outcome; fewer once a stop is asked for.
 
         The state is kept after the point, so a kill in between costs one point that is solved again;
-        the other way round its state could be lost.
+        if the state came first, a kill could lose the point for good.
         """
         order = list(map(int, self.chains.indices(chain)))
         first, state = self._resume(chain, order)

@@ -3,9 +3,9 @@
 The first rank computes like any other; a thread of it answers the requests of the others, so they
 need not wait for its own solve to end. A solve may keep the thread waiting, so ranks ask for their next
 chunk when they begin one, and get it while plenty is left. A rank that finds its chunk slower than foreseen
-gives the rest back with its next request. Nobody is told that the work is over while another rank may still
-give something back, so the ranks finish within about one unit of each other. A rank that is asked to stop
-tells the first, which tells all: each ends with the point that it is at.
+gives back what is left of it with its next request. Nobody is told that the work is over while another rank
+may still give something back, so the ranks finish within about one unit of each other. A rank that is asked
+to stop tells the first, which tells all: each ends with the point that it is at.
 """
 
 import threading
@@ -13,26 +13,26 @@ import time
 from collections import Counter, deque
 from dataclasses import dataclass
 
-from .stop import Stop
+from .ranges import IndexRange, total
+from .stop import StopRequest
 from .team import Team
 
-REQUEST, ANSWER, STOP = 71, 72, 73
+REQUEST_TAG, ANSWER_TAG, STOP_TAG = 71, 72, 73
 CHUNK_SECONDS, CHUNK_SECONDS_A_RANK = 0.1, 1e-3
 """How long a chunk should take: long against a message, short against a run; with many ranks so long that the
 first one, which answers a request in 50 microseconds, spends a twentieth of its time on answers."""
 GIVE_BACK_AFTER = 3.0
-"""Time after which a rank gives the rest of its chunk back, in units of what the chunk should take."""
+"""Time after which a rank gives back what is left of its chunk, in units of what the chunk should take."""
 LARGEST_CHUNK = 1 << 16
 PLENTY = 4
 """Units a rank that have to be left for a rank to get its next chunk before it has done the last."""
-POLL_SECONDS, REST_SECONDS = 2e-3, 5e-3
+POLL_SECONDS, RELIEVED_POLL_SECONDS = 2e-3, 5e-3
 """How long the thread sleeps: each waking takes the first rank 20 microseconds or more of its solve. Longer
 where that rank itself answers between its points."""
 ASK_SECONDS = 1e-4
 """How often a rank that waits for its next chunk looks for it."""
 
-Range = tuple[int, int]
-OVER: Range = (0, 0)
+OVER: IndexRange = (0, 0)
 
 
 def chunk_seconds(ranks: int) -> float:
@@ -50,7 +50,7 @@ class Report:
 
     done: int = 0
     seconds: float = 0.0
-    rest: Range = OVER
+    given_back: IndexRange = OVER
     points: int = 0
     ahead: bool = False
     stop: str = ""
@@ -59,13 +59,12 @@ class Report:
 class Handout:
     """The units still to do, on the first rank; safe to use from its two threads."""
 
-    def __init__(self, todo: list[Range], ranks: int):
+    def __init__(self, todo: list[IndexRange], ranks: int):
         self.todo = deque(todo)
-        self.left = sum(stop - start for start, stop in todo)
+        self.left = total(todo)
         self.ranks = ranks
         self.held: Counter[int] = Counter()
         """Chunks that each rank has and has not reported on."""
-        self.done = 0
         self.points = 0
         self.pace: dict[int, float] = {}
         self.stopped = False
@@ -76,40 +75,39 @@ class Handout:
         with self.change:
             if self.held[rank]:
                 self.held[rank] -= 1
-            self.done += report.done
             self.points += report.points
             if report.done:
                 self.pace[rank] = report.seconds / report.done
-            start, stop = report.rest
-            if stop > start and not self.stopped:
+            first, end = report.given_back
+            if end > first and not self.stopped:
                 self.pace[rank] = report.seconds  # as slow as its slowest unit may be: next, one unit
-                self.todo.appendleft(report.rest)
-                self.left += stop - start
+                self.todo.appendleft(report.given_back)
+                self.left += end - first
             self.change.notify_all()
 
-    def take(self, rank: int) -> Range | None:
+    def take(self, rank: int) -> IndexRange | None:
         """The next chunk for a rank, OVER when all work is done, None when it has to wait."""
         with self.change:
             if self.todo:
                 return self._take(rank)
             return None if self.held.total() and not self.stopped else OVER
 
-    def take_ahead(self, rank: int) -> Range | None:
+    def take_ahead(self, rank: int) -> IndexRange | None:
         """The next chunk for a rank that still works on one, None unless plenty is left."""
         with self.change:
             return self._take(rank) if self.todo and self.left >= PLENTY * self.ranks else None
 
-    def _take(self, rank: int) -> Range:
+    def _take(self, rank: int) -> IndexRange:
         share = max(1, self.left // (2 * self.ranks))
         pace = self.pace.get(rank)
         size = 1 if pace is None else int(chunk_seconds(self.ranks) / max(pace, 1e-7))
-        start, stop = self.todo.popleft()
-        end = min(stop, start + max(1, min(size, share, LARGEST_CHUNK)))
-        if end < stop:
-            self.todo.appendleft((end, stop))
-        self.left -= end - start
+        first, last = self.todo.popleft()
+        end = min(last, first + max(1, min(size, share, LARGEST_CHUNK)))
+        if end < last:
+            self.todo.appendleft((end, last))
+        self.left -= end - first
         self.held[rank] += 1
-        return start, end
+        return first, end
 
     def stop(self) -> None:
         """Leaves what has not been handed out for another run."""
@@ -118,16 +116,11 @@ class Handout:
             self.todo.clear()
             self.change.notify_all()
 
-    def wait(self) -> None:
-        """Waits a little for a change."""
-        with self.change:
-            self.change.wait(0.05)
-
 
 class FirstRankClaims:
     """How the first rank gets its chunks, and how its thread serves the others."""
 
-    def __init__(self, team: Team, todo: list[Range], stop: Stop):
+    def __init__(self, team: Team, todo: list[IndexRange], stop: StopRequest):
         self.team, self.handout, self.stop = team, Handout(todo, team.size), stop
         self.waiting: deque[int] = deque()
         self.ahead: set[int] = set()
@@ -146,13 +139,14 @@ class FirstRankClaims:
         """Points that all ranks have reported kept."""
         return self.handout.points
 
-    def claim(self, report: Report) -> Range:
+    def claim(self, report: Report) -> IndexRange:
         with self.serving:
             self._heed_stop()
         self.handout.settle(0, report)
         self.between_points()
         while (chunk := self.handout.take(0)) is None:
-            self.handout.wait()
+            with self.handout.change:
+                self.handout.change.wait(0.05)
             self.between_points()
         return chunk
 
@@ -177,20 +171,20 @@ class FirstRankClaims:
         if self.stop and not self.handout.stopped:
             self.handout.stop()
             for rank in self.working:
-                self.team.comm.send(self.stop.name, dest=rank, tag=STOP)
+                self.team.comm.send(self.stop.name, dest=rank, tag=STOP_TAG)
 
     def _serve(self) -> None:
         comm, MPI = self.team.comm, self.team.MPI
         with self.serving:
-            while comm.Iprobe(source=MPI.ANY_SOURCE, tag=STOP, status=self.status):
-                self.stop.name = comm.recv(source=self.status.Get_source(), tag=STOP)
+            while comm.Iprobe(source=MPI.ANY_SOURCE, tag=STOP_TAG, status=self.status):
+                self.stop.name = comm.recv(source=self.status.Get_source(), tag=STOP_TAG)
             self._heed_stop()
-            while comm.Iprobe(source=MPI.ANY_SOURCE, tag=REQUEST, status=self.status):
+            while comm.Iprobe(source=MPI.ANY_SOURCE, tag=REQUEST_TAG, status=self.status):
                 rank = self.status.Get_source()
-                self._hear(rank, comm.recv(source=rank, tag=REQUEST))
+                self._hear(rank, comm.recv(source=rank, tag=REQUEST_TAG))
             while self.waiting and (chunk := self.handout.take(self.waiting[0])) is not None:
                 rank = self.waiting.popleft()
-                comm.send(chunk, dest=rank, tag=ANSWER)
+                comm.send(chunk, dest=rank, tag=ANSWER_TAG)
                 if chunk == OVER:
                     self.working.discard(rank)
 
@@ -198,7 +192,7 @@ class FirstRankClaims:
         """A report: its rank waits for an answer unless it has it; one to a request ahead is sent at once."""
         if report.ahead:
             if (chunk := self.handout.take_ahead(rank)) is not None:
-                self.team.comm.send(chunk, dest=rank, tag=ANSWER)
+                self.team.comm.send(chunk, dest=rank, tag=ANSWER_TAG)
                 self.ahead.add(rank)
             return
         if report.stop:  # which may come before the message that says so
@@ -214,8 +208,8 @@ class FirstRankClaims:
         with self.team.together():
             while self.working:
                 self._serve()
-                answering = time.monotonic() - self.served < REST_SECONDS
-                time.sleep(REST_SECONDS if answering else POLL_SECONDS)
+                answering = time.monotonic() - self.served < RELIEVED_POLL_SECONDS
+                time.sleep(RELIEVED_POLL_SECONDS if answering else POLL_SECONDS)
 
 
 class OtherRankClaims:
@@ -223,32 +217,27 @@ class OtherRankClaims:
 
     points = 0
 
-    def __init__(self, team: Team, stop: Stop):
+    def __init__(self, team: Team, stop: StopRequest):
         self.comm, self.stop, self.told = team.comm, stop, False
 
-    def claim(self, report: Report) -> Range:
-        self.comm.send(report, dest=0, tag=REQUEST)
+    def claim(self, report: Report) -> IndexRange:
+        self.comm.send(report, dest=0, tag=REQUEST_TAG)
         # A blocking receive would spin and take the processor from the ranks that compute.
-        while not self.comm.Iprobe(source=0, tag=ANSWER):
+        while not self.comm.Iprobe(source=0, tag=ANSWER_TAG):
             self.between_points()
             time.sleep(ASK_SECONDS)
-        chunk: Range = self.comm.recv(source=0, tag=ANSWER)
+        chunk: IndexRange = self.comm.recv(source=0, tag=ANSWER_TAG)
         if chunk != OVER:
-            self.comm.send(Report(ahead=True), dest=0, tag=REQUEST)
+            self.comm.send(Report(ahead=True), dest=0, tag=REQUEST_TAG)
         return chunk
 
     def between_points(self) -> None:
         """Passes a request to stop on to the first rank, or learns of it from there."""
-        if not self.told and self.comm.Iprobe(source=0, tag=STOP):
-            self.stop.name, self.told = self.comm.recv(source=0, tag=STOP), True
+        if not self.told and self.comm.Iprobe(source=0, tag=STOP_TAG):
+            self.stop.name, self.told = self.comm.recv(source=0, tag=STOP_TAG), True
         if not self.told and self.stop:
-            self.comm.send(self.stop.name, dest=0, tag=STOP)
+            self.comm.send(self.stop.name, dest=0, tag=STOP_TAG)
             self.told = True
 
     def close(self) -> None:
         """Nothing to close."""
-
-
-def claims_of(team: Team, todo: list[Range], stop: Stop) -> FirstRankClaims | OtherRankClaims:
-    """This rank's way to its chunks; `todo` matters on the first rank only."""
-    return FirstRankClaims(team, todo, stop) if team.first else OtherRankClaims(team, stop)

@@ -1,12 +1,13 @@
-"""The loop that every rank runs: claim a chunk, solve its units, keep each point, give slow rest back."""
+"""The loop that every rank runs: claim a chunk, solve its units, keep each point, give back what is left."""
 
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TypeVar
 
-from .handout import GIVE_BACK_AFTER, OVER, Range, Report, chunk_seconds, claims_of
-from .stop import Stop
+from .handout import GIVE_BACK_AFTER, OVER, FirstRankClaims, OtherRankClaims, Report, chunk_seconds
+from .ranges import IndexRange
+from .stop import StopRequest
 from .team import Team
 
 Result = TypeVar("Result")
@@ -23,11 +24,11 @@ class Share:
 
 def sweep(
     team: Team,
-    todo: list[Range],
+    todo: list[IndexRange],
     solve: Callable[[int], Iterable[tuple[int, Result]]],
     keep: Callable[[int, Result], None],
     tell: Callable[[int], None],
-    stop: Stop,
+    stop: StopRequest,
 ) -> Share:
     """Solves every unit of the ranges `todo`, each on some rank; returns when all ranks are done.
 
@@ -38,7 +39,7 @@ def sweep(
     """
     started = time.monotonic()
     busy, points = 0.0, 0
-    claims = claims_of(team, todo, stop)
+    claims = FirstRankClaims(team, todo, stop) if team.first else OtherRankClaims(team, stop)
     patience = GIVE_BACK_AFTER * chunk_seconds(team.size)
     chunk = claims.claim(Report())
     while chunk != OVER:

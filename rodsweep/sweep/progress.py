@@ -7,9 +7,9 @@ import time
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-LINE_EVERY = 10.0
+LINE_SECONDS = 10.0
 """Seconds between lines in a log; the first comes after one second."""
-BAR_EVERY = 0.1
+BAR_SECONDS = 0.1
 
 
 def on_terminal() -> bool:
@@ -48,11 +48,11 @@ class Teller:
             return
         rate = done / (now - self.began)
         if self.bar is not None:
-            self.next = now + BAR_EVERY
+            self.next = now + BAR_SECONDS
             self.bar.update(self.task, completed=done, rate=f"{rate:.0f}/s")
             self.bar.refresh()
             return
-        self.next = now + LINE_EVERY
+        self.next = now + LINE_SECONDS
         left = (self.total - done) / rate if rate else float("inf")
         print(f"{done} of {self.total} points, {rate:.0f}/s, {left:.0f} s left", file=sys.stderr, flush=True)
 

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..errors import InputError
-from .handout import Range
+from .ranges import IndexRange
 
-BLOCKS = 64
+BLOCKS_A_SHARD = 64
 """Blocks of neighbouring units that a shard consists of: many, so that shards cost alike, but no more, so
 that neighbours stay together in its file."""
 
@@ -21,12 +21,12 @@ class Shard:
     def __str__(self) -> str:
         return f"{self.number}/{self.of}"
 
-    def part(self, todo: Sequence[Range], units: int) -> list[Range]:
+    def part(self, todo: Sequence[IndexRange], units: int) -> list[IndexRange]:
         """What of the ranges `todo` among all `units` is this shard's: blocks dealt out in turn."""
         if self.of == 1:
             return list(todo)
-        block = max(1, units // (self.of * BLOCKS))
-        mine: list[Range] = []
+        block = max(1, units // (self.of * BLOCKS_A_SHARD))
+        mine: list[IndexRange] = []
         for start, stop in todo:
             turn = start // block
             turn += (self.number - 1 - turn) % self.of

@@ -3,11 +3,11 @@
 import signal
 from types import FrameType
 
-SIGNALS = (signal.SIGTERM, signal.SIGUSR1)
+STOP_SIGNALS = (signal.SIGTERM, signal.SIGUSR1)
 """What asks for a stop: what `kill` and a scheduler's end send, and what schedulers warn with."""
 
 
-class Stop:
+class StopRequest:
     """Whether this process has been asked to stop, and by which signal."""
 
     def __init__(self) -> None:
@@ -18,13 +18,13 @@ class Stop:
 
     def listen(self) -> None:
         """From here on the signals no longer end the process. Only the main thread may call it."""
-        for number in SIGNALS:
+        for number in STOP_SIGNALS:
             signal.signal(number, self._note)
 
     @staticmethod
     def ignore() -> None:
         """From here on the signals do nothing, also while Python and MPI end. Only for the main thread."""
-        for number in SIGNALS:
+        for number in STOP_SIGNALS:
             signal.signal(number, signal.SIG_IGN)
 
     def _note(self, number: int, _: FrameType | None) -> None:

@@ -4,11 +4,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ...errors import InputError
 from ...results.file.view import View
-from .style import FIRST, SECOND, SYMBOLS, heading
+from .request import FigureRequest
+from .style import FIRST, SECOND, heading, need, parameter_text
 
-MOST_POINTS = 4
+MOST_RODS = 4
 """Points for which one figure has room."""
 PANELS = (
     ("mode", (("Y", r"$Y_1$"), ("Theta", r"$\Theta_1$"))),
@@ -17,14 +17,14 @@ PANELS = (
 )
 
 
-def draw_modes(view: View, roots: str) -> tuple[Figure, str]:
+def draw_modes(request: FigureRequest) -> str:
     """A row of panels for each point: the leading mode, its deformations, its adjoint."""
+    view = request.only_view()
     v = view.variables
     growth = v["growth_rate"][..., 0].ravel()
     points = np.flatnonzero(np.isfinite(growth))
-    if not points.size:
-        raise InputError(f"{view.path} holds no computed point that could be drawn")
-    drawn = points[:MOST_POINTS]
+    need(view, points.size, "computed point")
+    drawn = points[:MOST_RODS]
     figure = Figure(figsize=(10.0, 2.8 * len(drawn) + 0.4), layout="constrained")
     panels = figure.subplots(len(drawn), len(PANELS), squeeze=False)
     for row, point in zip(panels, drawn, strict=True):
@@ -34,9 +34,9 @@ def draw_modes(view: View, roots: str) -> tuple[Figure, str]:
         row[1].set_title(f"{_where(view, int(point))}\n{PANELS[1][0]}", fontsize=9)
     for panel in panels[-1]:
         panel.set_xlabel("material coordinate $u/L$")
-    figure.suptitle(heading(view.attributes.get("title", "")), fontsize=9)
+    figure.suptitle(heading(view), fontsize=9)
     left = f" of the first {len(drawn)} of {points.size} points" if points.size > len(drawn) else ""
-    return figure, f"the leading mode{left}: real part solid, imaginary part dotted"
+    return request.write(figure, f"the leading mode{left}: real part solid, imaginary part dotted")
 
 
 def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], ...]) -> None:
@@ -64,14 +64,8 @@ def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], .
 
 def _where(view: View, point: int) -> str:
     """The parameters of a point and its leading eigenvalue, in one line."""
-    at = []
-    for name, values in view.axes.items():
-        place = point
-        if view.is_grid:
-            sizes = [len(column) for column in view.axes.values()]
-            place = int(np.unravel_index(point, sizes)[list(view.axes).index(name)])
-        at.append(f"${SYMBOLS[name]}$ = {values[place]:.4g}")
+    at = {name: values[point] for name, values in view.point_columns.items()}
     modes = view.variables["growth_rate"].shape[-1]
     w = [view.variables[name].reshape(-1, modes)[point, 0] for name in ("growth_rate", "frequency")]
     value = f"{w[0]:.6g}" + (f" + {w[1]:.6g}i" if w[1] else "")
-    return f"{', '.join(at)}: " + rf"$\omega_1\tau_2$ = {value}"
+    return f"{parameter_text(at, digits=4)}: " + rf"$\omega_1\tau_2$ = {value}"

@@ -11,9 +11,10 @@ from ...errors import InputError
 from ...model.parameters import CRUSHING, LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.phase_diagram import CLASSES
-from .style import LABELS, SYMBOLS, heading, scale
+from .request import FigureRequest
+from .style import LABELS, SYMBOLS, fixed_text, heading, legend_below, need, scale
 
-COLOURS = {
+CLASS_COLOURS = {
     "missing": "white",
     "monotone": "#DCE9F5",
     "oscillatory": "#9CC3E4",
@@ -23,17 +24,17 @@ COLOURS = {
 }
 """Light to dark blue for stable rods and orange for unstable ones: told apart by all, and in grey."""
 
-LOOKS = {1: ("Hopf points", 1.4, "-"), 0: ("double eigenvalue", 1.0, "--")}
+CURVE_LOOKS = {1: ("Hopf points", 1.4, "-"), 0: ("double eigenvalue", 1.0, "--")}
 """Legend, width and style of a curve, by its kind in the file."""
 
 
-def draw_phase_diagram(view: View, roots: str) -> tuple[Figure, str]:
+def draw_phase_diagram(request: FigureRequest) -> str:
     """The class of every point, the boundaries where they were traced, and their folds."""
+    view = request.only_view()
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
     row = next(name for name in view.parameters if len(view.axes[name]) > 1)
     values = view.variables["class"]
-    if (values < 0).all():
-        raise InputError(f"{view.path} holds no computed row that could be drawn")
+    need(view, (values >= 0).any(), "computed row")
     x, y = view.variables[line], view.axes[row]
     keep = np.isfinite(y)
     table = values.reshape(len(y), len(x))[keep]
@@ -43,33 +44,32 @@ def draw_phase_diagram(view: View, roots: str) -> tuple[Figure, str]:
     figure = Figure(figsize=(5.8, 4.6), layout="constrained")
     axes = figure.subplots()
     numbers = [number for number, _ in CLASSES]
-    colours = ListedColormap([COLOURS[word] for _, word in CLASSES])
+    colours = ListedColormap([CLASS_COLOURS[word] for _, word in CLASSES])
     norm = BoundaryNorm([*(n - 0.5 for n in numbers), numbers[-1] + 0.5], len(numbers))
     axes.pcolormesh(x, y, table, cmap=colours, norm=norm, shading="nearest", rasterized=True)
     scale(axes, "x", x)
     scale(axes, "y", y)
     if (line, row) == CRUSHING:  # the map's points leave a staircase
         crushed = np.linspace(y[0], y[-1], 1000)
-        axes.fill_between(crushed, crushed, y[0], color=COLOURS["crushed"], lw=0)
+        axes.fill_between(crushed, crushed, y[0], color=CLASS_COLOURS["crushed"], lw=0)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=LABELS[line], ylabel=LABELS[row])
     handles: list = [
-        Patch(facecolor=COLOURS[word], edgecolor="0.5", lw=0.5, label=word)
+        Patch(facecolor=CLASS_COLOURS[word], edgecolor="0.5", lw=0.5, label=word)
         for number, word in CLASSES
         if (table == number).any()
     ]
     if "curve_number" in view.variables:
         handles += _curves(axes, view, line, row)
-    figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=8)
-    fixed = ", ".join(f"${SYMBOLS[n]}$ = {v[0]:.6g}" for n, v in view.axes.items() if n not in (line, row))
-    axes.set_title(heading(view.attributes.get("title", ""), fixed), fontsize=9)
-    return figure, f"what the rod does over {line} and {row}"
+    legend_below(figure, handles, columns=3)
+    axes.set_title(heading(view, fixed_text(view, line, row)), fontsize=9)
+    return request.write(figure, f"what the rod does over {line} and {row}")
 
 
 def _curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
     """Draws the boundaries and folds; returns what the legend says of them."""
     v = view.variables
     handles = []
-    for number, (word, width, style) in LOOKS.items():
+    for number, (word, width, style) in CURVE_LOOKS.items():
         there = v["curve_kind"] == number
         for curve in np.unique(v["curve_number"][there]):
             one = v["curve_number"] == curve

@@ -8,30 +8,25 @@ from matplotlib.figure import Figure
 
 from ...errors import InputError
 from ...results.file.view import View
-from .style import FIRST, LABELS, SECOND, SYMBOLS, heading, scale
+from .request import FigureRequest
+from .style import FIRST, LABELS, SECOND, fixed_text, heading, long_axes, need, need_grid, scale
 
-ROOTS = {
+FOLLOWED_ROOTS = {
     "rightmost": "the two rightmost roots",
     "smallest": "of the stored roots, the two smallest in magnitude",
 }
 
 
-def draw_spectrum(view: View, roots: str) -> tuple[Figure, str]:
-    """The figure and what it shows; InputError where there is nothing that a figure could show."""
-    if not view.is_grid:
-        raise InputError(f"{view.path} is a list of points; a figure needs a grid with one or two long axes")
-    if not np.isfinite(view.variables["growth_rate"]).any():
-        raise InputError(f"{view.path} holds no computed point that could be drawn")
+def draw_spectrum(request: FigureRequest) -> str:
+    """A line or a map, as the file has one long axis or two."""
+    view, roots = request.only_view(), request.roots
+    need_grid(view, "points")
+    need(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
     view = without_infinite(view)
-    long = [name for name, values in view.axes.items() if len(values) > 1]
-    if not 1 <= len(long) <= 2:
-        raise InputError(
-            f"{view.path} has {len(long)} axes with more than one value ({', '.join(long) or 'none'}); a "
-            "figure needs one or two"
-        )
+    long = long_axes(view)
     if len(long) == 1:
-        return _line(view, long[0], roots), ROOTS[roots]
-    return _map(view, long), "the leading growth rate"
+        return request.write(_line(view, long[0], roots), FOLLOWED_ROOTS[roots])
+    return request.write(_map(view, long), "the leading growth rate")
 
 
 def without_infinite(view: View) -> View:
@@ -96,8 +91,7 @@ def _line(view: View, name: str, roots: str) -> Figure:
     bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
     top.legend(facecolor="white", framealpha=1, edgecolor="0.8", fontsize=8, ncols=2)
     bottom.legend(frameon=False, fontsize=8)
-    fixed = ", ".join(f"${SYMBOLS[n]}$ = {v[0]:.6g}" for n, v in view.axes.items() if n != name)
-    figure.suptitle(heading(view.attributes.get("title", ""), fixed, ROOTS[roots]), fontsize=9)
+    figure.suptitle(heading(view, fixed_text(view, name), FOLLOWED_ROOTS[roots]), fontsize=9)
     return figure
 
 
@@ -116,5 +110,5 @@ def _map(view: View, names: list[str]) -> Figure:
     scale(axes, "y", y)
     axes.set(xlabel=LABELS[horizontal], ylabel=LABELS[vertical])
     figure.colorbar(mesh, label=r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$")
-    axes.set_title(heading(view.attributes.get("title", ""), "black: zero growth"), fontsize=9)
+    axes.set_title(heading(view, "black: zero growth"), fontsize=9)
     return figure

@@ -1,14 +1,18 @@
-"""What all figures share: symbols, labels, colours, and how an axis is scaled."""
+"""What all figures share: symbols, labels, colours, titles, how an axis is scaled, what cannot be drawn."""
 
 import re
 import textwrap
-from typing import Literal
+from collections.abc import Mapping
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from ...errors import InputError
 from ...model.parameters import PARAMETERS
+from ...results.file.view import View
 
 GREEK = {"gamma": r"\gamma"}
 
@@ -20,11 +24,11 @@ def tex(unit: str) -> str:
 
 SYMBOLS = {name: parameter.symbol for name, parameter in PARAMETERS.items()}
 LABELS = {name: f"{p.meaning} ${p.symbol}$  [${tex(p.unit)}$]" for name, p in PARAMETERS.items()}
-FORCE = f"[${tex(PARAMETERS['F'].unit)}$]"
+FORCE_UNIT = f"[${tex(PARAMETERS['F'].unit)}$]"
 INVERSE_DRAG = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$  [$1/({tex(PARAMETERS['gamma3'].unit)})$]"
 FIRST, SECOND, THIRD = "#0072B2", "#D55E00", "#009E73"
 """Blue, vermilion and green of Okabe and Ito: told apart by the colour-blind."""
-TITLE_WIDTH = 70
+TITLE_CHARACTERS = 70
 """Characters of a title in one line of a figure."""
 FEW_DECADES = 50
 """Ratio of the ends of a logarithmic axis below which 1, 2 and 5 of each decade are labelled."""
@@ -36,9 +40,50 @@ def plain(text: object) -> str:
     return str(text).replace("$", r"\$")
 
 
-def heading(title: object, *lines: str) -> str:
-    """A user's title, broken where it is long, above other lines."""
-    return "\n".join([*textwrap.wrap(plain(title), TITLE_WIDTH), *(line for line in lines if line)])
+def heading(view: View, *lines: str) -> str:
+    """The title of a user's file, broken where it is long, above other lines."""
+    title = plain(view.attributes.get("title", ""))
+    return "\n".join([*textwrap.wrap(title, TITLE_CHARACTERS), *filter(None, lines)])
+
+
+def parameter_text(parameters: Mapping[str, float], digits: int = 6) -> str:
+    """Parameters and their values, in one line."""
+    return ", ".join(f"${SYMBOLS[name]}$ = {value:.{digits}g}" for name, value in parameters.items())
+
+
+def fixed_text(view: View, *drawn: str) -> str:
+    """The parameters that are not along an axis of the figure, with their values."""
+    return parameter_text({name: values[0] for name, values in view.axes.items() if name not in drawn})
+
+
+def long_axes(view: View) -> list[str]:
+    """The parameters of a grid that take several values; InputError unless they are one or two."""
+    long = [name for name, values in view.axes.items() if len(values) > 1]
+    if not 1 <= len(long) <= 2:
+        raise InputError(
+            f"{view.path} has {len(long)} axes with more than one value ({', '.join(long) or 'none'}); a "
+            "figure needs one or two"
+        )
+    return long
+
+
+def need_grid(view: View, points: str) -> None:
+    """InputError where the file is a list; `points` says of what."""
+    if not view.is_grid:
+        raise InputError(
+            f"{view.path} is a list of {points}; a figure needs a grid with one or two long axes"
+        )
+
+
+def need(view: View, there: object, what: str) -> None:
+    """InputError unless something is there that could be drawn."""
+    if not there:
+        raise InputError(f"{view.path} holds no {what} that could be drawn")
+
+
+def legend_below(figure: Figure, handles: list[Any], columns: int, size: float = 8) -> None:
+    """The legend of a whole figure, below its panels."""
+    figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False, fontsize=size)
 
 
 def is_logarithmic(values: np.ndarray) -> bool:

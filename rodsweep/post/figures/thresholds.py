@@ -4,66 +4,59 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ...errors import InputError
 from ...results.file.view import View
-from .style import FIRST, FORCE, INVERSE_DRAG, LABELS, SECOND, SYMBOLS, THIRD, heading, scale
+from . import style
+from .request import FigureRequest
 
-EVENTS = (
-    ("F_onset", r"onset $\tilde F_*$", FIRST, "o"),
-    ("F_hopf", r"Hopf $\tilde F_{**}$", SECOND, "s"),
-    ("F_restabilization", "restabilization", THIRD, "^"),
+CRITICAL_FORCES = (
+    ("F_onset", r"onset $\tilde F_*$", style.FIRST, "o"),
+    ("F_hopf", r"Hopf $\tilde F_{**}$", style.SECOND, "s"),
+    ("F_restabilization", "restabilization", style.THIRD, "^"),
 )
-MOST_LINES = 3
-"""Values of the other parameter for which lines are drawn in one panel."""
-STYLES = ("-", "--", ":")
+LINE_STYLES = ("-", "--", ":")
+"""For the values of the other parameter for which lines are drawn in one panel."""
 
 
-def draw_thresholds(view: View, roots: str) -> tuple[Figure, str]:
+def draw_thresholds(request: FigureRequest) -> str:
     """One panel for each long axis: the first onset, Hopf point and restabilization along it."""
-    if not view.is_grid:
-        raise InputError(f"{view.path} is a list of rods; a figure needs a grid with one or two long axes")
-    long = [name for name, values in view.axes.items() if len(values) > 1]
-    if not 1 <= len(long) <= 2:
-        raise InputError(
-            f"{view.path} has {len(long)} axes with more than one value ({', '.join(long) or 'none'}); a "
-            "figure needs one or two"
-        )
-    if not any(np.isfinite(view.variables[name]).any() for name, *_ in EVENTS):
-        raise InputError(f"{view.path} holds no threshold that could be drawn")
+    view = request.only_view()
+    style.need_grid(view, "rods")
+    long = style.long_axes(view)
+    style.need(
+        view, any(np.isfinite(view.variables[name]).any() for name, *_ in CRITICAL_FORCES), "threshold"
+    )
     figure = Figure(figsize=(4.6 * len(long) + 0.4, 4.0), layout="constrained")
     panels = figure.subplots(1, len(long), sharey=True, squeeze=False)[0]
     for panel, name in zip(panels, long, strict=True):
         _panel(panel, view, name, [other for other in long if other != name])
-    panels[0].set_ylabel(rf"critical force ${SYMBOLS['F']}$  {FORCE}")
-    fixed = ", ".join(f"${SYMBOLS[n]}$ = {v[0]:.6g}" for n, v in view.axes.items() if n not in long)
-    figure.suptitle(heading(view.attributes.get("title", ""), fixed), fontsize=9)
+    panels[0].set_ylabel(rf"critical force ${style.SYMBOLS['F']}$  {style.FORCE_UNIT}")
+    figure.suptitle(style.heading(view, style.fixed_text(view, *long)), fontsize=9)
     left_out = [name for name in long if not np.isfinite(view.axes[name]).all()]
     without = f"; {' and '.join(left_out)} = inf has no place on an axis and is left out" if left_out else ""
-    return figure, "critical forces against " + " and ".join(long) + without
+    return request.write(figure, "critical forces against " + " and ".join(long) + without)
 
 
 def _panel(panel: Axes, view: View, name: str, others: list[str]) -> None:
     """The critical forces against one parameter, for some values of the other one."""
     axes = list(view.axes)
-    x, label = view.axes[name], LABELS[name]
+    x, label = view.axes[name], style.LABELS[name]
     if name == "gamma3":  # as the paper: against 1/gamma3
-        with np.errstate(divide="ignore"):
-            x, label = 1 / x, INVERSE_DRAG
+        x, label = 1 / x, style.INVERSE_DRAG
     place = others[0] if others else None
     chosen = _spread(view.axes[place]) if place else [0]
-    labels = {variable: word for variable, word, *_ in EVENTS}
+    labels = {variable: word for variable, word, *_ in CRITICAL_FORCES}
     for line, at in enumerate(chosen):
         index = tuple(slice(None) if n == name else (at if n == place else 0) for n in axes)
-        for variable, _, colour, marker in EVENTS:
+        for variable, _, colour, marker in CRITICAL_FORCES:
             values = view.variables[variable][index]
             keep = np.isfinite(x) & np.isfinite(values)
             if keep.any():
-                (drawn,) = panel.plot(x[keep], values[keep], STYLES[line], color=colour, marker=marker)
+                (drawn,) = panel.plot(x[keep], values[keep], LINE_STYLES[line], color=colour, marker=marker)
                 drawn.set(label=labels.pop(variable, None), markersize=2.5, linewidth=1.2)
     for line, at in enumerate(chosen if place else []):
-        text = rf"${SYMBOLS[str(place)]}$ = {view.axes[str(place)][at]:.3g}"
-        panel.plot([], [], STYLES[line], color="0.3", label=text)
-    scale(panel, "x", np.sort(x[np.isfinite(x)]))
+        text = rf"${style.SYMBOLS[str(place)]}$ = {view.axes[str(place)][at]:.3g}"
+        panel.plot([], [], LINE_STYLES[line], color="0.3", label=text)
+    style.scale(panel, "x", np.sort(x[np.isfinite(x)]))
     panel.set_xlabel(label)
     panel.set_ylim(bottom=0)
     panel.legend(frameon=False, fontsize=8)
@@ -71,4 +64,4 @@ def _panel(panel: Axes, view: View, name: str, others: list[str]) -> None:
 
 def _spread(values: np.ndarray) -> list[int]:
     """Places of the first, the middle and the last value, each once."""
-    return sorted({0, (len(values) - 1) // 2, len(values) - 1})[:MOST_LINES]
+    return sorted({0, (len(values) - 1) // 2, len(values) - 1})

@@ -8,7 +8,7 @@ from ...results.file.view import View
 from .ranges import span
 
 
-def limit_cycle_lines(view: View, done: np.ndarray) -> list[str]:
+def limit_cycle_summary(view: View, done: np.ndarray) -> list[str]:
     """The task's lines about the points that are `done`."""
     v = view.variables
     status = v["status"][done]

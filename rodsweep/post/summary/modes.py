@@ -7,7 +7,7 @@ from .ranges import span
 from .spectrum import accuracy_lines, stability_line
 
 
-def modes_lines(view: View, done: np.ndarray) -> list[str]:
+def modes_summary(view: View, done: np.ndarray) -> list[str]:
     """The task's lines about the points that are `done`."""
     v = view.variables
     lines = [*accuracy_lines(view, done), stability_line(view, done)]

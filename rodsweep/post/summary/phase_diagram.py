@@ -11,7 +11,7 @@ SHARP = 1e-8
 """Resolution of a boundary, in units of the parameter, for which the uniform grid is counted."""
 
 
-def phase_diagram_lines(view: View, done: np.ndarray) -> list[str]:
+def phase_diagram_summary(view: View, done: np.ndarray) -> list[str]:
     """The task's lines about the rows that are `done`."""
     v = view.variables
     found = v["class"][done]

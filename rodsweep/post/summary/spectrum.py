@@ -5,7 +5,7 @@ import numpy as np
 from ...results.file.view import View
 
 
-def spectrum_lines(view: View, done: np.ndarray) -> list[str]:
+def spectrum_summary(view: View, done: np.ndarray) -> list[str]:
     """The task's lines about the points that are `done`."""
     return [*accuracy_lines(view, done), stability_line(view, done)]
 

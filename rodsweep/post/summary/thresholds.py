@@ -1,23 +1,25 @@
 """What `rodsweep show` says of thresholds: where they lie, and what was not decided."""
 
+from itertools import product
+
 import numpy as np
 
 from ...results.file.view import View
 from .ranges import span
 
-EVENTS = {
+FORCES_AND_RATES = {
     "onset": ("F_onset", "growth rate", "onset_growth_rate"),
     "Hopf": ("F_hopf", "frequency", "hopf_frequency"),
     "restabilization": ("F_restabilization", "frequency", "restabilization_frequency"),
 }
 
 
-def thresholds_lines(view: View, done: np.ndarray) -> list[str]:
+def thresholds_summary(view: View, done: np.ndarray) -> list[str]:
     """The task's lines about the points that are `done`."""
     v = view.variables
     points = int(done.sum())
     lines = []
-    for event, (force, word, number) in EVENTS.items():
+    for event, (force, word, number) in FORCES_AND_RATES.items():
         F = v[force][done]
         there = int(np.isfinite(F).sum())
         where = f": F = {span(F)}, {word} {span(v[number][done])}" if there else ""
@@ -30,25 +32,23 @@ def monotony_lines(view: View) -> list[str]:
     """Whether the first onset and Hopf point rise with a parameter, as the paper says of k2 and 1/gamma3."""
     lines = []
     long = [name for name, values in view.axes.items() if len(values) > 2] if view.is_grid else []
-    for name in long:
-        place = list(view.axes).index(name)
-        label = "1/gamma3" if name == "gamma3" else name
-        for force in ("F_onset", "F_hopf"):
-            along = np.moveaxis(view.variables[force], place, -1)
-            along = along[..., ::-1] if name == "gamma3" else along
-            there = np.isfinite(along).sum(axis=-1) > 1
-            rising = np.apply_along_axis(_rises, -1, along) & there
-            if not there.any():
-                continue
-            text = f"{force} rises with {label} on {int(rising.sum())} of {int(there.sum())} lines"
-            falls = np.argwhere(there & ~rising)
-            others = [n for n in view.axes if n != name]
-            for other, places in zip(others, falls.T, strict=True):
-                if len(view.axes[other]) > 1 and places.size:
-                    low, high = view.axes[other][places].min(), view.axes[other][places].max()
-                    text += f", and falls somewhere for {other} = {low:.6g}"
-                    text += f" to {high:.6g}" if high > low else ""
-            lines.append(text)
+    for name, force in product(long, ("F_onset", "F_hopf")):
+        along = np.moveaxis(view.variables[force], list(view.axes).index(name), -1)
+        label = name
+        if name == "gamma3":
+            along, label = along[..., ::-1], "1/gamma3"
+        there = np.isfinite(along).sum(axis=-1) > 1
+        if not there.any():
+            continue
+        rising = np.apply_along_axis(_rises, -1, along) & there
+        text = f"{force} rises with {label} on {int(rising.sum())} of {int(there.sum())} lines"
+        others = [n for n in view.axes if n != name]
+        for other, places in zip(others, np.argwhere(there & ~rising).T, strict=True):
+            if len(view.axes[other]) > 1 and places.size:
+                low, high = view.axes[other][places].min(), view.axes[other][places].max()
+                text += f", and falls somewhere for {other} = {low:.6g}"
+                text += f" to {high:.6g}" if high > low else ""
+        lines.append(text)
     return lines
 
 

@@ -1,1 +1,1 @@
-"""The result file: made whole, exchanged whole, sealed; read, merged and told where it came from."""
+"""The result file: its creation, exchange, seal and validation; reading, merging, provenance."""

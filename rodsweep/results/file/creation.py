@@ -5,7 +5,7 @@ Also what is added to a file once its points are known, such as curves.
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..layouts.variables import DIMENSIONS, MISSING, Filled, Layout, Variable
-
-SIGNATURE = "rodsweep"
+from .validation import PROGRAM
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,13 +61,11 @@ def create_file(path: Path, plan: Plan) -> None:
         for name, extent in plan.layout.extents.items():
             _write_scale(file, name, plan.coordinates.get(name, np.arange(1, extent + 1)))
         for variable in plan.layout.variables:
-            shape = plan.shape + plan.layout.inner(variable)
-            data = _contiguous(file, variable, shape)
-            _describe(data, variable)
-            _attach(file, data, (*plan.dimensions, *variable.extra))
+            data = _contiguous(file, variable, plan.shape + plan.layout.inner(variable))
+            flags = ((MISSING, "missing"), *plan.flags) if variable.name == "status" else variable.flags
+            _describe(file, data, replace(variable, flags=flags), (*plan.dimensions, *variable.extra))
         add_variables(file, plan.constants)
-        _describe_flags(file["status"], ((MISSING, "missing"), *plan.flags))
-        file.attrs["program"] = SIGNATURE
+        file.attrs["program"] = PROGRAM
         file.attrs["fingerprint"] = plan.fingerprint
         file.attrs["config_resolved"] = json.dumps(plan.config)
         file.attrs.update(plan.attributes)
@@ -81,32 +78,33 @@ def add_variables(file: h5py.File, filled: Sequence[Filled]) -> None:
             if name not in file:
                 _write_scale(file, name, np.arange(1, extent + 1))
         data = file.create_dataset(variable.name, data=values.astype(variable.dtype))
-        _describe(data, variable)
-        _attach(file, data, variable.extra)
+        _describe(file, data, variable, variable.extra)
 
 
 def _write_parameters(file: h5py.File, plan: Plan) -> None:
     """The parameters, each a dimension of its own or all along `point`."""
     names = plan.layout.parameters
-    if plan.is_grid:
-        for name, column in zip(names, plan.columns, strict=True):
-            _write_scale(file, name, column)
-        return
-    _write_scale(file, "point", np.arange(plan.shape[0], dtype="<i4"))
+    if not plan.is_grid:
+        _write_scale(file, "point", np.arange(plan.shape[0], dtype="<i4"))
+        file.attrs["coordinates"] = " ".join(names)
     for name, column in zip(names, plan.columns, strict=True):
-        units, long_name = DIMENSIONS[name]
-        data = file.create_dataset(name, data=column)
-        data.attrs.update(units=units, long_name=long_name)
-        data.dims[0].attach_scale(file["point"])
-    file.attrs["coordinates"] = " ".join(names)
+        if plan.is_grid:
+            _write_scale(file, name, column)
+        else:
+            _write_named(file, name, column).dims[0].attach_scale(file["point"])
 
 
 def _write_scale(file: h5py.File, name: str, values: NDArray[Any]) -> None:
     """A dimension with its coordinate."""
-    units, long_name = DIMENSIONS[name]
+    _write_named(file, name, values).make_scale(name)
+
+
+def _write_named(file: h5py.File, name: str, values: NDArray[Any]) -> h5py.Dataset:
+    """The values of a parameter or a dimension, with what the table says of it."""
     data = file.create_dataset(name, data=values)
-    data.make_scale(name)
+    units, long_name = DIMENSIONS[name]
     data.attrs.update(units=units, long_name=long_name)
+    return data
 
 
 def _contiguous(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> h5py.Dataset:
@@ -120,18 +118,12 @@ def _contiguous(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> 
     return h5py.Dataset(h5py.h5d.create(file.id, variable.name.encode(), kind, space, creation))
 
 
-def _describe(data: h5py.Dataset, variable: Variable) -> None:
+def _describe(file: h5py.File, data: h5py.Dataset, variable: Variable, dimensions: Sequence[str]) -> None:
+    """What the table says of a variable, and its dimensions."""
     data.attrs.update(units=variable.units, long_name=variable.long_name)
     if variable.flags:
-        _describe_flags(data, variable.flags)
-
-
-def _describe_flags(data: h5py.Dataset, flags: Sequence[tuple[int, str]]) -> None:
-    data.attrs["flag_values"] = np.array([value for value, _ in flags], dtype="i1")
-    data.attrs["flag_meanings"] = " ".join(meaning for _, meaning in flags)
-
-
-def _attach(file: h5py.File, data: h5py.Dataset, dimensions: Sequence[str]) -> None:
+        values, meanings = zip(*variable.flags, strict=True)
+        data.attrs.update(flag_values=np.array(values, dtype="i1"), flag_meanings=" ".join(meanings))
     for axis, name in enumerate(dimensions):
         data.dims[axis].attach_scale(file[name])
     if "point" in dimensions:

@@ -1,10 +1,12 @@
-"""Where a result came from: versions, commit, hosts and times, as attributes of the file."""
+"""Where a result came from: versions, commit, hosts, times and BLAS kernels, as attributes of the file."""
 
 import platform
 import subprocess
+from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -13,6 +15,13 @@ from ... import __version__
 
 MOST_RANKS_TOLD, LONGEST_ATTRIBUTE = 10_000, 60_000
 """Ranks whose share is stored, and characters of an attribute: HDF5 allows one 64 kB."""
+RANK_SHARES = ("rank_points", "rank_busy_seconds", "rank_idle_seconds")
+"""Attributes of what each rank of the last run did."""
+KERNELS = "blas_kernels"
+"""The attribute with the kernels that computed the points of a file over all its runs: one kernel a line,
+as `rodsweep.solve.backend.blas_kernel` calls it."""
+KERNEL_NOT_RECORDED = "unknown"
+"""The kernel of points that an earlier version wrote, which did not ask."""
 
 
 def now() -> str:
@@ -33,6 +42,49 @@ def provenance() -> dict[str, str]:
         "hdf5_version": h5py.version.hdf5_version,
         "system": platform.platform(),
     }
+
+
+def kernels_of(attributes: Mapping[str, Any]) -> list[str]:
+    """The kernels that a file's attributes name."""
+    return str(attributes.get(KERNELS, KERNEL_NOT_RECORDED)).splitlines()
+
+
+def united_kernels(*several: Iterable[str]) -> str:
+    """The attribute of a file with the points of all these kernels."""
+    return "\n".join(sorted({kernel for kernels in several for kernel in kernels}))
+
+
+def kernels_sentence(attribute: str) -> str:
+    """A sentence where a file has, or will have, points of more than one kernel; else empty."""
+    kernels = attribute.splitlines()
+    if len(kernels) < 2:
+        return ""
+    return (
+        f"computed in parts by {len(kernels)} BLAS kernels ({'; '.join(kernels)}), between which numbers "
+        "differ in the last digits"
+    )
+
+
+def merged_history(several: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """By whom the points of several files were computed: the attributes of their merged file, from theirs."""
+    history: dict[str, Any] = {
+        "shard": "",
+        KERNELS: united_kernels(*map(kernels_of, several))[:LONGEST_ATTRIBUTE],
+    }
+    runs = [attributes for attributes in several if "ranks" in attributes]
+    if not runs:
+        return history
+    hosts = {host for run in runs for host in str(run.get("hosts", "")).split()}
+    history |= {
+        "stopped": "",
+        "ranks": sum(int(run["ranks"]) for run in runs),
+        "hosts": " ".join(sorted(hosts))[:LONGEST_ATTRIBUTE],
+        "started": min(str(run["started"]) for run in runs),
+    }
+    for name in RANK_SHARES:
+        values = [np.atleast_1d(run[name]) for run in runs if name in run]
+        history |= {name: np.concatenate(values)[:MOST_RANKS_TOLD]} if values else {}
+    return history
 
 
 def git_commit() -> str:

@@ -14,18 +14,18 @@ from typing import Any, BinaryIO
 
 import h5py
 
-MAGIC = b"\nrodsweep seal 1 "
-HDF5 = b"\x89HDF\r\n\x1a\n"
+SEAL_HEAD = b"\nrodsweep seal 1 "
+HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 END_AT = {0: 40, 1: 44, 2: 28, 3: 28}
 """Where the superblock of each version has the end of the file, in eight bytes."""
-LONGEST = 100_000
+LONGEST_SEAL = 100_000
 """Bytes of a seal."""
-BLOCK = 1 << 20
+BYTES_A_READ = 1 << 20
 
 Piece = tuple[int, int]
 
 
-class Broken(ValueError):
+class BrokenSeal(ValueError):
     """Why a file is not as it was written, as the rest of a sentence."""
 
 
@@ -38,22 +38,22 @@ def seal(path: Path) -> None:
     with path.open("r+b") as stream:
         sums = {"frame": _checksum(stream, _between(pieces, end)), "values": _checksum(stream, pieces)}
         stream.seek(end)
-        stream.write(MAGIC + json.dumps({"end": end, "pieces": pieces} | sums).encode() + b"\n")
+        stream.write(SEAL_HEAD + json.dumps({"end": end, "pieces": pieces} | sums).encode() + b"\n")
 
 
-def check(path: Path, values: bool) -> None:
-    """Broken unless the file is as it was sealed, with the numbers in it if `values`; OSError if unreadable.
+def check_seal(path: Path, values: bool) -> None:
+    """BrokenSeal unless the file, with the numbers in it if `values`, is as it was sealed; or OSError.
 
     The numbers take a second for each GB, the rest a millisecond.
     """
     with path.open("rb") as stream:
         end, size = _end(stream), os.fstat(stream.fileno()).st_size
         if size < end:
-            raise Broken(f"it ends after {size} of {end} bytes")
+            raise BrokenSeal(f"it ends after {size} of {end} bytes")
         if size == end:
             return
         stream.seek(end)
-        given = _read_seal(stream.read(LONGEST))
+        given = _read_seal(stream.read(LONGEST_SEAL))
         try:
             pieces = [(int(start), int(length)) for start, length in given["pieces"]]
             whole = given["end"] == end and given["frame"] == _checksum(stream, _between(pieces, end))
@@ -61,24 +61,24 @@ def check(path: Path, values: bool) -> None:
         except (KeyError, TypeError, ValueError, OverflowError, OSError):
             whole = False
     if not whole:
-        raise Broken("its content does not fit its checksum")
+        raise BrokenSeal("its content does not fit its checksum")
 
 
 def _read_seal(data: bytes) -> Any:
     """What the bytes after HDF5's end say."""
-    if not data.startswith(MAGIC) or not data.endswith(b"\n"):
-        raise Broken("its checksum cannot be read")
+    if not data.startswith(SEAL_HEAD) or not data.endswith(b"\n"):
+        raise BrokenSeal("its checksum cannot be read")
     try:
-        return json.loads(data[len(MAGIC) :])
+        return json.loads(data[len(SEAL_HEAD) :])
     except (ValueError, RecursionError):
-        raise Broken("its checksum cannot be read") from None
+        raise BrokenSeal("its checksum cannot be read") from None
 
 
 def _end(stream: BinaryIO) -> int:
     """Where HDF5 says that the file ends."""
     head = stream.read(64)
-    if not head.startswith(HDF5) or len(head) < 64 or head[8] not in END_AT:
-        raise Broken("it is not HDF5")
+    if not head.startswith(HDF5_SIGNATURE) or len(head) < 64 or head[8] not in END_AT:
+        raise BrokenSeal("it is not HDF5")
     at = END_AT[head[8]]
     return int.from_bytes(head[at : at + 8], "little")
 
@@ -96,7 +96,7 @@ def _between(pieces: list[Piece], end: int) -> Iterator[Piece]:
     at = 0
     for start, size in [*pieces, (end, 0)]:
         if not 0 <= at <= start <= end:
-            raise Broken("its checksum cannot be read")
+            raise BrokenSeal("its checksum cannot be read")
         yield at, start - at
         at = start + size
 
@@ -107,7 +107,7 @@ def _checksum(stream: BinaryIO, pieces: Iterator[Piece] | list[Piece]) -> int:
     for start, size in pieces:
         stream.seek(start)
         left = size
-        while left and (block := stream.read(min(left, BLOCK))):
+        while left and (block := stream.read(min(left, BYTES_A_READ))):
             checksum = zlib.crc32(block, checksum)
             left -= len(block)
     return checksum

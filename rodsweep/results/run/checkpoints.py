@@ -12,9 +12,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-MAGIC = b"rodsweep checkpoint 1\n"
-NUMBER, SUM = 8, 4
-"""Bytes of the index and of the checksum."""
+CHECKPOINT_HEAD = b"rodsweep checkpoint 1\n"
+INDEX_BYTES, CHECKSUM_BYTES = 8, 4
 
 
 class Checkpoints:
@@ -22,18 +21,18 @@ class Checkpoints:
 
     def __init__(self, directory: Path, fingerprint: str):
         self.directory = directory
-        self.header = MAGIC + fingerprint.encode() + b"\n"
+        self.header = CHECKPOINT_HEAD + fingerprint.encode() + b"\n"
 
     def write(self, chain: int, index: int, state: NDArray[np.float64] | None) -> None:
         """Keeps what the neighbour of point `index` starts from; None where it has nothing to start from."""
         stream = io.BytesIO()
         if state is not None:
             np.save(stream, state, allow_pickle=False)
-        content = self.header + index.to_bytes(NUMBER, "little") + stream.getvalue()
+        content = self.header + index.to_bytes(INDEX_BYTES, "little") + stream.getvalue()
         path = self._path(chain)
         # Ranks of a run that was killed live on for a moment and must not share our file.
         copy = path.with_name(f"{path.name}-{os.getpid()}-{os.urandom(4).hex()}")
-        copy.write_bytes(content + zlib.crc32(content).to_bytes(SUM, "little"))
+        copy.write_bytes(content + _checksum(content))
         os.replace(copy, path)
 
     def read(self, chain: int) -> tuple[int, NDArray[np.float64] | None] | None:
@@ -41,12 +40,12 @@ class Checkpoints:
         if not self._path(chain).is_file():
             return None
         data = self._path(chain).read_bytes()
-        content, checksum = data[:-SUM], data[-SUM:]
+        content, checksum = data[:-CHECKSUM_BYTES], data[-CHECKSUM_BYTES:]
         start = len(self.header)
-        whole = len(content) >= start + NUMBER and zlib.crc32(content).to_bytes(SUM, "little") == checksum
+        whole = len(content) >= start + INDEX_BYTES and _checksum(content) == checksum
         if not whole or not content.startswith(self.header):
             return None
-        index, state = content[start : start + NUMBER], content[start + NUMBER :]
+        index, state = content[start : start + INDEX_BYTES], content[start + INDEX_BYTES :]
         loaded = np.load(io.BytesIO(state), allow_pickle=False) if state else None
         return int.from_bytes(index, "little"), loaded
 
@@ -56,6 +55,10 @@ class Checkpoints:
 
     def _path(self, chain: int) -> Path:
         return self.directory / f"chain-{chain:09d}"
+
+
+def _checksum(content: bytes) -> bytes:
+    return zlib.crc32(content).to_bytes(CHECKSUM_BYTES, "little")
 
 
 def drop_checkpoints(directory: Path) -> None:

@@ -14,9 +14,8 @@ import numpy as np
 
 from ..layouts.variables import Layout
 
-MAGIC = b"rodsweep journal 1\n"
-BLOCK = 1 << 18
-"""Bytes read at once, however many there are."""
+JOURNAL_HEAD = b"rodsweep journal 1\n"
+BYTES_A_BLOCK = 1 << 18
 
 
 def journal_directory(file: Path) -> Path:
@@ -32,7 +31,7 @@ class Journal:
         self.names = tuple(variable.name for variable in layout.variables)
         name = f"rank-{rank:06d}-{os.getpid()}-{os.urandom(4).hex()}"
         self.handle = os.open(directory / name, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_APPEND, 0o644)
-        self._write(MAGIC + fingerprint.encode() + b"\n")
+        self._write(JOURNAL_HEAD + fingerprint.encode() + b"\n")
 
     def append(self, index: int, values: dict) -> None:
         """Writes the record of a finished point, of which `values` has every variable."""
@@ -51,6 +50,13 @@ class Journal:
             data = data[os.write(self.handle, data) :]
 
 
+def drop_journals(directory: Path) -> None:
+    """Removes all journals of a directory."""
+    for path in directory.glob("rank-*"):
+        if not path.is_dir():
+            path.unlink()
+
+
 def read_journals(
     directory: Path, layout: Layout, fingerprint: str, points: int = 2**62
 ) -> Iterator[np.ndarray]:
@@ -59,14 +65,14 @@ def read_journals(
     `points`: how many there are; a record of none of them is skipped too.
     """
     size = layout.record.itemsize
-    header = MAGIC + fingerprint.encode() + b"\n"
+    header = JOURNAL_HEAD + fingerprint.encode() + b"\n"
     for path in sorted(directory.glob("rank-*")):
         if not path.is_file():
             continue
         with path.open("rb") as file:
             if file.read(len(header)) != header:
                 continue
-            while block := file.read(max(1, BLOCK // (size + 4)) * (size + 4)):
+            while block := file.read(max(1, BYTES_A_BLOCK // (size + 4)) * (size + 4)):
                 raw = np.frombuffer(block, np.uint8)
                 raw = raw[: len(raw) // (size + 4) * (size + 4)].reshape(-1, size + 4)
                 sums = np.ascontiguousarray(raw[:, size:]).view("<u4").ravel()

@@ -12,11 +12,11 @@ from matplotlib.figure import Figure
 from ....errors import EnvironmentLacks, InputError
 from ....results.file.view import View
 from ..style import FIRST, SECOND
-from .chosen import SHAPES, Cycle, chosen_cycles, headings, left_out
 from .portrait import clamp, force_arrow, frame, tip_path
+from .selection import SHAPES, StoredCycle, chosen_cycles
 
 FILMS = (".gif", ".mp4")
-SECONDS = 2.4
+PERIOD_SECONDS = 2.4
 """Time on the screen of one period."""
 FEWEST_SHAPES = 8
 """Frames below which nothing seems to move."""
@@ -28,20 +28,20 @@ GHOSTS_BACK = 0.2
 
 def write_animation(view: View, points: Sequence[int], output: Path) -> str:
     """One period of up to three cycles side by side, each in its own time; returns what it shows."""
-    cycles = chosen_cycles(view, points, SHAPES)
+    selection = chosen_cycles(view, points, SHAPES)
+    cycles = selection.cycles
     frames = len(cycles[0].values["shape_x"])
     if frames < FEWEST_SHAPES:
         raise InputError(
             f"{view.path} holds {frames} shapes of a cycle, too few for an animation; "
             "run with limit_cycle.shapes: 48"
         )
-    writer = _writer(output, max(1, round(frames / SECONDS)))
+    writer = _writer(output, max(1, round(frames / PERIOD_SECONDS)))
     figure = Figure(figsize=(2.7 * len(cycles) + 0.9, 4.4), layout="constrained")
     panels = figure.subplots(1, len(cycles), squeeze=False, sharey=True)[0]
-    title, each = headings(view, cycles)
-    figure.suptitle(title, fontsize=10)
+    figure.suptitle(selection.title, fontsize=10)
     panels[0].set_ylabel("$y/L$")
-    arms = [Arm(axes, cycle, text) for axes, cycle, text in zip(panels, cycles, each, strict=True)]
+    arms = [MovingArm(axes, cycle) for axes, cycle in zip(panels, cycles, strict=True)]
     frame(panels, cycles)
     with writer.saving(figure, str(output), dpi=100):
         for k in range(frames):
@@ -49,7 +49,7 @@ def write_animation(view: View, points: Sequence[int], output: Path) -> str:
                 arm.show(k)
             writer.grab_frame()
             figure.set_layout_engine("none")  # laid out once: nothing else may move
-    return f"one period in {frames} frames" + left_out(view, points, cycles)
+    return f"one period in {frames} frames" + selection.left_out
 
 
 def _writer(output: Path, rate: int) -> AbstractMovieWriter:
@@ -61,10 +61,10 @@ def _writer(output: Path, rate: int) -> AbstractMovieWriter:
     return FFMpegWriter(fps=rate)
 
 
-class Arm:
+class MovingArm:
     """One arm in its panel."""
 
-    def __init__(self, axes: Axes, cycle: Cycle, text: str) -> None:
+    def __init__(self, axes: Axes, cycle: StoredCycle) -> None:
         self.axes, self.cycle = axes, cycle
         self.frames = len(cycle.values["shape_x"])
         tip_path(axes, cycle)
@@ -75,7 +75,7 @@ class Arm:
         self.arrow = force_arrow(axes, np.zeros(1), np.zeros(1), np.zeros(1), SECOND)
         self.text = axes.text(0.02, 0.02, "", transform=axes.transAxes, fontsize=9)
         axes.set_xlabel("$x/L$")
-        axes.set_title("\n".join(filter(None, (text, rf"$T$ = {cycle.period:.6g} $\tau_2$"))), fontsize=9)
+        axes.set_title(cycle.heading(rf"$T$ = {cycle.period:.6g} $\tau_2$"), fontsize=9)
 
     def show(self, k: int) -> None:
         """Moves the arm to its k-th shape."""

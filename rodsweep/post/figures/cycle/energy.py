@@ -7,11 +7,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from ....discretization.periodic import derivative, resampled
 from ....results.file.view import View
-from ..style import FIRST, SECOND, THIRD
-from .chosen import ENERGIES, Cycle, chosen_cycles, derivative, headings, left_out, periodic
+from ..style import FIRST, SECOND, THIRD, legend_below
+from .selection import ENERGIES, StoredCycle, chosen_cycles
 
-MARKS = 24
+RATE_MARKS = 24
 """Times at which the derivative of U is marked on the difference of injection and dissipation."""
 
 
@@ -20,42 +21,34 @@ def draw_energy(view: View, points: Sequence[int]) -> tuple[Figure, str]:
 
     The marks are the derivative of the stored U: an independent number that must lie on the line.
     """
-    cycles = chosen_cycles(view, points, ENERGIES)
+    selection = chosen_cycles(view, points, ENERGIES)
+    cycles = selection.cycles
     figure = Figure(figsize=(3.6 * len(cycles) + 1.0, 6.4), layout="constrained")
     rows = figure.subplots(
         3, len(cycles), squeeze=False, sharex="col", sharey="row", height_ratios=(1, 1.6, 1)
     )
-    title, each = headings(view, cycles)
-    for column, cycle, text in zip(rows.T, cycles, each, strict=True):
+    for column, cycle in zip(rows.T, cycles, strict=True):
         _budget(column, cycle)
         mean, imbalance = (float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance"))
         numbers = rf"$T$ = {cycle.period:.6g} $\tau_2$, mean power {mean:.6g}, imbalance {imbalance:.1e}"
-        column[0].set_title("\n".join(filter(None, (text, numbers))), fontsize=8.5)
+        column[0].set_title(cycle.heading(numbers), fontsize=8.5)
     rows[1, 0].set_ylim(bottom=min(0.0, rows[1, 0].get_ylim()[0]))
     rows[0, 0].set_ylabel("energy $U$\n[$k_3/L$]")
     rows[1, 0].set_ylabel("power\n" r"[$k_3/(L\,\tau_2)$]")
     rows[2, 0].set_ylabel("$dU/dt$\n" r"[$k_3/(L\,\tau_2)$]")
-    both = [axes.get_legend_handles_labels() for axes in rows[1:, 0]]
-    handles, labels = both[0][0] + both[1][0], both[0][1] + both[1][1]
-    figure.legend(
-        handles,
-        labels,
-        loc="outside lower center",
-        ncols=min(3, 1 + len(cycles)),
-        frameon=False,
-        fontsize=8.5,
-    )
+    handles = [handle for axes in rows[1:, 0] for handle in axes.get_legend_handles_labels()[0]]
+    legend_below(figure, handles, columns=min(3, 1 + len(cycles)), size=8.5)
     figure.align_ylabels(rows[:, 0])
-    figure.suptitle(title, fontsize=10)
-    return figure, "energy, injection and dissipation over a cycle" + left_out(view, points, cycles)
+    figure.suptitle(selection.title, fontsize=10)
+    return figure, "energy, injection and dissipation over a cycle" + selection.left_out
 
 
-def _budget(column: Sequence[Axes], cycle: Cycle) -> None:
+def _budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
     """The three panels of a cycle."""
     top, middle, bottom = column
     phase = np.linspace(0, 1, 401)
     time = phase * cycle.period
-    energy, injection, dissipation = (periodic(cycle.values[name], phase) for name in ENERGIES)
+    energy, injection, dissipation = (resampled(cycle.values[name], phase) for name in ENERGIES)
     top.plot(time, energy, color="k", lw=1.5)
     mean = float(cycle.values["injection_mean"])
     middle.axhline(mean, color="0.6", lw=0.9, ls=":", label="mean injection", zorder=1)
@@ -63,8 +56,8 @@ def _budget(column: Sequence[Axes], cycle: Cycle) -> None:
     middle.plot(time, dissipation, color=FIRST, lw=1.5, ls="--", label="dissipation")
     bottom.axhline(0, color="0.8", lw=0.6, zorder=0)
     bottom.plot(time, injection - dissipation, color=THIRD, lw=1.5, label=r"injection $-$ dissipation")
-    at = np.arange(MARKS) / MARKS
-    rate = periodic(derivative(cycle.values["energy"]), at) / cycle.period
+    at = np.arange(RATE_MARKS) / RATE_MARKS
+    rate = resampled(derivative(cycle.values["energy"]), at) / cycle.period
     bottom.plot(at * cycle.period, rate, "o", color="k", mfc="none", ms=3.5, label="derivative of $U$")
     bottom.set_xlabel(r"time $t/\tau_2$")
     bottom.set_xlim(0, cycle.period)

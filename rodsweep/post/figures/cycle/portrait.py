@@ -1,6 +1,6 @@
 """The beating arm, as the paper's Fig. 5: shapes through the cycle with the force, and the tip in time."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import matplotlib
@@ -12,31 +12,33 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.quiver import Quiver
 
+from ....discretization.periodic import resampled
 from ....results.file.view import View
 from ..style import FIRST, SECOND
-from .chosen import SHAPES, Array, Cycle, chosen_cycles, headings, left_out, periodic
+from .selection import SHAPES, Array, StoredCycle, chosen_cycles
 
 MOST_SHAPES = 12
 """Shapes of one cycle that can still be told apart."""
 ARROW = 0.14
 """Length of the force's arrow in L."""
-PERIODS = 2
-"""Of the slowest cycle: the time that the tip is followed."""
+TIP_PERIODS = 2
+"""How long the tip is followed, in periods of the slowest cycle."""
 FEW_SAMPLES = 48
 """Below this number the samples themselves are marked on the curve through them."""
 LIGHTEST = 0.14
 """The part of the colour map left out: yellow that does not show on white."""
 
 
-def draw_cycle(view: View, points: Sequence[int]) -> tuple[Figure, str]:
+def draw_portrait(view: View, points: Sequence[int]) -> tuple[Figure, str]:
     """A column for each cycle: the shapes, later ones darker, above x and y of the tip against time."""
-    cycles = chosen_cycles(view, points, SHAPES)
+    selection = chosen_cycles(view, points, SHAPES)
+    cycles = selection.cycles
     figure, shapes, tips = _panels(len(cycles))
-    title, each = headings(view, cycles)
-    end = PERIODS * max(c.period for c in cycles)
+    end = TIP_PERIODS * max(c.period for c in cycles)
     drawn, step = drawn_shapes(len(cycles[0].values["shape_x"]))
-    colours = _colours(len(drawn))
-    for axes, (upper, lower), cycle, text in zip(shapes, tips, cycles, each, strict=True):
+    # Light to dark, in steps that the colour-blind see.
+    colours = ListedColormap(matplotlib.colormaps["viridis_r"](np.linspace(LIGHTEST, 1, len(drawn))))
+    for axes, (upper, lower), cycle in zip(shapes, tips, cycles, strict=True):
         tip_path(axes, cycle)
         clamp(axes)
         for k, place in enumerate(drawn):
@@ -44,15 +46,15 @@ def draw_cycle(view: View, points: Sequence[int]) -> tuple[Figure, str]:
             axes.plot(x, y, color=colours(k), lw=1.8, solid_capstyle="round", zorder=2 + k / 100)
             force_arrow(axes, x, y, theta, colours(k))
         axes.set_xlabel("$x/L$")
-        axes.set_title("\n".join(filter(None, (text, period_text(cycle)))), fontsize=9)
+        axes.set_title(cycle.heading(period_text(cycle)), fontsize=9)
         _tip(upper, lower, cycle, end)
     frame(shapes, cycles)
     shapes[0].set_ylabel("$y/L$")
     tips[0][0].set_ylabel("tip $x/L$", color=FIRST)
     tips[0][1].set_ylabel("tip $y/L$", color=SECOND)
     _phase_bar(figure, shapes, colours, step)
-    figure.suptitle(title, fontsize=10)
-    return figure, "shapes through the cycle and the tip in time" + left_out(view, points, cycles)
+    figure.suptitle(selection.title, fontsize=10)
+    return figure, "shapes through the cycle and the tip in time" + selection.left_out
 
 
 def _panels(count: int) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
@@ -73,7 +75,7 @@ def _panels(count: int) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
     return figure, list(rows[0]), list(zip(rows[1], rows[2], strict=True))
 
 
-def period_text(cycle: Cycle) -> str:
+def period_text(cycle: StoredCycle) -> str:
     """The period in tau2, and in tau1 where there is one."""
     text = rf"$T$ = {cycle.period:.6g} $\tau_2$"
     return text + (rf" = {cycle.period / cycle.tau1:.6g} $\tau_1$" if 0 < cycle.tau1 < np.inf else "")
@@ -83,11 +85,6 @@ def drawn_shapes(stored: int) -> tuple[range, float]:
     """(which of the stored shapes are drawn, the time from one to the next in periods): equal steps."""
     stride = -(-stored // MOST_SHAPES)
     return range(0, stored, stride), stride / stored
-
-
-def _colours(count: int) -> ListedColormap:
-    """One colour for each shape of a cycle, light to dark, in steps that the colour-blind see."""
-    return ListedColormap(matplotlib.colormaps["viridis_r"](np.linspace(LIGHTEST, 1, count)))
 
 
 def _phase_bar(figure: Figure, panels: list[Axes], colours: ListedColormap, step: float) -> None:
@@ -102,10 +99,10 @@ def _phase_bar(figure: Figure, panels: list[Axes], colours: ListedColormap, step
     bar.ax.minorticks_off()
 
 
-def tip_path(axes: Axes, cycle: Cycle) -> None:
+def tip_path(axes: Axes, cycle: StoredCycle) -> None:
     """The closed path of the tip."""
     phase = np.linspace(0, 1, 401)
-    axes.plot(*(periodic(v, phase) for v in cycle.tip), color="0.6", lw=0.8, ls=(0, (4, 2)), zorder=1)
+    axes.plot(*(resampled(v, phase) for v in cycle.tip), color="0.6", lw=0.8, ls=(0, (4, 2)), zorder=1)
 
 
 def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any) -> Quiver:
@@ -124,27 +121,25 @@ def clamp(axes: Axes) -> None:
     axes.plot([0, 0], [-0.13, 0.13], color="k", lw=1.4, zorder=5)
 
 
-def frame(panels: Sequence[Axes], cycles: Sequence[Cycle]) -> None:
+def frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
     """The same region in all panels: every shape and arrow, one length for x and y."""
-    corner = np.array([np.inf, np.inf, -np.inf, -np.inf])
+    wall = -0.05
+    along_x, along_y = [np.array([wall])], []
     for cycle in cycles:
         x, y, theta = (cycle.values[name] for name in SHAPES)
-        start = x[:, -1] + ARROW * np.cos(theta[:, -1]), y[:, -1] + ARROW * np.sin(theta[:, -1])
-        low = [min(v.min(), s.min()) for v, s in zip((x, y), start, strict=True)]
-        high = [max(v.max(), s.max()) for v, s in zip((x, y), start, strict=True)]
-        corner = np.concatenate([np.minimum(corner[:2], low), np.maximum(corner[2:], high)])
+        along_x += [x.ravel(), x[:, -1] + ARROW * np.cos(theta[:, -1])]
+        along_y += [y.ravel(), y[:, -1] + ARROW * np.sin(theta[:, -1])]
+    x, y = np.concatenate(along_x), np.concatenate(along_y)
     for axes in panels:
         axes.set_aspect("equal")
-        axes.set(
-            xlim=(min(corner[0], -0.05) - 0.04, corner[2] + 0.04), ylim=(corner[1] - 0.04, corner[3] + 0.04)
-        )
+        axes.set(xlim=(x.min() - 0.04, x.max() + 0.04), ylim=(y.min() - 0.04, y.max() + 0.04))
 
 
-def _tip(upper: Axes, lower: Axes, cycle: Cycle, end: float) -> None:
+def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
     """x and y of the tip against time in tau2, and in the paper's tau1 where there is one."""
     time = np.linspace(0, end, 801)
     for axes, values, colour in zip((upper, lower), cycle.tip, (FIRST, SECOND), strict=True):
-        axes.plot(time, periodic(values, time / cycle.period), color=colour, lw=1.4)
+        axes.plot(time, resampled(values, time / cycle.period), color=colour, lw=1.4)
         if len(values) < FEW_SAMPLES:
             at = np.arange(int(end / cycle.period * len(values)) + 1)
             axes.plot(at * cycle.period / len(values), values[at % len(values)], "o", color=colour, ms=2.5)
@@ -154,11 +149,9 @@ def _tip(upper: Axes, lower: Axes, cycle: Cycle, end: float) -> None:
     lower.axhline(0, color="0.8", lw=0.6, zorder=0)
     lower.set_xlabel(r"time $t/\tau_2$")
     if 0 < cycle.tau1 < np.inf:
-        top = upper.secondary_xaxis("top", functions=_scaling(cycle.tau1))
+        unit = cycle.tau1
+        top = upper.secondary_xaxis(
+            "top", functions=(lambda t: np.asarray(t) / unit, lambda t: np.asarray(t) * unit)
+        )
         top.set_xlabel(r"time $t/\tau_1$", fontsize=9)
         top.tick_params(labelsize=8)
-
-
-def _scaling(unit: float) -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:
-    """Time in tau2 to time in another unit, and back."""
-    return lambda time: time / unit, lambda time: time * unit

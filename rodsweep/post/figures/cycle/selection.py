@@ -1,0 +1,130 @@
+"""The limit cycles that a file holds, one `StoredCycle` for each point, and which of them a figure shows.
+
+Samples and shapes of a cycle are at the times k T / n, k = 0 ... n - 1, over one period T: what follows the
+last is the first.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....errors import InputError
+from ....results.file.view import View
+from ..style import heading, need, parameter_text
+
+MOST_CYCLES = 3
+"""Cycles for which one figure has room, side by side."""
+SHAPES = ("shape_x", "shape_y", "shape_theta")
+ENERGIES = ("energy", "injection", "dissipation")
+ASKED_BY = {name: "shapes" for name in SHAPES} | {name: "samples" for name in ENERGIES}
+"""The option of limit_cycle that stores a variable."""
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class StoredCycle:
+    """A point's cycle.
+
+    parameters: by name; period in tau2; values: every variable of the file at this point.
+    """
+
+    number: int
+    """Of the point in the file, from 1."""
+    label: str
+    """What tells it from the other cycles of the figure."""
+    parameters: dict[str, float]
+    period: float
+    values: dict[str, Array]
+
+    @property
+    def tau1(self) -> float:
+        """The short time scale gamma3/k2 in tau2; 0 where the rod has none."""
+        return self.parameters["gamma3"] / self.parameters["k2"]
+
+    @property
+    def tip(self) -> tuple[Array, Array]:
+        """x and y of the tip in L over a period: from the samples, or else from the shapes."""
+        if "tip_x" in self.values:
+            return self.values["tip_x"], self.values["tip_y"]
+        return self.values["shape_x"][:, -1], self.values["shape_y"][:, -1]
+
+    def heading(self, line: str) -> str:
+        """The label, where there is one, above a line about the cycle."""
+        return "\n".join(filter(None, (self.label, line)))
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """The cycles of a figure."""
+
+    cycles: list[StoredCycle]
+    title: str
+    """The file's title and the parameters that all cycles share."""
+    left_out: str
+    """What the message says of cycles for which there was no room; empty where there are none."""
+
+
+def outcomes(view: View) -> NDArray[np.str_]:
+    """The word for every point's status, shape (points,)."""
+    return np.array([view.flags.get(int(s), "missing") for s in view.variables["status"].ravel()])
+
+
+def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> Selection:
+    """The cycles of the points that the user names, else the first ones; with all variables `needs`.
+
+    Raises InputError where a variable was not stored, a point does not exist or is not a cycle.
+    """
+    for name in needs:
+        if name not in view.variables:
+            key = f"limit_cycle.{ASKED_BY[name]}"
+            raise InputError(f"{view.path} holds no {name}; run with {key} > 0, which stores it")
+    words = outcomes(view)
+    _refuse_bad_points(view, points, words)
+    there = np.flatnonzero(words == "cycle")
+    need(view, there.size, "cycle")
+    numbers = list(points) or [int(index) + 1 for index in there[:MOST_CYCLES]]
+    columns = view.point_columns
+    parameters = [{name: float(columns[name][n - 1]) for name in columns} for n in numbers]
+    shared, own = told_apart(parameters)
+    cycles = []
+    for number, label, at in zip(numbers, own, parameters, strict=True):
+        values = _values(view, number)
+        cycles.append(StoredCycle(number, label, at, float(values["period"]), values))
+    left_out = ""
+    if not points and there.size > len(cycles):
+        left_out = f", the first {len(cycles)} of {there.size} cycles (--point chooses others)"
+    return Selection(cycles, heading(view, shared), left_out)
+
+
+def _refuse_bad_points(view: View, points: Sequence[int], words: NDArray[np.str_]) -> None:
+    """InputError where a figure has no room for the points, or one of them does not exist or has no cycle."""
+    if len(points) > MOST_CYCLES:
+        raise InputError(
+            f"--point is given {len(points)} times; one figure shows at most {MOST_CYCLES} points"
+        )
+    for number in points:
+        if not 1 <= number <= len(words):
+            raise InputError(f"--point {number}: {view.path} has the points 1 to {len(words)}")
+        if words[number - 1] != "cycle":
+            word = words[number - 1].replace("_", " ")
+            raise InputError(f"--point {number}: the point has no cycle to draw, its status is: {word}")
+
+
+def _values(view: View, number: int) -> dict[str, Array]:
+    """The variables at one point, each in its shape there."""
+    shape = view.variables["status"].shape
+    return {
+        name: data.reshape(-1, *data.shape[len(shape) :])[number - 1]
+        for name, data in view.variables.items()
+        if data.shape[: len(shape)] == shape and name not in (*view.parameters, "point")
+    }
+
+
+def told_apart(parameters: Sequence[dict[str, float]]) -> tuple[str, list[str]]:
+    """(the parameters that all share, what tells each from the others), as text."""
+    shared = {n: v for n, v in parameters[0].items() if all(other[n] == v for other in parameters)}
+    own = [parameter_text({n: v for n, v in each.items() if n not in shared}) for each in parameters]
+    return parameter_text(shared), own

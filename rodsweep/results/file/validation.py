@@ -1,0 +1,114 @@
+"""Whether a file is a whole rodsweep result, and which config it answers; what is said where it is not."""
+
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from math import inf
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from ...errors import InputError
+from ..layouts import layout_of
+from ..layouts.variables import Layout
+from .seal import HDF5_SIGNATURE, check_seal
+
+PROGRAM = "rodsweep"
+"""The attribute `program` of our files."""
+LONGEST_REASON = 150
+"""Characters of what a library says."""
+DAMAGES = (OSError, LookupError, ValueError, TypeError, RuntimeError, OverflowError, MemoryError)
+"""What h5py raises, and what reading goes on to raise, where a file is damaged."""
+
+
+@contextmanager
+def reading(path: Path) -> Iterator[None]:
+    """What is raised in here because the file is no result, or is damaged, becomes InputError."""
+    try:
+        yield
+    except DAMAGES as error:
+        raise InputError(f"{path} is not a whole rodsweep result file ({reason_of(error)})") from None
+
+
+def reason_of(error: Exception) -> str:
+    """What a library says of a file, on one line."""
+    text = getattr(error, "strerror", None) or str(error) or type(error).__name__
+    text = "".join(c if c.isprintable() else " " for c in text)
+    return text if len(text) <= LONGEST_REASON else text[: LONGEST_REASON - 3] + "..."
+
+
+@dataclass(frozen=True, slots=True)
+class Header:
+    """What a whole result file says of itself; `config` is the resolved one, `points` their number."""
+
+    path: Path
+    attributes: dict[str, Any]
+    config: dict[str, Any]
+    fingerprint: str
+    layout: Layout
+    points: int
+
+
+def read_header(path: Path, checked: float = inf) -> Header:
+    """InputError unless the file is a whole result: with its numbers, if it has at most `checked` bytes."""
+    if not path.is_file():
+        raise InputError(f"{path} is not a file" if path.exists() else f"{path} does not exist")
+    with reading(path):
+        check_seal(path, values=path.stat().st_size <= checked)
+        with h5py.File(path, "r") as file:
+            attributes = dict(file.attrs)
+            config = json.loads(attributes["config_resolved"])
+            layout = layout_of(config)
+            refuse_misfit(file, layout)
+            fingerprint = str(attributes["fingerprint"])
+            return Header(path, attributes, config, fingerprint, layout, file["status"].size)
+
+
+def refuse_misfit(file: h5py.File, layout: Layout) -> None:
+    """One of DAMAGES unless every variable of the layout is there, with its type, its shape and its place."""
+    names = ("point",) if "point" in file else layout.parameters
+    shape = tuple(len(file[name]) for name in names)
+    expected = {v.name: (shape + layout.inner(v), np.dtype(v.dtype)) for v in layout.variables}
+    expected |= {name: ((extent,), file[name].dtype) for name, extent in layout.extents.items()}
+    for name, (extents, kind) in expected.items():
+        data = file[name]
+        if not isinstance(data, h5py.Dataset) or data.shape != extents or data.dtype != kind:
+            raise ValueError(f"its variable {name} does not fit its config")
+        if data.id.get_offset() is None or data.chunks or not data.id.get_storage_size():
+            raise ValueError(f"its variable {name} does not lie in one piece")
+
+
+def is_ours(path: Path) -> bool:
+    """Whether a file is a rodsweep result, or HDF5 that is too damaged to say whose it is."""
+    if not path.is_file():
+        return False
+    with path.open("rb") as stream:
+        if stream.read(8) != HDF5_SIGNATURE:
+            return False
+    try:
+        check_seal(path, values=False)
+        with h5py.File(path, "r") as file:
+            return bool(file.attrs.get("program") == PROGRAM)
+    except DAMAGES:
+        return True
+
+
+def change_between(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
+    """How two resolved configs differ that do not ask for the same points, in words."""
+    return config_difference(theirs, ours) or "the points listed in parameters.points differ"
+
+
+def config_difference(theirs: Any, ours: Any, key: str = "") -> str:
+    """The first key in which two resolved configs differ, with both values; empty if none does."""
+    if isinstance(theirs, dict) and isinstance(ours, dict):
+        for name in [*ours, *(n for n in theirs if n not in ours)]:
+            found = config_difference(theirs.get(name), ours.get(name), f"{key}.{name}" if key else name)
+            if found:
+                return found
+        return ""
+    if theirs == ours:
+        return ""
+    return f"{key} is {json.dumps(theirs)[:80]} in the file and {json.dumps(ours)[:80]} in the config"
