@@ -4,6 +4,7 @@ import importlib.util
 import re
 import shlex
 import textwrap
+import tomllib
 from functools import cache
 from pathlib import Path
 
@@ -158,6 +159,13 @@ def test_keys_exist(page):
             section, key = found.group(1, 2)
             owners = CONFIGS.values() if section == "parameters" else [CONFIGS[section]]
             assert any(key in owner.model_fields[section].annotation.model_fields for owner in owners), text
+
+
+def test_developers_read_the_order_of_the_packages_that_is_enforced():
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
+    layers = next(contract["layers"] for contract in contracts if contract["id"] == "layers")
+    order = " < ".join(re.sub(r"\(rodsweep\.(.*)\)", r"\1", layer) for layer in reversed(layers))
+    assert f"    {order}\n" in (DOCS / "developers.md").read_text()
 
 
 def test_reference_is_that_of_the_code():
