@@ -2,9 +2,7 @@
 
     python -m rodsweep.cli.measured DIRECTORY KIND WORDS...
 
-runs `rodsweep WORDS...` and leaves the peak memory in bytes of every rank in DIRECTORY, in a file
-`first-PID` or `other-PID`. KIND is what takes the place of the solver of the task spectrum: `solved` none,
-`instant` outcomes that cost nothing, `killed` the same and a kill at the last point.
+runs `rodsweep WORDS...`. DIRECTORY and KIND are what `rodsweep.bench.sweep.launch` says.
 """
 
 import os
@@ -17,49 +15,32 @@ from pathlib import Path
 
 import numpy as np
 
-from ..config import SpectrumConfig
-from ..results.layouts.variables import Filled
-from ..sweep.estimate import Estimate
-from ..sweep.grid import Points
+from ..bench.sweep.launch import FIRST, KILLED, OTHER, SOLVED
 from . import _speaks, main
 from .tasks import TASKS
-from .tasks.protocol import Part, Solver
+from .tasks.protocol import Solver
 from .tasks.spectrum import SpectrumTask
 
-TABLE = 4096
-"""Outcomes that the points take in turn: more than any compression looks back."""
+OUTCOMES = 4096
+"""That the points take in turn: more than any compression looks back."""
 
 
 @dataclass(frozen=True, slots=True)
-class InstantSpectra:
-    """The task spectrum with random outcomes from a table, so that all time is the sweep's own."""
+class InstantSpectra(SpectrumTask):
+    """The task spectrum with random outcomes from a table, so that all time is the sweep's own.
 
-    spectra: SpectrumTask
-    killed: Path | None
-    """Where the rank that gets the last point notes its memory before it is killed there; None: nobody is."""
+    killed: where the rank that gets the last point notes its memory before it is killed there.
+    """
 
-    def coordinates(self) -> dict[str, np.ndarray]:
-        return self.spectra.coordinates()
-
-    def constants(self) -> tuple[Filled, ...]:
-        return self.spectra.constants()
-
-    def headline(self) -> str:
-        return self.spectra.headline()
-
-    def parts(self) -> list[Part]:
-        return self.spectra.parts()
-
-    def cost(self) -> Estimate:
-        return self.spectra.cost()
+    killed: Path | None = None
 
     def solver(self) -> Solver:
         from ..solve.spectrum.search import Spectrum
         from ..solve.spectrum.status import Status
 
-        points, modes = self.spectra.points, self.spectra.config.spectrum.modes
-        parts = np.random.default_rng(1).standard_normal((TABLE, 3, modes))
-        table = [
+        points, modes = self.points, self.config.spectrum.modes
+        parts = np.random.default_rng(1).standard_normal((OUTCOMES, 3, modes))
+        outcomes = [
             Spectrum(Status.ok, 100 * (a + 1j * b), 1e-12 * c, 1, True, 1, 20, 1e-7) for a, b, c in parts
         ]
 
@@ -68,20 +49,14 @@ class InstantSpectra:
             if self.killed and index == points.count - 1:
                 note_memory(self.killed)
                 os.kill(os.getpid(), signal.SIGKILL)
-            return table[index % TABLE]
+            return outcomes[index % OUTCOMES]
 
-        return replace(self.spectra.solver(), warm_up=lambda: None, solve=solve)
-
-
-def instant_spectra(killed: Path | None, config: SpectrumConfig, points: Points) -> InstantSpectra:
-    """The task of a config on its points."""
-    return InstantSpectra(SpectrumTask(config, points), killed)
+        return replace(SpectrumTask.solver(self), warm_up=lambda: None, solve=solve)
 
 
 def note_memory(directory: Path) -> None:
     """Leaves this rank's peak memory so far."""
-    rank = "first" if _speaks() else "other"
-    (directory / f"{rank}-{os.getpid()}").write_text(str(peak_memory()))
+    (directory / f"{FIRST if _speaks() else OTHER}-{os.getpid()}").write_text(str(peak_memory()))
 
 
 def peak_memory() -> int:
@@ -100,8 +75,8 @@ def run_measured() -> None:
     """Runs the command that the arguments ask for."""
     directory, kind, *words = sys.argv[1:]
     notes = Path(directory)
-    if kind != "solved":
-        TASKS["spectrum"] = partial(instant_spectra, notes if kind == "killed" else None)
+    if kind != SOLVED:
+        TASKS["spectrum"] = partial(InstantSpectra, killed=notes if kind == KILLED else None)
     sys.argv = ["rodsweep", *words]
     try:
         main()

@@ -9,6 +9,7 @@ import numpy as np
 from ...model.rod import Rod
 from ...solve.spectrum.search import SpectrumRequest, solve_spectrum
 from ...solve.spectrum.status import Status
+from ..lapack import Eigenvalues
 
 DIGITS = 30
 GUARD = 25
@@ -59,9 +60,9 @@ def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
     return roots
 
 
-def relative_error(w: np.ndarray, exact: list[Any]) -> float:
+def relative_error(w: Eigenvalues | Exception, exact: list[Any]) -> float:
     """Largest relative distance of an exact eigenvalue to the nearest computed one; inf for none."""
-    if not len(w):
+    if isinstance(w, Exception) or not len(w):
         return float("inf")
     with mp.workdps(DIGITS):
         computed = [mp.mpc(complex(value)) for value in w]
