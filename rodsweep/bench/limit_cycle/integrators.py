@@ -4,7 +4,6 @@ All see the same compiled rate and exact Jacobian of a beam, and one `tolerance`
 units of its largest.
 """
 
-import importlib
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,6 +18,7 @@ from ...discretization.body_frame import jacobian, rate
 from ...solve.motion.integrator import Ending, evolve
 from ...solve.motion.time_scheme import Method
 from ..lapack import Array
+from ..machine import installed
 
 TIGHT = 3e-7
 """Tolerance below which Newton's errors would show in those of ARKIMEX 5 with the default's test."""
@@ -26,6 +26,8 @@ TIGHT_NEWTON = 0.03
 FIRST_SHARE, FIRST_MULTISTEP_SHARE = 1e-3, 1e-5
 """First step in units of the duration; that of multistep methods, which start with order 1. LSODA fails
 where its first step is too long for the start."""
+CVODE_MODULE = "sksundae.cvode"
+"""Of scikit-sundae, which is an optional extra (`cvode`)."""
 MOST_CVODE_STEPS = 200_000
 
 
@@ -56,7 +58,7 @@ class Family:
 
 def by_petsc(
     family: str, variant: str, beam: Beam, z: Array, duration: float, tolerance: float
-) -> Trajectory:  # noqa: PLR0913, PLR0917
+) -> Trajectory:
     """PETSc TS as the task limit_cycle uses it."""
     newton = Method().newton if tolerance > TIGHT else TIGHT_NEWTON
     method = Method(family, variant, tolerance, newton, prefix="bench_")
@@ -113,19 +115,9 @@ def by_cvode(cvode: Any, beam: Beam, z: Array, duration: float, tolerance: float
     return Trajectory(found.t, found.y)
 
 
-def cvode_module() -> Any | None:
-    """scikit-sundae's CVODE, which is an optional extra (`cvode`); None where it is not installed."""
-    try:
-        return importlib.import_module("sksundae.cvode")
-    except ImportError:
-        return None
-
-
 DEFAULT = "ARKIMEX 5 (default)"
 SCIPY, CVODE = "SciPy ", "CVODE"
 """How the names of the families of others begin."""
-PYTHON = (SCIPY + "BDF", SCIPY + "Radau")
-"""SciPy's implicit methods written in Python; LSODA is compiled."""
 
 
 def families() -> list[Family]:
@@ -154,8 +146,7 @@ def families() -> list[Family]:
         Family(SCIPY + method, partial(by_scipy, method), tolerances, settling.get(method, ()))
         for method, tolerances in scipy_own.items()
     ]
-    module = cvode_module()
-    if module is not None:
+    if module := installed(CVODE_MODULE):
         ladder = (1e-5, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9)
         found.append(Family(CVODE, partial(by_cvode, module), ladder, careful))
     return found

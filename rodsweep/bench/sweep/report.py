@@ -86,7 +86,11 @@ def growth_table(measurements: Sequence[Measurement]) -> str:
     rows = []
     for (case, method), sizes in kinds.items():
         for less, more in pairwise(sizes):
-            row: dict[str, object] = {"case": case, "method": method, "power": power(sizes[0], less, more)}
+            row: dict[str, object] = {
+                "case": case,
+                "method": method,
+                "power": growth_power(sizes[0], less, more),
+            }
             for name, end in totals(more).items():
                 start = totals(less)[name]
                 row[name] = (end - start) / (more.extra["points"] - less.extra["points"])
@@ -112,7 +116,7 @@ def totals(m: Measurement) -> dict[str, float]:
     }
 
 
-def power(start: Measurement, less: Measurement, more: Measurement) -> float:
+def growth_power(start: Measurement, less: Measurement, more: Measurement) -> float:
     """With which the time beyond that of the smallest sweep grows; nan where it does not."""
     if less is start or min(less.seconds, more.seconds) <= start.seconds:
         return nan

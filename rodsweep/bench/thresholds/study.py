@@ -14,8 +14,9 @@ from typing import Any
 from ...solve.changes.thresholds import warm_up
 from ..study import Contender, Measurement, Study, contest, middle
 from ..tables import plural, table
-from .cases import CASES, ENOUGH, HOPF, MESH_ACCURACY, ONSET, QUICK_CASES, FirstThreshold, ThresholdCase
+from .cases import CASES, HOPF, MESH_ACCURACY, ONSET, QUICK_CASES, FirstThreshold, ThresholdCase
 from .contenders import AUTO, F_MAX, PYCONT, contenders, continuation_codes
+from .pycont_lite import BEYOND_HOPF
 from .spectra_by_force import MARCH
 
 TITLES = {ONSET: "onset", HOPF: "Hopf point"}
@@ -43,11 +44,11 @@ def timed_on(
     measurements = []
     for case in cases:
         name = f"{case.name}, {TITLES[kind]}"
-        measurements += contest(name, case, every, rounds, partial(judge, case, kind))
+        measurements += contest(name, case, every, rounds, partial(judged_threshold, case, kind))
     return measurements
 
 
-def judge(case: ThresholdCase, kind: str, first: FirstThreshold) -> dict[str, Any]:
+def judged_threshold(case: ThresholdCase, kind: str, first: FirstThreshold) -> dict[str, Any]:
     """What is wrong with a threshold. digits: of it, an eigenproblem, 0 where it was missed."""
     error = case.error_of(kind, first.force)
     missed = "missed" if isnan(first.force) else f"wrong ({first.force:.2f})"
@@ -108,7 +109,7 @@ def introduction(rounds: int, codes: set[str]) -> str:
     if PYCONT in codes:
         text += (
             f" {PYCONT} multiplies by M only. It is started where a pair leads already, and ended "
-            f"{ENOUGH:g} beyond the Hopf point: from F = 0, through the onset, it is by chance right, off by "
-            "percents or without a result. Its first vectors are random, so that its numbers vary."
+            f"{BEYOND_HOPF:g} beyond the Hopf point: from F = 0, through the onset, it is by chance right, off "
+            "by percents or without a result. Its first vectors are random, so that its numbers vary."
         )
     return text
