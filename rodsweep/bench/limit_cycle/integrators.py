@@ -115,38 +115,32 @@ def by_cvode(cvode: Any, beam: Beam, z: Array, duration: float, tolerance: float
     return Trajectory(found.t, found.y)
 
 
-DEFAULT = "ARKIMEX 5 (default)"
-SCIPY, CVODE = "SciPy ", "CVODE"
-"""How the names of the families of others begin."""
+DEFAULT, CVODE = "ARKIMEX 5 (default)", "CVODE"
 
 
-def families() -> list[Family]:
-    """All that can be run here; BDF 5 is at the edge of its stability until the tolerance is tight."""
-    own = {
-        "ARKIMEX 2": ("arkimex", "2e", (1e-4, 1e-5, 1e-6, 3e-7, 2e-7)),
-        "ARKIMEX 3": ("arkimex", "3", (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
-        "ARKIMEX 4": ("arkimex", "4", (1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8)),
-        DEFAULT: ("arkimex", "5", (1e-5, 5e-6, 2e-6, 1e-6, 3e-7, 1e-7, 1e-8)),
-        "BDF 5": ("bdf", "5", (1e-6, 1e-7, 3e-8, 1e-8, 1e-9)),
-        "ROSW ra34pw2": ("rosw", "ra34pw2", (1e-4, 1e-5, 3e-6, 1e-6, 1e-7)),
-        "ROSW rodas3": ("rosw", "rodas3", (1e-4, 1e-5, 3e-6, 1e-6, 3e-7)),
-    }
-    scipy_own = {
-        "BDF": (1e-5, 1e-6, 3e-7, 1e-7, 1e-8),
-        "Radau": (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6),
-        "LSODA": (1e-5, 1e-6, 3e-7, 1e-7, 1e-8),
-    }
-    careful = (1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9)
-    settling = {"Radau": (1e-4, 3e-5, 1e-5, *careful[:4]), "LSODA": careful}
-    found = [
-        Family(name, partial(by_petsc, family, variant), tolerances, careful if name == DEFAULT else ())
-        for name, (family, variant, tolerances) in own.items()
-    ]
-    found += [
-        Family(SCIPY + method, partial(by_scipy, method), tolerances, settling.get(method, ()))
-        for method, tolerances in scipy_own.items()
-    ]
-    if module := installed(CVODE_MODULE):
-        ladder = (1e-5, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9)
-        found.append(Family(CVODE, partial(by_cvode, module), ladder, careful))
-    return found
+CAREFUL = (1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9)
+FAMILIES = (
+    Family("ARKIMEX 2", partial(by_petsc, "arkimex", "2e"), (1e-4, 1e-5, 1e-6, 3e-7, 2e-7)),
+    Family("ARKIMEX 3", partial(by_petsc, "arkimex", "3"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
+    Family("ARKIMEX 4", partial(by_petsc, "arkimex", "4"), (1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8)),
+    Family(DEFAULT, partial(by_petsc, "arkimex", "5"), (1e-5, 5e-6, 2e-6, 1e-6, 3e-7, 1e-7, 1e-8), CAREFUL),
+    Family("BDF 5", partial(by_petsc, "bdf", "5"), (1e-6, 1e-7, 3e-8, 1e-8, 1e-9)),
+    Family("ROSW ra34pw2", partial(by_petsc, "rosw", "ra34pw2"), (1e-4, 1e-5, 3e-6, 1e-6, 1e-7)),
+    Family("ROSW rodas3", partial(by_petsc, "rosw", "rodas3"), (1e-4, 1e-5, 3e-6, 1e-6, 3e-7)),
+    Family("SciPy BDF", partial(by_scipy, "BDF"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
+    Family(
+        "SciPy Radau",
+        partial(by_scipy, "Radau"),
+        (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6),
+        (1e-4, 3e-5, 1e-5, *CAREFUL[:4]),
+    ),
+    Family("SciPy LSODA", partial(by_scipy, "LSODA"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8), CAREFUL),
+)
+"""BDF 5 is at the edge of its stability until the tolerance is tight."""
+
+
+def families() -> tuple[Family, ...]:
+    """All that can be run here."""
+    module = installed(CVODE_MODULE)
+    ladder = (1e-5, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9)
+    return FAMILIES + ((Family(CVODE, partial(by_cvode, module), ladder, CAREFUL),) if module else ())

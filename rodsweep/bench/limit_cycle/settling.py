@@ -41,14 +41,13 @@ class Wait:
     def row(self, timed: Timed) -> dict[str, str | float]:
         """A line of the table."""
         failures = ", ".join(f"{tolerance:.0e}" for tolerance in self.failed)
-        settled = isfinite(self.returns)
+        settled, about = isfinite(self.returns), "about " if self.times != 1 else ""
         return {
             "force": self.force,
             "way": self.way + (f" (fails at {failures})" if failures else ""),
             "tolerance": self.tolerance,
-            "about": "about " if self.times != 1 else "" if settled else f"not settled in {PERIODS_OF_WAIT}",
-            "returns": self.returns,
-            "milliseconds": 1e3 * self.times * timed.median if settled else nan,
+            "returns": f"{about}{self.returns:.0f}" if settled else f"not settled in {PERIODS_OF_WAIT}",
+            "milliseconds": f"{about}{1e3 * self.times * timed.median:.0f}" if settled else "",
             "error": self.error if settled else nan,
         }
 
@@ -66,14 +65,14 @@ def settling_table(waits: Sequence[Wait], raced: Sequence[Timed]) -> str:
     """What each way took."""
     return (
         f"To the settled cycle from a start of {AMPLITUDE:g} L, settled where two successive returns agree "
-        f"to {SETTLED_WITHIN:.0e}, at the loosest tolerance that settles and leaves no larger error: who "
-        "waits is given this tolerance, and the returns for nothing. solve_cycle is asked for the same accuracy, "
-        f"and its time includes its choice of mesh and its proof of stability. At F = {NEAR_HOPF:g} waiting is "
-        f"not run but estimated, from below: ln({SETTLED_WITHIN:.0e})/ln(largest multiplier) periods at the "
-        "milliseconds that a period takes there; the errors are then solve_cycle's estimate and the aim.\n\n"
+        f"to {SETTLED_WITHIN:.0e}, at the loosest tolerance that settles and leaves no larger error; who "
+        "waits is given this tolerance. solve_cycle is asked for the same, and its time includes its choice "
+        f"of mesh and its proof of stability. At F = {NEAR_HOPF:g} waiting is estimated, from below: "
+        f"ln({SETTLED_WITHIN:.0e})/ln(largest multiplier) periods, at the milliseconds that one takes there; "
+        "the errors are then solve_cycle's estimate and the aim.\n\n"
     ) + table(
         "F | way | tolerance | returns | ms | error left",
-        "{force:g} | {way} | {tolerance:.0e} | {about}{returns:.0f} | {milliseconds:.0f} | {error:.0e}",
+        "{force:g} | {way} | {tolerance:.0e} | {returns} | {milliseconds} | {error:.0e}",
         [wait.row(timed) for wait, timed in zip(waits, raced, strict=True)],
     )
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 from math import isfinite, log, nan
 
 from ...solve.cycle.limit_cycle import warm_up
-from ..study import Measurement, Study
+from ..study import Measurement, Study, grouped
 from ..tables import plural, table
 from .integrators import CVODE, DEFAULT, families
 from .settling import settling
@@ -71,8 +71,7 @@ def work_table(measurements: Sequence[Measurement]) -> str:
 def target_table(measurements: Sequence[Measurement]) -> str:
     """All methods at equal error."""
     at = {}
-    for method in dict.fromkeys(m.method for m in measurements):
-        own = [m for m in measurements if m.method == method]
+    for (method,), own in grouped(measurements, "method").items():
         errors = [m.error for m in own]
         median, least = [m.seconds for m in own], [m.least_seconds for m in own]
         at[method] = time_at(TARGET, errors, median), time_at(TARGET, errors, least)

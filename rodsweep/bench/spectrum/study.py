@@ -10,7 +10,7 @@ import numpy as np
 from ...model.rod import Rod
 from ...solve.spectrum.search import warm_up
 from ..lapack import Eigenvalues
-from ..study import Contender, Measurement, Study, contest, failsafe, middle, race
+from ..study import Contender, Measurement, Study, contest, failsafe, grouped, middle, race
 from ..tables import plural, table
 from .contenders import PLAIN, contenders
 from .exact import exact_spectrum, relative_error
@@ -111,21 +111,14 @@ def _judge(exact: list[Any], w: Eigenvalues) -> dict[str, float]:
 
 def hard_table(measurements: Sequence[Measurement]) -> str:
     """For every method on every hard rod the least error, and the time it takes to get within ten of it."""
-    cells: dict[str, dict[str, list[Measurement]]] = {}
-    for m in measurements:
-        cells.setdefault(m.method, {}).setdefault(m.case, []).append(m)
+    rows = [
+        {"method": method, "cells": " | ".join(best(own) for own in grouped(every, "case").values())}
+        for (method,), every in grouped(measurements, "method").items()
+    ]
     return (
         f"Leading {WANTED_MODES} eigenvalues of hard rods: the least relative error that a method reaches at "
-        "any size, and the ms of the cheapest size within a factor 10 of it (the figure and the file have all):"
-        "\n\n"
-    ) + table(
-        " | ".join(["method", *HARD_RODS]),
-        "{method} | {cells}",
-        [
-            {"method": method, "cells": " | ".join(map(best, cases.values()))}
-            for method, cases in cells.items()
-        ],
-    )
+        "any size, and the ms of the cheapest size within a factor 10 of it (the figure has all):\n\n"
+    ) + table(" | ".join(["method", *HARD_RODS]), "{method} | {cells}", rows)
 
 
 def best(measurements: Sequence[Measurement]) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from math import log, nan
 
-from ..study import Measurement
+from ..study import Measurement, grouped
 from ..tables import table
 from .launch import KILLED
 
@@ -79,12 +79,10 @@ def instant_table(measurements: Sequence[Measurement]) -> str:
 
 def growth_table(measurements: Sequence[Measurement]) -> str:
     """How time, memory and file grow from each size to the next; what is killed has no file."""
-    kinds: dict[tuple[str, str], list[Measurement]] = {}
-    for m in measurements:
-        if m.case != KILLED:
-            kinds.setdefault((m.case, m.method), []).append(m)
     rows = []
-    for (case, method), sizes in kinds.items():
+    for (case, method), sizes in grouped(measurements, "case", "method").items():
+        if case == KILLED:
+            continue
         for less, more in pairwise(sizes):
             row: dict[str, object] = {
                 "case": case,
