@@ -73,9 +73,11 @@ survey: .venv/installed  ## limit cycles of 300 random stiff rods, or RODSWEEP_R
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$${RODSWEEP_RODS:-300} $(BIN)/python -m pytest -n auto tests/hard/test_minimal_periods.py
 stress: .venv/installed  ## kill runs at random 120 times and more, and compare what comes of them (half an hour)
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_KILLS=$${RODSWEEP_KILLS:-40} $(BIN)/python -m pytest tests/test_stress.py
-bench: .venv/installed  ## run the benchmarks: results/bench.md, its numbers (.h5) and figures
+bench: .venv/installed  ## run the benchmarks: docs/performance.md and its figures; the numbers are in results/bench.h5
 	mkdir -p results
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/rodsweep bench -o results/bench.md
+	cp results/bench.md docs/performance.md
+	cp results/bench_*.png docs
 
 clean:  ## remove caches and build leftovers; results and .venv stay
 	rm -rf build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .import_linter_cache

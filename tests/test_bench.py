@@ -1,15 +1,20 @@
 """The command bench: what it writes, what it refuses; timing in turns; the errors of the spectrum's peers."""
 
+import subprocess
+import sys
+
 import h5py
 import mpmath as mp
 import numpy as np
 import pytest
 
 from rodsweep.bench.spectrum import study as spectrum
+from rodsweep.bench.spectrum.contenders import PEERS
 from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
-from rodsweep.bench.spectrum.peers import PEERS, chebyshev_first_order, dense_inverse, displacement_elements
-from rodsweep.bench.spectrum.study import HARD, MODES, every_size, spectrum_study
-from rodsweep.bench.study import Measurement, Study, race
+from rodsweep.bench.spectrum.other_discretizations import chebyshev_first_order, displacement_elements
+from rodsweep.bench.spectrum.same_pencil import WANTED_MODES, dense_inverse, own_spectrum
+from rodsweep.bench.spectrum.study import HARD_RODS, every_size, hard_table, spectrum_study
+from rodsweep.bench.study import Contender, Measurement, Study, contest, race
 from rodsweep.model.rod import Rod
 from rodsweep.results.file.measurements import write_measurements
 
@@ -42,48 +47,73 @@ def test_error_is_that_of_the_worst_eigenvalue_and_infinite_for_none():
 @pytest.mark.parametrize("peer", PEERS, ids=lambda peer: peer.name)
 def test_every_peer_converges_to_the_exact_eigenvalues(peer):
     """Spectrally: two sizes farther the error is a hundredth, until rounding; at its best below 1e-9."""
-    roots = exact_spectrum(EASY, MODES)
-    errors = [relative_error(peer.solve(EASY, size, MODES), roots) for size in peer.sizes]
+    roots = exact_spectrum(EASY, WANTED_MODES)
+    errors = [relative_error(peer.solve(EASY, size), roots) for size in peer.sizes]
     assert min(errors) < 1e-9
     coarse = [error for error in errors if error > 1e-8]
     assert all(later < earlier / 10 for earlier, later in zip(coarse[:-1], coarse[1:], strict=True))
 
 
 def test_forms_without_stiffness_keep_their_digits_where_the_plain_ones_lose_them():
-    stiff = HARD[next(name for name in HARD if name.startswith("stiff"))]
-    roots = exact_spectrum(stiff, MODES)
-    assert relative_error(dense_inverse(stiff, 18, MODES), roots) < 1e-12
-    assert relative_error(chebyshev_first_order(stiff, 24, MODES), roots) < 1e-11
-    assert relative_error(displacement_elements(stiff, 18, MODES), roots) > 1e-8
+    stiff = HARD_RODS[next(name for name in HARD_RODS if name.startswith("stiff"))]
+    roots = exact_spectrum(stiff, WANTED_MODES)
+    assert relative_error(dense_inverse(stiff, 18), roots) < 1e-12
+    assert relative_error(chebyshev_first_order(stiff, 24), roots) < 1e-11
+    assert relative_error(displacement_elements(stiff, 18), roots) > 1e-8
 
 
 def test_own_error_on_the_hard_rods_is_rounding():
-    for rod in HARD.values():
+    for rod in HARD_RODS.values():
         for certify in (False, True):
-            assert relative_error(spectrum.own(rod, certify), exact_spectrum(rod, MODES)) < 1e-14
+            assert relative_error(own_spectrum(rod, certify), exact_spectrum(rod, WANTED_MODES)) < 1e-14
 
 
-def test_method_that_fails_is_a_measurement_without_time(monkeypatch):
-    def fails(rod, size, modes):
+def test_method_that_fails_has_no_finite_error_and_says_how(monkeypatch):
+    def fails(rod):
         raise np.linalg.LinAlgError("no convergence")
 
-    monkeypatch.setattr(spectrum, "PEERS", [spectrum.Peer("fails", "a", fails, (3,))])
-    rows = every_size("easy", EASY, 1)
+    monkeypatch.setattr(spectrum, "HARD_RODS", {"easy": EASY})
+    rows = every_size([Contender("fails", "3", "a", fails)], 1)
     assert rows[-1].error == np.inf
-    assert np.isnan(rows[-1].seconds)
-    assert "failed" in spectrum.hard_table(rows)
+    assert rows[-1].failure == "failed (LinAlgError)"
+    assert "| fails | failed |" in hard_table(rows)
 
 
-def test_race_takes_all_in_turn_and_times_the_second_of_two():
+def test_race_takes_all_in_turn_and_times_the_second_of_two(monkeypatch):
+    monkeypatch.setattr("rodsweep.bench.study.SHORT", np.inf)
     order = []
-    seconds, outcomes = race([lambda: order.append("a"), lambda: order.append("b") or 7], 2)
-    assert order == ["a", "b", "a", "a", "b", "b", "a", "a", "b", "b"]
-    assert outcomes == [None, 7]
-    assert all(value >= 0 for value in seconds)
+    raced = race([lambda: order.append("a"), lambda: order.append("b") or 7], [2, 1])
+    assert order == ["a", "b", "a", "a", "b", "b", "a", "a"]
+    assert [timed.outcome for timed in raced] == [None, 7]
+    assert [len(timed.seconds) for timed in raced] == [2, 1]
+
+
+def test_race_makes_long_runs_once_a_round(monkeypatch):
+    monkeypatch.setattr("rodsweep.bench.study.SHORT", 0.0)
+    order = []
+    race([lambda: order.append("a"), lambda: order.append("b")], [2, 0])
+    assert order == ["a", "b", "a", "a"]
+
+
+def test_slow_method_is_run_once():
+    runs = []
+    (measurement,) = contest(
+        "c", 3, [Contender("m", "s", "g", runs.append, slow=True)], 5, lambda _: {"error": 0.5}
+    )
+    assert runs == [3]
+    assert (measurement.error, measurement.group) == (0.5, "g")
+    assert np.isfinite(measurement.seconds)
+
+
+def test_time_of_other_programs_is_counted():
+    """The program ends when it has taken a tenth of a second of the processor, however long that may last."""
+    words = [sys.executable, "-c", "import time\nwhile time.process_time() < 0.1: pass"]
+    (timed,) = race([lambda: subprocess.run(words, check=True)], [1])
+    assert timed.median > 0.05
 
 
 def test_study_of_the_spectrum_has_a_row_for_every_method(monkeypatch, tmp_path):
-    monkeypatch.setattr(spectrum, "HARD", {"easy": EASY})
+    monkeypatch.setattr(spectrum, "HARD_RODS", {"easy": EASY})
     monkeypatch.setattr(spectrum, "FORCES", 1)
     study = spectrum_study(quick=True)
     for peer in PEERS:
@@ -95,7 +125,7 @@ def test_study_of_the_spectrum_has_a_row_for_every_method(monkeypatch, tmp_path)
 
 def test_numbers_of_a_study_are_in_the_file(tmp_path):
     rows = (
-        Measurement("c", "m", "s", 0.5, 1e-3, "g", {"steps": 3.0}),
+        Measurement("c", "m", "s", 0.5, 1e-3, "g", extra={"steps": 3.0}),
         Measurement("c", "n", "", 1.0, np.inf),
     )
     write_measurements(tmp_path / "a.h5", {"x": Study("x", "", rows).table()}, {"processor": "none"})
@@ -122,7 +152,8 @@ def test_command_writes_markdown_numbers_and_figure(command, tmp_path):
     done = command("bench", "spectrum", "--quick", "-o", "b.md")
     assert done.returncode == 0, done.stderr
     text = (tmp_path / "b.md").read_text()
-    assert "### spectrum" in done.stdout
+    assert "## spectrum" in done.stdout
+    assert text.startswith("# Performance\n")
     assert "| rodsweep, certificate on | 20 |" in text
     assert "![Errors against time, spectrum](b_spectrum.png)" in text
     assert (tmp_path / "b_spectrum.png").exists()

@@ -7,20 +7,13 @@ import numpy as np
 import pytest
 
 from rodsweep.bench.limit_cycle import integrators as cycle_peers
-from rodsweep.bench.limit_cycle.integrators import CVODE, DEFAULT, Steps, cvode_module, families, returns
-from rodsweep.bench.limit_cycle.study import (
-    PERIODS,
-    Row,
-    Wait,
-    errors,
-    limit_cycle_study,
-    milliseconds_at,
-    reference,
-    rows_table,
-    summary,
-    waits_table,
-    work_precision,
-)
+from rodsweep.bench.limit_cycle.integrators import CVODE, CVODE_MODULE, DEFAULT, Trajectory, families
+from rodsweep.bench.limit_cycle.returns import returns_of
+from rodsweep.bench.limit_cycle.settling import Wait, settling_table
+from rodsweep.bench.limit_cycle.study import limit_cycle_study, target_table, time_at, work_table
+from rodsweep.bench.limit_cycle.tracking import FOLLOWED_PERIODS, judged_run, reference, work_precision
+from rodsweep.bench.machine import installed
+from rodsweep.bench.study import Measurement, Timed
 from rodsweep.solve.cycle.shooting import PERIOD_MAP
 from rodsweep.solve.motion.integrator import integrator
 
@@ -64,8 +57,8 @@ def test_every_method_follows_the_cycle_and_gains_from_a_tighter_tolerance(famil
     assert 0 < tight.error < 3e-5
     assert np.isfinite(loose.error)
     assert tight.error < loose.error / 5
-    assert tight.steps > loose.steps
-    assert tight.milliseconds > 0
+    assert tight.extra["steps"] > loose.extra["steps"]
+    assert tight.seconds > 0
 
 
 @pytest.mark.parametrize("name", ORDERS)
@@ -76,8 +69,8 @@ def test_order_of_the_errors(name):
     error, steps = np.zeros((2, PHASES)), np.zeros((2, PHASES))
     for phase, state in enumerate(over.states[: 128 : 128 // PHASES + 1]):
         for i, tolerance in enumerate(tolerances):
-            run = family.integrate(at.beam, state, PERIODS * at.period, tolerance)
-            error[i, phase] = max(errors(replace(at, state=state), run))
+            run = family.integrate(at.beam, state, FOLLOWED_PERIODS * at.period, tolerance)
+            error[i, phase] = judged_run(replace(at, state=state), run)["error"]
             steps[i, phase] = len(run.times) - 1
     (loose, tight), (few, many) = np.sqrt((error**2).mean(axis=1)), steps.mean(axis=1)
     assert np.log(loose / tight) / np.log(many / few) == pytest.approx(order, abs=0.7)
@@ -85,60 +78,57 @@ def test_order_of_the_errors(name):
 
 def test_error_of_an_exact_run_is_that_of_the_measurement():
     at = cycle()
-    steps = int(128 * PERIODS)
+    steps = int(128 * FOLLOWED_PERIODS)
     duration = steps / 128 * at.period
     run = integrator(at.beam.mesh, PERIOD_MAP).run(at.beam, at.state, duration, at.period / 128, None, steps)
-    assert max(errors(at, Steps(run.times, run.states))) < 1e-8
+    assert judged_run(at, Trajectory(run.times, run.states))["error"] < 1e-8
 
 
 def test_returns_lie_on_the_section():
     at = cycle()
-    steps = families()[3].integrate(at.beam, at.state, PERIODS * at.period, 1e-5)
-    found = returns(at.beam, steps)
+    steps = families()[3].integrate(at.beam, at.state, FOLLOWED_PERIODS * at.period, 1e-5)
+    found = returns_of(at.beam, steps)
     angle = at.beam.tip(found.states)[2]
     assert len(found.times) >= 6
     assert np.abs(angle).max() < 1e-9 * np.abs(at.beam.tip(steps.states)[2]).max()
 
 
 def test_interpolation_in_the_logarithms():
-    def row(ms, error):
-        return Row("a", 0.0, 1.0, ms, error, error / 2)
-
-    falling = [row(10.0, 1e-4), row(20.0, 1e-5), row(80.0, 1e-7)]
-    assert milliseconds_at(falling, 1e-6) == pytest.approx(40.0)
-    lucky = [row(1.0, 1e-7), *falling]
-    assert milliseconds_at(lucky, 1e-6) == pytest.approx(40.0)
-    assert np.isnan(milliseconds_at(falling[:2], 1e-6))
-    assert np.isnan(milliseconds_at(falling[2:], 1e-6))
+    times, errors = [10.0, 20.0, 80.0], [1e-4, 1e-5, 1e-7]
+    assert time_at(1e-6, errors, times) == pytest.approx(40.0)
+    assert time_at(1e-6, [1e-7, *errors], [1.0, *times]) == pytest.approx(40.0)  # once lucky
+    assert np.isnan(time_at(1e-6, errors[:2], times[:2]))
+    assert np.isnan(time_at(1e-6, errors[2:], times[2:]))
 
 
-def test_summary_states_the_ratios():
+def test_table_at_equal_error_states_the_ratios():
     def pair(name, ms):
-        return [Row(name, 1e-5, 1.0, ms / 2, 1e-5, 1e-5), Row(name, 1e-7, 1.0, 2 * ms, 1e-7, 1e-7)]
+        return [
+            Measurement("", name, "", 1e-3 * ms * factor, error, least_seconds=5e-4 * ms * factor)
+            for factor, error in ((0.5, 1e-5), (2, 1e-7))
+        ]
 
-    own, python, fortran = pair(DEFAULT, 10.0), pair("SciPy Radau", 25.0), pair("SciPy LSODA", 5.0)
-    text = summary([*own, *python, *fortran, *pair(CVODE, 8.0)])
-    assert f"{DEFAULT} 10.00" in text
-    assert "SciPy's best (SciPy LSODA): 0.50 times" in text
-    assert "BDF and Radau (SciPy Radau): 2.50 times" in text
-    assert "CVODE: 0.80 times" in text
-    assert "CVODE is skipped: scikit-sundae is not installed" in summary([*own, *python])
+    text = target_table([*pair(DEFAULT, 10.0), *pair("SciPy Radau", 25.0), *pair(CVODE, 8.0)[:1]])
+    assert f"| {DEFAULT} | 10.00 | 1.00 | 1.00 |" in text
+    assert "| SciPy Radau | 25.00 | 2.50 | 2.50 |" in text
+    assert "| CVODE |  |  |  |" in text
 
 
 def test_cvode_is_left_out_where_it_is_not_installed(monkeypatch):
-    monkeypatch.setattr(cycle_peers, "cvode_module", lambda: None)
+    monkeypatch.setattr(cycle_peers, "installed", lambda _: None)
     assert CVODE not in [family.name for family in families()]
 
 
 def test_cvode_takes_part_where_it_is_installed():
-    assert (CVODE in [family.name for family in families()]) == (cvode_module() is not None)
+    assert (CVODE in [family.name for family in families()]) == (installed(CVODE_MODULE) is not None)
 
 
 def test_tables_show_what_failed():
-    failed = Row("a", 1e-5, float("nan"), 1.0, float("inf"), float("inf"))
-    assert "| a | 1e-05 | failed |" in rows_table([failed])
-    never = Wait(50.0, "a", float("nan"), float("nan"), 1.0, float("inf"), (1e-6, 1e-7))
-    assert "waiting, a (fails at 1e-06, 1e-07) | | not settled" in waits_table([never])
+    failed = Measurement("", "a", "1e-05", 1.0, np.inf, failure="failed (ArithmeticError)")
+    assert "| a | 1e-05 | failed (ArithmeticError) |" in work_table([failed])
+    never = Wait(50.0, "waiting, a", np.nan, np.nan, np.inf, print, failed=(1e-6, 1e-7))
+    text = settling_table([never], [Timed(None, (1.0,))])
+    assert "waiting, a (fails at 1e-06, 1e-07) |  | not settled" in text
 
 
 def test_the_benchmark_writes_its_tables_and_its_figure(monkeypatch, tmp_path):
@@ -150,7 +140,8 @@ def test_the_benchmark_writes_its_tables_and_its_figure(monkeypatch, tmp_path):
     text = study.text
     assert "| 50 | solve_cycle |" in text
     assert "| 27.43 | waiting, ARKIMEX 5 (default) |" in text
-    assert "times the default's time" in text
+    assert "| ARKIMEX 5 (default) |" in text.split("times the default's time")[1]
+    assert ("CVODE is skipped: scikit-sundae is not installed" in text) == (installed(CVODE_MODULE) is None)
     assert {m.case for m in study.measurements} == {"error of the period", "error of the largest tip y"}
     study.draw(tmp_path / "a.png")
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")

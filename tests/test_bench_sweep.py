@@ -1,40 +1,59 @@
 """The benchmark of the sweep: it writes its tables; memory and file stay within what a point may take."""
 
 from dataclasses import replace
+from functools import partial
 from math import isnan
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from rodsweep.bench.sweep import study as sweep
-from rodsweep.bench.sweep.launch import Run, launcher, run
-from rodsweep.bench.sweep.study import Row, growth, instant_table, spectrum_case, sweep_study, uneven_forces
+from rodsweep.bench.sweep.cases import HOPF_FORCE, SweepCase, spectrum_case, uneven_forces
+from rodsweep.bench.sweep.launch import INSTANT, KILLED, CommandRun, launcher, run_case
+from rodsweep.bench.sweep.report import APART, growth_table, instant_table
+from rodsweep.bench.sweep.study import measured, sweep_study
+from rodsweep.cli.benching import MEASURED
 from rodsweep.errors import EnvironmentLacks
 
 FEW_MEGABYTES = 4.0
 MOST_BYTES = 100
 
 
-def row(case, points, ranks, seconds, memory):
-    runs = tuple(
-        Run(s, s - 0.5, 0.0, tuple(memory[:ranks]), 1000 + 62 * points, 74 * (points - 1), 0.0)
+run = partial(run_case, MEASURED)
+
+
+def row(name, points, ranks, seconds, memory):
+    """Three runs of which the median takes `seconds`."""
+    case = SweepCase(name, points, (Path(),), KILLED if name == KILLED else INSTANT)
+    runs = [
+        CommandRun(
+            seconds=s,
+            inside=s - 0.5,
+            solving=0.0,
+            memory=tuple(memory[:ranks]),
+            file=1000 + 62 * points,
+            journal=74 * (points - 1),
+            elsewhere=0.0,
+            busy=1.0,
+        )
         for s in (seconds, 2 * seconds, seconds)
-    )
-    return Row(case, points, ranks, runs)
+    ]
+    return measured(case, ranks, runs)
 
 
 def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch):
     monkeypatch.setattr(sweep, "QUICK_SIZES", (200, 400))
     monkeypatch.setattr(sweep, "QUICK_SPECTRA", 16)
     monkeypatch.setattr(sweep, "QUICK_CYCLES", 2)
-    study = sweep_study(quick=True)
+    study = sweep_study(quick=True, command=MEASURED)
     assert "| spectra | 16 | 1 |" in study.text
-    assert ("Two commands side by side" in study.text) == bool(launcher(2))
-    assert "| 400 | 1 |" in study.text
-    assert "From 200 to 400 points, 1 rank:" in study.text
-    assert "From 200 to 400 points, resumed:" in study.text
-    assert f"| {sweep.CYCLE} | 2 | 1 |" in study.text
-    assert ("| 400 | 2 |" in study.text) == bool(launcher(2))
+    assert (f"| {APART} | 16 | 1 |" in study.text) == bool(launcher(2))
+    assert "| no solver | 400 | 1 |" in study.text
+    assert "| no solver | 1 rank | 200 | 400 |" in study.text
+    assert "| resumed | 1 rank | 200 | 400 |" in study.text
+    assert "| limit cycles | 2 | 1 |" in study.text
+    assert ("| no solver | 400 | 2 |" in study.text) == bool(launcher(2))
     assert not study.drawable
     table = study.table()
     instant = [i for i, case in enumerate(table["case"]) if case == "no solver"]
@@ -67,8 +86,8 @@ def test_file_takes_less_than_a_hundred_bytes_a_point(tmp_path):
     assert case.points == 20_000
     assert taken.file < MOST_BYTES * case.points
     table = "\n".join(f"{F!r},200,{1e3 + F!r},1e-4" for F in np.linspace(0, 90, 20_000).tolist())
-    (case.directory / "p.csv").write_text(f"F,k1,k2,gamma3\n{table}\n")
-    (case.directory / "c.yaml").write_text(
+    (case.directories[0] / "p.csv").write_text(f"F,k1,k2,gamma3\n{table}\n")
+    (case.directories[0] / "c.yaml").write_text(
         "task: spectrum\nparameters: {points: p.csv}\nspectrum: {modes: 2}\n"
     )
     assert run(case, 1).file < MOST_BYTES * case.points
@@ -76,40 +95,47 @@ def test_file_takes_less_than_a_hundred_bytes_a_point(tmp_path):
 
 def test_a_run_that_fails_is_told(tmp_path):
     case = spectrum_case(tmp_path / "grid", "no solver", 8, "instant")
-    (case.directory / "c.yaml").write_text("task: spectrum\n")
+    (case.directories[0] / "c.yaml").write_text("task: spectrum\n")
     with pytest.raises(EnvironmentLacks, match="parameters"):
         run(case, 1)
 
 
 def test_two_ranks_are_skipped_without_a_launcher(monkeypatch):
     monkeypatch.setattr(sweep, "launcher", lambda ranks: [])
-    for name in ("solved_rows", "instant_rows"):
-        monkeypatch.setattr(
-            sweep, name, lambda place, quick, ranks, rounds: [row("a", 10, ranks[-1], 2, [1])]
+    solved, instant = [], []
+
+    def sweeps(into, kinds):
+        return lambda place, run, quick, ranks: (
+            into.extend(row(k, 10, ranks[-1], 2, [1]) for k in kinds) or into
         )
-    monkeypatch.setattr(
-        sweep, "resumed_rows", lambda place, quick: [row(c, 10, 1, 2, [1]) for c in ("killed", "resumed")]
-    )
-    assert "Two ranks are skipped" in sweep_study(quick=True).text
+
+    monkeypatch.setattr(sweep, "solved_sweeps", sweeps(solved, ["spectra"]))
+    monkeypatch.setattr(sweep, "instant_sweeps", sweeps(instant, ["no solver", KILLED, "resumed"]))
+    assert "Two ranks are skipped" in sweep_study(quick=True, command=()).text
+    assert {m.method for m in solved + instant} == {"1 rank"}
 
 
-def test_growth_is_that_of_the_last_step():
+def test_growth_is_that_of_each_step():
     rows = [
         row("no solver", 10**k, n, 1 + 1e-5 * 10**k / n, [10**8, 2 * 10**8])
-        for k in (3, 4, 5)
         for n in (1, 2)
+        for k in (3, 4, 5)
     ]
-    text = growth(rows, [])
-    assert "to the power 1.00; a further point takes 10 µs of a rank and 62 bytes of the file" in text
-    assert "the first rank's memory moves by +0.0 MB, +0.0 bytes a point; the peak of the other" in text
-    killed = [row(c, r.points, 1, 1.0, [10**8]) for r in rows for c in ("killed", "resumed")]
-    assert "| 100000 | 2 | 1.50 | 30.0 | 10.0 | 100.0 | 200.0 | 62.0 |" in instant_table(rows, killed)
+    text = growth_table(rows)
+    assert "| no solver | 1 rank | 1000 | 10000 | 10 | 62 | +0.0 |  |  |" in text
+    assert "| no solver | 1 rank | 10000 | 100000 | 10 | 62 | +0.0 |  | 1.00 |" in text
+    assert "| no solver | 2 ranks | 10000 | 100000 | 10 | 62 | +0.0 | +0.0 | 1.00 |" in text
+    killed = row(KILLED, 10**5, 1, 1.0, [10**8])
+    assert growth_table([killed]).endswith("---|")
+    text = instant_table([*rows, killed])
+    assert "| no solver | 100000 | 2 | 1.50 | 30.0 | 100.0 | 200.0 | 62.0 |  |" in text
+    assert "| killed | 100000 | 1 | 1.00 | 10.0 | 100.0 |  | 62.0 | 74.0 |" in text
 
 
 def test_uneven_forces_lie_on_both_sides_of_the_hopf_point_and_close_to_it():
     forces = uneven_forces(60)
     assert len(forces) == 60
-    distance = forces / sweep.HOPF - 1
+    distance = forces / HOPF_FORCE - 1
     assert distance.min() < -0.5
     assert distance.max() > 1
     assert 0 < distance[distance > 0].min() < 2e-7

@@ -1,26 +1,46 @@
-"""What a benchmark gives: measurements of methods on cases, and the text that presents them."""
+"""What a benchmark gives: methods timed in turn on cases, their errors, and the text that presents them."""
 
+import resource
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from math import isfinite
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from math import inf, isfinite, isnan, nan
 from pathlib import Path
-from typing import TypeVar
+from statistics import median
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from ..post.figures.work_precision import Curve, Panel, draw_work_precision
+from ..post.figures.work_precision import draw_work_precision
 from ..results.file.measurements import Table
 
 Outcome = TypeVar("Outcome")
 
+SHORT = 0.02
+"""Seconds below which the time of a run depends on how the run before it has left the caches."""
+
+
+@dataclass(frozen=True, slots=True)
+class Contender:
+    """A method at one setting: `run` takes a case. Slow ones are timed once.
+
+    group: methods of one kind, which a figure gives one colour.
+    """
+
+    method: str
+    setting: str
+    group: str
+    run: Callable[[Any], Any]
+    slow: bool = False
+
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
-    """One method at one setting on one case: median seconds of one run, and its relative error.
+    """A method at one setting on one case: median seconds of one run, and its relative error.
 
-    The error is nan where none applies and inf where the method failed. group: methods of one kind,
-    which a figure gives one colour; extra: other numbers, by name.
+    The error is nan where none applies and inf where the method failed: `failure` says how. least_seconds: of
+    all rounds, which other loads on the machine disturb less; extra: other numbers, by name.
     """
 
     case: str
@@ -29,6 +49,8 @@ class Measurement:
     seconds: float
     error: float
     group: str = ""
+    failure: str = ""
+    least_seconds: float = nan
     extra: dict[str, float] = field(default_factory=dict)
 
 
@@ -38,7 +60,7 @@ class Study:
 
     name: str
     text: str
-    measurements: tuple[Measurement, ...]
+    measurements: Sequence[Measurement]
     unit: str = "run"
     target: float | None = None
 
@@ -49,42 +71,96 @@ class Study:
 
     def draw(self, output: Path) -> None:
         """Writes the figure: errors against time, a panel for each case, a curve for each method."""
-        panels = []
-        shown = [m for m in self.measurements if isfinite(m.error)]
-        for case in dict.fromkeys(m.case for m in shown):
-            here = [m for m in shown if m.case == case]
-            curves = []
-            for method in dict.fromkeys(m.method for m in here):
-                own = [m for m in here if m.method == method]
-                times, errors = ([getattr(m, name) for m in own] for name in ("seconds", "error"))
-                curves.append(Curve(method, own[0].group, 1e3 * np.array(times), np.array(errors)))
-            panels.append(Panel(case, tuple(curves)))
-        draw_work_precision(panels, f"ms a {self.unit}", self.target, output)
+        draw_work_precision(self.table(), f"ms a {self.unit}", self.target, output)
 
     def table(self) -> Table:
         """The measurements as columns, for the file."""
         columns: Table = {
             name: [getattr(m, name) for m in self.measurements]
-            for name in ("case", "method", "group", "setting", "seconds", "error")
+            for name in ("case", "method", "group", "setting", "seconds", "least_seconds", "error", "failure")
         }
         for name in dict.fromkeys(name for m in self.measurements for name in m.extra):
-            columns[name] = [m.extra.get(name, float("nan")) for m in self.measurements]
+            columns[name] = [m.extra.get(name, nan) for m in self.measurements]
         return columns
 
 
-def race(runs: Sequence[Callable[[], Outcome]], rounds: int) -> tuple[list[float], list[Outcome]]:
-    """(median processor seconds, outcome of the first) of each, after a first round that is not timed.
+class Timed(NamedTuple, Generic[Outcome]):
+    """What a run gave the first time, and the processor seconds that it took, each time."""
 
-    All in turn, round after round, so that a slow spell of the machine hits all alike; each twice in a row,
-    the second timed, so that none finds the caches as another has left them. The processor's time does
-    not count what other processes take.
+    outcome: Outcome
+    seconds: tuple[float, ...]
+
+    @property
+    def median(self) -> float:
+        return median(self.seconds)
+
+
+def race(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> list[Timed[Outcome]]:
+    """Times all runs in turn, each in as many rounds as `rounds` says.
+
+    The first time loads and compiles, and counts for runs with no round only. Short runs are made twice in a
+    row, the second timed, so that none finds the caches as another has left them.
     """
-    outcomes = [run() for run in runs]
-    times: list[list[float]] = [[] for _ in runs]
-    for _ in range(rounds):
-        for run, spent in zip(runs, times, strict=True):
-            run()
-            began = time.process_time()
-            run()
-            spent.append(time.process_time() - began)
-    return [float(np.median(spent)) for spent in times], outcomes
+    first = [_timed(run) for run in runs]
+    seconds: list[list[float]] = [[] for _ in runs]
+    for i in in_turn(rounds):
+        if first[i].median < SHORT:
+            runs[i]()
+        seconds[i] += _timed(runs[i]).seconds
+    return [Timed(a.outcome, tuple(more) or a.seconds) for a, more in zip(first, seconds, strict=True)]
+
+
+def in_turn(rounds: Sequence[int]) -> Iterator[int]:
+    """Which run is next, round after round, so that a slow spell of the machine hits all alike."""
+    for turn in range(max(rounds)):
+        yield from (i for i, most in enumerate(rounds) if turn < most)
+
+
+def _timed(run: Callable[[], Outcome]) -> Timed[Outcome]:
+    began = processor_seconds()
+    outcome = run()
+    return Timed(outcome, (processor_seconds() - began,))
+
+
+def processor_seconds() -> float:
+    """Of this process and of the programs that it has run; others on the machine do not count."""
+    programs = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.process_time() + programs.ru_utime + programs.ru_stime
+
+
+def failsafe(run: Callable[[Any], Outcome], case: Any) -> Outcome | Exception:
+    """What a method gives on a case, or the error, of whatever kind, with which it gives up."""
+    try:
+        with np.errstate(all="ignore"):
+            return run(case)
+    except Exception as error:
+        return error
+
+
+def contest(
+    name: str, case: Any, contenders: Sequence[Contender], rounds: int, judge: Callable[[Any], dict[str, Any]]
+) -> list[Measurement]:
+    """All contenders on one case; judge: the error, and other fields, of the Measurement of an outcome."""
+    runs = [partial(failsafe, contender.run, case) for contender in contenders]
+    raced = race(runs, [0 if contender.slow else rounds for contender in contenders])
+    measurements = []
+    for c, timed in zip(contenders, raced, strict=True):
+        least, failed = min(timed.seconds), isinstance(timed.outcome, Exception)
+        empty = Measurement(name, c.method, c.setting, timed.median, inf, c.group, least_seconds=least)
+        failure = {"failure": f"failed ({type(timed.outcome).__name__})"}
+        measurements.append(replace(empty, **(failure if failed else judge(timed.outcome))))
+    return measurements
+
+
+def grouped(measurements: Iterable[Measurement], *names: str) -> dict[tuple[str, ...], list[Measurement]]:
+    """Measurements with the same fields of these names together, in the order in which they appear."""
+    groups: dict[tuple[str, ...], list[Measurement]] = {}
+    for m in measurements:
+        groups.setdefault(tuple(getattr(m, name) for name in names), []).append(m)
+    return groups
+
+
+def middle(values: Iterable[float]) -> float:
+    """The median of those that are numbers; nan if none is."""
+    numbers = [value for value in values if not isnan(value)]
+    return float(median(numbers)) if numbers else nan

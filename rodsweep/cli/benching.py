@@ -1,11 +1,23 @@
 """The command `bench`: runs the benchmarks, prints their text, writes their numbers and figures."""
 
+import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import click
 
 from ..errors import EnvironmentLacks
+
+MEASURED = (sys.executable, "-m", f"{__package__}.measured")
+"""What starts the command that the benchmark of the sweep measures."""
+HEADING = """# Performance
+
+Speed against error: what this tool takes beside what one would otherwise use, on one machine, in one run of
+`rodsweep bench`. Times are of the processor, those of `sweep` of the clock; every method is run in turn with
+all others, round after round, and the medians are shown. So compare methods within a table rather than
+times between machines, and look at the error beside each time: a method is faster only where it is as
+accurate. Every number is in an HDF5 file beside the text, with all settings."""
 
 
 def run_benchmarks(what: str | None, quick: bool, output: Path) -> None:
@@ -25,15 +37,15 @@ def run_benchmarks(what: str | None, quick: bool, output: Path) -> None:
         "spectrum": spectrum_study,
         "thresholds": thresholds_study,
         "limit_cycle": limit_cycle_study,
-        "sweep": sweep_study,
+        "sweep": partial(sweep_study, command=MEASURED),
     }
-    done: list[Study] = []
-    blocks = [where_and_when()]
-    click.echo(blocks[0])
+    tables = {}
+    blocks = [HEADING, where_and_when()]
+    click.echo(blocks[-1])
     for name in [what] if what else list(studies):
         study = studies[name](quick)
-        done.append(study)
-        blocks += [f"### {name}", study.text]
+        tables[name] = study.table()
+        blocks += [f"## {name}", study.text]
         click.echo("\n" + "\n\n".join(blocks[-2:]))
         if study.drawable:
             figure = output.with_name(f"{output.stem}_{name}.png")
@@ -41,4 +53,4 @@ def run_benchmarks(what: str | None, quick: bool, output: Path) -> None:
             blocks.append(f"![Errors against time, {name}]({figure.name})")
         # After each study, so that nothing measured is lost with the next.
         output.write_text("\n\n".join(blocks) + "\n")
-        write_measurements(output.with_suffix(".h5"), {s.name: s.table() for s in done}, machine())
+        write_measurements(output.with_suffix(".h5"), tables, machine())

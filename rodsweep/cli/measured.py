@@ -2,9 +2,7 @@
 
     python -m rodsweep.cli.measured DIRECTORY KIND WORDS...
 
-runs `rodsweep WORDS...` and leaves the peak memory in bytes of every rank in DIRECTORY, in a file
-`first-PID` or `other-PID`. KIND is what takes the place of the solver of the task spectrum: `solved` none,
-`instant` outcomes that cost nothing, `killed` the same and a kill at the last point.
+runs `rodsweep WORDS...`. DIRECTORY and KIND are what `rodsweep.bench.sweep.launch` says.
 """
 
 import os
@@ -17,29 +15,32 @@ from pathlib import Path
 
 import numpy as np
 
+from ..bench.sweep.launch import FIRST_RANK, KILLED, OTHER_RANKS, SOLVED
 from . import _speaks, main
 from .tasks import TASKS
 from .tasks.protocol import Solver
 from .tasks.spectrum import SpectrumTask
 
-TABLE = 4096
-"""Outcomes that the points take in turn: more than any compression looks back."""
+OUTCOMES = 4096
+"""That the points take in turn: more than any compression looks back."""
 
 
 @dataclass(frozen=True, slots=True)
 class InstantSpectra(SpectrumTask):
-    """The task spectrum with random outcomes from a table, so that all time is the sweep's own."""
+    """The task spectrum with random outcomes from a table, so that all time is the sweep's own.
+
+    killed: where the rank that gets the last point notes its memory before it is killed there.
+    """
 
     killed: Path | None = None
-    """Where the rank that gets the last point notes its memory before it is killed there; None: nobody is."""
 
     def solver(self) -> Solver:
         from ..solve.spectrum.search import Spectrum
         from ..solve.spectrum.status import Status
 
         points, modes = self.points, self.config.spectrum.modes
-        parts = np.random.default_rng(1).standard_normal((TABLE, 3, modes))
-        table = [
+        parts = np.random.default_rng(1).standard_normal((OUTCOMES, 3, modes))
+        outcomes = [
             Spectrum(Status.ok, 100 * (a + 1j * b), 1e-12 * c, 1, True, 1, 20, 1e-7) for a, b, c in parts
         ]
 
@@ -48,15 +49,14 @@ class InstantSpectra(SpectrumTask):
             if self.killed and index == points.count - 1:
                 note_memory(self.killed)
                 os.kill(os.getpid(), signal.SIGKILL)
-            return table[index % TABLE]
+            return outcomes[index % OUTCOMES]
 
         return replace(SpectrumTask.solver(self), warm_up=lambda: None, solve=solve)
 
 
 def note_memory(directory: Path) -> None:
     """Leaves this rank's peak memory so far."""
-    rank = "first" if _speaks() else "other"
-    (directory / f"{rank}-{os.getpid()}").write_text(str(peak_memory()))
+    (directory / f"{FIRST_RANK if _speaks() else OTHER_RANKS}-{os.getpid()}").write_text(str(peak_memory()))
 
 
 def peak_memory() -> int:
@@ -75,8 +75,8 @@ def run_measured() -> None:
     """Runs the command that the arguments ask for."""
     directory, kind, *words = sys.argv[1:]
     notes = Path(directory)
-    if kind != "solved":
-        TASKS["spectrum"] = partial(InstantSpectra, killed=notes if kind == "killed" else None)
+    if kind != SOLVED:
+        TASKS["spectrum"] = partial(InstantSpectra, killed=notes if kind == KILLED else None)
     sys.argv = ["rodsweep", *words]
     try:
         main()

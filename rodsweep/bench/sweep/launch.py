@@ -1,4 +1,9 @@
-"""Runs of the command as a user starts them, and what they took: time, memory of each rank, bytes on disk."""
+"""Runs of the command as a user starts them, and what they took: time, memory of each rank, bytes on disk.
+
+The words that start the command are given. They are followed by a directory, into which every rank writes
+its peak memory in bytes, in a file FIRST_RANK-PID or OTHER_RANKS-PID; by what takes the place of the solver,
+SOLVED, INSTANT or KILLED; and by the words of the command.
+"""
 
 import os
 import re
@@ -6,54 +11,44 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
-from dataclasses import dataclass, replace
-from math import isnan, nan
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import nan
 from pathlib import Path
+
+import numpy as np
 
 from ...errors import EnvironmentLacks
 from ...results.file.view import read_view
 from ...results.run.journal import journal_directory
+from .cases import CONFIG, SweepCase
 
-CONFIG, RESULT, NOTES = "c.yaml", "c.h5", "notes"
+RESULT, NOTES = "c.h5", "notes"
 """Names in the directory of a case."""
+FIRST_RANK, OTHER_RANKS = "first", "other"
+SOLVED, INSTANT, KILLED = "solved", "instant", "killed"
+"""The solver itself, outcomes that cost nothing, and the same with a kill at the last point."""
 
 
-@dataclass(frozen=True, slots=True)
-class Case:
-    """A sweep to be run: how many points its config has, and where it is."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CommandRun:
+    """What a run of the command took, and what it left.
 
-    name: str
-    points: int
-    directory: Path
-    kind: str = "solved"
-    """What takes the place of the solver: "solved", "instant" or "killed", see `rodsweep.cli.measured`."""
-    beside: "Case | None" = None
-    """Another sweep, which a command of its own runs at the same time; counted together with this one."""
-
-
-@dataclass(frozen=True, slots=True)
-class Run:
-    """One run of the command: what it took, and what it left."""
+    seconds: of the whole command; inside: as the command says, without the start of Python and MPI, nan where
+    it was killed; solving: in the solver, all ranks together. memory: peak bytes of the first rank, and of
+    the largest other. file, journal: bytes of the result, and of the journals that a killed run leaves.
+    elsewhere: processors that other programs kept busy, nan where the system does not say. busy: share of
+    the ranks' time that went into points and not into waiting, nan without the real solver.
+    """
 
     seconds: float
-    """Of the whole command, from its start to its end."""
     inside: float
-    """As the command says, which leaves out the start of Python and MPI; nan where it was killed."""
     solving: float
-    """In the solver, all ranks together."""
     memory: tuple[int, ...]
-    """Peak bytes of the first rank, and of the one of the others that held most."""
     file: int
-    """Bytes of the result file."""
     journal: int
-    """Bytes of the journals that it left, which is none unless it was killed."""
     elsewhere: float
-    """Processors that other programs kept busy meanwhile; nan where the system does not say."""
-    busy: float = nan
-    """Share of the ranks' time that went into points and not into waiting; nan without the real solver."""
+    busy: float
 
 
 def launcher(ranks: int) -> list[str]:
@@ -63,57 +58,60 @@ def launcher(ranks: int) -> list[str]:
     return [found, "-n", str(ranks)] if found else []
 
 
-def run(case: Case, ranks: int, fresh: bool = True) -> Run:
+def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = True) -> CommandRun:
     """Runs a case on some ranks; EnvironmentLacks where that fails without having been killed."""
-    if case.beside is None:
-        return _run(case, ranks, fresh)
-    with _measured() as load, ThreadPoolExecutor(1) as pool:
-        beside = pool.submit(_run, case.beside, ranks, fresh)
-        own, other = _run(case, ranks, fresh), beside.result()
-    return replace(
-        own,
-        seconds=load.seconds,
-        inside=max(own.inside, other.inside),
-        solving=own.solving + other.solving,
-        elsewhere=load.elsewhere,
+    others, began = _seconds_of_others(), time.monotonic()
+    started = [_start(command, case.kind, directory, ranks, fresh) for directory in case.directories]
+    said = [_inside(process, case.kind) for process in started]
+    seconds = time.monotonic() - began
+    elsewhere = np.maximum(0.0, (_seconds_of_others() - others) / seconds)
+    files = [directory / RESULT for directory in case.directories]
+    solved = [_solving(file) if case.kind == SOLVED else (0.0, nan) for file in files]
+    return CommandRun(
+        seconds=seconds,
+        inside=max(said),
+        solving=sum(spent for spent, _ in solved),
+        memory=tuple(
+            max(_notes(directory, rank) for directory in case.directories)
+            for rank in (FIRST_RANK, OTHER_RANKS)[:ranks]
+        ),
+        file=sum(file.stat().st_size for file in files),
+        journal=sum(page.stat().st_size for file in files for page in journal_directory(file).glob("rank-*")),
+        elsewhere=float(elsewhere),
+        busy=min(busy for _, busy in solved),
     )
 
 
-def _run(case: Case, ranks: int, fresh: bool) -> Run:
-    """Runs a case, and nothing beside it."""
-    directory, file, notes = case.directory, case.directory / RESULT, case.directory / NOTES
+def _start(
+    command: Sequence[str], kind: str, directory: Path, ranks: int, fresh: bool
+) -> subprocess.Popen[str]:
+    notes = directory / NOTES
+    shutil.rmtree(notes, ignore_errors=True)
     notes.mkdir()
-    start = [*launcher(ranks), sys.executable, "-m", "rodsweep.cli.measured", str(notes), case.kind]
     words = ["run", CONFIG, "-o", RESULT, *(["--fresh"] if fresh else [])]
-    with _measured() as load:
-        done = subprocess.run(
-            [*start, *words],
-            cwd=directory,
-            env=dict(os.environ),  # as this process got it: MPI, once started in here, adds to the one in C
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-    said = re.search(r"points in ([\d.]+) s on", done.stdout)
-    stopped = said is None or "stopped by" in done.stdout
-    if case.kind != "killed" and (stopped or done.returncode not in (0, 1)):
-        raise EnvironmentLacks(f"a run of the benchmark failed: {' '.join(done.stderr.split())[-500:]}")
-    memory = [
-        max((int(note.read_text()) for note in notes.glob(f"{rank}-*")), default=0)
-        for rank in ("first", "other")[:ranks]
-    ]
-    shutil.rmtree(notes)
-    solving, busy = _solving(file) if case.kind == "solved" else (0.0, nan)
-    return Run(
-        load.seconds,
-        float(said[1]) if said else nan,
-        solving,
-        tuple(memory),
-        file.stat().st_size,
-        sum(page.stat().st_size for page in journal_directory(file).glob("rank-*")),
-        load.elsewhere,
-        busy,
+    return subprocess.Popen(
+        [*launcher(ranks), *command, str(notes), kind, *words],
+        cwd=directory,
+        env=dict(os.environ),  # as this process got it: MPI, once started in here, adds to the one in C
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
     )
+
+
+def _inside(process: subprocess.Popen[str], kind: str) -> float:
+    """The seconds that a command states in the end; nan where it was killed as it should be."""
+    output, errors = process.communicate()
+    said = re.search(r"points in ([\d.]+) s on", output)
+    stopped = said is None or "stopped by" in output
+    if kind != KILLED and (stopped or process.returncode not in (0, 1)):
+        raise EnvironmentLacks(f"a run of the benchmark failed: {' '.join(errors.split())[-500:]}")
+    return float(said[1]) if said else nan
+
+
+def _notes(directory: Path, rank: str) -> int:
+    """The peak memory in bytes that the first rank has noted, or the largest of the others."""
+    return max((int(note.read_text()) for note in (directory / NOTES).glob(f"{rank}-*")), default=0)
 
 
 def _solving(file: Path) -> tuple[float, float]:
@@ -123,36 +121,13 @@ def _solving(file: Path) -> tuple[float, float]:
     return float(view.variables["seconds"].sum(dtype=float)), busy / (busy + idle)
 
 
-@dataclass(slots=True)
-class _Load:
-    """How long something took, and how many processors other programs kept busy meanwhile."""
-
-    seconds: float = nan
-    elsewhere: float = nan
-
-
-@contextmanager
-def _measured() -> Iterator[_Load]:
-    """Measures what children of this process do in here."""
-    load = _Load()
-    began, busy, own = time.monotonic(), _busy_seconds(), _children_seconds()
-    yield load
-    load.seconds = time.monotonic() - began
-    others = (_busy_seconds() - busy - (_children_seconds() - own)) / load.seconds
-    load.elsewhere = others if isnan(others) else max(0.0, others)
-
-
-def _busy_seconds() -> float:
-    """Seconds that all processors together were busy since the machine started; nan if it says nothing."""
+def _seconds_of_others() -> float:
+    """Processor seconds of all but the ended children of this process, so far; nan if no system says."""
     try:
         line = Path("/proc/stat").read_text().split("\n", 1)[0]
         user, nice, system, _, _, irq, softirq, steal = map(int, line.split()[1:9])
     except (OSError, ValueError):
         return nan
-    return (user + nice + system + irq + softirq + steal) / os.sysconf("SC_CLK_TCK")
-
-
-def _children_seconds() -> float:
-    """Seconds of the processor that ended children of this process have taken."""
-    times = os.times()
-    return times.children_user + times.children_system
+    busy = (user + nice + system + irq + softirq + steal) / os.sysconf("SC_CLK_TCK")
+    children = os.times()
+    return busy - children.children_user - children.children_system

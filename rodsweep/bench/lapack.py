@@ -1,0 +1,43 @@
+"""LAPACK on whole matrices, those of rodsweep's pencil among them."""
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from ..discretization.pencil import assemble
+from ..discretization.resolution import Resolution
+from ..model.rod import Rod
+
+Array = NDArray[np.float64]
+Eigenvalues = NDArray[np.complex128]
+
+INFINITE_BELOW = 1e-11
+"""beta of an infinite eigenvalue, in units of the largest, as rounding leaves it."""
+
+
+def whole_matrices(rod: Rod, mesh: Resolution) -> tuple[Array, Array]:
+    """(A, diagonal of B), shape (unknowns, unknowns) and (unknowns,), the statical unknowns last."""
+    pencil = assemble(mesh.elements, mesh.order)
+    A = np.zeros((pencil.unknowns, pencil.unknowns))
+    A[pencil.rows, pencil.columns] = pencil.stiffness(rod)
+    return A, pencil.inertia(rod)
+
+
+def inverse_spectrum(A: Array, B: Array) -> Eigenvalues:
+    """The finite eigenvalues of (A, diag B): LU of A, then geev of the dynamic block of A^-1 B."""
+    dynamic = int(np.count_nonzero(B))
+    inverse = np.linalg.solve(A, np.diag(B)[:, :dynamic])[:dynamic]
+    with np.errstate(divide="ignore"):
+        return 1 / scipy.linalg.eigvals(inverse, check_finite=False)
+
+
+def qz(A: Array, B: Array) -> Eigenvalues:
+    """The finite eigenvalues of (A, B) by QZ (ggev); those whose beta is rounding are the infinite ones."""
+    alpha, beta = scipy.linalg.eigvals(A, B, check_finite=False, homogeneous_eigvals=True)
+    finite = np.abs(beta) > INFINITE_BELOW * np.abs(beta).max()
+    return alpha[finite] / beta[finite]
+
+
+def leading(w: Eigenvalues, count: int) -> Eigenvalues:
+    """The eigenvalues with the largest real parts, largest first."""
+    return w[np.argsort(-w.real, kind="stable")][:count]

@@ -1,0 +1,101 @@
+"""Thresholds as one finds them with SciPy: spectra on a grid of forces, interpolated, or root finding.
+
+Every spectrum is one dense eigenproblem by LAPACK on the pencil that rodsweep uses, on one mesh. All look
+for the first onset or the first Hopf point above F = 0 and prove nothing.
+"""
+
+from collections.abc import Callable
+from math import nan
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..lapack import Array, Eigenvalues, inverse_spectrum, leading, whole_matrices
+from .cases import FirstThreshold, ThresholdCase
+
+MARCH = 2.0
+"""Step in F at which a sign is looked for before a root is."""
+SCIPY_ROUNDING = 8.9e-16
+"""The least relative tolerance that SciPy's searches take: four units of rounding."""
+
+
+def affine(case: ThresholdCase) -> tuple[Array, Array, Array]:
+    """A0, A1 and the diagonal of B, which are the pencil at the force F by A = A0 + F A1."""
+    A0, B = whole_matrices(case.rod(0.0), case.mesh)
+    return A0, whole_matrices(case.rod(1.0), case.mesh)[0] - A0, B
+
+
+class LeadingPair:
+    """The two leading eigenvalues at a force, counting the eigenproblems."""
+
+    def __init__(self, case: ThresholdCase):
+        self.solves = 0
+        self._A0, self._A1, self._B = affine(case)
+
+    def __call__(self, F: float) -> Eigenvalues:
+        self.solves += 1
+        return leading(inverse_spectrum(self._A0 + F * self._A1, self._B), 2)
+
+
+def on_grid(
+    estimate: Callable[[Array, Eigenvalues], float], points: int, case: ThresholdCase
+) -> FirstThreshold:
+    """An estimate from the leading eigenvalue at equal steps of F from 0 to the top."""
+    forces, pair = np.linspace(0.0, case.top, points), LeadingPair(case)
+    return FirstThreshold(estimate(forces, np.array([pair(F)[0] for F in forces.tolist()])), points)
+
+
+def between(forces: Array, w: Eigenvalues) -> float:
+    """An onset: halfway between the last real leading eigenvalue and the first pair."""
+    first = int(np.argmax(w.imag != 0))
+    return float(forces[first - 1 : first + 1].mean()) if first else nan
+
+
+def square_root_law(forces: Array, w: Eigenvalues) -> float:
+    """An onset: where (Im w)^2, linear in F next to it, vanishes, through the first two pairs."""
+    pairs = np.flatnonzero(w.imag)[:2]
+    return _zero(forces[pairs], w[pairs].imag ** 2) if len(pairs) == 2 and pairs[0] else nan
+
+
+def interpolated_growth(forces: Array, w: Eigenvalues) -> float:
+    """A Hopf point: where the growth rate between two forces vanishes, as one reads it off a plot."""
+    up = np.flatnonzero((w.real[:-1] < 0) & (w.real[1:] > 0))[:1]
+    return _zero(forces[up[0] :], w.real[up[0] :]) if up.size else nan
+
+
+def _zero(forces: Array, values: NDArray[np.floating]) -> float:
+    """Where the line through the first two points vanishes."""
+    (a, b), (p, q) = forces[:2].tolist(), values[:2].tolist()
+    return a - p * (b - a) / (q - p)
+
+
+def by_steps(
+    search: Callable[..., float], test: Callable[[Eigenvalues], float], tolerance: float, case: ThresholdCase
+) -> FirstThreshold:
+    """Steps from F = 0 until a test changes its sign, then a search of SciPy's between the two forces."""
+    pair = LeadingPair(case)
+    forces = np.append(np.arange(0.0, case.top, MARCH), case.top).tolist()
+    behind, value = forces[0], test(pair(forces[0]))
+    for ahead in forces[1:]:
+        value_ahead = test(pair(ahead))
+        if value * value_ahead < 0:
+            accuracy = {"xtol": tolerance * ahead, "rtol": SCIPY_ROUNDING}
+            root = search(lambda F: test(pair(F)), behind, ahead, **accuracy)
+            return FirstThreshold(float(root), pair.solves)
+        behind, value = ahead, value_ahead
+    return FirstThreshold(nan, pair.solves)
+
+
+def growth(w: Eigenvalues) -> float:
+    """The growth rate, which vanishes at a Hopf point."""
+    return float(w[0].real)
+
+
+def discriminant(w: Eigenvalues) -> float:
+    """(w1 - w2)^2, smooth where two real eigenvalues become a pair, and negative beyond."""
+    return float(((w[0] - w[1]) ** 2).real)
+
+
+def leads_real(w: Eigenvalues) -> float:
+    """1 where a real eigenvalue leads, -1 where a pair does."""
+    return -1.0 if w[0].imag else 1.0
