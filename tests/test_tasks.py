@@ -194,7 +194,7 @@ def test_kinds_of_crossings_have_the_numbers_of_the_solver():
 
 def test_classes_of_a_phase_diagram_have_the_numbers_of_the_solver():
     from rodsweep.results.layouts import CLASSES
-    from rodsweep.solve.changes.diagram import Motion
+    from rodsweep.solve.changes.rows import Motion
 
     assert {int(motion): motion.name for motion in Motion} == {v: name for v, name in CLASSES if v >= 0}
 
@@ -332,8 +332,10 @@ def solve_thresholds(k1, k2, gamma3, request):
         os._exit(9)
     status = real.ThresholdStatus.list_full if k1 == 14 else real.ThresholdStatus.ok
     found = (Value(at=k1 / 2, kind=2, frequency=k2, growth_rate=0.0, error=1e-12, unstable_after=2),)
-    nothing = (float("nan"), float("nan"))
-    return real.Thresholds(status, found, request.F_max, 2, nothing, True, 3, 4, 0.01, "a message")
+    found = real.Transitions(crossings=found, unstable_at_end=2, proved=True, boxes=3, solves=4)
+    return real.Thresholds(
+        status=status, transitions=found, end=request.F_max, seconds=0.01, message="a message"
+    )
 
 real.solve_thresholds = solve_thresholds
 real.warm_up = lambda: None

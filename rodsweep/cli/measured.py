@@ -14,6 +14,7 @@ import sys
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -54,13 +55,22 @@ class InstantSpectra:
         return self.spectra.cost()
 
     def solver(self) -> Solver:
+        from ..discretization.resolution import Resolution
         from ..solve.spectrum.search import Spectrum
         from ..solve.spectrum.status import Status
 
         points, modes = self.spectra.points, self.spectra.config.spectrum.modes
         parts = np.random.default_rng(1).standard_normal((TABLE, 3, modes))
+        rest: dict[str, Any] = {"unstable_count": 1, "certified": True, "resolution": Resolution(1, 20)}
         table = [
-            Spectrum(Status.ok, 100 * (a + 1j * b), 1e-12 * c, 1, True, 1, 20, 1e-7) for a, b, c in parts
+            Spectrum(
+                status=Status.ok,
+                eigenvalues=100 * (a + 1j * b),
+                error_estimate=1e-12 * c,
+                seconds=1e-7,
+                **rest,
+            )
+            for a, b, c in parts
         ]
 
         def solve(index: int) -> Spectrum:

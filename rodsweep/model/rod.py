@@ -2,9 +2,17 @@
 
 from dataclasses import dataclass
 from math import inf, isfinite, isnan
+from typing import NamedTuple
 
-Coefficients = tuple[float, float, float, float]
-"""(F, nu, c2, gamma3): all that the transverse operator contains, as compiled functions take it."""
+
+class Coefficients(NamedTuple):
+    """All that the transverse operator contains, as compiled functions take it."""
+
+    F: float
+    nu: float
+    c2: float
+    gamma3: float
+
 
 PARAMETERS = ("F", "k1", "k2", "gamma3")
 """Names of the parameters of the linear problem, in the order used everywhere."""
@@ -73,5 +81,5 @@ class Rod:
 
     @property
     def coefficients(self) -> Coefficients:
-        """(F, nu, c2, gamma3) as floats."""
-        return float(self.F), self.nu, self.c2, float(self.gamma3)
+        """What the transverse operator contains of this rod, as floats."""
+        return Coefficients(float(self.F), self.nu, self.c2, float(self.gamma3))

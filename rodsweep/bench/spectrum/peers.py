@@ -15,7 +15,7 @@ import scipy.linalg
 import scipy.sparse.linalg
 from numpy.typing import NDArray
 
-from ...determinant.roots import refined
+from ...determinant.newton import refined
 from ...discretization.basis import differentiation, interpolation
 from ...discretization.pencil import SHEAR_WEIGHT, assemble
 from ...discretization.quadrature import gauss, gauss_lobatto

@@ -67,7 +67,7 @@ def _own(kind: str, certify: bool) -> Method:
     def run(problem: Problem) -> Found:
         result = solve_thresholds(problem.k1, problem.k2, problem.gamma3, request)
         first = {c.kind.name: c.at for c in reversed(result.crossings)}
-        return Found(first.get(kind, nan), result.solves, determinants=result.boxes)
+        return Found(first.get(kind, nan), result.transitions.solves, determinants=result.transitions.boxes)
 
     return Method("rodsweep, all changes", "with proof" if certify else "without proof", OWN, run)
 
