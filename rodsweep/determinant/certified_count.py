@@ -165,8 +165,9 @@ def stepped_change(
 def contour_change(
     line: float, foot: float, corner: complex, coefficients: Coefficients
 ) -> tuple[float, int]:
-    """(change of arg D from the real axis below `corner` to it, to the line, and down to foot above its end,
-    nodes used); the nodes are negative where it failed.
+    """(change of arg D, nodes used) from the real axis up to the corner, left to the line, down to its foot.
+
+    The nodes are negative where it failed.
     """
     top = complex(line, corner.imag)
     right, nodes = phase_change(complex(corner.real, 0.0), corner, coefficients, MOST_NODES)

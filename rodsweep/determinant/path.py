@@ -9,7 +9,7 @@ from math import inf
 from typing import NamedTuple
 
 from ..model.compilation import compiled
-from ..model.rod import PARAMETERS, Coefficients, Rod
+from ..model.rod import Coefficients, Rod
 from .even_parts import even_parts
 from .value import Branches, from_parts
 
@@ -79,7 +79,7 @@ class Path:
 
     def at(self, p: float) -> Rod:
         """The rod at p; ValueError where the model has none."""
-        parameters = {name: getattr(self.rod, name) for name in PARAMETERS}
+        parameters = {name: getattr(self.rod, name) for name in ("F", "k1", "k2", "gamma3")}
         return Rod(**parameters | {self.name: self.variable(p)})
 
 
