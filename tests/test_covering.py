@@ -13,10 +13,10 @@ from rodsweep.determinant.box import (
     squared_amplification_over,
 )
 from rodsweep.determinant.covering import cover, distance, examine, first_boxes, slabs
-from rodsweep.determinant.discs import bound_on_bidisc
+from rodsweep.determinant.discs import bound_on_bidisc, centre_at
 from rodsweep.determinant.newton import eigenvalue_newton
-from rodsweep.determinant.path import Path, changes, coefficients_at, determinant_along, root_changes
-from rodsweep.determinant.value import branches, scaled_determinant
+from rodsweep.determinant.path import Path, changes, coefficients_at, determinant_along
+from rodsweep.determinant.value import scaled_determinant
 from rodsweep.model.rod import Rod
 
 RODS = [
@@ -63,14 +63,11 @@ def test_bound_on_a_bidisc_holds_for_the_determinant_in_complex_p(path):
     for eta in (2.0, 190.0, 2500.0):
         w = complex(0.0, eta)
         D, D_w, D_p, S, _ = determinant_along(w, c, direction)
-        P, P1, _, plus, minus = branches(w, c)
-        change = changes(c, direction)
-        along_plus, along_minus, _, _ = root_changes(w, P, P1, c, change)
-        local = w, c, change, (P, P1, plus, minus, along_plus, along_minus), S
+        centre = centre_at(w, c, changes(c, direction), S)
         for share in (0.3, 0.05):
             for rates in ((0j, 0j), (D_w / D, D_p / D)):
                 radii = share * eta, share * abs(p)
-                bound = bound_on_bidisc(local, rates, radii)
+                bound = bound_on_bidisc(centre, rates, radii)
                 if not math.isfinite(bound):
                     continue
                 largest = 0.0

@@ -12,7 +12,6 @@ from ranks import wait_for_end
 
 from rodsweep.cli.checking import describe_job
 from rodsweep.cli.job import make_job
-from rodsweep.cli.tasks.protocol import succeeded
 from rodsweep.errors import InputError
 from rodsweep.post.summary import show_summary
 from rodsweep.results.file.creation import Plan
@@ -659,10 +658,10 @@ def test_statuses_of_the_other_tasks_succeed_when_they_are_ok():
     from rodsweep.solve.spectrum.status import Status
 
     for kind in (Status, ThresholdStatus):
-        assert [status.name for status in kind if succeeded(status)] == ["ok"]
+        assert [status.name for status in kind if status.succeeded] == ["ok"]
 
 
 def test_statuses_of_a_cycle_are_those_of_the_file():
     solver = pytest.importorskip("rodsweep.solve.cycle.limit_cycle", reason="the solver is not there yet")
     assert tuple((int(status), status.name) for status in solver.CycleStatus) == FLAGS
-    assert [status.name for status in solver.CycleStatus if succeeded(status)] == ["cycle", "straight"]
+    assert [status.name for status in solver.CycleStatus if status.succeeded] == ["cycle", "straight"]

@@ -7,9 +7,10 @@ import pytest
 
 from rodsweep.determinant.certified_count import count_right_of
 from rodsweep.determinant.curves import trace
-from rodsweep.determinant.plane import Axis, Plane
+from rodsweep.determinant.plane import Plane, PlaneAxis
 from rodsweep.model.rod import Rod
-from rodsweep.solve.changes.diagram import Motion, RowRequest, curves_through, seed_of, solve_row
+from rodsweep.solve.changes.boundaries import curves_through, seed_of
+from rodsweep.solve.changes.rows import Motion, RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import ThresholdStatus
 from rodsweep.solve.changes.unstable_modes import Kind
 
@@ -39,7 +40,8 @@ def rows(plane_axes, rod, count):
 @pytest.mark.parametrize(("k2", "gamma3", "k1", "F", "frequency"), FOLDS)
 def test_the_flutter_window_closes_at_the_fold_to_nine_digits(k2, gamma3, k1, F, frequency):
     plane = Plane(
-        Rod(0.0, 200.0, k2, gamma3), (Axis("F", 0.0, 119.0), Axis("k1", 120.0, 1000.0, logarithmic=True))
+        Rod(0.0, 200.0, k2, gamma3),
+        (PlaneAxis("F", 0.0, 119.0), PlaneAxis("k1", 120.0, 1000.0, logarithmic=True)),
     )
     row = solve_row(
         {"k1": 300.0, "k2": k2, "gamma3": gamma3}, RowRequest("F", np.array([0.0, 119.0]), 1e-9, True, 9)
@@ -57,7 +59,7 @@ def test_the_flutter_window_closes_at_the_fold_to_nine_digits(k2, gamma3, k1, F,
 def test_the_hopf_curve_of_the_partial_beam_is_the_parabola_of_the_paper():
     """F (1 - F/k1) = Fc with k2 = inf, gamma3 = 0 (Sec. VIII), all along the curve and through its fold."""
     Fc = 37.6954308403185779
-    plane = Plane(Rod(0.0, 200.0, inf, 0.0), (Axis("F", 0.0, 140.0), Axis("k1", 145.0, 400.0)))
+    plane = Plane(Rod(0.0, 200.0, inf, 0.0), (PlaneAxis("F", 0.0, 140.0), PlaneAxis("k1", 145.0, 400.0)))
     start = 200.0 * (0.5 - np.sqrt(0.25 - Fc / 200.0))
     curve = trace(0.0, plane, (plane.axes[0].scaled(start), plane.axes[1].scaled(200.0)), 341.801)
     F, k1 = curve.values.T
@@ -68,7 +70,7 @@ def test_the_hopf_curve_of_the_partial_beam_is_the_parabola_of_the_paper():
 
 
 def test_rows_and_curves_agree_and_every_change_lies_on_a_curve():
-    axes = (Axis("F", 0.0, 99.0), Axis("k1", 100.0, 1000.0, logarithmic=True))
+    axes = (PlaneAxis("F", 0.0, 99.0), PlaneAxis("k1", 100.0, 1000.0, logarithmic=True))
     rod = Rod(0.0, 200.0, 1e4, 1e-4)
     _, seeds = rows(axes, rod, 12)
     curves = curves_through(Plane(rod, axes), seeds)
@@ -82,7 +84,7 @@ def test_rows_and_curves_agree_and_every_change_lies_on_a_curve():
 
 def test_a_plane_of_two_material_parameters():
     """k2 against gamma3 at fixed force: rows along k2, curves through both, counts on either side."""
-    axes = (Axis("k2", 20.0, 1e5, logarithmic=True), Axis("gamma3", 1e-4, 0.1, logarithmic=True))
+    axes = (PlaneAxis("k2", 20.0, 1e5, logarithmic=True), PlaneAxis("gamma3", 1e-4, 0.1, logarithmic=True))
     rod = Rod(30.0, 1e4, 1e3, 1e-3)
     found, seeds = rows(axes, rod, 6)
     curves = curves_through(Plane(rod, axes), seeds)
@@ -116,7 +118,7 @@ def test_a_row_without_a_bound_fails_with_its_reason():
 
 def test_a_diagram_that_begins_at_the_limit_of_the_model_has_its_curves():
     """gamma3 = 0 is the first row: nothing lies beyond it, neither for steps nor for differences."""
-    axes = (Axis("F", 5.0, 60.0), Axis("gamma3", 0.0, 1.0))
+    axes = (PlaneAxis("F", 5.0, 60.0), PlaneAxis("gamma3", 0.0, 1.0))
     rod = Rod(30.0, 1e4, 20.0, 0.01)
     _, seeds = rows(axes, rod, 3)
     curves = curves_through(Plane(rod, axes), seeds)
@@ -129,7 +131,7 @@ def test_a_diagram_that_begins_at_the_limit_of_the_model_has_its_curves():
 )
 def test_each_curve_is_followed_once_and_ends_are_no_folds(k1, top, folds):
     """Rows on the border, and rows where the curve of double eigenvalues runs along the crushed rods."""
-    axes = (Axis("F", 0.0, top), Axis("k1", k1[0], k1[-1], logarithmic=k1[-1] > 10 * k1[0]))
+    axes = (PlaneAxis("F", 0.0, top), PlaneAxis("k1", k1[0], k1[-1], logarithmic=k1[-1] > 10 * k1[0]))
     rod = Rod(0.0, k1[-1], 1e4, 1e-4)
     seeds = []
     for value in k1:

@@ -1,6 +1,7 @@
 """Modes, adjoint modes and non-normality of one rod, against closed forms in 60 digits that share no mesh."""
 
 from dataclasses import replace
+from operator import attrgetter
 
 import mpmath as mp
 import numpy as np
@@ -8,17 +9,18 @@ import pytest
 from numpy.polynomial import legendre
 from scipy.linalg import expm
 
+from rodsweep.determinant.value import distance_to_next
 from rodsweep.discretization.basis import differentiation
-from rodsweep.discretization.pencil import assemble, shear_force
+from rodsweep.discretization.pencil import assemble, shear_force, tip_scale
 from rodsweep.discretization.quadrature import gauss_lobatto, lobatto_points
 from rodsweep.discretization.resolution import Resolution
 from rodsweep.model.rod import Rod
-from rodsweep.solve.modes import convergence as vectors_module
-from rodsweep.solve.modes import inverse_iteration as shapes_module
+from rodsweep.solve.modes import convergence as convergence_module
+from rodsweep.solve.modes import inverse_iteration as inverse_module
 from rodsweep.solve.modes import norm_maximum as peak_module
 from rodsweep.solve.modes import transient_growth as growth_module
 from rodsweep.solve.modes.dense_operator import dense_operator
-from rodsweep.solve.modes.inverse_iteration import mode_shapes, null_vectors
+from rodsweep.solve.modes.inverse_iteration import mode_vectors, null_vectors
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
 from rodsweep.solve.modes.norm_maximum import highest
 from rodsweep.solve.modes.numerical_abscissa import numerical_abscissa
@@ -168,11 +170,12 @@ class ReferenceGrowth:
 
 def gamma_products(result, gamma3):
     """(psi_m, xi_n) over the norms of both."""
-    y, theta = result.right
-    left_y, left_theta = result.left
+    y, theta = result.vectors.right
+    left_y, left_theta = result.vectors.left
     products = (left_y.conj() * WEIGHTS) @ y.T + gamma3 * (left_theta.conj() * WEIGHTS) @ theta.T
     norms = [
-        np.sqrt((WEIGHTS * (abs(a) ** 2 + gamma3 * abs(b) ** 2)).sum(1)) for a, b in ((y, theta), result.left)
+        np.sqrt((WEIGHTS * (abs(a) ** 2 + gamma3 * abs(b) ** 2)).sum(1))
+        for a, b in ((y, theta), result.vectors.left)
     ]
     return products, norms[1][:, None] * norms[0]
 
@@ -187,12 +190,12 @@ def relative(found, exact):
 def test_at_rest_left_and_right_modes_are_equal(k1, k2, gamma3):
     result = solve_modes(Rod(0.0, k1, k2, gamma3), TIGHT)
     assert result.status == Status.ok
-    assert (result.eigenvalues.imag == 0).all()
-    assert (result.eigenvalues.real < 0).all()
-    assert relative(result.left, result.right) < 1e-11
-    assert abs(result.condition - 1).max() < 1e-12
-    assert result.numerical_abscissa == pytest.approx(result.eigenvalues[0].real, rel=1e-11)
-    assert (result.transient_growth, result.transient_time) == (1.0, 0.0)
+    assert (result.spectrum.eigenvalues.imag == 0).all()
+    assert (result.spectrum.eigenvalues.real < 0).all()
+    assert relative(result.vectors.left, result.vectors.right) < 1e-11
+    assert abs(result.vectors.condition - 1).max() < 1e-12
+    assert result.growth.numerical_abscissa == pytest.approx(result.spectrum.eigenvalues[0].real, rel=1e-11)
+    assert (result.growth.transient_growth, result.growth.transient_time) == (1.0, 0.0)
 
 
 @pytest.mark.kernel
@@ -202,24 +205,24 @@ def test_modes_are_those_of_appendix_c(parameters):
     rod = Rod(*parameters)
     result = solve_modes(rod, SHAPES)
     assert result.status == Status.ok
-    for n, w in enumerate(result.eigenvalues):
+    for n, w in enumerate(result.spectrum.eigenvalues):
         y, theta, s, m = ClosedForm(rod, w).fields(POINTS)
-        assert relative(result.right[0, n], y) < 1e-11
-        assert relative(result.right[1, n], theta) < 1e-11
-        assert relative(result.deformation[1, n], m) < 1e-11
+        assert relative(result.vectors.right[0, n], y) < 1e-11
+        assert relative(result.vectors.right[1, n], theta) < 1e-11
+        assert relative(result.vectors.deformation[1, n], m) < 1e-11
         if rod.c2:
-            assert relative(result.deformation[0, n], rod.c2 * s) < 1e-11
+            assert relative(result.vectors.deformation[0, n], rod.c2 * s) < 1e-11
         y, theta, *_ = ClosedForm(rod, w, 1).fields(POINTS)
-        assert relative(result.left[0, n], y) < 1e-11
-        assert relative(result.left[1, n], theta) < 1e-11
-        assert result.condition[n] == pytest.approx(reference_condition(rod, w), rel=1e-11)
+        assert relative(result.vectors.left[0, n], y) < 1e-11
+        assert relative(result.vectors.left[1, n], theta) < 1e-11
+        assert result.vectors.condition[n] == pytest.approx(reference_condition(rod, w), rel=1e-11)
 
 
 def test_printed_form_of_appendix_c():
     """Y and Theta as printed (G, g1, g2, chi), with the corrected quartic, normalised to Y(1) = 1."""
     rod = Rod(*FIG_2A)
     result = solve_modes(rod, SHAPES)
-    w, mu = result.eigenvalues[1], rod.k2 * rod.nu + rod.F
+    w, mu = result.spectrum.eigenvalues[1], rod.k2 * rod.nu + rod.F
     b = rod.F * mu - (1 + rod.k2 * rod.gamma3) * w
     root = np.sqrt(b * b - 4 * rod.k2 * w * (rod.gamma3 * w + rod.nu * mu))
     x1, x2 = np.sqrt((-b + root) / (2 * rod.k2)), np.sqrt((b + root) / (2 * rod.k2))
@@ -228,8 +231,8 @@ def test_printed_form_of_appendix_c():
     a, c = x1 * POINTS, x2 * POINTS
     Y = np.cosh(a) - np.cos(c) - G * (np.sinh(a) / g1 - np.sin(c) / g2)
     Theta = g1 * np.sinh(a) + g2 * np.sin(c) - G * (np.cosh(a) - np.cos(c))
-    assert relative(result.right[0, 1], Y / Y[-1]) < 1e-9
-    assert relative(result.right[1, 1], Theta / Y[-1]) < 1e-9
+    assert relative(result.vectors.right[0, 1], Y / Y[-1]) < 1e-9
+    assert relative(result.vectors.right[1, 1], Theta / Y[-1]) < 1e-9
 
 
 @pytest.mark.kernel
@@ -240,10 +243,10 @@ def test_left_and_right_modes_are_biorthogonal(parameters):
     products, norms = gamma_products(result, rod.gamma3)
     off = products - np.diag(np.diag(products))
     assert (abs(off) / norms).max() < 1e-10
-    assert abs(np.diag(products) - result.pairing).max() < 1e-10 * abs(result.pairing).max()
-    assert abs(np.diag(norms) / abs(np.diag(products)) / result.condition - 1).max() < 1e-10
-    assert abs(result.right[0, :, -1] - 1).max() < 1e-12
-    assert abs(result.left[0, :, -1] - 1).max() < 1e-12
+    assert abs(np.diag(products) - result.vectors.pairing).max() < 1e-10 * abs(result.vectors.pairing).max()
+    assert abs(np.diag(norms) / abs(np.diag(products)) / result.vectors.condition - 1).max() < 1e-10
+    assert abs(result.vectors.right[0, :, -1] - 1).max() < 1e-12
+    assert abs(result.vectors.left[0, :, -1] - 1).max() < 1e-12
 
 
 @pytest.mark.parametrize("parameters", RODS)
@@ -251,11 +254,11 @@ def test_left_modes_have_the_ends_of_appendix_b(parameters):
     """psi(0) = 0, (K D psi + ad*_psi Sigma0)(1) = 0: Theta+' = -F Y+, Y+' - nu Theta+ = c2 F Theta+."""
     rod = Rod(*parameters)
     result = solve_modes(rod, SHAPES)
-    slope = result.left @ SLOPE.T
+    slope = result.vectors.left @ SLOPE.T
     size = abs(slope).max(axis=2)
-    assert (result.left[:, :, 0] == 0).all()
-    assert (abs(slope[1, :, -1] + rod.F * result.left[0, :, -1]) / size[1]).max() < 1e-9
-    assert (abs(slope[0, :, -1] - rod.g * result.left[1, :, -1]) / size[0]).max() < 1e-9
+    assert (result.vectors.left[:, :, 0] == 0).all()
+    assert (abs(slope[1, :, -1] + rod.F * result.vectors.left[0, :, -1]) / size[1]).max() < 1e-9
+    assert (abs(slope[0, :, -1] - rod.g * result.vectors.left[1, :, -1]) / size[0]).max() < 1e-9
 
 
 def test_left_null_vector_of_the_pencil_has_the_adjoint_ends():
@@ -285,7 +288,7 @@ def test_condition_diverges_at_the_onset_like_a_square_root():
         rod = Rod(ONSET * (1 - distance), 1e4, 1e4, 1e-4)
         result = solve_modes(rod, ModesRequest(2, 1e-8, 9, growth=False))
         assert result.status == Status.ok
-        condition.append(result.condition)
+        condition.append(result.vectors.condition)
     order = np.log(condition[1] / condition[0]) / np.log(distances[0] / distances[1])
     assert abs(order - 0.5).max() < 0.01
     assert condition[1].min() > 50
@@ -295,9 +298,9 @@ def test_condition_diverges_at_the_onset_like_a_square_root():
 def test_a_rod_at_the_onset_says_that_its_modes_are_inaccurate():
     result = solve_modes(Rod(ONSET, 1e4, 1e4, 1e-4), TIGHT)
     assert result.status == Status.accuracy_not_reached
-    assert result.condition[:2].min() > 1e5
-    assert result.condition_error[:2].max() > 1e-3
-    assert result.condition_error[2:].max() < 1e-11
+    assert result.vectors.condition[:2].min() > 1e5
+    assert result.vectors.condition_error[:2].max() > 1e-3
+    assert result.vectors.condition_error[2:].max() < 1e-11
 
 
 @pytest.mark.kernel
@@ -315,11 +318,11 @@ def test_modes_next_to_the_onset_are_not_called_accurate():
 def test_a_decaying_rod_may_grow_at_first():
     """Fig. 2a's rod at F = 15: all modes decay like exp(-44 t) or faster, yet the abscissa is positive."""
     result = solve_modes(Rod(*FIG_2A), TIGHT)
-    exact = ClosedForm(Rod(*FIG_2A), result.eigenvalues[0]).w
-    assert result.eigenvalues[0].real == pytest.approx(float(mp.re(exact)), rel=1e-11)
-    assert result.eigenvalues[0].real < -44
-    assert result.numerical_abscissa > 21.9
-    assert result.transient_growth > 1
+    exact = ClosedForm(Rod(*FIG_2A), result.spectrum.eigenvalues[0]).w
+    assert result.spectrum.eigenvalues[0].real == pytest.approx(float(mp.re(exact)), rel=1e-11)
+    assert result.spectrum.eigenvalues[0].real < -44
+    assert result.growth.numerical_abscissa > 21.9
+    assert result.growth.transient_growth > 1
 
 
 @pytest.mark.parametrize("parameters", RODS)
@@ -335,7 +338,7 @@ def test_abscissa_is_found_where_no_bound_is_known():
     """A soft rod without rotational drag, pulled beyond its shear stiffness (g < 0)."""
     rod = Rod(-48.0, 1e6, 3.5, 0.0)
     found = numerical_abscissa(rod, assemble(2, 32))
-    leading = solve_modes(rod, ModesRequest(1, 1e-8, 9, growth=False, certify=False)).eigenvalues[0]
+    leading = solve_modes(rod, ModesRequest(1, 1e-8, 9, growth=False, certify=False)).spectrum.eigenvalues[0]
     assert rod.g < 0
     assert found > leading.real > 5000
     assert found == pytest.approx(float(mp.re(ClosedForm(rod, found, 0.5).w)), rel=1e-11)
@@ -392,18 +395,18 @@ def test_abscissa_is_the_supremum_over_the_domain(parameters):
 def test_unshearable_limit_is_reached_at_first_order():
     """k2 -> inf at gamma3 = 1e-2, every number; h2 = c2 s is exactly 0 there."""
     limit = solve_modes(Rod(15.0, 1e4, INF, 1e-2), TIGHT)
-    assert (limit.deformation[0] == 0).all()
+    assert (limit.vectors.deformation[0] == 0).all()
     differences = []
     for k2 in (1e5, 1e6):
         near = solve_modes(Rod(15.0, 1e4, k2, 1e-2), TIGHT)
         differences.append(
             [
-                abs(near.numerical_abscissa - limit.numerical_abscissa),
-                abs(near.transient_growth - limit.transient_growth),
-                abs(near.condition - limit.condition).max(),
-                abs(near.left - limit.left).max(),
-                abs(near.right - limit.right).max(),
-                abs(near.deformation[0]).max(),
+                abs(near.growth.numerical_abscissa - limit.growth.numerical_abscissa),
+                abs(near.growth.transient_growth - limit.growth.transient_growth),
+                abs(near.vectors.condition - limit.vectors.condition).max(),
+                abs(near.vectors.left - limit.vectors.left).max(),
+                abs(near.vectors.right - limit.vectors.right).max(),
+                abs(near.vectors.deformation[0]).max(),
             ]
         )
     assert np.array(differences[0]) / np.array(differences[1]) == pytest.approx(10, rel=0.01)
@@ -413,11 +416,13 @@ def test_without_rotational_drag_only_the_abscissa_jumps():
     """gamma3 -> 0 at c2 > 0: theta loses the freedom to start anywhere, which the norm does not notice."""
     limit = solve_modes(Rod(15.0, 1e4, 200.0, 0.0), TIGHT)
     near, nearer = (solve_modes(Rod(15.0, 1e4, 200.0, gamma3), TIGHT) for gamma3 in (1e-6, 1e-8))
-    for name in ("eigenvalues", "condition", "left", "right", "deformation", "transient_growth"):
-        far, close = (np.max(abs(getattr(x, name) - getattr(limit, name))) for x in (near, nearer))
+    vectors = ("vectors.condition", "vectors.left", "vectors.right", "vectors.deformation")
+    for name in ("spectrum.eigenvalues", *vectors, "growth.transient_growth"):
+        value = attrgetter(name)
+        far, close = (np.max(abs(value(x) - value(limit))) for x in (near, nearer))
         assert close < 0.11 * far, name
-    assert nearer.numerical_abscissa - limit.numerical_abscissa > 2
-    assert nearer.numerical_abscissa == pytest.approx(near.numerical_abscissa, rel=1e-5)
+    assert nearer.growth.numerical_abscissa - limit.growth.numerical_abscissa > 2
+    assert nearer.growth.numerical_abscissa == pytest.approx(near.growth.numerical_abscissa, rel=1e-5)
 
 
 def test_abscissa_is_continuous_where_theta_is_no_state_of_its_own():
@@ -447,14 +452,16 @@ def test_transient_growth_is_the_largest_norm_of_the_exact_propagator(parameters
     rod = Rod(*parameters)
     result = solve_modes(rod, TIGHT)
     # Ten modes represent exp(L t) to 1e-12 at these times.
-    exact = ReferenceGrowth(rod, solve_modes(rod, ModesRequest(10, 1e-7, 2, growth=False)).eigenvalues)
-    peak = result.transient_time
-    assert result.growth_error < 1e-10
-    assert result.transient_growth == pytest.approx(exact(peak), rel=1e-11)
+    exact = ReferenceGrowth(
+        rod, solve_modes(rod, ModesRequest(10, 1e-7, 2, growth=False)).spectrum.eigenvalues
+    )
+    peak = result.growth.transient_time
+    assert result.growth.growth_error < 1e-10
+    assert result.growth.transient_growth == pytest.approx(exact(peak), rel=1e-11)
     step = 1e-3 * peak
     assert exact(peak) > max(exact(peak - step), exact(peak + step))
     scan = [exact(t) for t in np.geomspace(peak / 2, 50 * peak, 40)]
-    assert max(scan) <= result.transient_growth
+    assert max(scan) <= result.growth.transient_growth
 
 
 def toy(generator):
@@ -503,15 +510,19 @@ def test_all_modes_of_a_mesh_say_the_same_as_few():
 
 def test_a_mesh_that_makes_an_unstable_eigenvalue_up_is_refused():
     made_up = toy(np.diag([0.1, -1.0, -2.0]))
-    assert growth_module.transient_growth(made_up, made_up, 0.2, 1e-8).error == INF
+    assert growth_module.transient_growth(made_up, made_up, 0.2, 1e-8).growth_error == INF
 
 
 def test_where_nothing_can_grow_no_propagator_is_needed(monkeypatch):
     monkeypatch.setattr(growth_module, "propagator_of", None)
     result = solve_modes(Rod(9.8, 1e4, 1e4, 1e-4), TIGHT)
     assert result.status == Status.ok
-    assert result.numerical_abscissa < 0
-    assert (result.transient_growth, result.transient_time, result.growth_error) == (1.0, 0.0, 0.0)
+    assert result.growth.numerical_abscissa < 0
+    assert (result.growth.transient_growth, result.growth.transient_time, result.growth.growth_error) == (
+        1.0,
+        0.0,
+        0.0,
+    )
 
 
 @pytest.mark.parametrize("fast", [1e2, 1e6, 1e12])
@@ -621,11 +632,13 @@ def test_early_growth_is_that_of_the_exact_propagator(parameters):
     rod = Rod(*parameters)
     result = solve_modes(rod, TIGHT)
     assert result.status == Status.ok
-    exact = ReferenceGrowth(rod, solve_modes(rod, ModesRequest(26, 1e-8, 2, growth=False)).eigenvalues)
-    scan = {x: exact(x * result.transient_time) for x in (0.9, 1.0, 1.1)}
+    exact = ReferenceGrowth(
+        rod, solve_modes(rod, ModesRequest(26, 1e-8, 2, growth=False)).spectrum.eigenvalues
+    )
+    scan = {x: exact(x * result.growth.transient_time) for x in (0.9, 1.0, 1.1)}
     assert max(scan, key=scan.get) == 1.0
-    assert result.transient_growth == pytest.approx(scan[1.0], rel=1e-10)
-    assert abs(result.transient_growth - scan[1.0]) < 1e-4 * (scan[1.0] - 1)
+    assert result.growth.transient_growth == pytest.approx(scan[1.0], rel=1e-10)
+    assert abs(result.growth.transient_growth - scan[1.0]) < 1e-4 * (scan[1.0] - 1)
 
 
 @pytest.mark.parametrize("F", [9.8697, 9.87, 9.88, 9.9, 9.95, 10.0, 10.2, 10.5, 11.0])
@@ -634,12 +647,15 @@ def test_growth_is_as_accurate_as_it_says_where_the_abscissa_is_small(F):
     rod = Rod(F, 1e4, 1e4, 1e-4)
     fine = solve_modes(rod, TIGHT)
     assert fine.status == Status.ok
-    assert 0 < fine.numerical_abscissa < 4.1
+    assert 0 < fine.growth.numerical_abscissa < 4.1
     for accuracy in (1e-4, 1e-6, 1e-8):
         coarse = solve_modes(rod, replace(TIGHT, accuracy=accuracy))
         assert coarse.status == Status.ok
-        assert coarse.growth_error <= accuracy
-        assert abs(coarse.transient_growth - fine.transient_growth) <= coarse.growth_error + 1e-10
+        assert coarse.growth.growth_error <= accuracy
+        assert (
+            abs(coarse.growth.transient_growth - fine.growth.transient_growth)
+            <= coarse.growth.growth_error + 1e-10
+        )
 
 
 def test_transient_growth_is_smooth_across_the_onset():
@@ -647,8 +663,8 @@ def test_transient_growth_is_smooth_across_the_onset():
     growth = {}
     for h in (-2, -1, 0, 1, 2):
         result = solve_modes(Rod(ONSET + 0.01 * h, 1e4, 1e4, 1e-4), TIGHT)
-        assert result.growth_error < 1e-10
-        growth[h] = result.transient_growth
+        assert result.growth.growth_error < 1e-10
+        growth[h] = result.growth.transient_growth
     second, wide = (growth[h] - 2 * growth[0] + growth[-h] for h in (1, 2))
     assert wide / second == pytest.approx(4, rel=1e-3)
 
@@ -656,52 +672,59 @@ def test_transient_growth_is_smooth_across_the_onset():
 def test_an_unstable_rod_grows_without_end():
     result = solve_modes(Rod(40.0, 1e4, 1e4, 1e-4), TIGHT)
     assert result.status == Status.ok
-    assert result.unstable_count == 2
-    assert (result.transient_growth, result.transient_time) == (INF, INF)
-    assert result.numerical_abscissa > result.eigenvalues[0].real
+    assert result.spectrum.unstable_count == 2
+    assert (result.growth.transient_growth, result.growth.transient_time) == (INF, INF)
+    assert result.growth.numerical_abscissa > result.spectrum.eigenvalues[0].real
 
 
 def test_growth_lies_between_one_and_what_the_abscissa_allows():
     for F in (5.0, 9.9, 10.0, 11.0, 20.0, 35.0):
         result = solve_modes(Rod(F, 1e4, 1e4, 1e-4), ModesRequest(2, 1e-6, 9, growth=True))
         assert result.status == Status.ok
-        bound = np.exp(max(result.numerical_abscissa, 0) * result.transient_time)
-        assert 1 <= result.transient_growth <= bound * (1 + 1e-12)
-        assert (result.transient_time > 0) == (result.transient_growth > 1)
-        assert result.transient_time == 0 or result.numerical_abscissa > 0
+        bound = np.exp(max(result.growth.numerical_abscissa, 0) * result.growth.transient_time)
+        assert 1 <= result.growth.transient_growth <= bound * (1 + 1e-12)
+        assert (result.growth.transient_time > 0) == (result.growth.transient_growth > 1)
+        assert result.growth.transient_time == 0 or result.growth.numerical_abscissa > 0
 
 
 def test_growth_is_computed_only_where_asked_for():
     result = solve_modes(Rod(*FIG_2A), SHAPES)
     assert result.status == Status.ok
-    assert np.isnan([result.numerical_abscissa, result.transient_growth, result.growth_error]).all()
+    assert np.isnan(
+        [result.growth.numerical_abscissa, result.growth.transient_growth, result.growth.growth_error]
+    ).all()
 
 
 def test_a_point_that_fails_is_a_status():
     result = solve_modes(Rod(1e200, INF, 1e-5, 1e-4), TIGHT)
     assert result.status == Status.failed
     assert result.message
-    assert np.isnan(result.right).all()
-    assert result.right.shape == result.left.shape == result.deformation.shape == (2, 4, NODES)
+    assert np.isnan(result.vectors.right).all()
+    assert (
+        result.vectors.right.shape
+        == result.vectors.left.shape
+        == result.vectors.deformation.shape
+        == (2, 4, NODES)
+    )
 
 
 def test_a_failing_mesh_is_a_status(monkeypatch):
     def broken(*_):
         raise np.linalg.LinAlgError("Singular matrix")
 
-    monkeypatch.setattr(vectors_module, "mode_shapes", broken)
+    monkeypatch.setattr(convergence_module, "mode_vectors", broken)
     result = solve_modes(Rod(*FIG_2A), TIGHT)
     assert result.status == Status.failed
     assert result.message == "Singular matrix"
 
 
 def test_coarse_meshes_are_refined_until_they_agree(monkeypatch):
-    monkeypatch.setattr(vectors_module, "first_mesh", lambda *_: Resolution(1, 8))
+    monkeypatch.setattr(convergence_module, "first_mesh", lambda *_: Resolution(1, 8))
     result = solve_modes(Rod(*FIG_2A), SHAPES)
     assert result.status == Status.ok
-    assert result.order > 16
-    y, *_ = ClosedForm(Rod(*FIG_2A), result.eigenvalues[3]).fields(POINTS)
-    assert relative(result.right[0, 3], y) < 1e-10
+    assert result.vectors.resolution.order > 16
+    y, *_ = ClosedForm(Rod(*FIG_2A), result.spectrum.eigenvalues[3]).fields(POINTS)
+    assert relative(result.vectors.right[0, 3], y) < 1e-10
 
 
 def test_a_tip_that_does_not_move_leaves_a_mode_without_scale():
@@ -710,7 +733,7 @@ def test_a_tip_that_does_not_move_leaves_a_mode_without_scale():
     vectors = np.ones((pencil.unknowns, 3), complex)
     vectors[pencil.nodes - 1] = [0.0, 1e-15, 2.0]
     with np.errstate(all="ignore"):
-        scale = shapes_module._tip_scale(rod, pencil, vectors)
+        scale = tip_scale(*pencil.fields(vectors, rod))
     assert np.isnan(scale[:2]).all()
     assert scale[2] * pencil.fields(vectors, rod)[0][-1, 2] == pytest.approx(1)
 
@@ -722,11 +745,11 @@ def test_a_mode_whose_tip_does_not_move_is_nan_and_not_called_accurate(monkeypat
             x[len(B) // 3 - 1] = 0
         return x, z
 
-    monkeypatch.setattr(shapes_module, "null_vectors", still)
+    monkeypatch.setattr(inverse_module, "null_vectors", still)
     result = solve_modes(Rod(*FIG_2A), SHAPES)
-    still_tips = result.eigenvalues.real < -100
-    assert (np.isnan(result.right).all(axis=(0, 2)) == still_tips).all()
-    assert np.isfinite(result.left).all()
+    still_tips = result.spectrum.eigenvalues.real < -100
+    assert (np.isnan(result.vectors.right).all(axis=(0, 2)) == still_tips).all()
+    assert np.isfinite(result.vectors.left).all()
     assert result.status == Status.accuracy_not_reached
     assert result.message == "the error of the modes is inf"
 
@@ -742,12 +765,12 @@ def test_of_a_pair_only_one_vector_is_computed(monkeypatch):
     rod, pencil = Rod(30.0, 1e4, 1e4, 1e-4), assemble(1, 24)
     pair = solve_spectrum(rod, SpectrumRequest(2, 1e-10, True)).eigenvalues
     other = pair[1] - 5j  # no eigenvalue: its vector is the nearest one's, from a shift of its own
-    monkeypatch.setattr(shapes_module, "null_vectors", counted)
-    shapes = mode_shapes(rod, pencil, pair, POINTS)
+    monkeypatch.setattr(inverse_module, "null_vectors", counted)
+    vectors = mode_vectors(rod, pencil, pair, POINTS)
     assert calls == [pair[0]]
-    assert (shapes.right[:, 1] == shapes.right[:, 0].conj()).all()
-    assert (shapes.left[:, 1] == shapes.left[:, 0].conj()).all()
-    mode_shapes(rod, pencil, np.array([pair[0], other]), POINTS)
+    assert (vectors.right[:, 1] == vectors.right[:, 0].conj()).all()
+    assert (vectors.left[:, 1] == vectors.left[:, 0].conj()).all()
+    mode_vectors(rod, pencil, np.array([pair[0], other]), POINTS)
     assert calls[1:] == [pair[0], other]
 
 
@@ -756,7 +779,7 @@ def test_the_distance_to_the_next_eigenvalue_is_sharp_where_it_is_small():
     for force, tolerance in ((20.0080207, 1e-3), (20.0081, 1e-3), (20.0, 1e-2)):
         rod = Rod(force, 1e4, 1e4, 1e-4)
         w = solve_spectrum(rod, SpectrumRequest(2, 1e-10, True)).eigenvalues
-        found = vectors_module.distance_to_next(complex(w[0]), rod.coefficients)
+        found = distance_to_next(complex(w[0]), rod.coefficients)
         assert found == pytest.approx(abs(w[0] - w[1]), rel=tolerance)
 
 
@@ -765,8 +788,8 @@ def test_growth_on_a_coarse_mesh_is_refined_until_meshes_agree():
     exact = solve_modes(rod, TIGHT)
     coarse, fine = (growth_module.propagator_of(rod, assemble(1, order)) for order in (4, 6))
     first = growth_module.transient_growth(coarse, fine, 23.0, 1e-10)
-    assert 1e-9 < abs(first.largest / exact.transient_growth - 1) < first.error
+    assert 1e-9 < abs(first.transient_growth / exact.growth.transient_growth - 1) < first.growth_error
     growth = growth_module.growth_of(rod, Resolution(1, 4), 1e-10, True, 45.0)
     assert max(growth.errors(45.0).values()) < 1e-10
-    assert growth.largest == pytest.approx(exact.transient_growth, rel=1e-10)
-    assert growth.abscissa == pytest.approx(exact.numerical_abscissa, rel=1e-9)
+    assert growth.transient_growth == pytest.approx(exact.growth.transient_growth, rel=1e-10)
+    assert growth.numerical_abscissa == pytest.approx(exact.growth.numerical_abscissa, rel=1e-9)

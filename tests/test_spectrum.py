@@ -11,7 +11,7 @@ from rodsweep.discretization.resolution import Resolution
 from rodsweep.model.dispersion import most_amplified_wave
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
-from rodsweep.solve.spectrum import candidates as attempt
+from rodsweep.solve.spectrum import candidates as candidates_module
 from rodsweep.solve.spectrum.krylov_schur import eigen_solver
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import Status
@@ -91,7 +91,7 @@ def test_few_unknowns_suffice_for_every_accuracy(reference_spectra):
         assert result.status == Status.ok
         exact = leading(point, 4)
         assert (np.abs(result.eigenvalues - exact) / np.abs(exact)).max() < 1e-13
-        assert 3 * result.elements * result.order <= 36
+        assert 3 * result.resolution.elements * result.resolution.order <= 36
 
 
 def test_order_is_descending_real_part_positive_frequency_first(reference_spectra):
@@ -178,9 +178,9 @@ class Forgetful:
 def test_lost_mode_is_found_again_or_the_numbers_are_withheld(monkeypatch, remembers_from, status):
     rod = Rod(50.0, 1e4, 1e4, 1e-4)
     whole = solve_spectrum(rod, TIGHT)
-    real = attempt.eigen_solver
+    real = candidates_module.eigen_solver
     monkeypatch.setattr(
-        attempt, "eigen_solver", lambda resolution: Forgetful(real(resolution), remembers_from)
+        candidates_module, "eigen_solver", lambda resolution: Forgetful(real(resolution), remembers_from)
     )
     result = solve_spectrum(rod, TIGHT)
     assert result.status == status
@@ -231,8 +231,8 @@ class Failing:
 def test_error_inside_slepc_is_followed_by_another_mesh(monkeypatch, failures):
     rod = Rod(30.0, 1e4, 1e4, 1e-4)
     whole = solve_spectrum(rod, TIGHT)
-    failing = Failing(attempt.eigen_solver, failures, PETSc.Error(76))
-    monkeypatch.setattr(attempt, "eigen_solver", failing)
+    failing = Failing(candidates_module.eigen_solver, failures, PETSc.Error(76))
+    monkeypatch.setattr(candidates_module, "eigen_solver", failing)
     result = solve_spectrum(rod, TIGHT)
     assert (result.status, result.unstable_count, result.certified) == (Status.ok, 0, True)
     assert np.allclose(result.eigenvalues, whole.eigenvalues, rtol=1e-12)
@@ -241,8 +241,10 @@ def test_error_inside_slepc_is_followed_by_another_mesh(monkeypatch, failures):
 
 def test_lasting_error_inside_slepc_is_told(monkeypatch):
     # A PETSc.Error that PETSc did not raise speaks of the last one that it did.
-    failing = Failing(attempt.eigen_solver, 10**9, SystemError("Error in LAPACK subroutine trexc: info=1"))
-    monkeypatch.setattr(attempt, "eigen_solver", failing)
+    failing = Failing(
+        candidates_module.eigen_solver, 10**9, SystemError("Error in LAPACK subroutine trexc: info=1")
+    )
+    monkeypatch.setattr(candidates_module, "eigen_solver", failing)
     result = solve_spectrum(Rod(30.0, 1e4, 1e4, 1e-4), TIGHT)
     assert (result.status, len(failing.meshes)) == (Status.failed, 4)
     assert result.message == "Error in LAPACK subroutine trexc: info=1"
@@ -261,7 +263,7 @@ def test_point_does_not_depend_on_what_was_solved_before(reference_spectra):
     for rod, before in list(zip(rods, first, strict=True))[::-1]:
         again = solve_spectrum(rod, TIGHT)
         assert np.array_equal(again.eigenvalues, before.eigenvalues)
-        assert (again.elements, again.order) == (before.elements, before.order)
+        assert again.resolution == before.resolution
 
 
 def eigenfunction(w, rod, points):

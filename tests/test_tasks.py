@@ -12,6 +12,7 @@ import xarray
 from rodsweep.cli.job import make_job
 from rodsweep.cli.tasks import modes, spectrum, thresholds
 from rodsweep.cli.tasks.crossings import search_record
+from rodsweep.discretization.resolution import Resolution
 from rodsweep.post.summary import show_summary
 from rodsweep.results.file.creation import Plan
 from rodsweep.results.file.store import Store
@@ -71,52 +72,62 @@ def crossing(at, kind, unstable):
 
 def search(index=0, **more):
     """A search that found an onset, a Hopf point, its reverse, and two more; index moves them."""
-    kinds = enumerate((1, 2, 4, 5, 1))
+    kinds = list(enumerate((1, 2, 4, 5, 1)))
     return SimpleNamespace(
         status=0,
         crossings=tuple(crossing(1.0 + index + i, kind, 2 * (kind == 2)) for i, kind in kinds),
-        open_range=(np.nan, np.nan),
-        certified=True,
-        boxes=100,
-        solves=7,
+        transitions=SimpleNamespace(
+            crossings=tuple(crossing(1.0 + index + i, kind, 2 * (kind == 2)) for i, kind in kinds),
+            open_range=(np.nan, np.nan),
+            proved=True,
+            boxes=100,
+            solves=7,
+            unstable_at_end=0,
+        ),
         seconds=0.25,
         end=200.0,
-        unstable_at_end=0,
         **more,
     )
 
 
-def of_modes(number, nodes):
-    """What the tasks spectrum and modes have in common, and what only modes has."""
-    fields = (np.arange(2 * number * nodes) * (1 + 2j)).reshape(2, number, nodes)
+def of_spectrum(number, nodes):
     return SimpleNamespace(
         status=0,
         eigenvalues=np.array([-1 + 2j, -1 - 2j, -5 + 0j][:number]),
         error_estimate=np.full(number, 1e-12),
-        mode_error=np.full(number, 1e-9),
-        pairing=np.full(number, 2 + 1j),
-        condition=np.full(number, 3.0),
-        condition_error=np.full(number, 1e-9),
         unstable_count=0,
         certified=True,
-        elements=1,
-        order=20,
+        resolution=Resolution(1, 20),
         seconds=0.25,
-        vectors=fields,
-        right=fields,
-        deformation=fields + 100,
-        left=fields + 200,
+        vectors=(np.arange(2 * number * nodes) * (1 + 2j)).reshape(2, number, nodes),
+    )
+
+
+def of_modes(number, nodes):
+    spectrum = of_spectrum(number, nodes)
+    vectors = SimpleNamespace(
+        resolution=Resolution(1, 20),
+        right=spectrum.vectors,
+        deformation=spectrum.vectors + 100,
+        left=spectrum.vectors + 200,
+        pairing=np.full(number, 2 + 1j),
+        condition=np.full(number, 3.0),
+        mode_error=np.full(number, 1e-9),
+        condition_error=np.full(number, 1e-9),
+    )
+    growth = SimpleNamespace(
         numerical_abscissa=4.0,
         abscissa_error=1e-9,
         transient_growth=1.5,
         transient_time=0.5,
         growth_error=1e-9,
     )
+    return SimpleNamespace(status=0, spectrum=spectrum, vectors=vectors, growth=growth, seconds=0.25)
 
 
 def record_of(task, index=0):
     if task == "spectrum":
-        return spectrum.record(of_modes(3, 33))
+        return spectrum.record(of_spectrum(3, 33))
     if task == "modes":
         return modes.record(of_modes(2, 5), growth=True)
     if task == "thresholds":
@@ -194,7 +205,7 @@ def test_kinds_of_crossings_have_the_numbers_of_the_solver():
 
 def test_classes_of_a_phase_diagram_have_the_numbers_of_the_solver():
     from rodsweep.results.layouts.phase_diagram import CLASSES
-    from rodsweep.solve.changes.diagram import Motion
+    from rodsweep.solve.changes.rows import Motion
 
     assert {int(motion): motion.name for motion in Motion} == {v: name for v, name in CLASSES if v >= 0}
 
@@ -332,8 +343,10 @@ def solve_thresholds(k1, k2, gamma3, request):
         os._exit(9)
     status = real.ThresholdStatus.list_full if k1 == 14 else real.ThresholdStatus.ok
     found = (Value(at=k1 / 2, kind=2, frequency=k2, growth_rate=0.0, error=1e-12, unstable_after=2),)
-    nothing = (float("nan"), float("nan"))
-    return real.Thresholds(status, found, request.F_max, 2, nothing, True, 3, 4, 0.01, "a message")
+    found = real.Transitions(crossings=found, unstable_at_end=2, proved=True, boxes=3, solves=4)
+    return real.Thresholds(
+        status=status, transitions=found, end=request.F_max, seconds=0.01, message="a message"
+    )
 
 real.solve_thresholds = solve_thresholds
 real.warm_up = lambda: None

@@ -12,7 +12,7 @@ from rodsweep.determinant.path import Path
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes import along_path as transitions_module
 from rodsweep.solve.changes.along_path import transitions
-from rodsweep.solve.changes.diagram import classes
+from rodsweep.solve.changes.rows import classes
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
 from rodsweep.solve.changes.unstable_modes import Kind
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -30,11 +30,11 @@ def thresholds(k1, k2, gamma3, F_max=200.0, accuracy=1e-11):
 def test_every_change_of_the_reference_and_no_other_to_twelve_digits(rod):
     found = thresholds(*(float(rod[name]) for name in ("k1", "k2", "gamma3", "F_end")))
     assert found.status == ThresholdStatus.ok, found.message
-    assert found.certified
+    assert found.transitions.proved
     assert [SAME_KIND.get(c.kind.name, c.kind.name) for c in found.crossings] == [
         e["kind"] for e in rod["events"]
     ]
-    assert found.unstable_at_end == rod["unstable_at_end"]
+    assert found.transitions.unstable_at_end == rod["unstable_at_end"]
     for crossing, event in zip(found.crossings, rod["events"], strict=True):
         exact = float(event["F"])
         assert crossing.at == pytest.approx(exact, rel=1e-12)
@@ -87,10 +87,10 @@ def test_before_the_fold_there_is_no_window():
 def test_a_window_that_rounding_cannot_decide_is_reported_open(beyond):
     found = thresholds(FOLD + beyond, 1e4, 1e-4)
     assert found.status == ThresholdStatus.window_open
-    assert found.open_range[0] < 75.3972626336 < found.open_range[1]
-    assert found.open_range[1] - found.open_range[0] < 1e-3
-    assert not found.certified
-    assert found.unstable_at_end == 0
+    assert found.transitions.open_range[0] < 75.3972626336 < found.transitions.open_range[1]
+    assert found.transitions.open_range[1] - found.transitions.open_range[0] < 1e-3
+    assert not found.transitions.proved
+    assert found.transitions.unstable_at_end == 0
 
 
 def test_classes_agree_with_certified_spectra_at_random_points_of_random_rods():
@@ -146,7 +146,7 @@ def test_a_lost_crossing_is_noticed_by_the_counts(monkeypatch):
     found = thresholds(1e4, 1e4, 1e-4)
     assert found.status == ThresholdStatus.not_certified
     assert "modes are unstable between" in found.message
-    assert not found.certified
+    assert not found.transitions.proved
 
 
 def test_the_search_ends_below_a_crushed_rod_and_says_where():
@@ -165,7 +165,7 @@ def test_what_overflows_fails_with_a_reason():
     found = thresholds(1e300, 1e-300, 1e300)
     assert found.status == ThresholdStatus.failed
     assert found.message
-    assert isnan(found.open_range[0])
+    assert isnan(found.transitions.open_range[0])
 
 
 def test_a_rod_pulled_beyond_its_shear_stiffness_buckles_and_every_kind_of_change_occurs():
@@ -218,7 +218,7 @@ def test_no_change_outside_the_path_is_reported():
     before = thresholds(1e4, 1e4, 1e-4, F_max=hopf * (1 - 1e-6))
     assert before.status == ThresholdStatus.ok
     assert [c.kind for c in before.crossings] == [Kind.onset]
-    assert before.unstable_at_end == 0
+    assert before.transitions.unstable_at_end == 0
     beyond = transitions(Path(Rod(0.0, 1e4, 1e4, 1e-4), "F"), hopf * (1 + 1e-6), 50.0)
     assert (beyond.unstable_at_start, beyond.crossings) == (2, ())
 
@@ -234,7 +234,7 @@ def test_a_change_on_the_border_of_two_boxes_is_one(k1):
 @pytest.mark.parametrize("F_max", [1e-3, 0.3, 0.7])
 def test_a_search_that_ends_before_anything_happens(F_max):
     found = thresholds(1e4, 1e4, 1e-4, F_max=F_max)
-    assert (found.status, found.crossings, found.unstable_at_end) == (ThresholdStatus.ok, (), 0)
+    assert (found.status, found.crossings, found.transitions.unstable_at_end) == (ThresholdStatus.ok, (), 0)
 
 
 @pytest.mark.parametrize("k1", [1e4, 200.0])

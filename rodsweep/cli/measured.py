@@ -35,13 +35,23 @@ class InstantSpectra(SpectrumTask):
     killed: Path | None = None
 
     def solver(self) -> Solver:
+        from ..discretization.resolution import Resolution
         from ..solve.spectrum.search import Spectrum
         from ..solve.spectrum.status import Status
 
         points, modes = self.points, self.config.spectrum.modes
         parts = np.random.default_rng(1).standard_normal((OUTCOMES, 3, modes))
         outcomes = [
-            Spectrum(Status.ok, 100 * (a + 1j * b), 1e-12 * c, 1, True, 1, 20, 1e-7) for a, b, c in parts
+            Spectrum(
+                status=Status.ok,
+                eigenvalues=100 * (a + 1j * b),
+                error_estimate=1e-12 * c,
+                unstable_count=1,
+                certified=True,
+                resolution=Resolution(1, 20),
+                seconds=1e-7,
+            )
+            for a, b, c in parts
         ]
 
         def solve(index: int) -> Spectrum:

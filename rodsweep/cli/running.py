@@ -26,7 +26,7 @@ from ..sweep.shards import Shard
 from ..sweep.stop import StopRequest
 from ..sweep.team import Team
 from .job import Job, make_job
-from .tasks.protocol import Solver, succeeded
+from .tasks.protocol import Solver
 
 FAILURES_TOLD = 3
 """Failed points that are named at the end of a run; the file has the status of all."""
@@ -120,7 +120,7 @@ class _Run:
 
         def keep(index: int, result: Any) -> None:
             journal.append(index, solver.record(index, result))
-            if not succeeded(result.status) and len(failures) < FAILURES_TOLD:
+            if not result.status.succeeded and len(failures) < FAILURES_TOLD:
                 values = self.job.points.values(index)
                 where = ", ".join(f"{name}={value!r}" for name, value in values.items())
                 failures.append(f"{where}: {result.status.name} {result.message}".rstrip())
@@ -172,7 +172,7 @@ class _Run:
         if left:
             click.echo(f"stopped by {self.stop.name}; the same command continues")
             return CONTINUE
-        expected = {status.name for status in self.solver.statuses if succeeded(status)} | {"missing"}
+        expected = {status.name for status in self.solver.statuses if status.succeeded} | {"missing"}
         if set(counts) <= expected:
             return 0
         click.echo(f"  `rodsweep show {self.output}` says what each status means")

@@ -81,8 +81,8 @@ def quiet_radius(path: Path, start: float, stop: float, largest: float) -> float
     X = max(c2 * gamma3 for *_, c2, gamma3 in ends)
     bends = [changes(c, path.direction) for c in ends]
     span = (stop - start) ** 2 / 8
-    G = max(abs(nu * (nu + F * c2)) for F, nu, c2, _ in ends) + span * max(abs(b[4]) for b in bends)
-    pull = max(max(-F * (nu + F * c2) for F, nu, c2, _ in ends) + span * max(abs(b[2]) for b in bends), 0.0)
+    G = max(abs(nu * (nu + F * c2)) for F, nu, c2, _ in ends) + span * max(abs(b.G2) for b in bends)
+    pull = max(max(-F * (nu + F * c2) for F, nu, c2, _ in ends) + span * max(abs(b.N2) for b in bends), 0.0)
     if all(F >= 0 and nu + F * c2 >= 0 for F, nu, c2, _ in ends):
         pull = 0.0  # a product of two factors that are linear, or one of which does not change
     return _quiet(largest, T, X, G, pull)
@@ -96,7 +96,7 @@ def quiet_radius_of(coefficients: Coefficients, largest: float) -> float:
 
 
 def _quiet(r: float, T: float, X: float, G: float, pull: float) -> float:
-    """r, halved until D is near 1 up to there; 0 where numbers underflow."""
+    """The first of r, r/2, r/4, ... such that D is near 1 for |eta| <= it; 0 where numbers underflow."""
     while _departure(r, T, X, G, pull) >= QUIET:
         r /= 2
     return r

@@ -21,17 +21,19 @@ of D can tell, and the count is refused instead of guessed.
 import cmath
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from ..model.compilation import compiled
 from ..model.rod import Coefficients, Rod
 from .box import eigenvalue_box, quiet_radius_of
-from .discs import CLEARANCE, ROUNDING_OF_D, bound_on_bidisc
+from .discs import CLEARANCE, ROUNDING_OF_D, bound_on_bidisc, centre_at
 from .dominance import dominated_stretch
+from .path import Changes
 from .value import branches, scaled_determinant
 
-STILL = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+STILL = Changes(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """The changes along no path: a bound for one rod."""
-WIDE, WIDER, TALL = 4.0, 50.0, 0.5
+WIDTH_FACTOR, WIDTH_ADDED, LEAST_HEIGHT = 4.0, 50.0, 0.5
 """Factor on the width of the box, width added to it, and its least height in units of the line's distance:
 farther out one exponential of D outweighs the rest, and larger is cheaper."""
 PATIENCE = 0.25
@@ -50,6 +52,15 @@ class Count:
     number: int | None
     nodes: int
     why_not: str = ""
+
+
+class Node(NamedTuple):
+    """A point w: D exp(-S) there, L = D'/D, and how far it reaches: no zero of D is as near."""
+
+    w: complex
+    D: complex
+    L: complex
+    reach: float
 
 
 @compiled
@@ -75,23 +86,22 @@ def radius(w: complex, coefficients: Coefficients, L: complex, S: float) -> floa
 
 
 @compiled
-def reach(w: complex, coefficients: Coefficients) -> tuple[complex, complex, float]:
-    """(D exp(-S), L = D'/D, r): no zero of D lies within r of w, and f turns by less than pi/2."""
-    D, D1, S, noise = scaled_determinant(w, coefficients)
+def node_at(w: complex, coefficients: Coefficients) -> Node:
+    """The node about w; up to its reach f turns by less than pi/2."""
+    D, D_w, S, noise = scaled_determinant(w, coefficients)
     room = CLEARANCE * abs(D) - ROUNDING_OF_D * noise
     if not room > 0:
-        return D, 0j, 0.0
-    L = D1 / D
-    P, P1, _, plus, minus = branches(w, coefficients)
-    local = w, coefficients, STILL, (P, P1, plus, minus, 0j, 0j), S
+        return Node(w, D, 0j, 0.0)
+    L = D_w / D
+    centre = centre_at(w, coefficients, STILL, S)
     best = 0.0
     rho = radius(w, coefficients, L, S)
     for _ in range(2):
-        M = bound_on_bidisc(local, (L, 0j), (rho, 0.0))
+        M = bound_on_bidisc(centre, (L, 0j), (rho, 0.0))
         q = room / M
         best = max(best, rho * (math.sqrt(q * q + 4 * q) - q) / 2)
         rho /= 2
-    return D, L, best
+    return Node(w, D, L, best)
 
 
 @compiled
@@ -130,29 +140,47 @@ def stepped_change(
     """(change of arg D along the segment, nodes used); the nodes are negative where it failed."""
     length = abs(end - start)
     direction = (end - start) / length
-    t = 0.0
-    D, L, r = reach(start, coefficients)
-    w = start
-    total = 0.0
-    nodes = 1
+    t, total, nodes = 0.0, 0.0, 1
+    here = node_at(start, coefficients)
     while t < length:
-        if not r > SMALLEST_REACH * abs(w) or nodes > most_nodes:
+        if not here.reach > SMALLEST_REACH * abs(here.w) or nodes > most_nodes:
             return 0.0, -nodes
         # The next node may lie beyond this one's reach if it reaches back; otherwise step inside.
-        ahead = min(1.9 * r, length - t)
+        ahead = min(1.9 * here.reach, length - t)
         while True:
-            inside = ahead < r
-            w_next = start + direction * (t + ahead) if ahead < length - t else end
-            D_next, L_next, r_next = reach(w_next, coefficients)
+            inside = ahead < here.reach
+            there = node_at(start + direction * (t + ahead) if ahead < length - t else end, coefficients)
             nodes += 1
-            if inside or abs(w_next - w) < max(r, r_next):
+            if inside or abs(there.w - here.w) < max(here.reach, there.reach):
                 break
-            ahead = 0.999 * r
-        turn = ((L if r >= r_next else L_next) * (w_next - w)).imag
-        total += turn + cmath.phase(D_next / D * cmath.exp(complex(0.0, -turn)))
-        t = length if w_next == end else t + ahead
-        w, D, L, r = w_next, D_next, L_next, r_next
+            ahead = 0.999 * here.reach
+        turn = ((here.L if here.reach >= there.reach else there.L) * (there.w - here.w)).imag
+        total += turn + cmath.phase(there.D / here.D * cmath.exp(complex(0.0, -turn)))
+        t = length if there.w == end else t + ahead
+        here = there
     return total, nodes
+
+
+@compiled
+def contour_change(
+    line: float, foot: float, corner: complex, coefficients: Coefficients
+) -> tuple[float, int]:
+    """(change of arg D, nodes used) from the real axis up to the corner, left to the line, down to its foot.
+
+    The nodes are negative where it failed.
+    """
+    top = complex(line, corner.imag)
+    right, nodes = phase_change(complex(corner.real, 0.0), corner, coefficients, MOST_NODES)
+    if nodes < 0:
+        return 0.0, nodes
+    above, used = phase_change(corner, top, coefficients, MOST_NODES)
+    nodes += abs(used)
+    if used < 0 or foot == corner.imag:  # then D is near 1 all along the line
+        return right + above, nodes if used > 0 else -nodes
+    # Upwards, because steps from the top could not resolve a foot below its rounding.
+    left, used = phase_change(complex(line, foot), top, coefficients, MOST_NODES)
+    nodes += abs(used)
+    return right + above - left, nodes if used > 0 else -nodes
 
 
 def count_right_of(line: float, rod: Rod) -> Count:
@@ -165,24 +193,17 @@ def count_right_of(line: float, rod: Rod) -> Count:
         return Count(None, 0, "no a-priori bound on the eigenvalues applies")
     if line >= real:
         return Count(0, 0)
-    foot, total, nodes = 0.0, 0.0, 0
+    foot, total = 0.0, 0.0
     if line == 0.0:  # D = 1 at the foot of the line: the rest of it, where D is near 1, needs no nodes
         foot = quiet_radius_of(rod.coefficients, imag)
         if foot == 0.0:
             return Count(None, 0, "the pull is so strong that numbers underflow")
         total = -cmath.phase(scaled_determinant(complex(0.0, foot), rod.coefficients)[0])
-    real, imag = WIDE * real + WIDER, max(imag, TALL * abs(line))
-    corners = (complex(real, 0), complex(real, imag), complex(line, imag), complex(line, foot))
-    for start, end in zip(corners[:-1], corners[1:], strict=True):
-        if start == end:  # D is near 1 all along the line
-            continue
-        # Upwards, because steps from the top could not resolve a foot below its rounding.
-        sign, ends = (-1, (end, start)) if end.imag < start.imag else (1, (start, end))
-        change, used = phase_change(*ends, rod.coefficients, MOST_NODES)
-        nodes += abs(used)
-        if used < 0:
-            return Count(None, nodes, "an eigenvalue lies too close to the line, or the box is too large")
-        total += sign * change
+    real, imag = WIDTH_FACTOR * real + WIDTH_ADDED, max(imag, LEAST_HEIGHT * abs(line))
+    change, nodes = contour_change(line, foot, complex(real, imag), rod.coefficients)
+    if nodes < 0:
+        return Count(None, -nodes, "an eigenvalue lies too close to the line, or the box is too large")
+    total += change
     number = round(total / math.pi)
     if abs(total / math.pi - number) > 1e-3:
         return Count(None, nodes, "the winding number is not an integer within rounding")

@@ -19,6 +19,7 @@ exponentials, which stays bounded near a zero of D.
 
 import cmath
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,10 +27,9 @@ from numpy.typing import NDArray
 from ..model.compilation import compiled
 from ..model.rod import Coefficients
 from .box import MARGIN, quiet_radius, squared_amplification_over
-from .discs import CLEARANCE, ROUNDING_OF_D, Centre, Local, Pair, bound_on_bidisc
-from .newton import crossing_newton
-from .path import Path, changes, coefficients_at, determinant_along, root_changes
-from .value import branches
+from .discs import CLEARANCE, ROUNDING_OF_D, Centre, Pair, bound_on_bidisc, centre_at
+from .newton import FAILED, Zero, crossing_newton
+from .path import Path, changes, coefficients_at, determinant_along
 
 SLABS = 8
 """Least number of intervals of p to start from."""
@@ -40,13 +40,19 @@ LARGEST_SHARE, NEXT_SHARE, MOST_SHARES = 0.45, 0.6, 30
 SMALLEST_BOX = 1e-9
 """Half-widths in units of eta and p below which a box is left open."""
 MOST_BOXES = 1_000_000
-SAME = 1.5
+SAME_ZERO = 1.5
 """Distance from the centre of a regular box, in half-widths, within which a zero known before is the same."""
+EMPTY, REGULAR, UNDECIDED = 0, 1, 2
+"""What is known of a box."""
 
-Box = tuple[float, float, float, float]
-"""(eta from, eta to, p from, p to)."""
-Zero = tuple[float, float, float, float]
-"""(eta, p, error of eta, error of p)."""
+
+class Box(NamedTuple):
+    """A rectangle of the (eta, p) plane."""
+
+    eta_from: float
+    eta_to: float
+    p_from: float
+    p_to: float
 
 
 @compiled
@@ -62,22 +68,21 @@ def distance(value: complex, a: complex, b: complex) -> float:
 
 
 @compiled
-def mean_rates(centre: Centre, drag: float, S: float) -> Pair:
+def mean_rates(centre: Centre) -> Pair:
     """(L, K): d sqrt(z)/dw and d sqrt(z)/dp, averaged with the sizes of the two exponentials."""
-    _, P1, plus, minus, along_plus, along_minus = centre
-    root_plus, root_minus = cmath.sqrt(plus), cmath.sqrt(minus)
-    a, b = math.exp(root_plus.real - S), math.exp(root_minus.real - S)
+    root_plus, root_minus = cmath.sqrt(centre.plus), cmath.sqrt(centre.minus)
+    a, b = math.exp(root_plus.real - centre.S), math.exp(root_minus.real - centre.S)
     a, b = a / (a + b), b / (a + b)
-    in_w = a * (drag + 2 * P1) / (2 * root_plus) + b * (drag - 2 * P1) / (2 * root_minus)
-    return in_w, a * along_plus / (2 * root_plus) + b * along_minus / (2 * root_minus)
+    in_w = a * centre.slopes_plus[0] / (2 * root_plus) + b * centre.slopes_minus[0] / (2 * root_minus)
+    return in_w, a * centre.slopes_plus[1] / (2 * root_plus) + b * centre.slopes_minus[1] / (2 * root_minus)
 
 
 @compiled
-def remainder(local: Local, rates: Pair, half: tuple[float, float], room: float, power: int) -> bool:
+def remainder(centre: Centre, rates: Pair, half: tuple[float, float], room: float, power: int) -> bool:
     """Whether M t^2/(1 - t)^power < room for some bidisc about the box."""
     t, last = LARGEST_SHARE, math.inf
     for _ in range(MOST_SHARES):
-        M = bound_on_bidisc(local, rates, (half[0] / t, half[1] / t))
+        M = bound_on_bidisc(centre, rates, (half[0] / t, half[1] / t))
         rest = M * t * t / (1 - t) ** power
         if rest < room:
             return True
@@ -92,85 +97,90 @@ def remainder(local: Local, rates: Pair, half: tuple[float, float], room: float,
 def examine(
     w: complex, coefficients: Coefficients, direction: Coefficients, half: tuple[float, float]
 ) -> tuple[int, float, float]:
-    """(kind, cost in eta, cost in p) of the box about w: kind 0 empty, 1 regular, 2 neither.
+    """(kind, cost in eta, cost in p) of the box about w.
 
     The costs say how much the exponents change over the box in either variable.
     """
     D, D_w, D_p, S, noise = determinant_along(w, coefficients, direction)
-    change = changes(coefficients, direction)
-    P, P1, _, plus, minus = branches(w, coefficients)
-    along_plus, along_minus, _, _ = root_changes(w, P, P1, coefficients, change)
-    centre = P, P1, plus, minus, along_plus, along_minus
-    local = w, coefficients, change, centre, S
-    drag = coefficients[2] + coefficients[3]
-    mean = mean_rates(centre, drag, S)
+    centre = centre_at(w, coefficients, changes(coefficients, direction), S)
+    mean = mean_rates(centre)
     rounding = ROUNDING_OF_D * noise
     if abs(D) > 2 * rounding:
         for rates in ((D_w / D, D_p / D), mean):
             a, b = 1j * (D_w - rates[0] * D) * half[0], (D_p - rates[1] * D) * half[1]
             room = CLEARANCE * distance(D, a, b) - rounding
-            if room > 0 and remainder(local, rates, half, room, 1):
-                return 0, 0.0, 0.0
+            if room > 0 and remainder(centre, rates, half, room, 1):
+                return EMPTY, 0.0, 0.0
     # In the doubled box the derivatives of f change by at most 3 M t^2/(1 - t)^2 each.
     a, b = 2j * (D_w - mean[0] * D) * half[0], 2 * (D_p - mean[1] * D) * half[1]
     if abs(D) < 2 * (abs(a) + abs(b)):
         least = abs((a * b.conjugate()).imag) / (abs(a) + abs(b))
         room = (CLEARANCE * least - rounding) / 3
         double = (2 * half[0], 2 * half[1])
-        if room > 0 and remainder(local, mean, double, room, 2):
-            return 1, 0.0, 0.0
-    root_plus, root_minus = math.sqrt(max(abs(plus), 1.0)), math.sqrt(max(abs(minus), 1.0))
-    in_w = max(abs(drag + 2 * P1) / root_plus, abs(drag - 2 * P1) / root_minus) * half[0] / 2
-    in_p = max(abs(along_plus) / root_plus, abs(along_minus) / root_minus) * half[1] / 2
-    stiffness = abs((coefficients[1] + coefficients[0] * coefficients[2]) * coefficients[1])
-    stiffness += coefficients[2] * coefficients[3] * abs(w)
-    factor = (abs(change[3]) + abs(change[5]) * abs(w)) * half[1] / max(stiffness, 1e-300)
-    return 2, max(in_w, half[0] / abs(w)), max(in_p, factor)
+        if room > 0 and remainder(centre, mean, double, room, 2):
+            return REGULAR, 0.0, 0.0
+    in_eta, in_p = costs(centre, half)
+    return UNDECIDED, in_eta, in_p
+
+
+@compiled
+def costs(centre: Centre, half: tuple[float, float]) -> tuple[float, float]:
+    """How much the exponents change over a box in eta and in p."""
+    F, nu, c2, gamma3 = centre.coefficients
+    size = abs(centre.w)
+    root_plus, root_minus = math.sqrt(max(abs(centre.plus), 1.0)), math.sqrt(max(abs(centre.minus), 1.0))
+    plus, minus = centre.slopes_plus, centre.slopes_minus
+    in_w = max(abs(plus[0]) / root_plus, abs(minus[0]) / root_minus) * half[0] / 2
+    in_p = max(abs(plus[1]) / root_plus, abs(minus[1]) / root_minus) * half[1] / 2
+    stiffness = abs((nu + F * c2) * nu) + c2 * gamma3 * size
+    factor = abs(centre.changes.G1) + abs(centre.changes.X1) * size
+    return max(in_w, half[0] / size), max(in_p, factor * half[1] / max(stiffness, 1e-300))
 
 
 @compiled
 def cover(
     first: NDArray[np.float64], origin: Coefficients, direction: Coefficients
 ) -> tuple[list[Zero], list[Box], int]:
-    """(zeros, open boxes, boxes examined) of D(i eta; p) in the boxes `first`, shape (n, 4).
-
-    A zero is (eta, p, error of eta, error of p), a box (eta from, eta to, p from, p to).
-    """
-    stack = [(first[i, 0], first[i, 1], first[i, 2], first[i, 3]) for i in range(len(first))]
-    zeros = [(0.0, 0.0, 0.0, 0.0) for _ in range(0)]
-    left = [(0.0, 0.0, 0.0, 0.0) for _ in range(0)]
+    """(zeros, open boxes, boxes examined) of D(i eta; p) in the boxes `first`, shape (n, 4)."""
+    stack = [Box(first[i, 0], first[i, 1], first[i, 2], first[i, 3]) for i in range(len(first))]
+    zeros = [FAILED for _ in range(0)]
+    left = [Box(0.0, 0.0, 0.0, 0.0) for _ in range(0)]
     examined = 0
     while len(stack) > 0:
         box = stack.pop()
-        eta, p = (box[0] + box[1]) / 2, (box[2] + box[3]) / 2
-        half = (box[1] - box[0]) / 2, (box[3] - box[2]) / 2
+        eta, p = (box.eta_from + box.eta_to) / 2, (box.p_from + box.p_to) / 2
+        half = (box.eta_to - box.eta_from) / 2, (box.p_to - box.p_from) / 2
         examined += 1
         kind, cost_w, cost_p = examine(
             complex(0.0, eta), coefficients_at(p, origin, direction), direction, half
         )
-        if kind == 0:
+        if kind == EMPTY:
             continue
-        if kind == 1:
+        if kind == REGULAR:
             zero = crossing_newton(eta, p, origin, direction, half)
-            away = max(abs(zero[0] - eta) / half[0], abs(zero[1] - p) / half[1])
+            away = _away(zero, eta, p, half)
             if away <= 2:  # false where Newton's method failed, which returns nan
                 seen = away > 1.01  # then a neighbouring box finds it too
-                for other in zeros:
-                    # The doubled box holds one zero at most.
-                    near = abs(other[0] - eta) <= SAME * half[0] and abs(other[1] - p) <= SAME * half[1]
-                    seen = seen or near
+                for other in zeros:  # the doubled box holds one zero at most
+                    seen = seen or _away(other, eta, p, half) <= SAME_ZERO
                 if not seen:
                     zeros.append(zero)
                 continue
         if examined > MOST_BOXES or (half[0] < SMALLEST_BOX * eta and half[1] < SMALLEST_BOX * abs(p)):
             left.append(box)
         elif cost_w >= cost_p:
-            stack.append((box[0], eta, box[2], box[3]))
-            stack.append((eta, box[1], box[2], box[3]))
+            stack.append(Box(box.eta_from, eta, box.p_from, box.p_to))
+            stack.append(Box(eta, box.eta_to, box.p_from, box.p_to))
         else:
-            stack.append((box[0], box[1], box[2], p))
-            stack.append((box[0], box[1], p, box[3]))
+            stack.append(Box(box.eta_from, box.eta_to, box.p_from, p))
+            stack.append(Box(box.eta_from, box.eta_to, p, box.p_to))
     return zeros, left, examined
+
+
+@compiled
+def _away(zero: Zero, eta: float, p: float, half: tuple[float, float]) -> float:
+    """How far a zero is from the centre of a box, in half-widths."""
+    return max(abs(zero.eta_or_x - eta) / half[0], abs(zero.p - p) / half[1])
 
 
 def slabs(path: Path, start: float, stop: float) -> list[tuple[float, float]]:

@@ -5,10 +5,12 @@ p is the variable of a path of rods (`rodsweep.determinant.path`); for a single 
 
 import cmath
 import math
+from typing import NamedTuple
 
 from ..model.compilation import compiled
 from ..model.rod import Coefficients
-from .path import Changes
+from .path import Changes, root_changes
+from .value import branches
 
 ROUNDING_OF_D = 4.0
 """Rounding error of D in units of its noise: at most 0.7 at 20 000 values chosen to be bad, and room."""
@@ -21,10 +23,36 @@ LARGEST_CHANGE = 0.98
 
 Pair = tuple[complex, complex]
 Radii = tuple[float, float]
-Centre = tuple[complex, complex, complex, complex, complex, complex]
-"""(P, P', z+, z-, dz+/dp, dz-/dp) at the centre of a bidisc."""
-Local = tuple[complex, Coefficients, Changes, Centre, float]
-"""(w, coefficients, their changes, roots, S): all that is known of D at the centre of a bidisc."""
+
+
+class Centre(NamedTuple):
+    """All that is known of D at the centre of a bidisc: the slopes are those of z+- in w, then in p."""
+
+    w: complex
+    coefficients: Coefficients
+    changes: Changes
+    S: float
+    P: complex
+    plus: complex
+    minus: complex
+    slopes_plus: Pair
+    slopes_minus: Pair
+
+
+@compiled
+def centre_at(w: complex, coefficients: Coefficients, change: Changes, S: float) -> Centre:
+    """The centre (w, p) of a bidisc, where the rod has these coefficients and changes."""
+    there = branches(w, coefficients)
+    along_plus, along_minus = root_changes(w, there, change)
+    drag = coefficients.c2 + coefficients.gamma3
+    plus, minus = (drag + 2 * there.P_w, along_plus), (drag - 2 * there.P_w, along_minus)
+    return Centre(w, coefficients, change, S, there.P, there.plus, there.minus, plus, minus)
+
+
+@compiled
+def bend_of_root(root: complex, bend: float, x: float) -> float:
+    """Bound of sqrt(z) beyond its linear part, where z changes by x |z| in all and by bend beyond its own."""
+    return bend / (2 * abs(root)) + abs(root) * x * x / (8 * (1 - x))
 
 
 @compiled
@@ -44,8 +72,7 @@ def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: f
     decay = crude
     if change < 0.5 * abs(z):
         in_w, in_p = slopes[0] / (2 * root), slopes[1] / (2 * root)
-        x = change / abs(z)
-        curve = bend / (2 * abs(root)) + abs(root) * x * x / (8 * (1 - x))
+        curve = bend_of_root(root, bend, change / abs(z))
         with_rates = abs(in_w - rates[0]) * radii[0] + abs(in_p - rates[1]) * radii[1]
         against = abs(in_w + rates[0]) * radii[0] + abs(in_p + rates[1]) * radii[1]
         grow = min(grow, root.real + with_rates + curve)
@@ -60,9 +87,11 @@ def terms_on_bidisc(z: complex, slopes: Pair, rates: Pair, radii: Radii, bend: f
 
 
 @compiled
-def bound_together(local: Local, rates: Pair, radii: Radii) -> float:
+def bound_together(centre: Centre, rates: Pair, radii: Radii) -> float:
     """`bound_on_bidisc` from |E(z+) - E(z-)| <= 4 |P| max |dE/dz| between them: good where P is small."""
-    w, (F, nu, c2, gamma3), (T1, N1, N2, G1, G2, X1, X2), _, S = local
+    w, S = centre.w, centre.S
+    F, nu, c2, gamma3 = centre.coefficients
+    T1, N1, N2, G1, G2, X1, X2 = centre.changes
     rho, sigma = radii
     g = nu + F * c2
     X, T = c2 * gamma3, c2 + gamma3
@@ -78,24 +107,25 @@ def bound_together(local: Local, rates: Pair, radii: Radii) -> float:
 
 
 @compiled
-def bound_on_bidisc(local: Local, rates: Pair, radii: Radii) -> float:
+def bound_on_bidisc(centre: Centre, rates: Pair, radii: Radii) -> float:
     """Bound of |D exp(-L dw - K dp)| exp(-S) over the bidisc about (w, p)."""
-    F, nu, c2, _ = local[1]
-    apart = bound_apart(local, rates, radii)
+    F, nu, c2, _ = centre.coefficients
+    apart = bound_apart(centre, rates, radii)
     if F * (nu + F * c2) < 0:  # both exponentials grow, and almost alike: apart they would not cancel
-        return min(apart, bound_together(local, rates, radii))
+        return min(apart, bound_together(centre, rates, radii))
     return apart
 
 
 @compiled
-def bound_apart(local: Local, rates: Pair, radii: Radii) -> float:
+def bound_apart(centre: Centre, rates: Pair, radii: Radii) -> float:
     """`bound_on_bidisc` from E(z+) and E(z-) alone; inf where none is given.
 
     In w -> w (1 + e1) and g nu + c2 gamma3 w -> (...)(1 + e2), |e1| and |e2| are bounded over the
     bidisc; sqrt(1 + e) is majorised by 2 - sqrt(1 - e).
     """
-    w, (F, nu, c2, gamma3), (T1, _, N2, G1, G2, X1, X2), centre, S = local
-    P, P1, plus, minus, along_plus, along_minus = centre
+    w, S, P = centre.w, centre.S, centre.P
+    F, nu, c2, gamma3 = centre.coefficients
+    T1, _, N2, G1, G2, X1, X2 = centre.changes
     rho, sigma = radii
     g = nu + F * c2
     X = c2 * gamma3
@@ -117,8 +147,7 @@ def bound_apart(local: Local, rates: Pair, radii: Radii) -> float:
         bend += 2 * abs(P) * (majorant + second * sigma / base / 2)
         least = abs(P) * math.sqrt((1 - e1) * (1 - e2))
         steepest += (abs(g * nu + 2 * X * w) + dG + 2 * (X * rho + dX * (abs(w) + rho))) / least
-    drag = c2 + gamma3
-    terms = terms_on_bidisc(plus, (drag + 2 * P1, along_plus), rates, radii, bend, S)[0]
-    terms += terms_on_bidisc(minus, (drag - 2 * P1, along_minus), rates, radii, bend, S)[0]
+    terms = terms_on_bidisc(centre.plus, centre.slopes_plus, rates, radii, bend, S)[0]
+    terms += terms_on_bidisc(centre.minus, centre.slopes_minus, rates, radii, bend, S)[0]
     drift = abs(rates[0]) * rho + abs(rates[1]) * sigma
     return math.exp(min(drift - S, HUGE)) + (abs(w) + rho) / 2 * steepest * terms

@@ -13,10 +13,11 @@ the negative real axis, where the eigenvalues lie, a disc may be a third of |w| 
 
 import cmath
 import math
+from typing import NamedTuple
 
 from ..model.compilation import compiled
 from ..model.rod import Coefficients
-from .discs import CLEARANCE, terms_on_bidisc
+from .discs import CLEARANCE, bend_of_root, terms_on_bidisc
 from .value import branches, scaled_determinant
 
 SHARE = 0.25
@@ -27,51 +28,65 @@ FACTOR = 0.5
 """Largest relative change over a disc of what A is made of: keeps every phase within a right angle."""
 
 
-@compiled
-def _ordered(
-    w: complex, coefficients: Coefficients
-) -> tuple[complex, complex, complex, complex, complex, complex, complex]:
-    """(P, z, z', sqrt z of the dominant exponential, the same three of the other)."""
-    P, P1, _, plus, minus = branches(w, coefficients)
-    drag = coefficients[2] + coefficients[3]
-    root_plus, root_minus = cmath.sqrt(plus), cmath.sqrt(minus)
-    if root_plus.real >= root_minus.real:
-        return P, plus, drag + 2 * P1, root_plus, minus, drag - 2 * P1, root_minus
-    return P, minus, drag - 2 * P1, root_minus, plus, drag + 2 * P1, root_plus
+class Exponent(NamedTuple):
+    """One of z+ and z- at some w, dz/dw and sqrt z."""
+
+    z: complex
+    slope: complex
+    root: complex
 
 
 @compiled
-def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
-    """Whether |e| < 1 is proved on the disc of radius rho about w."""
+def _ordered(w: complex, coefficients: Coefficients) -> tuple[complex, Exponent, Exponent]:
+    """(P, the dominant exponent, the other)."""
+    P, P_w, _, plus, minus = branches(w, coefficients)
+    drag = coefficients.c2 + coefficients.gamma3
+    of_plus = Exponent(plus, drag + 2 * P_w, cmath.sqrt(plus))
+    of_minus = Exponent(minus, drag - 2 * P_w, cmath.sqrt(minus))
+    if of_plus.root.real >= of_minus.root.real:
+        return P, of_plus, of_minus
+    return P, of_minus, of_plus
+
+
+@compiled
+def _bend_and_turn(w: complex, rho: float, P: complex, coefficients: Coefficients) -> tuple[float, float]:
+    """(bound of z+- beyond the linear part over the disc, of the change of z+-'); inf where none is given.
+
+    z = T w - F g +- 2 P: beyond the linear part only P bends, majorised by 2 - sqrt(1 - e).
+    """
     F, nu, c2, gamma3 = coefficients
-    P, z, slope, root, z_other, slope_other, root_other = _ordered(w, coefficients)
-    if P == 0 or root.real <= root_other.real:
-        return False
     X = c2 * gamma3
     gn = (nu + F * c2) * nu
     e1, e2 = rho / abs(w), 0.0
     if X > 0:
         e2 = X * rho / abs(gn + X * w)
     if e1 > FACTOR or e2 > FACTOR:
-        return False
+        return math.inf, math.inf
     least = math.sqrt((1 - e1) * (1 - e2))
     numerator = abs(gn + 2 * X * w)
-    # z = T w - F g +- 2 P: beyond the linear part only P bends, majorised by 2 - sqrt(1 - e).
     bend = 2 * abs(P) * ((2 - math.sqrt(1 - e1)) * (2 - math.sqrt(1 - e2)) - 1 - (e1 + e2) / 2)
-    turn = ((numerator + 2 * X * rho) / least - numerator) / abs(P)
+    return bend, ((numerator + 2 * X * rho) / least - numerator) / abs(P)
+
+
+@compiled
+def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
+    """Whether |e| < 1 is proved on the disc of radius rho about w."""
+    P, (z, slope, root), (z_other, slope_other, root_other) = _ordered(w, coefficients)
+    if P == 0 or root.real <= root_other.real:
+        return False
+    bend, turn = _bend_and_turn(w, rho, P, coefficients)
     change = abs(slope) * rho + bend
     x = change / abs(z)
     if x > FACTOR or turn > FACTOR * abs(slope):
         return False
     L = slope / (2 * root)
     drift = abs(L) * rho
-    curve = bend / (2 * abs(root)) + abs(root) * x * x / (8 * (1 - x))
+    curve = bend_of_root(root, bend, x)
     lowest = root.real - drift - curve
     change_other = abs(slope_other) * rho + bend
     highest = math.sqrt(max((abs(z_other) + z_other.real) / 2 + change_other, 0.0))
     if change_other < FACTOR * abs(z_other):
-        y = change_other / abs(z_other)
-        curve_other = bend / (2 * abs(root_other)) + abs(root_other) * y * y / (8 * (1 - y))
+        curve_other = bend_of_root(root_other, bend, change_other / abs(z_other))
         together = abs(slope_other / (2 * root_other) - L) * rho + curve_other
         if not root.real - curve > root_other.real + together:
             return False
@@ -92,8 +107,8 @@ def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
 @compiled
 def dominant_factors(w: complex, coefficients: Coefficients) -> tuple[complex, complex]:
     """(w z'/z, sqrt z) of the dominant exponential."""
-    _, z, slope, root, _, _, _ = _ordered(w, coefficients)
-    return w * slope / z, root
+    _, dominant, _ = _ordered(w, coefficients)
+    return w * dominant.slope / dominant.z, dominant.root
 
 
 @compiled

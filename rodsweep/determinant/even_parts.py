@@ -12,13 +12,14 @@ small, closed forms in the roots q where neither is, and z+ and z- themselves wh
 
 import cmath
 import math
+from typing import NamedTuple
 
 from ..model.compilation import compiled
 from ..model.rod import Coefficients
 
 UNIT = 4.440892098500626e-16
-"""Unit of the noise, two roundings."""
-SERIES_BELOW = 0.1
+"""Unit of the noise of what D is made of, two roundings."""
+E_SERIES_BELOW = 0.1
 """abs(z) below which E is summed as a series: the closed form of dE/dz would cancel there."""
 FEW_TERMS_BELOW = 0.25
 """abs(v) below which sinh(q)/q, v = q^2, is summed as a series."""
@@ -28,9 +29,28 @@ MOST_TERMS = 13
 APART_BELOW = 0.1
 """abs(z+ z-), in units of abs(M)^2 + 4 abs(P)^2, below which each of them is taken alone."""
 
-Triple = tuple[complex, complex, complex]
-Even = tuple[float, complex, complex, complex, complex, complex, float, float]
-"""(S, s, d, s', d', d*, noise of s, of d), all but S times exp(-S), noise in units of UNIT."""
+
+class EvenFunctions(NamedTuple):
+    """s, d, s' = s_M, d' = d_M and d* = d_P, all times exp(-S)."""
+
+    S: float
+    s: complex
+    d: complex
+    s_M: complex
+    d_M: complex
+    d_P: complex
+
+
+EvenSum = tuple[EvenFunctions, complex, float]
+"""(the functions, the sum of z' E(z) times exp(-S), noise)."""
+
+
+class Hyperbolic(NamedTuple):
+    """cosh q, sinh(q)/q and d(sinh(q)/q)/dq/q, all entire in q^2, times exp(-Re q)."""
+
+    cosh: complex
+    sinhc: complex
+    slope: complex
 
 
 @compiled
@@ -42,7 +62,7 @@ def modulus(z: complex) -> float:
 @compiled
 def entire_cosh(z: complex, root: complex, scale: float) -> tuple[complex, complex]:
     """E(z) = (cosh sqrt(z) - 1)/z and dE/dz, both times exp(-scale); root = sqrt(z)."""
-    if abs(z) < SERIES_BELOW:
+    if abs(z) < E_SERIES_BELOW:
         value = 1 + z / 30 * (1 + z / 56 * (1 + z / 90 * (1 + z / 132 * (1 + z / 182))))
         slope = 1 + 3 * z / 112 * (1 + 4 * z / 270 * (1 + 5 * z / 528 * (1 + 6 * z / 910)))
         size = math.exp(-scale)
@@ -72,28 +92,28 @@ def exponents(w: complex, coefficients: Coefficients) -> tuple[complex, complex,
 
 
 @compiled
-def hyperbolic(v: complex, root: complex) -> tuple[complex, complex, complex]:
-    """(cosh q, sinh(q)/q, d(sinh(q)/q)/dq/q) times exp(-Re q), all entire in v = q^2; root = q."""
+def hyperbolic(v: complex, root: complex) -> Hyperbolic:
+    """The functions of q = root, from v = q^2, too."""
     if modulus(v) < FEW_TERMS_BELOW:
         first = 1 + v / 6 * (1 + v / 20 * (1 + v / 42 * (1 + v / 72 * (1 + v / 110 * (1 + v / 156)))))
         second = 1 + v / 28 * (1 + v / 54 * (1 + v / 88 * (1 + v / 130 * (1 + v / 180))))
         second = (1 + v / 10 * second) / 3
         size = math.exp(-root.real)
-        return size * (first + v * second), size * first, size * second
+        return Hyperbolic(size * (first + v * second), size * first, size * second)
     decay = math.exp(-2 * root.real)
     even, odd = (1 + decay) / 2, (1 - decay) / 2
     cosine, sine = math.cos(root.imag), math.sin(root.imag)
     cosh = complex(even * cosine, odd * sine)
     first = complex(odd * cosine, even * sine) / root
-    return cosh, first, (cosh - first) / v
+    return Hyperbolic(cosh, first, (cosh - first) / v)
 
 
 @compiled
 def _noise_together(
     squares: tuple[complex, complex, complex, complex],
     apart: complex,
-    of_u: Triple,
-    of_v: Triple,
+    of_u: Hyperbolic,
+    of_v: Hyperbolic,
     results: tuple[complex, complex],
     blurs: tuple[float, float, float],
 ) -> tuple[float, float]:
@@ -101,8 +121,8 @@ def _noise_together(
     M, square, u, v = modulus(squares[0]), modulus(squares[1]), modulus(squares[2]), modulus(squares[3])
     s, d = modulus(results[0]), modulus(results[1])
     one, blur_M, blur_square = blurs
-    c1, f1, g1 = modulus(of_u[0]), modulus(of_u[1]), modulus(of_u[2])
-    c2, f2, g2 = modulus(of_v[0]), modulus(of_v[1]), modulus(of_v[2])
+    c1, f1, g1 = modulus(of_u.cosh), modulus(of_u.sinhc), modulus(of_u.slope)
+    c2, f2, g2 = modulus(of_v.cosh), modulus(of_v.sinhc), modulus(of_v.slope)
     per_root = 1 / modulus(apart)
     blur_u = (u * blur_M + blur_square) * per_root + u
     blur_v = (v * blur_M + blur_square) * per_root + v
@@ -116,11 +136,13 @@ def _noise_together(
 
 
 @compiled
-def together(M: complex, square: complex, blur_M: float, blur_square: float) -> Even:
-    """`Even` from M and square = P^2, where neither z+ nor z- is small: by the roots q themselves.
+def together(
+    M: complex, square: complex, blur_M: float, blur_square: float
+) -> tuple[EvenFunctions, float, float]:
+    """(the functions, noise of s, of d) by the roots q themselves, where neither z+ nor z- is small.
 
-    u = q1^2 and v = q2^2 solve t^2 - M t + P^2 = 0; with C = cosh q1 cosh q2 - 1, H = sinh q1 sinh q2/(q1 q2)
-    and R = z+ z- = M^2 - 4 P^2 = (u - v)^2,
+    square = P^2; u = q1^2 and v = q2^2 solve t^2 - M t + P^2 = 0; with C = cosh q1 cosh q2 - 1,
+    H = sinh q1 sinh q2/(q1 q2) and R = z+ z- = M^2 - 4 P^2 = (u - v)^2,
 
         s = 2 (M C - 2 P^2 H)/R,   d = (M H/2 - C)/R.
     """
@@ -133,8 +155,9 @@ def together(M: complex, square: complex, blur_M: float, blur_square: float) -> 
     q1, q2 = cmath.sqrt(u), cmath.sqrt(v)
     S = q1.real + q2.real
     one = math.exp(-S)
-    cosh1, first1, second1 = hyperbolic(u, q1)
-    cosh2, first2, second2 = hyperbolic(v, q2)
+    of_u, of_v = hyperbolic(u, q1), hyperbolic(v, q2)
+    cosh1, first1, second1 = of_u
+    cosh2, first2, second2 = of_v
     C = cosh1 * cosh2 - one
     H = first1 * first2
     per_R = 1 / R
@@ -151,12 +174,12 @@ def together(M: complex, square: complex, blur_M: float, blur_square: float) -> 
     noise_s, noise_d = _noise_together(
         (M, square, u, v),
         apart,
-        (cosh1, first1, second1),
-        (cosh2, first2, second2),
+        of_u,
+        of_v,
         (s, d),
         (one, blur_M, blur_square),
     )
-    return S, s, d, s1, d1, dd, noise_s, noise_d
+    return EvenFunctions(S, s, d, s1, d1, dd), noise_s, noise_d
 
 
 @compiled
@@ -197,10 +220,8 @@ def _noise_each(
 
 
 @compiled
-def each(
-    w: complex, coefficients: Coefficients, blur_M: float, blur_square: float
-) -> tuple[float, complex, complex, complex, complex, complex, complex, float]:
-    """(S, s, d, s', d', d*, sum of z' E(z), its noise) from z+ and z-, of which one is the smaller by far.
+def each(w: complex, coefficients: Coefficients, blur_M: float, blur_square: float) -> EvenSum:
+    """The functions and their sum from z+ and z-, of which one is the smaller by far; noise of the sum.
 
     The slope of that one comes from the product z+ z-, too: where w is large its two terms all but cancel.
     """
@@ -229,12 +250,12 @@ def each(
         (slope_plus, slope_minus),
         (blur_M, blur_square),
     )
-    return S, s, d, s1, d1, dd, slope_plus * E_plus + slope_minus * E_minus, noise
+    return EvenFunctions(S, s, d, s1, d1, dd), slope_plus * E_plus + slope_minus * E_minus, noise
 
 
 @compiled
-def summed(M: complex, P: complex, blur_M: float, blur_square: float) -> Even:
-    """`Even` by its series in z+ and z-, where both are small: E = sum z^n/(2n + 2)!."""
+def summed(M: complex, P: complex, blur_M: float, blur_square: float) -> tuple[EvenFunctions, float, float]:
+    """(the functions, noise of s, of d) by series where z+ and z- are small: E = sum z^n/(2n + 2)!."""
     plus, minus = M + 2 * P, M - 2 * P
     S = max(cmath.sqrt(plus).real, cmath.sqrt(minus).real)
     size = math.exp(-S)
@@ -257,14 +278,12 @@ def summed(M: complex, P: complex, blur_M: float, blur_square: float) -> Even:
         s += factor * (power_plus + power_minus)
     noise_s = size * (1 + blur_M / 10 + blur_square / 80)
     noise_d = size * (0.1 + blur_M / 300 + blur_square / 8000)
-    return S, s, d, s1, d1, dd, noise_s, noise_d
+    return EvenFunctions(S, s, d, s1, d1, dd), noise_s, noise_d
 
 
 @compiled
-def even_parts(
-    w: complex, coefficients: Coefficients
-) -> tuple[float, float, complex, complex, complex, complex, complex, complex]:
-    """(S, noise, sum of z' E(z), s, d, s', d', d*) at w != 0, all but S times exp(-S); noise is that of D.
+def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
+    """The functions and their sum at w != 0; the noise is that of D.
 
     It adds up, to first order and through moduli that do not all vanish where D does, what rounding does to
     M, to P^2 and to each step from there.
@@ -283,12 +302,11 @@ def even_parts(
     small = size_M + 2 * math.sqrt(size_square) < SUMMED_BELOW
     if small or modulus(M * M - 4 * square) > APART_BELOW * (size_M * size_M + 4 * size_square):
         if small:
-            S, s, d, s1, d1, dd, noise_s, noise_d = summed(M, cmath.sqrt(square), blur_M, blur_square)
+            even, noise_s, noise_d = summed(M, cmath.sqrt(square), blur_M, blur_square)
         else:
-            S, s, d, s1, d1, dd, noise_s, noise_d = together(M, square, blur_M, blur_square)
-        first = T * s + 4 * N * d
+            even, noise_s, noise_d = together(M, square, blur_M, blur_square)
+        total = T * even.s + 4 * N * even.d
         noise = T * noise_s + 4 * (stiffness + X * size) * noise_d
     else:
-        S, s, d, s1, d1, dd, first, noise = each(w, coefficients, blur_M, blur_square)
-    noise = UNIT * (math.exp(-S) + size / 2 * noise)
-    return S, noise, first, s, d, s1, d1, dd
+        even, total, noise = each(w, coefficients, blur_M, blur_square)
+    return even, total, UNIT * (math.exp(-even.S) + size / 2 * noise)

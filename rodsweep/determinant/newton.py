@@ -1,4 +1,4 @@
-"""Newton's method for the points of a path of rods where the spectrum changes its character.
+"""Newton's method for eigenvalues, and for the points of a path where the spectrum changes its character.
 
 A crossing of the imaginary axis is D(i eta; p) = 0 in (eta, p); a double real eigenvalue, where two real
 ones become a pair, is D = D_w = 0 in (x, p): there the eigenvalues themselves lose half of the digits,
@@ -6,64 +6,74 @@ and p does not.
 """
 
 import math
+from typing import NamedTuple
 
 from ..model.compilation import compiled
 from ..model.rod import Coefficients
 from .path import coefficients_at, determinant_along
-from .value import ROUND_OFF
+from .value import ROUND_OFF, scaled_determinant
 
-MOST_STEPS = 15
-FARTHEST = 20.0
+MOST_NEWTON_STEPS, MOST_REFINEMENTS = 15, 12
+LARGEST_NEWTON_STEP = 20.0
 """A step in units of the given scale beyond which Newton's method has failed."""
-SETTLED = 4.0
+LAST_NEWTON_STEP = 4.0
 """A last step in units of the rounding error that ends the iteration."""
-DIFFERENCE = 1e-5
+JACOBIAN_STEP = 1e-5
 """Relative step of the differences in the Jacobian, which need not be accurate."""
+REAL_BELOW = 1e-14
+"""Relative imaginary part below which an eigenvalue is real: what rounding leaves of zero."""
 
-Point = tuple[float, float, float, float]
-"""(eta or x, p, error of the first, error of p); nan where the method failed."""
+
+class Zero(NamedTuple):
+    """A crossing (w = i eta) or a double root (w = x) with its errors; nan where the method failed."""
+
+    eta_or_x: float
+    p: float
+    error: float
+    error_of_p: float
+
+
+FAILED = Zero(math.nan, math.nan, math.nan, math.nan)
 
 
 @compiled
 def crossing_newton(
     eta: float, p: float, origin: Coefficients, direction: Coefficients, scale: tuple[float, float]
-) -> Point:
+) -> Zero:
     """The zero of D(i eta; p) near (eta, p), with an error estimate from rounding and the last step."""
-    failed = (math.nan, math.nan, math.nan, math.nan)
     last = math.inf
-    for _ in range(MOST_STEPS):
+    for _ in range(MOST_NEWTON_STEPS):
         coefficients = coefficients_at(p, origin, direction)
         D, D_w, D_p, _, noise = determinant_along(complex(0.0, eta), coefficients, direction)
         a = 1j * D_w
         cross = (a * D_p.conjugate()).imag
         if cross == 0:
-            return failed
+            return FAILED
         in_eta = -(D * D_p.conjugate()).imag / cross
         in_p = (D * a.conjugate()).imag / cross
         # p itself is a rounded number: D cannot tell p from its neighbours.
         blur = noise + ROUND_OFF * (abs(p * D_p) + abs(eta * D_w))
         e_eta, e_p = blur * abs(D_p) / abs(cross), blur * abs(a) / abs(cross)
         step = max(abs(in_eta) / scale[0], abs(in_p) / scale[1])
-        if not step < FARTHEST or not eta + in_eta > 0:
-            return failed
+        if not step < LARGEST_NEWTON_STEP or not eta + in_eta > 0:
+            return FAILED
         eta += in_eta
         p += in_p
-        if (abs(in_eta) <= SETTLED * e_eta and abs(in_p) <= SETTLED * e_p) or (
+        if (abs(in_eta) <= LAST_NEWTON_STEP * e_eta and abs(in_p) <= LAST_NEWTON_STEP * e_p) or (
             step > last / 2 and step * scale[1] < 1e-9 * abs(p)
         ):
-            return eta, p, max(e_eta, abs(in_eta)), max(e_p, abs(in_p))
+            return Zero(eta, p, max(e_eta, abs(in_eta)), max(e_p, abs(in_p)))
         last = step
-    return failed
+    return FAILED
 
 
 @compiled
-def double_newton(x: float, p: float, origin: Coefficients, direction: Coefficients, reach: float) -> Point:
+def double_newton(x: float, p: float, origin: Coefficients, direction: Coefficients, reach: float) -> Zero:
     """The double real eigenvalue near (x, p): D = D_w = 0, p at most `reach` away."""
-    failed = (math.nan, math.nan, math.nan, math.nan)
     start, first, last = x, p, math.inf
-    for _ in range(2 * MOST_STEPS):
+    for _ in range(2 * MOST_NEWTON_STEPS):
         D, D_w, D_p, S, noise = _real(x, p, origin, direction)
-        h, k = DIFFERENCE * abs(x), DIFFERENCE * reach
+        h, k = JACOBIAN_STEP * abs(x), JACOBIAN_STEP * reach
         _, right, _, S_right, _ = _real(x + h, p, origin, direction)
         _, left, _, S_left, _ = _real(x - h, p, origin, direction)
         _, after, _, S_after, _ = _real(x, p + k, origin, direction)
@@ -72,7 +82,7 @@ def double_newton(x: float, p: float, origin: Coefficients, direction: Coefficie
         D_wp = (after * math.exp(S_after - S) - before * math.exp(S_before - S)) / (2 * k)
         cross = D_w * D_wp - D_p * D_ww
         if cross == 0 or not math.isfinite(cross):
-            return failed
+            return FAILED
         in_x = (D_p * D_w - D_wp * D) / cross
         in_p = (D_ww * D - D_w * D_w) / cross
         blur = noise + ROUND_OFF * abs(p * D_p)
@@ -81,11 +91,13 @@ def double_newton(x: float, p: float, origin: Coefficients, direction: Coefficie
         x += in_x
         p += in_p
         if not abs(p - first) <= 2 * reach or not x * start > 0:
-            return failed
-        if abs(in_p) <= SETTLED * e_p and (abs(in_x) <= SETTLED * e_x or abs(in_x) > last / 2):
-            return x, p, max(e_x, abs(in_x)), max(e_p, abs(in_p))
+            return FAILED
+        if abs(in_p) <= LAST_NEWTON_STEP * e_p and (
+            abs(in_x) <= LAST_NEWTON_STEP * e_x or abs(in_x) > last / 2
+        ):
+            return Zero(x, p, max(e_x, abs(in_x)), max(e_p, abs(in_p)))
         last = abs(in_x)
-    return failed
+    return FAILED
 
 
 @compiled
@@ -100,20 +112,34 @@ def _real(
 
 
 @compiled
+def refined(w: complex, coefficients: Coefficients) -> complex:
+    """The eigenvalue near w by Newton's method, until rounding keeps the steps from getting smaller.
+
+    A real guess stays real.
+    """
+    real = w.imag == 0
+    last = math.inf
+    for _ in range(MOST_REFINEMENTS):
+        value = scaled_determinant(w, coefficients)
+        if value.D_w == 0:
+            break
+        step = value.D / value.D_w
+        if real:
+            step = complex(step.real, 0.0)
+        if not abs(step) < last / 2:
+            break
+        last = abs(step)
+        w -= step
+        if abs(w.imag) <= REAL_BELOW * abs(w):
+            w = complex(w.real, 0.0)
+    return w
+
+
+@compiled
 def eigenvalue_newton(
     w: complex, coefficients: Coefficients, direction: Coefficients
 ) -> tuple[complex, complex, float]:
     """(w, dw/dp, error of w): a simple eigenvalue from a close guess; a real guess stays real."""
-    real = w.imag == 0
-    D, D_w, D_p, _, noise = determinant_along(w, coefficients, direction)
-    step = math.inf
-    for _ in range(MOST_STEPS):
-        move = -D / D_w
-        if real:
-            move = complex(move.real, 0.0)
-        if not abs(move) < step / 2:  # it no longer converges: rounding
-            break
-        step = abs(move)
-        w += move
-        D, D_w, D_p, _, noise = determinant_along(w, coefficients, direction)
-    return w, -D_p / D_w, max(abs(D), noise) / abs(D_w)
+    w = refined(w, coefficients)
+    value = determinant_along(w, coefficients, direction)
+    return w, -value.D_p / value.D_w, max(abs(value.D), value.noise) / abs(value.D_w)

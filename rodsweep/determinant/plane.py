@@ -2,20 +2,21 @@
 
 from dataclasses import dataclass
 from math import exp, inf, log
+from typing import NamedTuple
 
 from ..model.parameters import CRUSHING, LINEAR_PARAMETERS, PARAMETERS
 from ..model.rod import Rod
-from .path import determinant_along, direction_of
+from .path import ValueAlong, determinant_along, direction_of
 from .value import ROUND_OFF
 
-ROUNDED = 1e-12
+BEYOND_AN_END = 1e-12
 """Distance beyond the end of an axis that is rounding."""
 LITTLE = 0.01
 """Share of the distance from a crushed rod that a small step may use."""
 
 
 @dataclass(frozen=True, slots=True)
-class Axis:
+class PlaneAxis:
     """One axis of a plane: a parameter from `start` to `stop`, both finite, in equal steps or ratios."""
 
     name: str
@@ -25,7 +26,7 @@ class Axis:
 
     def value(self, x: float) -> float:
         """The parameter at the scaled coordinate x; 0 is start and 1 is stop, also when x is rounded."""
-        if -ROUNDED < x < 0 or 1 < x < 1 + ROUNDED:
+        if -BEYOND_AN_END < x < 0 or 1 < x < 1 + BEYOND_AN_END:
             x = round(x)
         if self.logarithmic:
             return exp(log(self.start) + x * (log(self.stop) - log(self.start)))
@@ -47,12 +48,23 @@ class Axis:
         return -along / value**2 if PARAMETERS[self.name].by_compliance else along
 
 
+class ValueOnPlane(NamedTuple):
+    """D and its derivatives by w and the scaled coordinates times exp(-S), and the rounding error of D."""
+
+    D: complex
+    D_w: complex
+    D_x: complex
+    D_y: complex
+    S: float
+    blur: float
+
+
 @dataclass(frozen=True, slots=True)
 class Plane:
     """All rods that differ from `rod` in the parameters of two axes only."""
 
     rod: Rod
-    axes: tuple[Axis, Axis]
+    axes: tuple[PlaneAxis, PlaneAxis]
 
     def at(self, x: float, y: float) -> Rod:
         """The rod at scaled coordinates; ValueError where the model has none."""
@@ -61,21 +73,20 @@ class Plane:
         values[self.axes[1].name] = self.axes[1].value(y)
         return Rod(**values)
 
-    def determinant(
-        self, w: complex, x: float, y: float
-    ) -> tuple[complex, complex, complex, complex, float, float]:
-        """(D, dD/dw, dD/dx, dD/dy, S, rounding error) at w, all but S times exp(-S)."""
+    def determinant(self, w: complex, x: float, y: float) -> ValueOnPlane:
+        """D at w and scaled coordinates, and its derivatives."""
         rod = self.at(x, y)
-        D, D_w, D_x, S, noise = self._along(w, rod, 0)
-        _, _, D_y, _, _ = self._along(w, rod, 1)
+        (D, D_w, _, S, noise), D_x = self._along(w, rod, self.axes[0])
+        _, D_y = self._along(w, rod, self.axes[1])
         # The coordinates are rounded numbers: D cannot tell them from their neighbours.
         blur = noise + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
-        return D, D_w, D_x, D_y, S, blur
+        return ValueOnPlane(D, D_w, D_x, D_y, S, blur)
 
-    def _along(self, w: complex, rod: Rod, which: int) -> tuple[complex, complex, complex, float, float]:
-        axis = self.axes[which]
-        D, D_w, D_p, S, noise = determinant_along(w, rod.coefficients, direction_of(rod, axis.name))
-        return D, D_w, D_p * axis.slope(getattr(rod, axis.name)), S, noise
+    @staticmethod
+    def _along(w: complex, rod: Rod, axis: PlaneAxis) -> tuple[ValueAlong, complex]:
+        """(D along the axis's parameter, its derivative by the scaled coordinate)."""
+        value = determinant_along(w, rod.coefficients, direction_of(rod, axis.name))
+        return value, value.D_p * axis.slope(getattr(rod, axis.name))
 
     def small_step(self, x: float, y: float, which: int, largest: float) -> float:
         """A step along an axis, at most `largest`, that changes the distance k1 - F from crushing little."""

@@ -8,6 +8,7 @@ or a pair, which Newton's method from the wrong kind would never find out.
 
 import cmath
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,35 +16,39 @@ from numpy.typing import NDArray
 from ..model.compilation import compiled
 from ..model.rod import Coefficients
 from .box import box_of
-from .value import TYPICAL_NOISE, newton_correction, scaled_determinant
+from .newton import REAL_BELOW, refined
+from .value import TYPICAL_NOISE, distance_to_next, newton_correction, scaled_determinant, second_derivative
 
 A_ROOT = 1e-2
 """Newton correction, in units of the length over which D changes, that still stands for a root of D."""
 CLOSE_ROOTS = 0.1
 """The same for one of two that are refined together."""
-CLOSE = 4.0
+REFINED_TOGETHER = 4.0
 """Distance of two eigenvalues, in units of their corrections, within which they are refined together."""
-REAL_BELOW = 1e-14
-"""Relative imaginary part below which an eigenvalue is real: what rounding leaves of zero."""
 ON_THE_AXIS = 1e-13
 """Relative real part below which an eigenvalue is on the imaginary axis whatever its error estimate."""
-MOST_STEPS = 12
-DIFFERENCE = 1e-4
-"""Relative step of the difference that gives D''."""
 BLURRED = 1e-11
 """Relative Newton correction beyond which a double root may be the reason."""
-SAME = 4.0
+SAME_ROOT = 4.0
 """Distance of two roots, in units of their errors, within which they may be the same."""
 
 
-@compiled
-def _second(w: complex, S: float, coefficients: Coefficients) -> complex:
-    """D'' exp(-S) at w by a difference of D'."""
-    h = DIFFERENCE * abs(w)
-    _, after, S_after, _ = scaled_determinant(w + h, coefficients)
-    _, before, S_before, _ = scaled_determinant(w - h, coefficients)
-    second = (after * math.exp(S_after - S) - before * math.exp(S_before - S)) / (2 * h)
-    return complex(second.real, 0.0) if w.imag == 0 else second
+class Roots(NamedTuple):
+    """Eigenvalues of a mesh refined to roots of D, sorted by descending real part, then frequency.
+
+    chosen: index of each in what the mesh gave; w: complex; error: how far the root may lie; displacement:
+    how far off the mesh was, in units of |w| or of the length over which D changes, whichever is larger;
+    wave: largest |q|; on_the_axis: whether it lies on the imaginary axis within its error; all of shape (k,).
+    ahead: eigenvalues of the mesh right of all these that stand for no root, though they lie where one may.
+    """
+
+    chosen: NDArray[np.int64]
+    w: NDArray[np.complex128]
+    error: NDArray[np.float64]
+    displacement: NDArray[np.float64]
+    wave: NDArray[np.float64]
+    on_the_axis: NDArray[np.bool_]
+    ahead: int
 
 
 @compiled
@@ -57,7 +62,7 @@ def root_error(w: complex, coefficients: Coefficients) -> tuple[float, float, fl
     error, length, wave = newton_correction(w, coefficients)
     if error > BLURRED * abs(w):
         D, D1, S, noise = scaled_determinant(w, coefficients)
-        e, second = max(abs(D), TYPICAL_NOISE * noise), abs(_second(w, S, coefficients))
+        e, second = max(abs(D), TYPICAL_NOISE * noise), abs(second_derivative(w, S, coefficients))
         if abs(D1) ** 2 < 16 * e * second:
             spread = math.sqrt(2 * e / second)
             error = min(max(error, spread), abs(D1) / second + spread)
@@ -70,32 +75,11 @@ def two_roots(middle: complex, coefficients: Coefficients) -> tuple[complex, com
     D, D1, S, _ = scaled_determinant(middle, coefficients)
     if middle.imag == 0:
         D, D1 = complex(D.real, 0.0), complex(D1.real, 0.0)
-    D2 = _second(middle, S, coefficients)
+    D2 = second_derivative(middle, S, coefficients)
     if D2 == 0:
         return middle, middle
     root = cmath.sqrt(D1 * D1 - 2 * D * D2)
     return middle + (root - D1) / D2, middle - (root + D1) / D2
-
-
-@compiled
-def refined(w: complex, coefficients: Coefficients) -> complex:
-    """The root of D near w by Newton's method, until rounding keeps the steps from getting smaller."""
-    real = w.imag == 0
-    last = math.inf
-    for _ in range(MOST_STEPS):
-        D, D1, _, _ = scaled_determinant(w, coefficients)
-        if D1 == 0:
-            break
-        step = D / D1
-        if real:
-            step = complex(step.real, 0.0)
-        if not abs(step) < last / 2:
-            break
-        last = abs(step)
-        w -= step
-        if abs(w.imag) <= REAL_BELOW * abs(w):
-            w = complex(w.real, 0.0)
-    return w
 
 
 @compiled
@@ -109,7 +93,7 @@ def _separate(w: NDArray[np.complex128], error: NDArray[np.float64], coefficient
         for j in range(len(w)):
             if j != i and not moved[j] and abs(w[j] - w[i]) < least:
                 partner, least = j, abs(w[j] - w[i])
-        if partner >= 0 and least <= CLOSE * (error[i] + error[partner]):
+        if partner >= 0 and least <= REFINED_TOGETHER * (error[i] + error[partner]):
             middle = (w[i] + w[partner]) / 2
             if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
                 middle = complex(middle.real, 0.0)
@@ -137,41 +121,51 @@ def _descending(w: NDArray[np.complex128]) -> NDArray:
 @compiled
 def roots(
     raw: NDArray[np.complex128], coefficients: Coefficients, amplification: float, most_waves: float
-) -> tuple[NDArray, NDArray, NDArray, NDArray, NDArray, NDArray, int]:
-    """(indices, w, error, displacement, wave number, on the axis) of what stands for a root of D, sorted.
-
-    And the number of those that do not, although they lie in the box and right of all that do.
+) -> Roots:
+    """Those eigenvalues of a mesh that stand for a root of D.
 
     raw: eigenvalues of a mesh, complex, shape (n,). amplification: the root of
-    `rodsweep.determinant.box.squared_amplification`; most_waves: |q| that the mesh can stand for.
-    displacement: in units of |w| or of the length over which D changes, whichever is larger. Rounding
+    `rodsweep.determinant.box.squared_amplification`; most_waves: |q| that the mesh can stand for. Rounding
     makes infinite eigenvalues finite: they lie outside the box or beyond the mesh, or have no root near.
     """
-    index: NDArray[np.int64] = np.empty(len(raw), dtype=np.int64)
-    first: NDArray[np.complex128] = np.empty(len(raw), dtype=np.complex128)
-    error: NDArray[np.float64] = np.empty(len(raw))
-    length: NDArray[np.float64] = np.empty(len(raw))
-    wave: NDArray[np.float64] = np.empty(len(raw))
-    n, doubtful = 0, []
+    error, length, wave = np.empty(len(raw)), np.empty(len(raw)), np.empty(len(raw))
+    near, inside = np.zeros(len(raw), dtype=np.bool_), np.zeros(len(raw), dtype=np.bool_)
+    first = raw.copy()
     for i in range(len(raw)):
-        w = raw[i]
-        if not (math.isfinite(w.real) and math.isfinite(w.imag)):
+        if not (math.isfinite(raw[i].real) and math.isfinite(raw[i].imag)):
             continue
-        if abs(w.imag) <= REAL_BELOW * abs(w):
-            w = complex(w.real, 0.0)
-        error[n], length[n], wave[n] = root_error(w, coefficients)
-        real, imag = box_of(amplification, max(-w.real, 0.0))
-        inside = w.real <= real and abs(w.imag) <= imag
-        if inside and wave[n] <= most_waves and error[n] <= CLOSE_ROOTS * length[n]:
-            index[n], first[n] = i, w
-            n += 1
-        elif inside:
-            doubtful.append(w.real)
-    index, first, error, length, wave = index[:n], first[:n], error[:n], length[:n], wave[:n]
+        if abs(raw[i].imag) <= REAL_BELOW * abs(raw[i]):
+            first[i] = complex(raw[i].real, 0.0)
+        error[i], length[i], wave[i] = root_error(first[i], coefficients)
+        real, imag = box_of(amplification, max(-first[i].real, 0.0))
+        inside[i] = first[i].real <= real and abs(first[i].imag) <= imag
+        near[i] = inside[i] and wave[i] <= most_waves and error[i] <= CLOSE_ROOTS * length[i]
+    chosen = np.flatnonzero(near)
+    first, error, length, wave = first[chosen], error[chosen], length[chosen], wave[chosen]
+    w, stands = _refined_all(first, error, wave, error <= A_ROOT * length, coefficients)
+    order = np.flatnonzero(stands)
+    order = order[_descending(w[order])]
+    displacement = np.abs(w[order] - first[order]) / np.maximum(np.abs(w[order]), length[order])
+    chosen, w, error, wave = chosen[order], w[order], error[order], wave[order]
+    _tell_apart(w, error, coefficients)
+    axis = np.abs(w.real) <= np.maximum(4 * error, ON_THE_AXIS * np.abs(w))
+    ahead = (inside & ~near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()
+    return Roots(chosen, w, error, displacement, wave, axis, ahead)
+
+
+@compiled
+def _refined_all(
+    first: NDArray[np.complex128],
+    error: NDArray[np.float64],
+    wave: NDArray[np.float64],
+    near: NDArray[np.bool_],
+    coefficients: Coefficients,
+) -> tuple[NDArray[np.complex128], NDArray[np.bool_]]:
+    """(the roots near the first guesses, which of them are one); error and wave become those of the roots."""
     w = first.copy()
     moved = _separate(w, error, coefficients)
-    stands = moved | (error <= A_ROOT * length)
-    for i in range(n):
+    stands = moved | near
+    for i in range(len(w)):
         if not stands[i]:
             continue
         single = i > 0 and w[i].imag != 0 and not moved[i - 1] and not moved[i]
@@ -180,17 +174,7 @@ def roots(
         else:
             w[i] = refined(w[i], coefficients)
             error[i], _, wave[i] = root_error(w[i], coefficients)
-    order = np.flatnonzero(stands)
-    order = order[_descending(w[order])]
-    displacement = np.abs(w[order] - first[order]) / np.maximum(np.abs(w[order]), length[order])
-    index, w, error, wave = index[order], w[order], error[order], wave[order]
-    _tell_apart(w, error, coefficients)
-    axis = np.abs(w.real) <= np.maximum(4 * error, ON_THE_AXIS * np.abs(w))
-    first_real = w[0].real if len(w) else -math.inf
-    ahead = 0
-    for real_part in doubtful:
-        ahead += real_part > first_real
-    return index, w, error, displacement, wave, axis, ahead
+    return w, stands
 
 
 @compiled
@@ -199,18 +183,8 @@ def _tell_apart(w: NDArray[np.complex128], error: NDArray[np.float64], coefficie
     for i in range(len(w)):
         for j in range(i + 1, len(w)):
             apart = abs(w[i] - w[j])
-            if apart <= SAME * (error[i] + error[j]):
-                _, D1, S, _ = scaled_determinant(w[i], coefficients)
-                next_root = 2 * abs(D1) / max(abs(_second(w[i], S, coefficients)), 1e-300)
+            if apart <= SAME_ROOT * (error[i] + error[j]):
+                next_root = distance_to_next(w[i], coefficients)
                 if apart < next_root / 4:
                     error[i] = max(error[i], next_root)
                     error[j] = max(error[j], next_root)
-
-
-@compiled
-def largest(part: NDArray[np.float64], whole: NDArray[np.complex128], modes: int) -> float:
-    """The largest part/|whole| over the first modes."""
-    worst = 0.0
-    for i in range(modes):
-        worst = max(worst, part[i] / abs(whole[i]))
-    return worst

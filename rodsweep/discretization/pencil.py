@@ -16,6 +16,7 @@ inner product (Sec. VI), in which the problem at F = 0 is symmetric and s, which
 derivative, weighs next to nothing. Unscaled, the fourth eigenvalue loses four digits.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from math import sqrt
@@ -33,6 +34,8 @@ SHEAR_WEIGHT = 1e-9
 """Weight of s in the norm. Nearly crushed rods lose seven digits at 1e-3, none below 1e-8."""
 LEAST_ANGLE_WEIGHT = 1e-4
 """Weight of theta for gamma3 -> 0, where it carries no time derivative either."""
+NO_TIP = 1e-10
+"""y(1) in units of the largest value, below which a vector cannot be scaled by it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,18 +106,28 @@ class Pencil:
         """Matrix from values at all nodes to values at `points` in [0, 1], shape (points, nodes + 1)."""
         nodes, _ = gauss_lobatto(self.order)
         matrix = np.zeros((len(points), self.nodes + 1))
+        for first, here, local in self.by_element(points):
+            columns = np.arange(first, first + self.order + 1)
+            matrix[np.ix_(here, columns)] = interpolation(nodes, local)
+        return matrix
+
+    def by_element(self, points: Array) -> Iterator[tuple[int, NDArray[np.integer], Array]]:
+        """(first node of an element, which points lie in it, these in [-1, 1]) of all that have points."""
         element = np.minimum((points * self.elements).astype(int), self.elements - 1)
         for e in np.unique(element):
             here = np.nonzero(element == e)[0]
-            local = 2 * (points[here] * self.elements - e) - 1
-            columns = np.arange(e * self.order, (e + 1) * self.order + 1)
-            matrix[np.ix_(here, columns)] = interpolation(nodes, local)
-        return matrix
+            yield int(e) * self.order, here, 2 * (points[here] * self.elements - e) - 1
 
 
 def angle_weight(gamma3: float) -> float:
     """Weight of theta in the norm: sqrt(gamma3), bounded below."""
     return max(sqrt(gamma3), LEAST_ANGLE_WEIGHT)
+
+
+def tip_scale(y: NDArray[np.complex128], theta: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """What makes y(1) = 1 of fields at all nodes, shape (nodes + 1, k); NaN where the tip does not move."""
+    size = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))
+    return np.where(np.abs(y[-1]) > NO_TIP * size, 1 / y[-1], np.nan + 0j)
 
 
 def shear_force(pencil: Pencil, vectors: NDArray[np.complex128], points: Array) -> NDArray[np.complex128]:
@@ -123,10 +136,8 @@ def shear_force(pencil: Pencil, vectors: NDArray[np.complex128], points: Array) 
     mass = np.tile(weights / (2 * pencil.elements), pencil.elements) * SHEAR_WEIGHT**2
     values = vectors[2 * pencil.nodes :] / np.sqrt(mass)[:, None]
     result = np.empty((len(points), vectors.shape[1]), complex)
-    element = np.minimum((points * pencil.elements).astype(int), pencil.elements - 1)
-    for e in np.unique(element):
-        local = 2 * (points[element == e] * pencil.elements - e) - 1
-        result[element == e] = interpolation(nodes, local) @ values[e * pencil.order : (e + 1) * pencil.order]
+    for first, here, local in pencil.by_element(points):
+        result[here] = interpolation(nodes, local) @ values[first : first + pencil.order]
     return result
 
 
@@ -135,11 +146,8 @@ def slope(pencil: Pencil, values: NDArray[np.complex128], points: Array) -> NDAr
     nodes, _ = gauss_lobatto(pencil.order)
     derivative = 2 * pencil.elements * differentiation(nodes)
     result = np.empty((len(points), values.shape[1]), complex)
-    element = np.minimum((points * pencil.elements).astype(int), pencil.elements - 1)
-    for e in np.unique(element):
-        local = 2 * (points[element == e] * pencil.elements - e) - 1
-        here = values[e * pencil.order : (e + 1) * pencil.order + 1]
-        result[element == e] = interpolation(nodes, local) @ (derivative @ here)
+    for first, here, local in pencil.by_element(points):
+        result[here] = interpolation(nodes, local) @ (derivative @ values[first : first + pencil.order + 1])
     return result
 
 

@@ -2,11 +2,18 @@
 
 from dataclasses import dataclass
 from math import inf
+from typing import NamedTuple
 
 from .parameters import LINEAR_PARAMETERS, PARAMETERS
 
-Coefficients = tuple[float, float, float, float]
-"""(F, nu, c2, gamma3): all that the transverse operator contains, as compiled functions take it."""
+
+class Coefficients(NamedTuple):
+    """All that the transverse operator contains, as compiled functions take it."""
+
+    F: float
+    nu: float
+    c2: float
+    gamma3: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,5 +56,5 @@ class Rod:
 
     @property
     def coefficients(self) -> Coefficients:
-        """(F, nu, c2, gamma3) as floats."""
-        return float(self.F), self.nu, self.c2, float(self.gamma3)
+        """What the transverse operator contains of this rod, as floats."""
+        return Coefficients(float(self.F), self.nu, self.c2, float(self.gamma3))

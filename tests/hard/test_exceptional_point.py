@@ -11,7 +11,7 @@ import pytest
 from rodsweep.discretization.pencil import assemble
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
-from rodsweep.solve.modes.inverse_iteration import mode_shapes
+from rodsweep.solve.modes.inverse_iteration import mode_vectors
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
 from rodsweep.solve.spectrum.status import Status
 
@@ -80,8 +80,8 @@ def test_condition_number_and_splitting_follow_the_square_root(place):
     """Per decade of |F - F*| the pair comes closer by sqrt(10) and its condition number grows by sqrt(10)."""
     for sign in (1, -1):
         at = [solve(rod_at(place, sign * size)) for size in (1e-4, 1e-6, 1e-8)]
-        apart = [abs(result.eigenvalues[0] - result.eigenvalues[1]) for result in at]
-        numbers = [result.condition[0] for result in at]
+        apart = [abs(np.subtract(*result.spectrum.eigenvalues)) for result in at]
+        numbers = [result.vectors.condition[0] for result in at]
         assert np.diff(np.log10(apart)) == pytest.approx([-1, -1], abs=5e-3)
         assert np.diff(np.log10(numbers)) == pytest.approx([1, 1], abs=5e-3)
 
@@ -96,19 +96,19 @@ def least_condition(place, there):
     With c = |psi| |xi| and (psi, xi) = b (w1 - w2) of two close eigenvalues the condition number is
     K = c/|b (w1 - w2)|, so that K |w1 - w2| = c/|b| beside F* is that of F*. There rounding of (A - w B) x
     moves the two apart to |w1 - w2| = 2 sqrt(e/|b|), e = |(psi, rounding)|, which leaves
-    K = sqrt((c/|b|) (c/e))/2. c/e is the mesh's condition number over its `Shapes.rounding`, in both of
+    K = sqrt((c/|b|) (c/e))/2. c/e is the mesh's condition number over its `Vectors.rounding`, in both of
     which (psi, xi) cancels.
     """
     beside = rod_at(place, 1e-8)
     first, second = leading(beside, 4)[:2]
     c_over_b = float(condition(beside, first) * abs(first - second))
-    mesh = assemble(there.elements, there.order)
-    shapes = mode_shapes(Rod(*rod_at(place)), mesh, there.eigenvalues, np.array([0.0, 1.0]))
+    mesh = assemble(there.vectors.resolution.elements, there.vectors.resolution.order)
+    shapes = mode_vectors(Rod(*rod_at(place)), mesh, there.spectrum.eigenvalues, np.array([0.0, 1.0]))
     return np.sqrt(c_over_b * shapes.condition / shapes.rounding) / 2
 
 
 WORST_ROUNDING = 4.0
-"""In units of `Shapes.rounding`, which is the root of a sum of many squares: four standard deviations."""
+"""In units of `Vectors.rounding`, which is the root of a sum of many squares: four standard deviations."""
 
 
 @pytest.mark.parametrize("place", EXCEPTIONAL, ids=name)
@@ -116,15 +116,15 @@ def test_condition_numbers_at_and_beside_a_double_root_are_as_accurate_as_they_s
     """At F* they are as large as rounding allows, and not called accurate; beside it ok means right."""
     there = solve(rod_at(place))
     assert there.status == Status.accuracy_not_reached
-    assert (there.condition > least_condition(place, there) / np.sqrt(WORST_ROUNDING)).all()
-    assert there.condition_error.min() > 1
+    assert (there.vectors.condition > least_condition(place, there) / np.sqrt(WORST_ROUNDING)).all()
+    assert there.vectors.condition_error.min() > 1
     broken = []
     for offset in (1e-10, 1e-8, -1e-8, 1e-6, -1e-6, 1e-4):
         rod = rod_at(place, offset)
         found = solve(rod)
-        error = abs(found.condition[0] / float(condition(rod, leading(rod, 4)[0])) - 1)
-        if error > 10 * found.condition_error[0] or (found.status == Status.ok and error > 1e-8):
+        error = abs(found.vectors.condition[0] / float(condition(rod, leading(rod, 4)[0])) - 1)
+        if error > 10 * found.vectors.condition_error[0] or (found.status == Status.ok and error > 1e-8):
             broken.append(
-                f"{rod} {found.status.name}: error {error:.1e}, said {found.condition_error[0]:.1e}"
+                f"{rod} {found.status.name}: error {error:.1e}, said {found.vectors.condition_error[0]:.1e}"
             )
     assert broken == []

@@ -69,5 +69,5 @@ def test_the_winding_number_along_the_axis_is_refused_where_a_pair_lies_on_it():
 def test_modes_at_a_hopf_point_are_given_but_whether_they_grow_is_undecided():
     for *rod, event in CROSSINGS[:3]:
         found = solve_modes(Rod(*at_force(event["F"], 0, *rod)), ModesRequest(2, 1e-8, 9, True))
-        assert (found.status, found.unstable_count) == (Status.undecided, -1)
-        assert found.condition_error.max() < 1e-8
+        assert (found.status, found.spectrum.unstable_count) == (Status.undecided, -1)
+        assert found.vectors.condition_error.max() < 1e-8

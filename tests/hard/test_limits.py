@@ -93,13 +93,17 @@ def test_condition_numbers_leave_the_limit_at_first_order(path):
     limit = conditions(path, 0.0)
     exact = [condition(rod_on(path, at), leading(rod_on(path, at), 4)[0]) for at in (0.0, 1e-10)]
     assert limit.status == Status.ok
-    assert limit.condition[0] == pytest.approx(float(exact[0]), rel=1e-10)
+    assert limit.vectors.condition[0] == pytest.approx(float(exact[0]), rel=1e-10)
     slope = float((exact[1] - exact[0]) / rate_of(1e-10))
     for epsilon in EPSILONS:
         found = conditions(path, epsilon)
         assert found.status == Status.ok
-        off, bend = deviation(found.condition[0], limit.condition[0], slope, epsilon)
-        rounding = 10 * (found.condition_error[0] + limit.condition_error[0]) * limit.condition[0]
+        off, bend = deviation(found.vectors.condition[0], limit.vectors.condition[0], slope, epsilon)
+        rounding = (
+            10
+            * (found.vectors.condition_error[0] + limit.vectors.condition_error[0])
+            * limit.vectors.condition[0]
+        )
         assert off <= bend + rounding + 1e-12, epsilon
 
 

@@ -61,7 +61,7 @@ def mirrored(k1, end):
     opposite = {Kind.onset: {Kind.real_again}, Kind.hopf: {Kind.hopf_reverse, Kind.restabilization}}
     for first, last in zip(found.crossings[: len(at) // 2], found.crossings[::-1], strict=False):
         assert last.kind in opposite[first.kind]
-    assert found.unstable_at_end == 0
+    assert found.transitions.unstable_at_end == 0
     return found
 
 
@@ -70,7 +70,7 @@ def test_thresholds_of_a_partial_beam_mirror_each_other(k1, changes):
     """F (1 - F/k1) is the same at F and k1 - F: two thresholds for every one of the filament below k1/4."""
     found = mirrored(k1, 0.999 * k1)
     assert len(found.crossings) == changes
-    assert (found.status, found.certified) == (ThresholdStatus.ok, True)
+    assert (found.status, found.transitions.proved) == (ThresholdStatus.ok, True)
 
 
 @pytest.mark.parametrize("k1", [100.0, 160.0])

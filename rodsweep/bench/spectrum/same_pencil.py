@@ -10,7 +10,7 @@ import numpy as np
 import scipy.linalg
 import scipy.sparse.linalg
 
-from ...determinant.roots import refined
+from ...determinant.newton import refined
 from ...discretization.pencil import SHEAR_WEIGHT
 from ...discretization.resolution import LARGEST_ORDER, Resolution
 from ...model.dispersion import most_amplified_wave

@@ -68,7 +68,7 @@ def own_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstThresho
     """All changes of the rod, and of them the first of a kind."""
     result = solve_thresholds(case.k1, case.k2, case.gamma3, ThresholdsRequest(F_MAX, 1e-10, certify, 64))
     at = next((change.at for change in result.crossings if change.kind.name == kind), nan)
-    return FirstThreshold(at, result.solves, determinants=result.boxes)
+    return FirstThreshold(at, result.transitions.solves, determinants=result.transitions.boxes)
 
 
 def continuation_codes(directory: Path, quick: bool) -> tuple[list[Contender], list[str]]:

@@ -14,13 +14,14 @@ if TYPE_CHECKING:
 
 def search_record(result: "Thresholds", most: int, at: str) -> dict[str, Any]:
     """The variables of a search: at most `most` crossings, whose place is the variable `at`."""
+    found = result.transitions
     return {
-        "crossing_count": len(result.crossings),
-        "open_from": result.open_range[0],
-        "open_to": result.open_range[1],
-        "certified": result.certified,
-        "boxes": result.boxes,
-        "solves": result.solves,
+        "crossing_count": len(found.crossings),
+        "open_from": found.open_range[0],
+        "open_to": found.open_range[1],
+        "certified": found.proved,
+        "boxes": found.boxes,
+        "solves": found.solves,
         "seconds": result.seconds,
         "status": int(result.status),
     } | _along_crossing(result.crossings[:most], most, at)

@@ -68,25 +68,26 @@ class ModesTask(LinearTask):
 
 def record(result: "Modes", growth: bool) -> dict[str, Any]:
     """Modes as the variables of the file."""
+    spectrum, vectors = result.spectrum, result.vectors
     values: dict[str, Any] = {
-        "growth_rate": result.eigenvalues.real,
-        "frequency": result.eigenvalues.imag,
-        "error_estimate": result.error_estimate,
-        "mode_error": result.mode_error,
-        "pairing_real": result.pairing.real,
-        "pairing_imag": result.pairing.imag,
-        "condition": result.condition,
-        "condition_error": result.condition_error,
-        "unstable_count": result.unstable_count,
-        "certified": result.certified,
-        "elements": result.elements,
-        "order": result.order,
+        "growth_rate": spectrum.eigenvalues.real,
+        "frequency": spectrum.eigenvalues.imag,
+        "error_estimate": spectrum.error_estimate,
+        "mode_error": vectors.mode_error,
+        "pairing_real": vectors.pairing.real,
+        "pairing_imag": vectors.pairing.imag,
+        "condition": vectors.condition,
+        "condition_error": vectors.condition_error,
+        "unstable_count": spectrum.unstable_count,
+        "certified": spectrum.certified,
+        "elements": vectors.resolution.elements,
+        "order": vectors.resolution.order,
         "seconds": result.seconds,
         "status": int(result.status),
     }
     fields = ("Y", "Theta", "h2", "Pi", "adjoint_Y", "adjoint_Theta")
-    for name, field in zip(fields, (*result.right, *result.deformation, *result.left), strict=True):
+    for name, field in zip(fields, (*vectors.right, *vectors.deformation, *vectors.left), strict=True):
         values[f"{name}_real"], values[f"{name}_imag"] = field.real, field.imag
     if growth:
-        values |= {variable.name: getattr(result, variable.name) for variable in GROWTH}
+        values |= {variable.name: getattr(result.growth, variable.name) for variable in GROWTH}
     return values

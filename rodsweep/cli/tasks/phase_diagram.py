@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ...config.phase_diagram import PhaseDiagramConfig
-from ...determinant.plane import Axis, Plane
+from ...determinant.plane import Plane, PlaneAxis
 from ...model.parameters import CRUSHING
 from ...model.rod import Rod
 from ...results.file.view import View
@@ -19,8 +19,9 @@ from .parts import LinearTask
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
-    from ...determinant.curves import Curve
-    from ...solve.changes.diagram import Curves, Row
+    from ...determinant.curves import BoundaryCurve
+    from ...solve.changes.boundaries import Boundaries
+    from ...solve.changes.rows import DiagramRow
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +57,7 @@ class PhaseDiagramTask(LinearTask):
         return estimate_lines(self.points.count, self.config.phase_diagram.certify)
 
     def solver(self) -> Solver:
-        from ...solve.changes.diagram import RowRequest, solve_row
+        from ...solve.changes.rows import RowRequest, solve_row
         from ...solve.changes.thresholds import ThresholdStatus, warm_up
 
         options = self.config.phase_diagram
@@ -73,7 +74,7 @@ class PhaseDiagramTask(LinearTask):
 
     def curves(self, view: View) -> list[Filled]:
         """The boundaries through the crossings of all rows, with their folds, as variables of the file."""
-        from ...solve.changes.diagram import curves_through, seed_of
+        from ...solve.changes.boundaries import curves_through, seed_of
 
         line, row = self.config.plane
         rows = self.points.by_name[row]
@@ -98,9 +99,9 @@ class PhaseDiagramTask(LinearTask):
         values = curve_record(found, line, row) | (self._partial_beam() if (line, row) == CRUSHING else {})
         return [(variables[name], np.asarray(value)) for name, value in values.items()]
 
-    def _axis(self, name: str, values: np.ndarray) -> Axis:
+    def _axis(self, name: str, values: np.ndarray) -> PlaneAxis:
         logarithmic = self.config.parameters.axes[name].logarithmic
-        return Axis(name, float(values[0]), float(values[-1]), logarithmic)
+        return PlaneAxis(name, float(values[0]), float(values[-1]), logarithmic)
 
     def _rod(self) -> Rod:
         """Some rod of the plane that is not crushed."""
@@ -117,19 +118,19 @@ class PhaseDiagramTask(LinearTask):
         return {"filament_F_hopf": Fc, "partial_beam_k1": 4 * Fc, "partial_beam_F": 2 * Fc}
 
 
-def record(result: "Row", most: int) -> dict[str, Any]:
+def record(result: "DiagramRow", most: int) -> dict[str, Any]:
     """A row as the variables of the file."""
     classes = {"class": result.motion, "unstable_count": result.unstable_count}
-    return classes | search_record(result.changes, most, "crossing_at")
+    return classes | search_record(result.changes, most, "crossing_at") | {"seconds": result.seconds}
 
 
-def curve_record(found: "Curves", line: str, row: str) -> dict[str, Any]:
+def curve_record(found: "Boundaries", line: str, row: str) -> dict[str, Any]:
     """Curves and folds as the variables of the file."""
     curves = found.curves
     folds = [(number, curve.hopf, fold) for number, curve in enumerate(curves, 1) for fold in curve.folds]
     points = np.concatenate([curve.values for curve in curves]) if curves else np.empty((0, 2))
 
-    def along(of: Callable[["Curve"], Any]) -> list[np.ndarray]:
+    def along(of: Callable[["BoundaryCurve"], Any]) -> list[np.ndarray]:
         return [np.broadcast_to(of(curve), len(curve.values)) for curve in curves] or [np.empty(0)]
 
     values: dict[str, Any] = {

@@ -18,20 +18,20 @@ Part = tuple[str, bool, str]
 
 
 class Status(Protocol):
-    """How a point ended: a member of the task's own IntEnum; `succeeded` says whether as it should."""
+    """How a point ended: a member of the task's own IntEnum."""
 
     @property
     def name(self) -> str: ...
 
     @property
-    def sentence(self) -> str: ...
+    def sentence(self) -> str:
+        """Cause and remedy."""
+
+    @property
+    def succeeded(self) -> bool:
+        """Whether the point ended as it should."""
 
     def __int__(self) -> int: ...
-
-
-def succeeded(status: Status) -> bool:
-    """Whether a point ended as it should: as its enum says, or else with 0, which is ok."""
-    return bool(getattr(status, "succeeded", int(status) == 0))
 
 
 @dataclass(frozen=True, slots=True)

@@ -93,8 +93,8 @@ def record(result: "Spectrum") -> dict[str, Any]:
         "error_estimate": result.error_estimate,
         "unstable_count": result.unstable_count,
         "certified": result.certified,
-        "elements": result.elements,
-        "order": result.order,
+        "elements": result.resolution.elements,
+        "order": result.resolution.order,
         "seconds": result.seconds,
         "status": int(result.status),
     }

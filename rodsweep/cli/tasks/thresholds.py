@@ -63,5 +63,5 @@ def record(result: "Thresholds", most: int) -> dict[str, Any]:
         "F_restabilization": end.at if end else np.nan,
         "restabilization_frequency": end.frequency if end else np.nan,
         "F_end": result.end,
-        "unstable_at_end": result.unstable_at_end,
+        "unstable_at_end": result.transitions.unstable_at_end,
     } | search_record(result, most, "crossing_F")

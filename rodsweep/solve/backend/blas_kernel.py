@@ -12,7 +12,7 @@ from threadpoolctl import threadpool_info
 
 from . import petsc  # noqa: F401 - what is not loaded yet is not seen
 
-UNKNOWN = "unknown"
+NAMELESS = "unknown"
 """What is said of a library that does not tell its name, such as the reference BLAS."""
 
 
@@ -24,8 +24,8 @@ def blas() -> str:
             found[_owner(library["filepath"])].add(_described(library))
     petscs, numpys = (" and ".join(sorted(found[name])) for name in ("PETSc", "NumPy"))
     if numpys in ("", petscs):
-        return petscs or UNKNOWN
-    return f"PETSc {petscs or UNKNOWN}, NumPy {numpys}"
+        return petscs or NAMELESS
+    return f"PETSc {petscs or NAMELESS}, NumPy {numpys}"
 
 
 def _owner(path: str) -> str:

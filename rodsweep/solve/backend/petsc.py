@@ -19,7 +19,10 @@ except ImportError as error:
         "PETSC_DIR and SLEPC_DIR to where they are installed"
     ) from error
 
-__all__ = ["PETSc", "SLEPc", "options", "sparse_package", "versions"]
+__all__ = ["PETSC_ERRORS", "PETSc", "SLEPc", "options", "sparse_package", "versions"]
+
+PETSC_ERRORS = (PETSc.Error, SystemError)
+"""SystemError is how some releases of petsc4py wrap a PETSc.Error."""
 
 SPARSE_PACKAGES = ("superlu", "umfpack", "klu", "mumps")
 """Sparse factorisations that pivot, the fastest on these matrices first. PETSc's own does not."""

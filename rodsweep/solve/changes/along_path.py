@@ -8,9 +8,11 @@ parameter, and the winding number confirms how many modes are unstable at both e
 import math
 from dataclasses import dataclass
 
-from ...determinant.covering import Box, Zero, cover, first_boxes, slabs
+from ...determinant.covering import Box, cover, first_boxes, slabs
+from ...determinant.newton import Zero
 from ...determinant.path import Path, coefficients_at, determinant_along
-from .leading_eigenvalue import Change, Tracer, Untraceable
+from ..point import Unsolvable
+from .leading_eigenvalue import Tracer
 from .unstable_modes import Counts, Crossing, Kind
 
 BESIDE = 1e-4
@@ -19,7 +21,7 @@ ONE_RANGE = 1e-5
 """Relative distance of open boxes below which they make one range."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Transitions:
     """All changes along a path, in increasing order of its parameter.
 
@@ -29,36 +31,37 @@ class Transitions:
     the covering took; solves: eigenproblems.
     """
 
-    crossings: tuple[Crossing, ...]
-    open_range: tuple[float, float]
-    unstable_at_start: int
-    unstable_at_end: int
-    oscillates_at_start: bool
+    crossings: tuple[Crossing, ...] = ()
+    open_range: tuple[float, float] = (math.nan, math.nan)
+    unstable_at_start: int = -1
+    unstable_at_end: int = -1
+    oscillates_at_start: bool = False
     proved: bool
-    boxes: int
-    solves: int
+    boxes: int = 0
+    solves: int = 0
     why_not: str = ""
 
 
 def transitions(path: Path, start: float, stop: float, certify: bool = True) -> Transitions:
     """All changes from the value `start` of the path's parameter up to `stop`.
 
-    Raises Untraceable where no a-priori bound applies or a spectrum cannot be had.
+    Raises Unsolvable where no a-priori bound applies or a spectrum cannot be had.
     """
     low, high = sorted((path.variable(start), path.variable(stop)))
     boxes = first_boxes(path, low, high)
     if boxes is None:
-        raise Untraceable("no a-priori bound on the eigenvalues applies")
+        raise Unsolvable("no a-priori bound on the eigenvalues applies")
     zeros, left, examined = cover(boxes, path.origin, path.direction)
-    hopfs = [_hopf(path, zero) for zero in zeros if low <= zero[1] <= high]
+    hopfs = [_hopf(path, zero) for zero in zeros if low <= zero.p <= high]
     gaps = _gaps(path, left)
     tracer, counts = Tracer(path, certify), Counts(path, gaps, certify)
     unstable = 0 if path.name == "F" and start == 0 else counts.first(start, stop, hopfs)
     oscillates = tracer.anchor(path.variable(start)).oscillates
     edges = [a for a, _ in slabs(path, low, high)] + [high]
     for _ in range(2):
-        leads = [_lead(path, change) for change in tracer.changes(edges)]
-        crossings, at_end = counts.along(sorted(leads + hopfs, key=lambda c: c.at), (start, stop), unstable)
+        crossings, at_end = counts.along(
+            sorted(tracer.changes(edges) + hopfs, key=lambda c: c.at), (start, stop), unstable
+        )
         missed = _pairs_that_do_not_lead(path, crossings, oscillates, unstable)
         if not missed:
             break
@@ -70,15 +73,15 @@ def transitions(path: Path, start: float, stop: float, certify: bool = True) -> 
         counts.doubts.append("it is not proved which eigenvalue leads everywhere")
     known = all(number >= 0 for number in (unstable, at_end, *(c.unstable_after for c in crossings)))
     return Transitions(
-        crossings,
-        (min(a for a, _ in gaps), max(b for _, b in gaps)) if gaps else (math.nan, math.nan),
-        unstable,
-        at_end,
-        oscillates,
-        certify and not gaps and not counts.doubts and known,
-        examined,
-        tracer.solves,
-        "; ".join(counts.doubts),
+        crossings=crossings,
+        open_range=(min(a for a, _ in gaps), max(b for _, b in gaps)) if gaps else (math.nan, math.nan),
+        unstable_at_start=unstable,
+        unstable_at_end=at_end,
+        oscillates_at_start=oscillates,
+        proved=certify and not gaps and not counts.doubts and known,
+        boxes=examined,
+        solves=tracer.solves,
+        why_not="; ".join(counts.doubts),
     )
 
 
@@ -88,8 +91,8 @@ def _pairs_that_do_not_lead(
     """Path variables of crossings whose pair is alone on the axis and so must lead, but is said not to."""
     missed = []
     for crossing in crossings:
-        if crossing.kind in (Kind.onset, Kind.pair_leads, Kind.real_again, Kind.real_leads):
-            oscillates = crossing.kind in (Kind.onset, Kind.pair_leads)
+        if crossing.kind.of_the_leader:
+            oscillates = crossing.kind.to_pair
         else:
             if min(unstable, crossing.unstable_after) == 0 and not oscillates:
                 missed.append(path.variable(crossing.at))
@@ -97,34 +100,20 @@ def _pairs_that_do_not_lead(
     return missed
 
 
-def _value(path: Path, p: float, error: float) -> tuple[float, float]:
-    """(value of the parameter, its error) from the path variable's."""
-    return (1 / p, error / p**2) if path.inverse else (p, error)
-
-
 def _hopf(path: Path, zero: Zero) -> Crossing:
     """A crossing, hopf or hopf_reverse by the direction in which the pair moves."""
-    eta, p, _, error = zero
-    _, D_w, D_p, _, _ = determinant_along(
-        complex(0.0, eta), coefficients_at(p, path.origin, path.direction), path.direction
-    )
-    growing = (-D_p / D_w).real > 0
+    coefficients = coefficients_at(zero.p, path.origin, path.direction)
+    there = determinant_along(complex(0.0, zero.eta_or_x), coefficients, path.direction)
+    growing = (-there.D_p / there.D_w).real > 0
     kind = Kind.hopf if growing != path.inverse else Kind.hopf_reverse
-    value, error = _value(path, p, error)
-    return Crossing(value, kind, eta, 0.0, error)
-
-
-def _lead(path: Path, change: Change) -> Crossing:
-    to_pair = change.to_pair != path.inverse
-    double, single = (Kind.onset, Kind.pair_leads) if to_pair else (Kind.real_again, Kind.real_leads)
-    value, error = _value(path, change.p, change.error)
-    return Crossing(value, double if change.double else single, change.frequency, change.growth_rate, error)
+    at, error = path.value(zero.p, zero.error_of_p)
+    return Crossing(at, kind, zero.eta_or_x, 0.0, error)
 
 
 def _gaps(path: Path, left: list[Box]) -> list[tuple[float, float]]:
     """Disjoint intervals of the parameter that the open boxes cover."""
     gaps: list[tuple[float, float]] = []
-    for a, b in sorted(sorted((_value(path, p0, 0.0)[0], _value(path, p1, 0.0)[0])) for _, _, p0, p1 in left):
+    for a, b in sorted(sorted((path.variable(box.p_from), path.variable(box.p_to))) for box in left):
         if gaps and a <= gaps[-1][1] * (1 + ONE_RANGE):
             gaps[-1] = gaps[-1][0], max(b, gaps[-1][1])
         else:

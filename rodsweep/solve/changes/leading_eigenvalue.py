@@ -1,17 +1,17 @@
 """Which eigenvalue leads along a path of rods, a real one or a pair, and where that changes.
 
-Two things change the character of the rightmost eigenvalue: two real ones meet and become a pair, or
-the other way round (a double eigenvalue, where D = D_w = 0), or one overtakes the other without
-meeting it. Anchors are rods whose leading eigenvalues the spectrum solver gives, certified where
-asked for; between two anchors the squared difference of the two leading ones and the lead over the
-next, which are smooth, must be explained by their slopes, or an anchor is put between. The points
-themselves are found by Newton's method on D, and the winding number says that nothing lies right of
-them.
+Two things change the character of the rightmost eigenvalue: two real ones meet and become a pair, or a
+pair becomes two real ones (a double eigenvalue, where D = D_w = 0), or a real one overtakes a pair, or a
+pair a real one, without meeting it. Anchors are rods whose leading eigenvalues the spectrum solver gives,
+certified where asked for; between two anchors the squared difference of the two leading ones and the lead
+over the next, which are smooth, must be explained by their slopes, or an anchor is put between. The points
+themselves are found by Newton's method on D, and the winding number says that nothing lies right of them.
 """
 
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +19,11 @@ from numpy.typing import NDArray
 from ...determinant.certified_count import count_right_of
 from ...determinant.newton import double_newton, eigenvalue_newton
 from ...determinant.path import Path, coefficients_at
+from ..point import Unsolvable
 from ..spectrum.search import SpectrumRequest, solve_spectrum
+from .unstable_modes import Crossing, Kind
 
-MODES = 4
+ANCHOR_MODES = 4
 """Leading eigenvalues that an anchor knows: two that lead, and their rivals."""
 ANCHOR_ACCURACY = 1e-6
 """What is asked of the spectrum solver; Newton's method on D does the rest."""
@@ -30,18 +32,14 @@ EXPLAINED = 0.25
 CLOSEST, CLOSEST_NEAR_ZERO = 2e-4, 1e-9
 """Distance of anchors, in units of the path, below which no more are put between; and where two changes
 may hide between them."""
-MOST_STEPS = 60
+MOST_OVERTAKING_STEPS = 60
 CARRIED = 8
 """Steps in which an eigenvalue is carried from an anchor to the middle between two."""
 
 
-class Untraceable(Exception):
-    """The leading eigenvalues of a rod on the path could not be computed; says why."""
-
-
 @dataclass(frozen=True)
 class Anchor:
-    """A rod of the path with its leading eigenvalues w and their slopes dw/dp, shape (MODES,).
+    """A rod of the path with its leading eigenvalues w and their slopes dw/dp, shape (ANCHOR_MODES,).
 
     time, lengthening: a time on which the rod relaxes, smooth along the path, and its slope. In its units w
     is of order one; without shear and rotational drag it grows like nu^-2 where the rod is nearly crushed.
@@ -80,17 +78,13 @@ class Anchor:
         return float(value * self.time), float(slope * self.time + value * self.lengthening)
 
 
-@dataclass(frozen=True, slots=True)
-class Change:
-    """The rightmost eigenvalue becomes a pair, or real, at p: by a double root or by an overtaking."""
+class Meeting(NamedTuple):
+    """Where two real eigenvalues become a pair (frequency 0), or a real one and a pair have one real part."""
 
     p: float
     error: float
     growth_rate: float
     frequency: float
-    """Of the pair, where it overtakes or is overtaken; 0 at a double root."""
-    to_pair: bool
-    double: bool
 
 
 class Tracer:
@@ -104,37 +98,39 @@ class Tracer:
         """Whether every anchor is certified and nothing lies right of any change."""
 
     def anchor(self, p: float) -> Anchor:
-        """The anchor at p; Untraceable where its eigenvalues cannot be had."""
+        """The anchor at p; Unsolvable where its eigenvalues cannot be had."""
         if p not in self.anchors:
             self.anchors[p] = self._solve(p)
         return self.anchors[p]
 
     def _solve(self, p: float) -> Anchor:
-        request = SpectrumRequest(MODES, ANCHOR_ACCURACY, self.certify)
+        request = SpectrumRequest(ANCHOR_MODES, ANCHOR_ACCURACY, self.certify)
         rod = self.path.at(p)
         found = solve_spectrum(rod, request)
         self.solves += 1
         self.proved = self.proved and found.certified
         if not np.isfinite(found.eigenvalues).all():
-            raise Untraceable(f"{rod}: {found.status.name} {found.message}".rstrip())
-        w, slope = found.eigenvalues.copy(), np.empty(MODES, dtype=complex)
+            raise Unsolvable(f"{rod}: {found.status.name} {found.message}".rstrip())
+        w, slope = found.eigenvalues.copy(), np.empty(ANCHOR_MODES, dtype=complex)
         for i, guess in enumerate(found.eigenvalues):
-            polished, slope[i], _ = eigenvalue_newton(
-                complex(guess), coefficients_at(p, self.path.origin, self.path.direction), self.path.direction
-            )
+            polished, slope[i], _ = self._followed(complex(guess), p)
             if abs(polished - guess) <= max(10 * found.error_estimate[i], 1e-12 * abs(guess)):
                 w[i] = polished
         return Anchor(p, w, slope, *self._relaxation(p))
 
+    def _followed(self, guess: complex, p: float) -> tuple[complex, complex, float]:
+        """(eigenvalue near the guess, its slope, its error) at p."""
+        coefficients = coefficients_at(p, self.path.origin, self.path.direction)
+        return eigenvalue_newton(guess, coefficients, self.path.direction)
+
     def _relaxation(self, p: float) -> tuple[float, float]:
         """(nu^2 + c2 + gamma3, its slope), in tau2; never zero."""
-        _, nu, c2, gamma3 = coefficients_at(p, self.path.origin, self.path.direction)
-        _, nu1, c21, gamma31 = self.path.direction
-        return nu * nu + c2 + gamma3, 2 * nu * nu1 + c21 + gamma31
+        rod, rate = coefficients_at(p, self.path.origin, self.path.direction), self.path.direction
+        return rod.nu * rod.nu + rod.c2 + rod.gamma3, 2 * rod.nu * rate.nu + rate.c2 + rate.gamma3
 
-    def changes(self, edges: list[float]) -> list[Change]:
-        """All changes between the first and the last of `edges`, sorted by p."""
-        found: list[Change] = []
+    def changes(self, edges: list[float]) -> list[Crossing]:
+        """All changes between the first and the last of `edges`, in increasing order of p."""
+        found: list[Crossing] = []
         stack = [(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True)][::-1]
         length = abs(edges[-1] - edges[0])
         while stack:
@@ -153,7 +149,7 @@ class Tracer:
                     found.append(change)
                     continue
                 if b - a <= 1e-12 * max(abs(a), abs(b)):
-                    raise Untraceable(
+                    raise Unsolvable(
                         f"the change of the leading eigenvalue near {self.path.at(a)} is not found"
                     )
                 share = 0.5
@@ -161,21 +157,27 @@ class Tracer:
             stack += [(middle, b), (a, middle)]
         return found
 
-    def _between(self, left: Anchor, right: Anchor) -> Change | None:
+    def _between(self, left: Anchor, right: Anchor) -> Crossing | None:
         """The one change between two anchors of different character, if it is found there and leads."""
         pair, real = (left, right) if left.oscillates else (right, left)
-        for attempt in (self._double, self._overtaking):
-            change = attempt(pair, real, right.oscillates)
-            if change is not None and left.p <= change.p <= right.p:
-                meeting = 2 if change.double else 3
-                behind = max(left.w[meeting].real, right.w[meeting].real)
-                count = count_right_of((change.growth_rate + behind) / 2, self.path.at(change.p))
-                if count.number in (meeting, None):
-                    self.proved = self.proved and count.number == meeting
-                    return change
+        if right.oscillates != self.path.inverse:
+            double, single = Kind.onset, Kind.pair_leads
+        else:
+            double, single = Kind.real_again, Kind.real_leads
+        for find, kind, meeting in ((self._double, double, 2), (self._overtaking, single, 3)):
+            found = find(pair, real)
+            if found is None or not left.p <= found.p <= right.p:
+                continue
+            behind = max(left.w[meeting].real, right.w[meeting].real)
+            count = count_right_of((found.growth_rate + behind) / 2, self.path.at(found.p))
+            if count.number in (meeting, None):
+                self.proved = self.proved and count.number == meeting
+                at, error = self.path.value(found.p, found.error)
+                return Crossing(at, kind, found.frequency, found.growth_rate, error)
         return None
 
-    def _double(self, pair: Anchor, real: Anchor, to_pair: bool) -> Change | None:
+    def _double(self, pair: Anchor, real: Anchor) -> Meeting | None:
+        """The double eigenvalue between a rod with a leading pair and one with two real eigenvalues."""
         below, above = pair.partner(), real.partner()
         width = abs(pair.p - real.p)
         if below is None or above is None:
@@ -184,9 +186,9 @@ class Tracer:
         p = real.p + share * (pair.p - real.p)
         x = (1 - share) * float((real.w[0] + real.w[1]).real) / 2 + share * float(pair.w[0].real)
         x, p, _, error = double_newton(x, p, self.path.origin, self.path.direction, width)
-        return None if math.isnan(p) else Change(p, error, x, 0.0, to_pair, True)
+        return None if math.isnan(p) else Meeting(p, error, x, 0.0)
 
-    def _overtaking(self, pair: Anchor, real: Anchor, to_pair: bool) -> Change | None:
+    def _overtaking(self, pair: Anchor, real: Anchor) -> Meeting | None:
         """Newton's method on the lead of the real eigenvalue over the pair, each followed by its own."""
         if all(w.imag != 0 for w in pair.w) or all(w.imag == 0 for w in real.w):
             return None  # there is nothing of the other kind to overtake
@@ -195,10 +197,9 @@ class Tracer:
         # Start each eigenvalue from the anchor where it leads and carry it to the middle.
         w_real = self._carried(w_real, real.p, p)
         w_pair = self._carried(w_pair, pair.p, p)
-        for _ in range(MOST_STEPS):
-            coefficients = coefficients_at(p, self.path.origin, self.path.direction)
-            w_real, s_real, e_real = eigenvalue_newton(w_real, coefficients, self.path.direction)
-            w_pair, s_pair, e_pair = eigenvalue_newton(w_pair, coefficients, self.path.direction)
+        for _ in range(MOST_OVERTAKING_STEPS):
+            w_real, s_real, e_real = self._followed(w_real, p)
+            w_pair, s_pair, e_pair = self._followed(w_pair, p)
             slope = s_real.real - s_pair.real
             if w_real.imag != 0 or w_pair.imag == 0 or slope == 0 or not math.isfinite(slope):
                 return None
@@ -208,7 +209,7 @@ class Tracer:
             if not ends[0] <= p <= ends[1]:
                 return None
             if abs(step) <= 4 * error:
-                return Change(p, max(error, abs(step)), w_pair.real, abs(w_pair.imag), to_pair, False)
+                return Meeting(p, max(error, abs(step)), w_pair.real, abs(w_pair.imag))
             w_real, w_pair = w_real + step * s_real, w_pair + step * s_pair
             if w_real.imag != 0:
                 w_real = complex(w_real.real, 0.0)
@@ -218,8 +219,7 @@ class Tracer:
         """An eigenvalue followed from p = start to stop in small steps."""
         p = start
         for i in range(1, CARRIED + 1):
-            coefficients = coefficients_at(p, self.path.origin, self.path.direction)
-            w, slope, _ = eigenvalue_newton(w, coefficients, self.path.direction)
+            w, slope, _ = self._followed(w, p)
             following = start + (stop - start) * i / CARRIED
             real = w.imag == 0
             w = w + slope * (following - p)

@@ -1,71 +1,40 @@
 """All stability changes of one straight rod as the follower force grows from 0 (paper, Sec. VI)."""
 
 import math
-import time
-from dataclasses import dataclass, replace
-from enum import IntEnum
-from typing import Protocol
-
-import numpy as np
+from dataclasses import dataclass
 
 from ...determinant.path import Path
 from ...model.rod import Rod
+from ..point import solved
+from ..status import PointStatus
 from .along_path import Transitions, transitions
-from .leading_eigenvalue import Untraceable
 from .unstable_modes import Crossing, Kind
 
 SHORT_OF_CRUSHED = 1e-6
 """How far below k1, relatively, the search ends where F_max lies beyond: at F = k1 the rod is crushed."""
 
 
-class ThresholdStatus(IntEnum):
-    """Outcome of a search for thresholds, as `rodsweep.solve.spectrum.status.Status` is for spectra."""
+class ThresholdStatus(PointStatus):
+    """Outcome of a search for changes along a path."""
 
-    ok = 0
-    not_certified = 1
-    window_open = 2
-    accuracy_not_reached = 3
-    list_full = 4
-    failed = 5
-
-    @property
-    def sentence(self) -> str:
-        """Cause and remedy."""
-        return SENTENCES[self]
-
-
-SENTENCES = {
-    ThresholdStatus.ok: (
-        "every change is found, as accurate as asked for, and proved complete where asked for"
-    ),
-    ThresholdStatus.not_certified: (
+    ok = 0, "every change is found, as accurate as asked for, and proved complete where asked for", True
+    not_certified = (
+        1,
         "the changes are accurate, but a count of the unstable modes between them could not be decided or "
-        "does not agree, or it is not proved which eigenvalue leads; `certify: false` accepts that"
-    ),
-    ThresholdStatus.window_open: (
+        "does not agree, or it is not proved which eigenvalue leads; `certify: false` accepts that",
+    )
+    window_open = (
+        2,
         "within the open range two crossings are about to meet, so it is undecided whether a window of "
-        "flutter opens and closes there; move a parameter slightly"
-    ),
-    ThresholdStatus.accuracy_not_reached: (
+        "flutter opens and closes there; move a parameter slightly",
+    )
+    accuracy_not_reached = (
+        3,
         "a change is less accurate than asked for and its error says by how much, as where two changes are "
-        "about to meet; ask for a lower accuracy there"
-    ),
-    ThresholdStatus.list_full: "there are more changes than the list holds; raise the option crossings",
-    ThresholdStatus.failed: "the search failed and nothing is stored; the log has its message",
-}
-
-
-class Wish(Protocol):
-    """What the requests of a rod and of a row have in common."""
-
-    @property
-    def accuracy(self) -> float: ...
-
-    @property
-    def certify(self) -> bool: ...
-
-    @property
-    def crossings(self) -> int: ...
+        "about to meet; ask for a lower accuracy there",
+    )
+    list_full = 4, "there are more changes than the list holds; raise the option crossings"
+    failed = 5, "the search failed and nothing is stored; the log has its message"
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,70 +48,54 @@ class ThresholdsRequest:
     """Most changes that will be kept."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Thresholds:
-    """The changes along a path up to the value `end` of its parameter, F or another, in increasing order.
-
-    open_range: (from, to), nan where nothing is
-    open. boxes, solves: evaluations of D and eigenproblems that it took.
-    """
+    """The changes along a path up to the value `end` of its parameter, F or another."""
 
     status: ThresholdStatus
-    crossings: tuple[Crossing, ...]
+    transitions: Transitions
     end: float
-    unstable_at_end: int
-    open_range: tuple[float, float]
-    certified: bool
-    boxes: int
-    solves: int
-    seconds: float
+    seconds: float = 0.0
     message: str = ""
+
+    @property
+    def crossings(self) -> tuple[Crossing, ...]:
+        """All changes, in increasing order of the parameter."""
+        return self.transitions.crossings
 
 
 def solve_thresholds(k1: float, k2: float, gamma3: float, request: ThresholdsRequest) -> Thresholds:
     """All changes for one rod; failures are a status, never an exception."""
-    started = time.perf_counter()
     end = min(request.F_max, k1 * (1 - SHORT_OF_CRUSHED))
-    try:
-        with np.errstate(all="ignore"):
-            found = transitions(Path(Rod(0.0, k1, k2, gamma3), "F"), 0.0, end, request.certify)
-        outcome = outcome_of(found, end, request)
-    except (Untraceable, ArithmeticError, MemoryError) as error:
-        outcome = nothing_found(ThresholdStatus.failed, end, str(error) or type(error).__name__)
-    return replace(outcome, seconds=time.perf_counter() - started)
 
+    def search() -> Thresholds:
+        found = transitions(Path(Rod(0.0, k1, k2, gamma3), "F"), 0.0, end, request.certify)
+        return judged(found, end, request.accuracy, request.certify, request.crossings)
 
-def outcome_of(found: Transitions, end: float, wish: Wish) -> Thresholds:
-    """What is kept of the changes along a path, and how far it can be relied on."""
-    return Thresholds(
-        status=status_of(found, wish),
-        crossings=found.crossings,
-        end=end,
-        unstable_at_end=found.unstable_at_end,
-        open_range=found.open_range,
-        certified=found.proved,
-        boxes=found.boxes,
-        solves=found.solves,
-        seconds=0.0,
-        message=found.why_not,
-    )
+    return solved(search, lambda cause: nothing_found(ThresholdStatus.failed, end, cause))
 
 
 def nothing_found(status: ThresholdStatus, end: float, message: str = "") -> Thresholds:
     """The outcome where nothing was searched, or the search failed."""
-    certified = status == ThresholdStatus.ok
-    return Thresholds(status, (), end, -1, (math.nan, math.nan), certified, 0, 0, 0.0, message)
+    found = Transitions(proved=status == ThresholdStatus.ok)
+    return Thresholds(status=status, transitions=found, end=end, message=message)
 
 
-def status_of(found: Transitions, wish: Wish) -> ThresholdStatus:
+def judged(found: Transitions, end: float, accuracy: float, certify: bool, most: int) -> Thresholds:
+    """The changes along a path, and how far they can be relied on."""
+    status = _status(found, accuracy, certify, most)
+    return Thresholds(status=status, transitions=found, end=end, message=found.why_not)
+
+
+def _status(found: Transitions, accuracy: float, certify: bool, most: int) -> ThresholdStatus:
     """How far a list of changes can be relied on; what matters most is said first."""
     if not math.isnan(found.open_range[0]):
         return ThresholdStatus.window_open
-    if len(found.crossings) > wish.crossings:
+    if len(found.crossings) > most:
         return ThresholdStatus.list_full
-    if any(c.error > wish.accuracy * abs(c.at) for c in found.crossings):
+    if any(c.error > accuracy * abs(c.at) for c in found.crossings):
         return ThresholdStatus.accuracy_not_reached
-    if wish.certify and not found.proved:
+    if certify and not found.proved:
         return ThresholdStatus.not_certified
     return ThresholdStatus.ok
 

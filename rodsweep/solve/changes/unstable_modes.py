@@ -27,6 +27,16 @@ class Kind(IntEnum):
     real_leads = 6
     pair_leads = 7
 
+    @property
+    def of_the_leader(self) -> bool:
+        """Whether the leading eigenvalue becomes a pair or real, rather than a pair crosses the axis."""
+        return self in (Kind.onset, Kind.pair_leads, Kind.real_again, Kind.real_leads)
+
+    @property
+    def to_pair(self) -> bool:
+        """Whether a pair leads beyond it."""
+        return self in (Kind.onset, Kind.pair_leads)
+
 
 @dataclass(frozen=True, slots=True)
 class Crossing:

@@ -6,7 +6,6 @@ cycle is solved for by Newton's method and refined (`resolved`, `orbit`, `floque
 are close proves nothing near the Hopf point, where motions decay slowly.
 """
 
-import time
 from dataclasses import dataclass, replace
 from math import nan
 
@@ -19,10 +18,11 @@ from ...discretization.resolution import expected_wave_number, resolution_for
 from ...errors import EnvironmentLacks
 from ...model.dispersion import most_amplified_wave
 from ...model.rod import Rod
-from ..backend.petsc import PETSc, options
+from ..backend.petsc import options
 from ..motion.integrator import forget_integrators
 from ..motion.leading_mode import Mode
 from ..motion.time_scheme import PREFIX
+from ..point import solved
 from .measures import shapes, traces
 from .refinement import Resolved
 from .status import CycleStatus
@@ -122,18 +122,15 @@ def solve_cycle(  # noqa: PLR0913, PLR0917
 
     k1, k2 are finite and gamma3 > 0. Failures are a status, never an exception.
     """
-    began = time.perf_counter()
     if not k1 > F:
         crushed = f"F = {F:g} crushes a rod of k1 = {k1:g} at rest"
         return _nothing(CycleStatus.left_the_model, request, crushed)
-    try:
-        with np.errstate(all="ignore"):
-            outcome = _solve(Rod(F, k1, k2, gamma3), gamma1, request, start)
-    except (PETSc.Error, SystemError, ArithmeticError, np.linalg.LinAlgError, MemoryError) as error:
+
+    def failed(cause: str) -> Cycle:
         forget_integrators()  # a PETSc object is not usable after an error inside it
-        reason = str(error.__cause__ or error) or type(error).__name__
-        outcome = _nothing(CycleStatus.failed, request, reason.splitlines()[-1])
-    return replace(outcome, seconds=time.perf_counter() - began)
+        return _nothing(CycleStatus.failed, request, cause)
+
+    return solved(lambda: _solve(Rod(F, k1, k2, gamma3), gamma1, request, start), failed)
 
 
 def warm_up() -> None:

@@ -5,44 +5,26 @@ given are the finer one's. Next to a double eigenvalue, where condition numbers 
 distance of the two, two meshes may agree by luck: there the rounding that moves the two is added.
 """
 
-import math
-from dataclasses import dataclass
+from dataclasses import replace
 from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...determinant.value import scaled_determinant
+from ...determinant.value import distance_to_next
 from ...discretization.pencil import assemble
 from ...discretization.resolution import Resolution, finer, mesh_accuracy, resolution_for
-from ...model.compilation import compiled
-from ...model.rod import Coefficients, Rod
-from .inverse_iteration import Shapes, mode_shapes
+from ...model.rod import Rod
+from .inverse_iteration import Vectors, mode_vectors
 
 ORDER_STEP = 4
 """How much finer the second mesh is; two orders of magnitude in the vectors."""
-MOST_MESHES = 4
-MOST_UNKNOWNS = 1500
+MOST_PAIRS = 4
+MOST_DENSE_UNKNOWNS = 1500
 """Unknowns beyond which dense linear algebra takes seconds."""
 FINEST_MESH_ACCURACY = 1e-24
-DIFFERENCE = 1e-4
-"""Relative step of the difference that gives D''."""
 ROUNDINGS = 2.0
 """Relative error of a condition number, in units of rounding/distance: 0.6 in the median, at most 3.4."""
-
-
-@dataclass(frozen=True, slots=True)
-class Vectors:
-    """Modes on one mesh, and their errors as in `leading_modes.Modes`, shape (modes,)."""
-
-    shapes: Shapes
-    mode_error: NDArray[np.float64]
-    condition_error: NDArray[np.float64]
-
-    def errors(self) -> dict[str, float]:
-        """The largest relative errors, by quantity; inf where there is no number."""
-        errors = {"modes": self.mode_error.max(), "condition numbers": self.condition_error.max()}
-        return {name: inf if np.isnan(error) else float(error) for name, error in errors.items()}
 
 
 def first_mesh(wave: float, accuracy: float) -> Resolution:
@@ -50,20 +32,20 @@ def first_mesh(wave: float, accuracy: float) -> Resolution:
     return resolution_for(wave, max(mesh_accuracy(accuracy, True), FINEST_MESH_ACCURACY))
 
 
-def resolved_vectors(
+def converged_vectors(
     rod: Rod, eigenvalues: NDArray[np.complex128], points: NDArray[np.float64], wave: float, accuracy: float
 ) -> Vectors | None:
     """The vectors at `points` from the best of few meshes; None where even the first is too large."""
     mesh = first_mesh(wave, accuracy)
     gaps = np.array([distance_to_next(complex(w), rod.coefficients) for w in eigenvalues])
-    coarse = mode_shapes(rod, assemble(mesh.elements, mesh.order), eigenvalues, points)
+    coarse = mode_vectors(rod, assemble(mesh.elements, mesh.order), eigenvalues, points)
     best: Vectors | None = None
     least = inf
-    for _ in range(MOST_MESHES):
+    for _ in range(MOST_PAIRS):
         mesh = Resolution(mesh.elements, mesh.order + ORDER_STEP) if best is None else finer(mesh)
-        if mesh.unknowns > MOST_UNKNOWNS:
+        if mesh.unknowns > MOST_DENSE_UNKNOWNS:
             break
-        fine = mode_shapes(rod, assemble(mesh.elements, mesh.order), eigenvalues, points)
+        fine = mode_vectors(rod, assemble(mesh.elements, mesh.order), eigenvalues, points)
         result = _compared(coarse, fine, gaps)
         error = max(result.errors().values())
         improved = error < least / 2
@@ -75,18 +57,7 @@ def resolved_vectors(
     return best
 
 
-@compiled
-def distance_to_next(w: complex, coefficients: Coefficients) -> float:
-    """About how far the eigenvalue next to w is, 2 |D'/D''|: sharp where that is close."""
-    h = DIFFERENCE * abs(w)
-    _, slope, S, _ = scaled_determinant(w, coefficients)
-    _, after, S_after, _ = scaled_determinant(w + h, coefficients)
-    _, before, S_before, _ = scaled_determinant(w - h, coefficients)
-    second = (after * math.exp(S_after - S) - before * math.exp(S_before - S)) / (2 * h)
-    return 2 * abs(slope) / max(abs(second), 1e-300)
-
-
-def _compared(coarse: Shapes, fine: Shapes, gaps: NDArray[np.float64]) -> Vectors:
+def _compared(coarse: Vectors, fine: Vectors, gaps: NDArray[np.float64]) -> Vectors:
     """The finer mesh's modes, and how far the coarser one's are from them."""
     error = np.zeros(len(fine.condition))
     pairs = ((coarse.right, fine.right), (coarse.deformation, fine.deformation), (coarse.left, fine.left))
@@ -97,4 +68,5 @@ def _compared(coarse: Shapes, fine: Shapes, gaps: NDArray[np.float64]) -> Vector
         error = np.maximum(error, relative.max(axis=0))
     # Of a normal operator, of condition 1, rounding moves the eigenvalues but turns no vector.
     turned = ROUNDINGS * (1 - 1 / fine.condition**2) * fine.rounding / np.maximum(gaps, 1e-300)
-    return Vectors(fine, error, np.abs(coarse.condition / fine.condition - 1) + turned)
+    moved = np.abs(coarse.condition / fine.condition - 1)
+    return replace(fine, mode_error=error, condition_error=moved + turned)

@@ -4,15 +4,16 @@ Each eigenvalue is the shift, with the pencil for the right and its transpose fo
 normalisation is that of `rodsweep.solve.modes.leading_modes`.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...determinant.value import ROUND_OFF
-from ...discretization.pencil import Pencil, shear_force, slope
+from ...discretization.pencil import Pencil, shear_force, slope, tip_scale
+from ...discretization.resolution import Resolution
 from ...model.rod import Rod
-from ..spectrum.search import NO_TIP
 from .dense_operator import dense_operator
 
 Complex = NDArray[np.complex128]
@@ -23,39 +24,75 @@ CONJUGATE = 1e-12
 """Relative distance below which two neighbouring eigenvalues are one pair."""
 
 
-@dataclass(frozen=True, slots=True)
-class Shapes:
-    """The modes on one mesh: arrays as in `rodsweep.solve.modes.leading_modes.Modes`.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Vectors:
+    """The modes on one mesh, at given points.
 
+    right: (Y, Theta) with Y(1) = 1, left: (Y+, Theta+) with Y+(1) = 1, in L and 1 for a tip deflection of L;
+    deformation: (h2, Pi) = (Y' - nu Theta, Theta') of the right modes (Sec. V), h2 = c2 s being exactly
+    0 in an unshearable rod; complex, shape (2, modes, points), NaN where a tip does not move.
+    pairing: (psi_n, xi_n) in the Gamma inner product, complex, shape (modes,).
+    condition: |psi| |xi|/|(psi, xi)| >= 1, shape (modes,): how much farther than its size a perturbation of
+    L, in the Gamma norm, moves the eigenvalue; inf at the onset F*. With gamma3 = 0 theta follows
+    y at once, is no part of the state, and the norm is that of y.
     rounding: how far that of (A - w B) x moves an eigenvalue of the mesh, in 1/tau2, shape (modes,).
+    mode_error: largest error of Y, Theta, h2, Pi, Y+ and Theta+, each in units of its largest value;
+    condition_error: relative; both of shape (modes,) and NaN until another mesh is compared.
     """
 
-    pencil: Pencil
+    resolution: Resolution
     right: Complex
     deformation: Complex
     left: Complex
     pairing: Complex
     condition: NDArray[np.float64]
     rounding: NDArray[np.float64]
+    mode_error: NDArray[np.float64]
+    condition_error: NDArray[np.float64]
+
+    def errors(self) -> dict[str, float]:
+        """The largest relative errors, by quantity; inf where there is no number."""
+        errors = {"modes": self.mode_error.max(), "condition numbers": self.condition_error.max()}
+        return {name: inf if np.isnan(error) else float(error) for name, error in errors.items()}
 
 
-def mode_shapes(rod: Rod, pencil: Pencil, eigenvalues: Complex, points: NDArray[np.float64]) -> Shapes:
+def mode_vectors(rod: Rod, pencil: Pencil, eigenvalues: Complex, points: NDArray[np.float64]) -> Vectors:
     """The modes of known eigenvalues on one mesh, at `points` in [0, 1]."""
     X, Z, rounding = _vectors(rod, pencil, eigenvalues)
     evaluation = pencil.evaluation(points)
     y, theta = pencil.fields(X, rod)
-    right = np.stack([(evaluation @ y).T, (evaluation @ theta).T])
-    adjoint = np.stack([(evaluation @ field).T for field in pencil.fields(Z.conj(), rod)])
-    deformation = np.stack([rod.c2 * shear_force(pencil, X, points).T, slope(pencil, theta, points).T])
     B = pencil.inertia(rod)[:, None]
     pairing = (B * Z * X).sum(axis=0)
     norms = [np.sqrt((B * np.abs(V) ** 2).sum(axis=0)) for V in (X, Z)]
-    condition = norms[0] * norms[1] / np.abs(pairing)
-    return Shapes(pencil, right, deformation, adjoint, pairing, condition, rounding)
+    return replace(
+        no_vectors(Resolution(pencil.elements, pencil.order), len(eigenvalues), len(points)),
+        right=np.stack([(evaluation @ y).T, (evaluation @ theta).T]),
+        deformation=np.stack([rod.c2 * shear_force(pencil, X, points).T, slope(pencil, theta, points).T]),
+        left=np.stack([(evaluation @ field).T for field in pencil.fields(Z.conj(), rod)]),
+        pairing=pairing,
+        condition=norms[0] * norms[1] / np.abs(pairing),
+        rounding=rounding,
+    )
+
+
+def no_vectors(resolution: Resolution, modes: int, points: int) -> Vectors:
+    """What stands for the vectors where there are none: NaN."""
+    shape, numbers = np.full((2, modes, points), np.nan + 0j), np.full(modes, np.nan)
+    return Vectors(
+        resolution=resolution,
+        right=shape,
+        deformation=shape,
+        left=shape,
+        pairing=numbers + 0j,
+        condition=numbers,
+        rounding=numbers,
+        mode_error=numbers,
+        condition_error=numbers,
+    )
 
 
 def _vectors(rod: Rod, pencil: Pencil, eigenvalues: Complex) -> tuple[Complex, Complex, NDArray[np.float64]]:
-    """The right and left vectors, shape (unknowns, modes), scaled at the tip, and `Shapes.rounding`."""
+    """The right and left vectors, shape (unknowns, modes), scaled at the tip, and `Vectors.rounding`."""
     A, B = dense_operator(rod, pencil)
     m = len(eigenvalues)
     X, Z = np.empty((pencil.unknowns, m), complex), np.empty((pencil.unknowns, m), complex)
@@ -66,7 +103,8 @@ def _vectors(rod: Rod, pencil: Pencil, eigenvalues: Complex) -> tuple[Complex, C
             X[:, i], Z[:, i] = null_vectors(A, B, complex(w))
     squares = (np.abs(Z) ** 2 * (np.abs(A) ** 2 @ np.abs(X) ** 2)).sum(axis=0)
     rounding = ROUND_OFF * np.sqrt(squares) / np.abs((B[:, None] * Z * X).sum(axis=0))
-    return X * _tip_scale(rod, pencil, X), Z * _tip_scale(rod, pencil, Z), rounding
+    right, left = (V * tip_scale(*pencil.fields(V, rod)) for V in (X, Z))
+    return right, left, rounding
 
 
 def null_vectors(A: NDArray, B: NDArray, w: complex) -> tuple[NDArray, NDArray]:
@@ -89,10 +127,3 @@ def _iterated(inverse: NDArray, B: NDArray) -> NDArray:
         growth = float(np.abs(x).max())
         x = x / growth
     return x if growth >= last else before
-
-
-def _tip_scale(rod: Rod, pencil: Pencil, vectors: Complex) -> Complex:
-    """What makes y(1) = 1 of each vector; NaN where the tip does not move."""
-    y, theta = pencil.fields(vectors, rod)
-    size = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))
-    return np.where(np.abs(y[-1]) > NO_TIP * size, 1 / y[-1], np.nan)

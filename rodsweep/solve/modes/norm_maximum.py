@@ -24,7 +24,7 @@ MOST_INTERVALS = 4000
 """Intervals open at a time beyond which the bound is left as it is."""
 BATCH = 128
 LARGEST_EXPONENT = 300.0
-MOST_STEPS = 40
+MOST_PEAK_STEPS = 40
 RISE_LEFT = 1e-14
 """Relative rise that a concave maximum may still have in its bracket: the time is its square root."""
 
@@ -82,7 +82,7 @@ def _peak(propagator: Propagator, low: float, high: float) -> tuple[float, float
     if rate_low <= 0 or rate_high >= 0:
         return max((at_low, low), (at_high, high))
     best = (0.0, low)
-    for _ in range(MOST_STEPS):
+    for _ in range(MOST_PEAK_STEPS):
         t = (low * rate_high - high * rate_low) / (rate_high - rate_low)
         value, rate = propagator.norm(t)
         best = max(best, (value, t))

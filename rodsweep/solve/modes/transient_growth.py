@@ -9,7 +9,7 @@ S is asked for to an accuracy relative to itself. Where a is just above 0 the gr
 shear leads and like a^5 where bending does, and early; below the accuracy it is reported as 1 at 0.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, exp, inf, isnan, log, nan, pi, sqrt
 
 import numpy as np
@@ -26,29 +26,44 @@ FEWEST_MODES, MORE_MODES = 8, 1.5
 """Modes that represent exp(L t) at first, and the factor to the next attempt."""
 TRUNCATION_MARGIN = 4.0
 """exp(-this): share of the accuracy that the modes left out may use up."""
-SEARCH_SHARE, LEAST_TOLERANCE = 0.25, 2e-13
+SEARCH_SHARE, LEAST_SEARCH_TOLERANCE = 0.25, 2e-13
 """Share of the accuracy left open between times, and the rounding below which it would be in vain."""
-FIRST_STEP, ORDER_FACTOR, MOST_MESHES = 4, 1.4, 5
+FIRST_FINER, ORDER_FACTOR, MOST_GROWTH_MESHES = 4, 1.4, 5
 """How much finer the second mesh is, and the factor to the next: layers at the tip ask for high orders."""
-MOST_UNKNOWNS = 400
+MOST_GROWTH_UNKNOWNS = 400
 """Unknowns beyond which no further mesh is tried: all of its modes take a second."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Growth:
-    """sup_t |exp(L t)| in the Gamma norm, when, and the relative error estimate of the first."""
+    """What a perturbation does before it decays; NaN where it was not asked for.
 
-    largest: float
-    time: float
-    error: float
-    abscissa: float = nan
-    """The numerical abscissa, in 1/tau2, and its absolute error."""
+    transient_growth: sup_t |exp(L t)| in the Gamma norm, transient_time: when, in tau2: 1 at 0 where it
+    exceeds 1 by no more than growth_error, inf at inf for an unstable rod, NaN where stability is undecided;
+    growth_error: relative. The time is as accurate as a flat maximum allows.
+    numerical_abscissa: sup Re (xi, L xi)/(xi, xi), the growth rate at t = 0+, in 1/tau2; abscissa_error.
+    """
+
+    transient_growth: float = nan
+    transient_time: float = nan
+    growth_error: float = nan
+    numerical_abscissa: float = nan
     abscissa_error: float = nan
 
     def errors(self, rate: float) -> dict[str, float]:
         """Relative errors by quantity; that of the abscissa next to `rate`, where the latter is larger."""
-        scale = max(abs(self.abscissa), rate)
-        return {"transient growth": self.error, "numerical abscissa": self.abscissa_error / scale}
+        scale = max(abs(self.numerical_abscissa), rate)
+        return {"transient growth": self.growth_error, "numerical abscissa": self.abscissa_error / scale}
+
+
+KNOWN = {
+    True: None,
+    False: Growth(transient_growth=inf, transient_time=inf, growth_error=0.0),
+    None: Growth(growth_error=0.0),
+}
+"""The growth where stability alone says what it is."""
+UNBOUNDED = Growth(growth_error=inf)
+"""The growth of which nothing is known."""
 
 
 def growth_of(rod: Rod, mesh: Resolution, accuracy: float, stable: bool | None, rate: float) -> Growth:
@@ -56,25 +71,24 @@ def growth_of(rod: Rod, mesh: Resolution, accuracy: float, stable: bool | None, 
 
     A rod that is not `stable` grows without end; where that is not known (None), the growth is nan.
     """
-    known = {True: None, False: Growth(inf, inf, 0.0), None: Growth(nan, nan, 0.0)}[stable]
-    best, least = Growth(nan, nan, inf), inf
+    best, least = UNBOUNDED, inf
     abscissa, coarse = numerical_abscissa(rod, assemble(mesh.elements, mesh.order)), None
-    for step in range(MOST_MESHES):
-        order = mesh.order + FIRST_STEP if step == 0 else ceil(ORDER_FACTOR * mesh.order)
+    for step in range(MOST_GROWTH_MESHES):
+        order = mesh.order + FIRST_FINER if step == 0 else ceil(ORDER_FACTOR * mesh.order)
         last, mesh = mesh, Resolution(mesh.elements, order)
-        if step and mesh.unknowns > MOST_UNKNOWNS:
+        if step and mesh.unknowns > MOST_GROWTH_UNKNOWNS:
             break
         pencil = assemble(mesh.elements, mesh.order)
         before, abscissa = abscissa, numerical_abscissa(rod, pencil)
         change = abs(abscissa - before)
-        found = known
+        found = KNOWN[stable]
         if found is None and abscissa + change <= 0:
-            found = Growth(1.0, 0.0, 0.0)
+            found = Growth(transient_growth=1.0, transient_time=0.0, growth_error=0.0)
         if found is None:
             coarse = coarse or propagator_of(rod, assemble(last.elements, last.order))
             fine = propagator_of(rod, pencil)
             found, coarse = transient_growth(coarse, fine, abscissa + change, accuracy), fine
-        result = Growth(found.largest, found.time, found.error, abscissa, change)
+        result = replace(found, numerical_abscissa=abscissa, abscissa_error=change)
         error = max(inf if isnan(error) else error for error in result.errors(rate).values())
         improved = error < least / 2
         if error < least or step == 0:
@@ -92,9 +106,9 @@ def propagator_of(rod: Rod, pencil: Pencil) -> Propagator:
 def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accuracy: float) -> Growth:
     """The largest growth on the finer mesh, compared with that on the coarser; `abscissa` > 0 is a bound."""
     if isnan(abscissa) or not fine.w[0].real < 0:  # the mesh makes an eigenvalue up that the rod has not
-        return Growth(nan, nan, inf)
+        return UNBOUNDED
     patience = log(1 / accuracy) + TRUNCATION_MARGIN
-    tolerance = max(SEARCH_SHARE * accuracy, LEAST_TOLERANCE)
+    tolerance = max(SEARCH_SHARE * accuracy, LEAST_SEARCH_TOLERANCE)
     best, ceiling, tail, k, stop = (1.0, 0.0), 1.0, 0.0, FEWEST_MODES, 0.0
     while True:
         k = fine.keep(k)
@@ -113,7 +127,7 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
     if best[0] > 1:
         times = best[1], max(first, log(best[0]) / abscissa)
         hidden += _mesh_error(coarse, fine, k, times)
-    return Growth(*best, hidden)
+    return Growth(transient_growth=best[0], transient_time=best[1], growth_error=hidden)
 
 
 def _mesh_error(coarse: Propagator, fine: Propagator, k: int, times: tuple[float, float]) -> float:

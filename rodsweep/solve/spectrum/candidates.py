@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 
 from ...determinant.box import squared_amplification
 from ...determinant.certified_count import Count, count_right_of
-from ...determinant.roots import largest, roots
+from ...determinant.roots import Roots, roots
 from ...discretization.resolution import Resolution
 from ...model.rod import Rod
-from ..backend.petsc import PETSc
+from ..backend.petsc import PETSC_ERRORS
+from ..point import cause_of
 from .krylov_schur import eigen_solver, forget_solvers
 
 WAVES_A_NODE = 2.0
@@ -24,40 +25,30 @@ WIDE_GAP = 0.05
 """Relative gap between two real parts that is wide enough to draw a line through."""
 NO_GAP = 1e-6
 """Relative gap below which two real parts count as equal."""
-MOST_LINES = 3
+LINES_TRIED = 3
 """Lines tried before the count is given up."""
-PETSC_ERRORS = (PETSc.Error, SystemError)
-"""SystemError is how some releases of petsc4py wrap a PETSc.Error."""
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
-    """What one attempt found and what stands for a root of D: sorted as `rodsweep.model` states.
+class Candidates:
+    """What one attempt found: roots of D, k of them, sorted as `rodsweep.model` states.
 
-    w: complex, shape (k,); error: |D/D'| at each, displacement: how far off the mesh was, in units of |w|
-    or of the length over which D changes, wave: largest |q|, on_the_axis: whether it lies on the imaginary
-    axis within its error, shape (k,); ahead: eigenvalues of the mesh right of all these that stand for no
-    root, though they lie where one may; vectors: the mesh's, shape (unknowns, k), or None; failure: why SLEPc
-    or LAPACK gave nothing, or empty.
+    vectors: the mesh's, shape (unknowns, k), or None; failure: why SLEPc or LAPACK gave nothing, or empty.
     """
 
     resolution: Resolution
-    w: NDArray[np.complex128]
-    error: NDArray[np.float64]
-    displacement: NDArray[np.float64]
-    wave: NDArray[np.float64]
-    on_the_axis: NDArray[np.bool_]
-    ahead: int
+    roots: Roots
     vectors: NDArray[np.complex128] | None
     failure: str = ""
 
     def worst(self, modes: int) -> float:
         """Largest relative error estimate of the leading modes."""
-        return largest(self.error, self.w, modes)
+        errors, w = self.roots.error[:modes].tolist(), self.roots.w[:modes].tolist()
+        return max(error / abs(value) for error, value in zip(errors, w, strict=True))
 
     def coarseness(self, modes: int) -> float:
         """Largest displacement of the leading modes."""
-        return float(self.displacement[:modes].max())
+        return float(self.roots.displacement[:modes].max())
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +65,9 @@ class Verdict:
         return self.clear and self.count.number == self.here
 
 
-def attempt(rod: Rod, resolution: Resolution, wanted: int, shift: float, vectors: bool, tight: bool) -> Found:
+def attempt(
+    rod: Rod, resolution: Resolution, wanted: int, shift: float, vectors: bool, tight: bool
+) -> Candidates:
     """The eigenvalues nearest the shift, at least `wanted` where they converge, without impostors.
 
     tight: to the last digit of the mesh before they are refined on D. An error inside PETSc, SLEPc or LAPACK
@@ -90,20 +83,12 @@ def attempt(rod: Rod, resolution: Resolution, wanted: int, shift: float, vectors
         forget_solvers()
         failure = cause_of(error)
     most_waves = WAVES_A_NODE * resolution.elements * resolution.order
-    order, w, errors, displacement, wave, axis, ahead = roots(
-        raw, rod.coefficients, sqrt(squared_amplification(rod)), most_waves
-    )
-    kept = kept[:, order] if kept is not None else None
-    return Found(resolution, w, errors, displacement, wave, axis, ahead, kept, failure)
+    kept_roots = roots(raw, rod.coefficients, sqrt(squared_amplification(rod)), most_waves)
+    kept = kept[:, kept_roots.chosen] if kept is not None else None
+    return Candidates(resolution, kept_roots, kept, failure)
 
 
-def cause_of(error: BaseException) -> str:
-    """The last line of an error's message, which in PETSc's says what is wrong."""
-    cause = error.__cause__ or error
-    return (str(cause) or type(cause).__name__).splitlines()[-1]
-
-
-def judge(rod: Rod, found: Found, modes: int) -> Verdict:
+def judge(rod: Rod, found: Roots, modes: int) -> Verdict:
     """Counts the eigenvalues right of a line below the last wanted and below every unstable mode."""
     for line in lines(list(map(complex, found.w)), modes):
         count = count_right_of(line, rod)
@@ -129,4 +114,4 @@ def lines(w: list[complex], modes: int) -> list[float]:
     gaps.sort(key=lambda gap: -gap[0])  # stable: of the wide ones the first stays foremost
     last = below[-1]
     behind = last - WIDE_GAP * (abs(w[-1]) if last < 0 else abs(w[0].real) + 1.0)
-    return [*(middle for _, middle in gaps[: MOST_LINES - 1]), behind]
+    return [*(middle for _, middle in gaps[: LINES_TRIED - 1]), behind]

@@ -32,7 +32,7 @@ All that a Krylov space has beyond these and the finite ones is rounding, in whi
 START_WIDTH = 3.3
 """Width of the first Krylov vector in units of the distance of nodes: a displacement next to the tip, which
 every mode moves, as smooth as the wanted modes are. It saves two steps of eleven."""
-PREFIX = "spectrum_"
+SPECTRUM_PREFIX = "spectrum_"
 """Prefix of the PETSc options that override this solver, as in -spectrum_eps_ncv 32."""
 
 
@@ -75,13 +75,13 @@ class EigenSolver:
         distance = (1 - self.pencil.positions()) * self.pencil.nodes / START_WIDTH
         first[: self.pencil.nodes] = np.exp(-(distance**2)) * np.sqrt(self.pencil.mass)
         self.start = PETSc.Vec().createWithArray(first, comm=PETSc.COMM_SELF)
-        self.users_krylov = PETSc.Options(PREFIX).getInt("eps_ncv", 0)
-        self.users_tolerance = PETSc.Options(PREFIX).getReal("eps_tol", 0.0)
+        self.users_krylov = PETSc.Options(SPECTRUM_PREFIX).getInt("eps_ncv", 0)
+        self.users_tolerance = PETSc.Options(SPECTRUM_PREFIX).getReal("eps_tol", 0.0)
         self.eps = self._solver("petsc" if self.dense else package)
 
     def _solver(self, package: str | None) -> "SLEPc.EPS":
         eps = SLEPc.EPS().create(PETSc.COMM_SELF)
-        eps.setOptionsPrefix(PREFIX)
+        eps.setOptionsPrefix(SPECTRUM_PREFIX)
         eps.setProblemType(SLEPc.EPS.ProblemType.GNHEP)
         eps.setType(SLEPc.EPS.Type.KRYLOVSCHUR)
         eps.setWhichEigenpairs(SLEPc.EPS.Which.TARGET_MAGNITUDE)

@@ -5,7 +5,6 @@ eigenvalues, and refines them on D. How far the mesh was off, the error that is 
 what to change next; all must be in order before a point is ok.
 """
 
-import time
 from dataclasses import dataclass
 from math import isfinite
 
@@ -13,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...determinant.box import squared_amplification
+from ...discretization.pencil import tip_scale
 from ...discretization.quadrature import lobatto_points
 from ...discretization.resolution import (
     MOST_UNKNOWNS,
@@ -24,7 +24,8 @@ from ...discretization.resolution import (
 )
 from ...model.dispersion import most_amplified_wave
 from ...model.rod import Rod
-from .candidates import PETSC_ERRORS, Found, Verdict, attempt, cause_of, judge
+from ..point import solved
+from .candidates import Candidates, Verdict, attempt, judge
 from .krylov_schur import eigen_solver, forget_solvers
 from .status import Status
 
@@ -32,18 +33,16 @@ SHIFT_ABOVE_GROWTH = 1.05
 """Shift in units of the growth rate of the most amplified wave, which bounds most spectra."""
 SPARE_MODES = 1
 """Eigenvalues asked for beyond those that the winding number counts."""
-MOST_ATTEMPTS = 12
+MOST_MESHES_TRIED = 12
 MOST_FAILURES = 3
 """Attempts that may end with an error inside PETSc, SLEPc or LAPACK."""
-STALLED = 2
+NO_PROGRESS = 2
 """Refinements without a better error after which rounding, not the mesh, is taken as the limit."""
 SAFETY, STALLED_SAFETY = 0.5, 0.8
 """Share of the accuracy that the error estimate may use up, being an estimate; more where rounding stalls."""
 LARGEST_DISPLACEMENT, UNBOUNDED_DISPLACEMENT = 1e-3, 1e-6
 """Relative displacement of a mesh's eigenvalues from the roots of D that they lead to, beyond which it may
 have missed what it was to find; where no bound holds its convergence is the only witness."""
-NO_TIP = 1e-10
-"""Y(1) in units of the largest value, below which a vector cannot be scaled by it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +56,7 @@ class SpectrumRequest:
     """Number of Lobatto nodes on which (Y, Theta) are wanted; 0 for none."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Spectrum:
     """The leading transverse eigenvalues of one rod, in the order that `rodsweep.model` states.
 
@@ -71,125 +70,153 @@ class Spectrum:
     status: Status
     eigenvalues: NDArray[np.complex128]
     error_estimate: NDArray[np.float64]
-    unstable_count: int
-    certified: bool
-    elements: int
-    order: int
-    seconds: float
+    unstable_count: int = -1
+    certified: bool = False
+    resolution: Resolution = Resolution(0, 0)
+    seconds: float = 0.0
     vectors: NDArray[np.complex128] | None = None
     message: str = ""
 
 
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """Candidates with their count, if one was asked for, and how far short of the request they fall."""
+
+    found: Candidates
+    verdict: Verdict | None
+    short: float
+    """The largest of what may be too large, in units of what is allowed."""
+
+    @property
+    def grade(self) -> tuple[bool, float]:
+        """Less is better: first what a count decides, then what is more accurate."""
+        return self.verdict is not None and self.verdict.count.number is None, self.short
+
+
 def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
     """The leading `request.modes` eigenvalues of `rod`; failures are a status, never an exception."""
-    started = time.perf_counter()
-    try:
-        with np.errstate(all="ignore"):
-            return _solve(rod, request, started)
-    except (*PETSC_ERRORS, ArithmeticError, MemoryError) as error:
+
+    def failed(cause: str) -> Spectrum:
         forget_solvers()
-        return _nothing(Status.failed, request, cause_of(error), started)
+        return _nothing(Status.failed, request, cause)
+
+    return solved(lambda: Search(rod, request).outcome(), failed)
 
 
 def warm_up() -> None:
     """Loads what is compiled and created at first use, so that no point pays for it."""
-    _solve(Rod(30.0, 1e4, 1e4, 1e-4), SpectrumRequest(2, 1e-4, certify=True), time.perf_counter())
+    Search(Rod(30.0, 1e4, 1e4, 1e-4), SpectrumRequest(2, 1e-4, certify=True)).outcome()
 
 
-def _solve(rod: Rod, request: SpectrumRequest, started: float) -> Spectrum:
-    growth, wave = most_amplified_wave(rod)
-    shift = SHIFT_ABOVE_GROWTH * growth
-    bounded = isfinite(squared_amplification(rod))
-    aim = mesh_accuracy(request.accuracy, request.vector_nodes > 0) if bounded else request.accuracy
-    resolution = resolution_for(expected_wave_number(request.modes, wave), aim)
-    wanted = request.modes
-    best: tuple[tuple[bool, float], Found, Verdict | None] | None = None
-    lost: Verdict | None = None
-    unresolved, stalled, failures = False, 0, 0
-    why = "no mesh within the limit resolves the wanted modes"
-    vectors = request.vector_nodes > 0
-    for turn in range(MOST_ATTEMPTS):
-        if resolution.unknowns > MOST_UNKNOWNS or failures > MOST_FAILURES:
-            break
-        found = attempt(rod, resolution, wanted, shift, vectors, tight=vectors or turn > 0)
-        if len(found.w) < request.modes:
+class Search:
+    """The search for one rod's leading eigenvalues: what to try next, the best so far, what went wrong."""
+
+    def __init__(self, rod: Rod, request: SpectrumRequest):
+        growth, wave = most_amplified_wave(rod)
+        self.rod, self.request, self.modes = rod, request, request.modes
+        self.with_vectors = request.vector_nodes > 0
+        self.shift = SHIFT_ABOVE_GROWTH * growth
+        self.bounded = isfinite(squared_amplification(rod))
+        self.aim = mesh_accuracy(request.accuracy, self.with_vectors) if self.bounded else request.accuracy
+        self.mesh = resolution_for(expected_wave_number(request.modes, wave), self.aim)
+        self.wanted = request.modes
+        self.best: Judged | None = None
+        self.stalled = self.failures = 0
+        self.lost: Verdict | None = None
+        """The last count that the eigenvalues found do not explain."""
+        self.unresolved = False
+        """Whether neither mesh nor count could tell what leads."""
+        self.why = "no mesh within the limit resolves the wanted modes"
+
+    def outcome(self) -> Spectrum:
+        """Tries meshes until one is good enough or none gets better."""
+        for turn in range(MOST_MESHES_TRIED):
+            if self.mesh.unknowns > MOST_UNKNOWNS or self.failures > MOST_FAILURES:
+                break
+            tight = self.with_vectors or turn > 0
+            found = attempt(self.rod, self.mesh, self.wanted, self.shift, self.with_vectors, tight)
+            judged = self.judged(found)
+            if judged is None:
+                continue
+            self.keep(judged)
+            if judged.short <= SAFETY or self.stalled >= NO_PROGRESS:
+                break
+            self.mesh = self.next_mesh(found)
+        return self.concluded()
+
+    def judged(self, found: Candidates) -> Judged | None:
+        """The candidates if nothing is missing among them; else what to change before the next attempt."""
+        if len(found.roots.w) < self.modes:
             # Too few converged, what converged stands for no root yet, or SLEPc failed: do both more.
-            failures += bool(found.failure)
-            why = found.failure or why
-            wanted, resolution = wanted + request.modes, finer(resolution)
-            continue
-        verdict = judge(rod, found, request.modes) if request.certify else None
+            self.failures += bool(found.failure)
+            self.why = found.failure or self.why
+            self.wanted, self.mesh = self.wanted + self.modes, finer(self.mesh)
+            return None
+        verdict = judge(self.rod, found.roots, self.modes) if self.request.certify else None
+        if verdict is not None and verdict.count.number is None and found.roots.ahead:
+            self.unresolved, self.mesh = True, finer(self.mesh)
+            return None
         if verdict is not None and verdict.count.number is not None and not verdict.agrees:
-            lost = verdict
-            wanted, resolution = _search_more(verdict, wanted, resolution)
-            continue
-        if verdict is not None and verdict.count.number is None and found.ahead:
-            unresolved, resolution = True, finer(resolution)  # neither mesh nor count can tell what leads
-            continue
-        short = _shortfall(found, verdict, request, bounded)
-        rank = verdict is not None and verdict.count.number is None, short
-        stalled = 0 if best is None or rank < (best[0][0], 0.5 * best[0][1]) else stalled + 1
-        if best is None or rank <= best[0]:
-            best = rank, found, verdict
-        if short <= SAFETY:
-            return _result(Status.ok, rod, request, (found, verdict), started)
-        if stalled >= STALLED:
-            break
-        resolution = _next_resolution(found, request.modes, aim)
-    if best is not None:
-        (_, short), found, verdict = best
-        status = Status.ok if short <= STALLED_SAFETY else Status.accuracy_not_reached
-        return _result(status, rod, request, (found, verdict), started)
-    if lost is not None:
-        return _nothing(
-            Status.modes_missing, request, f"the winding number counts {lost.count.number}", started
+            self.lost = verdict
+            self.search_more(verdict.count.number, verdict.here)
+            return None
+        return Judged(found, verdict, self.shortfall(found, verdict))
+
+    def shortfall(self, found: Candidates, verdict: Verdict | None) -> float:
+        """`Judged.short`: roots of D that the count proves to be all need no witness in the mesh.
+
+        Vectors do, and what no count can prove.
+        """
+        error = found.worst(self.modes) / self.request.accuracy
+        if verdict is not None and verdict.agrees and not self.with_vectors:
+            return error
+        allowed = LARGEST_DISPLACEMENT if self.bounded else UNBOUNDED_DISPLACEMENT
+        return max(
+            error, found.coarseness(self.modes) / (self.request.accuracy if self.with_vectors else allowed)
         )
-    if unresolved:
-        return _nothing(Status.modes_missing, request, "no mesh resolves what may lead", started)
-    return _nothing(Status.failed, request, why, started)
+
+    def search_more(self, number: int, here: int) -> None:
+        """Asks for more after a count of `number`, of which `here` were found."""
+        if number <= here:  # impostors, or a line that the mesh leaves within the errors
+            self.mesh = finer(self.mesh)
+            return
+        more = number + SPARE_MODES
+        if more <= self.wanted:  # enough were asked for: they are farther from the shift, or beyond the mesh
+            more, self.mesh = self.wanted + number - here + SPARE_MODES, finer(self.mesh)
+        while more > self.mesh.unknowns // 6 and self.mesh.unknowns <= MOST_UNKNOWNS:
+            self.mesh = finer(self.mesh)
+        self.wanted = more
+
+    def keep(self, judged: Judged) -> None:
+        """Keeps the candidates if they are the best so far, and notes whether there is progress."""
+        best = self.best
+        progress = best is None or judged.grade < (best.grade[0], 0.5 * best.short)
+        self.stalled = 0 if progress else self.stalled + 1
+        if best is None or judged.grade <= best.grade or judged.short <= SAFETY:
+            self.best = judged
+
+    def next_mesh(self, found: Candidates) -> Resolution:
+        """A finer mesh: what the wave numbers now known ask for, at least the next finer one."""
+        informed = resolution_for(float(found.roots.wave[: self.modes].max()), self.aim)
+        least = finer(found.resolution)
+        return informed if informed.unknowns >= least.unknowns else least
+
+    def concluded(self) -> Spectrum:
+        """The best that was found, or why there is nothing."""
+        if self.best is not None:
+            return _result(self.best, self.rod, self.request)
+        if self.lost is not None:
+            counted = f"the winding number counts {self.lost.count.number}"
+            return _nothing(Status.modes_missing, self.request, counted)
+        if self.unresolved:
+            return _nothing(Status.modes_missing, self.request, "no mesh resolves what may lead")
+        return _nothing(Status.failed, self.request, self.why)
 
 
-def _shortfall(found: Found, verdict: Verdict | None, request: SpectrumRequest, bounded: bool) -> float:
-    """The largest of what may be too large, in units of what is allowed.
-
-    Roots of D that the count proves to be all need no witness in the mesh; vectors do, and what no count
-    can prove.
-    """
-    error = found.worst(request.modes) / request.accuracy
-    if verdict is not None and verdict.agrees and not request.vector_nodes:
-        return error
-    allowed = LARGEST_DISPLACEMENT if bounded else UNBOUNDED_DISPLACEMENT
-    return max(
-        error, found.coarseness(request.modes) / (request.accuracy if request.vector_nodes else allowed)
-    )
-
-
-def _search_more(verdict: Verdict, wanted: int, resolution: Resolution) -> tuple[int, Resolution]:
-    """(eigenvalues to ask for, mesh) after a count that the found eigenvalues do not explain."""
-    number = verdict.count.number or 0
-    if number <= verdict.here:  # impostors, or a line that the mesh leaves within the errors
-        return wanted, finer(resolution)
-    more = number + SPARE_MODES
-    if more <= wanted:  # enough were asked for: they are farther from the shift, or beyond the mesh
-        more, resolution = wanted + number - verdict.here + SPARE_MODES, finer(resolution)
-    while more > resolution.unknowns // 6 and resolution.unknowns <= MOST_UNKNOWNS:
-        resolution = finer(resolution)
-    return more, resolution
-
-
-def _next_resolution(found: Found, modes: int, mesh_accuracy: float) -> Resolution:
-    """A finer mesh: what the wave numbers now known ask for, at least the next finer one."""
-    informed = resolution_for(float(found.wave[:modes].max()), mesh_accuracy)
-    least = finer(found.resolution)
-    return informed if informed.unknowns >= least.unknowns else least
-
-
-def _result(
-    status: Status, rod: Rod, request: SpectrumRequest, judged: tuple[Found, Verdict | None], started: float
-) -> Spectrum:
+def _result(best: Judged, rod: Rod, request: SpectrumRequest) -> Spectrum:
     """The outcome with its numbers, and how far they are proved."""
-    found, verdict = judged
-    m = request.modes
+    found, verdict = best.found.roots, best.verdict
+    status = Status.ok if best.short <= STALLED_SAFETY else Status.accuracy_not_reached
     proved = verdict is not None and verdict.agrees
     undecided = bool(found.on_the_axis.any())
     message = ""
@@ -203,36 +230,31 @@ def _result(
     known = not undecided and (proved if request.certify else unstable < len(found.w))
     return Spectrum(
         status=status,
-        eigenvalues=found.w[:m],
-        error_estimate=found.error[:m],
+        eigenvalues=found.w[: request.modes],
+        error_estimate=found.error[: request.modes],
         unstable_count=unstable if known else -1,
         certified=proved and not undecided,
-        elements=found.resolution.elements,
-        order=found.resolution.order,
-        vectors=_vectors(rod, request, found),
-        seconds=time.perf_counter() - started,
+        resolution=best.found.resolution,
+        vectors=_vectors(rod, request, best.found),
         message=message,
     )
 
 
-def _vectors(rod: Rod, request: SpectrumRequest, found: Found) -> NDArray[np.complex128] | None:
+def _vectors(rod: Rod, request: SpectrumRequest, found: Candidates) -> NDArray[np.complex128] | None:
     """(Y, Theta) on the Lobatto nodes; NaN where Y(1) vanishes and cannot be scaled to 1."""
     if found.vectors is None:
         return None
     pencil = eigen_solver(found.resolution).pencil
     y, theta = pencil.fields(found.vectors[:, : request.modes], rod)
-    matrix = pencil.evaluation(lobatto_points(request.vector_nodes))
-    size = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))
-    scale = np.full(len(size), np.nan + 0j)
-    tipped = np.abs(y[-1]) > NO_TIP * size
-    scale[tipped] = 1 / y[-1][tipped]
+    matrix, scale = pencil.evaluation(lobatto_points(request.vector_nodes)), tip_scale(y, theta)
     return np.stack([(matrix @ y * scale).T, (matrix @ theta * scale).T])
 
 
-def _nothing(status: Status, request: SpectrumRequest, message: str, started: float) -> Spectrum:
+def _nothing(status: Status, request: SpectrumRequest, message: str) -> Spectrum:
+    """The outcome without numbers."""
     empty = np.full(request.modes, np.nan)
-    vectors = None
-    if request.vector_nodes:
-        vectors = np.full((2, request.modes, request.vector_nodes), np.nan + 0j)
-    seconds = time.perf_counter() - started
-    return Spectrum(status, empty + 0j, empty, -1, False, 0, 0, seconds, vectors, message)
+    shape = (2, request.modes, request.vector_nodes)
+    vectors = np.full(shape, np.nan + 0j) if request.vector_nodes else None
+    return Spectrum(
+        status=status, eigenvalues=empty + 0j, error_estimate=empty, vectors=vectors, message=message
+    )

@@ -1,0 +1,133 @@
+"""Rows of a phase diagram: what the rod does at each value along one axis, with all changes.
+
+All changes along a row are found (`along_path`), so that the class of any of its points follows without
+solving there: the solves go where the class changes, and a boundary is as sharp as Newton's method makes it.
+"""
+
+import math
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...determinant.path import Path
+from ...model.rod import Rod
+from ..point import solved
+from .along_path import Transitions, transitions
+from .thresholds import SHORT_OF_CRUSHED, Thresholds, ThresholdStatus, judged, nothing_found
+
+
+class Motion(IntEnum):
+    """How a small deflection of the straight rod evolves.
+
+    monotone, oscillatory: stable, and the slowest mode decays without or with oscillations. flutter: at
+    least one mode grows. undecided: on a boundary within its error, or not known. crushed: F >= k1.
+    """
+
+    monotone = 0
+    oscillatory = 1
+    flutter = 2
+    undecided = 3
+    crushed = 4
+
+
+@dataclass(frozen=True, slots=True)
+class RowRequest:
+    """What is asked of every row: the parameter that varies along it and its values, increasing."""
+
+    name: str
+    values: NDArray[np.float64]
+    accuracy: float
+    certify: bool
+    crossings: int
+    """Most changes that are kept."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DiagramRow:
+    """One row: the class and the unstable modes at each value, shape (values,), and all changes along it."""
+
+    motion: NDArray[np.int8]
+    unstable_count: NDArray[np.int32]
+    changes: Thresholds
+    seconds: float = 0.0
+
+    @property
+    def status(self) -> ThresholdStatus:
+        return self.changes.status
+
+    @property
+    def message(self) -> str:
+        return self.changes.message
+
+
+def solve_row(fixed: dict[str, float], request: RowRequest) -> DiagramRow:
+    """The row on which the parameters `fixed` do not vary; failures are a status, never an exception."""
+
+    def failed(cause: str) -> DiagramRow:
+        return _uniform(ThresholdStatus.failed, request.values, Motion.undecided, cause)
+
+    # ValueError: the model has no rod where a search along the row asks for one.
+    return solved(lambda: _searched(fixed, request), failed, also=(ValueError,))
+
+
+def _searched(fixed: dict[str, float], request: RowRequest) -> DiagramRow:
+    """The row between its first and its last rod that is not crushed."""
+    name, values = request.name, request.values
+    F = values if name == "F" else np.full(len(values), fixed["F"])
+    k1 = values if name == "k1" else np.full(len(values), fixed["k1"])
+    alive = k1 * (1 - SHORT_OF_CRUSHED) > F
+    crushed = k1 <= F
+    if not alive.any():
+        row = _uniform(ThresholdStatus.ok, values, Motion.crushed)
+        row.motion[~crushed] = Motion.undecided
+        return row
+    start, stop = float(values[alive][0]), float(values[alive][-1])
+    if name == "F" and not alive.all():
+        stop = fixed["k1"] * (1 - SHORT_OF_CRUSHED)
+    if name == "k1" and not alive.all():
+        start = fixed["F"] / (1 - SHORT_OF_CRUSHED) if fixed["F"] > 0 else start
+    rod = Rod(**fixed | {name: start})
+    found = transitions(Path(rod, name), start, stop, request.certify)
+    motion, unstable = classes(found, values)
+    # What is nearly crushed lies beyond the search.
+    motion[crushed], unstable[crushed] = Motion.crushed, -1
+    motion[~alive & ~crushed], unstable[~alive & ~crushed] = Motion.undecided, -1
+    changes = judged(found, stop, request.accuracy, request.certify, request.crossings)
+    return DiagramRow(motion=motion, unstable_count=unstable, changes=changes)
+
+
+def _uniform(
+    status: ThresholdStatus, values: NDArray[np.float64], motion: Motion, message: str = ""
+) -> DiagramRow:
+    """A row of one class without any change."""
+    return DiagramRow(
+        motion=np.full(len(values), motion, dtype=np.int8),
+        unstable_count=np.full(len(values), -1, dtype=np.int32),
+        changes=nothing_found(status, float(values[-1]), message),
+    )
+
+
+def classes(found: Transitions, values: NDArray[np.float64]) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
+    """(class, unstable modes) at each value of the parameter of a path, from the changes along it."""
+    oscillates = np.full(len(values), found.oscillates_at_start)
+    unstable = np.full(len(values), found.unstable_at_start, dtype=np.int32)
+    blurred = np.zeros(len(values), dtype=bool)
+    for crossing in found.crossings:
+        beyond = values > crossing.at
+        if crossing.kind.of_the_leader:
+            oscillates[beyond] = crossing.kind.to_pair
+        else:
+            unstable[beyond] = crossing.unstable_after
+        blurred |= np.abs(values - crossing.at) <= crossing.error
+    low, high = found.open_range
+    if not math.isnan(low):
+        blurred |= (values >= low) & (values <= high)
+        unstable[values > max([high, *(c.at for c in found.crossings)])] = found.unstable_at_end
+    motion = np.where(oscillates, Motion.oscillatory, Motion.monotone).astype(np.int8)
+    motion[unstable > 0] = Motion.flutter
+    blurred |= unstable < 0
+    motion[blurred] = Motion.undecided
+    unstable[blurred] = -1
+    return motion, unstable
