@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.beam import Beam, mesh
+from rodsweep.discretization.periodic import derivative, resampled
 from rodsweep.discretization.quadrature import lobatto_points
 from rodsweep.errors import EnvironmentLacks
 from rodsweep.model.rod import Rod
@@ -15,7 +16,7 @@ from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.cycle import transient as approach
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, received, solve_cycle, warm_up
-from rodsweep.solve.cycle.measures import derivative, maximum, measure, resampled
+from rodsweep.solve.cycle.measures import measure
 from rodsweep.solve.cycle.minimal_period import common_divisor, in_doubt, shortened
 from rodsweep.solve.cycle.refinement import _on_mesh
 from rodsweep.solve.cycle.shooting import shoot
@@ -267,17 +268,6 @@ def test_every_status_has_a_sentence():
 
 def test_warm_up_solves_a_cycle():
     warm_up()
-
-
-def test_extrema_and_derivatives_of_samples_are_spectral():
-    t = np.arange(32) / 32
-    values = np.exp(np.sin(2 * np.pi * (t - 0.123)))
-    assert maximum(values) == pytest.approx(np.e, rel=1e-12)
-    at = np.array([0.01, 0.373, 0.9])
-    exact = np.exp(np.sin(2 * np.pi * (at - 0.123)))
-    assert resampled(values, at) == pytest.approx(exact, rel=1e-12)
-    slope = 2 * np.pi * np.cos(2 * np.pi * (t - 0.123)) * values
-    assert derivative(values) == pytest.approx(slope, abs=1e-10)
 
 
 def test_a_mesh_is_not_refined_for_what_is_left_of_time():

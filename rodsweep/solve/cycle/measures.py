@@ -11,13 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...discretization.beam import Beam
+from ...discretization.periodic import derivative, maximum, resampled, rise_through_mean
 from ...discretization.quadrature import lobatto_points
 from ..motion.integrator import Run
 
 Array = NDArray[np.float64]
-
-POLISH = 8
-"""Newton steps from the largest sample to the extremum."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,52 +72,6 @@ def power(beam: Beam, run: Run) -> Array:
     return np.stack([-beam.rod.F * v1[:, -1], density @ beam.mesh.quadrature])
 
 
-def derivative(values: Array) -> Array:
-    """d/dx, x in [0, 1), of the trigonometric polynomial through samples of one period, shape (N, ...)."""
-    n = len(values)
-    k = 2j * np.pi * np.arange(n // 2 + 1)
-    if n % 2 == 0:
-        k[-1] = 0.0
-    return np.fft.irfft(k.reshape(-1, *(1,) * (values.ndim - 1)) * np.fft.rfft(values, axis=0), n, axis=0)
-
-
-def resampled(values: Array, at: Array) -> Array:
-    """The trigonometric polynomial through samples of one period, shape (N, ...), at `at`, in periods."""
-    n = len(values)
-    c = np.fft.rfft(values.reshape(n, -1), axis=0) / n
-    c[1 : (n + 1) // 2] *= 2
-    k = np.arange(len(c))
-    result = (np.exp(2j * np.pi * np.outer(at, k)) @ c).real
-    return result.reshape(len(at), *values.shape[1:])
-
-
-def maximum(values: Array) -> float:
-    """The maximum of the trigonometric polynomial through samples of one period, shape (N,)."""
-    n = len(values)
-    c = np.fft.rfft(values) / n
-    c[1 : (n + 1) // 2] *= 2
-    k = 2j * np.pi * np.arange(len(c))
-    t = int(np.argmax(values)) / n
-    for _ in range(POLISH):
-        e = c * np.exp(k * t)
-        first, second = (k * e).sum().real, (k * k * e).sum().real
-        t -= float(np.clip(first / second, -1 / n, 1 / n)) if second < 0 else 0.0
-    return float((c * np.exp(k * t)).sum().real)
-
-
-def phase(y: Array) -> float:
-    """When y, N samples of a period, rises through its mean after its minimum, in periods."""
-    n = len(y)
-    y = y - y.mean()
-    after = (int(np.argmin(y)) + np.arange(n + 1)) % n
-    k = int(np.argmax(y[after] >= 0))
-    low, high = (after[k] - 1) / n, after[k] / n
-    for _ in range(50):
-        middle = (low + high) / 2
-        low, high = (middle, high) if resampled(y, np.array([middle]))[0] < 0 else (low, middle)
-    return float(low)
-
-
 def traces(beam: Beam, run: Run, samples: int) -> tuple[Array, Array]:
     """(x, y, theta) of the tip and (U, injection, dissipation) at equidistant times, each (3, samples).
 
@@ -127,12 +79,12 @@ def traces(beam: Beam, run: Run, samples: int) -> tuple[Array, Array]:
     """
     tip = beam.tip(run.states[:-1])
     energy = np.vstack([beam.energy(run.states[:-1]), power(beam, run)])
-    at = phase(tip[1]) + np.arange(samples) / samples
+    at = rise_through_mean(tip[1]) + np.arange(samples) / samples
     return resampled(tip.T, at).T, resampled(energy.T, at).T
 
 
 def shapes(beam: Beam, run: Run, count: int, nodes: int) -> Array:
     """(x, y, theta) at `count` equidistant times on `nodes` Lobatto nodes, shape (3, count, nodes)."""
     states = run.states[:-1]
-    at = phase(beam.tip(states)[1]) + np.arange(count) / count
+    at = rise_through_mean(beam.tip(states)[1]) + np.arange(count) / count
     return beam.shape(resampled(states, at)) @ beam.mesh.evaluation(lobatto_points(nodes)).T
