@@ -96,7 +96,7 @@ def by_scipy(method: str, beam: Beam, z: Array, duration: float, tolerance: floa
 
 def by_cvode(cvode: Any, beam: Beam, z: Array, duration: float, tolerance: float) -> Steps:
     """CVODE's BDF with its dense solver, through scikit-sundae."""
-    arguments = beam.coefficients, beam.mesh.matrices, beam.mesh.weights
+    arguments = beam.parameters, beam.mesh.element
     buffer = np.empty((len(z), len(z)))
 
     def right_side(_: float, x: Array, out: Array) -> None:

@@ -5,7 +5,6 @@ compiled callbacks; stages extrapolated from the last step; Newton's test tied t
 Jacobian a step, that of the state expected half-way (at its start it costs a quarter more iterations).
 """
 
-import time
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,7 +15,7 @@ from numpy.typing import NDArray
 
 from ...discretization.beam import Beam, Mesh
 from ..backend.petsc import PETSc
-from .callbacks import AT_BASE, STALE, Workspace
+from .callbacks import AT_BASE, Workspace
 from .time_scheme import Method
 
 Array = NDArray[np.float64]
@@ -51,10 +50,6 @@ class Run:
     times: Array
     states: Array
     rejected: int
-    rates: int
-    jacobians: int
-    factorisations: int
-    seconds: float
     message: str = ""
 
 
@@ -112,7 +107,7 @@ class Integrator:
         if len(times) > 1 and self.middle:
             ahead = self.middle * ts.getTimeStep() / (times[-1] - times[-2])
             base += (states[-1] - states[-2]) * ahead
-        self.workspace.state[STALE] = AT_BASE
+        self.workspace.context["matrix_due"] = AT_BASE
 
     def _record(self, ts: "PETSc.TS") -> None:
         z = self.vector.array_r.copy()
@@ -136,8 +131,7 @@ class Integrator:
         step: the first one, or with equal steps each. Tolerances are in units of the largest component of z,
         so that small motions are followed as well as large ones.
         """
-        ts, method, began = self.ts, self.method, time.perf_counter()
-        counts = self.workspace.counts.copy()
+        ts, method = self.ts, self.method
         self._times, self._states, self._left = [0.0], [z.copy()], False
         self._beam, self._stop = beam, stop
         size = float(np.abs(z).max()) or 1.0
@@ -157,16 +151,11 @@ class Integrator:
         except (PETSc.Error, SystemError) as error:
             message = str(error.__cause__ or error).splitlines()[-1]
             self.broken = True  # a PETSc object is not usable after an error inside it
-        spent = self.workspace.counts - counts
         return Run(
             ending=self._ending(message),
             times=np.array(self._times),
             states=np.array(self._states),
             rejected=ts.getStepRejections(),
-            rates=int(spent[0]),
-            jacobians=int(spent[1]),
-            factorisations=int(spent[2]),
-            seconds=time.perf_counter() - began,
             message=message,
         )
 
