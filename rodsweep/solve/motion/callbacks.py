@@ -57,7 +57,7 @@ CONTEXT = np.dtype(
     ]
 )
 """What every callback receives."""
-TAKEN, CONTENT = ((CONTEXT.fields or {})[name][1] for name in ("taken", "content"))
+TAKEN, CONTENT = (CONTEXT.fields[name][1] for name in ("taken", "content"))  # type: ignore[index]  # has fields
 """Places in bytes of what PETSc writes."""
 
 UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
