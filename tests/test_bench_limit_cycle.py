@@ -72,7 +72,7 @@ def test_every_method_follows_the_cycle_and_gains_from_a_tighter_tolerance(famil
 def test_order_of_the_errors(name):
     order, *tolerances = ORDERS[name]
     family, at = next(f for f in families() if f.name == name), cycle()
-    over = integrator(at.beam.mesh, PERIOD_MAP).run(at.beam, at.state, at.period, at.period / 128, None, 128)
+    over = integrator(at.beam.mesh, PERIOD_MAP).run(at.beam, at.state, at.period, at.period / 128)
     error, steps = np.zeros((2, PHASES)), np.zeros((2, PHASES))
     for phase, state in enumerate(over.states[: 128 : 128 // PHASES + 1]):
         for i, tolerance in enumerate(tolerances):
@@ -87,7 +87,7 @@ def test_error_of_an_exact_run_is_that_of_the_measurement():
     at = cycle()
     steps = int(128 * PERIODS)
     duration = steps / 128 * at.period
-    run = integrator(at.beam.mesh, PERIOD_MAP).run(at.beam, at.state, duration, at.period / 128, None, steps)
+    run = integrator(at.beam.mesh, PERIOD_MAP).run(at.beam, at.state, duration, at.period / 128)
     assert max(errors(at, Steps(run.times, run.states))) < 1e-8
 
 

@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from ...discretization.beam import Beam
 from ...discretization.body_frame import jacobian, rate
 from ...solve.cycle.shooting import PERIOD_MAP, angle_weights
-from ...solve.motion.integrator import Ending, evolve, integrator
-from ...solve.motion.time_scheme import Method
+from ...solve.motion.integrator import Ending, RunLimit, integrator
+from ...solve.motion.time_scheme import TimeScheme
 
 Array = NDArray[np.float64]
 
@@ -67,9 +67,9 @@ class Family:
 
 def by_petsc(family: str, variant: str, beam: Beam, z: Array, duration: float, tolerance: float) -> Steps:  # noqa: PLR0913, PLR0917
     """PETSc TS as the task limit_cycle uses it."""
-    newton = Method().newton if tolerance > TIGHT else TIGHT_NEWTON
-    method = Method(family, variant, tolerance, newton, prefix="bench_")
-    run = evolve(beam, z, duration, method)
+    newton = TimeScheme().newton if tolerance > TIGHT else TIGHT_NEWTON
+    scheme = TimeScheme(family, variant, tolerance, newton, prefix="bench_")
+    run = integrator(beam.mesh, scheme).run(beam, z, duration)
     if run.ending != Ending.reached:
         raise ArithmeticError(f"{family} {variant} at {tolerance:g}: {run.ending.name} {run.message}")
     return Steps(run.times, run.states)
@@ -206,7 +206,7 @@ def returns(beam: Beam, steps: Steps) -> Returns:
 def _again(beam: Beam, z: Array, duration: float) -> tuple[Array, Array]:
     """Times and states of equal small steps from a state of a run."""
     step = duration / SMALL_STEPS
-    run = integrator(beam.mesh, PERIOD_MAP).run(beam, z, duration, step, most_steps=SMALL_STEPS + 2)
+    run = integrator(beam.mesh, PERIOD_MAP).run(beam, z, duration, step, RunLimit(most_steps=SMALL_STEPS + 2))
     return run.times, run.states
 
 

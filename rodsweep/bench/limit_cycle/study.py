@@ -16,7 +16,14 @@ from numpy.typing import NDArray
 
 from ...discretization.beam import Beam, mesh
 from ...model.rod import Rod
-from ...solve.cycle.limit_cycle import Cycle, CycleRequest, received, solve_cycle, warm_up
+from ...solve.cycle.limit_cycle import (
+    Cycle,
+    CyclePoint,
+    CycleRequest,
+    solve_cycle,
+    state_from_neighbour,
+    warm_up,
+)
 from ...solve.cycle.measures import measure
 from ...solve.cycle.refinement import TRANSIENT
 from ...solve.cycle.shooting import shoot
@@ -187,16 +194,16 @@ def reference() -> Reference:
     cycle = _cycle(F)
     beam = Beam(Rod(F, *SOFT[:3]), SOFT[3], mesh(1, ORDER))
     run = integrator(beam.mesh, TRANSIENT).run(
-        beam, received(beam, _state(cycle)), cycle.period, cycle.period / 1000
+        beam, state_from_neighbour(beam, _state(cycle)), cycle.measures.period, cycle.measures.period / 1000
     )
-    orbit = shoot(beam, run.states[-1], cycle.period, STEPS)
+    orbit = shoot(beam, run.states[-1], cycle.measures.period, STEPS)
     if orbit is None:
         raise ArithmeticError(f"no cycle on one element of order {ORDER}")
     return Reference(beam, orbit.state, orbit.period, measure(beam, orbit.run).tip_y_max)
 
 
 def _cycle(force: float) -> Cycle:
-    return solve_cycle(force, *SOFT, CycleRequest(SETTLED, START, 1, 0, 0, 0, MOST_RETURNS))
+    return solve_cycle(CyclePoint(force, *SOFT), CycleRequest(SETTLED, START, 1, 0, 0, 0, MOST_RETURNS))
 
 
 def _state(cycle: Cycle) -> Array:
@@ -291,7 +298,7 @@ def waiting(at: Reference, every: Sequence[Family], rounds: int) -> list[Wait]:
     Who waits pays nothing here for finding the returns, nor for finding the tolerance that settles.
     """
     cycle = _cycle(F)
-    left = _error(at, cycle.period, cycle.tip_y_max)
+    left = _error(at, cycle.measures.period, cycle.measures.tip_y_max)
     runs: list[Callable[[], object]] = [partial(_cycle, F)]
     waits = [Wait(F, "solve_cycle", nan, cycle.periods, nan, left)]
     for family in every:
@@ -346,14 +353,14 @@ def near_hopf(every: Sequence[Family], waits: Sequence[Wait], rounds: int) -> li
     """The same next to the Hopf point, where waiting is estimated from the largest multiplier."""
     cycle = _cycle(NEAR_HOPF)
     beam = Beam(Rod(NEAR_HOPF, *SOFT[:3]), SOFT[3], mesh(cycle.elements, cycle.order))
-    z, count = received(beam, _state(cycle)), log(SETTLED) / log(cycle.multiplier)
+    z, count = state_from_neighbour(beam, _state(cycle)), log(SETTLED) / log(cycle.multiplier)
     settled = {wait.method: wait.tolerance for wait in waits if np.isfinite(wait.tolerance)}
     waiters = [family for family in every if family.name in settled]
     runs: list[Callable[[], object]] = [partial(_cycle, NEAR_HOPF)]
     for family in waiters:
-        runs.append(partial(family.integrate, beam, z, PERIODS * cycle.period, settled[family.name]))
+        runs.append(partial(family.integrate, beam, z, PERIODS * cycle.measures.period, settled[family.name]))
     own, *others = _milliseconds(runs, rounds)
-    estimate = max(cycle.period_error, cycle.amplitude_error)
+    estimate = max(cycle.errors.period_error, cycle.errors.amplitude_error)
     return [Wait(NEAR_HOPF, "solve_cycle", nan, cycle.periods, own, estimate)] + [
         Wait(NEAR_HOPF, family.name, settled[family.name], count, ms / PERIODS * count, SETTLED)
         for family, ms in zip(waiters, others, strict=True)

@@ -20,9 +20,6 @@ from .protocol import Chained, Part, Solver
 if TYPE_CHECKING:
     from ...solve.cycle.limit_cycle import Cycle, CycleRequest
 
-RENAMED = {"harmonic_amplitude": "harmonics"}
-"""Variables of the file whose field of a cycle has another name."""
-
 
 @dataclass(frozen=True, slots=True)
 class LimitCycleTask:
@@ -104,12 +101,12 @@ class LimitCycleTask:
         return estimate_cycles(self.points.count)
 
     def solver(self) -> Solver:
-        from ...solve.cycle.limit_cycle import CycleStatus, solve_cycle, warm_up
+        from ...solve.cycle.limit_cycle import CyclePoint, CycleStatus, solve_cycle, warm_up
 
         request = self._request()
 
         def solve(index: int, start: State = None) -> "Cycle":
-            return solve_cycle(**self.points.values(index), request=request, start=start)
+            return solve_cycle(CyclePoint(**self.points.values(index)), request, start)
 
         def solve_from(index: int, start: State) -> "tuple[Cycle, State]":
             cycle = solve(index, start)
@@ -139,12 +136,13 @@ class LimitCycleTask:
         )
 
     def record(self, point: dict[str, float], cycle: "Cycle") -> dict[str, Any]:
-        """A Cycle as the variables of the file."""
+        """A Cycle as the variables of the file, which are its fields and those of its measures and errors."""
         options = self.config.limit_cycle
-        values = {v.name: getattr(cycle, RENAMED.get(v.name, v.name)) for v in CYCLE}
+        fields = vars(cycle) | vars(cycle.measures) | vars(cycle.errors)
+        values = {variable.name: fields[variable.name] for variable in CYCLE}
         values["status"] = int(cycle.status)
         if options.time == "tau1":  # t/tau1 = (t/tau2) k2/gamma3
-            values[PERIOD_TAU1.name] = cycle.period * point["k2"] / point["gamma3"]
+            values[PERIOD_TAU1.name] = cycle.measures.period * point["k2"] / point["gamma3"]
         if options.samples:
             values |= _along(TIP, cycle.tip) | _along(ENERGY, cycle.energy)
         if options.shapes:
