@@ -147,29 +147,24 @@ def stress_of(beam, z):
 
 
 def collocated(beam, z):
-    """(V at all nodes, dz/dt) by the balance at the nodes of a mesh of one element; the clamp is natural."""
+    """dz/dt by the balance at the nodes of a mesh of one element, where the clamp is natural."""
     D, w = beam.mesh.element.D, beam.mesh.element.weights
     Sigma = stress_of(beam, z)
     V = PLANE.velocity(Sigma, Sigma @ D.T)
     rate = strain_rate(PLANE.strain(Sigma), V, V @ D.T)[:, :-1]
     rate[:, 0] += V[:, 0] / w[0]
-    return V, (rate * beam.stiffness_roots[:, None]).ravel()
+    return (rate * beam.stiffness_roots[:, None]).ravel()
 
 
 def rough(beam):
     return np.random.default_rng(3).standard_normal(beam.mesh.unknowns)
 
 
-def test_compiled_rate_and_power_are_the_balance_at_the_nodes():
+def test_compiled_rate_is_the_balance_at_the_nodes():
     beam = Beam(ROD, GAMMA1, mesh(1, 16))
     z = rough(beam)
-    V, rate = collocated(beam, z)
+    rate = collocated(beam, z)
     assert beam.rate(z) == pytest.approx(rate, rel=1e-10, abs=1e-12 * np.abs(rate).max())
-    injected, dissipated = beam.power(z)
-    assert dissipated == pytest.approx(PLANE.dissipation(V) @ beam.mesh.quadrature, rel=1e-12)
-    strains = rate / np.repeat(beam.stiffness_roots, beam.mesh.nodes)
-    change = stress_of(beam, z)[:, :-1].ravel() @ (np.tile(beam.mesh.quadrature[:-1], 3) * strains)
-    assert injected == pytest.approx(change + dissipated, abs=1e-11 * (abs(injected) + dissipated))
 
 
 def test_compiled_jacobian_is_the_derivative_of_the_balance():
@@ -177,7 +172,7 @@ def test_compiled_jacobian_is_the_derivative_of_the_balance():
     z = rough(beam)
     J = beam.jacobian(z)
     for k, direction in enumerate(1j * step * np.eye(len(z))):
-        column = collocated(beam, z + direction)[1].imag / step
+        column = collocated(beam, z + direction).imag / step
         assert np.abs(J[:, k] - column).max() <= 1e-11 * np.abs(column).max()
 
 
@@ -187,12 +182,7 @@ def test_compiled_rate_of_a_smooth_rod_is_that_of_the_balance(elements, order):
     beam = Beam(ROD, GAMMA1, mesh(elements, order))
     u = beam.mesh.positions
     Sigma, dSigma, ddSigma = stresses(u, 3)
-    V, exact = rates(PLANE, Sigma, dSigma, ddSigma)
+    _, exact = rates(PLANE, Sigma, dSigma, ddSigma)
     z = beam.unknown(PLANE.strain(Sigma))
     rate = beam.rate(z).reshape(3, -1) / beam.stiffness_roots[:, None]
     assert np.abs(rate - exact[:, :-1])[:, 1:].max() <= 1e-7 * np.abs(exact).max()
-    injected, dissipated = beam.power(z)
-    assert dissipated == pytest.approx(PLANE.dissipation(V) @ beam.mesh.quadrature, rel=1e-10)
-    # The tip's stress is essential: what its strain may not follow, times its weight, the reaction lacks.
-    missed = beam.mesh.element.weights[-1] * exact[:, -1]
-    assert injected == pytest.approx(PLANE.tip_stress @ (V[:, -1] - missed), rel=1e-7)

@@ -6,6 +6,7 @@ import pytest
 from rodsweep.discretization.basis import differentiation
 from rodsweep.discretization.beam import Beam, configuration, mesh
 from rodsweep.discretization.quadrature import gauss_lobatto
+from rodsweep.model.balance import plane_material
 from rodsweep.model.longitudinal import longitudinal_rates
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
@@ -37,6 +38,20 @@ def rough(beam):
     return bent(beam) + 0.01 * np.random.default_rng(1).standard_normal(beam.mesh.unknowns)
 
 
+def injected_and_dissipated(beam, z):
+    """-F v1(1), by the reaction v1(1) of the tip's stress, and <Gamma V, V>."""
+    material, element, p = plane_material(beam.rod, beam.gamma1), beam.mesh.element, beam.mesh.order
+    stress = np.zeros((3, beam.mesh.nodes + 1))
+    stress[:, :-1] = z.reshape(3, -1) * beam.stiffness_roots[:, None]
+    stress += material.tip_stress[:, None]
+    dissipated = 0.0
+    for first in range(0, beam.mesh.nodes, p):
+        here = stress[:, first : first + p + 1]
+        V = material.velocity(here, here @ element.D.T)
+        dissipated += material.dissipation(V) @ element.weights
+    return -beam.rod.F * (element.D[:, -1] @ (element.weights * V[0])), dissipated
+
+
 @MESHES
 def test_jacobian_is_the_derivative_of_the_rate(elements, order):
     beam = Beam(ROD, 0.7, mesh(elements, order))
@@ -57,7 +72,7 @@ def test_energy_law_holds_on_the_mesh_to_rounding(elements, order):
     stress = z.copy()
     stress[:n] -= ROD.F / ROD.k1**0.5  # Sigma = K^1/2 z + (-F, 0, 0)
     change = stress @ (np.tile(beam.mesh.quadrature[:-1], 3) * rate)
-    injected, dissipated = beam.power(z)
+    injected, dissipated = injected_and_dissipated(beam, z)
     assert change == pytest.approx(injected - dissipated, abs=1e-14 * (abs(injected) + dissipated))
     step = 1e-9
     measured = (beam.energy(z + step * rate) - beam.energy(z - step * rate)) / (2 * step)
@@ -197,17 +212,6 @@ def test_jacobian_is_right_whatever_petsc_did_to_the_matrix():
     assert again() == pytest.approx(expected, rel=1e-13, abs=1e-9)
     for vector in (state, slope):
         vector.destroy()
-
-
-def test_rejected_steps_are_counted_run_by_run():
-    beam = Beam(ROD, 1.0, mesh(1, 14))
-    z, duration = 0.3 * leading_mode(beam).z.real, 0.03
-    method = TimeScheme("arkimex", "4", 1e-6, options=(("ts_adapt_type", "basic"),))
-    runs = [integrator(beam.mesh, method).run(beam, z, duration, duration / 3) for _ in range(3)]
-    assert runs[0].rejected > 0, "a third of the motion is too long a step"
-    assert len({run.rejected for run in runs}) == 1
-    at_rest = integrator(beam.mesh, method).run(beam, 0 * z, duration, duration / 3)
-    assert at_rest.rejected == 0
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..model.rod import Rod
 from .basis import differentiation, interpolation
-from .body_frame import BeamParameters, Element, jacobian, power, rate
+from .body_frame import BeamParameters, Element, jacobian, rate
 from .pencil import assemble
 from .quadrature import gauss, gauss_lobatto
 
@@ -44,8 +44,7 @@ class Mesh:
     @cached_property
     def positions(self) -> Array:
         """u of all nodes, the tip included, shape (nodes + 1,)."""
-        local = (gauss_lobatto(self.order)[0][:-1] + 1) / 2
-        return np.append((np.arange(self.elements)[:, None] + local).ravel() / self.elements, 1.0)
+        return np.append(0.0, assemble(self.elements, self.order).positions())
 
     @cached_property
     def quadrature(self) -> Array:
@@ -101,11 +100,6 @@ class Beam:
         out = np.empty((len(z), len(z)))
         jacobian(z, out, self.parameters, self.mesh.element)
         return out.T
-
-    def power(self, z: Array) -> tuple[float, float]:
-        """(-F v1(1), <Gamma V, V>): injected and dissipated, k3/(L tau2); dU/dt is their difference."""
-        v1, dissipated = power(z, self.parameters, self.mesh.element)
-        return -self.rod.F * v1, dissipated
 
     def strains(self, z: Array) -> Array:
         """(h1, h2, Pi) at all nodes, the tip included, shape (3, ..., nodes + 1) for z (..., unknowns)."""

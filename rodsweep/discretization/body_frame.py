@@ -1,4 +1,4 @@
-"""The nonlinear rod in its body frame: the rate of its strains, the exact Jacobian, the power.
+"""The nonlinear rod in its body frame: the rate of its strains and its exact Jacobian.
 
 Sec. III, second formulation. With Sigma = K (E - Ebar), E = (h1, h2, Pi), K = diag(k1, k2, 1),
 Gamma = diag(gamma1, 1, gamma3) and D*_E sigma = (s1' - Pi s2, s2' + Pi s1, s3' - h2 s1 + h1 s2),
@@ -110,27 +110,6 @@ def _velocity(z: Array, e: int, fields: Array, c: BeamParameters, D_transposed: 
         V[0, i] = (V[0, i] - E[2, i] * S[1, i]) / c.gamma1
         V[1, i] = V[1, i] + E[2, i] * tension
         V[2, i] = (V[2, i] - E[1, i] * tension + E[0, i] * S[1, i]) / c.gamma3
-
-
-@compiled
-def power(z: Array, c: BeamParameters, element: Element) -> tuple[float, float]:
-    """(v1(1), <Gamma V, V>) in L/tau2 and k3/(L tau2).
-
-    v1(1) is the reaction of the essential condition: with it dU/dt = -F v1(1) - <Gamma V, V> holds on the
-    mesh.
-    """
-    D, w = element.D, element.weights
-    p, n = len(w) - 1, len(z) // 3
-    fields = np.zeros((3, 3, p + 1))
-    V = fields[2]
-    dissipated = reaction = 0.0
-    for e in range(n // p):
-        _velocity(z, e, fields, c, element.D_transposed)
-        for i in range(p + 1):
-            dissipated += w[i] * (c.gamma1 * V[0, i] ** 2 + V[1, i] ** 2 + c.gamma3 * V[2, i] ** 2)
-    for j in range(p + 1):  # Pi V2 - h2 V3 vanishes at the tip
-        reaction += D[j, p] * w[j] * V[0, j]
-    return reaction, dissipated
 
 
 @compiled

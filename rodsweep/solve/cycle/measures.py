@@ -68,8 +68,8 @@ def measure(beam: Beam, run: Trajectory) -> Measures:
 def injection_and_dissipation(beam: Beam, run: Trajectory) -> Array:
     """-F v1(1) and <Gamma V, V> of the moving shape at the steps, shape (2, N).
 
-    V = R(theta)^T dr/dt and dtheta/dt are differentiated in time; from the forces, as in `Beam.power`, they
-    would carry the error of z times k1.
+    V = R(theta)^T dr/dt and dtheta/dt are differentiated in time; from the forces they would carry the
+    error of z times k1.
     """
     x, y, theta = beam.shape(run.states[:-1])
     dx, dy, spin = (derivative(values) / run.times[-1] for values in (x, y, theta))

@@ -108,7 +108,4 @@ def shoot(beam: Beam, z: Array, period: float, steps: int, known: Monodromy | No
 
 def _matrix(beam: Beam, M: Monodromy, end: Array, row: Array) -> Array:
     """Derivative of (phi_T(z) - z, theta_tip) by (z, T), shape (unknowns + 1, unknowns + 1)."""
-    n = len(row)
-    matrix = np.zeros((n + 1, n + 1))
-    matrix[:n, :n], matrix[:n, n], matrix[n, :n] = M.matrix - np.eye(n), beam.rate(end), row
-    return matrix
+    return np.block([[M.matrix - np.eye(len(row)), beam.rate(end)[:, None]], [row, np.zeros(1)]])

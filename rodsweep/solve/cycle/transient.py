@@ -106,37 +106,37 @@ class Transient:
             run = self._chunk(z)
             if run.ending not in (Ending.reached, Ending.stopped):
                 return self._broken(run)
-            times, states = section_crossings(self.beam, run)
+            z, (times, states) = run.states[-1], section_crossings(self.beam, run)
             self.waited += max(len(times), 1)
-            self._remember(times, states)
+            moments = states[:, 2 * self.beam.mesh.nodes :]
+            self.past.extend(zip(map(float, self.clock + times), moments, strict=True))
             self.clock += run.times[-1]
-            z = run.states[-1]
             if self.mode.w.real < 0 and np.linalg.norm(z) < STRAIGHT_SIZE:
-                return TransientOutcome(CycleStatus.straight, "decayed to rounding", self.waited)
+                return self._ended(CycleStatus.straight, "decayed to rounding")
             if len(times) < 3:
                 continue
             if self._decays(times, states):
-                return TransientOutcome(
-                    CycleStatus.straight, "decays at the rate of the leading mode", self.waited
-                )
+                return self._ended(CycleStatus.straight, "decays at the rate of the leading mode")
             factor = self._jump(times, states)
             if factor is not None:
                 z, self.jumps = self._scaled(z, factor), self.jumps + 1
                 self.past.clear()
                 continue
-            arrival = self._closed(z, times, states)
-            if arrival is not None:
-                return arrival
-        why = f"{self.waited} returns of the tip, none periodic"
-        return TransientOutcome(CycleStatus.not_settled, why, self.waited)
+            outcome = self._closed(z, times, states)
+            if outcome is not None:
+                return outcome
+        return self._ended(CycleStatus.not_settled, f"{self.waited} returns of the tip, none periodic")
+
+    def _ended(self, status: CycleStatus, why: str, found: RefinedOrbit | None = None) -> TransientOutcome:
+        return TransientOutcome(status, why, self.waited, found)
 
     def _broken(self, run: Trajectory) -> TransientOutcome:
         if run.ending == Ending.left_the_model:
             least = self.beam.least_stretch(run.states[-1])
             where = f"h1 = {least:.3g} somewhere, {self.waited} returns from the start"
-            return TransientOutcome(CycleStatus.left_the_model, where, self.waited)
+            return self._ended(CycleStatus.left_the_model, where)
         why = run.message or ("too many steps" if run.ending == Ending.too_many_steps else "no step succeeds")
-        return TransientOutcome(CycleStatus.failed, why, self.waited)
+        return self._ended(CycleStatus.failed, why)
 
     def _chunk(self, z: Array) -> Trajectory:
         """A run of CHUNK returns, or of three times the time they should take."""
@@ -205,10 +205,6 @@ class Transient:
         scaled[: self.beam.mesh.nodes] *= factor  # the stretch is quadratic in the deflection
         return relaxed(self.beam, scaled, self.mode.period)
 
-    def _remember(self, times: Array, states: Array) -> None:
-        moments = states[:, 2 * self.beam.mesh.nodes :]
-        self.past.extend(zip(map(float, self.clock + times), moments, strict=True))
-
     def _closed(self, z: Array, times: Array, states: Array) -> TransientOutcome | None:
         """The cycle, if the returns repeat and Newton's method finds it from z, the end of the run."""
         growth, linear = self._growth(times, states)
@@ -228,8 +224,8 @@ class Transient:
         elif found.divisor != 1:
             why = f"that its period is {found.divisor} times shorter cannot be excluded"
         else:
-            return TransientOutcome(CycleStatus.cycle, "", self.waited, found)
-        return TransientOutcome(CycleStatus.not_settled, why, self.waited, found)
+            return self._ended(CycleStatus.cycle, "", found)
+        return self._ended(CycleStatus.not_settled, why, found)
 
     def _repetition(self) -> tuple[int, float]:
         """(m, relative distance): after how many returns the state comes closest to itself.

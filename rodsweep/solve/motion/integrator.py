@@ -49,7 +49,6 @@ class Trajectory:
     ending: Ending
     times: Array
     states: Array
-    rejected: int
     message: str = ""
 
 
@@ -156,7 +155,6 @@ class Integrator:
             ending=self._ending(message),
             times=np.array(self._times),
             states=np.array(self._states),
-            rejected=ts.getStepRejections(),
             message=message,
         )
 
