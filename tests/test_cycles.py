@@ -23,7 +23,7 @@ from rodsweep.solve.cycle.limit_cycle import (
     state_from_neighbour,
     warm_up,
 )
-from rodsweep.solve.cycle.measures import measure
+from rodsweep.solve.cycle.measures import measures_of
 from rodsweep.solve.cycle.minimal_period import common_divisor, shortened, undecided_divisor
 from rodsweep.solve.cycle.refinement import _on_mesh
 from rodsweep.solve.cycle.shooting import shoot
@@ -102,7 +102,7 @@ def test_cycle_converges_with_order_and_with_elements():
     beam = Beam(Rod(50.0, *SOFT[:3]), 1.0, mesh(1, 14))
     coarse = shoot(beam, state_from_neighbour(beam, reference().state), reference().measures.period, 64)
     found = [_on_mesh(coarse, mesh(*grid)) for grid in ((1, 26), (2, 16), (3, 11))]
-    exact, *others = [measure(orbit.beam, orbit.run) for orbit in found]
+    exact, *others = [measures_of(orbit.beam, orbit.run) for orbit in found]
     for m in others:
         assert m.period == pytest.approx(exact.period, rel=1e-10)
         assert m.tip_y_max == pytest.approx(exact.tip_y_max, rel=1e-10)
@@ -112,10 +112,10 @@ def test_cycle_converges_with_order_and_with_elements():
 def test_more_steps_reduce_the_error_as_the_estimate_assumes():
     beam = Beam(Rod(50.0, *SOFT[:3]), 1.0, mesh(1, 16))
     orbit = shoot(beam, state_from_neighbour(beam, reference().state), reference().measures.period, 64)
-    theta = [measure(beam, orbit.run).tip_theta_max]
+    theta = [measures_of(beam, orbit.run).tip_theta_max]
     for steps in (128, 256, 512):
         orbit = shoot(beam, orbit.state, orbit.period, steps, orbit.monodromy)
-        theta.append(measure(beam, orbit.run).tip_theta_max)
+        theta.append(measures_of(beam, orbit.run).tip_theta_max)
     first, _, third = np.abs(np.array(theta[:-1]) - theta[-1])
     assert first > 7**2 * third  # 7 = 2^3 - 1 with each doubling
 

@@ -24,7 +24,7 @@ from ...solve.cycle.limit_cycle import (
     state_from_neighbour,
     warm_up,
 )
-from ...solve.cycle.measures import measure
+from ...solve.cycle.measures import measures_of
 from ...solve.cycle.refinement import TRANSIENT
 from ...solve.cycle.shooting import shoot
 from ...solve.motion.integrator import integrator
@@ -199,7 +199,7 @@ def reference() -> Reference:
     orbit = shoot(beam, run.states[-1], cycle.measures.period, STEPS)
     if orbit is None:
         raise ArithmeticError(f"no cycle on one element of order {ORDER}")
-    return Reference(beam, orbit.state, orbit.period, measure(beam, orbit.run).tip_y_max)
+    return Reference(beam, orbit.state, orbit.period, measures_of(beam, orbit.run).tip_y_max)
 
 
 def _cycle(force: float) -> Cycle:

@@ -73,7 +73,7 @@ def integers(address: int, size: int) -> Any:
 
 
 @compiled
-def record(address: int, dtype: Any) -> Any:
+def record_at(address: int, dtype: Any) -> Any:
     """The record of fields `dtype` at an address; what is assigned to a field is written there."""
     return numba.carray(pointer(address), (1,), dtype)[0]
 

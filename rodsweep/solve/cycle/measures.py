@@ -43,7 +43,7 @@ class Measures:
     least_stretch: float = nan
 
 
-def measure(beam: Beam, run: Trajectory) -> Measures:
+def measures_of(beam: Beam, run: Trajectory) -> Measures:
     """The measures of a run of equal steps over one period."""
     x, y, theta = beam.tip(run.states[:-1])
     powers, period = injection_and_dissipation(beam, run), float(run.times[-1])

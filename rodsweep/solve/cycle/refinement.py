@@ -15,7 +15,7 @@ from ...discretization.resolution import LARGEST_ORDER
 from ..motion.integrator import Ending, integrator, relaxed
 from ..motion.time_scheme import TimeScheme
 from .floquet import monodromy
-from .measures import Measures, measure
+from .measures import Measures, measures_of
 from .minimal_period import shortened, undecided_divisor
 from .shooting import FIRST_STEPS, Orbit, shoot
 
@@ -111,7 +111,7 @@ def _in_space(orbit: Orbit, accuracy: float, most_steps: int) -> tuple[Orbit, Cy
 
     Where a finer mesh no longer changes less, what is left is of time: the steps are doubled.
     """
-    here = measure(orbit.beam, orbit.run)
+    here = measures_of(orbit.beam, orbit.run)
     errors, size = INFINITE_ERRORS, float(np.linalg.norm(orbit.state))
     last = inf
     while (grid := finer_mesh(orbit.beam.mesh)).unknowns <= MOST_CYCLE_UNKNOWNS:
@@ -119,7 +119,7 @@ def _in_space(orbit: Orbit, accuracy: float, most_steps: int) -> tuple[Orbit, Cy
         if fine is None:  # the finer mesh is stiffer and needs shorter steps
             stagnates = True
         else:
-            there = measure(fine.beam, fine.run)
+            there = measures_of(fine.beam, fine.run)
             errors = change_of_measures(here, there)
             if errors.within(accuracy, BALANCE / 2):
                 break
@@ -129,7 +129,7 @@ def _in_space(orbit: Orbit, accuracy: float, most_steps: int) -> tuple[Orbit, Cy
             shorter = shoot(orbit.beam, orbit.state, orbit.period, 2 * orbit.steps, orbit.monodromy)
             if shorter is None or shorter.steps > most_steps:
                 break
-            orbit, here, last = shorter, measure(orbit.beam, shorter.run), inf
+            orbit, here, last = shorter, measures_of(orbit.beam, shorter.run), inf
         if drifted(orbit, size):
             return orbit, INFINITE_ERRORS
     return orbit, errors
@@ -142,7 +142,7 @@ def drifted(orbit: Orbit, size: float) -> bool:
 
 def _in_time(orbit: Orbit, space: CycleErrors, accuracy: float, most_steps: int) -> RefinedOrbit:
     """The orbit with steps so small that the errors of space and time together are within the accuracy."""
-    best = RefinedOrbit(orbit, measure(orbit.beam, orbit.run), INFINITE_ERRORS)
+    best = RefinedOrbit(orbit, measures_of(orbit.beam, orbit.run), INFINITE_ERRORS)
     size, last, steps = float(np.linalg.norm(orbit.state)), inf, 2 * orbit.steps
     while steps <= most_steps:
         fine = shoot(orbit.beam, orbit.state, orbit.period, steps, orbit.monodromy)
@@ -154,7 +154,7 @@ def _in_time(orbit: Orbit, space: CycleErrors, accuracy: float, most_steps: int)
         orbit = fine
         if orbit.monodromy.trivial_error > MONODROMY_ERROR and orbit.steps <= MONODROMY_STEPS:
             orbit = replace(orbit, monodromy=monodromy(orbit.beam, orbit.run))
-        here = measure(orbit.beam, orbit.run)
+        here = measures_of(orbit.beam, orbit.run)
         change = change_of_measures(best.measures, here)
         share, last = _left(change.largest, last), change.largest
         errors = CycleErrors(

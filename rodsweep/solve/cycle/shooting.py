@@ -23,7 +23,7 @@ PERIOD_MAP = TimeScheme("arkimex", "5", tolerance=1e-8, newton=1e-6, equal_steps
 FIRST_STEPS = 64
 """Steps per return to the section to begin with."""
 MOST_SHOTS = 12
-ROUNDED = 3e-12
+CLOSURE_ROUNDED = 3e-12
 """Relative closure below which Newton's method has nothing left to gain."""
 LEAST_CLOSURE = 1e-14
 """Relative closure that cannot be asked for, next to a Hopf point either."""
@@ -92,7 +92,7 @@ def shoot(beam: Beam, z: Array, period: float, steps: int, known: Monodromy | No
         # An amplitude is off by the closure in units of 1 - mu.
         small = CLOSED if M is None else max(CLOSED * min(1.0, abs(1 - M.largest)), LEAST_CLOSURE)
         stalled = closure < (CLOSED if fresh else small) and closure > STALLED_CLOSING * last
-        if stalled or closure <= min(ROUNDED, small):
+        if stalled or closure <= min(CLOSURE_ROUNDED, small):
             break
         fresh = M is None or closure > SLOW_CLOSING * last
         if M is None or fresh:

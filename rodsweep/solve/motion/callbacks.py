@@ -28,7 +28,7 @@ from ..backend.c_functions import (
     integers,
     petsc_function,
     pointer,
-    record,
+    record_at,
 )
 from ..backend.petsc import PETSc
 
@@ -48,11 +48,11 @@ CONTEXT = np.dtype(
         ("matrix", WHOLE),  # the one that was last made here
         ("content", WHOLE),  # PETSc's number of its content, which rises with every change, PETSc's included
         ("factorisations", WHOLE),
-        ("last_step", REAL),  # of Newton's method, 2-norm, as are the next but one and two
-        ("contraction", REAL),  # rate at which these steps shrink
-        ("small_error", REAL),  # that is small enough
+        ("contraction", REAL),  # rate at which the steps of Newton's method shrink
+        ("growing", WHOLE),  # how many of them in a row have grown
+        ("last_step", REAL),  # the size of the last one: 2-norm, as are the two below
+        ("small_error", REAL),  # error that is small enough
         ("rounding", REAL),  # the largest step that rounding leaves
-        ("growing", WHOLE),  # Newton steps in a row that have grown
         ("taken", WHOLE, (3,)),  # where PETSc puts what it is asked for
     ]
 )
@@ -94,7 +94,7 @@ def _element(c: Any) -> Element:
 @c_function(POINTER, types.float64, POINTER, POINTER, POINTER, POINTER)
 def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
     """R = Udot - f(U)."""
-    c = record(context, CONTEXT)
+    c = record_at(context, CONTEXT)
     n, at = c.unknowns, context + TAKEN
     taken = integers(at, 3)
     _read(U, at)
@@ -117,7 +117,7 @@ def no_explicit_part(ts: int, t: float, U: int, F: int, context: int) -> int:
     Without a right-hand side PETSc from 3.20 on takes the rod for a differential-algebraic system, and makes
     the first slope of each step by a Newton solve of its own.
     """
-    c = record(context, CONTEXT)
+    c = record_at(context, CONTEXT)
     at = context + TAKEN
     _write(F, at)
     floats(integers(at, 1)[0], c.unknowns)[:] = 0.0
@@ -130,7 +130,7 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     ts: int, t: float, U: int, Udot: int, shift: float, A: int, B: int, context: int
 ) -> int:
     """shift - J, J made anew when `matrix_due` says so; a B nobody touched keeps its factors in PETSc."""
-    c = record(context, CONTEXT)
+    c = record_at(context, CONTEXT)
     n, at = c.unknowns, context + TAKEN
     taken = integers(at, 1)
     _content(B, at)
@@ -167,7 +167,7 @@ def newton_test(  # noqa: PLR0913, PLR0917 - PETSc's signature
     measured from the second iteration on only: letting it decay after stages of one locks into wrong
     answers.
     """
-    c = record(context, CONTEXT)
+    c = record_at(context, CONTEXT)
     answer = numba.carray(pointer(reason), (1,), np.int32)
     answer[0] = ITERATING
     if not np.isfinite(size) or not np.isfinite(dx):
