@@ -6,17 +6,23 @@ import pytest
 from rodsweep.discretization.basis import differentiation
 from rodsweep.discretization.beam import Beam, configuration, mesh
 from rodsweep.discretization.quadrature import gauss_lobatto
+from rodsweep.model.balance import plane_material
 from rodsweep.model.longitudinal import longitudinal_rates
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.cycle.shooting import PERIOD_MAP
-from rodsweep.solve.motion.integrator import Ending, evolve, forget_integrators, integrator
+from rodsweep.solve.motion.integrator import Ending, forget_integrators, integrator
 from rodsweep.solve.motion.leading_mode import leading_mode
-from rodsweep.solve.motion.time_scheme import Method
+from rodsweep.solve.motion.time_scheme import TimeScheme
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 ROD = Rod(50.0, 1e4, 1e2, 1e-2)
 MESHES = pytest.mark.parametrize("elements, order", [(1, 16), (3, 8)])
+
+
+def evolve(beam, z, duration, scheme=None):
+    """The motion of a rod from z over `duration`."""
+    return integrator(beam.mesh, scheme or TimeScheme()).run(beam, z, duration)
 
 
 def bent(beam, size=1.0):
@@ -30,6 +36,20 @@ def bent(beam, size=1.0):
 def rough(beam):
     """A state that no mesh resolves."""
     return bent(beam) + 0.01 * np.random.default_rng(1).standard_normal(beam.mesh.unknowns)
+
+
+def injected_and_dissipated(beam, z):
+    """-F v1(1), by the reaction v1(1) of the tip's stress, and <Gamma V, V>."""
+    material, element, p = plane_material(beam.rod, beam.gamma1), beam.mesh.element, beam.mesh.order
+    stress = np.zeros((3, beam.mesh.nodes + 1))
+    stress[:, :-1] = z.reshape(3, -1) * beam.stiffness_roots[:, None]
+    stress += material.tip_stress[:, None]
+    dissipated = 0.0
+    for first in range(0, beam.mesh.nodes, p):
+        here = stress[:, first : first + p + 1]
+        V = material.velocity(here, here @ element.D.T)
+        dissipated += material.dissipation(V) @ element.weights
+    return -beam.rod.F * (element.D[:, -1] @ (element.weights * V[0])), dissipated
 
 
 @MESHES
@@ -52,7 +72,7 @@ def test_energy_law_holds_on_the_mesh_to_rounding(elements, order):
     stress = z.copy()
     stress[:n] -= ROD.F / ROD.k1**0.5  # Sigma = K^1/2 z + (-F, 0, 0)
     change = stress @ (np.tile(beam.mesh.quadrature[:-1], 3) * rate)
-    injected, dissipated = beam.power(z)
+    injected, dissipated = injected_and_dissipated(beam, z)
     assert change == pytest.approx(injected - dissipated, abs=1e-14 * (abs(injected) + dissipated))
     step = 1e-9
     measured = (beam.energy(z + step * rate) - beam.energy(z - step * rate)) / (2 * step)
@@ -121,7 +141,7 @@ def test_small_start_grows_like_the_leading_eigenvalue():
     start = 1e-7 * mode.z.real
     values, left = np.linalg.eig(beam.jacobian(np.zeros(60)).T)
     row = left[:, np.argmin(np.abs(values - mode.w))]
-    run = evolve(beam, start, duration, Method(tolerance=1e-11, newton=0.01))
+    run = evolve(beam, start, duration, TimeScheme(tolerance=1e-11, newton=0.01))
     assert run.ending == Ending.reached
     grown = np.log((row @ run.states[-1]) / (row @ run.states[0]) * np.exp(-1j * mode.w.imag * duration))
     assert grown.real / duration == pytest.approx(mode.w.real, rel=1e-6)
@@ -133,7 +153,7 @@ def test_equal_steps_have_the_order_of_the_method(variant, order):
     """On a rod whose stiffness the steps resolve; order reduction is a stiff rod's."""
     beam = Beam(Rod(5.0, 10.0, 10.0, 1.0), 1.0, mesh(1, 3))
     start, duration = bent(beam), 0.02
-    method = Method("arkimex", variant, tolerance=1e-8, newton=1e-6, equal_steps=True)
+    method = TimeScheme("arkimex", variant, tolerance=1e-8, newton=1e-6, equal_steps=True)
 
     def end(steps):
         run = integrator(beam.mesh, method).run(beam, start, duration, duration / steps)
@@ -146,22 +166,22 @@ def test_equal_steps_have_the_order_of_the_method(variant, order):
 
 
 METHODS = [
-    Method(tolerance=1e-6),
-    Method("arkimex", "3", 1e-7),
-    Method("arkimex", "4", 1e-6),
-    Method("bdf", "5", 1e-7),
-    Method("rosw", "ra34pw2", 1e-6),
-    Method("rosw", "rodas3", 1e-6),
+    TimeScheme(tolerance=1e-6),
+    TimeScheme("arkimex", "3", 1e-7),
+    TimeScheme("arkimex", "4", 1e-6),
+    TimeScheme("bdf", "5", 1e-7),
+    TimeScheme("rosw", "ra34pw2", 1e-6),
+    TimeScheme("rosw", "rodas3", 1e-6),
 ]
 if PETSc.Sys.getVersion() >= (3, 20):  # its first slopes come from a solve whose matrix PETSc scales in place
-    METHODS += [Method("dirk", "es325sal", 1e-7), Method("dirk", "es648sa", 1e-7)]
+    METHODS += [TimeScheme("dirk", "es325sal", 1e-7), TimeScheme("dirk", "es648sa", 1e-7)]
 
 
 @pytest.mark.parametrize("method", METHODS, ids=lambda method: f"{method.family} {method.variant}")
 def test_every_method_follows_the_same_motion(method):
     beam = Beam(ROD, 1.0, mesh(1, 14))
     start = 0.3 * leading_mode(beam).z.real
-    exact = evolve(beam, start, 0.03, Method(tolerance=1e-10, newton=0.01)).states[-1]
+    exact = evolve(beam, start, 0.03, TimeScheme(tolerance=1e-10, newton=0.01)).states[-1]
     run = evolve(beam, start, 0.03, method)
     assert run.ending == Ending.reached
     assert run.times[-1] == pytest.approx(0.03)
@@ -170,7 +190,7 @@ def test_every_method_follows_the_same_motion(method):
 
 def test_jacobian_is_right_whatever_petsc_did_to_the_matrix():
     beam, shift = Beam(ROD, 1.0, mesh(1, 8)), 1e3
-    made = integrator(beam.mesh, Method())
+    made = integrator(beam.mesh, TimeScheme())
     z, rows = bent(beam), list(range(beam.mesh.unknowns))
     made.workspace.prepare(beam, 1e-8, 1e-8)
     made.workspace.base[:] = z
@@ -183,26 +203,15 @@ def test_jacobian_is_right_whatever_petsc_did_to_the_matrix():
         return made.matrix.getValues(rows, rows)  # reading a dense array counts as a change
 
     assert again() == pytest.approx(expected, rel=1e-13, abs=1e-9)
-    factored = made.workspace.counts[2]
+    factored = int(made.workspace.context["factorisations"])
     assert again() == pytest.approx(expected, rel=1e-13, abs=1e-9)
-    assert made.workspace.counts[2] == factored, "a matrix that nobody touched is made once"
+    assert made.workspace.context["factorisations"] == factored, "a matrix that nobody touched is made once"
     made.matrix.scale(1e-3)
     assert again() == pytest.approx(expected, rel=1e-13, abs=1e-9)
     made.matrix.zeroEntries()
     assert again() == pytest.approx(expected, rel=1e-13, abs=1e-9)
     for vector in (state, slope):
         vector.destroy()
-
-
-def test_rejected_steps_are_counted_run_by_run():
-    beam = Beam(ROD, 1.0, mesh(1, 14))
-    z, duration = 0.3 * leading_mode(beam).z.real, 0.03
-    method = Method("arkimex", "4", 1e-6, options=(("ts_adapt_type", "basic"),))
-    runs = [integrator(beam.mesh, method).run(beam, z, duration, duration / 3) for _ in range(3)]
-    assert runs[0].rejected > 0, "a third of the motion is too long a step"
-    assert len({run.rejected for run in runs}) == 1
-    at_rest = integrator(beam.mesh, method).run(beam, 0 * z, duration, duration / 3)
-    assert at_rest.rejected == 0
 
 
 @pytest.fixture
@@ -223,16 +232,16 @@ def petsc_options():
 
 def test_users_options_override_the_method(petsc_options):
     grid = mesh(1, 8)
-    assert integrator(grid, Method()).ts.getType() == "arkimex"
+    assert integrator(grid, TimeScheme()).ts.getType() == "arkimex"
     petsc_options("cycle_ts_type", "bdf")
-    assert integrator(grid, Method()).ts.getType() == "bdf"
+    assert integrator(grid, TimeScheme()).ts.getType() == "bdf"
     assert integrator(grid, PERIOD_MAP).ts.getType() == "arkimex"
 
 
 def test_defaults_of_the_method_are_not_recorded_as_the_users_options():
     before = PETSc.Options().getAll()
     forget_integrators()
-    integrator(mesh(1, 8), Method())
+    integrator(mesh(1, 8), TimeScheme())
     assert PETSc.Options().getAll() == before
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rodsweep.bench.limit_cycle import integrators as cycle_peers
-from rodsweep.bench.limit_cycle.integrators import CVODE, CVODE_MODULE, DEFAULT, Trajectory, families
+from rodsweep.bench.limit_cycle.integrators import CVODE, CVODE_MODULE, DEFAULT, families
 from rodsweep.bench.limit_cycle.returns import returns_of
 from rodsweep.bench.limit_cycle.settling import Wait, settling_table
 from rodsweep.bench.limit_cycle.study import limit_cycle_study, target_table, time_at, work_table
@@ -65,7 +65,7 @@ def test_every_method_follows_the_cycle_and_gains_from_a_tighter_tolerance(famil
 def test_order_of_the_errors(name):
     order, *tolerances = ORDERS[name]
     family, at = next(f for f in families() if f.name == name), cycle()
-    over = integrator(at.beam.mesh, PERIOD_MAP).run(at.beam, at.state, at.period, at.period / 128, None, 128)
+    over = integrator(at.beam.mesh, PERIOD_MAP).run(at.beam, at.state, at.period, at.period / 128)
     error, steps = np.zeros((2, PHASES)), np.zeros((2, PHASES))
     for phase, state in enumerate(over.states[: 128 : 128 // PHASES + 1]):
         for i, tolerance in enumerate(tolerances):
@@ -80,8 +80,8 @@ def test_error_of_an_exact_run_is_that_of_the_measurement():
     at = cycle()
     steps = int(128 * FOLLOWED_PERIODS)
     duration = steps / 128 * at.period
-    run = integrator(at.beam.mesh, PERIOD_MAP).run(at.beam, at.state, duration, at.period / 128, None, steps)
-    assert judged_run(at, Trajectory(run.times, run.states))["error"] < 1e-8
+    run = integrator(at.beam.mesh, PERIOD_MAP).run(at.beam, at.state, duration, at.period / 128)
+    assert judged_run(at, run)["error"] < 1e-8
 
 
 def test_returns_lie_on_the_section():

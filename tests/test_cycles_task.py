@@ -196,14 +196,21 @@ NUMBERS = (
     "tip_theta_max", "period_error", "amplitude_error", "injection_mean", "injection_rms", "dissipation_mean",
     "dissipation_rms", "energy_imbalance", "multiplier", "closure", "least_stretch",
 )  # fmt: skip
+OF_THE_CYCLE = ("linear_growth_rate", "linear_frequency", "multiplier", "closure")
+ERRORS = ("period_error", "amplitude_error")
+MEASURES = tuple(name for name in NUMBERS if name not in OF_THE_CYCLE + ERRORS)
 
 
 def cycle(index, harmonics=3, samples=4, shapes=2, nodes=5):
     """A cycle whose numbers tell each other apart, as `solve_cycle` gives it."""
     values = {name: float(place + 1) for place, name in enumerate(NUMBERS)}
     return SimpleNamespace(
-        **values | {"period": 2.0 + index, "multiplier": 0.25},
-        harmonics=np.arange(1.0, harmonics + 1),
+        **{name: values[name] for name in OF_THE_CYCLE} | {"multiplier": 0.25},
+        errors=SimpleNamespace(**{name: values[name] for name in ERRORS}),
+        measures=SimpleNamespace(
+            **{name: values[name] for name in MEASURES} | {"period": 2.0 + index},
+            harmonic_amplitude=np.arange(1.0, harmonics + 1),
+        ),
         periods=12 + index,
         elements=2,
         order=18,
@@ -220,9 +227,10 @@ def cycle(index, harmonics=3, samples=4, shapes=2, nodes=5):
 def nothing(status=1, **sizes):
     """The outcome of a rod without a cycle."""
     found = cycle(0, **sizes)
-    for name in set(NUMBERS) - {"linear_growth_rate", "linear_frequency"}:
-        setattr(found, name, np.nan)
-    found.status, found.harmonics = status, np.full(3, np.nan)
+    for part in (found.errors, found.measures):
+        for name in vars(part):
+            setattr(part, name, np.nan)
+    found.status, found.multiplier, found.closure = status, np.nan, np.nan
     found.tip = found.energy = found.shape = None
     return found
 
@@ -490,8 +498,9 @@ class CycleStatus(IntEnum):
     def succeeded(self):
         return self <= CycleStatus.straight
 
-def solve_cycle(F, k1, k2, gamma3, gamma1, request, start=None):
+def solve_cycle(point, request, start=None):
     import numpy as np
+    F, k2 = point.F, point.k2
     if os.environ.get("DIE_AT") == f"{F:g} {k2:g}":
         os._exit(9)
     open("solved", "a").write(f"{F:g} {k2:g}\\n")
@@ -501,17 +510,22 @@ def solve_cycle(F, k1, k2, gamma3, gamma1, request, start=None):
         status = CycleStatus.failed
     memory = 0.5 if start is None else np.sin(start.sum()) + k2
     period = memory / 3 + F
-    names = ("linear_growth_rate linear_frequency tip_x_min tip_x_max tip_y_max tip_theta_max period_error "
-             "amplitude_error injection_mean injection_rms dissipation_mean dissipation_rms energy_imbalance "
-             "multiplier closure least_stretch").split()
+    names = ("tip_x_min tip_x_max tip_y_max tip_theta_max injection_mean injection_rms dissipation_mean "
+             "dissipation_rms energy_imbalance least_stretch").split()
+    amplitudes = np.full(request.harmonics, F)
+    measures = SimpleNamespace(
+        **dict.fromkeys(names, memory), period=period, frequency=1 / period, harmonic_amplitude=amplitudes
+    )
+    errors = SimpleNamespace(period_error=memory, amplitude_error=memory)
     return SimpleNamespace(
-        **dict.fromkeys(names, memory), status=status, period=period, frequency=1 / period, periods=3,
-        harmonics=np.full(request.harmonics, F), elements=1, order=18, seconds=0.01, message="a message",
+        linear_growth_rate=memory, linear_frequency=memory, multiplier=memory, closure=memory, status=status,
+        measures=measures, errors=errors, periods=3, elements=1, order=18, seconds=0.01, message="a message",
         tip=None, energy=None, shape=None, state=np.array([memory, F, k2]),
     )
 
 fake = ModuleType("rodsweep.solve.cycle.limit_cycle")
-fake.CycleStatus, fake.CycleRequest, fake.solve_cycle = CycleStatus, SimpleNamespace, solve_cycle
+fake.CycleStatus, fake.solve_cycle = CycleStatus, solve_cycle
+fake.CycleRequest = fake.CyclePoint = SimpleNamespace
 fake.warm_up = lambda: None
 sys.modules[fake.__name__] = fake
 '''

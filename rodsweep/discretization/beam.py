@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..model.rod import Rod
 from .basis import differentiation, interpolation
-from .body_frame import jacobian, power, rate
+from .body_frame import BeamParameters, Element, jacobian, rate
 from .pencil import assemble
 from .quadrature import gauss, gauss_lobatto
 
@@ -26,16 +26,11 @@ TINY = 1e-30
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """`elements` equal elements of order `order` on [0, 1].
-
-    matrices: D, D^T and -D^T W D on the nodes of one element, shape (3, p + 1, p + 1), so that inner loops
-    are contiguous; weights: its quadrature in u, (p + 1,).
-    """
+    """`elements` equal elements of order `order` on [0, 1], and the matrices of one of them."""
 
     elements: int
     order: int
-    matrices: Array
-    weights: Array
+    element: Element
 
     @property
     def nodes(self) -> int:
@@ -49,15 +44,14 @@ class Mesh:
     @cached_property
     def positions(self) -> Array:
         """u of all nodes, the tip included, shape (nodes + 1,)."""
-        local = (gauss_lobatto(self.order)[0][:-1] + 1) / 2
-        return np.append((np.arange(self.elements)[:, None] + local).ravel() / self.elements, 1.0)
+        return np.append(0.0, assemble(self.elements, self.order).positions())
 
     @cached_property
     def quadrature(self) -> Array:
         """Weights of all nodes, the tip included, shape (nodes + 1,)."""
         total = np.zeros(self.nodes + 1)
         for e in range(self.elements):
-            total[e * self.order : (e + 1) * self.order + 1] += self.weights
+            total[e * self.order : (e + 1) * self.order + 1] += self.element.weights
         return total
 
     def evaluation(self, points: Array) -> Array:
@@ -70,7 +64,7 @@ def mesh(elements: int, order: int) -> Mesh:
     """The mesh of `elements` equal elements of order `order`."""
     x, w = gauss_lobatto(order)
     D, weights = differentiation(x) * 2 * elements, w / (2 * elements)
-    return Mesh(elements, order, np.stack([D, D.T, -(D.T * weights) @ D]), weights)
+    return Mesh(elements, order, Element(D, D.T.copy(), -(D.T * weights) @ D, weights))
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,32 +79,27 @@ class Beam:
     mesh: Mesh
 
     @cached_property
-    def coefficients(self) -> Array:
-        """(F, nu, sqrt k1, sqrt k2, gamma1, gamma3) as the compiled functions take them."""
+    def parameters(self) -> BeamParameters:
+        """The parameters as the compiled functions take them."""
         r = self.rod
-        return np.array([r.F, r.nu, r.k1**0.5, r.k2**0.5, self.gamma1, r.gamma3])
+        return BeamParameters(*map(float, (r.F, r.nu, r.k1**0.5, r.k2**0.5, self.gamma1, r.gamma3)))
 
-    @property
+    @cached_property
     def stiffness_roots(self) -> Array:
         """Square roots of (k1, k2, k3), shape (3,)."""
-        return np.append(self.coefficients[2:4], 1.0)
+        return np.array([self.parameters.root_k1, self.parameters.root_k2, 1.0])
 
     def rate(self, z: Array) -> Array:
         """dz/dt in 1/tau2."""
         out = np.empty_like(z)
-        rate(z, out, self.coefficients, self.mesh.matrices, self.mesh.weights)
+        rate(z, out, self.parameters, self.mesh.element)
         return out
 
     def jacobian(self, z: Array) -> Array:
         """d(dz/dt)/dz, shape (unknowns, unknowns)."""
         out = np.empty((len(z), len(z)))
-        jacobian(z, out, self.coefficients, self.mesh.matrices, self.mesh.weights)
+        jacobian(z, out, self.parameters, self.mesh.element)
         return out.T
-
-    def power(self, z: Array) -> tuple[float, float]:
-        """(-F v1(1), <Gamma V, V>): injected and dissipated, k3/(L tau2); dU/dt is their difference."""
-        v1, dissipated = power(z, self.coefficients, self.mesh.matrices, self.mesh.weights)
-        return -self.rod.F * v1, dissipated
 
     def strains(self, z: Array) -> Array:
         """(h1, h2, Pi) at all nodes, the tip included, shape (3, ..., nodes + 1) for z (..., unknowns)."""
@@ -147,7 +136,7 @@ class Beam:
     def least_stretch(self, z: Array) -> float:
         """min h1 over the nodes of all states; the model holds while it is positive."""
         least = min(0.0, float(z[..., : self.mesh.nodes].min()))
-        return float(self.rod.nu + least / self.coefficients[2])
+        return float(self.rod.nu + least / self.parameters.root_k1)
 
 
 def configuration(grid: Mesh, strains: Array, clamp: Array) -> Array:

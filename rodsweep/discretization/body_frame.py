@@ -1,4 +1,4 @@
-"""The nonlinear rod in its body frame: the rate of its strains, the exact Jacobian, the power.
+"""The nonlinear rod in its body frame: the rate of its strains and its exact Jacobian.
 
 Sec. III, second formulation. With Sigma = K (E - Ebar), E = (h1, h2, Pi), K = diag(k1, k2, 1),
 Gamma = diag(gamma1, 1, gamma3) and D*_E sigma = (s1' - Pi s2, s2' + Pi s1, s3' - h2 s1 + h1 s2),
@@ -12,10 +12,12 @@ The unknown is the strain beyond the straight rod's (nu, 0, 0) in units of energ
 E_straight), at all nodes but the tip, where it vanishes: z1 at every node, then z2, then z3. |z|^2/2 is an
 energy, the mass matrix is the identity, and no digits are lost for large k1 or k2.
 
-All functions take c = (F, nu, sqrt k1, sqrt k2, gamma1, gamma3), and of the mesh the matrices d = (D, D^T,
--D^T W D) of one element, shape (3, p + 1, p + 1), and its weights w, (p + 1,). They are compiled, contain no
-configuration and no trigonometric function, and know no time stepping.
+All functions take c, the rod's parameters, and the matrices of one element of the mesh, which are all equal.
+They are compiled, contain no configuration and no trigonometric function, and know no time stepping.
+`rodsweep.model.balance` states the same balance without mesh and compilation.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,21 +27,54 @@ from ..model.compilation import compiled
 Array = NDArray[np.float64]
 
 
+class BeamParameters(NamedTuple):
+    """A rod's parameters as the compiled functions take them; root_k1, root_k2: square roots of k1 and k2."""
+
+    F: float
+    nu: float
+    root_k1: float
+    root_k2: float
+    gamma1: float
+    gamma3: float
+
+
+class Coupling(NamedTuple):
+    """Of nodes i and j of an element: entries of D, -D^T W and -D^T W D, and the weight of i."""
+
+    slope: float
+    weak: float
+    second: float
+    weight: float
+
+
+class Element(NamedTuple):
+    """D, D^T and -D^T W D on the Lobatto nodes of one element, (p + 1, p + 1), and its weights, (p + 1,).
+
+    All are contiguous, and so are inner loops over the nodes.
+    """
+
+    D: Array
+    D_transposed: Array
+    weak_second: Array
+    weights: Array
+
+
 @compiled
-def rate(z: Array, out: Array, c: Array, d: Array, w: Array) -> None:
+def rate(z: Array, out: Array, c: BeamParameters, element: Element) -> None:
     """dz/dt in 1/tau2 into out, both of shape (unknowns,)."""
+    D, w = element.D, element.weights
     m, n = len(w), len(z) // 3
     p = m - 1
     out[:] = 0.0
     fields, S = np.empty((3, 3, m)), np.empty((3, m))
     E, V = fields[0], fields[2]
     for e in range(n // p):
-        _velocity(z, e, fields, c, d)
+        _velocity(z, e, fields, c, element.D_transposed)
         S[:, :] = 0.0
         for j in range(m):  # S = D^T W V, the inner loop contiguous
             v1, v2, v3 = w[j] * V[0, j], w[j] * V[1, j], w[j] * V[2, j]
             for i in range(m):
-                slope = d[0, j, i]
+                slope = D[j, i]
                 S[0, i] += slope * v1
                 S[1, i] += slope * v2
                 S[2, i] += slope * v3
@@ -47,71 +82,53 @@ def rate(z: Array, out: Array, c: Array, d: Array, w: Array) -> None:
             k = e * p + i
             mass = w[i] + (w[0] if (i == 0 and e > 0) or i == p else 0.0)
             share = w[i] / mass
-            out[k] -= c[2] * (S[0, i] / mass + share * (E[2, i] * V[1, i] - E[1, i] * V[2, i]))
-            out[n + k] -= c[3] * (S[1, i] / mass + share * (E[0, i] * V[2, i] - E[2, i] * V[0, i]))
+            out[k] -= c.root_k1 * (S[0, i] / mass + share * (E[2, i] * V[1, i] - E[1, i] * V[2, i]))
+            out[n + k] -= c.root_k2 * (S[1, i] / mass + share * (E[0, i] * V[2, i] - E[2, i] * V[0, i]))
             out[2 * n + k] -= S[2, i] / mass
 
 
 @compiled
-def _velocity(z: Array, e: int, fields: Array, c: Array, d: Array) -> None:
+def _velocity(z: Array, e: int, fields: Array, c: BeamParameters, D_transposed: Array) -> None:
     """(E, Sigma - Sigma_straight, V) at the nodes of element e into fields, shape (3, 3, p + 1)."""
     E, S, V = fields[0], fields[1], fields[2]
     m, n = E.shape[1], len(z) // 3
     for i in range(m):
         k = e * (m - 1) + i
         z1, z2, z3 = (z[k], z[n + k], z[2 * n + k]) if k < n else (0.0, 0.0, 0.0)
-        E[0, i], E[1, i], E[2, i] = c[1] + z1 / c[2], z2 / c[3], z3
-        S[0, i], S[1, i], S[2, i] = z1 * c[2], z2 * c[3], z3
+        E[0, i], E[1, i], E[2, i] = c.nu + z1 / c.root_k1, z2 / c.root_k2, z3
+        S[0, i], S[1, i], S[2, i] = z1 * c.root_k1, z2 * c.root_k2, z3
     V[:, :] = 0.0
     for j in range(m):  # V = D S, the inner loop contiguous
         s1, s2, s3 = S[0, j], S[1, j], S[2, j]
         for i in range(m):
-            slope = d[1, j, i]
+            slope = D_transposed[j, i]
             V[0, i] += slope * s1
             V[1, i] += slope * s2
             V[2, i] += slope * s3
     for i in range(m):
-        tension = S[0, i] - c[0]
-        V[0, i] = (V[0, i] - E[2, i] * S[1, i]) / c[4]
+        tension = S[0, i] - c.F
+        V[0, i] = (V[0, i] - E[2, i] * S[1, i]) / c.gamma1
         V[1, i] = V[1, i] + E[2, i] * tension
-        V[2, i] = (V[2, i] - E[1, i] * tension + E[0, i] * S[1, i]) / c[5]
+        V[2, i] = (V[2, i] - E[1, i] * tension + E[0, i] * S[1, i]) / c.gamma3
 
 
 @compiled
-def power(z: Array, c: Array, d: Array, w: Array) -> tuple[float, float]:
-    """(v1(1), <Gamma V, V>) in L/tau2 and k3/(L tau2).
-
-    v1(1) is the reaction of the essential condition: with it dU/dt = -F v1(1) - <Gamma V, V> holds on the
-    mesh.
-    """
-    p, n = len(w) - 1, len(z) // 3
-    fields = np.zeros((3, 3, p + 1))
-    V = fields[2]
-    dissipated = reaction = 0.0
-    for e in range(n // p):
-        _velocity(z, e, fields, c, d)
-        for i in range(p + 1):
-            dissipated += w[i] * (c[4] * V[0, i] ** 2 + V[1, i] ** 2 + c[5] * V[2, i] ** 2)
-    for j in range(p + 1):  # Pi V2 - h2 V3 vanishes at the tip
-        reaction += d[0, j, p] * w[j] * V[0, j]
-    return reaction, dissipated
-
-
-@compiled
-def jacobian(z: Array, out: Array, c: Array, d: Array, w: Array) -> None:
+def jacobian(z: Array, out: Array, c: BeamParameters, element: Element) -> None:
     """d(dz/dt)/dz into out, transposed: out[column, row], as LAPACK and PETSc store it."""
+    D, w = element.D, element.weights
     p, n = len(w) - 1, len(z) // 3
     out[:, :] = 0.0
     fields, block = np.zeros((3, 3, p + 1)), np.zeros((3, 3))
-    scale = np.array([c[2], c[3], 1.0])
+    scale = np.array([c.root_k1, c.root_k2, 1.0])
     for e in range(n // p):
-        _velocity(z, e, fields, c, d)
+        _velocity(z, e, fields, c, element.D_transposed)
         for i in range(min(p + 1, n - e * p)):
             row = e * p + i
             mass = w[i] + (w[0] if (i == 0 and e > 0) or i == p else 0.0)
             for j in range(min(p + 1, n - e * p)):
                 column = e * p + j
-                _pair(i, j, fields, c, (d[0, i, j], -d[0, j, i] * w[j], d[2, i, j], w[i]), block)
+                here = Coupling(D[i, j], -D[j, i] * w[j], element.weak_second[i, j], w[i])
+                _pair(i, j, fields, c, here, block)
                 for a in range(3):
                     for b in range(3):
                         # d/dz_b = K_b^-1/2 d/dE_b; z_a = K_a^1/2 E_a
@@ -119,20 +136,20 @@ def jacobian(z: Array, out: Array, c: Array, d: Array, w: Array) -> None:
 
 
 @compiled
-def _pair(i: int, j: int, fields: Array, c: Array, here: tuple[float, float, float, float], G: Array) -> None:
+def _pair(i: int, j: int, fields: Array, c: BeamParameters, here: Coupling, G: Array) -> None:
     """Derivative of the weak rates of E at node i by E at node j of one element, before the lumped mass.
 
     With V_a = Gamma_a^-1 (slope S_a + M_a(E)) and weak rate_a = weak V_a - w N_a(E, V):
-    G = weak (V' at j) + (-w N_V at i) (V' from j) - w N_E.  here = (slope, weak, second, w) at (i, j).
+    G = weak (V' at j) + (-w N_V at i) (V' from j) - w N_E.
     """
     slope, weak, second, w = here
     E, S, V = fields[0], fields[1], fields[2]
-    K1, K2 = c[2] ** 2, c[3] ** 2
-    g1, g3 = 1 / c[4], 1 / c[5]
+    K1, K2 = c.root_k1**2, c.root_k2**2
+    g1, g3 = 1 / c.gamma1, 1 / c.gamma3
     h1, h2, Pi = E[0, i], E[1, i], E[2, i]
     # the local part of dV/dE at node j
     a12, a13 = -E[2, j] * K2 * g1, -S[1, j] * g1
-    a21, a23 = E[2, j] * K1, S[0, j] - c[0]
+    a21, a23 = E[2, j] * K1, S[0, j] - c.F
     a31, a32 = (S[1, j] - E[1, j] * K1) * g3, (E[0, j] * K2 - a23) * g3
     G[0, 0] = second * K1 * g1
     G[0, 1] = weak * a12 - w * Pi * slope * K2

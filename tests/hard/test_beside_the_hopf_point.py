@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
-from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle
 
 RODS = [
     (1e4, 1e2, 1e-2, 1.0), (557.1, 3933.0, 3.16e-3, 0.21), (4.878e4, 3997.0, 4.11e-4, 0.26),
@@ -29,9 +29,8 @@ def hopf(rod):
 @cache
 def beside(rod, distance):
     """What a rod does at a relative distance from its Hopf point."""
-    return solve_cycle(
-        hopf(rod) * (1 + distance), *rod, CycleRequest(ACCURACY, 0.01, 1, 0, 0, 0, most_periods=400)
-    )
+    point = CyclePoint(hopf(rod) * (1 + distance), *rod)
+    return solve_cycle(point, CycleRequest(ACCURACY, 0.01, 1, 0, 0, 0, most_periods=400))
 
 
 @pytest.mark.parametrize("rod", RODS)
@@ -40,7 +39,7 @@ def test_amplitude_is_as_the_square_root_of_the_distance(rod):
     found = [beside(rod, distance) for distance in distances]
     assert [c.status for c in found] == [CycleStatus.cycle] * 3
     assert max(c.periods for c in found) <= 60
-    squares = np.array([c.tip_y_max**2 for c in found]) / distances
+    squares = np.array([c.measures.tip_y_max**2 for c in found]) / distances
     # What a relative distance of 1e-5 adds to the law, and what 1e-12 of the Hopf point takes at 1e-7.
     assert squares / squares[1] == pytest.approx(1.0, abs=1e-4)
     assert squares[0] / squares[1] == pytest.approx(1.0, abs=3e-5)
@@ -49,7 +48,7 @@ def test_amplitude_is_as_the_square_root_of_the_distance(rod):
 @pytest.mark.parametrize("rod", RODS)
 def test_a_cycle_recovers_twice_as_fast_as_the_straight_rod_is_left(rod):
     c = beside(rod, 1e-5)
-    assert -np.log(c.multiplier) / (c.linear_growth_rate * c.period) == pytest.approx(2.0, abs=0.02)
+    assert -np.log(c.multiplier) / (c.linear_growth_rate * c.measures.period) == pytest.approx(2.0, abs=0.02)
 
 
 @pytest.mark.parametrize("distance", [-1e-8, -1e-7, -1e-5])

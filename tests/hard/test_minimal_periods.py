@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle
 
 RODS, BATCH = int(os.environ.get("RODSWEEP_RODS", "12")), 4
 SETTLED = (CycleStatus.cycle, CycleStatus.straight)
@@ -27,7 +27,7 @@ def random_rod(index):
 
 @cache
 def found(rod, amplitude):
-    return solve_cycle(*rod, CycleRequest(1e-4, amplitude, 8, 0, 0, 0, 400))
+    return solve_cycle(CyclePoint(*rod), CycleRequest(1e-4, amplitude, 8, 0, 0, 0, 400))
 
 
 @pytest.mark.parametrize("first", range(0, RODS, BATCH))
@@ -39,8 +39,8 @@ def test_periods_are_minimal_and_equal_from_both_starts(first):
         if not ends <= set(SETTLED) or (far.linear_growth_rate > 0 and ends != {CycleStatus.cycle}):
             wrong.append((rod, far.status.name, far.message, near.status.name, near.message))
         beating = [c for c in (far, near) if c.status == CycleStatus.cycle]
-        if any(np.argmax(c.harmonics) != 0 for c in beating):
-            wrong.append((rod, "harmonics", [c.harmonics.tolist() for c in beating]))
-        if len(beating) == 2 and abs(far.period / near.period - 1) > 1e-3:
-            wrong.append((rod, "periods", far.period, near.period))
+        if any(np.argmax(c.measures.harmonic_amplitude) != 0 for c in beating):
+            wrong.append((rod, "harmonics", [c.measures.harmonic_amplitude.tolist() for c in beating]))
+        if len(beating) == 2 and abs(far.measures.period / near.measures.period - 1) > 1e-3:
+            wrong.append((rod, "periods", far.measures.period, near.measures.period))
     assert not wrong

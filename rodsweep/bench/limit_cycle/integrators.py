@@ -15,8 +15,8 @@ import scipy.integrate
 
 from ...discretization.beam import Beam
 from ...discretization.body_frame import jacobian, rate
-from ...solve.motion.integrator import Ending, evolve
-from ...solve.motion.time_scheme import Method
+from ...solve.motion.integrator import Ending, Trajectory, integrator
+from ...solve.motion.time_scheme import TimeScheme
 from ..lapack import Array
 from ..machine import installed
 
@@ -29,14 +29,6 @@ where its first step is too long for the start."""
 CVODE_MODULE = "sksundae.cvode"
 """Of scikit-sundae, which is an optional extra (`cvode`)."""
 MOST_CVODE_STEPS = 200_000
-
-
-@dataclass(frozen=True, slots=True)
-class Trajectory:
-    """The steps of a run: times in tau2, (steps + 1,), and states z, (steps + 1, unknowns)."""
-
-    times: Array
-    states: Array
 
 
 Integration = Callable[[Beam, Array, float, float], Trajectory]
@@ -60,12 +52,12 @@ def by_petsc(
     family: str, variant: str, beam: Beam, z: Array, duration: float, tolerance: float
 ) -> Trajectory:
     """PETSc TS as the task limit_cycle uses it."""
-    newton = Method().newton if tolerance > TIGHT else TIGHT_NEWTON
-    method = Method(family, variant, tolerance, newton, prefix="bench_")
-    run = evolve(beam, z, duration, method)
+    newton = TimeScheme().newton if tolerance > TIGHT else TIGHT_NEWTON
+    scheme = TimeScheme(family, variant, tolerance, newton, prefix="bench_")
+    run = integrator(beam.mesh, scheme).run(beam, z, duration)
     if run.ending != Ending.reached:
         raise ArithmeticError(f"{family} {variant} at {tolerance:g}: {run.ending.name} {run.message}")
-    return Trajectory(run.times, run.states)
+    return run
 
 
 def by_scipy(method: str, beam: Beam, z: Array, duration: float, tolerance: float) -> Trajectory:
@@ -84,12 +76,12 @@ def by_scipy(method: str, beam: Beam, z: Array, duration: float, tolerance: floa
         )
     if not found.success:
         raise ArithmeticError(f"SciPy {method} at {tolerance:g}: {found.message}")
-    return Trajectory(found.t, found.y.T)
+    return Trajectory(Ending.reached, found.t, found.y.T)
 
 
 def by_cvode(cvode: Any, beam: Beam, z: Array, duration: float, tolerance: float) -> Trajectory:
     """CVODE's BDF with its dense solver, through scikit-sundae."""
-    arguments = beam.coefficients, beam.mesh.matrices, beam.mesh.weights
+    arguments = beam.parameters, beam.mesh.element
     buffer = np.empty((len(z), len(z)))
 
     def right_side(_: float, x: Array, out: Array) -> None:
@@ -112,7 +104,7 @@ def by_cvode(cvode: Any, beam: Beam, z: Array, duration: float, tolerance: float
     found = solver.solve(np.array([0.0, duration]), z)
     if not found.success:
         raise ArithmeticError(f"CVODE at {tolerance:g}: {found.message}")
-    return Trajectory(found.t, found.y)
+    return Trajectory(Ending.reached, found.t, found.y)
 
 
 DEFAULT, CVODE = "ARKIMEX 5 (default)", "CVODE"

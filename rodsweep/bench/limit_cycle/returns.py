@@ -12,9 +12,8 @@ from scipy.interpolate import PPoly, make_interp_spline
 
 from ...discretization.beam import Beam
 from ...solve.cycle.shooting import PERIOD_MAP, angle_weights
-from ...solve.motion.integrator import integrator
+from ...solve.motion.integrator import RunLimit, Trajectory, integrator
 from ..lapack import Array
-from .integrators import Trajectory
 
 SMALL_STEPS, DEGREE = 20, 7
 """Small steps about an event, and the degree of the spline through them."""
@@ -61,8 +60,9 @@ def returns_of(beam: Beam, run: Trajectory) -> Returns:
 def _again(beam: Beam, z: Array, duration: float) -> Trajectory:
     """Equal small steps from a state of a run."""
     step = duration / SMALL_STEPS
-    run = integrator(beam.mesh, PERIOD_MAP).run(beam, z, duration, step, most_steps=SMALL_STEPS + 2)
-    return Trajectory(run.times, run.states)
+    return integrator(beam.mesh, PERIOD_MAP).run(
+        beam, z, duration, step, RunLimit(most_steps=SMALL_STEPS + 2)
+    )
 
 
 def _spline(times: Array, values: Array) -> PPoly:

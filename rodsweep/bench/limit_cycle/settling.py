@@ -83,7 +83,7 @@ def _error(at: Reference, period: float, height: float) -> float:
 
 def _solved(at: Reference) -> Wait:
     cycle = cycle_at(CYCLE_FORCE)
-    left = _error(at, cycle.period, cycle.tip_y_max)
+    left = _error(at, cycle.measures.period, cycle.measures.tip_y_max)
     return Wait(CYCLE_FORCE, SOLVE, nan, cycle.periods, left, partial(cycle_at, CYCLE_FORCE))
 
 
@@ -113,10 +113,10 @@ def _near_hopf(tolerances: dict[Family, float]) -> list[Wait]:
     cycle = cycle_at(NEAR_HOPF)
     beam, z = on_cycle(cycle, NEAR_HOPF, cycle.elements, cycle.order)
     count = log(SETTLED_WITHIN) / log(cycle.multiplier)
-    error = max(cycle.period_error, cycle.amplitude_error)
+    error = max(cycle.errors.period_error, cycle.errors.amplitude_error)
     waits = [Wait(NEAR_HOPF, SOLVE, nan, cycle.periods, error, partial(cycle_at, NEAR_HOPF))]
     for family, tolerance in tolerances.items():
-        run = partial(family.integrate, beam, z, FOLLOWED_PERIODS * cycle.period, tolerance)
+        run = partial(family.integrate, beam, z, FOLLOWED_PERIODS * cycle.measures.period, tolerance)
         waits.append(
             Wait(
                 NEAR_HOPF,

@@ -14,13 +14,13 @@ import numpy as np
 
 from ...discretization.beam import Beam, mesh
 from ...model.rod import Rod
-from ...solve.cycle.limit_cycle import Cycle, CycleRequest, received, solve_cycle
-from ...solve.cycle.measures import measure
+from ...solve.cycle.limit_cycle import Cycle, CyclePoint, CycleRequest, solve_cycle, state_from_neighbour
+from ...solve.cycle.measures import measures_of
 from ...solve.cycle.shooting import shoot
-from ...solve.motion.integrator import relaxed
+from ...solve.motion.integrator import Trajectory, relaxed
 from ..lapack import Array
 from ..study import Contender, Measurement, contest
-from .integrators import Family, Integration, Trajectory
+from .integrators import Family, Integration
 from .returns import returns_of
 
 FIG5_ROD = (1e4, 1e2, 1e-2, 1.0)
@@ -52,7 +52,8 @@ class Reference:
 
 def cycle_at(force: float) -> Cycle:
     """The rod's cycle as the task limit_cycle finds it."""
-    return solve_cycle(force, *FIG5_ROD, CycleRequest(SETTLED_WITHIN, AMPLITUDE, 1, 0, 0, 0, MOST_RETURNS))
+    request = CycleRequest(SETTLED_WITHIN, AMPLITUDE, 1, 0, 0, 0, MOST_RETURNS)
+    return solve_cycle(CyclePoint(force, *FIG5_ROD), request)
 
 
 def on_cycle(cycle: Cycle, force: float, elements: int, order: int) -> tuple[Beam, Array]:
@@ -60,17 +61,17 @@ def on_cycle(cycle: Cycle, force: float, elements: int, order: int) -> tuple[Bea
     if cycle.state is None:
         raise ArithmeticError(f"no cycle: {cycle.message}")
     beam = Beam(Rod(force, *FIG5_ROD[:3]), FIG5_ROD[3], mesh(elements, order))
-    return beam, relaxed(beam, received(beam, cycle.state), cycle.period)
+    return beam, relaxed(beam, state_from_neighbour(beam, cycle.state), cycle.measures.period)
 
 
 def reference() -> Reference:
     """The cycle on the benchmark's mesh, by Newton's method on its period map."""
     cycle = cycle_at(CYCLE_FORCE)
     beam, z = on_cycle(cycle, CYCLE_FORCE, 1, CYCLE_ORDER)
-    orbit = shoot(beam, z, cycle.period, REFERENCE_STEPS)
+    orbit = shoot(beam, z, cycle.measures.period, REFERENCE_STEPS)
     if orbit is None:
         raise ArithmeticError(f"no cycle on one element of order {CYCLE_ORDER}")
-    return Reference(beam, orbit.state, orbit.period, measure(beam, orbit.run).tip_y_max)
+    return Reference(beam, orbit.state, orbit.period, measures_of(beam, orbit.run).tip_y_max)
 
 
 def follow(integrate: Integration, tolerance: float, at: Reference) -> Trajectory:

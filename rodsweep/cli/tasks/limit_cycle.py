@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
 OF_THE_SWEEP = ("continue_from", "along", "direction", "time")
 """Options that say how points follow each other and what the file adds; a cycle is asked for all others."""
-RENAMED = {"harmonic_amplitude": "harmonics"}
-"""Variables of the file whose field of a cycle has another name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,13 +94,19 @@ class LimitCycleTask(Task):
         return estimate_cycles(self.points.count)
 
     def solver(self) -> Solver:
-        from ...solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle, warm_up
+        from ...solve.cycle.limit_cycle import (
+            CyclePoint,
+            CycleRequest,
+            CycleStatus,
+            solve_cycle,
+            warm_up,
+        )
 
         options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
         request = CycleRequest(accuracy=self.config.accuracy, **options)
 
         def solve(index: int, start: State = None) -> "Cycle":
-            return solve_cycle(**self.points.values(index), request=request, start=start)
+            return solve_cycle(CyclePoint(**self.points.values(index)), request, start)
 
         def solve_from(index: int, start: State) -> "tuple[Cycle, State]":
             cycle = solve(index, start)
@@ -118,12 +122,13 @@ class LimitCycleTask(Task):
         )
 
     def record(self, point: dict[str, float], cycle: "Cycle") -> dict[str, Any]:
-        """A Cycle as the variables of the file."""
+        """A Cycle as the variables of the file, which are its fields and those of its measures and errors."""
         options = self.config.limit_cycle
-        values = {v.name: getattr(cycle, RENAMED.get(v.name, v.name)) for v in CYCLE}
+        fields = vars(cycle) | vars(cycle.measures) | vars(cycle.errors)
+        values = {variable.name: fields[variable.name] for variable in CYCLE}
         values["status"] = int(cycle.status)
         if options.time == "tau1":  # t/tau1 = (t/tau2) k2/gamma3
-            values[PERIOD_TAU1.name] = cycle.period * point["k2"] / point["gamma3"]
+            values[PERIOD_TAU1.name] = cycle.measures.period * point["k2"] / point["gamma3"]
         if options.samples:
             values |= _along(TIP, cycle.tip) | _along(ENERGY, cycle.energy)
         if options.shapes:

@@ -72,6 +72,12 @@ def integers(address: int, size: int) -> Any:
     return numba.carray(pointer(address), (size,), np.int64)
 
 
+@compiled
+def record_at(address: int, dtype: Any) -> Any:
+    """The record of fields `dtype` at an address; what is assigned to a field is written there."""
+    return numba.carray(pointer(address), (1,), dtype)[0]
+
+
 def call(name: str, *arguments: int) -> None:
     """A function of libpetsc whose arguments are all pointers."""
     if getattr(LIBRARY, name)(*map(ctypes.c_void_p, arguments)):

@@ -1,8 +1,7 @@
-"""The tangent of the flow along a run, and with it the multipliers of a cycle.
+"""The monodromy matrix of a cycle and its eigenvalues, the Floquet multipliers.
 
-M(T) of M' = J(z(t)) M, M(0) = 1 is the derivative of the period map z -> phi_T(z). Of its eigenvalues, the
-Floquet multipliers, one is 1 (a shift along the cycle); the cycle is stable if all others lie inside the
-circle.
+M(T) of M' = J(z(t)) M, M(0) = 1 is the derivative of the period map z -> phi_T(z). One of its eigenvalues is
+1 (a shift along the cycle); the cycle is stable if all others lie inside the unit circle.
 """
 
 from dataclasses import dataclass
@@ -11,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...discretization.beam import Beam
-from ..motion.integrator import Run
+from ..motion.integrator import Trajectory
 
 Array = NDArray[np.float64]
 
@@ -28,7 +27,7 @@ SDIRK = np.array(
 
 
 @dataclass(frozen=True, eq=False)
-class Tangent:
+class Monodromy:
     """matrix: M(T), (unknowns, unknowns); multipliers: by descending modulus, the trivial one taken out.
 
     trivial_error: the distance of the trivial one from 1, an estimate of the error of the others.
@@ -44,16 +43,16 @@ class Tangent:
         return float(abs(self.multipliers[0]))
 
 
-def tangent(beam: Beam, run: Run) -> Tangent:
-    """The tangent along one period, by SDIRK on the steps of its run."""
-    M = tangent_flow(beam, run)
+def monodromy(beam: Beam, run: Trajectory) -> Monodromy:
+    """The monodromy matrix of one period, by SDIRK on the steps of its run."""
+    M = flow_derivative(beam, run)
     mu = np.linalg.eigvals(M)
     mu = mu[np.argsort(-np.abs(mu))]
     one = int(np.argmin(np.abs(mu - 1)))
-    return Tangent(M, np.delete(mu, one), float(abs(mu[one] - 1)))
+    return Monodromy(M, np.delete(mu, one), float(abs(mu[one] - 1)))
 
 
-def tangent_flow(beam: Beam, run: Run) -> Array:
+def flow_derivative(beam: Beam, run: Trajectory) -> Array:
     """M(T); between the steps z is the cubic through z and z' at both ends."""
     n, stages = beam.mesh.unknowns, len(SDIRK)
     identity, nodes = np.eye(n), SDIRK.sum(axis=1)

@@ -1,70 +1,75 @@
 """What is measured on a cycle: extrema, harmonics, energy budget, trajectories and shapes.
 
-A cycle comes as N equal steps over one period, so every quantity is the trigonometric polynomial through
-its N samples: means are sums, extrema and derivatives are exact to its spectral accuracy, and no event
-needs locating.
+A cycle comes as N equal steps over one period, and every quantity is the trigonometric polynomial through
+its N samples: means are sums, extrema and derivatives have spectral accuracy, and no event needs locating.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from math import nan
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...discretization.beam import Beam
+from ...discretization.periodic import derivative, maximum, resampled, rise_through_mean
 from ...discretization.quadrature import lobatto_points
-from ..motion.integrator import Run
+from ..motion.integrator import Trajectory
 
 Array = NDArray[np.float64]
 
-POLISH = 8
-"""Newton steps from the largest sample to the extremum."""
 
-
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Measures:
-    """Numbers of a cycle: period in tau2, tip in L and rad, powers in k3/(L tau2).
+    """Numbers of a cycle, named as in the file; NaN where there is none.
 
-    harmonics: amplitudes in L of all harmonics of the tip's y that the steps resolve, from the first.
-    energy_imbalance: mean injection over mean dissipation, less 1. mean, rms: of (injection, dissipation),
-    the rms that of the fluctuation.
+    period in tau2, frequency = 2 pi/period; tip in L and rad. harmonic_amplitude: in L, of the harmonics of
+    the tip's y that the steps resolve, from the first. Injection and dissipation: mean and rms of the
+    fluctuation, k3/(L tau2); energy_imbalance: mean injection over mean dissipation, less 1. least_stretch:
+    min h1.
     """
 
-    period: float
-    tip_x_min: float
-    tip_x_max: float
-    tip_y_max: float
-    tip_theta_max: float
-    harmonics: Array
-    mean: Array
-    rms: Array
-    energy_imbalance: float
-    least_stretch: float
+    period: float = nan
+    frequency: float = nan
+    tip_x_min: float = nan
+    tip_x_max: float = nan
+    tip_y_max: float = nan
+    tip_theta_max: float = nan
+    harmonic_amplitude: Array = field(default_factory=lambda: np.array(nan))
+    injection_mean: float = nan
+    injection_rms: float = nan
+    dissipation_mean: float = nan
+    dissipation_rms: float = nan
+    energy_imbalance: float = nan
+    least_stretch: float = nan
 
 
-def measure(beam: Beam, run: Run) -> Measures:
+def measures_of(beam: Beam, run: Trajectory) -> Measures:
     """The measures of a run of equal steps over one period."""
     x, y, theta = beam.tip(run.states[:-1])
-    powers = power(beam, run)
-    mean = powers.mean(axis=1)
+    powers, period = injection_and_dissipation(beam, run), float(run.times[-1])
+    mean, rms = powers.mean(axis=1), powers.std(axis=1)
     return Measures(
-        period=float(run.times[-1]),
+        period=period,
+        frequency=2 * np.pi / period,
         tip_x_min=-maximum(-x),
         tip_x_max=maximum(x),
         tip_y_max=maximum(y),
         tip_theta_max=maximum(theta),
-        harmonics=2 * np.abs(np.fft.rfft(y))[1 : (len(y) + 1) // 2] / len(y),
-        mean=mean,
-        rms=powers.std(axis=1),
+        harmonic_amplitude=2 * np.abs(np.fft.rfft(y))[1 : (len(y) + 1) // 2] / len(y),
+        injection_mean=float(mean[0]),
+        injection_rms=float(rms[0]),
+        dissipation_mean=float(mean[1]),
+        dissipation_rms=float(rms[1]),
         energy_imbalance=float(mean[0] / mean[1] - 1),
         least_stretch=beam.least_stretch(run.states),
     )
 
 
-def power(beam: Beam, run: Run) -> Array:
-    """(injection, dissipation) at the steps, shape (2, N): -F v1(1) and <Gamma V, V> of the moving shape.
+def injection_and_dissipation(beam: Beam, run: Trajectory) -> Array:
+    """-F v1(1) and <Gamma V, V> of the moving shape at the steps, shape (2, N).
 
-    V = R(theta)^T dr/dt and dtheta/dt are differentiated in time; from the forces, as in `Beam.power`, they
-    would carry the error of z times k1.
+    V = R(theta)^T dr/dt and dtheta/dt are differentiated in time; from the forces they would carry the
+    error of z times k1.
     """
     x, y, theta = beam.shape(run.states[:-1])
     dx, dy, spin = (derivative(values) / run.times[-1] for values in (x, y, theta))
@@ -74,65 +79,19 @@ def power(beam: Beam, run: Run) -> Array:
     return np.stack([-beam.rod.F * v1[:, -1], density @ beam.mesh.quadrature])
 
 
-def derivative(values: Array) -> Array:
-    """d/dx, x in [0, 1), of the trigonometric polynomial through samples of one period, shape (N, ...)."""
-    n = len(values)
-    k = 2j * np.pi * np.arange(n // 2 + 1)
-    if n % 2 == 0:
-        k[-1] = 0.0
-    return np.fft.irfft(k.reshape(-1, *(1,) * (values.ndim - 1)) * np.fft.rfft(values, axis=0), n, axis=0)
-
-
-def resampled(values: Array, at: Array) -> Array:
-    """The trigonometric polynomial through samples of one period, shape (N, ...), at `at`, in periods."""
-    n = len(values)
-    c = np.fft.rfft(values.reshape(n, -1), axis=0) / n
-    c[1 : (n + 1) // 2] *= 2
-    k = np.arange(len(c))
-    result = (np.exp(2j * np.pi * np.outer(at, k)) @ c).real
-    return result.reshape(len(at), *values.shape[1:])
-
-
-def maximum(values: Array) -> float:
-    """The maximum of the trigonometric polynomial through samples of one period, shape (N,)."""
-    n = len(values)
-    c = np.fft.rfft(values) / n
-    c[1 : (n + 1) // 2] *= 2
-    k = 2j * np.pi * np.arange(len(c))
-    t = int(np.argmax(values)) / n
-    for _ in range(POLISH):
-        e = c * np.exp(k * t)
-        first, second = (k * e).sum().real, (k * k * e).sum().real
-        t -= float(np.clip(first / second, -1 / n, 1 / n)) if second < 0 else 0.0
-    return float((c * np.exp(k * t)).sum().real)
-
-
-def phase(y: Array) -> float:
-    """When y, N samples of a period, rises through its mean after its minimum, in periods."""
-    n = len(y)
-    y = y - y.mean()
-    after = (int(np.argmin(y)) + np.arange(n + 1)) % n
-    k = int(np.argmax(y[after] >= 0))
-    low, high = (after[k] - 1) / n, after[k] / n
-    for _ in range(50):
-        middle = (low + high) / 2
-        low, high = (middle, high) if resampled(y, np.array([middle]))[0] < 0 else (low, middle)
-    return float(low)
-
-
-def traces(beam: Beam, run: Run, samples: int) -> tuple[Array, Array]:
+def traces(beam: Beam, run: Trajectory, samples: int) -> tuple[Array, Array]:
     """(x, y, theta) of the tip and (U, injection, dissipation) at equidistant times, each (3, samples).
 
     Time starts where the tip's y rises through its mean.
     """
     tip = beam.tip(run.states[:-1])
-    energy = np.vstack([beam.energy(run.states[:-1]), power(beam, run)])
-    at = phase(tip[1]) + np.arange(samples) / samples
+    energy = np.vstack([beam.energy(run.states[:-1]), injection_and_dissipation(beam, run)])
+    at = rise_through_mean(tip[1]) + np.arange(samples) / samples
     return resampled(tip.T, at).T, resampled(energy.T, at).T
 
 
-def shapes(beam: Beam, run: Run, count: int, nodes: int) -> Array:
+def shapes(beam: Beam, run: Trajectory, count: int, nodes: int) -> Array:
     """(x, y, theta) at `count` equidistant times on `nodes` Lobatto nodes, shape (3, count, nodes)."""
     states = run.states[:-1]
-    at = phase(beam.tip(states)[1]) + np.arange(count) / count
+    at = rise_through_mean(beam.tip(states)[1]) + np.arange(count) / count
     return beam.shape(resampled(states, at)) @ beam.mesh.evaluation(lobatto_points(nodes)).T

@@ -14,7 +14,7 @@ from .shooting import FIRST_STEPS, Orbit, shoot
 
 PRESENT = 1e-3
 """Share of the largest harmonic from which another one is taken for present before errors are known."""
-ERRORS = 10.0
+CERTAIN = 10.0
 """Share of the largest harmonic, in units of the relative error of the extrema, that is no error for sure."""
 LEAST_PRESENT = 1e-6
 """What is asked of a harmonic at least, whatever the error estimate, which is the tip's."""
@@ -27,12 +27,12 @@ def common_divisor(orbit: Orbit, present: float) -> int:
     return gcd(*map(int, np.nonzero(sizes > present * sizes.max())[0] + 1))
 
 
-def in_doubt(orbit: Orbit, error: float) -> int:
+def undecided_divisor(orbit: Orbit, error: float) -> int:
     """How many times shorter than the orbit's its period may be for all that is known; 1 is a proof.
 
     error: relative, of the extrema.
     """
-    return common_divisor(orbit, max(ERRORS * error, LEAST_PRESENT))
+    return common_divisor(orbit, max(CERTAIN * error, LEAST_PRESENT))
 
 
 def shortened(orbit: Orbit) -> Orbit | None:

@@ -13,23 +13,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...discretization.beam import Beam
-from ..motion.integrator import Ending, Run, integrator
-from ..motion.time_scheme import Method
-from .floquet import Tangent, tangent
+from ..motion.integrator import Ending, RunLimit, Trajectory, integrator
+from ..motion.time_scheme import TimeScheme
+from .floquet import Monodromy, monodromy
 
 Array = NDArray[np.float64]
 
-PERIOD_MAP = Method("arkimex", "5", tolerance=1e-8, newton=1e-6, equal_steps=True, prefix="cycle_map_")
+PERIOD_MAP = TimeScheme("arkimex", "5", tolerance=1e-8, newton=1e-6, equal_steps=True, prefix="cycle_map_")
 FIRST_STEPS = 64
 """Steps per return to the section to begin with."""
-MOST_ITERATIONS = 12
-ROUND_OFF = 3e-12
+MOST_SHOTS = 12
+CLOSURE_ROUNDED = 3e-12
 """Relative closure below which Newton's method has nothing left to gain."""
-ROUNDING = 1e-14
+LEAST_CLOSURE = 1e-14
 """Relative closure that cannot be asked for, next to a Hopf point either."""
 CLOSED = 1e-8
 """Closure above which Newton's method has not converged."""
-SLOW, STALLED = 0.05, 0.3
+SLOW_CLOSING, STALLED_CLOSING = 0.05, 0.3
 """Decrease of the closure in one iteration from which a new matrix is due; from which rounding is reached."""
 LONGEST_STEP, LONGEST_STRETCH = 0.3, 0.1
 """Largest change of state and period in one iteration, relative."""
@@ -45,8 +45,8 @@ class Orbit:
     beam: Beam
     state: Array
     closure: float
-    run: Run
-    tangent: Tangent
+    run: Trajectory
+    monodromy: Monodromy
 
     @property
     def period(self) -> float:
@@ -64,22 +64,25 @@ def angle_weights(beam: Beam) -> Array:
     return row
 
 
-def period_run(beam: Beam, z: Array, period: float, steps: int) -> Run | None:
+def period_run(beam: Beam, z: Array, period: float, steps: int) -> Trajectory | None:
     """`steps` equal steps over a period; None where one fails, for then PETSc has shortened it."""
-    run = integrator(beam.mesh, PERIOD_MAP).run(beam, z, period, period / steps, most_steps=steps + 2)
+    run = integrator(beam.mesh, PERIOD_MAP).run(
+        beam, z, period, period / steps, RunLimit(most_steps=steps + 2)
+    )
     return run if run.ending == Ending.reached and len(run.times) == steps + 1 else None
 
 
-def shoot(beam: Beam, z: Array, period: float, steps: int, known: Tangent | None = None) -> Orbit | None:
+def shoot(beam: Beam, z: Array, period: float, steps: int, known: Monodromy | None = None) -> Orbit | None:
     """The orbit near z, or None where none is found.
 
     z: a state of a run. Off the slow manifold, as by interpolation, the first, explicit stage of ARKIMEX
-    would see rates of 1e10/tau2 at gamma3 = 1e-6. known: a tangent to begin with, as of half as many steps.
+    would see rates of 1e10/tau2 at gamma3 = 1e-6. known: a monodromy matrix to begin with, as that of half as
+    many steps.
     """
     row = angle_weights(beam)
     section, closure, M, fresh = row @ z, np.inf, known, False
-    run: Run | None = None
-    for _ in range(MOST_ITERATIONS):
+    run: Trajectory | None = None
+    for _ in range(MOST_SHOTS):
         run = period_run(beam, z, period, steps)
         if run is None:
             return None
@@ -87,25 +90,22 @@ def shoot(beam: Beam, z: Array, period: float, steps: int, known: Tangent | None
         residual = np.append(run.states[-1] - z, row @ z - section)
         closure = float(np.abs(residual).max() / size)
         # An amplitude is off by the closure in units of 1 - mu.
-        small = CLOSED if M is None else max(CLOSED * min(1.0, abs(1 - M.largest)), ROUNDING)
-        stalled = closure < (CLOSED if fresh else small) and closure > STALLED * last
-        if stalled or closure <= min(ROUND_OFF, small):
+        small = CLOSED if M is None else max(CLOSED * min(1.0, abs(1 - M.largest)), LEAST_CLOSURE)
+        stalled = closure < (CLOSED if fresh else small) and closure > STALLED_CLOSING * last
+        if stalled or closure <= min(CLOSURE_ROUNDED, small):
             break
-        fresh = M is None or closure > SLOW * last
+        fresh = M is None or closure > SLOW_CLOSING * last
         if M is None or fresh:
-            M = tangent(beam, run)
+            M = monodromy(beam, run)
         step = np.linalg.solve(_matrix(beam, M, run.states[-1], row), -residual)
         bounds = LONGEST_STEP * size / np.abs(step[:-1]).max(), LONGEST_STRETCH * period / abs(step[-1])
         limit = min(1.0, *bounds)
         z, period = z + limit * step[:-1], period + limit * step[-1]
     if run is None or not closure < CLOSED:
         return None
-    return Orbit(beam, z, closure, run, M if M is not None else tangent(beam, run))
+    return Orbit(beam, z, closure, run, M if M is not None else monodromy(beam, run))
 
 
-def _matrix(beam: Beam, M: Tangent, end: Array, row: Array) -> Array:
+def _matrix(beam: Beam, M: Monodromy, end: Array, row: Array) -> Array:
     """Derivative of (phi_T(z) - z, theta_tip) by (z, T), shape (unknowns + 1, unknowns + 1)."""
-    n = len(row)
-    matrix = np.zeros((n + 1, n + 1))
-    matrix[:n, :n], matrix[:n, n], matrix[n, :n] = M.matrix - np.eye(n), beam.rate(end), row
-    return matrix
+    return np.block([[M.matrix - np.eye(len(row)), beam.rate(end)[:, None]], [row, np.zeros(1)]])

@@ -1,4 +1,4 @@
-"""From a start to the neighbourhood of a cycle, or to rest: before Newton's method takes over.
+"""From a start to the neighbourhood of a cycle, or to the straight rod: before Newton's method takes over.
 
 The motion is followed from return to return, theta of the tip rising through 0. Two returns that agree to a
 tenth go to Newton's method. Slow motions about the straight rod are not waited for. Per period they grow by
@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...discretization.beam import Beam
-from ..motion.integrator import Ending, Run, integrator, relaxed
+from ..motion.integrator import Ending, RunLimit, Trajectory, integrator, relaxed
 from ..motion.leading_mode import leading_mode
 from .floquet import hermite
-from .refinement import CAREFUL, TRANSIENT, Resolved, resolve
+from .refinement import CAREFUL, TRANSIENT, RefinedOrbit, refine
 from .shooting import angle_weights
 from .status import CycleStatus
 
@@ -27,11 +27,11 @@ Array = NDArray[np.float64]
 
 CHUNK = 5
 """Returns to the section per run; then the sequence is judged."""
-CLOSE = 0.1
+NEWTON_DISTANCE = 0.1
 """Relative distance of two returns from which Newton's method starts; a tenth after each failure."""
-MOST_ATTEMPTS = 5
+MOST_NEWTON_FAILURES = 5
 """Failures of Newton's method, after each of which twice as many chunks are waited for the next."""
-SLOW = 0.2
+SLOW_GROWTH = 0.2
 """Linear growth per period below which an amplitude is predicted rather than waited for."""
 FAINT = 0.01
 """Linear growth per period below which the integration is a careful one."""
@@ -44,27 +44,27 @@ MOST_JUMPS, SHRINK, LARGEST_JUMP = 60, 0.7, 4.0
 on the way; the largest."""
 LINEAR = 0.05
 """Relative distance from the linear decay rate and frequency at which a decaying rod is called straight."""
-REST = 1e-6
+STRAIGHT_SIZE = 1e-6
 """Norm of z at which a rod that is stable when straight is called straight."""
-SAME = 0.03
+SAME_CROSSING = 0.03
 """Relative distance of two returns that are one and the same crossing of the orbit."""
 LONGEST_ORBIT = 8
 """Returns to the section that one period may take."""
 STEPS_PER_CHUNK = 20_000
-BISECTIONS = 50
+CROSSING_BISECTIONS = 50
 
 
 @dataclass(frozen=True, eq=False)
-class Arrival:
+class TransientOutcome:
     """What became of the rod, and the cycle if there is one; periods: returns that were waited for."""
 
     status: CycleStatus
     message: str
     periods: int
-    found: Resolved | None = None
+    found: RefinedOrbit | None = None
 
 
-def returns(beam: Beam, run: Run) -> tuple[Array, Array]:
+def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
     """Times, (k,), and states, (k, unknowns), at which theta of the tip rises through 0 between steps."""
     row = angle_weights(beam)
     angle = run.states @ row
@@ -74,7 +74,7 @@ def returns(beam: Beam, run: Run) -> tuple[Array, Array]:
         h, ends = run.times[k + 1] - run.times[k], run.states[k : k + 2]
         slopes = h * np.array([beam.rate(z) for z in ends])
         low, high = 0.0, 1.0
-        for _ in range(BISECTIONS):
+        for _ in range(CROSSING_BISECTIONS):
             middle = (low + high) / 2
             low, high = (middle, high) if row @ hermite(ends, slopes, middle) < 0 else (low, middle)
         times.append(run.times[k] + h * low)
@@ -82,8 +82,8 @@ def returns(beam: Beam, run: Run) -> tuple[Array, Array]:
     return np.array(times), np.array(states).reshape(len(times), beam.mesh.unknowns)
 
 
-class Approach:
-    """The way of one rod from a start; `arrive` is called once."""
+class Transient:
+    """The motion of one rod from a start; `follow` is called once."""
 
     def __init__(self, beam: Beam, accuracy: float, most_periods: int) -> None:
         self.beam, self.accuracy, self.most_periods = beam, accuracy, most_periods
@@ -99,56 +99,59 @@ class Approach:
         self.clock = 0.0
         self.waited = self.jumps = self.attempts = self.next_attempt = 0
 
-    def arrive(self, z: Array) -> Arrival:
+    def follow(self, z: Array) -> TransientOutcome:
         """Where the rod goes from z."""
         z = relaxed(self.beam, z, self.mode.period)
         while self.waited < self.most_periods:
             run = self._chunk(z)
             if run.ending not in (Ending.reached, Ending.stopped):
                 return self._broken(run)
-            times, states = returns(self.beam, run)
+            z, (times, states) = run.states[-1], section_crossings(self.beam, run)
             self.waited += max(len(times), 1)
-            self._remember(times, states)
+            moments = states[:, 2 * self.beam.mesh.nodes :]
+            self.past.extend(zip(map(float, self.clock + times), moments, strict=True))
             self.clock += run.times[-1]
-            z = run.states[-1]
-            if self.mode.w.real < 0 and np.linalg.norm(z) < REST:
-                return Arrival(CycleStatus.straight, "decayed to rounding", self.waited)
+            if self.mode.w.real < 0 and np.linalg.norm(z) < STRAIGHT_SIZE:
+                return self._ended(CycleStatus.straight, "decayed to rounding")
             if len(times) < 3:
                 continue
             if self._decays(times, states):
-                return Arrival(CycleStatus.straight, "decays at the rate of the leading mode", self.waited)
+                return self._ended(CycleStatus.straight, "decays at the rate of the leading mode")
             factor = self._jump(times, states)
             if factor is not None:
                 z, self.jumps = self._scaled(z, factor), self.jumps + 1
                 self.past.clear()
                 continue
-            arrival = self._closed(z, times, states)
-            if arrival is not None:
-                return arrival
-        why = f"{self.waited} returns of the tip, none periodic"
-        return Arrival(CycleStatus.not_settled, why, self.waited)
+            outcome = self._closed(z, times, states)
+            if outcome is not None:
+                return outcome
+        return self._ended(CycleStatus.not_settled, f"{self.waited} returns of the tip, none periodic")
 
-    def _broken(self, run: Run) -> Arrival:
+    def _ended(self, status: CycleStatus, why: str, found: RefinedOrbit | None = None) -> TransientOutcome:
+        return TransientOutcome(status, why, self.waited, found)
+
+    def _broken(self, run: Trajectory) -> TransientOutcome:
         if run.ending == Ending.left_the_model:
             least = self.beam.least_stretch(run.states[-1])
             where = f"h1 = {least:.3g} somewhere, {self.waited} returns from the start"
-            return Arrival(CycleStatus.left_the_model, where, self.waited)
+            return self._ended(CycleStatus.left_the_model, where)
         why = run.message or ("too many steps" if run.ending == Ending.too_many_steps else "no step succeeds")
-        return Arrival(CycleStatus.failed, why, self.waited)
+        return self._ended(CycleStatus.failed, why)
 
-    def _chunk(self, z: Array) -> Run:
+    def _chunk(self, z: Array) -> Trajectory:
         """A run of CHUNK returns, or of three times the time they should take."""
         count, last = 0, float(self.row @ z)
 
-        def enough(_: float, state: Array) -> bool:
+        def enough(state: Array) -> bool:
             nonlocal count, last
             here = float(self.row @ state)
             count, last = count + int(last < 0 <= here), here
             return count >= CHUNK
 
         period = self.mode.period
-        method = integrator(self.beam.mesh, CAREFUL if self.faint else TRANSIENT)
-        run = method.run(self.beam, z, 3 * CHUNK * period, self.step, enough, STEPS_PER_CHUNK)
+        stepper = integrator(self.beam.mesh, CAREFUL if self.faint else TRANSIENT)
+        limit = RunLimit(enough, STEPS_PER_CHUNK)
+        run = stepper.run(self.beam, z, 3 * CHUNK * period, self.step, limit)
         if len(run.times) > 2:
             self.step = run.times[-1] - run.times[-2]
         return run
@@ -172,7 +175,7 @@ class Approach:
 
     def _slow(self, times: Array, growth: float, linear: float) -> bool:
         """Whether the motion is a slowly growing or decaying leading mode."""
-        return max(abs(linear), abs(growth)) <= SLOW and self._in_time(times)
+        return max(abs(linear), abs(growth)) <= SLOW_GROWTH and self._in_time(times)
 
     def _jump(self, times: Array, states: Array) -> float | None:
         """The factor to where the growth should vanish, or towards it; None if that is here, or not known."""
@@ -202,31 +205,27 @@ class Approach:
         scaled[: self.beam.mesh.nodes] *= factor  # the stretch is quadratic in the deflection
         return relaxed(self.beam, scaled, self.mode.period)
 
-    def _remember(self, times: Array, states: Array) -> None:
-        moments = states[:, 2 * self.beam.mesh.nodes :]
-        self.past.extend(zip(map(float, self.clock + times), moments, strict=True))
-
-    def _closed(self, z: Array, times: Array, states: Array) -> Arrival | None:
+    def _closed(self, z: Array, times: Array, states: Array) -> TransientOutcome | None:
         """The cycle, if the returns repeat and Newton's method finds it from z, the end of the run."""
         growth, linear = self._growth(times, states)
         turns, distance = self._repetition()
         known = self.bend > 0 and self._slow(times, growth, linear)
-        decays = linear < 0 and growth < linear * (1 - SLOW) + (self.noise if known else 0)
-        if decays or distance >= CLOSE / 10**self.attempts or self.waited < self.next_attempt:
+        decays = linear < 0 and growth < linear * (1 - SLOW_GROWTH) + (self.noise if known else 0)
+        if decays or distance >= NEWTON_DISTANCE / 10**self.attempts or self.waited < self.next_attempt:
             return None
         self.next_attempt = self.waited + CHUNK * 2**self.attempts
-        self.attempts = min(self.attempts + 1, MOST_ATTEMPTS)
+        self.attempts = min(self.attempts + 1, MOST_NEWTON_FAILURES)
         period = self.past[-1][0] - self.past[-1 - turns][0]
-        found = resolve(self.beam, z, period, turns, self.accuracy)
+        found = refine(self.beam, z, period, turns, self.accuracy)
         if found is None:
             return None
-        if max(found.errors.period, found.errors.amplitude) > self.accuracy:
+        if max(found.errors.period_error, found.errors.amplitude_error) > self.accuracy:
             why = "the cycle is less accurate than asked for"
-        elif found.in_doubt != 1:
-            why = f"that its period is {found.in_doubt} times shorter cannot be excluded"
+        elif found.divisor != 1:
+            why = f"that its period is {found.divisor} times shorter cannot be excluded"
         else:
-            return Arrival(CycleStatus.cycle, "", self.waited, found)
-        return Arrival(CycleStatus.not_settled, why, self.waited, found)
+            return self._ended(CycleStatus.cycle, "", found)
+        return self._ended(CycleStatus.not_settled, why, found)
 
     def _repetition(self) -> tuple[int, float]:
         """(m, relative distance): after how many returns the state comes closest to itself.
@@ -239,5 +238,5 @@ class Approach:
         found = [
             (float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))
         ]
-        enough = max(2 * min(found)[0], SAME)
+        enough = max(2 * min(found)[0], SAME_CROSSING)
         return next((m, distance) for distance, m in found if distance <= enough)

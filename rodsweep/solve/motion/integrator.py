@@ -5,7 +5,6 @@ compiled callbacks; stages extrapolated from the last step; Newton's test tied t
 Jacobian a step, that of the state expected half-way (at its start it costs a quarter more iterations).
 """
 
-import time
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,19 +15,19 @@ from numpy.typing import NDArray
 
 from ...discretization.beam import Beam, Mesh
 from ..backend.petsc import PETSc
-from .callbacks import AT_BASE, STALE, Workspace
-from .time_scheme import Method
+from .callbacks import AT_BASE, Workspace
+from .time_scheme import TimeScheme
 
 Array = NDArray[np.float64]
 
-ROUNDING = 1e-9
+STAGE_ROUND_OFF = 1e-9
 """Size of a Newton step, relative to the motion, at which stagnation is rounding and not failure."""
-FIRST_STEP = 1e-3
+FIRST_SHARE = 1e-3
 """First step in units of the duration, where none is given."""
-MOST_STEPS = 100_000
+MOST_TIME_STEPS = 100_000
 MOST_REJECTIONS, MOST_FAILED_STAGES = 30, 1_000_000
 """Rejections of one step in a row, and failures of Newton's method in a run."""
-RELAXATION = Method("beuler", "", tolerance=1e-3, prefix="cycle_relaxation_")
+RELAXATION = TimeScheme("beuler", "", tolerance=1e-3, prefix="cycle_relaxation_")
 MOST_KEPT = 8
 """Integrators kept for the next run on an equal mesh."""
 
@@ -44,29 +43,31 @@ class Ending(IntEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
-    """times in tau2, (steps + 1,), states z, (steps + 1, unknowns); what it took."""
+class Trajectory:
+    """The steps of a run: times in tau2, (steps + 1,), states z, (steps + 1, unknowns), and how it ended."""
 
     ending: Ending
     times: Array
     states: Array
-    rejected: int
-    rates: int
-    jacobians: int
-    factorisations: int
-    seconds: float
     message: str = ""
 
 
-Stop = Callable[[float, Array], bool]
-"""Whether a run is to stop after a step that led to time t and state z."""
+@dataclass(frozen=True, slots=True)
+class RunLimit:
+    """What ends a run before its time: after a step to z `reached(z)`, or the number of its steps."""
+
+    reached: Callable[[Array], bool] | None = None
+    most_steps: int = MOST_TIME_STEPS
+
+
+UNLIMITED = RunLimit()
 
 
 class Integrator:
-    """One TS for one mesh; `run` may be called any number of times, for any rod."""
+    """One TS for one mesh and scheme; `run` may be called any number of times, for any rod."""
 
-    def __init__(self, mesh: Mesh, method: Method) -> None:
-        self.method = method
+    def __init__(self, mesh: Mesh, scheme: TimeScheme) -> None:
+        self.scheme = scheme
         self.workspace = Workspace(mesh)
         self.vector = PETSc.Vec().createSeq(mesh.unknowns, comm=PETSc.COMM_SELF)
         self.matrix = PETSc.Mat().createDense((mesh.unknowns, mesh.unknowns), comm=PETSc.COMM_SELF)
@@ -77,17 +78,17 @@ class Integrator:
         self._times: list[float] = []
         self._states: list[Array] = []
         self._left = self.broken = False
-        self._stop: Stop | None = None
+        self._limit = UNLIMITED
         self._beam: Beam | None = None
 
     def _create(self) -> "PETSc.TS":
-        database, prefix = PETSc.Options(), self.method.prefix
+        database, prefix = PETSc.Options(), self.scheme.prefix
         ts = PETSc.TS().create(comm=PETSc.COMM_SELF)
         ts.setOptionsPrefix(prefix)
         ts.setProblemType(PETSc.TS.ProblemType.NONLINEAR)
         ts.setMaxStepRejections(MOST_REJECTIONS)
         ts.setMaxSNESFailures(MOST_FAILED_STAGES)
-        options = self.method.petsc_options(database.getString(prefix + "ts_type", self.method.family))
+        options = self.scheme.petsc_options(database.getString(prefix + "ts_type", self.scheme.family))
         ours = {
             prefix + name: value for name, value in options.items() if not database.hasName(prefix + name)
         }
@@ -112,43 +113,36 @@ class Integrator:
         if len(times) > 1 and self.middle:
             ahead = self.middle * ts.getTimeStep() / (times[-1] - times[-2])
             base += (states[-1] - states[-2]) * ahead
-        self.workspace.state[STALE] = AT_BASE
+        self.workspace.context["matrix_due"] = AT_BASE
 
     def _record(self, ts: "PETSc.TS") -> None:
         z = self.vector.array_r.copy()
         self._times.append(ts.getTime())
         self._states.append(z)
         self._left = self._beam is not None and self._beam.least_stretch(z) <= 0
-        if self._left or (self._stop is not None and self._stop(self._times[-1], z)):
+        if self._left or (self._limit.reached is not None and self._limit.reached(z)):
             ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_USER)
 
-    def run(  # noqa: PLR0913
-        self,
-        beam: Beam,
-        z: Array,
-        duration: float,
-        step: float = 0.0,
-        stop: Stop | None = None,
-        most_steps: int = MOST_STEPS,
-    ) -> Run:
-        """From z at t = 0 to t = duration, or until stop(t, z) is true after a step; failures are an ending.
+    def run(
+        self, beam: Beam, z: Array, duration: float, step: float = 0.0, limit: RunLimit = UNLIMITED
+    ) -> Trajectory:
+        """From z at t = 0 to t = duration, or to the limit; failures are an ending.
 
         step: the first one, or with equal steps each. Tolerances are in units of the largest component of z,
         so that small motions are followed as well as large ones.
         """
-        ts, method, began = self.ts, self.method, time.perf_counter()
-        counts = self.workspace.counts.copy()
+        ts, scheme = self.ts, self.scheme
         self._times, self._states, self._left = [0.0], [z.copy()], False
-        self._beam, self._stop = beam, stop
+        self._beam, self._limit = beam, limit
         size = float(np.abs(z).max()) or 1.0
         self.vector.array_w[:] = z
-        ts.setTolerances(rtol=0.0, atol=method.tolerance * size)
-        self.workspace.prepare(beam, method.newton * method.tolerance * size, ROUNDING * size)
+        ts.setTolerances(rtol=0.0, atol=scheme.tolerance * size)
+        self.workspace.prepare(beam, scheme.newton * scheme.tolerance * size, STAGE_ROUND_OFF * size)
         ts.setTime(0.0)
         ts.setStepNumber(0)
         ts.setMaxTime(duration)
-        ts.setMaxSteps(most_steps)
-        ts.setTimeStep(step or FIRST_STEP * duration)
+        ts.setMaxSteps(limit.most_steps)
+        ts.setTimeStep(step or FIRST_SHARE * duration)
         ts.restartStep()
         ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_ITERATING)
         message = ""
@@ -157,16 +151,10 @@ class Integrator:
         except (PETSc.Error, SystemError) as error:
             message = str(error.__cause__ or error).splitlines()[-1]
             self.broken = True  # a PETSc object is not usable after an error inside it
-        spent = self.workspace.counts - counts
-        return Run(
+        return Trajectory(
             ending=self._ending(message),
             times=np.array(self._times),
             states=np.array(self._states),
-            rejected=ts.getStepRejections(),
-            rates=int(spent[0]),
-            jacobians=int(spent[1]),
-            factorisations=int(spent[2]),
-            seconds=time.perf_counter() - began,
             message=message,
         )
 
@@ -185,18 +173,18 @@ class Integrator:
             held.destroy()
 
 
-_kept: OrderedDict[tuple[int, int, Method], Integrator] = OrderedDict()
+_kept: OrderedDict[tuple[int, int, TimeScheme], Integrator] = OrderedDict()
 
 
-def integrator(mesh: Mesh, method: Method) -> Integrator:
-    """The integrator for a mesh and a method, kept for the next point."""
-    key = mesh.elements, mesh.order, method
+def integrator(mesh: Mesh, scheme: TimeScheme) -> Integrator:
+    """The integrator for a mesh and a scheme, kept for the next point."""
+    key = mesh.elements, mesh.order, scheme
     if key in _kept and _kept[key].broken:
         _kept.pop(key).destroy()
     if key not in _kept:
         if len(_kept) >= MOST_KEPT:
             _kept.popitem(last=False)[1].destroy()
-        _kept[key] = Integrator(mesh, method)
+        _kept[key] = Integrator(mesh, scheme)
     _kept.move_to_end(key)
     return _kept[key]
 
@@ -216,8 +204,3 @@ def relaxed(beam: Beam, z: Array, period: float) -> Array:
     """
     run = integrator(beam.mesh, RELAXATION).run(beam, z, period / 1000, period / 1e5)
     return run.states[-1] if run.ending == Ending.reached else z
-
-
-def evolve(beam: Beam, z: Array, duration: float, method: Method | None = None) -> Run:
-    """The motion of a rod from z over `duration` tau2; an integration that fails is an ending."""
-    return integrator(beam.mesh, method or Method()).run(beam, z, duration)

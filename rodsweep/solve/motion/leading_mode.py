@@ -9,7 +9,7 @@ from ...discretization.beam import Beam
 
 
 @dataclass(frozen=True, slots=True)
-class Mode:
+class LeadingMode:
     """The leading eigenvalue w in 1/tau2, Im w >= 0, and its z for y(1) = 1 to first order."""
 
     w: complex
@@ -21,7 +21,7 @@ class Mode:
         return 2 * np.pi / self.w.imag if self.w.imag else 1 / max(abs(self.w.real), 1e-300)
 
 
-def leading_mode(beam: Beam) -> Mode:
+def leading_mode(beam: Beam) -> LeadingMode:
     """The leading mode, from the Jacobian at rest, whose transverse part is decoupled from the axial one."""
     n = beam.mesh.nodes
     rest = np.zeros(3 * n)
@@ -29,4 +29,4 @@ def leading_mode(beam: Beam) -> Mode:
     k = int(np.argmax(values.real + 1e-9 * values.imag))
     z = np.concatenate([np.zeros(n), vectors[:, k]]) + 0j
     tip = complex(*(beam.tip_velocity(rest, part)[1] for part in (z.real, z.imag)))
-    return Mode(complex(values[k]), z / tip)
+    return LeadingMode(complex(values[k]), z / tip)

@@ -1,14 +1,14 @@
-"""A time integrator as data: which of PETSc's, how accurate, and the options that make it so."""
+"""A time scheme as data: which of PETSc's, how accurate, and the options that make it so."""
 
 from dataclasses import dataclass
 
-PREFIX = "cycle_"
-"""Prefix of the PETSc options that override the method, as in -cycle_ts_type bdf."""
+CYCLE_PREFIX = "cycle_"
+"""Prefix of the PETSc options that override the scheme, as in -cycle_ts_type bdf."""
 
 
 @dataclass(frozen=True, slots=True)
-class Method:
-    """A time integrator: PETSc's TS type and sub-type (for bdf: its order) and what it is to reach.
+class TimeScheme:
+    """PETSc's TS type and sub-type (for bdf: its order) and what it is to reach.
 
     tolerance: local error per step of each component of z, absolute, in units of the motion's size.
     newton: error of a stage in units of the tolerance. equal_steps: no step control, each step as given.
@@ -20,11 +20,11 @@ class Method:
     tolerance: float = 5e-6
     newton: float = 0.1
     equal_steps: bool = False
-    prefix: str = PREFIX
+    prefix: str = CYCLE_PREFIX
     options: tuple[tuple[str, str], ...] = ()
 
     def petsc_options(self, family: str) -> dict[str, str]:
-        """The options, without prefix, of this method where the TS type is `family`."""
+        """The options, without prefix, of this scheme where the TS type is `family`."""
         kind = {"bdf": "order"}.get(family, "type")
         own = {"ts_type": self.family}
         if family == self.family and self.variant:

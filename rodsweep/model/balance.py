@@ -1,0 +1,124 @@
+"""The nonlinear balance of the rod in its body frame, on se(2) and se(3), point by point, without a mesh.
+
+A deformation and a velocity are elements of the Lie algebra, E = (h; kappa) and V = (v; Omega), a stress
+Sigma = (n; m) is one of its dual. In the plane they have the components (h1, h2, kappa3), (v1, v2, Omega3)
+and (n1, n2, m3), in space all six. With ' = d/du the second formulation of Sec. III reads
+
+    dE/dt = D_E V = V' + ad_E V,                        ad_E V      = (kappa x v + h x Omega; kappa x Omega)
+    Gamma V = D*_E Sigma = Sigma' + ad*_E Sigma,        ad*_E Sigma = (kappa x n; kappa x m + h x n)
+    E = Ebar + C Sigma,     V(0) = 0,     Sigma(1) = (-F, 0, 0; 0, 0, 0)
+
+where <ad*_E Sigma, V> = -<Sigma, ad_E V>. Multiplied by V and by Sigma and integrated these give the energy
+law dU/dt = Sigma(1) V(1) - <Gamma V, V> with U = <Sigma, C Sigma>/2 and Sigma(1) V(1) = -F v1(1).
+
+Arrays have the shape (3, ...) in the plane and (6, ...) in space. A compliance may be 0, for nothing is
+divided by one. `rodsweep.discretization.body_frame` has the same balance compiled, on a mesh, in the plane.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .rod import Rod
+
+Array = NDArray[Any]
+"""Real, or complex for a derivative by complex step."""
+
+IN_SPACE = [0, 1, 5]
+"""Where the plane's components stand among those of space."""
+
+
+def ad(E: Array, V: Array) -> Array:
+    """ad_E V, of two elements of se(2) or se(3)."""
+    if len(E) == 3:
+        (h1, h2, kappa), (v1, v2, Omega) = E, V
+        return np.stack([h2 * Omega - kappa * v2, kappa * v1 - h1 * Omega, 0 * kappa * Omega])
+    (h, kappa), (v, Omega) = _halves(E), _halves(V)
+    return np.concatenate([_cross(kappa, v) + _cross(h, Omega), _cross(kappa, Omega)])
+
+
+def coad(E: Array, Sigma: Array) -> Array:
+    """ad*_E Sigma, of an element of the algebra and one of its dual."""
+    if len(E) == 3:
+        (h1, h2, kappa), (n1, n2, _) = E, Sigma
+        return np.stack([-kappa * n2, kappa * n1, h1 * n2 - h2 * n1])
+    (h, kappa), (n, m) = _halves(E), _halves(Sigma)
+    return np.concatenate([_cross(kappa, n), _cross(kappa, m) + _cross(h, n)])
+
+
+def strain_rate(E: Array, V: Array, dV: Array) -> Array:
+    """dE/dt = D_E V from V and its derivative dV along the rod, in 1/tau2."""
+    return dV + ad(E, V)
+
+
+def elastic_force(E: Array, Sigma: Array, dSigma: Array) -> Array:
+    """D*_E Sigma from Sigma and its derivative dSigma along the rod, in k3/L^3 (moments: k3/L^2)."""
+    return dSigma + coad(E, Sigma)
+
+
+@dataclass(frozen=True, eq=False)
+class Material:
+    """The diagonals of C and Gamma, shapes (3,) or (6,), and the force on the tip."""
+
+    compliance: Array
+    drag: Array
+    F: float
+
+    @property
+    def straight(self) -> Array:
+        """Ebar, the undeformed rod: (1, 0, 0) or (1, 0, 0; 0, 0, 0)."""
+        return np.eye(len(self.drag))[0]
+
+    @property
+    def tip_stress(self) -> Array:
+        """Sigma(1)."""
+        return -self.F * self.straight
+
+    def strain(self, Sigma: Array) -> Array:
+        """E = Ebar + C Sigma."""
+        return _along(self.straight, Sigma) + _along(self.compliance, Sigma) * Sigma
+
+    def velocity(self, Sigma: Array, dSigma: Array) -> Array:
+        """V = Gamma^-1 D*_E Sigma, where no drag is 0; dSigma: the derivative of Sigma along the rod."""
+        return elastic_force(self.strain(Sigma), Sigma, dSigma) / _along(self.drag, Sigma)
+
+    def energy(self, Sigma: Array) -> Array:
+        """The density of U, Sigma C Sigma/2, in k3/L^2."""
+        return (_along(self.compliance, Sigma) * Sigma * Sigma).sum(axis=0) / 2
+
+    def dissipation(self, V: Array) -> Array:
+        """The density of the power lost to the fluid, V Gamma V, in k3/(L^2 tau2)."""
+        return (_along(self.drag, V) * V * V).sum(axis=0)
+
+
+def plane_material(rod: Rod, gamma1: float) -> Material:
+    """The rod that moves in the plane."""
+    return Material(np.array([rod.c1, rod.c2, 1.0]), np.array([gamma1, 1.0, rod.gamma3]), rod.F)
+
+
+def space_material(rod: Rod, gamma1: float, twist_stiffness: float, twist_drag: float) -> Material:
+    """The rod that moves in space; twist stiffness in k3, twist drag in gamma2 L^2."""
+    compliance = np.array([rod.c1, rod.c2, rod.c2, 1 / twist_stiffness, 1.0, 1.0])
+    return Material(compliance, np.array([gamma1, 1.0, 1.0, twist_drag, rod.gamma3, rod.gamma3]), rod.F)
+
+
+def in_space(plane: Array) -> Array:
+    """An element of se(2) or of its dual, (3, ...), among those of space, (6, ...)."""
+    space = np.zeros((6, *plane.shape[1:]), plane.dtype)
+    space[IN_SPACE] = plane
+    return space
+
+
+def _halves(element: Array) -> tuple[Array, Array]:
+    return element[:3], element[3:]
+
+
+def _cross(a: Array, b: Array) -> Array:
+    return np.cross(a, b, axis=0)
+
+
+def _along(diagonal: Array, field: Array) -> Array:
+    """A diagonal, one number a component, to be multiplied with a field."""
+    return diagonal.reshape(-1, *(1,) * (field.ndim - 1))

@@ -1,0 +1,45 @@
+"""The trigonometric polynomial through samples of one period, against functions known in closed form."""
+
+import numpy as np
+import pytest
+
+from rodsweep.discretization.periodic import derivative, maximum, resampled, rise_through_mean
+
+SAMPLES = pytest.mark.parametrize("n", [31, 32])
+
+
+def wave(t):
+    """A function of period 1 that 31 samples determine to rounding, its largest value e at t = 0.373."""
+    return np.exp(np.sin(2 * np.pi * (t - 0.123)))
+
+
+@SAMPLES
+def test_a_smooth_period_is_interpolated_and_differentiated(n):
+    t = np.arange(n) / n
+    assert maximum(wave(t)) == pytest.approx(np.e, rel=1e-12)
+    at = np.array([0.01, 0.373, 0.9, 1.9])
+    assert resampled(wave(t), at) == pytest.approx(wave(at), rel=1e-12)
+    slope = 2 * np.pi * np.cos(2 * np.pi * (t - 0.123)) * wave(t)
+    assert derivative(wave(t)) == pytest.approx(slope, abs=1e-10)
+
+
+@SAMPLES
+def test_every_column_is_a_function_of_its_own(n):
+    t, at = np.arange(n) / n, np.array([0.2, 0.7])
+    both = np.stack([wave(t), np.cos(2 * np.pi * t)], axis=1)
+    assert resampled(both, at)[:, 0] == pytest.approx(resampled(both[:, 0], at), rel=1e-13)
+    assert derivative(both)[:, 1] == pytest.approx(-2 * np.pi * np.sin(2 * np.pi * t), abs=1e-10)
+
+
+@SAMPLES
+@pytest.mark.parametrize("shift", [0.0, 0.013, 0.51])
+def test_the_rise_through_the_mean_is_found_between_samples(n, shift):
+    sine = 3.0 + np.sin(2 * np.pi * (np.arange(n) / n - shift))
+    late = rise_through_mean(sine) - shift
+    assert late - round(late) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_highest_harmonic_of_an_even_number_of_samples_is_a_cosine():
+    alternating = np.array([1.0, -1.0, 1.0, -1.0])
+    assert resampled(alternating, np.array([0.125])) == pytest.approx(0.0, abs=1e-14)
+    assert derivative(alternating) == pytest.approx(np.zeros(4), abs=1e-14)
