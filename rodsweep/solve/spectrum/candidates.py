@@ -6,6 +6,7 @@ missing. What to do about it is `rodsweep.solve.spectrum.search`'s to decide.
 
 from dataclasses import dataclass
 from math import sqrt
+from operator import truediv
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,7 +45,7 @@ class Candidates:
     def worst(self, modes: int) -> float:
         """Largest relative error estimate of the leading modes."""
         errors, w = self.roots.error[:modes].tolist(), self.roots.w[:modes].tolist()
-        return max(error / abs(value) for error, value in zip(errors, w, strict=True))
+        return max(map(truediv, errors, map(abs, w)))
 
     def coarseness(self, modes: int) -> float:
         """Largest displacement of the leading modes."""
