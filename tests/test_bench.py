@@ -12,7 +12,7 @@ from rodsweep.bench.spectrum import study as spectrum
 from rodsweep.bench.spectrum.contenders import PEERS
 from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
 from rodsweep.bench.spectrum.other_discretizations import chebyshev_first_order, displacement_elements
-from rodsweep.bench.spectrum.same_pencil import MODES, dense_inverse, own
+from rodsweep.bench.spectrum.same_pencil import WANTED_MODES, dense_inverse, own_spectrum
 from rodsweep.bench.spectrum.study import HARD_RODS, every_size, hard_table, spectrum_study
 from rodsweep.bench.study import Contender, Measurement, Study, contest, race
 from rodsweep.model.rod import Rod
@@ -47,7 +47,7 @@ def test_error_is_that_of_the_worst_eigenvalue_and_infinite_for_none():
 @pytest.mark.parametrize("peer", PEERS, ids=lambda peer: peer.name)
 def test_every_peer_converges_to_the_exact_eigenvalues(peer):
     """Spectrally: two sizes farther the error is a hundredth, until rounding; at its best below 1e-9."""
-    roots = exact_spectrum(EASY, MODES)
+    roots = exact_spectrum(EASY, WANTED_MODES)
     errors = [relative_error(peer.solve(EASY, size), roots) for size in peer.sizes]
     assert min(errors) < 1e-9
     coarse = [error for error in errors if error > 1e-8]
@@ -56,7 +56,7 @@ def test_every_peer_converges_to_the_exact_eigenvalues(peer):
 
 def test_forms_without_stiffness_keep_their_digits_where_the_plain_ones_lose_them():
     stiff = HARD_RODS[next(name for name in HARD_RODS if name.startswith("stiff"))]
-    roots = exact_spectrum(stiff, MODES)
+    roots = exact_spectrum(stiff, WANTED_MODES)
     assert relative_error(dense_inverse(stiff, 18), roots) < 1e-12
     assert relative_error(chebyshev_first_order(stiff, 24), roots) < 1e-11
     assert relative_error(displacement_elements(stiff, 18), roots) > 1e-8
@@ -65,7 +65,7 @@ def test_forms_without_stiffness_keep_their_digits_where_the_plain_ones_lose_the
 def test_own_error_on_the_hard_rods_is_rounding():
     for rod in HARD_RODS.values():
         for certify in (False, True):
-            assert relative_error(own(rod, certify), exact_spectrum(rod, MODES)) < 1e-14
+            assert relative_error(own_spectrum(rod, certify), exact_spectrum(rod, WANTED_MODES)) < 1e-14
 
 
 def test_method_that_fails_has_no_finite_error_and_says_how(monkeypatch):

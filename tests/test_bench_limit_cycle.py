@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 from rodsweep.bench.limit_cycle import integrators as cycle_peers
-from rodsweep.bench.limit_cycle.integrators import CVODE, DEFAULT, Trajectory, cvode_module, families
-from rodsweep.bench.limit_cycle.returns import returns
+from rodsweep.bench.limit_cycle.integrators import CVODE, CVODE_MODULE, DEFAULT, Trajectory, families
+from rodsweep.bench.limit_cycle.returns import returns_of
 from rodsweep.bench.limit_cycle.settling import Wait, settling_table
 from rodsweep.bench.limit_cycle.study import limit_cycle_study, target_table, time_at, work_table
-from rodsweep.bench.limit_cycle.tracking import PERIODS, judge, reference, work_precision
+from rodsweep.bench.limit_cycle.tracking import FOLLOWED_PERIODS, judged_run, reference, work_precision
+from rodsweep.bench.machine import installed
 from rodsweep.bench.study import Measurement, Timed
 from rodsweep.solve.cycle.shooting import PERIOD_MAP
 from rodsweep.solve.motion.integrator import integrator
@@ -68,8 +69,8 @@ def test_order_of_the_errors(name):
     error, steps = np.zeros((2, PHASES)), np.zeros((2, PHASES))
     for phase, state in enumerate(over.states[: 128 : 128 // PHASES + 1]):
         for i, tolerance in enumerate(tolerances):
-            run = family.integrate(at.beam, state, PERIODS * at.period, tolerance)
-            error[i, phase] = judge(replace(at, state=state), run)["error"]
+            run = family.integrate(at.beam, state, FOLLOWED_PERIODS * at.period, tolerance)
+            error[i, phase] = judged_run(replace(at, state=state), run)["error"]
             steps[i, phase] = len(run.times) - 1
     (loose, tight), (few, many) = np.sqrt((error**2).mean(axis=1)), steps.mean(axis=1)
     assert np.log(loose / tight) / np.log(many / few) == pytest.approx(order, abs=0.7)
@@ -77,16 +78,16 @@ def test_order_of_the_errors(name):
 
 def test_error_of_an_exact_run_is_that_of_the_measurement():
     at = cycle()
-    steps = int(128 * PERIODS)
+    steps = int(128 * FOLLOWED_PERIODS)
     duration = steps / 128 * at.period
     run = integrator(at.beam.mesh, PERIOD_MAP).run(at.beam, at.state, duration, at.period / 128, None, steps)
-    assert judge(at, Trajectory(run.times, run.states))["error"] < 1e-8
+    assert judged_run(at, Trajectory(run.times, run.states))["error"] < 1e-8
 
 
 def test_returns_lie_on_the_section():
     at = cycle()
-    steps = families()[3].integrate(at.beam, at.state, PERIODS * at.period, 1e-5)
-    found = returns(at.beam, steps)
+    steps = families()[3].integrate(at.beam, at.state, FOLLOWED_PERIODS * at.period, 1e-5)
+    found = returns_of(at.beam, steps)
     angle = at.beam.tip(found.states)[2]
     assert len(found.times) >= 6
     assert np.abs(angle).max() < 1e-9 * np.abs(at.beam.tip(steps.states)[2]).max()
@@ -114,12 +115,12 @@ def test_table_at_equal_error_states_the_ratios():
 
 
 def test_cvode_is_left_out_where_it_is_not_installed(monkeypatch):
-    monkeypatch.setattr(cycle_peers, "cvode_module", lambda: None)
+    monkeypatch.setattr(cycle_peers, "installed", lambda _: None)
     assert CVODE not in [family.name for family in families()]
 
 
 def test_cvode_takes_part_where_it_is_installed():
-    assert (CVODE in [family.name for family in families()]) == (cvode_module() is not None)
+    assert (CVODE in [family.name for family in families()]) == (installed(CVODE_MODULE) is not None)
 
 
 def test_tables_show_what_failed():
@@ -140,7 +141,7 @@ def test_the_benchmark_writes_its_tables_and_its_figure(monkeypatch, tmp_path):
     assert "| 50 | solve_cycle |" in text
     assert "| 27.43 | waiting, ARKIMEX 5 (default) |" in text
     assert "| ARKIMEX 5 (default) |" in text.split("times the default's time")[1]
-    assert ("CVODE is skipped: scikit-sundae is not installed" in text) == (cvode_module() is None)
+    assert ("CVODE is skipped: scikit-sundae is not installed" in text) == (installed(CVODE_MODULE) is None)
     assert {m.case for m in study.measurements} == {"error of the period", "error of the largest tip y"}
     study.draw(tmp_path / "a.png")
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")

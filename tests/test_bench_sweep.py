@@ -3,6 +3,7 @@
 from dataclasses import replace
 from functools import partial
 from math import isnan
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,7 +25,7 @@ run = partial(run_case, MEASURED)
 
 def row(name, points, ranks, seconds, memory):
     """Three runs of which the median takes `seconds`."""
-    case = SweepCase(name, points, (), KILLED if name == KILLED else INSTANT)
+    case = SweepCase(name, points, (Path(),), KILLED if name == KILLED else INSTANT)
     runs = [
         CommandRun(
             seconds=s,

@@ -12,14 +12,14 @@ import pytest
 from conftest import ROOT
 from scipy.optimize import brentq
 
-from rodsweep.bench.machine import peer_versions
+from rodsweep.bench.machine import installed, peer_versions
 from rodsweep.bench.study import Contender
 from rodsweep.bench.thresholds import auto_07p, contenders
 from rodsweep.bench.thresholds import study as thresholds
 from rodsweep.bench.thresholds.auto_07p import auto_program, hopf_by_auto
 from rodsweep.bench.thresholds.cases import CASES, HOPF, ONSET, FirstThreshold, ThresholdCase
 from rodsweep.bench.thresholds.contenders import BY_STEPS, CONTINUATION, continuation_codes
-from rodsweep.bench.thresholds.pycont_lite import hopf_by_pycont, pycont_module
+from rodsweep.bench.thresholds.pycont_lite import PYCONT_MODULE, hopf_by_pycont
 from rodsweep.bench.thresholds.reduction import reduced
 from rodsweep.bench.thresholds.spectra_by_force import (
     LeadingPair,
@@ -36,7 +36,7 @@ CASE = {case.name: case for case in CASES}
 FLUTTERING = [case for case in CASES if not isnan(case.hopf)]
 FLOOR = 3e-12
 """Relative error of a threshold that the mesh of MESH_ACCURACY leaves, and M(F) by its rounding ten times."""
-needs_pycont = pytest.mark.skipif(pycont_module() is None, reason="PyCont-Lite is not installed")
+needs_pycont = pytest.mark.skipif(installed(PYCONT_MODULE) is None, reason="PyCont-Lite is not installed")
 
 
 @pytest.fixture(scope="module")
@@ -130,7 +130,7 @@ def test_auto_finds_nothing_where_nothing_is(auto):
 @needs_pycont
 def test_pycont_finds_the_hopf_point_in_silence(capsys):
     for name in ("filament", "Fig. 2b"):
-        found = hopf_by_pycont(pycont_module(), 0.25, CASE[name])
+        found = hopf_by_pycont(installed(PYCONT_MODULE), 0.25, CASE[name])
         assert CASE[name].error_of(HOPF, found.force) < 1e-7
         assert found.products > 1000
     assert capsys.readouterr().out == ""
@@ -168,7 +168,7 @@ def test_tables_say_what_was_missed():
 
 
 def test_peers_that_are_not_installed_are_skipped_with_a_line(monkeypatch, tmp_path):
-    monkeypatch.setattr(contenders, "pycont_module", lambda: None)
+    monkeypatch.setattr(contenders, "installed", lambda _: None)
     monkeypatch.setattr(shutil, "which", lambda _: None)
     found, skipped = continuation_codes(tmp_path, quick=True)
     assert [line.split(" is skipped")[0] for line in skipped] == ["AUTO-07p", "PyCont-Lite"]
@@ -191,7 +191,7 @@ def test_auto_without_its_library_is_not_there(monkeypatch, tmp_path):
 def test_the_study_writes_its_text_and_its_figure(monkeypatch, tmp_path):
     monkeypatch.setattr(thresholds, "QUICK_CASES", (CASE["filament"], CASE["Fig. 2d"]))
     monkeypatch.setattr(contenders, "GRIDS", (20, 40))
-    monkeypatch.setattr(contenders, "pycont_module", lambda: None)
+    monkeypatch.setattr(contenders, "installed", lambda _: None)
     study = thresholds_study(quick=True)
     rows = [line.split(" | ") for line in study.text.splitlines() if line.startswith("| rodsweep")]
     assert len(rows) == 4

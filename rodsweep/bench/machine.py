@@ -1,14 +1,16 @@
 """Where and when a benchmark ran, and with which versions of what."""
 
+import importlib
 import platform
 import shutil
 import subprocess
 from importlib.metadata import PackageNotFoundError, version
+from typing import Any
 
 from ..results.file.provenance import cpu_name, now, provenance
 from ..solve.backend import petsc
 
-PEERS = ("scipy", "pycont-lite", "scikit-sundae")
+PEER_PACKAGES = ("scipy", "pycont-lite", "scikit-sundae")
 
 
 def machine() -> dict[str, str]:
@@ -27,7 +29,7 @@ def where_and_when() -> str:
 def peer_versions() -> dict[str, str]:
     """Of the peers that are installed; AUTO does not tell its own, but Debian's package does."""
     found = {}
-    for name in PEERS:
+    for name in PEER_PACKAGES:
         try:
             found[name] = version(name)
         except PackageNotFoundError:
@@ -37,3 +39,11 @@ def peer_versions() -> dict[str, str]:
         auto = subprocess.run(words, capture_output=True, text=True, check=False).stdout
         found |= {"auto-07p": auto} if auto else {}
     return found
+
+
+def installed(module: str) -> Any | None:
+    """A peer's module; None where it is not installed."""
+    try:
+        return importlib.import_module(module)
+    except ImportError:
+        return None

@@ -152,6 +152,14 @@ def contest(
     return measurements
 
 
+def grouped(measurements: Iterable[Measurement], *names: str) -> dict[tuple[str, ...], list[Measurement]]:
+    """Measurements with the same fields of these names together, in the order in which they appear."""
+    groups: dict[tuple[str, ...], list[Measurement]] = {}
+    for m in measurements:
+        groups.setdefault(tuple(getattr(m, name) for name in names), []).append(m)
+    return groups
+
+
 def middle(values: Iterable[float]) -> float:
     """The median of those that are numbers; nan if none is."""
     numbers = [value for value in values if not isnan(value)]

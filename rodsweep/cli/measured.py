@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..bench.sweep.launch import FIRST, KILLED, OTHER, SOLVED
+from ..bench.sweep.launch import FIRST_RANK, KILLED, OTHER_RANKS, SOLVED
 from . import _speaks, main
 from .tasks import TASKS
 from .tasks.protocol import Solver
@@ -56,7 +56,7 @@ class InstantSpectra(SpectrumTask):
 
 def note_memory(directory: Path) -> None:
     """Leaves this rank's peak memory so far."""
-    (directory / f"{FIRST if _speaks() else OTHER}-{os.getpid()}").write_text(str(peak_memory()))
+    (directory / f"{FIRST_RANK if _speaks() else OTHER_RANKS}-{os.getpid()}").write_text(str(peak_memory()))
 
 
 def peak_memory() -> int:

@@ -4,7 +4,6 @@ All see the same compiled rate and exact Jacobian of a beam, and one `tolerance`
 units of its largest.
 """
 
-import importlib
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,6 +18,7 @@ from ...discretization.body_frame import jacobian, rate
 from ...solve.motion.integrator import Ending, evolve
 from ...solve.motion.time_scheme import Method
 from ..lapack import Array
+from ..machine import installed
 
 TIGHT = 3e-7
 """Tolerance below which Newton's errors would show in those of ARKIMEX 5 with the default's test."""
@@ -26,6 +26,8 @@ TIGHT_NEWTON = 0.03
 FIRST_SHARE, FIRST_MULTISTEP_SHARE = 1e-3, 1e-5
 """First step in units of the duration; that of multistep methods, which start with order 1. LSODA fails
 where its first step is too long for the start."""
+CVODE_MODULE = "sksundae.cvode"
+"""Of scikit-sundae, which is an optional extra (`cvode`)."""
 MOST_CVODE_STEPS = 200_000
 
 
@@ -56,7 +58,7 @@ class Family:
 
 def by_petsc(
     family: str, variant: str, beam: Beam, z: Array, duration: float, tolerance: float
-) -> Trajectory:  # noqa: PLR0913, PLR0917
+) -> Trajectory:
     """PETSc TS as the task limit_cycle uses it."""
     newton = Method().newton if tolerance > TIGHT else TIGHT_NEWTON
     method = Method(family, variant, tolerance, newton, prefix="bench_")
@@ -113,49 +115,32 @@ def by_cvode(cvode: Any, beam: Beam, z: Array, duration: float, tolerance: float
     return Trajectory(found.t, found.y)
 
 
-def cvode_module() -> Any | None:
-    """scikit-sundae's CVODE, which is an optional extra (`cvode`); None where it is not installed."""
-    try:
-        return importlib.import_module("sksundae.cvode")
-    except ImportError:
-        return None
+DEFAULT, CVODE = "ARKIMEX 5 (default)", "CVODE"
 
 
-DEFAULT = "ARKIMEX 5 (default)"
-SCIPY, CVODE = "SciPy ", "CVODE"
-"""How the names of the families of others begin."""
-PYTHON = (SCIPY + "BDF", SCIPY + "Radau")
-"""SciPy's implicit methods written in Python; LSODA is compiled."""
+CAREFUL = (1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9)
+FAMILIES = (
+    Family("ARKIMEX 2", partial(by_petsc, "arkimex", "2e"), (1e-4, 1e-5, 1e-6, 3e-7, 2e-7)),
+    Family("ARKIMEX 3", partial(by_petsc, "arkimex", "3"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
+    Family("ARKIMEX 4", partial(by_petsc, "arkimex", "4"), (1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8)),
+    Family(DEFAULT, partial(by_petsc, "arkimex", "5"), (1e-5, 5e-6, 2e-6, 1e-6, 3e-7, 1e-7, 1e-8), CAREFUL),
+    Family("BDF 5", partial(by_petsc, "bdf", "5"), (1e-6, 1e-7, 3e-8, 1e-8, 1e-9)),
+    Family("ROSW ra34pw2", partial(by_petsc, "rosw", "ra34pw2"), (1e-4, 1e-5, 3e-6, 1e-6, 1e-7)),
+    Family("ROSW rodas3", partial(by_petsc, "rosw", "rodas3"), (1e-4, 1e-5, 3e-6, 1e-6, 3e-7)),
+    Family("SciPy BDF", partial(by_scipy, "BDF"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
+    Family(
+        "SciPy Radau",
+        partial(by_scipy, "Radau"),
+        (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6),
+        (1e-4, 3e-5, 1e-5, *CAREFUL[:4]),
+    ),
+    Family("SciPy LSODA", partial(by_scipy, "LSODA"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8), CAREFUL),
+)
+"""BDF 5 is at the edge of its stability until the tolerance is tight."""
 
 
-def families() -> list[Family]:
-    """All that can be run here; BDF 5 is at the edge of its stability until the tolerance is tight."""
-    own = {
-        "ARKIMEX 2": ("arkimex", "2e", (1e-4, 1e-5, 1e-6, 3e-7, 2e-7)),
-        "ARKIMEX 3": ("arkimex", "3", (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
-        "ARKIMEX 4": ("arkimex", "4", (1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8)),
-        DEFAULT: ("arkimex", "5", (1e-5, 5e-6, 2e-6, 1e-6, 3e-7, 1e-7, 1e-8)),
-        "BDF 5": ("bdf", "5", (1e-6, 1e-7, 3e-8, 1e-8, 1e-9)),
-        "ROSW ra34pw2": ("rosw", "ra34pw2", (1e-4, 1e-5, 3e-6, 1e-6, 1e-7)),
-        "ROSW rodas3": ("rosw", "rodas3", (1e-4, 1e-5, 3e-6, 1e-6, 3e-7)),
-    }
-    scipy_own = {
-        "BDF": (1e-5, 1e-6, 3e-7, 1e-7, 1e-8),
-        "Radau": (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6),
-        "LSODA": (1e-5, 1e-6, 3e-7, 1e-7, 1e-8),
-    }
-    careful = (1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9)
-    settling = {"Radau": (1e-4, 3e-5, 1e-5, *careful[:4]), "LSODA": careful}
-    found = [
-        Family(name, partial(by_petsc, family, variant), tolerances, careful if name == DEFAULT else ())
-        for name, (family, variant, tolerances) in own.items()
-    ]
-    found += [
-        Family(SCIPY + method, partial(by_scipy, method), tolerances, settling.get(method, ()))
-        for method, tolerances in scipy_own.items()
-    ]
-    module = cvode_module()
-    if module is not None:
-        ladder = (1e-5, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9)
-        found.append(Family(CVODE, partial(by_cvode, module), ladder, careful))
-    return found
+def families() -> tuple[Family, ...]:
+    """All that can be run here."""
+    module = installed(CVODE_MODULE)
+    ladder = (1e-5, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9)
+    return FAMILIES + ((Family(CVODE, partial(by_cvode, module), ladder, CAREFUL),) if module else ())

@@ -36,7 +36,7 @@ class Returns:
     heights: Array
 
 
-def returns(beam: Beam, run: Trajectory) -> Returns:
+def returns_of(beam: Beam, run: Trajectory) -> Returns:
     """All returns of a run."""
     row, y = angle_weights(beam), beam.tip(run.states)[1]
     angle = run.states @ row

@@ -11,8 +11,8 @@ from ...solve.motion.leading_mode import leading_mode
 from ..study import Timed, race
 from ..tables import table
 from .integrators import Family
-from .returns import returns
-from .tracking import AMPLITUDE, FORCE, PERIODS, SETTLED, Reference, cycle_at, on_cycle
+from .returns import returns_of
+from .tracking import AMPLITUDE, CYCLE_FORCE, FOLLOWED_PERIODS, SETTLED_WITHIN, Reference, cycle_at, on_cycle
 
 NEAR_HOPF = 27.43
 """A force 0.003 above the Hopf point."""
@@ -41,14 +41,13 @@ class Wait:
     def row(self, timed: Timed) -> dict[str, str | float]:
         """A line of the table."""
         failures = ", ".join(f"{tolerance:.0e}" for tolerance in self.failed)
-        settled = isfinite(self.returns)
+        settled, about = isfinite(self.returns), "about " if self.times != 1 else ""
         return {
             "force": self.force,
             "way": self.way + (f" (fails at {failures})" if failures else ""),
             "tolerance": self.tolerance,
-            "about": "about " if self.times != 1 else "" if settled else f"not settled in {PERIODS_OF_WAIT}",
-            "returns": self.returns,
-            "milliseconds": 1e3 * self.times * timed.median if settled else nan,
+            "returns": f"{about}{self.returns:.0f}" if settled else f"not settled in {PERIODS_OF_WAIT}",
+            "milliseconds": f"{about}{1e3 * self.times * timed.median:.0f}" if settled else "",
             "error": self.error if settled else nan,
         }
 
@@ -66,14 +65,14 @@ def settling_table(waits: Sequence[Wait], raced: Sequence[Timed]) -> str:
     """What each way took."""
     return (
         f"To the settled cycle from a start of {AMPLITUDE:g} L, settled where two successive returns agree "
-        f"to {SETTLED:.0e}, at the loosest tolerance that settles and leaves no larger error: who waits is "
-        "given this tolerance, and the returns for nothing. solve_cycle is asked for the same accuracy, and "
-        f"its time includes its choice of mesh and its proof of stability. At F = {NEAR_HOPF:g} waiting is "
-        f"not run but estimated, from below: ln({SETTLED:.0e})/ln(largest multiplier) periods at the "
-        "milliseconds that a period takes there; the errors are then solve_cycle's estimate and the aim.\n\n"
+        f"to {SETTLED_WITHIN:.0e}, at the loosest tolerance that settles and leaves no larger error; who "
+        "waits is given this tolerance. solve_cycle is asked for the same, and its time includes its choice "
+        f"of mesh and its proof of stability. At F = {NEAR_HOPF:g} waiting is estimated, from below: "
+        f"ln({SETTLED_WITHIN:.0e})/ln(largest multiplier) periods, at the milliseconds that one takes there; "
+        "the errors are then solve_cycle's estimate and the aim.\n\n"
     ) + table(
         "F | way | tolerance | returns | ms | error left",
-        "{force:g} | {way} | {tolerance:.0e} | {about}{returns:.0f} | {milliseconds:.0f} | {error:.0e}",
+        "{force:g} | {way} | {tolerance:.0e} | {returns} | {milliseconds} | {error:.0e}",
         [wait.row(timed) for wait, timed in zip(waits, raced, strict=True)],
     )
 
@@ -83,9 +82,9 @@ def _error(at: Reference, period: float, height: float) -> float:
 
 
 def _solved(at: Reference) -> Wait:
-    cycle = cycle_at(FORCE)
+    cycle = cycle_at(CYCLE_FORCE)
     left = _error(at, cycle.period, cycle.tip_y_max)
-    return Wait(FORCE, SOLVE, nan, cycle.periods, left, partial(cycle_at, FORCE))
+    return Wait(CYCLE_FORCE, SOLVE, nan, cycle.periods, left, partial(cycle_at, CYCLE_FORCE))
 
 
 def _waited(at: Reference, family: Family) -> Wait:
@@ -94,29 +93,39 @@ def _waited(at: Reference, family: Family) -> Wait:
     failed: tuple[float, ...] = ()
     for tolerance in family.settling:
         try:
-            found = returns(at.beam, run(PERIODS_OF_WAIT * at.period, tolerance))
+            found = returns_of(at.beam, run(PERIODS_OF_WAIT * at.period, tolerance))
         except ArithmeticError:
             failed += (tolerance,)
             continue
         sizes = np.linalg.norm(found.states[1:], axis=1)
         distances = np.linalg.norm(np.diff(found.states, axis=0), axis=1) / sizes
-        settled = np.flatnonzero(distances <= SETTLED).tolist()
+        settled = np.flatnonzero(distances <= SETTLED_WITHIN).tolist()
         for k in settled[:1]:
             left = _error(at, found.times[k + 1] - found.times[k], found.heights[k])
-            if left <= SETTLED:
+            if left <= SETTLED_WITHIN:
                 again = partial(run, float(found.times[k + 1]), tolerance)
-                return Wait(FORCE, WAITING + family.name, tolerance, k + 2, left, again, failed=failed)
-    return Wait(FORCE, WAITING + family.name, nan, nan, inf, lambda: None, failed=failed)
+                return Wait(CYCLE_FORCE, WAITING + family.name, tolerance, k + 2, left, again, failed=failed)
+    return Wait(CYCLE_FORCE, WAITING + family.name, nan, nan, inf, lambda: None, failed=failed)
 
 
 def _near_hopf(tolerances: dict[Family, float]) -> list[Wait]:
     """Next to the Hopf point, where waiting is estimated from the largest multiplier."""
     cycle = cycle_at(NEAR_HOPF)
     beam, z = on_cycle(cycle, NEAR_HOPF, cycle.elements, cycle.order)
-    count = log(SETTLED) / log(cycle.multiplier)
+    count = log(SETTLED_WITHIN) / log(cycle.multiplier)
     error = max(cycle.period_error, cycle.amplitude_error)
     waits = [Wait(NEAR_HOPF, SOLVE, nan, cycle.periods, error, partial(cycle_at, NEAR_HOPF))]
     for family, tolerance in tolerances.items():
-        run = partial(family.integrate, beam, z, PERIODS * cycle.period, tolerance)
-        waits.append(Wait(NEAR_HOPF, WAITING + family.name, tolerance, count, SETTLED, run, count / PERIODS))
+        run = partial(family.integrate, beam, z, FOLLOWED_PERIODS * cycle.period, tolerance)
+        waits.append(
+            Wait(
+                NEAR_HOPF,
+                WAITING + family.name,
+                tolerance,
+                count,
+                SETTLED_WITHIN,
+                run,
+                count / FOLLOWED_PERIODS,
+            )
+        )
     return waits

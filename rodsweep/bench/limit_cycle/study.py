@@ -5,22 +5,22 @@ from dataclasses import replace
 from math import isfinite, log, nan
 
 from ...solve.cycle.limit_cycle import warm_up
-from ..study import Measurement, Study
+from ..study import Measurement, Study, grouped
 from ..tables import plural, table
 from .integrators import CVODE, DEFAULT, families
 from .settling import settling
 from .tracking import (
+    CYCLE_FORCE,
     CYCLE_ORDER,
     FIG5_ROD,
-    FORCE,
-    PERIODS,
+    FOLLOWED_PERIODS,
     TARGET,
     reference,
     work_precision,
 )
 
 ROUNDS, QUICK_ROUNDS = 9, 1
-ERRORS = {"error of the period": "period_error", "error of the largest tip y": "amplitude_error"}
+DRAWN_ERRORS = {"error of the period": "period_error", "error of the largest tip y": "amplitude_error"}
 
 
 def limit_cycle_study(quick: bool) -> Study:
@@ -35,7 +35,7 @@ def limit_cycle_study(quick: bool) -> Study:
     blocks.append(settling(at, every, rounds))
     drawn = [
         replace(m, case=case, error=m.extra.get(error, m.error))
-        for case, error in ERRORS.items()
+        for case, error in DRAWN_ERRORS.items()
         for m in found
     ]
     return Study("limit_cycle", "\n\n".join(blocks), drawn, "period", TARGET)
@@ -46,7 +46,7 @@ def introduction(rounds: int) -> str:
     k1, k2, gamma3, gamma1 = FIG5_ROD
     return (
         f"The settled cycle of k1 = {k1:g}, k2 = {k2:g}, gamma3 = {gamma3:g}, gamma1 = {gamma1:g}, "
-        f"F = {FORCE:g}, followed for {PERIODS} periods; one element of order {CYCLE_ORDER}, "
+        f"F = {CYCLE_FORCE:g}, followed for {FOLLOWED_PERIODS} periods; one element of order {CYCLE_ORDER}, "
         f"{3 * CYCLE_ORDER} unknowns. All integrators call the same compiled rate and Jacobian; the "
         "tolerance is per component of the state, in units of its largest. Errors of period and largest tip "
         f"y are relative and rms over 5 returns. Times are medians of {plural(rounds, 'interleaved round')}."
@@ -71,8 +71,7 @@ def work_table(measurements: Sequence[Measurement]) -> str:
 def target_table(measurements: Sequence[Measurement]) -> str:
     """All methods at equal error."""
     at = {}
-    for method in dict.fromkeys(m.method for m in measurements):
-        own = [m for m in measurements if m.method == method]
+    for (method,), own in grouped(measurements, "method").items():
         errors = [m.error for m in own]
         median, least = [m.seconds for m in own], [m.least_seconds for m in own]
         at[method] = time_at(TARGET, errors, median), time_at(TARGET, errors, least)

@@ -21,20 +21,20 @@ from ...solve.motion.integrator import relaxed
 from ..lapack import Array
 from ..study import Contender, Measurement, contest
 from .integrators import Family, Integration, Trajectory
-from .returns import returns
+from .returns import returns_of
 
 FIG5_ROD = (1e4, 1e2, 1e-2, 1.0)
 """k1, k2, gamma3, gamma1 of the paper's Fig. 5."""
-FORCE = 50.0
+CYCLE_FORCE = 50.0
 CYCLE_ORDER = 18
 """Of the one element; it leaves 1e-9 of period and amplitude at F = 50."""
 REFERENCE_STEPS = 1024
 """Equal steps of the reference over its period; half as many change it by 2e-12."""
-PERIODS = 6.3
+FOLLOWED_PERIODS = 6.3
 """Length of a run; the first return is left out, for a start is not a settled cycle."""
 TARGET = 1e-6
 """Error, the larger of the two, at which the families are compared."""
-SETTLED = 1e-7
+SETTLED_WITHIN = 1e-7
 """Accuracy asked of solve_cycle; relative distance of two successive returns of one who waits instead."""
 AMPLITUDE, MOST_RETURNS = 0.1, 300
 """Of the start, in L; returns that solve_cycle may wait for."""
@@ -52,7 +52,7 @@ class Reference:
 
 def cycle_at(force: float) -> Cycle:
     """The rod's cycle as the task limit_cycle finds it."""
-    return solve_cycle(force, *FIG5_ROD, CycleRequest(SETTLED, AMPLITUDE, 1, 0, 0, 0, MOST_RETURNS))
+    return solve_cycle(force, *FIG5_ROD, CycleRequest(SETTLED_WITHIN, AMPLITUDE, 1, 0, 0, 0, MOST_RETURNS))
 
 
 def on_cycle(cycle: Cycle, force: float, elements: int, order: int) -> tuple[Beam, Array]:
@@ -65,8 +65,8 @@ def on_cycle(cycle: Cycle, force: float, elements: int, order: int) -> tuple[Bea
 
 def reference() -> Reference:
     """The cycle on the benchmark's mesh, by Newton's method on its period map."""
-    cycle = cycle_at(FORCE)
-    beam, z = on_cycle(cycle, FORCE, 1, CYCLE_ORDER)
+    cycle = cycle_at(CYCLE_FORCE)
+    beam, z = on_cycle(cycle, CYCLE_FORCE, 1, CYCLE_ORDER)
     orbit = shoot(beam, z, cycle.period, REFERENCE_STEPS)
     if orbit is None:
         raise ArithmeticError(f"no cycle on one element of order {CYCLE_ORDER}")
@@ -75,7 +75,7 @@ def reference() -> Reference:
 
 def follow(integrate: Integration, tolerance: float, at: Reference) -> Trajectory:
     """A run along the cycle."""
-    return integrate(at.beam, at.state, PERIODS * at.period, tolerance)
+    return integrate(at.beam, at.state, FOLLOWED_PERIODS * at.period, tolerance)
 
 
 def work_precision(at: Reference, every: Sequence[Family], rounds: int, stride: int) -> list[Measurement]:
@@ -91,17 +91,17 @@ def work_precision(at: Reference, every: Sequence[Family], rounds: int, stride: 
         for tolerance in family.tolerances[::stride]
     ]
     return [
-        replace(m, seconds=m.seconds / PERIODS, least_seconds=m.least_seconds / PERIODS)
-        for m in contest(f"F = {FORCE:g}", at, contenders, rounds, partial(judge, at))
+        replace(m, seconds=m.seconds / FOLLOWED_PERIODS, least_seconds=m.least_seconds / FOLLOWED_PERIODS)
+        for m in contest(f"F = {CYCLE_FORCE:g}", at, contenders, rounds, partial(judged_run, at))
     ]
 
 
-def judge(at: Reference, run: Trajectory) -> dict[str, Any]:
+def judged_run(at: Reference, run: Trajectory) -> dict[str, Any]:
     """Relative rms errors of the period and of the tip's largest y, over all returns but the first."""
-    found = returns(at.beam, run)
+    found = returns_of(at.beam, run)
     period = _rms(np.diff(found.times)[1:] / at.period - 1)
     amplitude = _rms(found.heights[1:] / at.tip_y_max - 1)
-    steps = (len(run.times) - 1) / PERIODS
+    steps = (len(run.times) - 1) / FOLLOWED_PERIODS
     extra = {"steps": steps, "period_error": period, "amplitude_error": amplitude}
     return {"error": max(period, amplitude), "extra": extra}
 

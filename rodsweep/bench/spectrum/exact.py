@@ -16,7 +16,7 @@ GUARD = 25
 """Digits that the cancellation in D may take, and more."""
 STEP = mp.mpf(10) ** -12
 """Relative distance of the two first points of the secant method."""
-FARTHEST = 20
+FARTHEST_ROOT = 20
 """Distance of the root, in units of the estimated error of where the search begins, that is believed."""
 
 
@@ -54,7 +54,10 @@ def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
             start = mp.mpc(complex(w))
             root = mp.findroot(D, (start, start * (1 + STEP)), tol=STEP**5, verify=False)
             nearby = abs(D(root * (1 + STEP)))
-            if abs(root - start) > FARTHEST * error or abs(D(root)) > nearby * mp.mpf(10) ** -DIGITS / STEP:
+            if (
+                abs(root - start) > FARTHEST_ROOT * error
+                or abs(D(root)) > nearby * mp.mpf(10) ** -DIGITS / STEP
+            ):
                 raise ArithmeticError(f"{rod}: {complex(w)} does not lead to a root of D")
             roots.append(root)
     return roots

@@ -11,7 +11,7 @@ import scipy.linalg
 from ...discretization.pencil import assemble
 from ...model.rod import Rod
 from ..lapack import Array, Eigenvalues, leading, qz
-from .same_pencil import MODES, mesh_of
+from .same_pencil import WANTED_MODES, mesh_of
 
 
 def displacement_elements(rod: Rod, size: int) -> Eigenvalues:
@@ -25,7 +25,7 @@ def displacement_elements(rod: Rod, size: int) -> Eigenvalues:
         ]
     )
     A[n:] /= rod.gamma3
-    return leading(scipy.linalg.eigvals(A, check_finite=False), MODES + 1)
+    return leading(scipy.linalg.eigvals(A, check_finite=False), WANTED_MODES + 1)
 
 
 @lru_cache(maxsize=64)
@@ -61,7 +61,7 @@ def chebyshev_qz(rod: Rod, size: int) -> Eigenvalues:
     )
     B[rows] = 0.0
     largest = np.abs(A).max(axis=1, keepdims=True)  # without it QZ finds nothing at k2 = 1e8
-    return leading(qz(A / largest, B / largest), MODES + 1)
+    return leading(qz(A / largest, B / largest), WANTED_MODES + 1)
 
 
 def chebyshev_first_order(rod: Rod, size: int) -> Eigenvalues:
@@ -80,4 +80,4 @@ def chebyshev_first_order(rod: Rod, size: int) -> Eigenvalues:
     rows = [0, n, 3 * n - 1, 4 * n - 1]  # y and theta at the tip, s and theta' at the clamp, make room for
     A[rows] = np.eye(4 * n)[[2 * n, 3 * n, n - 1, 2 * n - 1]]  # s, theta' = 0 at the tip, y, theta = 0 there
     B[rows] = 0.0
-    return leading(qz(A, B), MODES + 1)
+    return leading(qz(A, B), WANTED_MODES + 1)

@@ -1,7 +1,7 @@
 """The leading eigenvalues of a rod by rodsweep, and by others' eigensolvers on rodsweep's own pencil.
 
-Each takes a rod and a size, the order of the elements, and returns the MODES leading eigenvalues and one
-more, for a pair may straddle the end, largest real part first.
+Each takes a rod and a size, the order of the elements, and returns the leading eigenvalues, WANTED_MODES and
+one more, for a pair may straddle the end, largest real part first.
 """
 
 from math import ceil
@@ -19,14 +19,14 @@ from ...solve.spectrum.krylov_schur import eigen_solver
 from ...solve.spectrum.search import SHIFT_ABOVE_GROWTH, SpectrumRequest, solve_spectrum
 from ..lapack import Eigenvalues, inverse_spectrum, leading, qz, whole_matrices
 
-MODES = 4
+WANTED_MODES = 4
 ACCURACY = 1e-12
 """Asked of rodsweep, whose error does not depend on it."""
 
 
-def own(rod: Rod, certify: bool) -> Eigenvalues:
+def own_spectrum(rod: Rod, certify: bool) -> Eigenvalues:
     """This tool as its task uses it; it chooses the size itself."""
-    return solve_spectrum(rod, SpectrumRequest(MODES, ACCURACY, certify)).eigenvalues
+    return solve_spectrum(rod, SpectrumRequest(WANTED_MODES, ACCURACY, certify)).eigenvalues
 
 
 def mesh_of(order: int) -> Resolution:
@@ -42,7 +42,9 @@ def shift_of(rod: Rod) -> float:
 
 def krylov_schur(rod: Rod, size: int) -> Eigenvalues:
     """SLEPc's Krylov-Schur to its last digit, without refinement on D."""
-    return leading(eigen_solver(mesh_of(size)).solve(rod, shift_of(rod), MODES, tight=True), MODES + 1)
+    return leading(
+        eigen_solver(mesh_of(size)).solve(rod, shift_of(rod), WANTED_MODES, tight=True), WANTED_MODES + 1
+    )
 
 
 def dense_qz(rod: Rod, size: int) -> Eigenvalues:
@@ -50,12 +52,12 @@ def dense_qz(rod: Rod, size: int) -> Eigenvalues:
     A, B = whole_matrices(rod, mesh_of(size))
     scale = np.ones(len(B))
     scale[2 * len(B) // 3 :] = SHEAR_WEIGHT
-    return leading(qz(A * scale[:, None] * scale, np.diag(B)), MODES + 1)
+    return leading(qz(A * scale[:, None] * scale, np.diag(B)), WANTED_MODES + 1)
 
 
 def dense_inverse(rod: Rod, size: int) -> Eigenvalues:
     """LAPACK's LU and geev."""
-    return leading(inverse_spectrum(*whole_matrices(rod, mesh_of(size))), MODES + 1)
+    return leading(inverse_spectrum(*whole_matrices(rod, mesh_of(size))), WANTED_MODES + 1)
 
 
 def scipy_eigs(rod: Rod, size: int) -> Eigenvalues:
@@ -66,8 +68,8 @@ def scipy_eigs(rod: Rod, size: int) -> Eigenvalues:
     operator = scipy.sparse.linalg.LinearOperator(
         A.shape, matvec=lambda x: scipy.linalg.lu_solve(factors, B * x, check_finite=False), dtype=float
     )
-    theta = scipy.sparse.linalg.eigs(operator, MODES, v0=np.ones(len(B)), return_eigenvectors=False)
-    return leading(shift + 1 / theta, MODES + 1)
+    theta = scipy.sparse.linalg.eigs(operator, WANTED_MODES, v0=np.ones(len(B)), return_eigenvectors=False)
+    return leading(shift + 1 / theta, WANTED_MODES + 1)
 
 
 def lapack_on_d(rod: Rod, size: int) -> Eigenvalues:

@@ -10,11 +10,11 @@ import numpy as np
 from ...model.rod import Rod
 from ...solve.spectrum.search import warm_up
 from ..lapack import Eigenvalues
-from ..study import Contender, Measurement, Study, contest, failsafe, middle, race
+from ..study import Contender, Measurement, Study, contest, failsafe, grouped, middle, race
 from ..tables import plural, table
 from .contenders import PLAIN, contenders
 from .exact import exact_spectrum, relative_error
-from .same_pencil import MODES
+from .same_pencil import WANTED_MODES
 
 PAPER_RODS = {
     "Fig. 2a": (1e4, 1e4, 1e-4, 60.0),
@@ -46,7 +46,7 @@ def spectrum_study(quick: bool) -> Study:
         for k1, k2, gamma3, top in PAPER_RODS.values()
         for F in np.linspace(0.1 * top, top, FORCES)
     ]
-    exact = [exact_spectrum(rod, MODES) for rod in rods]
+    exact = [exact_spectrum(rod, WANTED_MODES) for rod in rods]
     blocks = [equal_errors(rods, exact, target, rounds) for target in TARGETS[: 1 if quick else None]]
     measurements = every_size(contenders(QUICK_STRIDE if quick else 1), rounds)
     return Study(
@@ -87,8 +87,8 @@ def equal_errors(rods: Sequence[Rod], exact: Sequence[list[Any]], target: float,
         }
         rows.append(row)
     return (
-        f"Leading {MODES} eigenvalues to {target:.0e}, each method at the cheapest size that gets there, "
-        f"median over {len(rods)} points of the paper's four rods, {plural(rounds, 'round')}:\n\n"
+        f"Leading {WANTED_MODES} eigenvalues to {target:.0e}, each method at the cheapest size that gets "
+        f"there, median over {len(rods)} points of the paper's four rods, {plural(rounds, 'round')}:\n\n"
     ) + table(
         "method | points reached | ms a point | worst error | times this tool's time",
         "{method} | {points:.0f} | {ms:.3f} | {worst:.0e} | {ratio:.1f}",
@@ -100,7 +100,7 @@ def every_size(every: Sequence[Contender], rounds: int) -> list[Measurement]:
     """All methods at all of their sizes on the hard rods."""
     measurements = []
     for case, rod in HARD_RODS.items():
-        judge = partial(_judge, exact_spectrum(rod, MODES))
+        judge = partial(_judge, exact_spectrum(rod, WANTED_MODES))
         measurements += contest(case, rod, every, rounds, judge)
     return measurements
 
@@ -111,21 +111,14 @@ def _judge(exact: list[Any], w: Eigenvalues) -> dict[str, float]:
 
 def hard_table(measurements: Sequence[Measurement]) -> str:
     """For every method on every hard rod the least error, and the time it takes to get within ten of it."""
-    cells: dict[str, dict[str, list[Measurement]]] = {}
-    for m in measurements:
-        cells.setdefault(m.method, {}).setdefault(m.case, []).append(m)
+    rows = [
+        {"method": method, "cells": " | ".join(best(own) for own in grouped(every, "case").values())}
+        for (method,), every in grouped(measurements, "method").items()
+    ]
     return (
-        f"Leading {MODES} eigenvalues of hard rods: the least relative error that a method reaches at any "
-        "size, and the ms of the cheapest size within a factor 10 of it (the figure and the file have all):"
-        "\n\n"
-    ) + table(
-        " | ".join(["method", *HARD_RODS]),
-        "{method} | {cells}",
-        [
-            {"method": method, "cells": " | ".join(map(best, cases.values()))}
-            for method, cases in cells.items()
-        ],
-    )
+        f"Leading {WANTED_MODES} eigenvalues of hard rods: the least relative error that a method reaches at "
+        "any size, and the ms of the cheapest size within a factor 10 of it (the figure has all):\n\n"
+    ) + table(" | ".join(["method", *HARD_RODS]), "{method} | {cells}", rows)
 
 
 def best(measurements: Sequence[Measurement]) -> str:

@@ -1,8 +1,8 @@
 """Runs of the command as a user starts them, and what they took: time, memory of each rank, bytes on disk.
 
 The words that start the command are given. They are followed by a directory, into which every rank writes
-its peak memory in bytes, in a file FIRST-PID or OTHER-PID; by what takes the place of the solver, SOLVED,
-INSTANT or KILLED; and by the words of the command.
+its peak memory in bytes, in a file FIRST_RANK-PID or OTHER_RANKS-PID; by what takes the place of the solver,
+SOLVED, INSTANT or KILLED; and by the words of the command.
 """
 
 import os
@@ -25,7 +25,7 @@ from .cases import CONFIG, SweepCase
 
 RESULT, NOTES = "c.h5", "notes"
 """Names in the directory of a case."""
-FIRST, OTHER = "first", "other"
+FIRST_RANK, OTHER_RANKS = "first", "other"
 SOLVED, INSTANT, KILLED = "solved", "instant", "killed"
 """The solver itself, outcomes that cost nothing, and the same with a kill at the last point."""
 
@@ -72,7 +72,8 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
         inside=max(said),
         solving=sum(spent for spent, _ in solved),
         memory=tuple(
-            max(_notes(directory, rank) for directory in case.directories) for rank in (FIRST, OTHER)[:ranks]
+            max(_notes(directory, rank) for directory in case.directories)
+            for rank in (FIRST_RANK, OTHER_RANKS)[:ranks]
         ),
         file=sum(file.stat().st_size for file in files),
         journal=sum(page.stat().st_size for file in files for page in journal_directory(file).glob("rank-*")),

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from math import log, nan
 
-from ..study import Measurement
+from ..study import Measurement, grouped
 from ..tables import table
 from .launch import KILLED
 
@@ -79,14 +79,16 @@ def instant_table(measurements: Sequence[Measurement]) -> str:
 
 def growth_table(measurements: Sequence[Measurement]) -> str:
     """How time, memory and file grow from each size to the next; what is killed has no file."""
-    kinds: dict[tuple[str, str], list[Measurement]] = {}
-    for m in measurements:
-        if m.case != KILLED:
-            kinds.setdefault((m.case, m.method), []).append(m)
     rows = []
-    for (case, method), sizes in kinds.items():
+    for (case, method), sizes in grouped(measurements, "case", "method").items():
+        if case == KILLED:
+            continue
         for less, more in pairwise(sizes):
-            row: dict[str, object] = {"case": case, "method": method, "power": power(sizes[0], less, more)}
+            row: dict[str, object] = {
+                "case": case,
+                "method": method,
+                "power": growth_power(sizes[0], less, more),
+            }
             for name, end in totals(more).items():
                 start = totals(less)[name]
                 row[name] = (end - start) / (more.extra["points"] - less.extra["points"])
@@ -112,7 +114,7 @@ def totals(m: Measurement) -> dict[str, float]:
     }
 
 
-def power(start: Measurement, less: Measurement, more: Measurement) -> float:
+def growth_power(start: Measurement, less: Measurement, more: Measurement) -> float:
     """With which the time beyond that of the smallest sweep grows; nan where it does not."""
     if less is start or min(less.seconds, more.seconds) <= start.seconds:
         return nan

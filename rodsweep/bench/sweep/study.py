@@ -88,14 +88,14 @@ def interleaved(run: RunCase, entries: Sequence[tuple[SweepCase, int, int]]) -> 
 
 def measured(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -> Measurement:
     """The medians over all runs of one case on some ranks; no error applies."""
-    seconds = middle(run.seconds for run in runs)
+    seconds, processes = middle(run.seconds for run in runs), ranks * len(case.directories)
     memory = [max(values) / MEGABYTE for values in zip(*(run.memory for run in runs), strict=True)]
     extra = {
         "ranks": float(ranks),
         "points": float(case.points),
         "points_per_second": case.points / seconds,
         "inside_seconds": middle(run.inside for run in runs),
-        "microseconds_overhead": middle(1e6 * (ranks * r.inside - r.solving) / case.points for r in runs),
+        "microseconds_overhead": middle(1e6 * (processes * r.inside - r.solving) / case.points for r in runs),
         "rss_megabytes": max(memory),
         "rss_megabytes_first": memory[0],
         "rss_megabytes_other": memory[1] if len(memory) > 1 else nan,

@@ -10,10 +10,8 @@ from ...model.rod import Rod
 
 ONSET, HOPF = "onset", "hopf"
 """Kinds of thresholds, by their names in ThresholdCase and in rodsweep's results."""
-MODES, MESH_ACCURACY = 2, 1e-12
+MESH_MODES, MESH_ACCURACY = 2, 1e-12
 """Leading eigenvalues for which the mesh is chosen, and their relative error on it."""
-HEAD_START, ENOUGH = 0.1, 6.0
-"""Where PyCont-Lite starts, as a share of the way from onset to Hopf point, and how far beyond it ends."""
 ANOTHER = 0.3
 """Relative distance beyond which what was found is not the first change."""
 
@@ -36,26 +34,11 @@ class ThresholdCase:
     def rod(self, F: float) -> Rod:
         return Rod(F, self.k1, self.k2, self.gamma3)
 
-    @property
-    def last(self) -> float:
-        """Where the search may end: at the Hopf point, or at the top where there is none."""
-        return self.top if isnan(self.hopf) else self.hopf
-
-    @property
-    def oscillates(self) -> float:
-        """A force at which a pair leads already."""
-        return self.onset + HEAD_START * (self.last - self.onset)
-
-    @property
-    def enough(self) -> float:
-        """A force well beyond the Hopf point."""
-        return min(self.last + ENOUGH, self.top)
-
     @cached_property
     def mesh(self) -> Resolution:
         """Fine enough at the thresholds."""
         wave = most_amplified_wave(self.rod(self.onset if isnan(self.hopf) else self.hopf))[1]
-        return resolution_for(expected_wave_number(MODES, wave), MESH_ACCURACY)
+        return resolution_for(expected_wave_number(MESH_MODES, wave), MESH_ACCURACY)
 
     def error_of(self, kind: str, found: float) -> float:
         """Relative; nan where there is nothing to be found, inf where that is missed or invented."""

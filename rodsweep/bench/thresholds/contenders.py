@@ -7,10 +7,11 @@ from pathlib import Path
 from scipy.optimize import bisect, brentq
 
 from ...solve.changes.thresholds import ThresholdsRequest, solve_thresholds
+from ..machine import installed
 from ..study import Contender
 from .auto_07p import auto_program, hopf_by_auto
 from .cases import HOPF, ONSET, FirstThreshold, ThresholdCase
-from .pycont_lite import hopf_by_pycont, pycont_module
+from .pycont_lite import PYCONT_MODULE, hopf_by_pycont
 from .spectra_by_force import (
     between,
     by_steps,
@@ -30,7 +31,7 @@ AUTO_SETTINGS = ((5.0, 1e-7), (1.0, 1e-4), (1.0, 1e-10))
 PYCONT_STEPS = (0.25, 0.5)
 """From 0.5 upwards it is chance on some rods whether it finds the Hopf point; quick runs do without 0.5."""
 AUTO, PYCONT = "AUTO-07p", "PyCont-Lite"
-OWN, SWEEP, CONTINUATION = "rodsweep", "grid and interpolation", "continuation"
+RODSWEEP, SWEEP, CONTINUATION = "rodsweep", "grid and interpolation", "continuation"
 BY_GRID = {
     ONSET: {"grid, between two forces": between, "grid, square-root law": square_root_law},
     HOPF: {"grid, linear interpolation": interpolated_growth},
@@ -48,8 +49,8 @@ def contenders(kind: str, quick: bool) -> list[Contender]:
     """rodsweep and those that need SciPy only."""
     grids = GRIDS if quick else (*GRIDS, LARGE_GRID)
     return [
-        Contender("rodsweep, all changes", "with proof", OWN, partial(own, kind, True)),
-        Contender("rodsweep, all changes", "without proof", OWN, partial(own, kind, False)),
+        Contender("rodsweep, all changes", "with proof", RODSWEEP, partial(own_threshold, kind, True)),
+        Contender("rodsweep, all changes", "without proof", RODSWEEP, partial(own_threshold, kind, False)),
         *(
             Contender(name, f"{n} forces", SWEEP, partial(on_grid, estimate, n), n == LARGE_GRID)
             for name, estimate in BY_GRID[kind].items()
@@ -63,7 +64,7 @@ def contenders(kind: str, quick: bool) -> list[Contender]:
     ]
 
 
-def own(kind: str, certify: bool, case: ThresholdCase) -> FirstThreshold:
+def own_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstThreshold:
     """All changes of the rod, and of them the first of a kind."""
     result = solve_thresholds(case.k1, case.k2, case.gamma3, ThresholdsRequest(F_MAX, 1e-10, certify, 64))
     at = next((change.at for change in result.crossings if change.kind.name == kind), nan)
@@ -79,7 +80,7 @@ def continuation_codes(directory: Path, quick: bool) -> tuple[list[Contender], l
             found.append(Contender(AUTO, f"step {step:g}, EPSS {tolerance:.0e}", CONTINUATION, by_auto))
     else:
         skipped.append(f"{AUTO} is skipped: it needs the program (Debian: auto-07p) and gfortran.")
-    if module := pycont_module():
+    if module := installed(PYCONT_MODULE):
         for step in PYCONT_STEPS[: 1 if quick else None]:
             by_pycont = partial(hopf_by_pycont, module, step)
             found.append(Contender(PYCONT, f"step {step:g}", CONTINUATION, by_pycont, slow=True))

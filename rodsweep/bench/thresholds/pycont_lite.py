@@ -1,9 +1,8 @@
 """The Hopf point by PyCont-Lite, within this process."""
 
 import contextlib
-import importlib
 import io
-from math import ceil, nan
+from math import ceil, isnan, nan
 from typing import Any
 
 import numpy as np
@@ -16,14 +15,10 @@ DIFFERENCE_STEP = 1e-8
 """Of the code's differences, which are exact on a linear field, and in its search for the root."""
 CHECKED = 5
 """The code looks for special points after so many steps."""
-
-
-def pycont_module() -> Any | None:
-    """PyCont-Lite, which is an optional extra (`bench`); None where it is not installed."""
-    try:
-        return importlib.import_module("pycont")
-    except ImportError:
-        return None
+PYCONT_MODULE = "pycont"
+"""Of PyCont-Lite, which is an optional extra (`bench`)."""
+HEAD_START, BEYOND_HOPF = 0.1, 6.0
+"""Where it starts, as a share of the way from onset to Hopf point, and how far beyond it ends."""
 
 
 def hopf_by_pycont(pycont: Any, step: float, case: ThresholdCase) -> FirstThreshold:
@@ -32,6 +27,8 @@ def hopf_by_pycont(pycont: Any, step: float, case: ThresholdCase) -> FirstThresh
     It cannot be told to stop at the first Hopf point and so is stopped soon after.
     """
     M0, M1, M2 = reduced(case)
+    last = case.top if isnan(case.hopf) else case.hopf
+    start, end = case.onset + HEAD_START * (last - case.onset), min(last + BEYOND_HOPF, case.top)
     products = 0
 
     def field(u: Array, F: float) -> Array:
@@ -42,16 +39,16 @@ def hopf_by_pycont(pycont: Any, step: float, case: ThresholdCase) -> FirstThresh
     options = {
         "rdiff": DIFFERENCE_STEP,
         "initial_directions": "increase_p",
-        "param_max": case.enough,
+        "param_max": end,
         "bifurcation_detection": False,
         "analyze_stability": False,
         "hopf_detection": True,
         "limit_cycle_continuation": False,
     }
-    steps = ceil((case.enough - case.oscillates) / step) + CHECKED
+    steps = ceil((end - start) / step) + CHECKED
     with contextlib.redirect_stdout(io.StringIO()), np.errstate(all="ignore"):
         found = pycont.arclengthContinuation(
-            field, np.zeros(len(M0)), case.oscillates, step / 1e3, step, step, steps, options, 0
+            field, np.zeros(len(M0)), start, step / 1e3, step, step, steps, options, 0
         )
     forces = [float(event.p) for event in found.events if event.kind == "HB"]
     return FirstThreshold(forces[0] if forces else nan, products=products)

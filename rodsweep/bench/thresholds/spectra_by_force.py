@@ -15,7 +15,7 @@ from .cases import FirstThreshold, ThresholdCase
 
 MARCH = 2.0
 """Step in F at which a sign is looked for before a root is."""
-ROUNDING = 8.9e-16
+SCIPY_ROUNDING = 8.9e-16
 """The least relative tolerance that SciPy's searches take: four units of rounding."""
 
 
@@ -79,7 +79,7 @@ def by_steps(
     for ahead in forces[1:]:
         value_ahead = test(pair(ahead))
         if value * value_ahead < 0:
-            accuracy = {"xtol": tolerance * ahead, "rtol": ROUNDING}
+            accuracy = {"xtol": tolerance * ahead, "rtol": SCIPY_ROUNDING}
             root = search(lambda F: test(pair(F)), behind, ahead, **accuracy)
             return FirstThreshold(float(root), pair.solves)
         behind, value = ahead, value_ahead

@@ -12,10 +12,11 @@ from pathlib import Path
 from typing import Any
 
 from ...solve.changes.thresholds import warm_up
-from ..study import Contender, Measurement, Study, contest, middle
+from ..study import Contender, Measurement, Study, contest, grouped, middle
 from ..tables import plural, table
-from .cases import CASES, ENOUGH, HOPF, MESH_ACCURACY, ONSET, QUICK_CASES, FirstThreshold, ThresholdCase
+from .cases import CASES, HOPF, MESH_ACCURACY, ONSET, QUICK_CASES, FirstThreshold, ThresholdCase
 from .contenders import AUTO, F_MAX, PYCONT, contenders, continuation_codes
+from .pycont_lite import BEYOND_HOPF
 from .spectra_by_force import MARCH
 
 TITLES = {ONSET: "onset", HOPF: "Hopf point"}
@@ -31,7 +32,7 @@ def thresholds_study(quick: bool) -> Study:
         codes, skipped = continuation_codes(Path(directory), quick)
         onsets = timed_on(ONSET, cases, contenders(ONSET, quick), rounds)
         hopf_points = timed_on(HOPF, cases, contenders(HOPF, quick) + codes, rounds)
-    blocks = [introduction(rounds, {code.method for code in codes})]
+    blocks = [introduction(rounds, [code.method for code in codes])]
     blocks += [threshold_table(ONSET, onsets), threshold_table(HOPF, hopf_points), *skipped]
     return Study("thresholds", "\n\n".join(blocks), onsets + hopf_points, "rod")
 
@@ -43,11 +44,11 @@ def timed_on(
     measurements = []
     for case in cases:
         name = f"{case.name}, {TITLES[kind]}"
-        measurements += contest(name, case, every, rounds, partial(judge, case, kind))
+        measurements += contest(name, case, every, rounds, partial(judged_threshold, case, kind))
     return measurements
 
 
-def judge(case: ThresholdCase, kind: str, first: FirstThreshold) -> dict[str, Any]:
+def judged_threshold(case: ThresholdCase, kind: str, first: FirstThreshold) -> dict[str, Any]:
     """What is wrong with a threshold. digits: of it, an eigenproblem, 0 where it was missed."""
     error = case.error_of(kind, first.force)
     missed = "missed" if isnan(first.force) else f"wrong ({first.force:.2f})"
@@ -63,12 +64,9 @@ def judge(case: ThresholdCase, kind: str, first: FirstThreshold) -> dict[str, An
 
 def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
     """A line for each method and setting: medians over the rods, and the error on each."""
-    settings: dict[tuple[str, str], list[Measurement]] = {}
-    for m in measurements:
-        settings.setdefault((m.method, m.setting), []).append(m)
     rods = list(dict.fromkeys(m.case.split(",")[0] for m in measurements))
     rows = []
-    for (method, setting), own in settings.items():
+    for (method, setting), own in grouped(measurements, "method", "setting").items():
         solves, determinants, products, digits = (
             middle(m.extra.get(name, nan) for m in own)
             for name in ("eigenproblems", "determinants", "products", "digits")
@@ -86,7 +84,7 @@ def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
     )
 
 
-def introduction(rounds: int, codes: set[str]) -> str:
+def introduction(rounds: int, codes: Iterable[str]) -> str:
     """What is measured."""
     text = (
         f"Relative error of the first onset and of the first Hopf point; medians over the rods and "
@@ -96,19 +94,17 @@ def introduction(rounds: int, codes: set[str]) -> str:
         "74.83 to 75.98), prove nothing, and are given a mesh that leaves an error of "
         f"{MESH_ACCURACY:.0e} there. Grids and steps: dense LAPACK (LU and geev) on rodsweep's pencil at "
         f"every force; steps are of {MARCH:g} in F until a sign changes. Digits = -log10(error), 0 where the "
-        "threshold was missed."
+        "threshold was missed. Continuation codes follow u = 0 of du/dt = M(F) u, the same pencil without "
+        "the unknowns that carry no time derivative."
     )
-    if codes:
-        text += (
-            " Continuation codes follow u = 0 of du/dt = M(F) u, the same pencil without the unknowns that "
-            "carry no time derivative."
-        )
-    if AUTO in codes:
-        text += f" {AUTO} starts at F = 0; its times include the start of its program, not its compilation."
-    if PYCONT in codes:
-        text += (
-            f" {PYCONT} multiplies by M only. It is started where a pair leads already, and ended "
-            f"{ENOUGH:g} beyond the Hopf point: from F = 0, through the onset, it is by chance right, off by "
-            "percents or without a result. Its first vectors are random, so that its numbers vary."
-        )
-    return text
+    return " ".join([text, *(CODES[name] for name in dict.fromkeys(codes))])
+
+
+CODES = {
+    AUTO: f"{AUTO} starts at F = 0; its times include the start of its program, not its compilation.",
+    PYCONT: (
+        f"{PYCONT} multiplies by M only. It is started where a pair leads already, and ended {BEYOND_HOPF:g} "
+        "beyond the Hopf point: from F = 0, through the onset, it is by chance right, off by percents or "
+        "without a result. Its first vectors are random, so that its numbers vary."
+    ),
+}

@@ -14,9 +14,9 @@ from ...errors import EnvironmentLacks
 from ...results.file.measurements import Table
 from .style import FIRST, SECOND, STYLE, THIRD
 
-COLOURS = (FIRST, SECOND, THIRD, "black", "0.55")
+GROUP_COLOURS = (FIRST, SECOND, THIRD, "black", "0.55")
 """Of the groups, in the order in which they appear; the first group is drawn thick."""
-MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+METHOD_MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 """Of the methods of one group."""
 WIDE_RATIO = 1e3
 """Ratio of the times from which on only powers of ten have a label."""
@@ -73,10 +73,10 @@ def _looks(groups: dict[str, str]) -> dict[str, dict]:
     for method, group in groups.items():
         place = [other for other, its in groups.items() if its == group].index(method)
         first = group == order[0]
-        colour = COLOURS[order.index(group) % len(COLOURS)]
+        colour = GROUP_COLOURS[order.index(group) % len(GROUP_COLOURS)]
         looks[method] = {
             "color": colour,
-            "marker": MARKERS[place % len(MARKERS)],
+            "marker": METHOD_MARKERS[place % len(METHOD_MARKERS)],
             "ms": 5,
             "lw": 2.2 if first else 1.1,
             "mfc": colour if first else "white",
