@@ -1,5 +1,6 @@
-"""The stages that know a task, each with one module and one entry a task."""
+"""The stages that know a task, each with one module and one entry a task, and no generic module that asks."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -7,6 +8,8 @@ import pytest
 import rodsweep
 from rodsweep.cli.tasks import TASKS
 from rodsweep.config.tasks import CONFIGS
+from rodsweep.post.figures import FIGURES
+from rodsweep.post.summary import SUMMARIES
 from rodsweep.results.layouts import LAYOUTS
 
 PACKAGE = Path(rodsweep.__file__).parent
@@ -14,16 +17,24 @@ STAGES = {
     "config": CONFIGS,
     "results/layouts": LAYOUTS,
     "cli/tasks": TASKS,
+    "post/summary": SUMMARIES,
+    "post/figures": FIGURES,
 }
 """The registry of every stage, by its directory."""
 
 
 @pytest.mark.parametrize("stage", STAGES)
 def test_every_stage_knows_the_same_tasks(stage):
-    assert list(STAGES[stage]) == list(CONFIGS)
+    assert STAGES[stage].keys() == CONFIGS.keys()
 
 
 @pytest.mark.parametrize("stage", STAGES)
 def test_every_stage_has_a_module_of_the_name_of_every_task(stage):
     for task in CONFIGS:
-        assert (PACKAGE / stage / f"{task}.py").is_file() or (PACKAGE / stage / task).is_dir()
+        assert (PACKAGE / stage / f"{task}.py").is_file()
+
+
+def test_no_module_asks_which_task_it_is():
+    asks = re.compile(r"""\btask(\(\))?("\]|'\])? *(==|!=|in) *["'(\[{]""")
+    for path in PACKAGE.rglob("*.py"):
+        assert not asks.search(path.read_text()), path

@@ -1,6 +1,6 @@
 """The task limit_cycle: the beating of the nonlinear rod at every point, or that it straightens."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,8 +17,10 @@ from .parts import count_of, rod_parts
 from .protocol import Chained, Part, Solver, Task
 
 if TYPE_CHECKING:
-    from ...solve.cycle.limit_cycle import Cycle, CycleRequest
+    from ...solve.cycle.limit_cycle import Cycle
 
+OF_THE_SWEEP = ("continue_from", "along", "direction", "time")
+"""Options that say how points follow each other and what the file adds; a cycle is asked for all others."""
 RENAMED = {"harmonic_amplitude": "harmonics"}
 """Variables of the file whose field of a cycle has another name."""
 
@@ -94,9 +96,10 @@ class LimitCycleTask(Task):
         return estimate_cycles(self.points.count)
 
     def solver(self) -> Solver:
-        from ...solve.cycle.limit_cycle import CycleStatus, solve_cycle, warm_up
+        from ...solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle, warm_up
 
-        request = self._request()
+        options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
+        request = CycleRequest(accuracy=self.config.accuracy, **options)
 
         def solve(index: int, start: State = None) -> "Cycle":
             return solve_cycle(**self.points.values(index), request=request, start=start)
@@ -112,14 +115,6 @@ class LimitCycleTask(Task):
             solve=solve,
             record=lambda index, cycle: self.record(self.points.values(index), cycle),
             chained=Chained(chains, solve_from) if chains else None,
-        )
-
-    def _request(self) -> "CycleRequest":
-        from ...solve.cycle.limit_cycle import CycleRequest
-
-        names = {field.name for field in fields(CycleRequest)}
-        return CycleRequest(
-            accuracy=self.config.accuracy, **self.config.limit_cycle.model_dump(include=names)
         )
 
     def record(self, point: dict[str, float], cycle: "Cycle") -> dict[str, Any]:
