@@ -15,6 +15,7 @@ The weight is free; the best one makes both entries of the maximum equal.
 Beside w = 0 no eigenvalue lies on the imaginary axis: |E(z)| <= exp(Re sqrt z)/2 bounds D - 1 there.
 """
 
+from functools import lru_cache
 from math import exp, inf, log, sqrt
 
 from ..model.compilation import compiled
@@ -41,6 +42,7 @@ def box_of(a: float, depth: float) -> tuple[float, float]:
     return MARGIN * a * a / 4 + pad, MARGIN * a * n + pad
 
 
+@lru_cache(maxsize=1)
 def squared_amplification(rod: Rod) -> float:
     """The smallest a^2 over all weights rho.
 
