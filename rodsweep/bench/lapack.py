@@ -2,14 +2,13 @@
 
 import numpy as np
 import scipy.linalg
-from numpy.typing import NDArray
 
+from ..arrays import Array, Complex
 from ..discretization.pencil import assemble
 from ..discretization.resolution import Resolution
 from ..model.rod import Rod
 
-Array = NDArray[np.float64]
-Eigenvalues = NDArray[np.complex128]
+Eigenvalues = Complex
 
 INFINITE_BELOW = 1e-11
 """beta of an infinite eigenvalue, in units of the largest, as rounding leaves it."""

@@ -4,8 +4,9 @@ from math import inf, isinf, isnan
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainSerializer
+
+from ..arrays import Array
 
 MOST_VALUES = 1_000_000_000
 """Values on one axis."""
@@ -94,7 +95,7 @@ class Axis(Strict):
         finite = [value for value in self.values if value < inf]
         return bool(finite) and 0 < 10 * finite[0] < finite[-1]
 
-    def array(self) -> NDArray[np.float64]:
+    def array(self) -> Array:
         """The values, increasing, shape (size,)."""
         if self.values is not None:
             return np.array(self.values)

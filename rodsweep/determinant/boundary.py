@@ -12,10 +12,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from .plane import Plane, ValueOnPlane
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
+Vector = Array
+Matrix = Array
 
 MOST_CORRECTIONS = 12
 SMALL_STEP = 1e-3

@@ -22,8 +22,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..model.compilation import compiled
 from ..model.rod import Coefficients
 from .box import MARGIN, quiet_radius, squared_amplification_over
@@ -138,9 +138,7 @@ def costs(centre: Centre, half: tuple[float, float]) -> tuple[float, float]:
 
 
 @compiled
-def cover(
-    first: NDArray[np.float64], origin: Coefficients, direction: Coefficients
-) -> tuple[list[Zero], list[Box], int]:
+def cover(first: Array, origin: Coefficients, direction: Coefficients) -> tuple[list[Zero], list[Box], int]:
     """(zeros, open boxes, boxes examined) of D(i eta; p) in the boxes `first`, shape (n, 4)."""
     stack = [Box(first[i, 0], first[i, 1], first[i, 2], first[i, 3]) for i in range(len(first))]
     zeros = [FAILED for _ in range(0)]
@@ -200,7 +198,7 @@ def slabs(path: Path, start: float, stop: float) -> list[tuple[float, float]]:
     return list(zip(edges[:-1], edges[1:], strict=True))
 
 
-def first_boxes(path: Path, start: float, stop: float) -> NDArray[np.float64] | None:
+def first_boxes(path: Path, start: float, stop: float) -> Array | None:
     """Boxes that hold every crossing with p from start to stop, shape (n, 4); None without a bound."""
     boxes = []
     for a, b in slabs(path, start, stop):

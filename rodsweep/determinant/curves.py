@@ -9,8 +9,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from .boundary import Boundary, OnBoundary, Vector
 from .plane import Plane
 
@@ -51,12 +51,12 @@ class BoundaryCurve:
     """
 
     sign: float
-    values: NDArray[np.float64]
-    frequency: NDArray[np.float64]
-    growth_rate: NDArray[np.float64]
+    values: Array
+    frequency: Array
+    growth_rate: Array
     folds: tuple[Fold, ...]
     closed: bool
-    scaled: NDArray[np.float64]
+    scaled: Array
     """(x, y, h) of each point, shape (points, 3)."""
 
     @property
@@ -124,7 +124,7 @@ def _edge(boundary: Boundary, inner: Vector, outer: Vector) -> Vector | None:
     return None
 
 
-def _curve(boundary: Boundary, points: NDArray[np.float64], closed: bool) -> BoundaryCurve:
+def _curve(boundary: Boundary, points: Array, closed: bool) -> BoundaryCurve:
     """The curve through these points, with the folds between them."""
     folds = []
     if len(points) > 1:
@@ -141,7 +141,7 @@ def _curve(boundary: Boundary, points: NDArray[np.float64], closed: bool) -> Bou
     return BoundaryCurve(boundary.sign, values, frequency, growth_rate, tuple(folds), closed, points)
 
 
-def _oriented(tangents: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
+def _oriented(tangents: Array, points: Array) -> Array:
     """The tangents, each turned along the direction from its point to the next."""
     forward = np.diff(points, axis=0, append=points[-1:] + (points[-1:] - points[-2:-1]))
     return tangents * np.where((tangents * forward).sum(axis=1) < 0, -1.0, 1.0)[:, None]

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array, Complex
 from ..model.compilation import compiled
 from ..model.rod import Coefficients
 from .box import box_of
@@ -43,10 +44,10 @@ class Roots(NamedTuple):
     """
 
     chosen: NDArray[np.int64]
-    w: NDArray[np.complex128]
-    error: NDArray[np.float64]
-    displacement: NDArray[np.float64]
-    wave: NDArray[np.float64]
+    w: Complex
+    error: Array
+    displacement: Array
+    wave: Array
     on_the_axis: NDArray[np.bool_]
     ahead: int
 
@@ -83,7 +84,7 @@ def two_roots(middle: complex, coefficients: Coefficients) -> tuple[complex, com
 
 
 @compiled
-def _separate(w: NDArray[np.complex128], error: NDArray[np.float64], coefficients: Coefficients) -> NDArray:
+def _separate(w: Complex, error: Array, coefficients: Coefficients) -> NDArray:
     """Moves those that are closer than their errors to the two roots near them; says which it moved."""
     moved = np.zeros(len(w), dtype=np.bool_)
     for i in range(len(w)):
@@ -103,7 +104,7 @@ def _separate(w: NDArray[np.complex128], error: NDArray[np.float64], coefficient
 
 
 @compiled
-def _descending(w: NDArray[np.complex128]) -> NDArray:
+def _descending(w: Complex) -> NDArray:
     """Indices that sort by descending real part, then descending frequency."""
     order = np.arange(len(w))
     for m in range(1, len(w)):
@@ -119,9 +120,7 @@ def _descending(w: NDArray[np.complex128]) -> NDArray:
 
 
 @compiled
-def roots(
-    raw: NDArray[np.complex128], coefficients: Coefficients, amplification: float, most_waves: float
-) -> Roots:
+def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_waves: float) -> Roots:
     """Those eigenvalues of a mesh that stand for a root of D.
 
     raw: eigenvalues of a mesh, complex, shape (n,). amplification: the root of
@@ -155,12 +154,12 @@ def roots(
 
 @compiled
 def _refined_all(
-    first: NDArray[np.complex128],
-    error: NDArray[np.float64],
-    wave: NDArray[np.float64],
+    first: Complex,
+    error: Array,
+    wave: Array,
     near: NDArray[np.bool_],
     coefficients: Coefficients,
-) -> tuple[NDArray[np.complex128], NDArray[np.bool_]]:
+) -> tuple[Complex, NDArray[np.bool_]]:
     """(the roots near the first guesses, which of them are one); error and wave become those of the roots."""
     w = first.copy()
     moved = _separate(w, error, coefficients)
@@ -178,7 +177,7 @@ def _refined_all(
 
 
 @compiled
-def _tell_apart(w: NDArray[np.complex128], error: NDArray[np.float64], coefficients: Coefficients) -> None:
+def _tell_apart(w: Complex, error: Array, coefficients: Coefficients) -> None:
     """Raises the errors of two that are the same root to the distance of the next one, 2 |D'/D''|."""
     for i in range(len(w)):
         for j in range(i + 1, len(w)):

@@ -1,9 +1,8 @@
 """Lagrange polynomials on given nodes: interpolation and differentiation, in barycentric form."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ..arrays import Array
 
 
 def barycentric_weights(nodes: Array) -> Array:

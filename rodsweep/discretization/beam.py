@@ -8,15 +8,13 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..model.rod import Rod
 from .basis import differentiation, interpolation
 from .body_frame import BeamParameters, Element, jacobian, rate
 from .pencil import assemble
 from .quadrature import gauss, gauss_lobatto
-
-Array = NDArray[np.float64]
 
 EXTRA_POINTS = 10
 """Gauss points beyond the nodes with which shapes are integrated: theta turns by a radian or two."""

@@ -20,11 +20,9 @@ They are compiled, contain no configuration and no trigonometric function, and k
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..model.compilation import compiled
-
-Array = NDArray[np.float64]
 
 
 class BeamParameters(NamedTuple):

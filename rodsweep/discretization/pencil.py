@@ -24,11 +24,10 @@ from math import sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array, Complex
 from ..model.rod import Rod
 from .basis import differentiation, interpolation
 from .quadrature import gauss, gauss_lobatto
-
-Array = NDArray[np.float64]
 
 SHEAR_WEIGHT = 1e-9
 """Weight of s in the norm. Nearly crushed rods lose seven digits at 1e-3, none below 1e-8."""
@@ -94,7 +93,7 @@ class Pencil:
         B[self.nodes : 2 * self.nodes] = rod.gamma3 / angle_weight(rod.gamma3) ** 2
         return B
 
-    def fields(self, vectors: NDArray[np.complex128], rod: Rod) -> tuple[NDArray, NDArray]:
+    def fields(self, vectors: Complex, rod: Rod) -> tuple[NDArray, NDArray]:
         """(y, theta) at all nodes, the clamp included, shape (nodes + 1, k), from k eigenvectors."""
         scale = 1 / np.sqrt(self.mass)[:, None]
         clamp = np.zeros((1, vectors.shape[1]))
@@ -124,13 +123,13 @@ def angle_weight(gamma3: float) -> float:
     return max(sqrt(gamma3), LEAST_ANGLE_WEIGHT)
 
 
-def tip_scale(y: NDArray[np.complex128], theta: NDArray[np.complex128]) -> NDArray[np.complex128]:
+def tip_scale(y: Complex, theta: Complex) -> Complex:
     """What makes y(1) = 1 of fields at all nodes, shape (nodes + 1, k); NaN where the tip does not move."""
     size = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))
     return np.where(np.abs(y[-1]) > NO_TIP * size, 1 / y[-1], np.nan + 0j)
 
 
-def shear_force(pencil: Pencil, vectors: NDArray[np.complex128], points: Array) -> NDArray[np.complex128]:
+def shear_force(pencil: Pencil, vectors: Complex, points: Array) -> Complex:
     """s of the vectors at `points`, from its own unknowns at the Gauss nodes; shape (points, k)."""
     nodes, weights = gauss(pencil.order)
     mass = np.tile(weights / (2 * pencil.elements), pencil.elements) * SHEAR_WEIGHT**2
@@ -141,7 +140,7 @@ def shear_force(pencil: Pencil, vectors: NDArray[np.complex128], points: Array) 
     return result
 
 
-def slope(pencil: Pencil, values: NDArray[np.complex128], points: Array) -> NDArray[np.complex128]:
+def slope(pencil: Pencil, values: Complex, points: Array) -> Complex:
     """The derivative at `points` of fields given at all nodes, shape (nodes + 1, k); shape (points, k)."""
     nodes, _ = gauss_lobatto(pencil.order)
     derivative = 2 * pencil.elements * differentiation(nodes)

@@ -5,19 +5,18 @@ exact to the spectral accuracy of the samples. Where N is even, the highest harm
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ..arrays import Array, Complex
 
 EXTREMUM_STEPS = 8
 """Newton steps from the largest sample to the maximum."""
 BISECTIONS = 50
 
 
-def coefficients(samples: Array) -> NDArray[np.complex128]:
+def coefficients(samples: Array) -> Complex:
     """c, shape (N // 2 + 1, ...), with Re sum_k c_k exp(2 pi i k t) through the samples, shape (N, ...)."""
     n = len(samples)
-    c: NDArray[np.complex128] = np.fft.rfft(samples, axis=0) / n
+    c: Complex = np.fft.rfft(samples, axis=0) / n
     c[1 : (n + 1) // 2] *= 2  # each stands for its conjugate too, but for the mean and an even N's last
     return c
 

@@ -23,14 +23,14 @@ from numpy.typing import NDArray
 
 from .rod import Rod
 
-Array = NDArray[Any]
+Values = NDArray[Any]
 """Real, or complex for a derivative by complex step."""
 
 IN_SPACE = [0, 1, 5]
 """Where the plane's components stand among those of space."""
 
 
-def ad(E: Array, V: Array) -> Array:
+def ad(E: Values, V: Values) -> Values:
     """ad_E V, of two elements of se(2) or se(3)."""
     if len(E) == 3:
         (h1, h2, kappa), (v1, v2, Omega) = E, V
@@ -39,7 +39,7 @@ def ad(E: Array, V: Array) -> Array:
     return np.concatenate([_cross(kappa, v) + _cross(h, Omega), _cross(kappa, Omega)])
 
 
-def coad(E: Array, Sigma: Array) -> Array:
+def coad(E: Values, Sigma: Values) -> Values:
     """ad*_E Sigma, of an element of the algebra and one of its dual."""
     if len(E) == 3:
         (h1, h2, kappa), (n1, n2, _) = E, Sigma
@@ -48,12 +48,12 @@ def coad(E: Array, Sigma: Array) -> Array:
     return np.concatenate([_cross(kappa, n), _cross(kappa, m) + _cross(h, n)])
 
 
-def strain_rate(E: Array, V: Array, dV: Array) -> Array:
+def strain_rate(E: Values, V: Values, dV: Values) -> Values:
     """dE/dt = D_E V from V and its derivative dV along the rod, in 1/tau2."""
     return dV + ad(E, V)
 
 
-def elastic_force(E: Array, Sigma: Array, dSigma: Array) -> Array:
+def elastic_force(E: Values, Sigma: Values, dSigma: Values) -> Values:
     """D*_E Sigma from Sigma and its derivative dSigma along the rod, in k3/L^3 (moments: k3/L^2)."""
     return dSigma + coad(E, Sigma)
 
@@ -62,33 +62,33 @@ def elastic_force(E: Array, Sigma: Array, dSigma: Array) -> Array:
 class Material:
     """The diagonals of C and Gamma, shapes (3,) or (6,), and the force on the tip."""
 
-    compliance: Array
-    drag: Array
+    compliance: Values
+    drag: Values
     F: float
 
     @property
-    def straight(self) -> Array:
+    def straight(self) -> Values:
         """Ebar, the undeformed rod: (1, 0, 0) or (1, 0, 0; 0, 0, 0)."""
         return np.eye(len(self.drag))[0]
 
     @property
-    def tip_stress(self) -> Array:
+    def tip_stress(self) -> Values:
         """Sigma(1)."""
         return -self.F * self.straight
 
-    def strain(self, Sigma: Array) -> Array:
+    def strain(self, Sigma: Values) -> Values:
         """E = Ebar + C Sigma."""
         return _along(self.straight, Sigma) + _along(self.compliance, Sigma) * Sigma
 
-    def velocity(self, Sigma: Array, dSigma: Array) -> Array:
+    def velocity(self, Sigma: Values, dSigma: Values) -> Values:
         """V = Gamma^-1 D*_E Sigma, where no drag is 0; dSigma: the derivative of Sigma along the rod."""
         return elastic_force(self.strain(Sigma), Sigma, dSigma) / _along(self.drag, Sigma)
 
-    def energy(self, Sigma: Array) -> Array:
+    def energy(self, Sigma: Values) -> Values:
         """The density of U, Sigma C Sigma/2, in k3/L^2."""
         return (_along(self.compliance, Sigma) * Sigma * Sigma).sum(axis=0) / 2
 
-    def dissipation(self, V: Array) -> Array:
+    def dissipation(self, V: Values) -> Values:
         """The density of the power lost to the fluid, V Gamma V, in k3/(L^2 tau2)."""
         return (_along(self.drag, V) * V * V).sum(axis=0)
 
@@ -104,21 +104,21 @@ def space_material(rod: Rod, gamma1: float, twist_stiffness: float, twist_drag: 
     return Material(compliance, np.array([gamma1, 1.0, 1.0, twist_drag, rod.gamma3, rod.gamma3]), rod.F)
 
 
-def in_space(plane: Array) -> Array:
+def in_space(plane: Values) -> Values:
     """An element of se(2) or of its dual, (3, ...), among those of space, (6, ...)."""
     space = np.zeros((6, *plane.shape[1:]), plane.dtype)
     space[IN_SPACE] = plane
     return space
 
 
-def _halves(element: Array) -> tuple[Array, Array]:
+def _halves(element: Values) -> tuple[Values, Values]:
     return element[:3], element[3:]
 
 
-def _cross(a: Array, b: Array) -> Array:
+def _cross(a: Values, b: Values) -> Values:
     return np.cross(a, b, axis=0)
 
 
-def _along(diagonal: Array, field: Array) -> Array:
+def _along(diagonal: Values, field: Values) -> Values:
     """A diagonal, one number a component, to be multiplied with a field."""
     return diagonal.reshape(-1, *(1,) * (field.ndim - 1))

@@ -1,10 +1,11 @@
 """The longitudinal modes, decoupled and in closed form (Sec. VI); no mesh is needed for them."""
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ..arrays import Array
 
 
-def longitudinal_rates(k1: float, gamma1: float, modes: int) -> NDArray[np.float64]:
+def longitudinal_rates(k1: float, gamma1: float, modes: int) -> Array:
     """lambda_n = -(k1/gamma1) (pi (n - 1/2))^2 for n = 1..modes, in 1/tau2, shape (modes,).
 
     Raises ValueError for an inextensible rod (k1 = inf), which has no longitudinal motion.

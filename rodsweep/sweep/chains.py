@@ -12,10 +12,11 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from .ranges import IndexRange, IndexSet, joined
 from .stop import StopRequest
 
-State = NDArray[np.float64] | None
+State = Array | None
 """What a point starts from where its neighbour has something to offer; None otherwise."""
 
 

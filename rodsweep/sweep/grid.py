@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TextIO
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..config.axes import words
 from ..config.schema import Config
 from ..config.values import as_number, overflows
@@ -28,7 +28,7 @@ class Points:
 
     names: tuple[str, ...]
     """The parameter of each column."""
-    columns: tuple[NDArray[np.float64], ...]
+    columns: tuple[Array, ...]
     is_grid: bool
 
     @property
@@ -37,7 +37,7 @@ class Points:
         return tuple(len(c) for c in self.columns) if self.is_grid else (len(self.columns[0]),)
 
     @property
-    def by_name(self) -> dict[str, NDArray[np.float64]]:
+    def by_name(self) -> dict[str, Array]:
         """The columns by their parameters."""
         return dict(zip(self.names, self.columns, strict=True))
 
@@ -91,7 +91,7 @@ def _refuse_outside(name: str, values: Iterable[float]) -> None:
         raise InputError(f"parameters.{name} = {bad:g} is not allowed; it must be {allowed.phrase}")
 
 
-def _refuse_crushed(F: NDArray[np.float64], k1: NDArray[np.float64], some: bool) -> None:
+def _refuse_crushed(F: Array, k1: Array, some: bool) -> None:
     """InputError where a grid has crushed rods; where `some` may be, only if it has no other."""
     if some and F.min() >= k1.max():
         raise InputError(
@@ -105,7 +105,7 @@ def _refuse_crushed(F: NDArray[np.float64], k1: NDArray[np.float64], some: bool)
         )
 
 
-def _read_csv(path: Path, names: tuple[str, ...]) -> tuple[NDArray[np.float64], ...]:
+def _read_csv(path: Path, names: tuple[str, ...]) -> tuple[Array, ...]:
     """The columns `names` of a CSV file with that header, in any order."""
     try:
         if path.exists() and not path.is_file():  # to open a pipe would be to wait for its other end

@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 import scipy.integrate
 
+from ...arrays import Array
 from ...discretization.beam import Beam
 from ...discretization.body_frame import jacobian, rate
 from ...solve.motion.integrator import Ending, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
-from ..lapack import Array
 from ..machine import installed
 
 TIGHT = 3e-7

@@ -10,10 +10,10 @@ from itertools import pairwise
 import numpy as np
 from scipy.interpolate import PPoly, make_interp_spline
 
+from ...arrays import Array
 from ...discretization.beam import Beam
 from ...solve.cycle.shooting import PERIOD_MAP, angle_weights
 from ...solve.motion.integrator import RunLimit, Trajectory, integrator
-from ..lapack import Array
 
 SMALL_STEPS, DEGREE = 20, 7
 """Small steps about an event, and the degree of the spline through them."""

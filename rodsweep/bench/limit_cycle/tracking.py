@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 
+from ...arrays import Array
 from ...discretization.beam import Beam, mesh
 from ...model.rod import Rod
 from ...solve.cycle.limit_cycle import Cycle, CyclePoint, CycleRequest, solve_cycle, state_from_neighbour
 from ...solve.cycle.measures import measures_of
 from ...solve.cycle.shooting import shoot
 from ...solve.motion.integrator import Trajectory, relaxed
-from ..lapack import Array
 from ..study import Contender, Measurement, contest
 from .integrators import Family, Integration
 from .returns import returns_of

@@ -8,9 +8,10 @@ from functools import lru_cache
 import numpy as np
 import scipy.linalg
 
+from ...arrays import Array
 from ...discretization.pencil import assemble
 from ...model.rod import Rod
-from ..lapack import Array, Eigenvalues, leading, qz
+from ..lapack import Eigenvalues, leading, qz
 from .same_pencil import WANTED_MODES, mesh_of
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..lapack import Array
+from ...arrays import Array
 from .cases import FirstThreshold, ThresholdCase
 from .reduction import reduced
 

@@ -6,7 +6,7 @@ u = 0 its Jacobian is M(F).
 
 import numpy as np
 
-from ..lapack import Array
+from ...arrays import Array
 from .cases import ThresholdCase
 from .spectra_by_force import affine
 

@@ -10,7 +10,8 @@ from math import nan
 import numpy as np
 from numpy.typing import NDArray
 
-from ..lapack import Array, Eigenvalues, inverse_spectrum, leading, whole_matrices
+from ...arrays import Array
+from ..lapack import Eigenvalues, inverse_spectrum, leading, whole_matrices
 from .cases import FirstThreshold, ThresholdCase
 
 MARCH = 2.0

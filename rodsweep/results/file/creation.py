@@ -14,6 +14,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..layouts.variables import DIMENSIONS, MISSING, Filled, Layout, Variable
 from .validation import PROGRAM
 
@@ -22,11 +23,11 @@ from .validation import PROGRAM
 class Plan:
     """What makes a file: the points, the layout, and the config that it answers."""
 
-    columns: Sequence[NDArray[np.float64]]
+    columns: Sequence[Array]
     """Values of the layout's parameters: axes of a grid, or columns of a list."""
     is_grid: bool
     layout: Layout
-    coordinates: dict[str, NDArray[np.float64]]
+    coordinates: dict[str, Array]
     """Values of extra dimensions that have some, such as u."""
     constants: tuple[Filled, ...]
     """Variables known without solving, such as those along (k1, mode) on a grid, (point, mode) else."""

@@ -10,7 +10,8 @@ import zlib
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ...arrays import Array
 
 CHECKPOINT_HEAD = b"rodsweep checkpoint 1\n"
 INDEX_BYTES, CHECKSUM_BYTES = 8, 4
@@ -23,7 +24,7 @@ class Checkpoints:
         self.directory = directory
         self.header = CHECKPOINT_HEAD + fingerprint.encode() + b"\n"
 
-    def write(self, chain: int, index: int, state: NDArray[np.float64] | None) -> None:
+    def write(self, chain: int, index: int, state: Array | None) -> None:
         """Keeps what the neighbour of point `index` starts from; None where it has nothing to start from."""
         stream = io.BytesIO()
         if state is not None:
@@ -35,7 +36,7 @@ class Checkpoints:
         copy.write_bytes(content + _checksum(content))
         os.replace(copy, path)
 
-    def read(self, chain: int) -> tuple[int, NDArray[np.float64] | None] | None:
+    def read(self, chain: int) -> tuple[int, Array | None] | None:
         """(index, state) as written last, None where there is no whole checkpoint of this run."""
         if not self._path(chain).is_file():
             return None

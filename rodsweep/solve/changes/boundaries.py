@@ -7,8 +7,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...determinant.boundary import Boundary
 from ...determinant.curves import BoundaryCurve, trace
 from ...determinant.plane import Plane
@@ -104,9 +104,7 @@ def _distance(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
     return best
 
 
-def _at_height(
-    boundary: Boundary, a: NDArray[np.float64], b: NDArray[np.float64], y: float
-) -> NDArray[np.float64] | None:
+def _at_height(boundary: Boundary, a: Array, b: Array, y: float) -> Array | None:
     """The point (x, y, h) of a curve at the height y between two of its points, or None.
 
     First at once from the chord; where that guess is too far, by secants along the curve.

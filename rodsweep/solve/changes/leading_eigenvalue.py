@@ -14,8 +14,8 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Complex
 from ...determinant.certified_count import count_right_of
 from ...determinant.newton import double_newton, eigenvalue_newton
 from ...determinant.path import Path, coefficients_at
@@ -46,8 +46,8 @@ class Anchor:
     """
 
     p: float
-    w: NDArray[np.complex128]
-    slope: NDArray[np.complex128]
+    w: Complex
+    slope: Complex
     time: float = 1.0
     lengthening: float = 0.0
 

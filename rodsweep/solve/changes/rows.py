@@ -11,6 +11,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...determinant.path import Path
 from ...model.rod import Rod
 from ..point import solved
@@ -37,7 +38,7 @@ class RowRequest:
     """What is asked of every row: the parameter that varies along it and its values, increasing."""
 
     name: str
-    values: NDArray[np.float64]
+    values: Array
     accuracy: float
     certify: bool
     crossings: int
@@ -98,9 +99,7 @@ def _searched(fixed: dict[str, float], request: RowRequest) -> DiagramRow:
     return DiagramRow(motion=motion, unstable_count=unstable, changes=changes)
 
 
-def _uniform(
-    status: ThresholdStatus, values: NDArray[np.float64], motion: Motion, message: str = ""
-) -> DiagramRow:
+def _uniform(status: ThresholdStatus, values: Array, motion: Motion, message: str = "") -> DiagramRow:
     """A row of one class without any change."""
     return DiagramRow(
         motion=np.full(len(values), motion, dtype=np.int8),
@@ -109,7 +108,7 @@ def _uniform(
     )
 
 
-def classes(found: Transitions, values: NDArray[np.float64]) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
+def classes(found: Transitions, values: Array) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
     """(class, unstable modes) at each value of the parameter of a path, from the changes along it."""
     oscillates = np.full(len(values), found.oscillates_at_start)
     unstable = np.full(len(values), found.unstable_at_start, dtype=np.int32)

@@ -7,12 +7,10 @@ M(T) of M' = J(z(t)) M, M(0) = 1 is the derivative of the period map z -> phi_T(
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Complex
 from ...discretization.beam import Beam
 from ..motion.integrator import Trajectory
-
-Array = NDArray[np.float64]
 
 SDIRK = np.array(
     [
@@ -34,7 +32,7 @@ class Monodromy:
     """
 
     matrix: Array
-    multipliers: NDArray[np.complex128]
+    multipliers: Complex
     trivial_error: float
 
     @property

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 from math import nan
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...discretization.beam import Beam, mesh
 from ...discretization.quadrature import lobatto_points
 from ...discretization.resolution import expected_wave_number, resolution_for
@@ -30,7 +30,6 @@ from .transient import Transient
 
 __all__ = ["Cycle", "CyclePoint", "CycleRequest", "CycleStatus", "solve_cycle", "warm_up"]
 
-Array = NDArray[np.float64]
 
 EXPECTED_MODES = 3
 """Modes by whose wave number the first mesh is chosen; the cycle says whether it is fine enough."""

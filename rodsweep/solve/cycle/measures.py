@@ -8,14 +8,12 @@ from dataclasses import dataclass, field
 from math import nan
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...discretization.beam import Beam
 from ...discretization.periodic import derivative, maximum, resampled, rise_through_mean
 from ...discretization.quadrature import lobatto_points
 from ..motion.integrator import Trajectory
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from math import ceil, inf, nan
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...discretization.beam import Beam, Mesh, mesh
 from ...discretization.resolution import LARGEST_ORDER
 from ..motion.integrator import Ending, integrator, relaxed
@@ -18,8 +18,6 @@ from .floquet import monodromy
 from .measures import Measures, measures_of
 from .minimal_period import shortened, undecided_divisor
 from .shooting import FIRST_STEPS, Orbit, shoot
-
-Array = NDArray[np.float64]
 
 TRANSIENT = TimeScheme("arkimex", "4", tolerance=1e-5)
 """The way to a cycle needs no accuracy: Newton's method supplies it."""

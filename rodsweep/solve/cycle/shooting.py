@@ -10,14 +10,12 @@ of (z, T), so the iteration closes to round-off; twice the steps tell the error.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...discretization.beam import Beam
 from ..motion.integrator import Ending, RunLimit, Trajectory, integrator
 from ..motion.time_scheme import TimeScheme
 from .floquet import Monodromy, monodromy
-
-Array = NDArray[np.float64]
 
 PERIOD_MAP = TimeScheme("arkimex", "5", tolerance=1e-8, newton=1e-6, equal_steps=True, prefix="cycle_map_")
 FIRST_STEPS = 64

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from math import isnan, nan
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...discretization.beam import Beam
 from ..motion.integrator import Ending, RunLimit, Trajectory, integrator, relaxed
 from ..motion.leading_mode import leading_mode
@@ -22,8 +22,6 @@ from .floquet import hermite
 from .refinement import CAREFUL, TRANSIENT, RefinedOrbit, refine
 from .shooting import angle_weights
 from .status import CycleStatus
-
-Array = NDArray[np.float64]
 
 CHUNK = 5
 """Returns to the section per run; then the sequence is judged."""

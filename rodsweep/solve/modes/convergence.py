@@ -9,8 +9,8 @@ from dataclasses import replace
 from math import inf
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Complex
 from ...determinant.value import distance_to_next
 from ...discretization.pencil import assemble
 from ...discretization.resolution import Resolution, finer, mesh_accuracy, resolution_for
@@ -33,7 +33,7 @@ def first_mesh(wave: float, accuracy: float) -> Resolution:
 
 
 def converged_vectors(
-    rod: Rod, eigenvalues: NDArray[np.complex128], points: NDArray[np.float64], wave: float, accuracy: float
+    rod: Rod, eigenvalues: Complex, points: Array, wave: float, accuracy: float
 ) -> Vectors | None:
     """The vectors at `points` from the best of few meshes; None where even the first is too large."""
     mesh = first_mesh(wave, accuracy)
@@ -57,7 +57,7 @@ def converged_vectors(
     return best
 
 
-def _compared(coarse: Vectors, fine: Vectors, gaps: NDArray[np.float64]) -> Vectors:
+def _compared(coarse: Vectors, fine: Vectors, gaps: Array) -> Vectors:
     """The finer mesh's modes, and how far the coarser one's are from them."""
     error = np.zeros(len(fine.condition))
     pairs = ((coarse.right, fine.right), (coarse.deformation, fine.deformation), (coarse.left, fine.left))

@@ -6,12 +6,10 @@ alone, and so is the norm: theta follows at once.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...discretization.pencil import Pencil
 from ...model.rod import Rod
-
-Array = NDArray[np.float64]
 
 
 def dense_operator(rod: Rod, pencil: Pencil) -> tuple[Array, Array]:

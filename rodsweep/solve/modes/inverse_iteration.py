@@ -10,13 +10,12 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array, Complex
 from ...determinant.value import ROUND_OFF
 from ...discretization.pencil import Pencil, shear_force, slope, tip_scale
 from ...discretization.resolution import Resolution
 from ...model.rod import Rod
 from .dense_operator import dense_operator
-
-Complex = NDArray[np.complex128]
 
 ITERATIONS = 4
 """Inverse iterations: with the eigenvalue known two suffice but next to a double one."""
@@ -45,10 +44,10 @@ class Vectors:
     deformation: Complex
     left: Complex
     pairing: Complex
-    condition: NDArray[np.float64]
-    rounding: NDArray[np.float64]
-    mode_error: NDArray[np.float64]
-    condition_error: NDArray[np.float64]
+    condition: Array
+    rounding: Array
+    mode_error: Array
+    condition_error: Array
 
     def errors(self) -> dict[str, float]:
         """The largest relative errors, by quantity; inf where there is no number."""
@@ -56,7 +55,7 @@ class Vectors:
         return {name: inf if np.isnan(error) else float(error) for name, error in errors.items()}
 
 
-def mode_vectors(rod: Rod, pencil: Pencil, eigenvalues: Complex, points: NDArray[np.float64]) -> Vectors:
+def mode_vectors(rod: Rod, pencil: Pencil, eigenvalues: Complex, points: Array) -> Vectors:
     """The modes of known eigenvalues on one mesh, at `points` in [0, 1]."""
     X, Z, rounding = _vectors(rod, pencil, eigenvalues)
     evaluation = pencil.evaluation(points)
@@ -91,7 +90,7 @@ def no_vectors(resolution: Resolution, modes: int, points: int) -> Vectors:
     )
 
 
-def _vectors(rod: Rod, pencil: Pencil, eigenvalues: Complex) -> tuple[Complex, Complex, NDArray[np.float64]]:
+def _vectors(rod: Rod, pencil: Pencil, eigenvalues: Complex) -> tuple[Complex, Complex, Array]:
     """The right and left vectors, shape (unknowns, modes), scaled at the tip, and `Vectors.rounding`."""
     A, B = dense_operator(rod, pencil)
     m = len(eigenvalues)

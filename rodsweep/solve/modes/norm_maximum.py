@@ -11,11 +11,9 @@ halved until the bound is as close to the highest value found as is asked.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from .propagator import Propagator
-
-Array = NDArray[np.float64]
 
 START_RATIO = 2**0.25
 """Ratio of neighbouring times to start with."""

@@ -10,7 +10,7 @@ from math import factorial
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ...arrays import Array, Complex
 
 INFINITE = 1e-12
 """Relative size of an eigenvalue of G below which it stands for an infinite one."""
@@ -31,7 +31,7 @@ class Propagator:
         finite = np.nonzero(np.abs(values) > INFINITE * np.abs(values).max())[0]
         w = 1 / values[finite]
         order = np.lexsort((-w.imag, -w.real))
-        self.w: NDArray[np.complex128] = w[order].astype(complex)
+        self.w: Complex = w[order].astype(complex)
         self.right = right[:, finite[order]]
         self.left = np.linalg.inv(right)[finite[order]].T
         self.generator: Array = np.zeros((0, 0))

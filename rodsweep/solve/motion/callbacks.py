@@ -14,7 +14,6 @@ from typing import Any
 import numba
 import numpy as np
 from numba import types
-from numpy.typing import NDArray
 
 from ...discretization.beam import Beam, Mesh
 from ...discretization.body_frame import BeamParameters, Element, jacobian, rate
@@ -31,8 +30,6 @@ from ..backend.c_functions import (
     record_at,
 )
 from ..backend.petsc import PETSc
-
-Array = NDArray[np.float64]
 
 REAL, WHOLE = "<f8", "<i8"
 CONTEXT = np.dtype(

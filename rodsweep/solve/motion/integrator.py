@@ -11,14 +11,12 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...discretization.beam import Beam, Mesh
 from ..backend.petsc import PETSc
 from .callbacks import AT_BASE, Workspace
 from .time_scheme import TimeScheme
-
-Array = NDArray[np.float64]
 
 STAGE_ROUND_OFF = 1e-9
 """Size of a Newton step, relative to the motion, at which stagnation is rounding and not failure."""

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Complex
 from ...discretization.beam import Beam
 
 
@@ -13,7 +13,7 @@ class LeadingMode:
     """The leading eigenvalue w in 1/tau2, Im w >= 0, and its z for y(1) = 1 to first order."""
 
     w: complex
-    z: NDArray[np.complex128]
+    z: Complex
 
     @property
     def period(self) -> float:

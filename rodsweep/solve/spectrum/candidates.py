@@ -9,8 +9,8 @@ from math import sqrt
 from operator import truediv
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Complex
 from ...determinant.box import squared_amplification
 from ...determinant.certified_count import Count, count_right_of
 from ...determinant.roots import Roots, roots
@@ -39,7 +39,7 @@ class Candidates:
 
     resolution: Resolution
     roots: Roots
-    vectors: NDArray[np.complex128] | None
+    vectors: Complex | None
     failure: str = ""
 
     def worst(self, modes: int) -> float:
@@ -74,7 +74,7 @@ def attempt(
     tight: to the last digit of the mesh before they are refined on D. An error inside PETSc, SLEPc or LAPACK
     is no eigenvalue found: to them another mesh is another matrix, on which the same need not happen.
     """
-    raw: NDArray[np.complex128] = np.empty(0, complex)
+    raw: Complex = np.empty(0, complex)
     kept, failure = None, ""
     try:
         solver = eigen_solver(resolution)

@@ -13,6 +13,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array, Complex
 from ...discretization.pencil import Pencil, assemble
 from ...discretization.resolution import Resolution
 from ...model.compilation import compiled
@@ -70,7 +71,7 @@ class EigenSolver:
         self.B.createAIJ([n, n], csr=(line, line[:-1], np.ones(n)), comm=PETSc.COMM_SELF)
         self.line = line
         self.gamma3, self.pace = -1.0, 1.0
-        self.inertia: NDArray[np.float64] = np.ones(n)
+        self.inertia: Array = np.ones(n)
         first = np.zeros(n)
         distance = (1 - self.pencil.positions()) * self.pencil.nodes / START_WIDTH
         first[: self.pencil.nodes] = np.exp(-(distance**2)) * np.sqrt(self.pencil.mass)
@@ -96,7 +97,7 @@ class EigenSolver:
         eps.setFromOptions()
         return eps
 
-    def solve(self, rod: Rod, shift: float, wanted: int, tight: bool = False) -> NDArray[np.complex128]:
+    def solve(self, rod: Rod, shift: float, wanted: int, tight: bool = False) -> Complex:
         """At least `wanted` eigenvalues nearest the shift where they converge, unsorted; none is left out.
 
         Complex, shape (k,), in 1/tau2. tight: to the last digit of the mesh, not just to start from.
@@ -126,7 +127,7 @@ class EigenSolver:
         self.eps.setInitialSpace(self.start)
         self.eps.solve()
         found = self.eps.getConverged()
-        w: NDArray[np.complex128] = np.array([self.eps.getEigenvalue(i) for i in range(found)], complex)
+        w: Complex = np.array([self.eps.getEigenvalue(i) for i in range(found)], complex)
         return (w + shift) / self.pace**2
 
     def _set_inertia(self, rod: Rod) -> None:
@@ -136,7 +137,7 @@ class EigenSolver:
             self.B.setValuesCSR(self.line, self.line[:-1], self.inertia)
             self.B.assemble()
 
-    def vectors(self, found: int) -> NDArray[np.complex128]:
+    def vectors(self, found: int) -> Complex:
         """The vectors of what the last `solve` found, shape (unknowns, found)."""
         real, imag = self.A.createVecs()
         X = np.empty((self.pencil.unknowns, found), dtype=complex)

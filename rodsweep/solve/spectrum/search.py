@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from math import isfinite
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Complex
 from ...determinant.box import squared_amplification
 from ...discretization.pencil import tip_scale
 from ...discretization.quadrature import lobatto_points
@@ -68,13 +68,13 @@ class Spectrum:
     """
 
     status: Status
-    eigenvalues: NDArray[np.complex128]
-    error_estimate: NDArray[np.float64]
+    eigenvalues: Complex
+    error_estimate: Array
     unstable_count: int = -1
     certified: bool = False
     resolution: Resolution = Resolution(0, 0)
     seconds: float = 0.0
-    vectors: NDArray[np.complex128] | None = None
+    vectors: Complex | None = None
     message: str = ""
 
 
@@ -240,7 +240,7 @@ def _result(best: Judged, rod: Rod, request: SpectrumRequest) -> Spectrum:
     )
 
 
-def _vectors(rod: Rod, request: SpectrumRequest, found: Candidates) -> NDArray[np.complex128] | None:
+def _vectors(rod: Rod, request: SpectrumRequest, found: Candidates) -> Complex | None:
     """(Y, Theta) on the Lobatto nodes; NaN where Y(1) vanishes and cannot be scaled to 1."""
     if found.vectors is None:
         return None

@@ -10,10 +10,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import View
 from ..style import FIRST, LABELS, SECOND, THIRD, heading, legend_below, need, plain, scale
-from .selection import Array, outcomes, told_apart
+from .selection import outcomes, told_apart
 
 BRANCH_LOOKS = tuple(
     zip((FIRST, SECOND, THIRD, "#CC79A7", "#56B4E9", "#000000"), ("o", "s", "^", "D", "v", "P"), strict=True)

@@ -12,10 +12,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.quiver import Quiver
 
+from ....arrays import Array
 from ....discretization.periodic import resampled
 from ....results.file.view import View
 from ..style import FIRST, SECOND
-from .selection import SHAPES, Array, StoredCycle, chosen_cycles
+from .selection import SHAPES, StoredCycle, chosen_cycles
 
 MOST_SHAPES = 12
 """Shapes of one cycle that can still be told apart."""

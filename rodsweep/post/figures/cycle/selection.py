@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import View
 from ..style import heading, need, parameter_text
@@ -20,8 +21,6 @@ SHAPES = ("shape_x", "shape_y", "shape_theta")
 ENERGIES = ("energy", "injection", "dissipation")
 ASKED_BY = {name: "shapes" for name in SHAPES} | {name: "samples" for name in ENERGIES}
 """The option of limit_cycle that stores a variable."""
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
