@@ -218,14 +218,14 @@ def _result(best: Judged, rod: Rod, request: SpectrumRequest) -> Spectrum:
     found, verdict = best.found.roots, best.verdict
     status = Status.ok if best.short <= STALLED_SAFETY else Status.accuracy_not_reached
     proved = verdict is not None and verdict.agrees
-    undecided = bool(found.on_the_axis.any())
+    undecided = any(found.on_the_axis.tolist())
     message = ""
     if status == Status.ok and request.certify:
         if undecided:
             status = Status.undecided
         elif not proved:
             status, message = Status.not_certified, verdict.count.why_not if verdict else ""
-    unstable = int((found.w.real > 0).sum())
+    unstable = sum(value.real > 0 for value in found.w.tolist())
     # Where no proof is asked for the unstable modes are counted if the search went past them.
     known = not undecided and (proved if request.certify else unstable < len(found.w))
     return Spectrum(
