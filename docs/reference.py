@@ -20,7 +20,7 @@ from pydantic.fields import FieldInfo
 
 from rodsweep.cli.job import Job, make_job
 from rodsweep.config.phase_diagram import PhaseDiagramConfig
-from rodsweep.config.reading import what_is_allowed
+from rodsweep.config.refusals import what_is_allowed
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.results.layouts.crossings import CROSSING_KINDS

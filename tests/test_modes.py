@@ -26,7 +26,7 @@ from rodsweep.solve.modes.norm_maximum import highest
 from rodsweep.solve.modes.numerical_abscissa import numerical_abscissa
 from rodsweep.solve.modes.propagator import Propagator, exponential
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
-from rodsweep.solve.spectrum.status import Status
+from rodsweep.solve.spectrum.status import SpectrumStatus
 
 INF = float("inf")
 NODES = 65
@@ -189,7 +189,7 @@ def relative(found, exact):
 )
 def test_at_rest_left_and_right_modes_are_equal(k1, k2, gamma3):
     result = solve_modes(Rod(0.0, k1, k2, gamma3), TIGHT)
-    assert result.status == Status.ok
+    assert result.status == SpectrumStatus.ok
     assert (result.spectrum.eigenvalues.imag == 0).all()
     assert (result.spectrum.eigenvalues.real < 0).all()
     assert relative(result.vectors.left, result.vectors.right) < 1e-11
@@ -204,7 +204,7 @@ def test_modes_are_those_of_appendix_c(parameters):
     """The closed form, deformations included, and condition numbers."""
     rod = Rod(*parameters)
     result = solve_modes(rod, SHAPES)
-    assert result.status == Status.ok
+    assert result.status == SpectrumStatus.ok
     for n, w in enumerate(result.spectrum.eigenvalues):
         y, theta, s, m = ClosedForm(rod, w).fields(POINTS)
         assert relative(result.vectors.right[0, n], y) < 1e-11
@@ -287,7 +287,7 @@ def test_condition_diverges_at_the_onset_like_a_square_root():
     for distance in distances:
         rod = Rod(ONSET * (1 - distance), 1e4, 1e4, 1e-4)
         result = solve_modes(rod, ModesRequest(2, 1e-8, 9, growth=False))
-        assert result.status == Status.ok
+        assert result.status == SpectrumStatus.ok
         condition.append(result.vectors.condition)
     order = np.log(condition[1] / condition[0]) / np.log(distances[0] / distances[1])
     assert abs(order - 0.5).max() < 0.01
@@ -297,7 +297,7 @@ def test_condition_diverges_at_the_onset_like_a_square_root():
 @pytest.mark.kernel
 def test_a_rod_at_the_onset_says_that_its_modes_are_inaccurate():
     result = solve_modes(Rod(ONSET, 1e4, 1e4, 1e-4), TIGHT)
-    assert result.status == Status.accuracy_not_reached
+    assert result.status == SpectrumStatus.accuracy_not_reached
     assert result.vectors.condition[:2].min() > 1e5
     assert result.vectors.condition_error[:2].max() > 1e-3
     assert result.vectors.condition_error[2:].max() < 1e-11
@@ -308,11 +308,11 @@ def test_modes_next_to_the_onset_are_not_called_accurate():
     """The eigenvalues are right to 1e-10 there, their condition numbers are not."""
     request = ModesRequest(modes=4, accuracy=1e-10, nodes=9, growth=False)
     rod = Rod(20.008, 1e4, 1e4, 1e-4)
-    assert solve_spectrum(rod, SpectrumRequest(4, 1e-10, True)).status == Status.ok
+    assert solve_spectrum(rod, SpectrumRequest(4, 1e-10, True)).status == SpectrumStatus.ok
     result = solve_modes(rod, request)
-    assert result.status == Status.accuracy_not_reached
+    assert result.status == SpectrumStatus.accuracy_not_reached
     assert "condition numbers" in result.message
-    assert solve_modes(rod, replace(request, accuracy=1e-6)).status == Status.ok
+    assert solve_modes(rod, replace(request, accuracy=1e-6)).status == SpectrumStatus.ok
 
 
 def test_a_decaying_rod_may_grow_at_first():
@@ -516,7 +516,7 @@ def test_a_mesh_that_makes_an_unstable_eigenvalue_up_is_refused():
 def test_where_nothing_can_grow_no_propagator_is_needed(monkeypatch):
     monkeypatch.setattr(growth_module, "propagator_of", None)
     result = solve_modes(Rod(9.8, 1e4, 1e4, 1e-4), TIGHT)
-    assert result.status == Status.ok
+    assert result.status == SpectrumStatus.ok
     assert result.growth.numerical_abscissa < 0
     assert (result.growth.transient_growth, result.growth.transient_time, result.growth.growth_error) == (
         1.0,
@@ -631,7 +631,7 @@ def test_early_growth_is_that_of_the_exact_propagator(parameters):
     """Abscissae of 2 to 4, peaks at 1e-6 to 1e-4 of S - 1 from 1e-7 to 1e-4: 26 exact modes."""
     rod = Rod(*parameters)
     result = solve_modes(rod, TIGHT)
-    assert result.status == Status.ok
+    assert result.status == SpectrumStatus.ok
     exact = ReferenceGrowth(
         rod, solve_modes(rod, ModesRequest(26, 1e-8, 2, growth=False)).spectrum.eigenvalues
     )
@@ -646,11 +646,11 @@ def test_growth_is_as_accurate_as_it_says_where_the_abscissa_is_small(F):
     """Abscissae from 1e-4 to 4; S - 1 below the accuracy is 0 at 0 and covered by the error estimate."""
     rod = Rod(F, 1e4, 1e4, 1e-4)
     fine = solve_modes(rod, TIGHT)
-    assert fine.status == Status.ok
+    assert fine.status == SpectrumStatus.ok
     assert 0 < fine.growth.numerical_abscissa < 4.1
     for accuracy in (1e-4, 1e-6, 1e-8):
         coarse = solve_modes(rod, replace(TIGHT, accuracy=accuracy))
-        assert coarse.status == Status.ok
+        assert coarse.status == SpectrumStatus.ok
         assert coarse.growth.growth_error <= accuracy
         assert (
             abs(coarse.growth.transient_growth - fine.growth.transient_growth)
@@ -671,7 +671,7 @@ def test_transient_growth_is_smooth_across_the_onset():
 
 def test_an_unstable_rod_grows_without_end():
     result = solve_modes(Rod(40.0, 1e4, 1e4, 1e-4), TIGHT)
-    assert result.status == Status.ok
+    assert result.status == SpectrumStatus.ok
     assert result.spectrum.unstable_count == 2
     assert (result.growth.transient_growth, result.growth.transient_time) == (INF, INF)
     assert result.growth.numerical_abscissa > result.spectrum.eigenvalues[0].real
@@ -680,7 +680,7 @@ def test_an_unstable_rod_grows_without_end():
 def test_growth_lies_between_one_and_what_the_abscissa_allows():
     for F in (5.0, 9.9, 10.0, 11.0, 20.0, 35.0):
         result = solve_modes(Rod(F, 1e4, 1e4, 1e-4), ModesRequest(2, 1e-6, 9, growth=True))
-        assert result.status == Status.ok
+        assert result.status == SpectrumStatus.ok
         bound = np.exp(max(result.growth.numerical_abscissa, 0) * result.growth.transient_time)
         assert 1 <= result.growth.transient_growth <= bound * (1 + 1e-12)
         assert (result.growth.transient_time > 0) == (result.growth.transient_growth > 1)
@@ -689,7 +689,7 @@ def test_growth_lies_between_one_and_what_the_abscissa_allows():
 
 def test_growth_is_computed_only_where_asked_for():
     result = solve_modes(Rod(*FIG_2A), SHAPES)
-    assert result.status == Status.ok
+    assert result.status == SpectrumStatus.ok
     assert np.isnan(
         [result.growth.numerical_abscissa, result.growth.transient_growth, result.growth.growth_error]
     ).all()
@@ -697,7 +697,7 @@ def test_growth_is_computed_only_where_asked_for():
 
 def test_a_point_that_fails_is_a_status():
     result = solve_modes(Rod(1e200, INF, 1e-5, 1e-4), TIGHT)
-    assert result.status == Status.failed
+    assert result.status == SpectrumStatus.failed
     assert result.message
     assert np.isnan(result.vectors.right).all()
     assert (
@@ -714,14 +714,14 @@ def test_a_failing_mesh_is_a_status(monkeypatch):
 
     monkeypatch.setattr(convergence_module, "mode_vectors", broken)
     result = solve_modes(Rod(*FIG_2A), TIGHT)
-    assert result.status == Status.failed
+    assert result.status == SpectrumStatus.failed
     assert result.message == "Singular matrix"
 
 
 def test_coarse_meshes_are_refined_until_they_agree(monkeypatch):
     monkeypatch.setattr(convergence_module, "first_mesh", lambda *_: Resolution(1, 8))
     result = solve_modes(Rod(*FIG_2A), SHAPES)
-    assert result.status == Status.ok
+    assert result.status == SpectrumStatus.ok
     assert result.vectors.resolution.order > 16
     y, *_ = ClosedForm(Rod(*FIG_2A), result.spectrum.eigenvalues[3]).fields(POINTS)
     assert relative(result.vectors.right[0, 3], y) < 1e-10
@@ -750,7 +750,7 @@ def test_a_mode_whose_tip_does_not_move_is_nan_and_not_called_accurate(monkeypat
     still_tips = result.spectrum.eigenvalues.real < -100
     assert (np.isnan(result.vectors.right).all(axis=(0, 2)) == still_tips).all()
     assert np.isfinite(result.vectors.left).all()
-    assert result.status == Status.accuracy_not_reached
+    assert result.status == SpectrumStatus.accuracy_not_reached
     assert result.message == "the error of the modes is inf"
 
 

@@ -14,7 +14,7 @@ from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.spectrum import candidates as candidates_module
 from rodsweep.solve.spectrum.krylov_schur import eigen_solver
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
-from rodsweep.solve.spectrum.status import Status
+from rodsweep.solve.spectrum.status import SpectrumStatus
 
 TIGHT = SpectrumRequest(modes=4, accuracy=1e-12, certify=True)
 
@@ -38,7 +38,7 @@ def test_pushed_rods_to_twelve_digits_none_missed_none_invented(reference_spectr
         result = solve_spectrum(rod, TIGHT)
         exact = leading(point, 4)
         error = np.abs(result.eigenvalues - exact) / np.abs(exact)
-        assert (result.status, result.certified) == (Status.ok, True), rod
+        assert (result.status, result.certified) == (SpectrumStatus.ok, True), rod
         assert result.unstable_count == point["unstable"], rod
         assert error.max() < 1e-12, rod
 
@@ -51,7 +51,9 @@ def test_pulled_rods_lose_no_digit(reference_spectra):
             continue
         result = solve_spectrum(rod, TIGHT)
         # A pull beyond the shear stiffness without rotational drag has no a-priori bound.
-        assert result.status in ({Status.ok} if rod.g > 0 or rod.gamma3 > 0 else {Status.not_certified}), rod
+        assert result.status in (
+            {SpectrumStatus.ok} if rod.g > 0 or rod.gamma3 > 0 else {SpectrumStatus.not_certified}
+        ), rod
         exact = leading(point, 4)
         assert (np.abs(result.eigenvalues - exact) < 1e-13 * np.abs(exact)).all(), rod
         assert result.unstable_count == (point["unstable"] if result.certified else -1), rod
@@ -88,7 +90,7 @@ def test_few_unknowns_suffice_for_every_accuracy(reference_spectra):
     rods = [point for point in reference_spectra if point["group"].startswith("c")][::4]
     for point in rods:
         result = solve_spectrum(rod_of(point), TIGHT)
-        assert result.status == Status.ok
+        assert result.status == SpectrumStatus.ok
         exact = leading(point, 4)
         assert (np.abs(result.eigenvalues - exact) / np.abs(exact)).max() < 1e-13
         assert 3 * result.resolution.elements * result.resolution.order <= 36
@@ -108,7 +110,7 @@ def test_order_is_descending_real_part_positive_frequency_first(reference_spectr
 def test_rod_without_force_has_real_negative_eigenvalues():
     for k1, k2, gamma3 in ((1e4, 1e4, 1e-4), (100.0, 20.0, 1.0), (np.inf, np.inf, 0.0), (50.0, 5.0, 0.0)):
         result = solve_spectrum(Rod(0.0, k1, k2, gamma3), TIGHT)
-        assert result.status == Status.ok
+        assert result.status == SpectrumStatus.ok
         assert (result.eigenvalues.imag == 0).all()
         assert (result.eigenvalues.real < 0).all()
 
@@ -118,18 +120,18 @@ def test_rod_without_force_has_real_negative_eigenvalues():
 )
 def test_rod_at_a_hopf_point_is_undecided(F, k1, k2, gamma3):
     result = solve_spectrum(Rod(F, k1, k2, gamma3), TIGHT)
-    assert result.status == Status.undecided
+    assert result.status == SpectrumStatus.undecided
     assert result.unstable_count == -1
     assert not result.certified
     for nudge, count in ((-1e-9, 0), (1e-9, 2)) if k1 > 1e3 else ((1e-9, 0), (-1e-9, 2)):
         beside = solve_spectrum(Rod(F * (1 + nudge), k1, k2, gamma3), TIGHT)
-        assert (beside.status, beside.unstable_count, beside.certified) == (Status.ok, count, True)
+        assert (beside.status, beside.unstable_count, beside.certified) == (SpectrumStatus.ok, count, True)
 
 
 def test_exceptional_point_says_that_digits_are_lost():
     """At the onset F* two eigenvalues coincide and half of the digits are gone; the estimate knows."""
     result = solve_spectrum(Rod(20.0080206921031, 1e4, 1e4, 1e-4), TIGHT)
-    assert result.status == Status.accuracy_not_reached
+    assert result.status == SpectrumStatus.accuracy_not_reached
     relative = result.error_estimate / np.abs(result.eigenvalues)
     assert 1e-9 < relative[:2].max() < 1e-6
     assert relative[2:].max() < 1e-12
@@ -144,7 +146,7 @@ def test_strong_pull_keeps_its_digits():
     """
     rod = Rod(-1000.0, 1e4, 1e4, 1e-4)
     result = solve_spectrum(rod, SpectrumRequest(4, 1e-8, True))
-    assert (result.status, result.unstable_count, result.certified) == (Status.ok, 0, True)
+    assert (result.status, result.unstable_count, result.certified) == (SpectrumStatus.ok, 0, True)
     with mp.workdps(60):
         for w in result.eigenvalues:
             exact = reference.refine(mp.mpc(complex(w)), rod.F, rod.k1, rod.k2, rod.gamma3)
@@ -154,7 +156,7 @@ def test_strong_pull_keeps_its_digits():
 
 def test_pull_without_a_certificate_says_what_the_mesh_could_not_find():
     result = solve_spectrum(Rod(-1000.0, 1e4, 1e4, 1e-4), SpectrumRequest(4, 1e-8, False))
-    assert result.status in (Status.ok, Status.accuracy_not_reached)
+    assert result.status in (SpectrumStatus.ok, SpectrumStatus.accuracy_not_reached)
     assert result.eigenvalues[0] == pytest.approx(-1.126566e-09, rel=1e-6)
 
 
@@ -174,7 +176,9 @@ class Forgetful:
         return w[w.real < w.real.max() - 1e-6 * abs(w.real.max())]
 
 
-@pytest.mark.parametrize(("remembers_from", "status"), [(9, Status.ok), (10**9, Status.modes_missing)])
+@pytest.mark.parametrize(
+    ("remembers_from", "status"), [(9, SpectrumStatus.ok), (10**9, SpectrumStatus.modes_missing)]
+)
 def test_lost_mode_is_found_again_or_the_numbers_are_withheld(monkeypatch, remembers_from, status):
     rod = Rod(50.0, 1e4, 1e4, 1e-4)
     whole = solve_spectrum(rod, TIGHT)
@@ -184,7 +188,7 @@ def test_lost_mode_is_found_again_or_the_numbers_are_withheld(monkeypatch, remem
     )
     result = solve_spectrum(rod, TIGHT)
     assert result.status == status
-    if status == Status.ok:
+    if status == SpectrumStatus.ok:
         assert np.abs(result.eigenvalues - whole.eigenvalues).max() < 1e-12 * np.abs(whole.eigenvalues).max()
         assert result.unstable_count == 2
     else:
@@ -196,7 +200,7 @@ def test_number_of_modes_asked_for_does_not_make_a_point_fail():
     """Asked for one or two of this rod, SLEPc once made a Krylov space of rounding, and LAPACK gave up."""
     rod = Rod(235.44686855743151, np.inf, np.inf, 0.0002066784352422915)
     results = [solve_spectrum(rod, SpectrumRequest(modes, 1e-10, True)) for modes in range(1, 9)]
-    assert {(result.status, result.unstable_count) for result in results} == {(Status.ok, 4)}
+    assert {(result.status, result.unstable_count) for result in results} == {(SpectrumStatus.ok, 4)}
     for result in results:
         assert np.allclose(result.eigenvalues, results[-1].eigenvalues[: len(result.eigenvalues)], rtol=1e-12)
 
@@ -234,7 +238,7 @@ def test_error_inside_slepc_is_followed_by_another_mesh(monkeypatch, failures):
     failing = Failing(candidates_module.eigen_solver, failures, PETSc.Error(76))
     monkeypatch.setattr(candidates_module, "eigen_solver", failing)
     result = solve_spectrum(rod, TIGHT)
-    assert (result.status, result.unstable_count, result.certified) == (Status.ok, 0, True)
+    assert (result.status, result.unstable_count, result.certified) == (SpectrumStatus.ok, 0, True)
     assert np.allclose(result.eigenvalues, whole.eigenvalues, rtol=1e-12)
     assert len(set(failing.meshes)) == failures + 1
 
@@ -246,15 +250,15 @@ def test_lasting_error_inside_slepc_is_told(monkeypatch):
     )
     monkeypatch.setattr(candidates_module, "eigen_solver", failing)
     result = solve_spectrum(Rod(30.0, 1e4, 1e4, 1e-4), TIGHT)
-    assert (result.status, len(failing.meshes)) == (Status.failed, 4)
+    assert (result.status, len(failing.meshes)) == (SpectrumStatus.failed, 4)
     assert result.message == "Error in LAPACK subroutine trexc: info=1"
 
 
 def test_overflowing_parameters_fail_with_a_reason_and_harm_no_later_point():
     result = solve_spectrum(Rod(1e200, np.inf, 1e-5, 1e-4), TIGHT)
-    assert result.status == Status.failed
+    assert result.status == SpectrumStatus.failed
     assert result.message
-    assert solve_spectrum(Rod(30.0, 1e4, 1e4, 1e-4), TIGHT).status == Status.ok
+    assert solve_spectrum(Rod(30.0, 1e4, 1e4, 1e-4), TIGHT).status == SpectrumStatus.ok
 
 
 def test_point_does_not_depend_on_what_was_solved_before(reference_spectra):
@@ -312,7 +316,7 @@ def test_without_certificate_the_numbers_are_the_same():
     proved = solve_spectrum(rod, SpectrumRequest(4, 1e-10, certify=True))
     assert np.array_equal(plain.eigenvalues, proved.eigenvalues)
     assert (plain.certified, proved.certified) == (False, True)
-    assert plain.status == proved.status == Status.ok
+    assert plain.status == proved.status == SpectrumStatus.ok
 
 
 INF = np.inf
@@ -352,7 +356,7 @@ INF = np.inf
 )
 def test_hard_rods_have_the_right_leading_mode(parameters, modes, accuracy, first, unstable, certify):
     result = solve_spectrum(Rod(*parameters), SpectrumRequest(modes, accuracy, certify))
-    assert result.status in (Status.ok, Status.not_certified)
+    assert result.status in (SpectrumStatus.ok, SpectrumStatus.not_certified)
     assert abs(result.eigenvalues[0] - first) < max(2 * accuracy, 1e-8) * abs(first)
     # Without a proof the count is withheld: where it was asked for, and where the search did not go past.
     assert result.unstable_count == unstable or (not result.certified and result.unstable_count == -1)
@@ -361,12 +365,12 @@ def test_hard_rods_have_the_right_leading_mode(parameters, modes, accuracy, firs
 def test_pair_at_the_onset_is_kept_without_a_certificate():
     """The certificate is not there to miss it: the nearly double pair has to survive by itself."""
     result = solve_spectrum(Rod(20.050953618975804, INF, INF, 0.0), SpectrumRequest(2, 1e-10, False))
-    assert result.status == Status.accuracy_not_reached
+    assert result.status == SpectrumStatus.accuracy_not_reached
     assert abs(result.eigenvalues[0] - (-121.34251 + 6.8e-5j)) < 1e-5
 
 
 def test_resting_modes_a_hundred_deep_are_those_of_the_cantilever():
     result = solve_spectrum(Rod(0.0, INF, INF, 0.0), SpectrumRequest(100, 1e-8, True))
-    assert result.status == Status.ok
+    assert result.status == SpectrumStatus.ok
     n = np.arange(8, 101)
     assert np.allclose(result.eigenvalues[7:].real, -(((n - 0.5) * np.pi) ** 4), rtol=1e-7)

@@ -37,13 +37,13 @@ class InstantSpectra(SpectrumTask):
     def solver(self) -> Solver:
         from ..discretization.resolution import Resolution
         from ..solve.spectrum.search import Spectrum
-        from ..solve.spectrum.status import Status
+        from ..solve.spectrum.status import SpectrumStatus
 
         points, modes = self.points, self.config.spectrum.modes
         parts = np.random.default_rng(1).standard_normal((OUTCOMES, 3, modes))
         outcomes = [
             Spectrum(
-                status=Status.ok,
+                status=SpectrumStatus.ok,
                 eigenvalues=100 * (a + 1j * b),
                 error_estimate=1e-12 * c,
                 unstable_count=1,

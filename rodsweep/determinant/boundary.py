@@ -34,7 +34,7 @@ class OnBoundary(NamedTuple):
 
     @property
     def tangent(self) -> Vector:
-        """The unit null vector of the Jacobian."""
+        """The unit null vector of the Jacobian, shape (3,)."""
         t: Vector = np.cross(self.jacobian[0], self.jacobian[1])
         return t / np.linalg.norm(t)
 
@@ -61,7 +61,7 @@ class Boundary:
         return OnBoundary(v, jacobian, error).tangent
 
     def corrected(self, guess: Vector, normal: NDArray[np.floating]) -> OnBoundary | None:
-        """The point of the boundary in the plane through `guess` with that normal, or None."""
+        """The point of the boundary in the plane through `guess` with that normal, both (3,), or None."""
         v, last = guess.copy(), math.inf
         for _ in range(MOST_CORRECTIONS):
             try:
@@ -85,7 +85,7 @@ class Boundary:
         return None
 
     def on_line(self, guess: Vector, axis: int) -> OnBoundary | None:
-        """The point of the boundary near the guess with the guess's coordinate of an axis, or None."""
+        """The point of the boundary near the guess, (3,), with its coordinate of an axis, or None."""
         return self.corrected(guess, np.eye(3)[axis])
 
     def _hopf_equations(self, v: Vector) -> tuple[Vector, Matrix, float]:

@@ -168,7 +168,10 @@ def reconstruction(order: int) -> tuple[Array, Array, Array, Array]:
 
 
 def primitive(nodes: Array, ends: Array) -> Array:
-    """Matrix from values at `nodes` to half the integral of their polynomial from -1 to each end."""
+    """Matrix from values at `nodes` to half the integral of their polynomial from -1 to each end.
+
+    Shape (ends, nodes).
+    """
     points, weights = gauss(len(nodes))
     return np.array(
         [(end + 1) / 4 * weights @ interpolation(nodes, -1 + (end + 1) * (points + 1) / 2) for end in ends]

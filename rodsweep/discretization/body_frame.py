@@ -112,7 +112,7 @@ def _velocity(z: Array, e: int, fields: Array, c: BeamParameters, D_transposed: 
 
 @compiled
 def jacobian(z: Array, out: Array, c: BeamParameters, element: Element) -> None:
-    """d(dz/dt)/dz into out, transposed: out[column, row], as LAPACK and PETSc store it."""
+    """d(dz/dt)/dz into out, shape (unknowns, unknowns), as LAPACK and PETSc store it: out[column, row]."""
     D, w = element.D, element.weights
     p, n = len(w) - 1, len(z) // 3
     out[:, :] = 0.0

@@ -7,7 +7,7 @@ import numpy as np
 
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
-from rodsweep.solve.spectrum.status import Status
+from rodsweep.solve.spectrum.status import SpectrumStatus
 
 from .exact import leading, sensitivity, unstable
 
@@ -60,7 +60,7 @@ def broken_promises(rod, modes=4, accuracy=1e-12):
         broken.append(f"{found.unstable_count} modes are not unstable, but {unstable(rod)}")
     if found.certified and found.unstable_count < 0:
         broken.append("certified without a count")
-    if found.status == Status.ok:
+    if found.status == SpectrumStatus.ok:
         if not found.certified:
             broken.append("ok without a proof")
         if not (error <= accuracy * size).all():
@@ -90,4 +90,6 @@ def all_broken(rods, modes=4, accuracy=1e-12):
 def not_ok(rods, modes=4, accuracy=1e-12):
     """Rods whose status is not ok, with status and message, to be compared with []."""
     results = {rod: spectrum(rod, modes, accuracy) for rod in rods}
-    return [f"{rod}: {r.status.name} {r.message}" for rod, r in results.items() if r.status != Status.ok]
+    return [
+        f"{rod}: {r.status.name} {r.message}" for rod, r in results.items() if r.status != SpectrumStatus.ok
+    ]

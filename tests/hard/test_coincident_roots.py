@@ -15,7 +15,7 @@ import pytest
 
 from rodsweep.determinant.certified_count import count_right_of
 from rodsweep.model.rod import Rod
-from rodsweep.solve.spectrum.status import Status
+from rodsweep.solve.spectrum.status import SpectrumStatus
 
 from .exact import leading
 from .promises import all_broken, not_ok, spectrum
@@ -83,7 +83,7 @@ def decoupled(k2, gamma3, modes):
 @pytest.mark.parametrize("rod", NO_COUPLING, ids=str)
 def test_without_coupling_the_spectrum_is_a_closed_form(rod):
     found = spectrum(rod, MODES)
-    assert (found.status, found.unstable_count) == (Status.ok, 0)
+    assert (found.status, found.unstable_count) == (SpectrumStatus.ok, 0)
     assert found.eigenvalues == pytest.approx(decoupled(rod[2], rod[3], MODES), rel=1e-13)
 
 
@@ -95,5 +95,5 @@ def test_where_every_eigenvalue_is_double_no_digit_is_claimed_that_is_lost(rod):
         assert (error <= 10 * found.error_estimate).all()
         assert (error < 1e-7 * abs(found.eigenvalues)).all()
         if accuracy == 1e-12:
-            assert found.status == Status.accuracy_not_reached
+            assert found.status == SpectrumStatus.accuracy_not_reached
         assert found.unstable_count == 0

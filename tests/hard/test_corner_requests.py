@@ -10,7 +10,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from rodsweep.solve.spectrum.status import Status
+from rodsweep.solve.spectrum.status import SpectrumStatus
 
 from .exact import derivatives, leading
 from .promises import all_broken, broken_promises, not_ok, spectrum
@@ -27,7 +27,7 @@ def test_a_rod_at_rest_is_real_stable_and_does_not_know_its_stretch_stiffness(co
     rod = (0.0, *corner)
     found = spectrum(rod, 6)
     assert broken_promises(rod, 6) == []
-    assert (found.status, found.unstable_count) == (Status.ok, 0)
+    assert (found.status, found.unstable_count) == (SpectrumStatus.ok, 0)
     assert (found.eigenvalues.imag == 0).all()
     assert (found.eigenvalues.real < 0).all()
     assert np.array_equal(found.eigenvalues, spectrum((0.0, 3.0, k2, gamma3), 6).eigenvalues)
@@ -40,7 +40,7 @@ def test_a_trillionth_of_a_force_changes_the_spectrum_by_its_first_derivative(co
         rod = (F, *corner)
         assert broken_promises(rod) == []
         found, rest = spectrum(rod), spectrum((0.0, *corner))
-        assert (found.status, found.unstable_count) == (Status.ok, 0)
+        assert (found.status, found.unstable_count) == (SpectrumStatus.ok, 0)
         for w, w0, exact in zip(found.eigenvalues, rest.eigenvalues, leading((0.0, *corner), 4), strict=True):
             first = float(mp.re(along(exact, (0.0, *corner), "F"))) * F
             assert abs(w - w0 - first) <= 1e-5 * abs(first) + 2e-15 * abs(w0)
@@ -97,7 +97,7 @@ def test_a_pair_and_a_real_mode_that_tie_are_all_there_in_either_order(modes):
         rod = (float(F * (1 + offset)), *OVERTAKEN)
         assert broken_promises(rod, modes) == []
         assert spectrum(rod, modes).unstable_count == 0
-        assert spectrum(rod, modes).status == Status.ok
+        assert spectrum(rod, modes).status == SpectrumStatus.ok
 
 
 def test_a_tie_is_one():

@@ -10,7 +10,7 @@ import pytest
 
 from rodsweep.determinant.certified_count import count_right_of
 from rodsweep.model.rod import Rod
-from rodsweep.solve.spectrum.status import Status
+from rodsweep.solve.spectrum.status import SpectrumStatus
 
 from .exact import candidates, leading, unstable
 from .integral_equation import fastest_wave
@@ -35,7 +35,7 @@ def test_all_unstable_modes_are_counted_and_found_to_twelve_digits(rod):
 def test_few_of_many_unstable_modes_are_the_leading_ones_and_all_are_counted(rod, modes):
     found = spectrum(rod, modes)
     assert broken_promises(rod, modes) == []
-    assert (found.status, found.unstable_count) == (Status.ok, CROWDED[rod])
+    assert (found.status, found.unstable_count) == (SpectrumStatus.ok, CROWDED[rod])
 
 
 @pytest.mark.parametrize("rod", CROWDED, ids=str)
@@ -55,7 +55,7 @@ def test_two_pairs_with_nearly_equal_real_parts_are_told_apart(k2, gap):
     """The softer the shear, the more waves along the rod, and the closer the leading pairs to the fastest."""
     rod = (20.0, 1e3, k2, 10.0)
     found, exact = spectrum(rod), leading(rod, 4)
-    assert found.status == Status.ok
+    assert found.status == SpectrumStatus.ok
     assert gap / 2 < 1 - exact[2].real / exact[0].real < gap
     assert relative(found.eigenvalues, exact) < 1e-12
     assert found.eigenvalues[1] == found.eigenvalues[0].conjugate()

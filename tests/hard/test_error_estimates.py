@@ -10,7 +10,7 @@ from math import inf
 import numpy as np
 import pytest
 
-from rodsweep.solve.spectrum.status import Status
+from rodsweep.solve.spectrum.status import SpectrumStatus
 
 from .limits import EPSILONS, PATHS, rod_on
 from .promises import all_broken, spectrum, true_errors
@@ -57,7 +57,7 @@ def test_hard_spectra_are_ok_where_a_millionth_is_asked_for(family):
     for rod in rods_of(family):
         found = spectrum(rod, 4, 1e-6)
         assert found.certified, rod
-        assert found.status == Status.ok, rod
+        assert found.status == SpectrumStatus.ok, rod
 
 
 def test_estimates_are_of_the_size_of_the_errors():

@@ -13,7 +13,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
 from rodsweep.solve.modes.inverse_iteration import mode_vectors
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
-from rodsweep.solve.spectrum.status import Status
+from rodsweep.solve.spectrum.status import SpectrumStatus
 
 from .adjoint import condition
 from .exact import leading
@@ -36,7 +36,7 @@ def name(place):
 def test_eigenvalues_at_a_double_root_say_that_half_of_the_digits_are_lost(place):
     rod = rod_at(place)
     found, error = spectrum(rod), true_errors(rod)
-    assert found.status == Status.accuracy_not_reached
+    assert found.status == SpectrumStatus.accuracy_not_reached
     assert (found.certified, found.unstable_count) == (True, 0)
     assert broken_promises(rod) == []
     relative = found.error_estimate / abs(found.eigenvalues)
@@ -59,7 +59,7 @@ def test_eigenvalues_beside_a_double_root_are_as_accurate_as_they_say(place, acc
     assert all_broken(rods, accuracy=accuracy) == []
     assert all(spectrum(rod, 4, accuracy).certified for rod in rods)
     if accuracy == 1e-6:
-        assert all(spectrum(rod, 4, accuracy).status == Status.ok for rod in rods)
+        assert all(spectrum(rod, 4, accuracy).status == SpectrumStatus.ok for rod in rods)
 
 
 @pytest.mark.parametrize("place", EXCEPTIONAL, ids=name)
@@ -115,7 +115,7 @@ WORST_ROUNDING = 4.0
 def test_condition_numbers_at_and_beside_a_double_root_are_as_accurate_as_they_say(place):
     """At F* they are as large as rounding allows, and not called accurate; beside it ok means right."""
     there = solve(rod_at(place))
-    assert there.status == Status.accuracy_not_reached
+    assert there.status == SpectrumStatus.accuracy_not_reached
     assert (there.vectors.condition > least_condition(place, there) / np.sqrt(WORST_ROUNDING)).all()
     assert there.vectors.condition_error.min() > 1
     broken = []
@@ -123,7 +123,9 @@ def test_condition_numbers_at_and_beside_a_double_root_are_as_accurate_as_they_s
         rod = rod_at(place, offset)
         found = solve(rod)
         error = abs(found.vectors.condition[0] / float(condition(rod, leading(rod, 4)[0])) - 1)
-        if error > 10 * found.vectors.condition_error[0] or (found.status == Status.ok and error > 1e-8):
+        if error > 10 * found.vectors.condition_error[0] or (
+            found.status == SpectrumStatus.ok and error > 1e-8
+        ):
             broken.append(
                 f"{rod} {found.status.name}: error {error:.1e}, said {found.vectors.condition_error[0]:.1e}"
             )

@@ -9,7 +9,7 @@ import pytest
 from rodsweep.determinant.certified_count import count_right_of
 from rodsweep.model.rod import Rod
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
-from rodsweep.solve.spectrum.status import Status
+from rodsweep.solve.spectrum.status import SpectrumStatus
 
 from .promises import spectrum
 from .rods import CROSSING, STORED, at_force
@@ -31,7 +31,11 @@ def test_a_rod_at_a_hopf_point_is_undecided():
     assert len(CROSSINGS) > 90
     for *rod, event in CROSSINGS:
         found = spectrum(at_force(event["F"], 0, *rod))
-        assert (found.status, found.unstable_count, found.certified) == (Status.undecided, -1, False), rod
+        assert (found.status, found.unstable_count, found.certified) == (
+            SpectrumStatus.undecided,
+            -1,
+            False,
+        ), rod
         there = found.eigenvalues[abs(found.eigenvalues.real).argmin()]
         if abs(there.real) < 1e-9 * abs(there):  # unless other unstable modes lead
             assert abs(there.imag) == pytest.approx(float(event["frequency"]), rel=1e-11)
@@ -44,7 +48,7 @@ def test_a_billionth_beside_a_hopf_point_the_count_is_right_and_proved(offset):
     for *rod, event in CROSSINGS:
         found = spectrum(at_force(event["F"], offset, *rod))
         assert found.unstable_count in (-1, sides(event)[offset > 0]), (rod, event)
-        assert found.certified == (found.status == Status.ok)
+        assert found.certified == (found.status == SpectrumStatus.ok)
         proved += found.certified
     assert proved >= 0.9 * len(CROSSINGS)
 
@@ -55,7 +59,7 @@ def test_however_near_a_hopf_point_the_count_is_never_wrong(offset):
         for sign in (1, -1):
             found = spectrum(at_force(event["F"], sign * offset, *rod))
             assert found.unstable_count in (-1, sides(event)[sign > 0]), (rod, event)
-            assert found.status in (Status.ok, Status.undecided, Status.not_certified)
+            assert found.status in (SpectrumStatus.ok, SpectrumStatus.undecided, SpectrumStatus.not_certified)
 
 
 def test_the_winding_number_along_the_axis_is_refused_where_a_pair_lies_on_it():
@@ -69,5 +73,5 @@ def test_the_winding_number_along_the_axis_is_refused_where_a_pair_lies_on_it():
 def test_modes_at_a_hopf_point_are_given_but_whether_they_grow_is_undecided():
     for *rod, event in CROSSINGS[:3]:
         found = solve_modes(Rod(*at_force(event["F"], 0, *rod)), ModesRequest(2, 1e-8, 9, True))
-        assert (found.status, found.spectrum.unstable_count) == (Status.undecided, -1)
+        assert (found.status, found.spectrum.unstable_count) == (SpectrumStatus.undecided, -1)
         assert found.vectors.condition_error.max() < 1e-8

@@ -17,7 +17,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
 from rodsweep.solve.changes.unstable_modes import Kind
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
-from rodsweep.solve.spectrum.status import Status
+from rodsweep.solve.spectrum.status import SpectrumStatus
 
 from .adjoint import condition
 from .exact import leading
@@ -92,12 +92,12 @@ def test_condition_numbers_leave_the_limit_at_first_order(path):
     """Their slope by a difference of exact condition numbers; at rest they are 1 on the whole path."""
     limit = conditions(path, 0.0)
     exact = [condition(rod_on(path, at), leading(rod_on(path, at), 4)[0]) for at in (0.0, 1e-10)]
-    assert limit.status == Status.ok
+    assert limit.status == SpectrumStatus.ok
     assert limit.vectors.condition[0] == pytest.approx(float(exact[0]), rel=1e-10)
     slope = float((exact[1] - exact[0]) / rate_of(1e-10))
     for epsilon in EPSILONS:
         found = conditions(path, epsilon)
-        assert found.status == Status.ok
+        assert found.status == SpectrumStatus.ok
         off, bend = deviation(found.vectors.condition[0], limit.vectors.condition[0], slope, epsilon)
         rounding = (
             10
@@ -112,6 +112,6 @@ def test_all_limits_at_once_and_at_rest_give_the_cantilever():
     b = np.array([1.8751040687119612, 4.6940911329741746, 7.8547574382376126, 10.995540734875467])
     for rod in ((0.0, inf, inf, 0.0), (0.0, 1e14, 1e14, 1e-14), (1e-12, 1e14, 1e14, 1e-14)):
         found = spectrum(rod)
-        assert (found.status, found.unstable_count) == (Status.ok, 0)
+        assert (found.status, found.unstable_count) == (SpectrumStatus.ok, 0)
         assert found.eigenvalues.real == pytest.approx(-(b**4), rel=5e-12)
         assert (found.eigenvalues.imag == 0).all()

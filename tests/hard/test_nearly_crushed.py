@@ -13,7 +13,7 @@ import pytest
 
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
 from rodsweep.solve.changes.unstable_modes import Kind
-from rodsweep.solve.spectrum.status import Status
+from rodsweep.solve.spectrum.status import SpectrumStatus
 
 from .exact import leading
 from .promises import all_broken, not_ok, spectrum
@@ -42,7 +42,7 @@ def test_a_partial_beam_is_a_filament_in_disguise(k1):
             nu = 1 - mp.mpf(rod[0]) / mp.mpf(k1)
             force = float(rod[0] * nu)
         filament = spectrum((force, inf, inf, 0.0))
-        assert filament.status == Status.ok
+        assert filament.status == SpectrumStatus.ok
         scaled = filament.eigenvalues / float(nu) ** 2
         # The rounding of the force itself moves an eigenvalue by up to two of its units.
         assert np.abs(spectrum(rod).eigenvalues / scaled - 1).max() < 2e-14

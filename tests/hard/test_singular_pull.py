@@ -12,7 +12,7 @@ import pytest
 
 from rodsweep.determinant.certified_count import count_right_of
 from rodsweep.model.rod import Rod
-from rodsweep.solve.spectrum.status import Status
+from rodsweep.solve.spectrum.status import SpectrumStatus
 
 from .exact import leading, unstable
 from .promises import all_broken, broken_promises, spectrum
@@ -31,7 +31,7 @@ def runaways(F, k1, k2):
 def test_pulled_rods_with_drag_are_right_and_proved():
     rods = [(*PULLED, gamma3) for gamma3 in DRAGS]
     assert all_broken(rods) == []
-    assert all(spectrum(rod).status == Status.ok for rod in rods)
+    assert all(spectrum(rod).status == SpectrumStatus.ok for rod in rods)
 
 
 @pytest.mark.parametrize("pull", [PULLED, (-12.0, 1e3, 4.0)], ids=str)
@@ -48,7 +48,7 @@ def test_one_mode_runs_away_as_the_drag_goes(pull):
 def test_the_count_falls_by_the_runaway_modes_in_the_limit_and_nothing_is_proved_there():
     rod = (*PULLED, 0.0)
     found = spectrum(rod)
-    assert found.status in (Status.not_certified, Status.accuracy_not_reached)
+    assert found.status in (SpectrumStatus.not_certified, SpectrumStatus.accuracy_not_reached)
     assert not found.certified
     assert broken_promises(rod) == []
     assert unstable((*PULLED, 1e-3)) - unstable(rod) == len(runaways(*PULLED)) == 1
@@ -64,5 +64,5 @@ def test_next_to_the_limit_numbers_are_right_or_withheld(gamma3):
         assert found.unstable_count in (2, -1)
         assert found.eigenvalues[0].real * gamma3 == pytest.approx(runaways(*PULLED)[0], rel=1e-2)
     else:
-        assert found.status in (Status.failed, Status.modes_missing)
+        assert found.status in (SpectrumStatus.failed, SpectrumStatus.modes_missing)
         assert (found.certified, found.unstable_count) == (False, -1)

@@ -51,7 +51,7 @@ class Family:
 def by_petsc(
     family: str, variant: str, beam: Beam, z: Array, duration: float, tolerance: float
 ) -> Trajectory:
-    """PETSc TS as the task limit_cycle uses it."""
+    """PETSc TS as the task limit_cycle uses it, from z, (unknowns,)."""
     newton = TimeScheme().newton if tolerance > TIGHT else TIGHT_NEWTON
     scheme = TimeScheme(family, variant, tolerance, newton, prefix="bench_")
     run = integrator(beam.mesh, scheme).run(beam, z, duration)
@@ -61,7 +61,10 @@ def by_petsc(
 
 
 def by_scipy(method: str, beam: Beam, z: Array, duration: float, tolerance: float) -> Trajectory:
-    """SciPy's solve_ivp. Its Newton test is sqrt(rtol) of the tolerance, so rtol is the tolerance too."""
+    """SciPy's solve_ivp from z, shape (unknowns,).
+
+    Its Newton test is sqrt(rtol) of the tolerance, so rtol is the tolerance too.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # LSODA warns of what its success says
         found = scipy.integrate.solve_ivp(
@@ -80,7 +83,7 @@ def by_scipy(method: str, beam: Beam, z: Array, duration: float, tolerance: floa
 
 
 def by_cvode(cvode: Any, beam: Beam, z: Array, duration: float, tolerance: float) -> Trajectory:
-    """CVODE's BDF with its dense solver, through scikit-sundae."""
+    """CVODE's BDF with its dense solver, through scikit-sundae, from z, (unknowns,)."""
     arguments = beam.parameters, beam.mesh.element
     buffer = np.empty((len(z), len(z)))
 

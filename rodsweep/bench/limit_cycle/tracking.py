@@ -57,7 +57,7 @@ def cycle_at(force: float) -> Cycle:
 
 
 def on_cycle(cycle: Cycle, force: float, elements: int, order: int) -> tuple[Beam, Array]:
-    """The rod on a mesh, and its state on the cycle."""
+    """The rod on a mesh, and its state on the cycle, shape (unknowns,)."""
     if cycle.state is None:
         raise ArithmeticError(f"no cycle: {cycle.message}")
     beam = Beam(Rod(force, *FIG5_ROD[:3]), FIG5_ROD[3], mesh(elements, order))

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...model.rod import Rod
 from ...solve.spectrum.search import SpectrumRequest, solve_spectrum
-from ...solve.spectrum.status import Status
+from ...solve.spectrum.status import SpectrumStatus
 from ..lapack import Eigenvalues
 
 DIGITS = 30
@@ -45,7 +45,7 @@ def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
     Raises ArithmeticError where the leading eigenvalues are not certified or one cannot be refined.
     """
     found = solve_spectrum(rod, SpectrumRequest(modes, 1e-11, certify=True))
-    if found.status != Status.ok or not found.certified:
+    if found.status != SpectrumStatus.ok or not found.certified:
         raise ArithmeticError(f"{rod}: {found.status.name} {found.message}")
     roots = []
     with mp.workdps(DIGITS + GUARD):

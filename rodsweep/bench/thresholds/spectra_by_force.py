@@ -21,7 +21,7 @@ SCIPY_ROUNDING = 8.9e-16
 
 
 def affine(case: ThresholdCase) -> tuple[Array, Array, Array]:
-    """A0, A1 and the diagonal of B, which are the pencil at the force F by A = A0 + F A1."""
+    """A0, A1 and the diagonal of B, shapes (n, n), (n, n), (n,): A = A0 + F A1 at F."""
     A0, B = whole_matrices(case.rod(0.0), case.mesh)
     return A0, whole_matrices(case.rod(1.0), case.mesh)[0] - A0, B
 
@@ -41,25 +41,25 @@ class LeadingPair:
 def on_grid(
     estimate: Callable[[Array, Eigenvalues], float], points: int, case: ThresholdCase
 ) -> FirstThreshold:
-    """An estimate from the leading eigenvalue at equal steps of F from 0 to the top."""
+    """An estimate from the leading eigenvalue at equal steps of F from 0 to the top, shapes (points,)."""
     forces, pair = np.linspace(0.0, case.top, points), LeadingPair(case)
     return FirstThreshold(estimate(forces, np.array([pair(F)[0] for F in forces.tolist()])), points)
 
 
 def between(forces: Array, w: Eigenvalues) -> float:
-    """An onset: halfway between the last real leading eigenvalue and the first pair."""
+    """An onset: halfway between the last real leading w, shape (points,), and the first pair."""
     first = int(np.argmax(w.imag != 0))
     return float(forces[first - 1 : first + 1].mean()) if first else nan
 
 
 def square_root_law(forces: Array, w: Eigenvalues) -> float:
-    """An onset: where (Im w)^2, linear in F next to it, vanishes, through the first two pairs."""
+    """An onset: where (Im w)^2, linear in F next to it, vanishes, by the first two pairs in w, (points,)."""
     pairs = np.flatnonzero(w.imag)[:2]
     return _zero(forces[pairs], w[pairs].imag ** 2) if len(pairs) == 2 and pairs[0] else nan
 
 
 def interpolated_growth(forces: Array, w: Eigenvalues) -> float:
-    """A Hopf point: where the growth rate between two forces vanishes, as one reads it off a plot."""
+    """A Hopf point: where Re w, shape (points,), vanishes between two forces, as one reads it off a plot."""
     up = np.flatnonzero((w.real[:-1] < 0) & (w.real[1:] > 0))[:1]
     return _zero(forces[up[0] :], w.real[up[0] :]) if up.size else nan
 

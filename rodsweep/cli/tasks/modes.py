@@ -27,6 +27,7 @@ class ModesTask(LinearTask):
     not_proved: ClassVar[str] = "modes may be missed"
 
     def coordinates(self) -> dict[str, np.ndarray]:
+        """The material coordinate of the modes' nodes, shape (nodes,)."""
         return {"u": lobatto_points(self.config.modes.nodes)}
 
     def headline(self) -> str:
@@ -51,7 +52,7 @@ class ModesTask(LinearTask):
 
     def solver(self) -> Solver:
         from ...solve.modes.leading_modes import ModesRequest, solve_modes
-        from ...solve.spectrum.status import Status
+        from ...solve.spectrum.status import SpectrumStatus
 
         options = self.config.modes
         request = ModesRequest(
@@ -59,7 +60,7 @@ class ModesTask(LinearTask):
         )
         first = ModesRequest(2, 1e-4, 9, options.growth, True)
         return Solver(
-            statuses=tuple(Status),
+            statuses=tuple(SpectrumStatus),
             warm_up=lambda: solve_modes(Rod(30.0, 1e4, 1e4, 1e-4), first),
             solve=lambda index: solve_modes(self.points.rod(index), request),
             record=lambda index, result: record(result, options.growth),

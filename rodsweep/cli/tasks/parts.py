@@ -42,7 +42,7 @@ def count_of(points: Points) -> str:
 
 
 def rod_parts(columns: Mapping[str, np.ndarray]) -> list[Part]:
-    """Which of the rod's parts the values of k1, k2 and gamma3 make move."""
+    """Which of the rod's parts the values of k1, k2 and gamma3 make move, each of any shape."""
     dragged = bool((columns["gamma3"] > 0).any())
     return [
         *(_deformation(p, columns[p.name]) for p in PARAMETERS.values() if p.rigid),

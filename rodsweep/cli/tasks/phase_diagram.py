@@ -34,10 +34,11 @@ class PhaseDiagramTask(LinearTask):
 
     @property
     def line(self) -> np.ndarray:
-        """Values along every row."""
+        """Values along every row, shape (values,)."""
         return self.config.parameters.axes[self.config.plane[0]].array()
 
     def coordinates(self) -> dict[str, np.ndarray]:
+        """The values along every row, shape (values,)."""
         return {self.config.plane[0]: self.line}
 
     def headline(self) -> str:

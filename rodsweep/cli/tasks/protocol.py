@@ -3,35 +3,19 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from ...results.file.view import View
 from ...results.layouts.variables import Filled
+from ...solve.status import PointStatus
 from ...sweep.chains import Chains, State
 from ...sweep.estimate import Estimate
 from ...sweep.grid import Points
 
 Part = tuple[str, bool, str]
 """(what, whether it is modelled, why): a row of what `check` prints."""
-
-
-class Status(Protocol):
-    """How a point ended: a member of the task's own IntEnum."""
-
-    @property
-    def name(self) -> str: ...
-
-    @property
-    def sentence(self) -> str:
-        """Cause and remedy."""
-
-    @property
-    def succeeded(self) -> bool:
-        """Whether the point ended as it should."""
-
-    def __int__(self) -> int: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +31,7 @@ class Chained:
 class Solver:
     """What every rank of a run does with a point; `solve` gives an outcome with status and message."""
 
-    statuses: Sequence[Status]
+    statuses: Sequence[PointStatus]
     warm_up: Callable[[], object]
     """Loads what is compiled and created at first use, so that no point pays for it."""
     solve: Callable[[int], Any]
@@ -68,7 +52,7 @@ class Task(ABC):
     points: Points
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """Values of the layout's extra dimensions that have some."""
+        """Values of the layout's extra dimensions that have some, shape (extent,)."""
         return {}
 
     def constants(self) -> tuple[Filled, ...]:

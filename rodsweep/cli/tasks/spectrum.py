@@ -36,7 +36,7 @@ class SpectrumTask(LinearTask):
         return self.config.spectrum.nodes if self.config.spectrum.vectors else 0
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """The material coordinate of the vectors' nodes, where there are vectors."""
+        """The material coordinate of the vectors' nodes, shape (nodes,), where there are vectors."""
         return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
 
     def constants(self) -> tuple[Filled, ...]:
@@ -73,12 +73,12 @@ class SpectrumTask(LinearTask):
 
     def solver(self) -> Solver:
         from ...solve.spectrum.search import SpectrumRequest, solve_spectrum, warm_up
-        from ...solve.spectrum.status import Status
+        from ...solve.spectrum.status import SpectrumStatus
 
         options = self.config.spectrum
         request = SpectrumRequest(options.modes, self.config.accuracy, options.certify, self._vector_nodes)
         return Solver(
-            statuses=tuple(Status),
+            statuses=tuple(SpectrumStatus),
             warm_up=warm_up,
             solve=lambda index: solve_spectrum(self.points.rod(index), request),
             record=lambda index, result: record(result),

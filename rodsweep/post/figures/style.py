@@ -87,7 +87,7 @@ def legend_below(figure: Figure, handles: list[Any], columns: int, size: float =
 
 
 def is_logarithmic(values: np.ndarray) -> bool:
-    """Whether an axis is meant in ratios: it is not equally spaced, and has equal ratios or spans decades."""
+    """Whether an axis, shape (n,), is meant in ratios: not in equal steps but equal ratios, or over decades."""
     if len(values) < 2 or values[0] <= 0 or not np.isfinite(values).all():
         return False
     steps, ratios = np.diff(values), values[1:] / values[:-1]
@@ -98,7 +98,7 @@ def is_logarithmic(values: np.ndarray) -> bool:
 
 
 def scale(axes: Axes, which: Literal["x", "y"], values: np.ndarray) -> None:
-    """Makes an axis logarithmic where its values are, with labels that do not meet."""
+    """Makes an axis logarithmic where its values, shape (n,), are, with labels that do not meet."""
     if not is_logarithmic(values):
         return
     axes.set(**{f"{which}scale": "log"})

@@ -9,7 +9,7 @@ from .ranges import span
 
 
 def limit_cycle_summary(view: View, done: np.ndarray) -> list[str]:
-    """The task's lines about the points that are `done`."""
+    """The task's lines about the points that are `done`, a mask of the points' shape."""
     v = view.variables
     status = v["status"][done]
     counts = [f"{int((status == value).sum())} {word}" for value, word in view.flags.items() if value >= 0]

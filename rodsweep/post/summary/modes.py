@@ -8,7 +8,7 @@ from .spectrum import accuracy_lines, stability_line
 
 
 def modes_summary(view: View, done: np.ndarray) -> list[str]:
-    """The task's lines about the points that are `done`."""
+    """The task's lines about the points that are `done`, a mask of the points' shape."""
     v = view.variables
     lines = [*accuracy_lines(view, done), stability_line(view, done)]
     errors = v["mode_error"][done]

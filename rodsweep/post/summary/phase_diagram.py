@@ -12,7 +12,7 @@ SHARP = 1e-8
 
 
 def phase_diagram_summary(view: View, done: np.ndarray) -> list[str]:
-    """The task's lines about the rows that are `done`."""
+    """The task's lines about the rows that are `done`, a mask of the rows' shape."""
     v = view.variables
     found = v["class"][done]
     counts = [f"{int((found == value).sum())} {word}" for value, word in CLASSES if (found == value).any()]

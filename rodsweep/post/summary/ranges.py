@@ -4,7 +4,7 @@ import numpy as np
 
 
 def span(values: np.ndarray) -> str:
-    """The range of the finite values, as words; "none" where there are none."""
+    """The range of the finite values, of any shape, as words; "none" where there are none."""
     finite = values[np.isfinite(values)]
     if not finite.size:
         return "none"

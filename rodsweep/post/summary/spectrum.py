@@ -6,12 +6,12 @@ from ...results.file.view import View
 
 
 def spectrum_summary(view: View, done: np.ndarray) -> list[str]:
-    """The task's lines about the points that are `done`."""
+    """The task's lines about the points that are `done`, a mask of the points' shape."""
     return [*accuracy_lines(view, done), stability_line(view, done)]
 
 
 def accuracy_lines(view: View, done: np.ndarray) -> list[str]:
-    """How accurate the eigenvalues are, and on how many unknowns."""
+    """How accurate the eigenvalues are, and on how many unknowns; `done` has the points' shape."""
     v = view.variables
     lines = []
     size = np.hypot(v["growth_rate"][done], v["frequency"][done])
@@ -25,7 +25,7 @@ def accuracy_lines(view: View, done: np.ndarray) -> list[str]:
 
 
 def stability_line(view: View, done: np.ndarray) -> str:
-    """How many points are certified, and how many unstable."""
+    """How many points are certified, and how many unstable; `done` has the points' shape."""
     unstable = view.variables["unstable_count"][done]
     return (
         f"certified: {int(view.variables['certified'][done].sum())} of {int(done.sum())}; unstable modes: at "

@@ -15,7 +15,7 @@ FORCES_AND_RATES = {
 
 
 def thresholds_summary(view: View, done: np.ndarray) -> list[str]:
-    """The task's lines about the points that are `done`."""
+    """The task's lines about the points that are `done`, a mask of the points' shape."""
     v = view.variables
     points = int(done.sum())
     lines = []
@@ -58,7 +58,7 @@ def _rises(values: np.ndarray) -> bool:
 
 
 def search_lines(view: View, done: np.ndarray, lines: int) -> list[str]:
-    """How far the searches can be trusted, and what they cost."""
+    """How far the searches can be trusted, and what they cost; `done` has the points' shape."""
     v = view.variables
     there = v["crossing_kind"][done] > 0
     stored = there.sum(axis=-1)

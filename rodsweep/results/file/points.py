@@ -43,7 +43,7 @@ def missing_ranges(path: Path) -> list[IndexRange]:
 
 
 def points_to_add(path: Path, other: Path, layout: Layout) -> Iterator[np.ndarray]:
-    """Records of the points that `other` has and `path`, a file of the same layout, misses; in blocks."""
+    """Records, (n,) at a time, of points that `other` has and `path`, a file of that layout, misses."""
     offsets = _offsets(other, layout)
     at_once = min(POINTS_AT_ONCE, BYTES_AT_ONCE // layout.record.itemsize + 1)
     with other.open("rb") as stream:

@@ -66,7 +66,7 @@ class View:
 
     @property
     def axes(self) -> dict[str, np.ndarray]:
-        """The parameters that the file knows: axes of a grid, or columns of a point list."""
+        """The parameters that the file knows: axes of a grid, or columns of a list, each (n,)."""
         return {name: self.variables[name] for name in NONLINEAR_PARAMETERS if name in self.variables}
 
     @property

@@ -25,7 +25,7 @@ class Checkpoints:
         self.header = CHECKPOINT_HEAD + fingerprint.encode() + b"\n"
 
     def write(self, chain: int, index: int, state: Array | None) -> None:
-        """Keeps what the neighbour of point `index` starts from; None where it has nothing to start from."""
+        """Keeps what the neighbour of point `index` starts from, an array of any shape or None."""
         stream = io.BytesIO()
         if state is not None:
             np.save(stream, state, allow_pickle=False)

@@ -60,7 +60,7 @@ def drop_journals(directory: Path) -> None:
 def read_journals(
     directory: Path, layout: Layout, fingerprint: str, points: int = 2**62
 ) -> Iterator[np.ndarray]:
-    """The whole records in all journals of a directory, in blocks; others' journals are skipped.
+    """The whole records in all journals of a directory, (records,) at a time; others' journals are skipped.
 
     `points`: how many there are; a record of none of them is skipped too.
     """

@@ -22,6 +22,8 @@ SDIRK = np.array(
     ]
 )
 """Order 4, L-stable, stiffly accurate (Hairer & Wanner II, Table IV.6.5)."""
+UNSTABLE = 1e-6
+"""How far beyond 1 the modulus of a multiplier is not its error."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +42,11 @@ class Monodromy:
         """Modulus of the largest multiplier but the trivial one."""
         return float(abs(self.multipliers[0]))
 
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers but the trivial one lie inside the circle, within their error."""
+        return self.largest <= 1 + max(UNSTABLE, self.trivial_error)
+
 
 def monodromy(beam: Beam, run: Trajectory) -> Monodromy:
     """The monodromy matrix of one period, by SDIRK on the steps of its run."""
@@ -51,7 +58,7 @@ def monodromy(beam: Beam, run: Trajectory) -> Monodromy:
 
 
 def flow_derivative(beam: Beam, run: Trajectory) -> Array:
-    """M(T); between the steps z is the cubic through z and z' at both ends."""
+    """M(T), shape (unknowns, unknowns); between the steps z is the cubic through z and z' at both ends."""
     n, stages = beam.mesh.unknowns, len(SDIRK)
     identity, nodes = np.eye(n), SDIRK.sum(axis=1)
     rates = np.array([beam.rate(z) for z in run.states])

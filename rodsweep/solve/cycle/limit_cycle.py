@@ -104,7 +104,7 @@ class Cycle:
 
 
 def solve_cycle(point: CyclePoint, request: CycleRequest, start: Array | None = None) -> Cycle:
-    """The cycle that the rod reaches from its leading mode, or from a neighbour's `state`.
+    """The cycle that the rod reaches from its leading mode, or from a neighbour's `state`, (3, STATE_NODES).
 
     Failures are a status, never an exception.
     """
@@ -181,7 +181,7 @@ def _measured(cycle: Cycle, found: RefinedOrbit, request: CycleRequest) -> Cycle
 
 
 def state_from_neighbour(beam: Beam, state: Array) -> Array:
-    """z of a `Cycle.state`; its tip is free of stress beyond the straight rod's, whatever the force."""
+    """z, shape (unknowns,), of a `Cycle.state`; its tip has the straight rod's stress, whatever the force."""
     there = mesh(1, state.shape[1] - 1).evaluation(beam.mesh.positions[:-1])
     return (state @ there.T / beam.stiffness_roots[:, None]).ravel()
 

@@ -34,8 +34,6 @@ BALANCE = 1e-8
 """What the energy of a cycle may miss, relative."""
 MONODROMY_ERROR, MONODROMY_STEPS = 1e-6, 128
 """Error of the trivial multiplier above which the matrix is made again, and the most steps for that."""
-UNSTABLE = 1e-6
-"""How far beyond 1 the modulus of a multiplier is not its error."""
 NEUTRAL = 3e-8
 """Distance of the largest multiplier from 1 below which a closed orbit says nothing of its amplitude."""
 LEAST_SIZE, LARGEST_SIZE = 0.2, 5.0
@@ -77,7 +75,7 @@ class RefinedOrbit:
 def refine(beam: Beam, z: Array, period: float, turns: int, accuracy: float) -> RefinedOrbit | None:
     """The stable cycle near z, a state of a run, as accurate as the limits allow; None where there is none.
 
-    turns: returns to the section in one period.
+    z: shape (unknowns,); turns: returns to the section in one period.
     """
     size, steps = float(np.linalg.norm(z)), FIRST_STEPS * turns
     orbit = shoot(beam, z, period, steps)
@@ -87,21 +85,21 @@ def refine(beam: Beam, z: Array, period: float, turns: int, accuracy: float) -> 
     if orbit is None or drifted(orbit, size):
         return None
     orbit = shortened(orbit)
-    if orbit is None or drifted(orbit, size) or not stable(orbit) or 1 - orbit.monodromy.largest < NEUTRAL:
+    if (
+        orbit is None
+        or drifted(orbit, size)
+        or not orbit.monodromy.stable
+        or 1 - orbit.monodromy.largest < NEUTRAL
+    ):
         return None
     turns = max(1, round(turns * orbit.period / period))
     orbit, space = _in_space(orbit, accuracy / 2, MOST_LAST_STEPS * turns // 2)
     if drifted(orbit, size):
         return None
     found = _in_time(orbit, space, accuracy, MOST_LAST_STEPS * turns)
-    if not stable(found.orbit):
+    if not found.orbit.monodromy.stable:
         return None
     return replace(found, divisor=undecided_divisor(found.orbit, found.errors.amplitude_error))
-
-
-def stable(orbit: Orbit) -> bool:
-    """Whether all multipliers but the trivial one lie inside the circle, within their error."""
-    return orbit.monodromy.largest <= 1 + max(UNSTABLE, orbit.monodromy.trivial_error)
 
 
 def _in_space(orbit: Orbit, accuracy: float, most_steps: int) -> tuple[Orbit, CycleErrors]:

@@ -56,14 +56,14 @@ class Orbit:
 
 
 def angle_weights(beam: Beam) -> Array:
-    """The row c with c z = theta of the tip."""
+    """The row c, shape (unknowns,), with c z = theta of the tip."""
     row = np.zeros(beam.mesh.unknowns)
     row[2 * beam.mesh.nodes :] = beam.mesh.quadrature[:-1]
     return row
 
 
 def period_run(beam: Beam, z: Array, period: float, steps: int) -> Trajectory | None:
-    """`steps` equal steps over a period; None where one fails, for then PETSc has shortened it."""
+    """`steps` equal steps over a period from z, (unknowns,); None where PETSc had to shorten one."""
     run = integrator(beam.mesh, PERIOD_MAP).run(
         beam, z, period, period / steps, RunLimit(most_steps=steps + 2)
     )
@@ -71,7 +71,7 @@ def period_run(beam: Beam, z: Array, period: float, steps: int) -> Trajectory | 
 
 
 def shoot(beam: Beam, z: Array, period: float, steps: int, known: Monodromy | None = None) -> Orbit | None:
-    """The orbit near z, or None where none is found.
+    """The orbit near z, shape (unknowns,), or None where none is found.
 
     z: a state of a run. Off the slow manifold, as by interpolation, the first, explicit stage of ARKIMEX
     would see rates of 1e10/tau2 at gamma3 = 1e-6. known: a monodromy matrix to begin with, as that of half as

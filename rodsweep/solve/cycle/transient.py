@@ -98,7 +98,7 @@ class Transient:
         self.waited = self.jumps = self.attempts = self.next_attempt = 0
 
     def follow(self, z: Array) -> TransientOutcome:
-        """Where the rod goes from z."""
+        """Where the rod goes from z, shape (unknowns,)."""
         z = relaxed(self.beam, z, self.mode.period)
         while self.waited < self.most_periods:
             run = self._chunk(z)

@@ -35,7 +35,7 @@ def first_mesh(wave: float, accuracy: float) -> Resolution:
 def converged_vectors(
     rod: Rod, eigenvalues: Complex, points: Array, wave: float, accuracy: float
 ) -> Vectors | None:
-    """The vectors at `points` from the best of few meshes; None where even the first is too large."""
+    """The vectors at `points`, (n,), from the best of few meshes; None where even the first is too large."""
     mesh = first_mesh(wave, accuracy)
     gaps = np.array([distance_to_next(complex(w), rod.coefficients) for w in eigenvalues])
     coarse = mode_vectors(rod, assemble(mesh.elements, mesh.order), eigenvalues, points)

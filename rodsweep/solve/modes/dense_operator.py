@@ -20,7 +20,7 @@ def dense_operator(rod: Rod, pencil: Pencil) -> tuple[Array, Array]:
 
 
 def shifted_inverse(A: Array, B: Array, shift: float) -> Array:
-    """B^1/2 (A - shift B)^-1 B^1/2 on the unknowns that carry a time derivative."""
+    """B^1/2 (A - shift B)^-1 B^1/2 on the n unknowns that carry a time derivative, shape (n, n)."""
     moving = B > 0
     root = np.sqrt(B[moving])
     inverse = np.linalg.inv(A - np.diag(shift * B))[np.ix_(moving, moving)]

@@ -56,7 +56,7 @@ class Vectors:
 
 
 def mode_vectors(rod: Rod, pencil: Pencil, eigenvalues: Complex, points: Array) -> Vectors:
-    """The modes of known eigenvalues on one mesh, at `points` in [0, 1]."""
+    """The modes of known eigenvalues on one mesh, at `points` in [0, 1], shape (n,)."""
     X, Z, rounding = _vectors(rod, pencil, eigenvalues)
     evaluation = pencil.evaluation(points)
     y, theta = pencil.fields(X, rod)
@@ -107,7 +107,7 @@ def _vectors(rod: Rod, pencil: Pencil, eigenvalues: Complex) -> tuple[Complex, C
 
 
 def null_vectors(A: NDArray, B: NDArray, w: complex) -> tuple[NDArray, NDArray]:
-    """The right and the left vector of the eigenvalue w, of largest entry 1; real where w is."""
+    """The right and the left vector of the eigenvalue w, (unknowns,), of largest entry 1; real where w is."""
     inverse = np.linalg.inv(A - np.diag((w if w.imag else w.real) * B))
     return _iterated(inverse, B), _iterated(inverse.T, B)
 

@@ -21,7 +21,7 @@ from ...discretization.resolution import resolution_for
 from ...model.rod import Rod
 from ..point import solved
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
-from ..spectrum.status import Status
+from ..spectrum.status import SpectrumStatus
 from .convergence import converged_vectors
 from .inverse_iteration import Vectors, no_vectors
 from .transient_growth import Growth, growth_of
@@ -51,7 +51,7 @@ class Modes:
     The status is the spectrum's unless a vector or the growth is less accurate than asked for.
     """
 
-    status: Status
+    status: SpectrumStatus
     spectrum: Spectrum
     vectors: Vectors
     growth: Growth = Growth()
@@ -74,7 +74,7 @@ def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
         return outcome
     found = solved(
         lambda: _solve(rod, request, outcome),
-        lambda cause: replace(outcome, status=Status.failed, message=cause),
+        lambda cause: replace(outcome, status=SpectrumStatus.failed, message=cause),
     )
     return replace(found, seconds=spectrum.seconds + found.seconds)
 
@@ -86,7 +86,7 @@ def _solve(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
     points = lobatto_points(request.nodes)
     vectors = converged_vectors(rod, spectrum.eigenvalues, points, wave, request.accuracy)
     if vectors is None:
-        return replace(outcome, status=Status.failed, message="no dense mesh resolves the modes")
+        return replace(outcome, status=SpectrumStatus.failed, message="no dense mesh resolves the modes")
     result, errors = replace(outcome, vectors=vectors), vectors.errors()
     if request.growth:
         rate = float(abs(spectrum.eigenvalues[0]))
@@ -99,11 +99,11 @@ def _solve(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
     if error <= request.accuracy:
         return result
     message = f"the error of the {culprit} is {error:.0e}"
-    return replace(result, status=Status.accuracy_not_reached, message=message)
+    return replace(result, status=SpectrumStatus.accuracy_not_reached, message=message)
 
 
 def _stable(spectrum: Spectrum) -> bool | None:
     """Whether the rod is stable; None where it is undecided."""
     if (spectrum.eigenvalues.real > SURELY * spectrum.error_estimate).any() or spectrum.unstable_count > 0:
         return False
-    return None if spectrum.status == Status.undecided else True
+    return None if spectrum.status == SpectrumStatus.undecided else True

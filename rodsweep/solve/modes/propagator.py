@@ -65,7 +65,10 @@ class Propagator:
         return float(sizes[0]), float(u[:, 0] @ self.generator @ u[:, 0])
 
     def squares(self, times: Array) -> tuple[Array, Array]:
-        """(N^2, c) at many times: N = |exp(L t)|, and f'' >= -c for f = |exp(L t) v|^2 of any |v| = 1."""
+        """(N^2, c) at many times, each of shape (times,).
+
+        N = |exp(L t)|, and f'' >= -c for f = |exp(L t) v|^2 of any |v| = 1.
+        """
         E = self.at(times)
         first = self.generator @ E
         half = np.swapaxes(E, 1, 2) @ (self.generator @ first) + np.swapaxes(first, 1, 2) @ first
@@ -87,7 +90,7 @@ def _orthonormal(vectors: NDArray, w: NDArray) -> Array:
 
 
 def exponential(matrices: Array) -> Array:
-    """exp of one small matrix or of a stack of them: the Taylor series of scaled ones, squared.
+    """exp of one small matrix or a stack of them, (..., k, k): the Taylor series of scaled ones, squared.
 
     What is squared is exp - 1: of a block triangular matrix with slow and fast parts the slow ones
     then keep their digits, however often the fast ones ask to square.

@@ -124,7 +124,7 @@ class Integrator:
     def run(
         self, beam: Beam, z: Array, duration: float, step: float = 0.0, limit: RunLimit = UNLIMITED
     ) -> Trajectory:
-        """From z at t = 0 to t = duration, or to the limit; failures are an ending.
+        """From z, shape (unknowns,), at t = 0 to t = duration, or to the limit; failures are an ending.
 
         step: the first one, or with equal steps each. Tolerances are in units of the largest component of z,
         so that small motions are followed as well as large ones.
@@ -194,7 +194,7 @@ def forget_integrators() -> None:
 
 
 def relaxed(beam: Beam, z: Array, period: float) -> Array:
-    """z after a thousandth of a period, its fast components decayed; z itself where that fails.
+    """z, (unknowns,), after a thousandth of a period, its fast components decayed; z itself where that fails.
 
     A state that no run led to, as one scaled or interpolated, has rates of 1e10/tau2 in the components that
     k1, k2 and 1/gamma3 make fast. The first, explicit stage of ARKIMEX does not damp them, at no step length;

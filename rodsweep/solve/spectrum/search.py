@@ -27,7 +27,7 @@ from ...model.rod import Rod
 from ..point import solved
 from .candidates import Candidates, Verdict, attempt, judge
 from .krylov_schur import eigen_solver, forget_solvers
-from .status import Status
+from .status import SpectrumStatus
 
 SHIFT_ABOVE_GROWTH = 1.05
 """Shift in units of the growth rate of the most amplified wave, which bounds most spectra."""
@@ -67,7 +67,7 @@ class Spectrum:
     vectors: (Y, Theta), complex, shape (2, modes, vector_nodes), scaled to Y(1) = 1; or None.
     """
 
-    status: Status
+    status: SpectrumStatus
     eigenvalues: Complex
     error_estimate: Array
     unstable_count: int = -1
@@ -98,7 +98,7 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
 
     def failed(cause: str) -> Spectrum:
         forget_solvers()
-        return _nothing(Status.failed, request, cause)
+        return _nothing(SpectrumStatus.failed, request, cause)
 
     return solved(lambda: Search(rod, request).outcome(), failed)
 
@@ -207,24 +207,24 @@ class Search:
             return _result(self.best, self.rod, self.request)
         if self.lost is not None:
             counted = f"the winding number counts {self.lost.count.number}"
-            return _nothing(Status.modes_missing, self.request, counted)
+            return _nothing(SpectrumStatus.modes_missing, self.request, counted)
         if self.unresolved:
-            return _nothing(Status.modes_missing, self.request, "no mesh resolves what may lead")
-        return _nothing(Status.failed, self.request, self.why)
+            return _nothing(SpectrumStatus.modes_missing, self.request, "no mesh resolves what may lead")
+        return _nothing(SpectrumStatus.failed, self.request, self.why)
 
 
 def _result(best: Judged, rod: Rod, request: SpectrumRequest) -> Spectrum:
     """The outcome with its numbers, and how far they are proved."""
     found, verdict = best.found.roots, best.verdict
-    status = Status.ok if best.short <= STALLED_SAFETY else Status.accuracy_not_reached
+    status = SpectrumStatus.ok if best.short <= STALLED_SAFETY else SpectrumStatus.accuracy_not_reached
     proved = verdict is not None and verdict.agrees
     undecided = any(found.on_the_axis.tolist())
     message = ""
-    if status == Status.ok and request.certify:
+    if status == SpectrumStatus.ok and request.certify:
         if undecided:
-            status = Status.undecided
+            status = SpectrumStatus.undecided
         elif not proved:
-            status, message = Status.not_certified, verdict.count.why_not if verdict else ""
+            status, message = SpectrumStatus.not_certified, verdict.count.why_not if verdict else ""
     unstable = sum(value.real > 0 for value in found.w.tolist())
     # Where no proof is asked for the unstable modes are counted if the search went past them.
     known = not undecided and (proved if request.certify else unstable < len(found.w))
@@ -250,7 +250,7 @@ def _vectors(rod: Rod, request: SpectrumRequest, found: Candidates) -> Complex |
     return np.stack([(matrix @ y * scale).T, (matrix @ theta * scale).T])
 
 
-def _nothing(status: Status, request: SpectrumRequest, message: str) -> Spectrum:
+def _nothing(status: SpectrumStatus, request: SpectrumRequest, message: str) -> Spectrum:
     """The outcome without numbers."""
     empty = np.full(request.modes, np.nan)
     shape = (2, request.modes, request.vector_nodes)

@@ -3,7 +3,7 @@
 from ..status import PointStatus
 
 
-class Status(PointStatus):
+class SpectrumStatus(PointStatus):
     """Outcome of a point of the tasks spectrum and modes."""
 
     ok = 0, "every number is as accurate as asked for, and certified where asked for", True
