@@ -16,10 +16,10 @@ from pathlib import Path
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
-import click  # noqa: E402
+import click  # noqa: E402 - after the environment is set
 
-from .. import __version__  # noqa: E402
-from ..errors import EnvironmentLacks, InputError  # noqa: E402
+from .. import __version__  # noqa: E402 - after the environment is set
+from ..errors import EnvironmentLacks, InputError  # noqa: E402 - after the environment is set
 
 FILE = click.Path(path_type=Path)
 LONGEST_MESSAGE = 350

@@ -87,7 +87,7 @@ def legend_below(figure: Figure, handles: list[Any], columns: int, size: float =
 
 
 def is_logarithmic(values: np.ndarray) -> bool:
-    """Whether an axis, shape (n,), is meant in ratios: not in equal steps but equal ratios, or over decades."""
+    """Whether an axis, shape (n,), is meant in ratios: by equal ratios, no equal steps, or decades."""
     if len(values) < 2 or values[0] <= 0 or not np.isfinite(values).all():
         return False
     steps, ratios = np.diff(values), values[1:] / values[:-1]
