@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from rodsweep.determinant.box import eigenvalue_box
-from rodsweep.determinant.certified_count import MOST_NODES, count_right_of, phase_change, stepped_change
 from rodsweep.determinant.dominance import dominant_factors, dominated
 from rodsweep.determinant.value import scaled_determinant
+from rodsweep.determinant.winding_number import MOST_NODES, count_right_of, phase_change, stepped_change
 from rodsweep.model.rod import Rod
 
 CROWDED = Rod(2000.0, 1e4, 1e4, 1e-4)

@@ -15,7 +15,7 @@ from rodsweep.determinant.box import (
 from rodsweep.determinant.covering import cover, distance, examine, first_boxes, slabs
 from rodsweep.determinant.discs import bound_on_bidisc, centre_at
 from rodsweep.determinant.newton import eigenvalue_newton
-from rodsweep.determinant.path import Path, changes, coefficients_at, determinant_along
+from rodsweep.determinant.parameter_path import Path, changes, coefficients_at, determinant_along
 from rodsweep.determinant.value import scaled_determinant
 from rodsweep.model.rod import Rod
 

@@ -8,7 +8,7 @@ import pytest
 from hard.exact import derivatives
 from reference import determinant as reference
 
-from rodsweep.determinant.path import determinant_along, direction_of
+from rodsweep.determinant.parameter_path import determinant_along, direction_of
 from rodsweep.determinant.value import TYPICAL_NOISE, newton_correction, scaled_determinant
 from rodsweep.model import compilation
 from rodsweep.model.rod import Rod

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from .plane import Plane, ValueOnPlane
+from .parameter_plane import Plane, ValueOnPlane
 
 Vector = Array
 Matrix = Array

@@ -20,7 +20,7 @@ from math import exp, inf, log, sqrt
 
 from ..model.compilation import compiled
 from ..model.rod import Coefficients, Rod
-from .path import Path, changes, coefficients_at
+from .parameter_path import Path, changes, coefficients_at
 
 MARGIN = 1.01
 """Factor on every bound, so that rounding in the bound itself cannot matter."""

@@ -29,7 +29,7 @@ from ..model.rod import Coefficients
 from .box import MARGIN, quiet_radius, squared_amplification_over
 from .discs import CLEARANCE, ROUNDING_OF_D, Centre, Pair, bound_on_bidisc, centre_at
 from .newton import FAILED, Zero, crossing_newton
-from .path import Path, changes, coefficients_at, determinant_along
+from .parameter_path import Path, changes, coefficients_at, determinant_along
 
 SLABS = 8
 """Least number of intervals of p to start from."""

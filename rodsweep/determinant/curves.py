@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import Array
 from .boundary import Boundary, OnBoundary, Vector
-from .plane import Plane
+from .parameter_plane import Plane
 
 STEP_FIRST, STEP_LARGEST, STEP_SMALLEST = 0.01, 0.04, 1e-9
 """Steps of arclength in units of the plane, in which an axis has length 1."""

@@ -1,6 +1,6 @@
 """Upper bounds of D(w, p) exp(-L (w - c) - K (p - p_c)) over a bidisc, for Cauchy's estimate.
 
-p is the variable of a path of rods (`rodsweep.determinant.path`); for a single rod its disc has radius 0.
+p is the variable of a path of rods (`parameter_path`); for a single rod its disc has radius 0.
 """
 
 import cmath
@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from ..model.compilation import compiled
 from ..model.rod import Coefficients
-from .path import Changes, root_changes
+from .parameter_path import Changes, root_changes
 from .value import branches
 
 ROUNDING_OF_D = 4.0

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from ..model.compilation import compiled
 from ..model.rod import Coefficients
-from .path import coefficients_at, determinant_along
+from .parameter_path import coefficients_at, determinant_along
 from .value import ROUND_OFF, scaled_determinant
 
 MOST_NEWTON_STEPS, MOST_REFINEMENTS = 15, 12

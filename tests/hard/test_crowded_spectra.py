@@ -8,7 +8,7 @@ bounded, so in long soft rods they crowd below it: their real parts agree in sev
 import numpy as np
 import pytest
 
-from rodsweep.determinant.certified_count import count_right_of
+from rodsweep.determinant.winding_number import count_right_of
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.status import SpectrumStatus
 

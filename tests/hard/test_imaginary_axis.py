@@ -6,7 +6,7 @@ unstable to either side. At the point itself nobody can say which, and a relativ
 
 import pytest
 
-from rodsweep.determinant.certified_count import count_right_of
+from rodsweep.determinant.winding_number import count_right_of
 from rodsweep.model.rod import Rod
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
 from rodsweep.solve.spectrum.status import SpectrumStatus

@@ -10,7 +10,7 @@ from math import inf
 import numpy as np
 import pytest
 
-from rodsweep.determinant.certified_count import count_right_of
+from rodsweep.determinant.winding_number import count_right_of
 from rodsweep.model.rod import Rod
 
 from .exact import SHIFT

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ...config.phase_diagram import PhaseDiagramConfig
-from ...determinant.plane import Plane, PlaneAxis
+from ...determinant.parameter_plane import Plane, PlaneAxis
 from ...model.parameters import CRUSHING
 from ...model.rod import Rod
 from ...results.file.view import View

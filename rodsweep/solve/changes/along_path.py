@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from ...determinant.covering import Box, cover, first_boxes, slabs
 from ...determinant.newton import Zero
-from ...determinant.path import Path, coefficients_at, determinant_along
+from ...determinant.parameter_path import Path, coefficients_at, determinant_along
 from ..point import Unsolvable
 from .leading_eigenvalue import Tracer
 from .unstable_modes import Counts, Crossing, Kind

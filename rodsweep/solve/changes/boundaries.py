@@ -11,7 +11,7 @@ import numpy as np
 from ...arrays import Array
 from ...determinant.boundary import Boundary
 from ...determinant.curves import BoundaryCurve, trace
-from ...determinant.plane import Plane
+from ...determinant.parameter_plane import Plane
 from .unstable_modes import Kind
 
 SAME_COORDINATE = 1e-12

@@ -16,9 +16,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Complex
-from ...determinant.certified_count import count_right_of
 from ...determinant.newton import double_newton, eigenvalue_newton
-from ...determinant.path import Path, coefficients_at
+from ...determinant.parameter_path import Path, coefficients_at
+from ...determinant.winding_number import count_right_of
 from ..point import Unsolvable
 from ..spectrum.search import SpectrumRequest, solve_spectrum
 from .unstable_modes import Crossing, Kind

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...determinant.path import Path
+from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ..point import solved
 from .along_path import Transitions, transitions

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from ...determinant.path import Path
+from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ..point import solved
 from ..status import PointStatus

@@ -7,8 +7,8 @@ winding number confirms it at both ends and between.
 from dataclasses import dataclass, replace
 from enum import IntEnum
 
-from ...determinant.certified_count import count_right_of
-from ...determinant.path import Path
+from ...determinant.parameter_path import Path
+from ...determinant.winding_number import count_right_of
 
 PLACES = (0.5, 0.3, 0.7)
 """Where between two crossings the unstable modes are counted, until a count is decided."""

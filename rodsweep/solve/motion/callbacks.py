@@ -1,8 +1,8 @@
 """The rod's equations as C functions that PETSc calls without passing through Python.
 
 numba compiles them (`cfunc`), ctypes hands them to libpetsc: with Python between, a Newton iteration of 5 us
-takes 200. PETSc gives each of them one pointer, to the record CONTEXT; the memory behind it belongs to a
-`Workspace`, which must outlive the TS.
+takes 200. PETSc gives each of them one pointer, to the record `context.CONTEXT`; the memory behind it belongs
+to a `Workspace`, which must outlive the TS.
 
 The form is dz/dt - f(z) = 0, all of it implicit. An additive split does not pay: with the whole Jacobian of
 the step implicit and only the rest explicit, the axial tension k1 Pi^2 still forces 500 to 1500 steps a
@@ -11,7 +11,6 @@ period.
 
 from typing import Any
 
-import numba
 import numpy as np
 from numba import types
 
@@ -19,56 +18,17 @@ from ...discretization.beam import Beam, Mesh
 from ...discretization.body_frame import BeamParameters, Element, jacobian, rate
 from ...model.compilation import compiled
 from ..backend.c_functions import (
-    INT,
     POINTER,
     c_function,
     call,
     floats,
     integers,
     petsc_function,
-    pointer,
     record_at,
 )
 from ..backend.petsc import PETSc
-
-REAL, WHOLE = "<f8", "<i8"
-CONTEXT = np.dtype(
-    [
-        *((name, REAL) for name in BeamParameters._fields),
-        *((name, WHOLE) for name in Element._fields),  # addresses, as are the next two
-        ("jacobian", WHOLE),
-        ("base", WHOLE),  # the state at which a step's matrix is made
-        ("order", WHOLE),
-        ("unknowns", WHOLE),
-        ("matrix_due", WHOLE),  # UP_TO_DATE, AT_BASE or AT_ITERATE
-        ("shift", REAL),  # with which the matrix was made
-        ("matrix", WHOLE),  # the one that was last made here
-        ("content", WHOLE),  # PETSc's number of its content, which rises with every change, PETSc's included
-        ("factorisations", WHOLE),
-        ("contraction", REAL),  # rate at which the steps of Newton's method shrink
-        ("growing", WHOLE),  # how many of them in a row have grown
-        ("last_step", REAL),  # the size of the last one: 2-norm, as are the two below
-        ("small_error", REAL),  # error that is small enough
-        ("rounding", REAL),  # the largest step that rounding leaves
-        ("taken", WHOLE, (3,)),  # where PETSc puts what it is asked for
-    ]
-)
-"""What every callback receives."""
-TAKEN, CONTENT = (CONTEXT.fields[name][1] for name in ("taken", "content"))  # type: ignore[index]  # has fields
-"""Places in bytes of what PETSc writes."""
-
-UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
-"""Whether a new matrix is due, and where it is to be made."""
-SLUGGISH = 0.3
-"""Contraction from which a new matrix, made at the iterate, is worth its price."""
-STAGNANT = 0.5
-"""Contraction that shows rounding, where steps are small."""
-DIVERGING, MOST_GROWING = 2.0, 2
-"""Contraction that counts as growth; growths in a row that end an iteration (one asks for a new matrix)."""
-FORGET = 0.3
-"""Share of the remembered contraction that a new iteration must beat."""
-ITERATING, STEP_SMALL, RESIDUAL_NAN, NOT_CONTRACTING = 0, 4, -4, -5
-"""Values of SNESConvergedReason."""
+from .context import AT_BASE, AT_ITERATE, CONTENT, CONTEXT, TAKEN, UP_TO_DATE
+from .stage_newton import newton_test
 
 _read, _unread = petsc_function("VecGetArrayRead"), petsc_function("VecRestoreArrayRead")
 _write, _unwrite = petsc_function("VecGetArray"), petsc_function("VecRestoreArray")
@@ -151,37 +111,6 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     _content(B, context + CONTENT)
     c.matrix_due, c.shift = UP_TO_DATE, shift
     c.factorisations += 1
-    return 0
-
-
-@c_function(POINTER, INT, types.float64, types.float64, types.float64, POINTER, POINTER)
-def newton_test(  # noqa: PLR0913, PLR0917 - PETSc's signature
-    snes: int, iteration: int, x: float, dx: float, size: float, reason: int, context: int
-) -> int:
-    """Whether the error of a stage, contraction * last step, is small enough (Hairer & Wanner II, IV.8).
-
-    The contraction is remembered from stage to stage, so that a good guess needs one iteration. It is
-    measured from the second iteration on only: letting it decay after stages of one locks into wrong
-    answers.
-    """
-    c = record_at(context, CONTEXT)
-    answer = numba.carray(pointer(reason), (1,), np.int32)
-    answer[0] = ITERATING
-    if not np.isfinite(size) or not np.isfinite(dx):
-        answer[0] = RESIDUAL_NAN
-    elif iteration > 0:
-        theta = dx / c.last_step if iteration > 1 and c.last_step > 0 else 0.0
-        if iteration > 1:
-            c.contraction = max(FORGET * c.contraction, theta)
-        c.growing = c.growing + 1 if theta > DIVERGING else 0
-        small = dx * min(1.0, c.contraction) <= c.small_error
-        if small or (theta > STAGNANT and iteration > 2 and dx <= c.rounding):
-            answer[0] = STEP_SMALL
-        elif c.growing >= MOST_GROWING and iteration > 3:
-            answer[0] = NOT_CONTRACTING
-        elif theta > SLUGGISH:
-            c.matrix_due = AT_ITERATE
-        c.last_step = dx
     return 0
 
 

@@ -15,7 +15,8 @@ import numpy as np
 from ...arrays import Array
 from ...discretization.beam import Beam, Mesh
 from ..backend.petsc import PETSc
-from .callbacks import AT_BASE, Workspace
+from .callbacks import Workspace
+from .context import AT_BASE
 from .time_scheme import TimeScheme
 
 STAGE_ROUND_OFF = 1e-9

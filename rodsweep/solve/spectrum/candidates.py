@@ -12,8 +12,8 @@ import numpy as np
 
 from ...arrays import Complex
 from ...determinant.box import squared_amplification
-from ...determinant.certified_count import Count, count_right_of
 from ...determinant.roots import Roots, roots
+from ...determinant.winding_number import Count, count_right_of
 from ...discretization.resolution import Resolution
 from ...model.rod import Rod
 from ..backend.petsc import PETSC_ERRORS

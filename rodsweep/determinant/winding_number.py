@@ -28,7 +28,7 @@ from ..model.rod import Coefficients, Rod
 from .box import eigenvalue_box, quiet_radius_of
 from .discs import CLEARANCE, ROUNDING_OF_D, bound_on_bidisc, centre_at
 from .dominance import dominated_stretch
-from .path import Changes
+from .parameter_path import Changes
 from .value import branches, scaled_determinant
 
 STILL = Changes(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

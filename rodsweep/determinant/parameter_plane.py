@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from ..model.parameters import CRUSHING, LINEAR_PARAMETERS, PARAMETERS
 from ..model.rod import Rod
-from .path import ValueAlong, determinant_along, direction_of
+from .parameter_path import ValueAlong, determinant_along, direction_of
 from .value import ROUND_OFF
 
 BEYOND_AN_END = 1e-12
