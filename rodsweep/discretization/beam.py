@@ -62,7 +62,7 @@ def mesh(elements: int, order: int) -> Mesh:
     """The mesh of `elements` equal elements of order `order`."""
     x, w = gauss_lobatto(order)
     D, weights = differentiation(x) * 2 * elements, w / (2 * elements)
-    return Mesh(elements, order, Element(D, D.T.copy(), -(D.T * weights) @ D, weights))
+    return Mesh(elements, order, Element(*map(np.ascontiguousarray, (D, D.T, -(D.T * weights) @ D, weights))))
 
 
 @dataclass(frozen=True, eq=False)
