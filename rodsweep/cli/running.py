@@ -83,11 +83,10 @@ class _Run:
 
     def _units(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
         """(the units of this shard that miss a point, the points that they miss)."""
-        chained = self.solver.chained
-        if chained is None:
+        if self.solver.chained is None:
             units = self.shard.part(missing, self.job.points.count)
             return units, total(units)
-        lacks, chains = IndexSet(missing), chained.chains
+        lacks, (chains, _) = IndexSet(missing), self.solver.chained
         units = self.shard.part(chains.todo(lacks), chains.count)
         each = (lacks[chains.indices(chain)].sum() for unit in units for chain in range(*unit))
         return units, int(sum(each))
@@ -147,10 +146,9 @@ class _Run:
         self, missing: IndexSet, checkpoints: Checkpoints
     ) -> Callable[[int], Iterable[tuple[int, Any]]]:
         """How a unit is solved: a point, or a chain where points start one from the other."""
-        chained = self.solver.chained
-        if chained is None:
+        if self.solver.chained is None:
             return lambda index: ((index, self.solver.solve(index)),)
-        return ChainSolver(chained.chains, missing, chained.solve_from, checkpoints, self.stop)
+        return ChainSolver(*self.solver.chained, missing, checkpoints, self.stop)
 
     def _finish(self, count: int, contributions: list[Contribution]) -> int:
         """Folds everything into the file, says how the run ended, and with which status it exits."""
@@ -220,12 +218,11 @@ def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
     }
     versions = {f"{name}_version": value for name, value in petsc.versions().items()}
     return Plan(
-        columns=job.points.columns,
-        is_grid=job.points.is_grid,
+        points=job.points,
         layout=job.layout,
         coordinates=job.task.coordinates(),
         constants=job.task.constants(),
         config=job.resolved,
-        attributes=attributes | job.config.constants | versions | provenance.provenance(),
+        attributes=attributes | job.config.parameters.numbers | versions | provenance.provenance(),
         flags=tuple((int(s), s.name) for s in solver.statuses),
     )

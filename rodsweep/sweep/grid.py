@@ -70,7 +70,7 @@ def grid_size(config: Config) -> int:
 def points_of(config: Config, directory: Path) -> Points:
     """The points that the config asks for; InputError for any value that the model does not allow."""
     parameters = config.parameters
-    for name, value in config.constants.items():
+    for name, value in parameters.numbers.items():
         _refuse_outside(name, (value,))
     if parameters.points is not None:
         columns = _read_csv(directory / parameters.points, config.names)

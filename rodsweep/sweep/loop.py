@@ -62,5 +62,5 @@ def sweep(
         busy += spent
         chunk = claims.claim(Report(at - chunk[0], spent, (at, end), points - before, stop=stop.name))
     claims.close()
-    team.barrier()
+    team.comm.Barrier()
     return Share(points, busy, time.monotonic() - started - busy)

@@ -63,9 +63,6 @@ class Team:
         """The values of all ranks on the first rank, None elsewhere."""
         return self.comm.gather(value)
 
-    def barrier(self) -> None:
-        self.comm.Barrier()
-
     @contextmanager
     def together(self) -> Iterator[None]:
         """What fails in here on one rank ends all ranks, with a message; the others would wait for ever.

@@ -14,9 +14,9 @@ from ...results.file.view import View
 from ...results.layouts.phase_diagram import curve_variables
 from ...results.layouts.variables import Filled
 from ...sweep.estimate import Estimate, estimate_lines
-from .crossings import search_record
 from .parts import LinearTask
 from .protocol import Part, Solver
+from .thresholds import search_record
 
 if TYPE_CHECKING:
     from ...determinant.curves import BoundaryCurve
