@@ -129,7 +129,12 @@ class _Run:
         try:
             directory = journal_directory(self.output)
             journal = Journal(directory, self.team.rank, plan.layout, plan.fingerprint)
-            solve = self._solve_unit(IndexSet(missing), Checkpoints(directory, plan.fingerprint))
+            checkpoints = Checkpoints(directory, plan.fingerprint)
+            solve: Callable[[int], Iterable[tuple[int, Any]]] = (
+                ChainSolver(*solver.chained, IndexSet(missing), checkpoints, self.stop)
+                if solver.chained
+                else lambda index: ((index, solver.solve(index)),)
+            )
             share = sweep(self.team, units, solve, keep, tell or (lambda done: None), self.stop)
             journal.close()
         except OSError as error:
@@ -141,14 +146,6 @@ class _Run:
             if tell:
                 tell.close()
         return failures, share
-
-    def _solve_unit(
-        self, missing: IndexSet, checkpoints: Checkpoints
-    ) -> Callable[[int], Iterable[tuple[int, Any]]]:
-        """How a unit is solved: a point, or a chain where points start one from the other."""
-        if self.solver.chained is None:
-            return lambda index: ((index, self.solver.solve(index)),)
-        return ChainSolver(*self.solver.chained, missing, checkpoints, self.stop)
 
     def _finish(self, count: int, contributions: list[Contribution]) -> int:
         """Folds everything into the file, says how the run ended, and with which status it exits."""
@@ -162,7 +159,13 @@ class _Run:
         self.store.close()
         left = self._units(missing)[1]
         part = f"shard {self.shard} of {self.output}" if missing else f"{self.output}"
-        click.echo(self._time_spent(count - left) if count else f"{part} is complete, nothing to do")
+        if count:
+            seconds, points = time.monotonic() - self.began, count - left
+            each = 1e3 * seconds * self.team.size / max(points, 1)
+            pace = f" ({each:.3g} ms a point and rank)" if points else ""
+            click.echo(f"{points} points in {seconds:.2f} s on {self.team.size} ranks{pace}")
+        else:
+            click.echo(f"{part} is complete, nothing to do")
         click.echo(f"{self.output}: " + ", ".join(f"{n} {name}" for name, n in counts.items()))
         told = [failure for _, failures, _ in contributions for failure in failures]
         for failure in told[:FAILURES_TOLD]:
@@ -175,12 +178,6 @@ class _Run:
             return 0
         click.echo(f"  `rodsweep show {self.output}` says what each status means")
         return 1
-
-    def _time_spent(self, points: int) -> str:
-        seconds = time.monotonic() - self.began
-        text = f"{points} points in {seconds:.2f} s on {self.team.size} ranks"
-        each = 1e3 * seconds * self.team.size / max(points, 1)
-        return text + (f" ({each:.3g} ms a point and rank)" if points else "")
 
     def _history(self, contributions: list[Contribution]) -> dict[str, Any]:
         """Attributes that say where, by what and by whom the points of this run were computed."""

@@ -7,12 +7,12 @@ import numpy as np
 
 from ...config.limit_cycle import LimitCycleConfig
 from ...discretization.quadrature import lobatto_points
-from ...errors import InputError
 from ...model.parameters import PARAMETERS
 from ...results.layouts.limit_cycle import CYCLE, ENERGY, PERIOD_TAU1, SHAPE, TIP
 from ...results.layouts.variables import Variable
 from ...sweep.chains import Chains, State
 from ...sweep.estimate import CYCLE_SECONDS, Estimate
+from ...sweep.grid import refuse_outside
 from .parts import count_of, rod_parts
 from .protocol import Part, Solver, Task
 
@@ -31,13 +31,8 @@ class LimitCycleTask(Task):
 
     def __post_init__(self) -> None:
         for name, column in self.points.by_name.items():
-            needed = PARAMETERS[name].nonlinear
-            bad = needed.first_outside(column)
-            if bad is not None:
-                raise InputError(
-                    f"parameters.{name} = {bad:g} is not allowed in the task limit_cycle; it must be "
-                    f"{needed.phrase}, because the nonlinear rod stretches, shears and turns against drag"
-                )
+            why = ", because the nonlinear rod stretches, shears and turns against drag"
+            refuse_outside(PARAMETERS[name].nonlinear, name, column, " in the task limit_cycle", why)
 
     @property
     def chains(self) -> Chains | None:

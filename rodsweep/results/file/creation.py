@@ -1,7 +1,4 @@
-"""A new result file: netCDF-4-compatible HDF5 with every variable in its place, filled as missing.
-
-Also what is added to a file once its points are known, such as curves.
-"""
+"""A new result file: netCDF-4-compatible HDF5 with every variable in its place; and what is added later."""
 
 import json
 from collections.abc import Sequence

@@ -60,10 +60,7 @@ def points_to_add(path: Path, other: Path, layout: Layout) -> Iterator[np.ndarra
 
 
 def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> bool:
-    """Writes records, in any order, into the variables; returns whether there were any.
-
-    A record goes to its place whatever the shape of the grid; neighbours go by one call.
-    """
+    """Writes records, (n,) in any order, into the variables, neighbours by one call; whether there were any."""
     offsets = _offsets(path, layout)
     any_written = False
     with path.open("r+b") as stream:

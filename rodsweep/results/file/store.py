@@ -80,10 +80,7 @@ class Store:
         return missing_ranges(self.path)
 
     def fold(self, attributes: dict[str, Any], additions: Sequence[Filled] = ()) -> None:
-        """Puts all journalled points, the attributes and whole variables into the file; drops the journals.
-
-        `additions` are what only all points together give, such as curves; the file changes in one instant.
-        """
+        """Puts journalled points, attributes and whole variables into the file at once; drops journals."""
         plan = self.plan
         with disk_refusals(self.path, KEPT):
             blocks = read_journals(self.journals, plan.layout, plan.fingerprint, plan.points.count)

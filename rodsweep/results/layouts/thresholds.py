@@ -31,10 +31,7 @@ CROSSING_KINDS = (
 
 
 def search_variables(line: str, at: str) -> tuple[Variable, ...]:
-    """What a search along the parameter `line` found, how far it can be trusted, and what it cost.
-
-    `at` is the name of the variable that says where a crossing is.
-    """
+    """What a search along `line` found, how sure that is and what it cost; `at` names a crossing's place."""
     units = PARAMETERS[line].unit
     undecided = f"of a range of {line} in which it is undecided whether a window opens and closes"
     kinds = tuple(enumerate(CROSSING_KINDS))

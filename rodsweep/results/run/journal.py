@@ -61,10 +61,7 @@ def drop_files(directory: Path, pattern: str) -> None:
 def read_journals(
     directory: Path, layout: Layout, fingerprint: str, points: int = 2**62
 ) -> Iterator[np.ndarray]:
-    """The whole records in all journals of a directory, (records,) at a time; others' journals are skipped.
-
-    `points`: how many there are; a record of none of them is skipped too.
-    """
+    """The whole records of a run's points in all of its journals in a directory, (records,) at a time."""
     size = layout.record.itemsize
     header = JOURNAL_HEAD + fingerprint.encode() + b"\n"
     for path in sorted(directory.glob(JOURNALS)):
