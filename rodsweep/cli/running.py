@@ -68,7 +68,9 @@ class _Run:
         missing = self.team.on_first(lambda: self._open(fresh))
         units, count = self._units(missing)
         if self.team.first:
-            self._announce(count, total(missing))
+            points, shard = self.job.points.count, f"; shard {self.shard}" if self.shard.of > 1 else ""
+            kept = f", {points - total(missing)} kept" if points > total(missing) else ""
+            click.echo(f"{self.output}: {count} of {points} points to do{kept}{shard}")
         contributions: list[Contribution] = []
         if count:
             self.team.on_first(self._note_kernels)
@@ -90,16 +92,6 @@ class _Run:
         units = self.shard.part(chains.todo(lacks), chains.count)
         each = (lacks[chains.indices(chain)].sum() for unit in units for chain in range(*unit))
         return units, int(sum(each))
-
-    def _announce(self, count: int, missing: int) -> None:
-        """Says what there is to do."""
-        points = self.job.points.count
-        text = f"{self.output}: {count} of {points} points to do"
-        if points > missing:
-            text += f", {points - missing} kept"
-        if self.shard.of > 1:
-            text += f"; shard {self.shard}"
-        click.echo(text)
 
     def _note_kernels(self) -> None:
         """Keeps in the file which BLAS kernels compute its points, and says so where there are several."""

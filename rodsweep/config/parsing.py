@@ -57,7 +57,9 @@ def parse(text: str, where: str) -> Any:
     except YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         place = f", line {mark.line + 1}, column {mark.column + 1}" if mark else ""
-        raise InputError(f"{where}{place}: not valid YAML: {_problem(error)}") from None
+        context, problem = (getattr(error, name, None) or "" for name in ("context", "problem"))
+        told = named(" ".join(f"{context} {problem}".split()) or " ".join(str(error).split()))
+        raise InputError(f"{where}{place}: not valid YAML: {told}") from None
     except (ValueError, OverflowError, RecursionError) as error:
         raise InputError(f"{where}: not valid YAML: {named(error)}") from None
 
@@ -96,9 +98,3 @@ def _refuse_scalar(event: ScalarEvent) -> None:
         raise InputError("merge keys (<<) are not allowed in a config")
     if event.style is None and overflows(text):
         raise InputError(f"{short(text)} is too large for a floating-point number")
-
-
-def _problem(error: YAMLError) -> str:
-    """What the YAML library has to say, on one line."""
-    context, problem = (getattr(error, name, None) or "" for name in ("context", "problem"))
-    return named(" ".join(f"{context} {problem}".split()) or " ".join(str(error).split()))

@@ -83,7 +83,13 @@ class PhaseDiagramTask(LinearTask):
         finite = rows[np.isfinite(rows)]
         if len(finite) < 2:
             return []
-        plane = Plane(self._rod(), (self._axis(line, self.line), self._axis(row, finite)))
+        axes = self.config.parameters.axes
+        not_crushed = {name: float(axis.array()[-1 if name == "k1" else 0]) for name, axis in axes.items()}
+        abscissa, ordinate = (
+            PlaneAxis(name, float(values[0]), float(values[-1]), axes[name].logarithmic)
+            for name, values in ((line, self.line), (row, finite))
+        )
+        plane = Plane(Rod(**not_crushed), (abscissa, ordinate))
         names = ("crossing_at", "crossing_kind", "crossing_frequency", "crossing_growth_rate")
         at, kind, frequency, rate = (view.variables[n].reshape(len(rows), -1) for n in names)
         seeds = [
@@ -103,16 +109,6 @@ class PhaseDiagramTask(LinearTask):
             Fc = filament_hopf()
             values |= {"filament_F_hopf": Fc, "partial_beam_k1": 4 * Fc, "partial_beam_F": 2 * Fc}
         return [(variables[name], np.asarray(value)) for name, value in values.items()]
-
-    def _axis(self, name: str, values: np.ndarray) -> PlaneAxis:
-        logarithmic = self.config.parameters.axes[name].logarithmic
-        return PlaneAxis(name, float(values[0]), float(values[-1]), logarithmic)
-
-    def _rod(self) -> Rod:
-        """Some rod of the plane that is not crushed."""
-        axes = {name: axis.array() for name, axis in self.config.parameters.axes.items()}
-        values = {name: float(column[-1] if name == "k1" else column[0]) for name, column in axes.items()}
-        return Rod(**values)
 
 
 def record(result: "DiagramRow", most: int) -> dict[str, Any]:

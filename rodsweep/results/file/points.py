@@ -60,7 +60,7 @@ def points_to_add(path: Path, other: Path, layout: Layout) -> Iterator[np.ndarra
 
 
 def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> bool:
-    """Writes records, (n,) in any order, into the variables, neighbours by one call; whether there were any."""
+    """Writes records, (n,) in any order, into the variables, neighbours by one call; whether any were."""
     offsets = _offsets(path, layout)
     any_written = False
     with path.open("r+b") as stream:

@@ -23,10 +23,7 @@ ENERGIES = ("energy", "injection", "dissipation")
 
 @dataclass(frozen=True, slots=True)
 class StoredCycle:
-    """A point's cycle.
-
-    parameters: by name; period in tau2; values: every variable of the file at this point.
-    """
+    """A point's cycle: its parameters, its period in tau2 and every variable of the file there, by name."""
 
     number: int
     """Of the point in the file, from 1."""
