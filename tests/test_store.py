@@ -1,14 +1,16 @@
 """The result file and its journal: what is written is read back, whatever was killed in between."""
 
+import os
+
 import h5py
 import numpy as np
 import pytest
 
 from rodsweep.errors import InputError
-from rodsweep.results.file import points
+from rodsweep.results.file import points, view
 from rodsweep.results.file.creation import Plan
 from rodsweep.results.file.store import Store
-from rodsweep.results.file.validation import config_difference
+from rodsweep.results.file.validation import config_difference, read_header
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts import layout_of
 from rodsweep.results.run import journal as pages_of
@@ -190,3 +192,21 @@ def test_difference_names_the_first_key_that_differs():
     assert config_difference({"a": {"b": 1}}, {"a": {"b": 1}}) == ""
     assert config_difference({"a": {"b": 1}}, {"a": {"b": 2}}) == "a.b is 1 in the file and 2 in the config"
     assert config_difference({"a": 1, "c": 2}, {"a": 1}) == "c is 2 in the file and null in the config"
+
+
+def test_a_view_is_of_one_file_though_a_run_exchanges_it_meanwhile(tmp_path, monkeypatch):
+    """What is checked, described and read is what was open first: the two differ in their number of points."""
+    path, other = tmp_path / "a.h5", tmp_path / "b.h5"
+    for place, is_grid in ((path, True), (other, False)):
+        Store(place, plan(is_grid)).close()
+    real = view.header_of
+
+    def exchanged_before(place, file):
+        os.replace(other, path)
+        return real(place, file)
+
+    monkeypatch.setattr(view, "header_of", exchanged_before)
+    shown = read_view(path)
+    assert shown.is_grid
+    assert shown.variables["status"].size == 12
+    assert read_header(path).points == 5

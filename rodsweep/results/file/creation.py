@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -55,9 +55,9 @@ def create_file(path: Path, plan: Plan) -> None:
             _write_scale(file, name, plan.coordinates.get(name, np.arange(1, extent + 1)))
         for variable in plan.layout.variables:
             data = _contiguous(file, variable, plan.points.shape + plan.layout.inner(variable))
-            flags = ((MISSING, "missing"), *plan.flags) if variable.name == "status" else variable.flags
-            _describe(file, data, replace(variable, flags=flags), (*plan.dimensions, *variable.extra))
+            _describe(file, data, variable, (*plan.dimensions, *variable.extra))
         add_variables(file, plan.constants)
+        _describe_flags(file["status"], ((MISSING, "missing"), *plan.flags))
         file.attrs["program"] = PROGRAM
         file.attrs["fingerprint"] = plan.fingerprint
         file.attrs["config_resolved"] = json.dumps(plan.config)
@@ -79,25 +79,28 @@ def _write_parameters(file: h5py.File, plan: Plan) -> None:
     names, points = plan.layout.parameters, plan.points
     if not points.is_grid:
         _write_scale(file, "point", np.arange(points.count, dtype="<i4"))
-        file.attrs["coordinates"] = " ".join(names)
     for name, column in zip(names, points.columns, strict=True):
         if points.is_grid:
             _write_scale(file, name, column)
         else:
-            _write_named(file, name, column).dims[0].attach_scale(file["point"])
+            data = file.create_dataset(name, data=column)
+            _name(data, name)
+            data.dims[0].attach_scale(file["point"])
+    if not points.is_grid:
+        file.attrs["coordinates"] = " ".join(names)
 
 
 def _write_scale(file: h5py.File, name: str, values: NDArray[Any]) -> None:
     """A dimension with its coordinate."""
-    _write_named(file, name, values).make_scale(name)
-
-
-def _write_named(file: h5py.File, name: str, values: NDArray[Any]) -> h5py.Dataset:
-    """The values of a parameter or a dimension, with what the table says of it."""
     data = file.create_dataset(name, data=values)
+    data.make_scale(name)
+    _name(data, name)
+
+
+def _name(data: h5py.Dataset, name: str) -> None:
+    """What the table says of a parameter or a dimension."""
     units, long_name = DIMENSIONS[name]
     data.attrs.update(units=units, long_name=long_name)
-    return data
 
 
 def _contiguous(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> h5py.Dataset:
@@ -115,9 +118,13 @@ def _describe(file: h5py.File, data: h5py.Dataset, variable: Variable, dimension
     """What the table says of a variable, and its dimensions."""
     data.attrs.update(units=variable.units, long_name=variable.long_name)
     if variable.flags:
-        values, meanings = zip(*variable.flags, strict=True)
-        data.attrs.update(flag_values=np.array(values, dtype="i1"), flag_meanings=" ".join(meanings))
+        _describe_flags(data, variable.flags)
     for axis, name in enumerate(dimensions):
         data.dims[axis].attach_scale(file[name])
     if "point" in dimensions:
         data.attrs["coordinates"] = file.attrs["coordinates"]
+
+
+def _describe_flags(data: h5py.Dataset, flags: Sequence[tuple[int, str]]) -> None:
+    data.attrs["flag_values"] = np.array([value for value, _ in flags], dtype="i1")
+    data.attrs["flag_meanings"] = " ".join(meaning for _, meaning in flags)

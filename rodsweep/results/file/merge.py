@@ -67,11 +67,12 @@ def _merge(exchange: Exchange, sources: Sequence[Header]) -> Merged:
 
 def _opened(paths: Sequence[Path]) -> list[Header]:
     """The files, all of one config, each with all of its points in it; else InputError."""
-    files = [read_header(path) for path in paths]
-    for file in files:
-        if any(journal_directory(file.path).glob(JOURNALS)):
+    files = []
+    for path in paths:
+        files.append(read_header(path))
+        if any(journal_directory(path).glob(JOURNALS)):
             raise InputError(
-                f"{file.path} has points in its journal that are not in it yet: run its command again first"
+                f"{path} has points in its journal that are not in it yet: run its command again first"
             )
     first, *others = files
     for other in others:

@@ -108,7 +108,7 @@ class Store:
         return counts
 
     def close(self) -> None:
-        """Gives the file free for another run."""
+        """Releases the file for another run."""
         self.exchange.close()
 
     def _refuse_another(self) -> None:

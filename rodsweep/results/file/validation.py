@@ -4,7 +4,6 @@ import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -52,19 +51,28 @@ class Header:
     points: int
 
 
-def read_header(path: Path, checked: float = inf) -> Header:
-    """InputError unless the file is a whole result: with its numbers, if it has at most `checked` bytes."""
+def read_header(path: Path) -> Header:
+    """InputError unless the file is a whole result, its numbers included."""
+    refuse_absent(path)
+    with reading(path):
+        check_seal(path, values=True)
+        with h5py.File(path, "r") as file:
+            return header_of(path, file)
+
+
+def refuse_absent(path: Path) -> None:
+    """InputError unless there is a file of that name."""
     if not path.is_file():
         raise InputError(f"{path} is not a file" if path.exists() else f"{path} does not exist")
-    with reading(path):
-        check_seal(path, values=path.stat().st_size <= checked)
-        with h5py.File(path, "r") as file:
-            attributes = dict(file.attrs)
-            config = json.loads(attributes["config_resolved"])
-            layout = layout_of(config)
-            refuse_misfit(file, layout)
-            fingerprint = str(attributes["fingerprint"])
-            return Header(path, attributes, config, fingerprint, layout, file["status"].size)
+
+
+def header_of(path: Path, file: h5py.File) -> Header:
+    """The header of an open file; one of DAMAGES unless its variables are those of its config."""
+    attributes = dict(file.attrs)
+    config = json.loads(attributes["config_resolved"])
+    layout = layout_of(config)
+    refuse_misfit(file, layout)
+    return Header(path, attributes, config, str(attributes["fingerprint"]), layout, file["status"].size)
 
 
 def refuse_misfit(file: h5py.File, layout: Layout) -> None:

@@ -11,7 +11,8 @@ import numpy as np
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ..layouts.variables import MISSING
 from ..run.journal import journal_directory, read_journals
-from .validation import read_header, reading
+from .seal import check_seal
+from .validation import header_of, reading, refuse_absent
 
 CHECKED_WHOLE = 10**9
 """Bytes up to which the numbers are checked too, not only HDF5's structures, before a file is shown."""
@@ -80,10 +81,12 @@ class View:
 
 def read_view(path: Path) -> View:
     """The file, which stays open; InputError if it is no result."""
-    header = read_header(path, CHECKED_WHOLE)
-    task, layout = header.config["task"], header.layout
+    refuse_absent(path)
     with reading(path):
-        file = h5py.File(path, "r")
+        check_seal(path, values=path.stat().st_size <= CHECKED_WHOLE)
+        file = h5py.File(path, "r")  # once: a run may exchange the file at any instant
+        header = header_of(path, file)
+        task, layout = header.config["task"], header.layout
         if str(header.attributes.setdefault("task", task)) != task:
             raise ValueError("its task is not that of its config")
         status = file["status"]

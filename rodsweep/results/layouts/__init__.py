@@ -17,4 +17,7 @@ LAYOUTS: dict[str, Callable[[dict[str, Any]], Layout]] = {
 
 def layout_of(config: dict[str, Any]) -> Layout:
     """The layout that the resolved config of any task asks for."""
-    return LAYOUTS[config["task"]](config)
+    task = config["task"]
+    if task not in LAYOUTS:
+        raise KeyError(f"unknown task {task}")
+    return LAYOUTS[task](config)

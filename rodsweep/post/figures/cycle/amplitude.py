@@ -57,7 +57,7 @@ def draw_amplitude(views: Sequence[View]) -> tuple[Figure, str]:
     figure = Figure(figsize=(5.4, 6.0), layout="constrained")
     top, bottom = figure.subplots(2, 1, sharex=True)
     shared, own = told_apart([branch.parameters for branch in branches])
-    handles = []
+    handles, unknown = [], set[str]()
     for branch, text, (colour, marker) in zip(branches, own, BRANCH_LOOKS, strict=False):
         look: dict[str, Any] = {"color": colour, "marker": marker, "lw": 1.2, "ms": 3.5}
         if branch.view is not first:  # open, larger markers leave those of an earlier file to be seen
@@ -66,7 +66,10 @@ def draw_amplitude(views: Sequence[View]) -> tuple[Figure, str]:
         handles.append(Line2D([], [], label=", ".join(filter(None, (file, text))), **look))
         for axes, values in ((top, branch.amplitude_x), (bottom, branch.amplitude_y)):
             axes.plot(*branch.broken_at_onset(values), **look)
-    handles += _mark_unknown((top, bottom), branches)
+            unknown |= _mark_unknown(axes, branch, look["color"])
+    if unknown:
+        label = ", ".join(sorted(unknown)) + " (at the top)"
+        handles.append(Line2D([], [], color="0.3", marker="x", ls="", ms=5, label=label))
     for axes in (top, bottom):
         height = axes.dataLim.y1 or 1.0
         axes.set_ylim(-0.04 * height, 1.1 * height)
@@ -80,18 +83,12 @@ def draw_amplitude(views: Sequence[View]) -> tuple[Figure, str]:
     return figure, f"amplitudes of the tip against {name}"
 
 
-def _mark_unknown(panels: Sequence[Axes], branches: Sequence[AmplitudeBranch]) -> list[Line2D]:
-    """Marks at the top where no amplitude is known; returns what the legend says of those points."""
-    unknown = set()
-    for branch, (colour, _) in zip(branches, BRANCH_LOOKS, strict=False):
-        lost = ~np.isin(branch.words, ("cycle", "straight", "missing"))
-        unknown |= {str(word).replace("_", " ") for word in branch.words[lost]}
-        for axes in panels:
-            for x in branch.x[lost]:
-                at_top = axes.get_xaxis_transform()
-                axes.plot(x, 1.0, "x", color=colour, ms=5, clip_on=False, transform=at_top)
-    label = ", ".join(sorted(unknown)) + " (at the top)"
-    return [Line2D([], [], color="0.3", marker="x", ls="", ms=5, label=label)] if unknown else []
+def _mark_unknown(axes: Axes, branch: AmplitudeBranch, colour: str) -> set[str]:
+    """Marks at the top where no amplitude is known; returns what became of those points."""
+    lost = ~np.isin(branch.words, ("cycle", "straight", "missing"))
+    for x in branch.x[lost]:
+        axes.plot(x, 1.0, "x", color=colour, ms=5, clip_on=False, transform=axes.get_xaxis_transform())
+    return {str(word).replace("_", " ") for word in branch.words[lost]}
 
 
 def abscissa(view: View) -> str:
