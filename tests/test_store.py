@@ -195,7 +195,7 @@ def test_difference_names_the_first_key_that_differs():
 
 
 def test_a_view_is_of_one_file_though_a_run_exchanges_it_meanwhile(tmp_path, monkeypatch):
-    """What is checked, described and read is what was open first: the two differ in their number of points."""
+    """What is checked, described and read is what was opened first; the other has fewer points."""
     path, other = tmp_path / "a.h5", tmp_path / "b.h5"
     for place, is_grid in ((path, True), (other, False)):
         Store(place, plan(is_grid)).close()
