@@ -8,11 +8,18 @@ from math import inf, isfinite, log, nan
 import numpy as np
 
 from ...solve.motion.leading_mode import leading_mode
-from ..study import Timed, race
-from ..tables import table
+from ..study import Timed, race, table
 from .integrators import Family
-from .returns import returns_of
-from .tracking import AMPLITUDE, CYCLE_FORCE, FOLLOWED_PERIODS, SETTLED_WITHIN, Reference, cycle_at, on_cycle
+from .tracking import (
+    AMPLITUDE,
+    CYCLE_FORCE,
+    FOLLOWED_PERIODS,
+    SETTLED_WITHIN,
+    Reference,
+    cycle_at,
+    on_cycle,
+    returns_of,
+)
 
 NEAR_HOPF = 27.43
 """A force 0.003 above the Hopf point."""

@@ -5,8 +5,7 @@ from dataclasses import replace
 from math import isfinite, log, nan
 
 from ...solve.cycle.limit_cycle import warm_up
-from ..study import Measurement, Study, grouped
-from ..tables import plural, table
+from ..study import Measurement, Study, grouped, plural, table
 from .integrators import CVODE, DEFAULT, families
 from .settling import settling
 from .tracking import (

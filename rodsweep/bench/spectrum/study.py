@@ -10,11 +10,9 @@ import numpy as np
 from ...model.rod import Rod
 from ...solve.spectrum.search import warm_up
 from ..lapack import Eigenvalues
-from ..study import Contender, Measurement, Study, contest, failsafe, grouped, middle, race
-from ..tables import plural, table
-from .contenders import PLAIN, contenders
+from ..study import Contender, Measurement, Study, contest, failsafe, grouped, middle, plural, race, table
+from .eigensolvers import PLAIN, WANTED_MODES, contenders
 from .exact import exact_spectrum, relative_error
-from .same_pencil import WANTED_MODES
 
 PAPER_RODS = {
     "Fig. 2a": (1e4, 1e4, 1e-4, 60.0),
