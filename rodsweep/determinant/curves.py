@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from .boundary import Boundary, OnBoundary, Vector
+from .boundary import Boundary, OnBoundary
 from .parameter_plane import Plane
 
 STEP_FIRST, STEP_LARGEST, STEP_SMALLEST = 0.01, 0.04, 1e-9
@@ -26,7 +26,7 @@ FOLD_ACCURACY = 1e-13
 HOPF_TANGENT, DOUBLE_TANGENT = 1e-12, 1e-11
 """Uncertainty of a tangent: from rounding, and from the differences in the Jacobian of D_w."""
 
-WithTangent = tuple[Vector, Vector]
+WithTangent = tuple[Array, Array]
 """(point, tangent)."""
 
 
@@ -84,12 +84,12 @@ def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: flo
     return _curve(boundary, points[np.append(apart, True)], closed)
 
 
-def _follow(boundary: Boundary, start: Vector, sign: float) -> tuple[list[Vector], bool]:
+def _follow(boundary: Boundary, start: Array, sign: float) -> tuple[list[Array], bool]:
     """(points after the start in one direction, whether the curve came back to it)."""
     v = start
     t = sign * boundary.tangent(v)
     t0, step = t, STEP_FIRST
-    points: list[Vector] = []
+    points: list[Array] = []
     while len(points) < MOST_CURVE_POINTS and step >= STEP_SMALLEST:
         there = boundary.corrected(v + step * t, t)
         if there is None:
@@ -112,7 +112,7 @@ def _follow(boundary: Boundary, start: Vector, sign: float) -> tuple[list[Vector
     return points, False
 
 
-def _edge(boundary: Boundary, inner: Vector, outer: Vector) -> Vector | None:
+def _edge(boundary: Boundary, inner: Array, outer: Array) -> Array | None:
     """The point where the curve leaves the plane between two points, one inside and one not."""
     for axis in (0, 1):
         for limit in (0.0, 1.0):

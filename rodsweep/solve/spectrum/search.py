@@ -171,9 +171,8 @@ class Search:
         if verdict is not None and verdict.agrees and not self.with_vectors:
             return error
         allowed = LARGEST_DISPLACEMENT if self.bounded else UNBOUNDED_DISPLACEMENT
-        return max(
-            error, found.coarseness(self.modes) / (self.request.accuracy if self.with_vectors else allowed)
-        )
+        coarseness = float(found.roots.displacement[: self.modes].max())
+        return max(error, coarseness / (self.request.accuracy if self.with_vectors else allowed))
 
     def search_more(self, number: int, here: int) -> None:
         """Asks for more after a count of `number`, of which `here` were found."""
