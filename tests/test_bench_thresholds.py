@@ -27,6 +27,7 @@ from rodsweep.bench.thresholds.continuation import (
     reduced,
 )
 from rodsweep.bench.thresholds.spectra_by_force import (
+    BY_STEPS,
     LeadingPair,
     between,
     by_steps,
@@ -35,7 +36,7 @@ from rodsweep.bench.thresholds.spectra_by_force import (
     on_grid,
     square_root_law,
 )
-from rodsweep.bench.thresholds.study import BY_STEPS, threshold_table, thresholds_study, timed_on
+from rodsweep.bench.thresholds.study import threshold_table, thresholds_study, timed_on
 
 CASE = {case.name: case for case in CASES}
 FLUTTERING = [case for case in CASES if not isnan(case.hopf)]

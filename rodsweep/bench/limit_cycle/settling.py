@@ -62,10 +62,12 @@ class Wait:
 def settling(at: Reference, every: Sequence[Family], rounds: int) -> str:
     """All ways at F = 50 and next to the Hopf point; a table."""
     waiting = {family: _waited(at, family) for family in every if family.settling}
-    waits = [_solved(at), *waiting.values()]
+    cycle = cycle_at(CYCLE_FORCE)
+    left = _error(at, cycle.measures.period, cycle.measures.tip_y_max)
+    waits = [Wait(CYCLE_FORCE, SOLVE, nan, cycle.periods, left, partial(cycle_at, CYCLE_FORCE))]
+    waits += waiting.values()
     waits += _near_hopf({f: wait.tolerance for f, wait in waiting.items() if isfinite(wait.tolerance)})
-    raced = race([wait.run for wait in waits], [rounds] * len(waits))
-    return settling_table(waits, raced)
+    return settling_table(waits, race([wait.run for wait in waits], [rounds] * len(waits)))
 
 
 def settling_table(waits: Sequence[Wait], raced: Sequence[Timed]) -> str:
@@ -86,12 +88,6 @@ def settling_table(waits: Sequence[Wait], raced: Sequence[Timed]) -> str:
 
 def _error(at: Reference, period: float, height: float) -> float:
     return max(abs(period / at.period - 1), abs(height / at.tip_y_max - 1))
-
-
-def _solved(at: Reference) -> Wait:
-    cycle = cycle_at(CYCLE_FORCE)
-    left = _error(at, cycle.measures.period, cycle.measures.tip_y_max)
-    return Wait(CYCLE_FORCE, SOLVE, nan, cycle.periods, left, partial(cycle_at, CYCLE_FORCE))
 
 
 def _waited(at: Reference, family: Family) -> Wait:
@@ -124,15 +120,6 @@ def _near_hopf(tolerances: dict[Family, float]) -> list[Wait]:
     waits = [Wait(NEAR_HOPF, SOLVE, nan, cycle.periods, error, partial(cycle_at, NEAR_HOPF))]
     for family, tolerance in tolerances.items():
         run = partial(family.integrate, beam, z, FOLLOWED_PERIODS * cycle.measures.period, tolerance)
-        waits.append(
-            Wait(
-                NEAR_HOPF,
-                WAITING + family.name,
-                tolerance,
-                count,
-                SETTLED_WITHIN,
-                run,
-                count / FOLLOWED_PERIODS,
-            )
-        )
+        times = count / FOLLOWED_PERIODS
+        waits.append(Wait(NEAR_HOPF, WAITING + family.name, tolerance, count, SETTLED_WITHIN, run, times))
     return waits

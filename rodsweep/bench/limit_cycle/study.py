@@ -74,13 +74,9 @@ def target_table(measurements: Sequence[Measurement]) -> str:
         errors = [m.error for m in own]
         median, least = [m.seconds for m in own], [m.least_seconds for m in own]
         at[method] = time_at(TARGET, errors, median), time_at(TARGET, errors, least)
+    default, by_least = at[DEFAULT]
     rows = [
-        {
-            "method": method,
-            "ms": 1e3 * median,
-            "ratio": median / at[DEFAULT][0],
-            "by_least": least / at[DEFAULT][1],
-        }
+        {"method": method, "ms": 1e3 * median, "ratio": median / default, "by_least": least / by_least}
         for method, (median, least) in at.items()
     ]
     return (

@@ -90,16 +90,12 @@ def follow(integrate: Integration, tolerance: float, at: Reference) -> Trajector
 
 def work_precision(at: Reference, every: Sequence[Family], rounds: int, stride: int) -> list[Measurement]:
     """All methods at each stride-th tolerance; seconds are those of a period."""
-    contenders = [
-        Contender(
-            family.name,
-            f"{tolerance:.0e}",
-            family.name.split()[0],
-            partial(follow, family.integrate, tolerance),
-        )
-        for family in every
-        for tolerance in family.tolerances[::stride]
-    ]
+    contenders = []
+    for family in every:
+        group = family.name.split()[0]
+        for tolerance in family.tolerances[::stride]:
+            run = partial(follow, family.integrate, tolerance)
+            contenders.append(Contender(family.name, f"{tolerance:.0e}", group, run))
     return [
         replace(m, seconds=m.seconds / FOLLOWED_PERIODS, least_seconds=m.least_seconds / FOLLOWED_PERIODS)
         for m in contest(f"F = {CYCLE_FORCE:g}", at, contenders, rounds, partial(judged_run, at))
@@ -156,10 +152,8 @@ def returns_of(beam: Beam, run: Trajectory) -> Returns:
 
 def _again(beam: Beam, z: Array, duration: float) -> Trajectory:
     """Equal small steps from a state of a run."""
-    step = duration / SMALL_STEPS
-    return integrator(beam.mesh, PERIOD_MAP).run(
-        beam, z, duration, step, RunLimit(most_steps=SMALL_STEPS + 2)
-    )
+    limit = RunLimit(most_steps=SMALL_STEPS + 2)
+    return integrator(beam.mesh, PERIOD_MAP).run(beam, z, duration, duration / SMALL_STEPS, limit)
 
 
 def _spline(times: Array, values: Array) -> PPoly:

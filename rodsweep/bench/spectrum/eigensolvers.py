@@ -47,9 +47,8 @@ def shift_of(rod: Rod) -> float:
 
 def krylov_schur(rod: Rod, size: int) -> Eigenvalues:
     """SLEPc's Krylov-Schur to its last digit, without refinement on D."""
-    return leading(
-        eigen_solver(mesh_of(size)).solve(rod, shift_of(rod), WANTED_MODES, tight=True), WANTED_MODES + 1
-    )
+    w = eigen_solver(mesh_of(size)).solve(rod, shift_of(rod), WANTED_MODES, tight=True)
+    return leading(w, WANTED_MODES + 1)
 
 
 def dense_qz(rod: Rod, size: int) -> Eigenvalues:

@@ -47,9 +47,8 @@ def spectrum_study(quick: bool) -> Study:
     exact = [exact_spectrum(rod, WANTED_MODES) for rod in rods]
     blocks = [equal_errors(rods, exact, target, rounds) for target in TARGETS[: 1 if quick else None]]
     measurements = every_size(contenders(QUICK_STRIDE if quick else 1), rounds)
-    return Study(
-        "spectrum", "\n\n".join([*blocks, hard_table(measurements)]), measurements, "point", TARGETS[0]
-    )
+    blocks.append(hard_table(measurements))
+    return Study("spectrum", "\n\n".join(blocks), measurements, "point", TARGETS[0])
 
 
 def cheapest(rod: Rod, exact: list[Any], target: float) -> dict[str, Contender]:

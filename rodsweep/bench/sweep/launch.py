@@ -119,7 +119,8 @@ def launcher(ranks: int) -> list[str]:
 def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = True) -> CommandRun:
     """Runs a case on some ranks; EnvironmentLacks where that fails without having been killed."""
     others, began = _seconds_of_others(), time.monotonic()
-    started = [_start(command, case.kind, directory, ranks, fresh) for directory in case.directories]
+    words = [*launcher(ranks), *command]
+    started = [_start(words, case.kind, directory, fresh) for directory in case.directories]
     said = [_inside(process, case.kind) for process in started]
     seconds = time.monotonic() - began
     elsewhere = np.maximum(0.0, (_seconds_of_others() - others) / seconds)
@@ -129,10 +130,7 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
         seconds=seconds,
         inside=max(said),
         solving=sum(spent for spent, _ in solved),
-        memory=tuple(
-            max(_notes(directory, rank) for directory in case.directories)
-            for rank in (FIRST_RANK, OTHER_RANKS)[:ranks]
-        ),
+        memory=tuple(_peak(case, rank) for rank in (FIRST_RANK, OTHER_RANKS)[:ranks]),
         file=sum(file.stat().st_size for file in files),
         journal=sum(page.stat().st_size for file in files for page in journal_directory(file).glob("rank-*")),
         elsewhere=float(elsewhere),
@@ -140,15 +138,13 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
     )
 
 
-def _start(
-    command: Sequence[str], kind: str, directory: Path, ranks: int, fresh: bool
-) -> subprocess.Popen[str]:
+def _start(words: Sequence[str], kind: str, directory: Path, fresh: bool) -> subprocess.Popen[str]:
     notes = directory / NOTES
     shutil.rmtree(notes, ignore_errors=True)
     notes.mkdir()
-    words = ["run", CONFIG, "-o", RESULT, *(["--fresh"] if fresh else [])]
+    run = ["run", CONFIG, "-o", RESULT, *(["--fresh"] if fresh else [])]
     return subprocess.Popen(
-        [*launcher(ranks), *command, str(notes), kind, *words],
+        [*words, str(notes), kind, *run],
         cwd=directory,
         env=dict(os.environ),  # as this process got it: MPI, once started in here, adds to the one in C
         stdout=subprocess.PIPE,
@@ -167,9 +163,10 @@ def _inside(process: subprocess.Popen[str], kind: str) -> float:
     return float(said[1]) if said else nan
 
 
-def _notes(directory: Path, rank: str) -> int:
+def _peak(case: SweepCase, rank: str) -> int:
     """The peak memory in bytes that the first rank has noted, or the largest of the others."""
-    return max((int(note.read_text()) for note in (directory / NOTES).glob(f"{rank}-*")), default=0)
+    notes = (note for directory in case.directories for note in (directory / NOTES).glob(f"{rank}-*"))
+    return max((int(note.read_text()) for note in notes), default=0)
 
 
 def _solving(file: Path) -> tuple[float, float]:

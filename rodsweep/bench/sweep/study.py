@@ -36,7 +36,15 @@ ROUNDS, CYCLE_ROUNDS, QUICK_ROUNDS = 3, 2, 1
 APART = "spectra, two commands"
 """Each with half of the spectra, on one rank: what the machine allows two ranks to gain."""
 MEGABYTE = 1e6
-NO_LAUNCHER = "Two ranks are skipped: there is no mpiexec beside this Python or on PATH."
+INTRODUCTION = """
+`mpiexec -n RANKS rodsweep run CONFIG` as a whole, medians of interleaved rounds. Spectra: `modes: 2`,
+certified, over F, k1, k2; two commands, each with half of them on one rank, gain what two processors of
+this machine gain at most. Limit cycles: of k1 = 1e4, k2 = 1e2, gamma3 = 1e-2, at forces far below the Hopf
+point, down to 1e-6 below and 1e-7 above it, and ordinary ones, mixed. Inside is the time that the run
+itself states, without the start of Python and MPI; % busy of the ranks' time in the sweep went into points,
+the rest into waiting. Beside the solver is the ranks' time inside less the `seconds` in the file: loading
+what is compiled, handing out, storing, and waiting. Memory is the peak of a rank's resident set. While
+other programs, or the host of a virtual machine, keep processors busy, a second rank gains less."""
 
 RunCase = Callable[..., CommandRun]
 """`run_case` with the words that start the command."""
@@ -51,9 +59,9 @@ def sweep_study(quick: bool, command: Sequence[str]) -> Study:
     with TemporaryDirectory(prefix="rodsweep-bench-") as place:
         solved = solved_sweeps(Path(place), run, quick, ranks)
         instant = instant_sweeps(Path(place), run, quick, ranks)
-    blocks = [introduction(), solved_table(solved), instant_table(instant), growth_table(instant)]
+    blocks = [INTRODUCTION.strip(), solved_table(solved), instant_table(instant), growth_table(instant)]
     if len(ranks) == 1:
-        blocks.append(NO_LAUNCHER)
+        blocks.append("Two ranks are skipped: there is no mpiexec beside this Python or on PATH.")
     return Study("sweep", "\n\n".join(blocks), [*solved, *instant])
 
 
@@ -120,30 +128,10 @@ def measured(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -> Measure
     return Measurement(case.name, plural(ranks, "rank"), f"{case.points} points", seconds, nan, extra=extra)
 
 
-def introduction() -> str:
-    """What is measured."""
-    return (
-        "`mpiexec -n RANKS rodsweep run CONFIG` as a whole, medians of interleaved rounds. Spectra: "
-        "`modes: 2`, certified, over F, k1, k2; two commands, each with half of them on one rank, gain what "
-        "two processors of this machine gain at most. Limit cycles: of k1 = 1e4, k2 = 1e2, gamma3 = 1e-2, at "
-        "forces far below the Hopf point, down to 1e-6 below and 1e-7 above it, and ordinary ones, mixed. "
-        "Inside is the time that the run itself states, without the start of Python and MPI; % busy of the "
-        "ranks' time in the sweep went into points, the rest into waiting. Beside the solver is the "
-        "ranks' time inside less the `seconds` in the file: loading what is compiled, handing out, storing, "
-        "and waiting. Memory is the peak of a rank's resident set. While other programs, or the host of a "
-        "virtual machine, keep processors busy, a second rank gains less."
-    )
-
-
 def numbers(m: Measurement) -> dict[str, object]:
     """All that is known of a sweep, by name."""
-    microseconds = 1e6 * m.extra["ranks"] * m.seconds
-    own: dict[str, object] = {
-        "case": m.case,
-        "seconds": m.seconds,
-        "microseconds": microseconds / m.extra["points"],
-    }
-    return own | m.extra
+    microseconds = 1e6 * m.extra["ranks"] * m.seconds / m.extra["points"]
+    return {"case": m.case, "seconds": m.seconds, "microseconds": microseconds, **m.extra}
 
 
 def solved_table(measurements: Sequence[Measurement]) -> str:
@@ -190,15 +178,10 @@ def growth_table(measurements: Sequence[Measurement]) -> str:
         if case == KILLED:
             continue
         for less, more in pairwise(sizes):
-            row: dict[str, object] = {
-                "case": case,
-                "method": method,
-                "power": growth_power(sizes[0], less, more),
-            }
-            for name, end in totals(more).items():
-                start = totals(less)[name]
-                row[name] = (end - start) / (more.extra["points"] - less.extra["points"])
-            rows.append(row | {"less": less.extra["points"], "more": more.extra["points"]})
+            few, many, start = less.extra["points"], more.extra["points"], totals(less)
+            row: dict[str, object] = {"case": case, "method": method, "less": few, "more": many}
+            row |= {name: (end - start[name]) / (many - few) for name, end in totals(more).items()}
+            rows.append(row | {"power": growth_power(sizes[0], less, more)})
     return (
         "What a further point takes, of all ranks together; the power is that of the points with which the "
         "time beyond that of the smallest sweep grows:\n\n"

@@ -133,9 +133,8 @@ def hopf_by_auto(program: Path, step: float, tolerance: float, case: ThresholdCa
     with tempfile.TemporaryDirectory(dir=program.parent) as place:
         directory = Path(place)
         (directory / "matrices").write_bytes(pieces.transpose(0, 2, 1).tobytes())
-        (directory / "fort.2").write_text(
-            CONSTANTS.format(unknowns=pieces.shape[1], top=case.top, tolerance=tolerance, step=step)
-        )
+        constants = CONSTANTS.format(unknowns=pieces.shape[1], top=case.top, tolerance=tolerance, step=step)
+        (directory / "fort.2").write_text(constants)
         environment = os.environ | {"OMP_NUM_THREADS": "1"}
         done = subprocess.run(
             [program], cwd=directory, capture_output=True, text=True, check=False, env=environment

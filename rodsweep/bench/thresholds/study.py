@@ -11,23 +11,11 @@ from math import isinf, isnan, log10, nan
 from pathlib import Path
 from typing import Any
 
-from scipy.optimize import bisect, brentq
-
 from ...solve.changes.thresholds import ThresholdsRequest, solve_thresholds, warm_up
 from ..study import Contender, Measurement, Study, contest, grouped, middle, plural, table
 from .cases import CASES, HOPF, MESH_ACCURACY, ONSET, QUICK_CASES, FirstThreshold, ThresholdCase
 from .continuation import AUTO, BEYOND_HOPF, PYCONT, continuation_codes
-from .spectra_by_force import (
-    MARCH,
-    between,
-    by_steps,
-    discriminant,
-    growth,
-    interpolated_growth,
-    leads_real,
-    on_grid,
-    square_root_law,
-)
+from .spectra_by_force import BY_GRID, BY_STEPS, MARCH, on_grid
 
 TITLES = {ONSET: "onset", HOPF: "Hopf point"}
 ROUNDS, QUICK_ROUNDS = 5, 1
@@ -36,17 +24,6 @@ F_MAX = 200.0
 GRIDS, LARGE_GRID = (50, 200), 800
 TOLERANCES = (1e-3, 1e-6, 1e-12)
 RODSWEEP, SWEEP = "rodsweep", "grid and interpolation"
-BY_GRID = {
-    ONSET: {"grid, between two forces": between, "grid, square-root law": square_root_law},
-    HOPF: {"grid, linear interpolation": interpolated_growth},
-}
-BY_STEPS = {
-    ONSET: {
-        "steps, bisection on Im w > 0": partial(by_steps, bisect, leads_real),
-        "steps, Brent on (w1 - w2)^2": partial(by_steps, brentq, discriminant),
-    },
-    HOPF: {"steps, Brent on Re w": partial(by_steps, brentq, growth)},
-}
 
 
 def thresholds_study(quick: bool) -> Study:
