@@ -81,10 +81,6 @@ class Boundary:
             last = size
         return None
 
-    def on_line(self, guess: Array, axis: int) -> OnBoundary | None:
-        """The point of the boundary near the guess, (3,), with its coordinate of an axis, or None."""
-        return self.corrected(guess, np.eye(3)[axis])
-
     def _hopf_equations(self, v: Array) -> tuple[Array, Array, float]:
         """`equations` of D(i exp(h); x, y)."""
         w = complex(0.0, math.exp(v[2]))

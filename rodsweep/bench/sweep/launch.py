@@ -46,8 +46,8 @@ HOPF_FORCE = 27.4271941267592812
 class SweepCase:
     """A sweep to be run: how many points it has, and where its config is.
 
-    kind: what takes the place of the solver. Of several directories each
-    has a share of the points, which a command of its own runs at the same time as the others.
+    kind: what takes the place of the solver. Of several directories each has a share of the points, which a
+    command of its own runs at the same time as the others.
     """
 
     name: str

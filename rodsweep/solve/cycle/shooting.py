@@ -70,13 +70,6 @@ def angle_weights(beam: Beam) -> Array:
     return row
 
 
-def period_run(beam: Beam, z: Array, period: float, steps: int) -> Trajectory | None:
-    """`steps` equal steps over a period from z, (unknowns,); None where PETSc had to shorten one."""
-    limit = RunLimit(most_steps=steps + 2)
-    run = integrator(beam.mesh, PERIOD_MAP).run(beam, z, period, period / steps, limit)
-    return run if run.ending == Ending.reached and len(run.times) == steps + 1 else None
-
-
 def shoot(beam: Beam, z: Array, period: float, steps: int, known: Monodromy | None = None) -> Orbit | None:
     """The orbit near z, shape (unknowns,), or None where none is found.
 
@@ -87,9 +80,10 @@ def shoot(beam: Beam, z: Array, period: float, steps: int, known: Monodromy | No
     row = angle_weights(beam)
     section, closure, M, fresh = row @ z, np.inf, known, False
     run: Trajectory | None = None
+    run_limit = RunLimit(most_steps=steps + 2)
     for _ in range(MOST_SHOTS):
-        run = period_run(beam, z, period, steps)
-        if run is None:
+        run = integrator(beam.mesh, PERIOD_MAP).run(beam, z, period, period / steps, run_limit)
+        if run.ending != Ending.reached or len(run.times) != steps + 1:  # PETSc had to shorten one
             return None
         size, last = np.abs(run.states).max(), closure
         residual = np.append(run.states[-1] - z, row @ z - section)

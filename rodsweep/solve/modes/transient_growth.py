@@ -159,19 +159,12 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
         k = min(int(MORE_MODES * k), len(fine.w))
     hidden = max(ceiling, before) / best[0] - 1 + tail
     if best[0] > 1:
-        times = best[1], max(first, log(best[0]) / abscissa)
-        hidden += _mesh_error(coarse, fine, k, times)
+        # The meshes are compared at the peak and half way, in the logarithm, to the earliest time that may
+        # matter, the coarser with more modes if it has them.
+        coarse.keep(int(MORE_MODES * k))
+        times = best[1], sqrt(best[1] * max(first, log(best[0]) / abscissa))
+        hidden += max(abs(coarse.norm(t)[0] / fine.norm(t)[0] - 1) for t in times)
     return Growth(transient_growth=best[0], transient_time=best[1], growth_error=hidden)
-
-
-def _mesh_error(coarse: Propagator, fine: Propagator, k: int, times: tuple[float, float]) -> float:
-    """Relative difference of |exp(L t)| between the meshes, the coarser with more modes if it has them.
-
-    Asked at the peak and half way, on a logarithmic scale, to the earliest time that may matter.
-    """
-    peak, earliest = times
-    coarse.keep(int(MORE_MODES * k))
-    return max(abs(coarse.norm(t)[0] / fine.norm(t)[0] - 1) for t in (peak, sqrt(peak * earliest)))
 
 
 def _end(propagator: Propagator, first: float, patience: float) -> tuple[float, float]:
