@@ -1,6 +1,6 @@
 """The two ways a command ends early: the user's input is bad, or the environment lacks something.
 
-A parameter point that fails is neither: it keeps a status (`rodsweep.solve.spectrum.status`) and the sweep
+A parameter point that fails is neither: it keeps a status (`rodsweep.solve.status`) and the sweep
 goes on.
 """
 

@@ -187,7 +187,7 @@ def slabs(path: Path, start: float, stop: float) -> list[tuple[float, float]]:
     while edges[-1] < stop:
         p = edges[-1]
         step = width
-        nu, slope = coefficients_at(p, path.origin, path.direction)[1], path.direction[1]
+        nu, slope = coefficients_at(p, path.origin, path.direction).nu, path.direction.nu
         if slope < 0:  # the rod is crushed where nu = 0
             step = min(step, 0.5 * nu / -slope)
         if path.name != "F":  # drag and compliances over decades

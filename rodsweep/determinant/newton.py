@@ -138,7 +138,7 @@ def refined(w: complex, coefficients: Coefficients) -> complex:
 def eigenvalue_newton(
     w: complex, coefficients: Coefficients, direction: Coefficients
 ) -> tuple[complex, complex, float]:
-    """(w, dw/dp, error of w): a simple eigenvalue from a close guess; a real guess stays real."""
+    """(w, dw/dp, error of w): a simple eigenvalue from a close guess, as `refined`."""
     w = refined(w, coefficients)
     value = determinant_along(w, coefficients, direction)
     return w, -value.D_p / value.D_w, max(abs(value.D), value.noise) / abs(value.D_w)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..model.rod import Rod
-from .body_frame import BeamParameters, Element, jacobian, rate
+from .body_frame import BeamParameters, Element, jacobians, rates
 from .pencil import assemble
 from .quadrature import differentiation, gauss, gauss_lobatto, interpolation
 
@@ -61,7 +61,7 @@ def mesh(elements: int, order: int) -> Mesh:
     """The mesh of `elements` equal elements of order `order`."""
     x, w = gauss_lobatto(order)
     D, weights = differentiation(x) * 2 * elements, w / (2 * elements)
-    return Mesh(elements, order, Element(D, D.T.copy(), -(D.T * weights) @ D, weights))
+    return Mesh(elements, order, Element(*map(np.ascontiguousarray, (D, D.T, -(D.T * weights) @ D, weights))))
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,16 +87,18 @@ class Beam:
         return np.array([self.parameters.root_k1, self.parameters.root_k2, 1.0])
 
     def rate(self, z: Array) -> Array:
-        """dz/dt in 1/tau2."""
-        out = np.empty_like(z)
-        rate(z, out, self.parameters, self.mesh.element)
+        """dz/dt in 1/tau2 of one state or of many, shape (..., unknowns) as that of z."""
+        out = np.empty(z.shape)
+        size = self.mesh.unknowns
+        rates(z.reshape(-1, size), out.reshape(-1, size), self.parameters, self.mesh.element)
         return out
 
     def jacobian(self, z: Array) -> Array:
-        """d(dz/dt)/dz, shape (unknowns, unknowns)."""
-        out = np.empty((len(z), len(z)))
-        jacobian(z, out, self.parameters, self.mesh.element)
-        return out.T
+        """d(dz/dt)/dz of one state or of many, shape (..., unknowns, unknowns) for z (..., unknowns)."""
+        size = self.mesh.unknowns
+        out = np.empty((*z.shape, size))
+        jacobians(z.reshape(-1, size), out.reshape(-1, size, size), self.parameters, self.mesh.element)
+        return out.swapaxes(-1, -2)
 
     def strains(self, z: Array) -> Array:
         """(h1, h2, Pi) at all nodes, the tip included, shape (3, ..., nodes + 1) for z (..., unknowns)."""

@@ -167,3 +167,17 @@ def _pair(i: int, j: int, fields: Array, c: BeamParameters, here: Coupling, G: A
     G[1, 0] += w * (-h1 * a31 - V[2, i])
     G[1, 1] += w * (Pi * a12 - h1 * a32)
     G[1, 2] += w * (Pi * a13 + V[0, i])
+
+
+@compiled
+def rates(states: Array, out: Array, c: BeamParameters, element: Element) -> None:
+    """`rate` of each of the states, into out, both of shape (n, unknowns): one call for many."""
+    for i in range(len(states)):
+        rate(states[i], out[i], c, element)
+
+
+@compiled
+def jacobians(states: Array, out: Array, c: BeamParameters, element: Element) -> None:
+    """`jacobian` of each of the states, shape (n, unknowns), into out, (n, unknowns, unknowns)."""
+    for i in range(len(states)):
+        jacobian(states[i], out[i], c, element)

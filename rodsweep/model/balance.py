@@ -12,7 +12,8 @@ where <ad*_E Sigma, V> = -<Sigma, ad_E V>. Multiplied by V and by Sigma and inte
 law dU/dt = Sigma(1) V(1) - <Gamma V, V> with U = <Sigma, C Sigma>/2 and Sigma(1) V(1) = -F v1(1).
 
 Arrays have the shape (3, ...) in the plane and (6, ...) in space. A compliance may be 0, for nothing is
-divided by one. `rodsweep.discretization.body_frame` has the same balance compiled, on a mesh, in the plane.
+divided by one. `rodsweep.discretization.body_frame` has the same balance compiled, on a mesh, in the plane;
+tests hold the one against the other, and nothing else of the package calls this module yet.
 """
 
 from dataclasses import dataclass

@@ -11,7 +11,7 @@ from math import inf, isfinite
 
 @dataclass(frozen=True, slots=True)
 class Range:
-    """What a value may be, for the program and, as a phrase, for the user; NaN lies in no range."""
+    """What a value may be, for the program and, as a phrase, for the user; NaN lies in none but ANYTHING."""
 
     contains: Callable[[float], bool]
     phrase: str

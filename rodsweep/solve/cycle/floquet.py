@@ -61,14 +61,15 @@ def flow_derivative(beam: Beam, run: Trajectory) -> Array:
     """M(T), shape (unknowns, unknowns); between the steps z is the cubic through z and z' at both ends."""
     n, stages = beam.mesh.unknowns, len(SDIRK)
     identity, nodes = np.eye(n), SDIRK.sum(axis=1)
-    rates = np.array([beam.rate(z) for z in run.states])
+    rates = beam.rate(run.states)
     M, slopes = np.eye(n), np.zeros((stages, n, n))
     for k, h in enumerate(np.diff(run.times)):
         gamma, Z = SDIRK[0, 0] * h, M
         here = hermite(run.states[k : k + 2], h * rates[k : k + 2], nodes)
+        matrices = identity - gamma * beam.jacobian(here)
         for i in range(stages):
             right = M + np.tensordot(h * SDIRK[i, :i], slopes[:i], 1)
-            Z = np.linalg.solve(identity - gamma * beam.jacobian(here[i]), right)
+            Z = np.linalg.solve(matrices[i], right)
             slopes[i] = (Z - right) / gamma
         M = Z
     return M

@@ -70,7 +70,7 @@ def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
     states: list[Array] = []
     for k in np.nonzero((angle[:-1] < 0) & (angle[1:] >= 0))[0]:
         h, ends = run.times[k + 1] - run.times[k], run.states[k : k + 2]
-        slopes = h * np.array([beam.rate(z) for z in ends])
+        slopes = h * beam.rate(ends)
         low, high = 0.0, 1.0
         for _ in range(CROSSING_BISECTIONS):
             middle = (low + high) / 2

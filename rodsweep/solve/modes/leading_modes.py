@@ -48,7 +48,7 @@ class ModesRequest:
 class Modes:
     """The leading modes of one rod, in the order that `rodsweep.model` states.
 
-    The status is the spectrum's unless a vector or the growth is less accurate than asked for.
+    The status is the spectrum's unless a vector or the growth is less accurate than asked for, or failed.
     """
 
     status: SpectrumStatus

@@ -111,7 +111,8 @@ class Workspace:
 
     def __init__(self, mesh: Mesh) -> None:
         n = mesh.unknowns
-        self.base, self._jacobian, self._mesh = np.zeros(n), np.zeros((n, n)), mesh
+        self.base, self._jacobian = np.zeros(n), np.zeros((n, n))
+        self._mesh = mesh  # PETSc's callbacks read its arrays by address: they must live as long
         self.context = np.zeros((), CONTEXT)
         self.context["order"], self.context["unknowns"] = mesh.order, n
         arrays = mesh.element._asdict() | {"jacobian": self._jacobian, "base": self.base}

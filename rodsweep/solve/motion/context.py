@@ -17,7 +17,7 @@ CONTEXT = np.dtype(
         ("shift", REAL),  # with which the matrix was made
         ("matrix", WHOLE),  # the one that was last made here
         ("content", WHOLE),  # PETSc's number of its content, which rises with every change, PETSc's included
-        ("factorisations", WHOLE),
+        ("factorisations", WHOLE),  # how many, which tests ask
         ("contraction", REAL),  # rate at which the steps of Newton's method shrink
         ("growing", WHOLE),  # how many of them in a row have grown
         ("last_step", REAL),  # the size of the last one: 2-norm, as are the two below

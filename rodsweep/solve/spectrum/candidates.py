@@ -45,7 +45,7 @@ class Candidates:
     def worst(self, modes: int) -> float:
         """Largest relative error estimate of the leading modes."""
         errors, w = self.roots.error[:modes].tolist(), self.roots.w[:modes].tolist()
-        return max(map(truediv, errors, map(abs, w)))
+        return max(0.0, *map(truediv, errors, map(abs, w)))
 
 
 @dataclass(frozen=True, slots=True)
