@@ -23,8 +23,8 @@ from rodsweep.config.phase_diagram import PhaseDiagramConfig
 from rodsweep.config.refusals import what_is_allowed
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import PARAMETERS
-from rodsweep.results.layouts.crossings import CROSSING_KINDS
 from rodsweep.results.layouts.phase_diagram import CLASSES, curve_variables
+from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 from rodsweep.results.layouts.variables import DIMENSIONS, MISSING, Variable
 
 PAGE = Path(__file__).with_name("file-format.md")

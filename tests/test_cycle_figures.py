@@ -22,6 +22,7 @@ from rodsweep.post.figures.request import FigureRequest
 from rodsweep.results.file.creation import Plan, create_file
 from rodsweep.results.file.view import View
 from rodsweep.results.layouts import layout_of
+from rodsweep.sweep.grid import Points
 
 pytestmark = pytest.mark.filterwarnings("error::UserWarning")  # a layout that fails is only a warning
 
@@ -312,10 +313,10 @@ def test_file_as_the_task_lays_it_out_is_drawn(command, as_list):
     config = {"task": "limit_cycle", "limit_cycle": OPTIONS}
     flags = tuple(item for item in FLAGS.items() if item[0] >= 0)
     title = {"task": "limit_cycle", "title": "arms"}
-    columns = [np.asarray(c, float) for c in columns]
     layout = layout_of(config)
+    points = Points(layout.parameters, tuple(np.asarray(c, float) for c in columns), not as_list)
     path = command.directory / "arms.h5"
-    create_file(path, Plan(columns, not as_list, layout, {}, (), config, title, flags))
+    create_file(path, Plan(points, layout, {}, (), config, title, flags))
     with h5py.File(path, "r+") as file:
         for name in view.variables.keys() - {*NAMES, "point"}:
             file[name][...] = view.variables[name]

@@ -17,8 +17,8 @@ from rodsweep.post.summary import show_summary
 from rodsweep.results.file.creation import Plan
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.view import read_view
-from rodsweep.results.run.checkpoints import Checkpoints, drop_checkpoints
-from rodsweep.results.run.journal import Journal
+from rodsweep.results.run.checkpoints import CHECKPOINTS, Checkpoints
+from rodsweep.results.run.journal import Journal, drop_files
 from rodsweep.sweep.chains import Chains, ChainSolver
 from rodsweep.sweep.ranges import IndexSet
 from rodsweep.sweep.stop import StopRequest
@@ -66,7 +66,7 @@ def test_axial_drag_of_a_spectrum_stays_one_number(tmp_path):
     made = job_of(tmp_path, text)
     assert made.resolved["parameters"]["gamma1"] == 2
     assert made.layout.parameters == ("F", "k1", "k2", "gamma3")
-    assert made.config.constants == {"gamma1": 2}
+    assert made.config.parameters.numbers == {"gamma1": 2}
     for gamma1, sentence in (("[1, 2]", "gamma1: .*is not a number"), ("-1", "gamma1 = -1 is not allowed")):
         with pytest.raises(InputError, match=sentence):
             job_of(tmp_path, text.replace("gamma1: 2", f"gamma1: {gamma1}"))
@@ -243,8 +243,7 @@ def filled_file(directory, text=None):
     """The file of a run whose last point is straight."""
     job = job_of(directory, text or config(STORED))
     attributes = {"title": "t", "task": job.config.task}
-    columns, is_grid, task = job.points.columns, job.points.is_grid, job.task
-    plan = Plan(columns, is_grid, job.layout, task.coordinates(), (), job.resolved, attributes, FLAGS)
+    plan = Plan(job.points, job.layout, job.task.coordinates(), (), job.resolved, attributes, FLAGS)
     store = Store(directory / "c.h5", plan)
     journal = Journal(store.journals, 0, job.layout, plan.fingerprint)
     for index in range(job.points.count):
@@ -401,7 +400,7 @@ def chain_solver(missing, kept, solved, stop=None):
         return outcome, np.array([0.0 if state is None else state[0] + 1])
 
     stop = StopRequest() if stop is None else stop
-    return ChainSolver(Chains((6,), 0, True), IndexSet(missing), solve_from, kept, stop)
+    return ChainSolver(Chains((6,), 0, True), solve_from, IndexSet(missing), kept, stop)
 
 
 @pytest.mark.parametrize("points", range(1, 6))
@@ -474,7 +473,7 @@ def test_damaged_checkpoint_counts_as_none(tmp_path):
     for place in range(0, len(data), 7):
         path.write_bytes(data[:place] + bytes([data[place] ^ 1]) + data[place + 1 :])
         assert kept.read(0) is None
-    drop_checkpoints(tmp_path)
+    drop_files(tmp_path, CHECKPOINTS)
     assert not list(tmp_path.iterdir())
 
 

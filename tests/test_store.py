@@ -14,6 +14,7 @@ from rodsweep.results.layouts import layout_of
 from rodsweep.results.run import journal as pages_of
 from rodsweep.results.run import lock
 from rodsweep.results.run.journal import Journal, journal_directory, read_journals
+from rodsweep.sweep.grid import Points
 
 CONFIG = {"task": "spectrum", "spectrum": {"modes": 2, "vectors": False, "nodes": 33}}
 LAYOUT = layout_of(CONFIG)
@@ -21,7 +22,15 @@ LAYOUT = layout_of(CONFIG)
 
 def plan(is_grid=True, **config):
     columns = tuple(np.arange(1.0, n + 1) for n in ((3, 2, 1, 2) if is_grid else (5, 5, 5, 5)))
-    return Plan(columns, is_grid, LAYOUT, {}, (), CONFIG | config, {"title": "t"}, ((0, "ok"), (5, "failed")))
+    return Plan(
+        Points(LAYOUT.parameters, columns, is_grid),
+        LAYOUT,
+        {},
+        (),
+        CONFIG | config,
+        {"title": "t"},
+        ((0, "ok"), (5, "failed")),
+    )
 
 
 def record(index):

@@ -11,13 +11,13 @@ import xarray
 
 from rodsweep.cli.job import make_job
 from rodsweep.cli.tasks import modes, spectrum, thresholds
-from rodsweep.cli.tasks.crossings import search_record
+from rodsweep.cli.tasks.thresholds import search_record
 from rodsweep.discretization.resolution import Resolution
 from rodsweep.post.summary import show_summary
 from rodsweep.results.file.creation import Plan
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.view import read_view
-from rodsweep.results.layouts.crossings import CROSSING_KINDS
+from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 from rodsweep.results.layouts.variables import Variable
 from rodsweep.results.run.journal import Journal
 
@@ -53,8 +53,7 @@ def job_of(tmp_path, task, *overrides):
 
 def plan_of(job):
     return Plan(
-        job.points.columns,
-        job.points.is_grid,
+        job.points,
         job.layout,
         job.task.coordinates(),
         job.task.constants(),

@@ -65,11 +65,21 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], fresh: bo
 @click.argument("shards", type=FILE, nargs=-1, required=True, metavar="SHARD...")
 def merge(output: Path, shards: tuple[Path, ...]) -> None:
     """Put the points of all SHARD files of one config into OUTPUT."""
-    from .merging import merge_files
+    from ..results.file.merge import merge as merge_files
+    from .running import CONTINUE
 
     if output.is_dir():
         raise InputError(f"{output} is a directory; name the file to write first")
-    sys.exit(merge_files(_followed(output), tuple(map(_followed, shards))))
+    output = _followed(output)
+    merged = merge_files(output, tuple(map(_followed, shards)))
+    click.echo(f"{output}: {merged.points} points from {len(shards)} files, {merged.missing} missing")
+    if merged.kernels:
+        click.echo(f"{output}: {merged.kernels}")
+    if merged.missing:
+        click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing ones")
+        sys.exit(CONTINUE)
+    if not merged.finished:
+        click.echo(f"`rodsweep run CONFIG -o {output}` adds what only all points together give")
 
 
 @commands.command()

@@ -12,9 +12,7 @@ def describe_job(job: Job) -> None:
     console = Console(highlight=False)
     console.print(f"{job.path}: valid. {job.config.title}", markup=False)
     console.print(job.task.headline())
-    table = Table(box=None, pad_edge=False)
-    for heading in ("part", "modelled", "why"):
-        table.add_column(heading)
+    table = Table("part", "modelled", "why", box=None, pad_edge=False)
     for part, is_modelled, why in job.task.parts():
         table.add_row(part, "yes" if is_modelled else "no", why)
     console.print(table)

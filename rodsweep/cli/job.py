@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..results.layouts import layout_of
 from ..results.layouts.variables import Layout
 from ..sweep.grid import Points, grid_size, points_of
-from .tasks import task_of
+from .tasks import TASKS
 from .tasks.protocol import Task
 
 LARGEST_RECORD = 100_000_000
@@ -44,14 +44,7 @@ class Job:
 def make_job(path: Path, overrides: tuple[str, ...]) -> Job:
     """The job of a config file; InputError for everything that can be known to be wrong beforehand."""
     config, text = load_config(path, overrides)
-    _refuse_too_many(path, config)
-    points = points_of(config, path.parent)
-    return Job(path, config, text, points, task_of(config, points))
-
-
-def _refuse_too_many(path: Path, config: Config) -> None:
-    """InputError where the results of a grid would not fit in memory; before any axis is made."""
-    count = grid_size(config)
+    count = grid_size(config)  # before any axis is made
     each = layout_of(canonical(config)).bytes_per_point
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     if count * each > memory:
@@ -65,3 +58,5 @@ def _refuse_too_many(path: Path, config: Config) -> None:
             f"{path}: the results of one point take {each / 1e9:.3g} GB, more than the "
             f"{LARGEST_RECORD / 1e9:.3g} GB that a record may have; use fewer values"
         )
+    points = points_of(config, path.parent)
+    return Job(path, config, text, points, TASKS[config.task](config, points))

@@ -68,7 +68,9 @@ class _Run:
         missing = self.team.on_first(lambda: self._open(fresh))
         units, count = self._units(missing)
         if self.team.first:
-            self._announce(count, total(missing))
+            points, shard = self.job.points.count, f"; shard {self.shard}" if self.shard.of > 1 else ""
+            kept = f", {points - total(missing)} kept" if points > total(missing) else ""
+            click.echo(f"{self.output}: {count} of {points} points to do{kept}{shard}")
         contributions: list[Contribution] = []
         if count:
             self.team.on_first(self._note_kernels)
@@ -83,24 +85,13 @@ class _Run:
 
     def _units(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
         """(the units of this shard that miss a point, the points that they miss)."""
-        chained = self.solver.chained
-        if chained is None:
+        if self.solver.chained is None:
             units = self.shard.part(missing, self.job.points.count)
             return units, total(units)
-        lacks, chains = IndexSet(missing), chained.chains
+        lacks, (chains, _) = IndexSet(missing), self.solver.chained
         units = self.shard.part(chains.todo(lacks), chains.count)
         each = (lacks[chains.indices(chain)].sum() for unit in units for chain in range(*unit))
         return units, int(sum(each))
-
-    def _announce(self, count: int, missing: int) -> None:
-        """Says what there is to do."""
-        points = self.job.points.count
-        text = f"{self.output}: {count} of {points} points to do"
-        if points > missing:
-            text += f", {points - missing} kept"
-        if self.shard.of > 1:
-            text += f"; shard {self.shard}"
-        click.echo(text)
 
     def _note_kernels(self) -> None:
         """Keeps in the file which BLAS kernels compute its points, and says so where there are several."""
@@ -130,7 +121,12 @@ class _Run:
         try:
             directory = journal_directory(self.output)
             journal = Journal(directory, self.team.rank, plan.layout, plan.fingerprint)
-            solve = self._solve_unit(IndexSet(missing), Checkpoints(directory, plan.fingerprint))
+            checkpoints = Checkpoints(directory, plan.fingerprint)
+            solve: Callable[[int], Iterable[tuple[int, Any]]] = (
+                ChainSolver(*solver.chained, IndexSet(missing), checkpoints, self.stop)
+                if solver.chained
+                else lambda index: ((index, solver.solve(index)),)
+            )
             share = sweep(self.team, units, solve, keep, tell or (lambda done: None), self.stop)
             journal.close()
         except OSError as error:
@@ -142,15 +138,6 @@ class _Run:
             if tell:
                 tell.close()
         return failures, share
-
-    def _solve_unit(
-        self, missing: IndexSet, checkpoints: Checkpoints
-    ) -> Callable[[int], Iterable[tuple[int, Any]]]:
-        """How a unit is solved: a point, or a chain where points start one from the other."""
-        chained = self.solver.chained
-        if chained is None:
-            return lambda index: ((index, self.solver.solve(index)),)
-        return ChainSolver(chained.chains, missing, chained.solve_from, checkpoints, self.stop)
 
     def _finish(self, count: int, contributions: list[Contribution]) -> int:
         """Folds everything into the file, says how the run ended, and with which status it exits."""
@@ -164,7 +151,13 @@ class _Run:
         self.store.close()
         left = self._units(missing)[1]
         part = f"shard {self.shard} of {self.output}" if missing else f"{self.output}"
-        click.echo(self._time_spent(count - left) if count else f"{part} is complete, nothing to do")
+        if count:
+            seconds, points = time.monotonic() - self.began, count - left
+            each = 1e3 * seconds * self.team.size / max(points, 1)
+            pace = f" ({each:.3g} ms a point and rank)" if points else ""
+            click.echo(f"{points} points in {seconds:.2f} s on {self.team.size} ranks{pace}")
+        else:
+            click.echo(f"{part} is complete, nothing to do")
         click.echo(f"{self.output}: " + ", ".join(f"{n} {name}" for name, n in counts.items()))
         told = [failure for _, failures, _ in contributions for failure in failures]
         for failure in told[:FAILURES_TOLD]:
@@ -177,12 +170,6 @@ class _Run:
             return 0
         click.echo(f"  `rodsweep show {self.output}` says what each status means")
         return 1
-
-    def _time_spent(self, points: int) -> str:
-        seconds = time.monotonic() - self.began
-        text = f"{points} points in {seconds:.2f} s on {self.team.size} ranks"
-        each = 1e3 * seconds * self.team.size / max(points, 1)
-        return text + (f" ({each:.3g} ms a point and rank)" if points else "")
 
     def _history(self, contributions: list[Contribution]) -> dict[str, Any]:
         """Attributes that say where, by what and by whom the points of this run were computed."""
@@ -220,12 +207,11 @@ def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
     }
     versions = {f"{name}_version": value for name, value in petsc.versions().items()}
     return Plan(
-        columns=job.points.columns,
-        is_grid=job.points.is_grid,
+        points=job.points,
         layout=job.layout,
         coordinates=job.task.coordinates(),
         constants=job.task.constants(),
         config=job.resolved,
-        attributes=attributes | job.config.constants | versions | provenance.provenance(),
+        attributes=attributes | job.config.parameters.numbers | versions | provenance.provenance(),
         flags=tuple((int(s), s.name) for s in solver.statuses),
     )

@@ -33,7 +33,7 @@ class Axes(LinearAxes):
 
     @property
     def numbers(self) -> dict[str, float]:
-        """The parameters that are given as one number and have no axis, by name."""
+        """The parameters that have no axis but one number for the whole sweep, by name."""
         return {name: value for name, value in self._given.items() if isinstance(value, float)}
 
     @property

@@ -1,7 +1,4 @@
-"""The keys of the task limit_cycle: the nonlinear rod, whose axial drag is a parameter like the others.
-
-Ranges that are physics (finite k1 and k2, gamma3 > 0) belong to the task; here is form only.
-"""
+"""The keys of the task limit_cycle: the nonlinear rod, whose axial drag is a parameter like the others."""
 
 from typing import Annotated, Literal
 

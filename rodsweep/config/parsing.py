@@ -52,22 +52,20 @@ def parse(text: str, where: str) -> Any:
     yaml.Parser = _DataOnly
     try:
         return yaml.load(text)
-    except _Refused as error:
+    except InputError as error:
         raise InputError(f"{where}: {error}") from None
     except YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         place = f", line {mark.line + 1}, column {mark.column + 1}" if mark else ""
-        raise InputError(f"{where}{place}: not valid YAML: {_problem(error)}") from None
+        context, problem = (getattr(error, name, None) or "" for name in ("context", "problem"))
+        told = named(" ".join(f"{context} {problem}".split()) or " ".join(str(error).split()))
+        raise InputError(f"{where}{place}: not valid YAML: {told}") from None
     except (ValueError, OverflowError, RecursionError) as error:
         raise InputError(f"{where}: not valid YAML: {named(error)}") from None
 
 
-class _Refused(Exception):
-    """What has no place in a config, as the rest of a sentence."""
-
-
 class _DataOnly(Parser):
-    """A parser that stops at the first thing that is not plain data, before it is built."""
+    """A parser that stops at the first thing that is not plain data, before it is built: InputError."""
 
     depth = 0
 
@@ -75,32 +73,28 @@ class _DataOnly(Parser):
         event = super().get_event()
         if getattr(event, "anchor", None):
             mark = "*" if isinstance(event, AliasEvent) else "&"
-            raise _Refused(f"anchors and aliases ({named(mark + event.anchor)}) are not allowed in a config")
+            raise InputError(
+                f"anchors and aliases ({named(mark + event.anchor)}) are not allowed in a config"
+            )
         if getattr(event, "tag", None):
-            raise _Refused(f"tags ({named(event.tag)}) are not allowed in a config")
+            raise InputError(f"tags ({named(event.tag)}) are not allowed in a config")
         if isinstance(event, ScalarEvent):
             _refuse_scalar(event)
         name = type(event).__name__
         self.depth += name.endswith("StartEvent") - name.endswith("EndEvent")
         if self.depth > DEEPEST:
-            raise _Refused("nested deeper than any config is")
+            raise InputError("nested deeper than any config is")
         return event
 
 
 def _refuse_scalar(event: ScalarEvent) -> None:
-    """_Refused for a text that can be neither a key nor a value."""
+    """InputError for a text that can be neither a key nor a value."""
     text = event.value
     if len(text) > LONGEST:
-        raise _Refused(f"{short(text)} has {len(text)} characters, more than any value of a config")
+        raise InputError(f"{short(text)} has {len(text)} characters, more than any value of a config")
     if not text.isprintable():
-        raise _Refused(f"{short(text)} has characters that cannot be printed")
+        raise InputError(f"{short(text)} has characters that cannot be printed")
     if event.style is None and text == "<<":
-        raise _Refused("merge keys (<<) are not allowed in a config")
+        raise InputError("merge keys (<<) are not allowed in a config")
     if event.style is None and overflows(text):
-        raise _Refused(f"{short(text)} is too large for a floating-point number")
-
-
-def _problem(error: YAMLError) -> str:
-    """What the YAML library has to say, on one line."""
-    context, problem = (getattr(error, name, None) or "" for name in ("context", "problem"))
-    return named(" ".join(f"{context} {problem}".split()) or " ".join(str(error).split()))
+        raise InputError(f"{short(text)} is too large for a floating-point number")

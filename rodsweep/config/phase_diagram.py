@@ -31,19 +31,13 @@ class PhaseDiagramConfig(LinearConfig):
     into_crushed: ClassVar[bool] = True
 
     @property
-    def plane(self) -> tuple[str, str]:
-        """(line axis, row axis): the two parameters with more than one value, in their usual order."""
-        line, row = self._long_axes
-        return line, row
+    def plane(self) -> tuple[str, ...]:
+        """(line axis, row axis): the parameters with more than one value, in their usual order."""
+        return tuple(name for name, axis in self.parameters.axes.items() if axis.size > 1)
 
     @property
     def names(self) -> tuple[str, ...]:
         return all_but(self.plane[0])
-
-    @property
-    def _long_axes(self) -> list[str]:
-        """The parameters with more than one value."""
-        return [name for name, axis in self.parameters.axes.items() if axis.size > 1]
 
     @model_validator(mode="after")
     def _two_axes(self) -> "PhaseDiagramConfig":
@@ -54,7 +48,7 @@ class PhaseDiagramConfig(LinearConfig):
                 f"{every}"
             )
         self.parameters.require(LINEAR_PARAMETERS, or_points=False)
-        long = self._long_axes
+        long = self.plane
         if len(long) != 2:
             raise ValueError(
                 f"parameters has {len(long)} axes with more than one value ({', '.join(long) or 'none'}); a "

@@ -23,7 +23,13 @@ def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, st
     for override in overrides:
         _override(tree, override)
         text += f"\n# --set {override}"
-    return _validated(tree, where), text
+    config = CONFIGS[_task(tree, where)]
+    try:
+        return config.model_validate(tree), text
+    except ValidationError as error:
+        problems = sorted(error.errors(include_url=False), key=lambda problem: problem["type"] == "missing")
+        more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
+        raise InputError(f"{where}: {sentence_of(config, problems[0])}{more}") from None
 
 
 def canonical(config: Config) -> dict[str, Any]:
@@ -49,16 +55,6 @@ def _override(tree: dict, override: str) -> None:
             parent, rest = dotted(path[: i + 1]), dotted(path[i + 1 :])
             raise InputError(f"{where}: {parent} is {short(node)}, which has no key {rest}")
     node[path[-1]] = parse(value, where)
-
-
-def _validated(tree: dict, where: str) -> Config:
-    config = CONFIGS[_task(tree, where)]
-    try:
-        return config.model_validate(tree)
-    except ValidationError as error:
-        problems = sorted(error.errors(include_url=False), key=lambda problem: problem["type"] == "missing")
-        more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
-        raise InputError(f"{where}: {sentence_of(config, problems[0])}{more}") from None
 
 
 def _task(tree: dict, where: str) -> str:

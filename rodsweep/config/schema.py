@@ -36,11 +36,6 @@ class Config(Strict, ABC):
     def names(self) -> tuple[str, ...]:
         """The parameters that make a point of the sweep."""
 
-    @property
-    def constants(self) -> dict[str, float]:
-        """Parameters beside `names` that have one value for the whole sweep."""
-        return self.parameters.numbers
-
     def refuse_unused(self, option: str, remedy: str) -> None:
         """ValueError where an option is given that nothing uses unless the config has `remedy`."""
         if option in getattr(self, self.task).model_fields_set:
@@ -63,7 +58,7 @@ class LinearConfig(Config, ABC):
 
     @model_validator(mode="after")
     def _only_parameters_that_are_used(self) -> "LinearConfig":
-        for name in self.constants:
+        for name in self.parameters.numbers:
             if name not in self.beyond:
                 raise ValueError(
                     f"parameters.{name} is given but the task {self.task} does not use it; remove it"

@@ -34,12 +34,12 @@ class SpectrumConfig(LinearConfig):
     @model_validator(mode="after")
     def _only_what_is_used(self) -> "SpectrumConfig":
         self.parameters.require(self.names)
-        if "gamma1" in self.constants and not self.spectrum.longitudinal:
+        if "gamma1" in self.parameters.numbers and not self.spectrum.longitudinal:
             raise ValueError(
                 "parameters.gamma1 is given but not used: the transverse spectrum does not contain it; "
                 "remove it or set spectrum.longitudinal: true"
             )
-        if self.spectrum.longitudinal and "gamma1" not in self.constants:
+        if self.spectrum.longitudinal and "gamma1" not in self.parameters.numbers:
             raise ValueError("parameters.gamma1 is missing; spectrum.longitudinal: true needs it")
         if not self.spectrum.vectors:
             self.refuse_unused("nodes", remedy="vectors: true")

@@ -18,6 +18,8 @@ from .stop import StopRequest
 
 State = Array | None
 """What a point starts from where its neighbour has something to offer; None otherwise."""
+ChainStep = Callable[[int, State], tuple[Any, State]]
+"""From an index and what the point starts from to its outcome and what its neighbour starts from."""
 
 
 class ChainStates(Protocol):
@@ -66,9 +68,8 @@ class ChainSolver:
     """Solves the chains of a run, of which only the `missing` points are to be kept."""
 
     chains: Chains
+    solve_from: ChainStep
     missing: IndexSet
-    solve_from: Callable[[int, State], tuple[Any, State]]
-    """From an index and what the point starts from to its outcome and what its neighbour starts from."""
     checkpoints: ChainStates
     stop: StopRequest
 

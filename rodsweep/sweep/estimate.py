@@ -49,11 +49,6 @@ def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> E
     return replace(spectra, seconds=spectra.seconds + more, unknowns=None)
 
 
-def estimate_cycles(count: int) -> Estimate:
-    """The cost of `count` limit cycles."""
-    return Estimate(count * CYCLE_SECONDS)
-
-
 def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool) -> Estimate:
     """The cost of a sweep from points spread evenly over it."""
     indices = np.unique(np.linspace(0, points.count - 1, min(SAMPLE, points.count)).astype(np.int64))

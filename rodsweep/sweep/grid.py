@@ -15,7 +15,7 @@ from ..config.axes import words
 from ..config.schema import Config
 from ..config.values import as_number, overflows
 from ..errors import InputError
-from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS
+from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS, Range
 from ..model.rod import Rod
 
 LONGEST_LINE = 10_000
@@ -70,25 +70,28 @@ def grid_size(config: Config) -> int:
 def points_of(config: Config, directory: Path) -> Points:
     """The points that the config asks for; InputError for any value that the model does not allow."""
     parameters = config.parameters
-    for name, value in config.constants.items():
-        _refuse_outside(name, (value,))
+    for name, value in parameters.numbers.items():
+        refuse_outside(PARAMETERS[name].allowed, name, (value,))
     if parameters.points is not None:
         columns = _read_csv(directory / parameters.points, config.names)
         return Points(config.names, columns, is_grid=False)
     axes = {name: axis.array() for name, axis in parameters.axes.items()}
     for name, column in axes.items():
-        _refuse_outside(name, column)
+        refuse_outside(PARAMETERS[name].allowed, name, column)
     if "F" in axes:
         _refuse_crushed(axes["F"], axes["k1"], config.into_crushed)
     return Points(config.names, tuple(axes[name] for name in config.names), is_grid=True)
 
 
-def _refuse_outside(name: str, values: Iterable[float]) -> None:
-    """InputError for the first value of a parameter that the model does not allow."""
-    allowed = PARAMETERS[name].allowed
+def refuse_outside(
+    allowed: Range, name: str, values: Iterable[float], where: str = "", why: str = ""
+) -> None:
+    """InputError for the first value of a parameter that is not allowed; `where` it is not, and `why`."""
     bad = allowed.first_outside(values)
     if bad is not None:
-        raise InputError(f"parameters.{name} = {bad:g} is not allowed; it must be {allowed.phrase}")
+        raise InputError(
+            f"parameters.{name} = {bad:g} is not allowed{where}; it must be {allowed.phrase}{why}"
+        )
 
 
 def _refuse_crushed(F: Array, k1: Array, some: bool) -> None:

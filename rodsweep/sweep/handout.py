@@ -66,6 +66,7 @@ class Handout:
         self.held: Counter[int] = Counter()
         """Chunks that each rank has and has not reported on."""
         self.points = 0
+        """That all ranks have reported kept."""
         self.pace: dict[int, float] = {}
         self.stopped = False
         self.change = threading.Condition()
@@ -133,11 +134,6 @@ class FirstRankClaims:
         if team.size > 1:
             self.thread = threading.Thread(target=self._serve_until_over, name="handout", daemon=True)
             self.thread.start()
-
-    @property
-    def points(self) -> int:
-        """Points that all ranks have reported kept."""
-        return self.handout.points
 
     def claim(self, report: Report) -> IndexRange:
         with self.serving:
@@ -215,8 +211,6 @@ class FirstRankClaims:
 class OtherRankClaims:
     """How every other rank gets its chunks: by asking the first."""
 
-    points = 0
-
     def __init__(self, team: Team, stop: StopRequest):
         self.comm, self.stop, self.told = team.comm, stop, False
 
@@ -238,6 +232,3 @@ class OtherRankClaims:
         if not self.told and self.stop:
             self.comm.send(self.stop.name, dest=0, tag=STOP_TAG)
             self.told = True
-
-    def close(self) -> None:
-        """Nothing to close."""

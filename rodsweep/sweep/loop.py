@@ -51,8 +51,8 @@ def sweep(
                 keep(index, result)
                 points += 1
                 claims.between_points()
-                if team.first:
-                    tell(claims.points + points - before)
+                if isinstance(claims, FirstRankClaims):
+                    tell(claims.handout.points + points - before)
             if stop:  # in the middle of the unit, perhaps
                 break
             at += 1
@@ -61,6 +61,7 @@ def sweep(
         spent = time.monotonic() - began
         busy += spent
         chunk = claims.claim(Report(at - chunk[0], spent, (at, end), points - before, stop=stop.name))
-    claims.close()
-    team.barrier()
+    if isinstance(claims, FirstRankClaims):
+        claims.close()
+    team.comm.Barrier()
     return Share(points, busy, time.monotonic() - started - busy)

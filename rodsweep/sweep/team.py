@@ -4,7 +4,7 @@ import sys
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from typing import Any, NoReturn, TypeVar
+from typing import Any, TypeVar
 
 from ..errors import EnvironmentLacks, Refusal
 
@@ -63,12 +63,9 @@ class Team:
         """The values of all ranks on the first rank, None elsewhere."""
         return self.comm.gather(value)
 
-    def barrier(self) -> None:
-        self.comm.Barrier()
-
     @contextmanager
     def together(self) -> Iterator[None]:
-        """What fails in here on one rank ends all ranks, with a message; the others would wait for ever.
+        """What fails in here on one rank ends all ranks with status 3 and a message: they would wait.
 
         With a single rank there is nobody to wait, and a refusal that all ranks share needs no abort:
         such exceptions go on.
@@ -83,12 +80,8 @@ class Team:
             else:
                 sys.stderr.write(f"rodsweep: rank {self.rank} failed, all ranks end\n")
                 traceback.print_exc()
-            self.abort()
-
-    def abort(self) -> NoReturn:
-        """Ends all ranks now, with exit status 3, after whoever calls has said why."""
-        for stream in (sys.stdout, sys.stderr):
-            with suppress(OSError):  # a full disk under the log must not keep the others waiting
-                stream.flush()
-        self.comm.Abort(3)
-        raise SystemExit(3)
+            for stream in (sys.stdout, sys.stderr):
+                with suppress(OSError):  # a full disk under the log must not keep the others waiting
+                    stream.flush()
+            self.comm.Abort(3)
+            raise SystemExit(3) from error

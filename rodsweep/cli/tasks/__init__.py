@@ -7,7 +7,6 @@ A new task needs a module of its name here, in `rodsweep.config`, `rodsweep.resu
 from collections.abc import Callable
 from typing import Any
 
-from ...config import Config
 from ...sweep.grid import Points
 from .limit_cycle import LimitCycleTask
 from .modes import ModesTask
@@ -23,8 +22,4 @@ TASKS: dict[str, Callable[[Any, Points], Task]] = {
     "modes": ModesTask,
     "limit_cycle": LimitCycleTask,
 }
-
-
-def task_of(config: Config, points: Points) -> Task:
-    """The task of a config on its points; InputError for what only the task can know to be wrong."""
-    return TASKS[config.task](config, points)
+"""How a task is made of its config and points; InputError for what only the task can know to be wrong."""

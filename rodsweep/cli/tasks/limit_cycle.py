@@ -7,14 +7,14 @@ import numpy as np
 
 from ...config.limit_cycle import LimitCycleConfig
 from ...discretization.quadrature import lobatto_points
-from ...errors import InputError
 from ...model.parameters import PARAMETERS
 from ...results.layouts.limit_cycle import CYCLE, ENERGY, PERIOD_TAU1, SHAPE, TIP
 from ...results.layouts.variables import Variable
 from ...sweep.chains import Chains, State
-from ...sweep.estimate import Estimate, estimate_cycles
+from ...sweep.estimate import CYCLE_SECONDS, Estimate
+from ...sweep.grid import refuse_outside
 from .parts import count_of, rod_parts
-from .protocol import Chained, Part, Solver, Task
+from .protocol import Part, Solver, Task
 
 if TYPE_CHECKING:
     from ...solve.cycle.limit_cycle import Cycle
@@ -31,13 +31,8 @@ class LimitCycleTask(Task):
 
     def __post_init__(self) -> None:
         for name, column in self.points.by_name.items():
-            needed = PARAMETERS[name].nonlinear
-            bad = needed.first_outside(column)
-            if bad is not None:
-                raise InputError(
-                    f"parameters.{name} = {bad:g} is not allowed in the task limit_cycle; it must be "
-                    f"{needed.phrase}, because the nonlinear rod stretches, shears and turns against drag"
-                )
+            why = ", because the nonlinear rod stretches, shears and turns against drag"
+            refuse_outside(PARAMETERS[name].nonlinear, name, column, " in the task limit_cycle", why)
 
     @property
     def chains(self) -> Chains | None:
@@ -91,16 +86,10 @@ class LimitCycleTask(Task):
         return what, True, f"{each} a point{nodes}, {self.points.count * each} in all: {8e-6 * values:.3g} MB"
 
     def cost(self) -> Estimate:
-        return estimate_cycles(self.points.count)
+        return Estimate(self.points.count * CYCLE_SECONDS)
 
     def solver(self) -> Solver:
-        from ...solve.cycle.limit_cycle import (
-            CyclePoint,
-            CycleRequest,
-            CycleStatus,
-            solve_cycle,
-            warm_up,
-        )
+        from ...solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle, warm_up
 
         options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
         request = CycleRequest(accuracy=self.config.accuracy, **options)
@@ -118,7 +107,7 @@ class LimitCycleTask(Task):
             warm_up=warm_up,
             solve=solve,
             record=lambda index, cycle: self.record(self.points.values(index), cycle),
-            chained=Chained(chains, solve_from) if chains else None,
+            chained=(chains, solve_from) if chains else None,
         )
 
     def record(self, point: dict[str, float], cycle: "Cycle") -> dict[str, Any]:

@@ -13,6 +13,7 @@ from ...results.layouts.modes import GROWTH
 from ...sweep.estimate import Estimate, estimate_modes, estimate_spectra
 from .parts import LinearTask, count_of
 from .protocol import Part, Solver
+from .spectrum import record as spectrum_record
 
 if TYPE_CHECKING:
     from ...solve.modes.leading_modes import Modes
@@ -69,18 +70,13 @@ class ModesTask(LinearTask):
 
 def record(result: "Modes", growth: bool) -> dict[str, Any]:
     """Modes as the variables of the file."""
-    spectrum, vectors = result.spectrum, result.vectors
-    values: dict[str, Any] = {
-        "growth_rate": spectrum.eigenvalues.real,
-        "frequency": spectrum.eigenvalues.imag,
-        "error_estimate": spectrum.error_estimate,
+    vectors = result.vectors
+    values: dict[str, Any] = spectrum_record(result.spectrum) | {
         "mode_error": vectors.mode_error,
         "pairing_real": vectors.pairing.real,
         "pairing_imag": vectors.pairing.imag,
         "condition": vectors.condition,
         "condition_error": vectors.condition_error,
-        "unstable_count": spectrum.unstable_count,
-        "certified": spectrum.certified,
         "elements": vectors.resolution.elements,
         "order": vectors.resolution.order,
         "seconds": result.seconds,

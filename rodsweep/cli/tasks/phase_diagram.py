@@ -14,9 +14,9 @@ from ...results.file.view import View
 from ...results.layouts.phase_diagram import curve_variables
 from ...results.layouts.variables import Filled
 from ...sweep.estimate import Estimate, estimate_lines
-from .crossings import search_record
 from .parts import LinearTask
 from .protocol import Part, Solver
+from .thresholds import search_record
 
 if TYPE_CHECKING:
     from ...determinant.curves import BoundaryCurve
@@ -76,13 +76,20 @@ class PhaseDiagramTask(LinearTask):
     def curves(self, view: View) -> list[Filled]:
         """The boundaries through the crossings of all rows, with their folds, as variables of the file."""
         from ...solve.changes.boundaries import curves_through, seed_of
+        from ...solve.changes.thresholds import filament_hopf
 
         line, row = self.config.plane
         rows = self.points.by_name[row]
         finite = rows[np.isfinite(rows)]
         if len(finite) < 2:
             return []
-        plane = Plane(self._rod(), (self._axis(line, self.line), self._axis(row, finite)))
+        axes = self.config.parameters.axes
+        not_crushed = {name: float(axis.array()[-1 if name == "k1" else 0]) for name, axis in axes.items()}
+        abscissa, ordinate = (
+            PlaneAxis(name, float(values[0]), float(values[-1]), axes[name].logarithmic)
+            for name, values in ((line, self.line), (row, finite))
+        )
+        plane = Plane(Rod(**not_crushed), (abscissa, ordinate))
         names = ("crossing_at", "crossing_kind", "crossing_frequency", "crossing_growth_rate")
         at, kind, frequency, rate = (view.variables[n].reshape(len(rows), -1) for n in names)
         seeds = [
@@ -97,26 +104,11 @@ class PhaseDiagramTask(LinearTask):
         # Where a list is full its last crossings are not stored, and no curve starts from them.
         cut = view.variables["crossing_count"].ravel() - np.count_nonzero(kind, axis=1)
         found = replace(found, untraced=found.untraced + int(cut[np.isfinite(rows)].clip(min=0).sum()))
-        values = curve_record(found, line, row) | (self._partial_beam() if (line, row) == CRUSHING else {})
+        values = curve_record(found, line, row)
+        if (line, row) == CRUSHING:  # the fold of the Hopf curve in the partial beam limit (Sec. VIII)
+            Fc = filament_hopf()
+            values |= {"filament_F_hopf": Fc, "partial_beam_k1": 4 * Fc, "partial_beam_F": 2 * Fc}
         return [(variables[name], np.asarray(value)) for name, value in values.items()]
-
-    def _axis(self, name: str, values: np.ndarray) -> PlaneAxis:
-        logarithmic = self.config.parameters.axes[name].logarithmic
-        return PlaneAxis(name, float(values[0]), float(values[-1]), logarithmic)
-
-    def _rod(self) -> Rod:
-        """Some rod of the plane that is not crushed."""
-        axes = {name: axis.array() for name, axis in self.config.parameters.axes.items()}
-        values = {name: float(column[-1] if name == "k1" else column[0]) for name, column in axes.items()}
-        return Rod(**values)
-
-    @staticmethod
-    def _partial_beam() -> dict[str, float]:
-        """Where the partial beam limit has the fold of the Hopf curve (Sec. VIII): k1 = 4 Fc, F = 2 Fc."""
-        from ...solve.changes.thresholds import filament_hopf
-
-        Fc = filament_hopf()
-        return {"filament_F_hopf": Fc, "partial_beam_k1": 4 * Fc, "partial_beam_F": 2 * Fc}
 
 
 def record(result: "DiagramRow", most: int) -> dict[str, Any]:

@@ -10,21 +10,12 @@ import numpy as np
 from ...results.file.view import View
 from ...results.layouts.variables import Filled
 from ...solve.status import PointStatus
-from ...sweep.chains import Chains, State
+from ...sweep.chains import Chains, ChainStep
 from ...sweep.estimate import Estimate
 from ...sweep.grid import Points
 
 Part = tuple[str, bool, str]
 """(what, whether it is modelled, why): a row of what `check` prints."""
-
-
-@dataclass(frozen=True, slots=True)
-class Chained:
-    """Points of which each starts from its neighbour."""
-
-    chains: Chains
-    solve_from: Callable[[int, State], tuple[Any, State]]
-    """From an index and what the point starts from to its outcome and what its neighbour starts from."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +30,7 @@ class Solver:
     """An index and its outcome as the variables of the file."""
     finish: Callable[[View], Sequence[Filled]] | None = None
     """Variables that only all points together give, on the first rank, from the file with all points."""
-    chained: Chained | None = None
+    chained: tuple[Chains, ChainStep] | None = None
     """Where points start one from the other: how they are solved, instead of by `solve`."""
 
 

@@ -41,7 +41,7 @@ class SpectrumTask(LinearTask):
 
     def constants(self) -> tuple[Filled, ...]:
         """The longitudinal rates, where they are asked for: along k1 on a grid, along the points else."""
-        gamma1 = self.config.constants.get("gamma1")
+        gamma1 = self.config.parameters.numbers.get("gamma1")
         if gamma1 is None:
             return ()
         k1, modes = self.points.by_name["k1"], self.config.spectrum.modes

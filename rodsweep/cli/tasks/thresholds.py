@@ -6,13 +6,16 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ...config.thresholds import ThresholdsConfig
+from ...results.layouts.thresholds import CROSSING_KINDS
 from ...sweep.estimate import Estimate, estimate_lines
-from .crossings import first_of, search_record
 from .parts import LinearTask, count_of
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
     from ...solve.changes.thresholds import Thresholds
+
+EVENTS = {"onset": "growth_rate", "hopf": "frequency", "restabilization": "frequency"}
+"""Crossings of which the first one is a threshold, and what the file has of it beside F."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,16 +55,37 @@ class ThresholdsTask(LinearTask):
 
 def record(result: "Thresholds", most: int) -> dict[str, Any]:
     """Thresholds as the variables of the file."""
-    onset = first_of(result.crossings, "onset")
-    hopf = first_of(result.crossings, "hopf")
-    end = first_of(result.crossings, "restabilization")
+    values = {"F_end": result.end, "unstable_at_end": result.transitions.unstable_at_end}
+    for kind, number in EVENTS.items():
+        place = CROSSING_KINDS.index(kind)
+        first = next((crossing for crossing in result.crossings if crossing.kind == place), None)
+        for name, field in ((f"F_{kind}", "at"), (f"{kind}_{number}", number)):
+            values[name] = getattr(first, field, np.nan)
+    return values | search_record(result, most, "crossing_F")
+
+
+def search_record(result: "Thresholds", most: int, at: str) -> dict[str, Any]:
+    """The variables of a search: at most `most` crossings, whose place is the variable `at`."""
+    found, crossings = result.transitions, result.crossings[:most]
+    columns: dict[str, tuple[str, float]] = {
+        at: ("at", np.nan),
+        "crossing_kind": ("kind", 0),
+        "crossing_frequency": ("frequency", np.nan),
+        "crossing_growth_rate": ("growth_rate", np.nan),
+        "crossing_error": ("error", np.nan),
+        "unstable_after": ("unstable_after", -1),
+    }
+    along = {
+        name: [getattr(crossing, field) for crossing in crossings] + [fill] * (most - len(crossings))
+        for name, (field, fill) in columns.items()
+    }
     return {
-        "F_onset": onset.at if onset else np.nan,
-        "onset_growth_rate": onset.growth_rate if onset else np.nan,
-        "F_hopf": hopf.at if hopf else np.nan,
-        "hopf_frequency": hopf.frequency if hopf else np.nan,
-        "F_restabilization": end.at if end else np.nan,
-        "restabilization_frequency": end.frequency if end else np.nan,
-        "F_end": result.end,
-        "unstable_at_end": result.transitions.unstable_at_end,
-    } | search_record(result, most, "crossing_F")
+        "crossing_count": len(found.crossings),
+        "open_from": found.open_range[0],
+        "open_to": found.open_range[1],
+        "certified": found.proved,
+        "boxes": found.boxes,
+        "solves": found.solves,
+        "seconds": result.seconds,
+        "status": int(result.status),
+    } | along

@@ -22,9 +22,7 @@ def draw_limit_cycle(request: FigureRequest) -> str:
 
 
 def figure_name(request: FigureRequest) -> str:
-    """What --what names; else an animation for a film's suffix, shapes where they are stored of few points,
-    and amplitudes.
-    """
+    """What --what names; else an animation for a film's suffix, shapes if of few points, or amplitudes."""
     first, *others = request.views
     for view in others:
         if view.task != first.task:

@@ -14,12 +14,10 @@ from ...errors import InputError
 from ...model.parameters import PARAMETERS
 from ...results.file.view import View
 
-GREEK = {"gamma": r"\gamma"}
-
 
 def tex(unit: str) -> str:
     """A unit of the table of parameters, such as gamma2 L^2, in TeX."""
-    return re.sub(r"(gamma|k)(\d)", lambda found: f"{GREEK.get(found[1], found[1])}_{found[2]}", unit)
+    return re.sub(r"(gamma|k)(\d)", r"\1_\2", unit).replace("gamma", r"\gamma")
 
 
 SYMBOLS = {name: parameter.symbol for name, parameter in PARAMETERS.items()}

@@ -43,7 +43,8 @@ def _panel(panel: Axes, view: View, name: str, others: list[str]) -> None:
     if name == "gamma3":  # as the paper: against 1/gamma3
         x, label = 1 / x, style.INVERSE_DRAG
     place = others[0] if others else None
-    chosen = _spread(view.axes[place]) if place else [0]
+    last = len(view.axes[place]) - 1 if place else 0
+    chosen = sorted({0, last // 2, last})
     labels = {variable: word for variable, word, *_ in CRITICAL_FORCES}
     for line, at in enumerate(chosen):
         index = tuple(slice(None) if n == name else (at if n == place else 0) for n in axes)
@@ -60,8 +61,3 @@ def _panel(panel: Axes, view: View, name: str, others: list[str]) -> None:
     panel.set_xlabel(label)
     panel.set_ylim(bottom=0)
     panel.legend(frameon=False, fontsize=8)
-
-
-def _spread(values: np.ndarray) -> list[int]:
-    """Places of the first, the middle and the last value, each once."""
-    return sorted({0, (len(values) - 1) // 2, len(values) - 1})

@@ -40,7 +40,7 @@ def monotony_lines(view: View) -> list[str]:
         there = np.isfinite(along).sum(axis=-1) > 1
         if not there.any():
             continue
-        rising = np.apply_along_axis(_rises, -1, along) & there
+        rising = np.apply_along_axis(lambda F: (np.diff(F[np.isfinite(F)]) > 0).all(), -1, along) & there
         text = f"{force} rises with {label} on {int(rising.sum())} of {int(there.sum())} lines"
         others = [n for n in view.axes if n != name]
         for other, places in zip(others, np.argwhere(there & ~rising).T, strict=True):
@@ -50,11 +50,6 @@ def monotony_lines(view: View) -> list[str]:
                 text += f" to {high:.6g}" if high > low else ""
         lines.append(text)
     return lines
-
-
-def _rises(values: np.ndarray) -> bool:
-    """Whether the finite values increase."""
-    return bool((np.diff(values[np.isfinite(values)]) > 0).all())
 
 
 def search_lines(view: View, done: np.ndarray, lines: int) -> list[str]:

@@ -1,7 +1,4 @@
-"""A new result file: netCDF-4-compatible HDF5 with every variable in its place, filled as missing.
-
-Also what is added to a file once its points are known, such as curves.
-"""
+"""A new result file: netCDF-4-compatible HDF5 with every variable in its place; and what is added later."""
 
 import json
 from collections.abc import Sequence
@@ -15,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
+from ...sweep.grid import Points
 from ..layouts.variables import DIMENSIONS, MISSING, Filled, Layout, Variable
 from .validation import PROGRAM
 
@@ -23,9 +21,7 @@ from .validation import PROGRAM
 class Plan:
     """What makes a file: the points, the layout, and the config that it answers."""
 
-    columns: Sequence[Array]
-    """Values of the layout's parameters: axes of a grid, or columns of a list."""
-    is_grid: bool
+    points: Points
     layout: Layout
     coordinates: dict[str, Array]
     """Values of extra dimensions that have some, such as u."""
@@ -38,19 +34,15 @@ class Plan:
     """Values and meanings of `status`, beside MISSING."""
 
     @property
-    def shape(self) -> tuple[int, ...]:
-        return tuple(len(c) for c in self.columns) if self.is_grid else (len(self.columns[0]),)
-
-    @property
     def dimensions(self) -> tuple[str, ...]:
         """Names of the dimensions of the points."""
-        return self.layout.parameters if self.is_grid else ("point",)
+        return self.layout.parameters if self.points.is_grid else ("point",)
 
     @property
     def fingerprint(self) -> str:
         """What two files must share for the one to continue the other."""
         digest = sha256(json.dumps(self.config, sort_keys=True).encode())
-        for column in self.columns:
+        for column in self.points.columns:
             digest.update(np.ascontiguousarray(column).tobytes())
         return digest.hexdigest()
 
@@ -62,7 +54,7 @@ def create_file(path: Path, plan: Plan) -> None:
         for name, extent in plan.layout.extents.items():
             _write_scale(file, name, plan.coordinates.get(name, np.arange(1, extent + 1)))
         for variable in plan.layout.variables:
-            data = _contiguous(file, variable, plan.shape + plan.layout.inner(variable))
+            data = _contiguous(file, variable, plan.points.shape + plan.layout.inner(variable))
             flags = ((MISSING, "missing"), *plan.flags) if variable.name == "status" else variable.flags
             _describe(file, data, replace(variable, flags=flags), (*plan.dimensions, *variable.extra))
         add_variables(file, plan.constants)
@@ -84,12 +76,12 @@ def add_variables(file: h5py.File, filled: Sequence[Filled]) -> None:
 
 def _write_parameters(file: h5py.File, plan: Plan) -> None:
     """The parameters, each a dimension of its own or all along `point`."""
-    names = plan.layout.parameters
-    if not plan.is_grid:
-        _write_scale(file, "point", np.arange(plan.shape[0], dtype="<i4"))
+    names, points = plan.layout.parameters, plan.points
+    if not points.is_grid:
+        _write_scale(file, "point", np.arange(points.count, dtype="<i4"))
         file.attrs["coordinates"] = " ".join(names)
-    for name, column in zip(names, plan.columns, strict=True):
-        if plan.is_grid:
+    for name, column in zip(names, points.columns, strict=True):
+        if points.is_grid:
             _write_scale(file, name, column)
         else:
             _write_named(file, name, column).dims[0].attach_scale(file["point"])

@@ -17,10 +17,7 @@ from .seal import seal
 
 @contextmanager
 def disk_refusals(path: Path, kept: str = "") -> Iterator[None]:
-    """What the disk refuses in here is EnvironmentLacks, for which HDF5 raises RuntimeError.
-
-    `kept`: the end of the sentence, which says what is not lost.
-    """
+    """What the disk refuses here (HDF5: RuntimeError) is EnvironmentLacks; `kept` says what is not lost."""
     try:
         yield
     except (OSError, RuntimeError) as error:

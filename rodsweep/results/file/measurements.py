@@ -15,10 +15,7 @@ UNITS = {"seconds": "s", "error": "1"}
 
 
 def write_measurements(path: Path, tables: Mapping[str, Table], attributes: Mapping[str, str]) -> None:
-    """Writes /STUDY/COLUMN for every study, each column of shape (measurement,).
-
-    Raises EnvironmentLacks where the file cannot be written.
-    """
+    """Writes /STUDY/COLUMN, each of shape (measurement,); EnvironmentLacks where it cannot be written."""
     try:
         with h5py.File(path, "w") as file:
             file.attrs.update(attributes)

@@ -13,7 +13,7 @@ import h5py
 
 from ...errors import InputError
 from ...sweep.ranges import total
-from ..run.journal import journal_directory
+from ..run.journal import JOURNALS, journal_directory
 from .exchange import Exchange, disk_refusals
 from .points import missing_ranges, points_to_add, write_points
 from .provenance import KERNELS, kernels_sentence, merged_history, now
@@ -69,7 +69,7 @@ def _opened(paths: Sequence[Path]) -> list[Header]:
     """The files, all of one config, each with all of its points in it; else InputError."""
     files = [read_header(path) for path in paths]
     for file in files:
-        if any(journal_directory(file.path).glob("rank-*")):
+        if any(journal_directory(file.path).glob(JOURNALS)):
             raise InputError(
                 f"{file.path} has points in its journal that are not in it yet: run its command again first"
             )

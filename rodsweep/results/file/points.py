@@ -8,7 +8,6 @@ from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from math import prod
 from pathlib import Path
-from typing import BinaryIO
 
 import h5py
 import numpy as np
@@ -53,15 +52,15 @@ def points_to_add(path: Path, other: Path, layout: Layout) -> Iterator[np.ndarra
                 records = np.empty(wanted.sum(), layout.record)
                 records["index"] = first + np.flatnonzero(wanted)
                 for name, offset in offsets.items():
-                    records[name] = _values(stream, offset, layout.record[name], first, len(ours))[wanted]
+                    kind = layout.record[name]
+                    stream.seek(offset + first * kind.itemsize)
+                    values = np.fromfile(stream, kind.base, len(ours) * prod(kind.shape))
+                    records[name] = values.reshape(len(ours), *kind.shape)[wanted]
                 yield records
 
 
 def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> bool:
-    """Writes records, in any order, into the variables; returns whether there were any.
-
-    A record goes to its place whatever the shape of the grid; neighbours go by one call.
-    """
+    """Writes records, (n,) in any order, into the variables, neighbours by one call; whether any were."""
     offsets = _offsets(path, layout)
     any_written = False
     with path.open("r+b") as stream:
@@ -83,10 +82,3 @@ def _offsets(path: Path, layout: Layout) -> dict[str, int]:
     """Where in the file each variable begins."""
     with h5py.File(path, "r") as file:
         return {variable.name: file[variable.name].id.get_offset() for variable in layout.variables}
-
-
-def _values(stream: BinaryIO, offset: int, kind: np.dtype, first: int, count: int) -> np.ndarray:
-    """`count` points of a variable, where `kind` is that of one point, with its shape."""
-    stream.seek(offset + first * kind.itemsize)
-    values = np.fromfile(stream, kind.base, count * prod(kind.shape))
-    return values.reshape(count, *kind.shape)

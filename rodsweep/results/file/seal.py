@@ -10,7 +10,7 @@ import os
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import BinaryIO
 
 import h5py
 
@@ -53,7 +53,13 @@ def check_seal(path: Path, values: bool) -> None:
         if size == end:
             return
         stream.seek(end)
-        given = _read_seal(stream.read(LONGEST_SEAL))
+        data = stream.read(LONGEST_SEAL)
+        if not data.startswith(SEAL_HEAD) or not data.endswith(b"\n"):
+            raise BrokenSeal("its checksum cannot be read")
+        try:
+            given = json.loads(data[len(SEAL_HEAD) :])
+        except (ValueError, RecursionError):
+            raise BrokenSeal("its checksum cannot be read") from None
         try:
             pieces = [(int(start), int(length)) for start, length in given["pieces"]]
             whole = given["end"] == end and given["frame"] == _checksum(stream, _between(pieces, end))
@@ -62,16 +68,6 @@ def check_seal(path: Path, values: bool) -> None:
             whole = False
     if not whole:
         raise BrokenSeal("its content does not fit its checksum")
-
-
-def _read_seal(data: bytes) -> Any:
-    """What the bytes after HDF5's end say."""
-    if not data.startswith(SEAL_HEAD) or not data.endswith(b"\n"):
-        raise BrokenSeal("its checksum cannot be read")
-    try:
-        return json.loads(data[len(SEAL_HEAD) :])
-    except (ValueError, RecursionError):
-        raise BrokenSeal("its checksum cannot be read") from None
 
 
 def _end(stream: BinaryIO) -> int:

@@ -9,7 +9,6 @@ import json
 import shutil
 from collections.abc import Sequence
 from itertools import chain
-from math import prod
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +18,8 @@ import numpy as np
 from ...errors import EnvironmentLacks, InputError
 from ...sweep.ranges import IndexRange
 from ..layouts.variables import MISSING, Filled
-from ..run.checkpoints import drop_checkpoints
-from ..run.journal import drop_journals, read_journals
+from ..run.checkpoints import CHECKPOINTS
+from ..run.journal import JOURNALS, drop_files, read_journals
 from .creation import Plan, add_variables, create_file
 from .exchange import Exchange, disk_refusals
 from .points import missing_ranges, statuses, write_points
@@ -55,14 +54,14 @@ class Store:
         if self.path.exists() and not is_ours(self.path):
             raise InputError(f"{self.path} is no result file, so --fresh leaves it alone")
         self._need_room()
-        drop_journals(self.journals)
-        drop_checkpoints(self.journals)
+        drop_files(self.journals, JOURNALS)
+        drop_files(self.journals, CHECKPOINTS)
         with self.exchange.replacing(None) as copy:
             create_file(copy, self.plan)
 
     def _need_room(self) -> None:
         """EnvironmentLacks unless the file, its journals and the copy that replaces it have room."""
-        size = SPACE_FACTOR * prod(self.plan.shape) * (self.plan.layout.bytes_per_point + 12)
+        size = SPACE_FACTOR * self.plan.points.count * (self.plan.layout.bytes_per_point + 12)
         size += SPACE_FIXED
         free = shutil.disk_usage(self.path.parent).free
         if free < size:
@@ -81,13 +80,10 @@ class Store:
         return missing_ranges(self.path)
 
     def fold(self, attributes: dict[str, Any], additions: Sequence[Filled] = ()) -> None:
-        """Puts all journalled points, the attributes and whole variables into the file; drops the journals.
-
-        `additions` are what only all points together give, such as curves; the file changes in one instant.
-        """
+        """Puts journalled points, attributes and whole variables into the file at once; drops journals."""
         plan = self.plan
         with disk_refusals(self.path, KEPT):
-            blocks = read_journals(self.journals, plan.layout, plan.fingerprint, prod(plan.shape))
+            blocks = read_journals(self.journals, plan.layout, plan.fingerprint, plan.points.count)
             first = next(blocks, None)
             if first is not None or attributes or additions:
                 with self.exchange.replacing(self.path) as copy:
@@ -97,9 +93,9 @@ class Store:
                         with h5py.File(copy, "r+") as file:
                             add_variables(file, additions)
                             file.attrs.update(attributes)
-            drop_journals(self.journals)
+            drop_files(self.journals, JOURNALS)
             if not self.missing():
-                drop_checkpoints(self.journals)
+                drop_files(self.journals, CHECKPOINTS)
 
     def status_counts(self) -> dict[str, int]:
         """How many points have each status, by the name of the status."""

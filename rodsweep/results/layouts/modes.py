@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from .eigenvalues import EACH_MODE, EACH_POINT, VECTORS, complex_pair
+from .spectrum import EACH_MODE, EACH_POINT, VECTORS, complex_pair
 from .variables import Layout, real
 
 MODE_FIELDS = (

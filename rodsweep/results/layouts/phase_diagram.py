@@ -3,8 +3,8 @@
 from typing import Any
 
 from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS, all_but
-from .crossings import search_variables
-from .eigenvalues import UNSTABLE_COUNT
+from .spectrum import UNSTABLE_COUNT
+from .thresholds import search_variables
 from .variables import MISSING, Layout, Variable, real, whole
 
 CLASSES = (

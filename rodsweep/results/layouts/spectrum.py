@@ -1,9 +1,42 @@
-"""What the file of the task spectrum holds."""
+"""What the file of the task spectrum holds: leading eigenvalues and their modes, as that of modes does."""
 
 from typing import Any
 
-from .eigenvalues import EACH_MODE, EACH_POINT, VECTORS
-from .variables import Layout
+from .variables import MESH, SECONDS, STATUS, Layout, Variable, real, whole
+
+
+def complex_pair(name: str, units: str, long_name: str) -> tuple[Variable, Variable]:
+    """Real and imaginary part of a field of every mode."""
+    return (
+        real(f"{name}_real", units, f"real part of {long_name}", "mode", "u"),
+        real(f"{name}_imag", units, f"imaginary part of {long_name}", "mode", "u"),
+    )
+
+
+UNSTABLE_COUNT = whole("unstable_count", "number of modes with positive growth rate; -1: not known")
+EACH_MODE = (
+    real("growth_rate", "1/tau2", "real part of the transverse eigenvalue", "mode"),
+    real("frequency", "1/tau2", "imaginary part of the transverse eigenvalue", "mode"),
+    real(
+        "error_estimate",
+        "1/tau2",
+        "modulus of the Newton correction D/D' of the characteristic determinant at the eigenvalue",
+        "mode",
+    ),
+)
+EACH_POINT = (
+    UNSTABLE_COUNT,
+    Variable(
+        "certified", "|i1", 0, "1", "1 where the winding number of D proves that no leading mode is missing"
+    ),
+    *MESH,
+    SECONDS,
+    STATUS,
+)
+VECTORS = (
+    *complex_pair("Y", "1", "the eigenmode's deflection, scaled to Y(1) = 1"),
+    *complex_pair("Theta", "1", "the eigenmode's angle, scaled as Y"),
+)
 
 
 def layout(config: dict[str, Any]) -> Layout:

@@ -1,10 +1,9 @@
-"""What the file of the task thresholds holds."""
+"""What the file of the task thresholds holds, and of crossings along a line that of phase_diagram too."""
 
 from typing import Any
 
 from ...model.parameters import PARAMETERS, all_but
-from .crossings import search_variables
-from .variables import Layout, real, whole
+from .variables import SECONDS, STATUS, Layout, Variable, real, whole
 
 FORCE = PARAMETERS["F"].unit
 THRESHOLDS = (
@@ -17,6 +16,41 @@ THRESHOLDS = (
     real("F_end", FORCE, "F up to which was searched"),
     whole("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
 )
+
+CROSSING_KINDS = (
+    "none",
+    "onset",
+    "hopf",
+    "hopf_reverse",
+    "restabilization",
+    "real_again",
+    "real_leads",
+    "pair_leads",
+)
+"""What happens at a crossing; the place in this list is what the file stores."""
+
+
+def search_variables(line: str, at: str) -> tuple[Variable, ...]:
+    """What a search along `line` found, how sure that is and what it cost; `at` names a crossing's place."""
+    units = PARAMETERS[line].unit
+    undecided = f"of a range of {line} in which it is undecided whether a window opens and closes"
+    kinds = tuple(enumerate(CROSSING_KINDS))
+    return (
+        whole("crossing_count", "number of crossings found, stored or not"),
+        real(at, units, f"{line} at the crossing", "crossing"),
+        Variable("crossing_kind", "|i1", 0, "1", "what changes at the crossing", ("crossing",), kinds),
+        real("crossing_frequency", "1/tau2", "frequency of the modes that cross", "crossing"),
+        real("crossing_growth_rate", "1/tau2", "growth rate of the modes that cross", "crossing"),
+        real("crossing_error", units, f"estimate of the absolute error of {at}", "crossing"),
+        whole("unstable_after", "number of modes with positive growth rate beyond the crossing", "crossing"),
+        real("open_from", units, f"start {undecided}"),
+        real("open_to", units, f"end {undecided}"),
+        Variable("certified", "|i1", 0, "1", "1 where it is proved that no crossing is missing"),
+        whole("boxes", "evaluations of D over a box"),
+        whole("solves", "eigenproblems solved"),
+        SECONDS,
+        STATUS,
+    )
 
 
 def layout(config: dict[str, Any]) -> Layout:

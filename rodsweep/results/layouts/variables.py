@@ -81,10 +81,8 @@ class Layout:
     @property
     def record(self) -> np.dtype:
         """One point as a flat record: its index, then every variable."""
-        fields: list[Any] = [("index", "<i8")]
-        for v in self.variables:
-            fields.append((v.name, v.dtype, self.inner(v)))
-        return np.dtype(fields)
+        fields: list[Any] = [(v.name, v.dtype, self.inner(v)) for v in self.variables]
+        return np.dtype([("index", "<i8"), *fields])
 
     @property
     def bytes_per_point(self) -> int:

@@ -13,6 +13,8 @@ import numpy as np
 
 from ...arrays import Array
 
+CHECKPOINTS = "chain-*"
+"""All checkpoints of a directory, also those that a kill left half written."""
 CHECKPOINT_HEAD = b"rodsweep checkpoint 1\n"
 INDEX_BYTES, CHECKSUM_BYTES = 8, 4
 
@@ -60,10 +62,3 @@ class Checkpoints:
 
 def _checksum(content: bytes) -> bytes:
     return zlib.crc32(content).to_bytes(CHECKSUM_BYTES, "little")
-
-
-def drop_checkpoints(directory: Path) -> None:
-    """Removes all checkpoints of a directory, also those that a kill left half written."""
-    for path in directory.glob("chain-*"):
-        if not path.is_dir():
-            path.unlink()

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..layouts.variables import Layout
 
+JOURNALS = "rank-*"
 JOURNAL_HEAD = b"rodsweep journal 1\n"
 BYTES_A_BLOCK = 1 << 18
 
@@ -50,9 +51,9 @@ class Journal:
             data = data[os.write(self.handle, data) :]
 
 
-def drop_journals(directory: Path) -> None:
-    """Removes all journals of a directory."""
-    for path in directory.glob("rank-*"):
+def drop_files(directory: Path, pattern: str) -> None:
+    """Removes the files of a directory whose names fit."""
+    for path in directory.glob(pattern):
         if not path.is_dir():
             path.unlink()
 
@@ -60,13 +61,10 @@ def drop_journals(directory: Path) -> None:
 def read_journals(
     directory: Path, layout: Layout, fingerprint: str, points: int = 2**62
 ) -> Iterator[np.ndarray]:
-    """The whole records in all journals of a directory, (records,) at a time; others' journals are skipped.
-
-    `points`: how many there are; a record of none of them is skipped too.
-    """
+    """The whole records of a run's points in all of its journals in a directory, (records,) at a time."""
     size = layout.record.itemsize
     header = JOURNAL_HEAD + fingerprint.encode() + b"\n"
-    for path in sorted(directory.glob("rank-*")):
+    for path in sorted(directory.glob(JOURNALS)):
         if not path.is_file():
             continue
         with path.open("rb") as file:

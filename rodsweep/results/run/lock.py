@@ -17,8 +17,28 @@ class Lock:
 
     def __init__(self, directory: Path, path: Path):
         """Takes the lock; InputError if another run keeps it."""
-        self.directory, self.path = directory, path
-        self.handle = self._take()
+        self.directory = directory
+        patience = time.monotonic() + LOCK_PATIENCE
+        while True:
+            directory.mkdir(exist_ok=True)
+            try:
+                self.handle = os.open(directory / "lock", os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
+            except FileNotFoundError:  # a run that ended just now took the directory away
+                continue
+            try:
+                fcntl.flock(self.handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                if os.fstat(self.handle).st_nlink:
+                    return
+            except BlockingIOError:
+                os.close(self.handle)
+                if time.monotonic() < patience:
+                    time.sleep(0.1)
+                    continue
+                raise InputError(
+                    f"{path} is being written by another run; wait for it, or choose another file with "
+                    "-o (several ranks that each say this were started without MPI between them)"
+                ) from None
+            os.close(self.handle)  # the run that ended just now took this lock file away: take a new one
 
     def release(self) -> None:
         """Gives the lock back and removes the directory where nothing is left in it."""
@@ -26,26 +46,3 @@ class Lock:
         with suppress(OSError):  # it is not empty, or a link that the user has made
             self.directory.rmdir()
         os.close(self.handle)
-
-    def _take(self) -> int:
-        patience = time.monotonic() + LOCK_PATIENCE
-        while True:
-            self.directory.mkdir(exist_ok=True)
-            try:
-                handle = os.open(self.directory / "lock", os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
-            except FileNotFoundError:  # a run that ended just now took the directory away
-                continue
-            try:
-                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                if os.fstat(handle).st_nlink:
-                    return handle
-            except BlockingIOError:
-                os.close(handle)
-                if time.monotonic() < patience:
-                    time.sleep(0.1)
-                    continue
-                raise InputError(
-                    f"{self.path} is being written by another run; wait for it, or choose another file with "
-                    "-o (several ranks that each say this were started without MPI between them)"
-                ) from None
-            os.close(handle)  # the run that ended just now took this lock file away: take a new one

@@ -47,7 +47,10 @@ def draw_portrait(view: View, points: Sequence[int]) -> tuple[Figure, str]:
             axes.plot(x, y, color=colours(k), lw=1.8, solid_capstyle="round", zorder=2 + k / 100)
             force_arrow(axes, x, y, theta, colours(k))
         axes.set_xlabel("$x/L$")
-        axes.set_title(cycle.heading(period_text(cycle)), fontsize=9)
+        period = rf"$T$ = {cycle.period:.6g} $\tau_2$"
+        if 0 < cycle.tau1 < np.inf:
+            period += rf" = {cycle.period / cycle.tau1:.6g} $\tau_1$"
+        axes.set_title(cycle.heading(period), fontsize=9)
         _tip(upper, lower, cycle, end)
     frame(shapes, cycles)
     shapes[0].set_ylabel("$y/L$")
@@ -59,10 +62,7 @@ def draw_portrait(view: View, points: Sequence[int]) -> tuple[Figure, str]:
 
 
 def _panels(count: int) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
-    """(figure, a panel for the shapes of each cycle, two panels for the tip of each).
-
-    The tip is beside the shapes of a single cycle, and below the shapes of several.
-    """
+    """(figure, a panel for each cycle's shapes, two for its tip: beside those of one, else below them)."""
     if count == 1:
         figure = Figure(figsize=(8.6, 4.4), layout="constrained")
         table: dict[str, Axes] = figure.subplot_mosaic(
@@ -74,12 +74,6 @@ def _panels(count: int) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
     heights = (3.2, 1, 1)
     rows = figure.subplots(3, count, sharex="row", sharey="row", height_ratios=heights)
     return figure, list(rows[0]), list(zip(rows[1], rows[2], strict=True))
-
-
-def period_text(cycle: StoredCycle) -> str:
-    """The period in tau2, and in tau1 where there is one."""
-    text = rf"$T$ = {cycle.period:.6g} $\tau_2$"
-    return text + (rf" = {cycle.period / cycle.tau1:.6g} $\tau_1$" if 0 < cycle.tau1 < np.inf else "")
 
 
 def drawn_shapes(stored: int) -> tuple[range, float]:

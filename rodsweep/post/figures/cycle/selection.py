@@ -19,16 +19,11 @@ MOST_CYCLES = 3
 """Cycles for which one figure has room, side by side."""
 SHAPES = ("shape_x", "shape_y", "shape_theta")
 ENERGIES = ("energy", "injection", "dissipation")
-ASKED_BY = {name: "shapes" for name in SHAPES} | {name: "samples" for name in ENERGIES}
-"""The option of limit_cycle that stores a variable."""
 
 
 @dataclass(frozen=True, slots=True)
 class StoredCycle:
-    """A point's cycle.
-
-    parameters: by name; period in tau2; values: every variable of the file at this point.
-    """
+    """A point's cycle: its parameters, its period in tau2 and every variable of the file there, by name."""
 
     number: int
     """Of the point in the file, from 1."""
@@ -72,13 +67,10 @@ def outcomes(view: View) -> NDArray[np.str_]:
 
 
 def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> Selection:
-    """The cycles of the points that the user names, else the first ones; with all variables `needs`.
-
-    Raises InputError where a variable was not stored, a point does not exist or is not a cycle.
-    """
+    """The cycles of the points that the user names, else the first; InputError where a need is not stored."""
     for name in needs:
         if name not in view.variables:
-            key = f"limit_cycle.{ASKED_BY[name]}"
+            key = "limit_cycle.shapes" if name in SHAPES else "limit_cycle.samples"
             raise InputError(f"{view.path} holds no {name}; run with {key} > 0, which stores it")
     words = outcomes(view)
     _refuse_bad_points(view, points, words)
