@@ -9,10 +9,15 @@ import numpy as np
 import pytest
 
 from rodsweep.bench.spectrum import study as spectrum
-from rodsweep.bench.spectrum.contenders import PEERS
+from rodsweep.bench.spectrum.eigensolvers import (
+    PEERS,
+    WANTED_MODES,
+    chebyshev_first_order,
+    dense_inverse,
+    displacement_elements,
+    own_spectrum,
+)
 from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
-from rodsweep.bench.spectrum.other_discretizations import chebyshev_first_order, displacement_elements
-from rodsweep.bench.spectrum.same_pencil import WANTED_MODES, dense_inverse, own_spectrum
 from rodsweep.bench.spectrum.study import HARD_RODS, every_size, hard_table, spectrum_study
 from rodsweep.bench.study import Contender, Measurement, Study, contest, race
 from rodsweep.model.rod import Rod

@@ -8,10 +8,21 @@ import pytest
 
 from rodsweep.bench.limit_cycle import integrators as cycle_peers
 from rodsweep.bench.limit_cycle.integrators import CVODE, CVODE_MODULE, DEFAULT, families
-from rodsweep.bench.limit_cycle.returns import returns_of
-from rodsweep.bench.limit_cycle.settling import Wait, settling_table
-from rodsweep.bench.limit_cycle.study import limit_cycle_study, target_table, time_at, work_table
-from rodsweep.bench.limit_cycle.tracking import FOLLOWED_PERIODS, judged_run, reference, work_precision
+from rodsweep.bench.limit_cycle.study import (
+    Wait,
+    limit_cycle_study,
+    settling_table,
+    target_table,
+    time_at,
+    work_table,
+)
+from rodsweep.bench.limit_cycle.tracking import (
+    FOLLOWED_PERIODS,
+    judged_run,
+    reference,
+    returns_of,
+    work_precision,
+)
 from rodsweep.bench.machine import installed
 from rodsweep.bench.study import Measurement, Timed
 from rodsweep.solve.cycle.shooting import PERIOD_MAP

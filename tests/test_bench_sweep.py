@@ -9,10 +9,18 @@ import numpy as np
 import pytest
 
 from rodsweep.bench.sweep import study as sweep
-from rodsweep.bench.sweep.cases import HOPF_FORCE, SweepCase, spectrum_case, uneven_forces
-from rodsweep.bench.sweep.launch import INSTANT, KILLED, CommandRun, launcher, run_case
-from rodsweep.bench.sweep.report import APART, growth_table, instant_table
-from rodsweep.bench.sweep.study import measured, sweep_study
+from rodsweep.bench.sweep.launch import (
+    HOPF_FORCE,
+    INSTANT,
+    KILLED,
+    CommandRun,
+    SweepCase,
+    launcher,
+    run_case,
+    spectrum_case,
+    uneven_forces,
+)
+from rodsweep.bench.sweep.study import APART, growth_table, instant_table, measured, sweep_study
 from rodsweep.cli.benching import MEASURED
 from rodsweep.errors import EnvironmentLacks
 

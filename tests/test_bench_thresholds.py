@@ -14,14 +14,20 @@ from scipy.optimize import brentq
 
 from rodsweep.bench.machine import installed, peer_versions
 from rodsweep.bench.study import Contender
-from rodsweep.bench.thresholds import auto_07p, contenders
+from rodsweep.bench.thresholds import continuation
 from rodsweep.bench.thresholds import study as thresholds
-from rodsweep.bench.thresholds.auto_07p import auto_program, hopf_by_auto
 from rodsweep.bench.thresholds.cases import CASES, HOPF, ONSET, FirstThreshold, ThresholdCase
-from rodsweep.bench.thresholds.contenders import BY_STEPS, CONTINUATION, continuation_codes
-from rodsweep.bench.thresholds.pycont_lite import PYCONT_MODULE, hopf_by_pycont
-from rodsweep.bench.thresholds.reduction import reduced
+from rodsweep.bench.thresholds.continuation import (
+    CONTINUATION,
+    PYCONT_MODULE,
+    auto_program,
+    continuation_codes,
+    hopf_by_auto,
+    hopf_by_pycont,
+    reduced,
+)
 from rodsweep.bench.thresholds.spectra_by_force import (
+    BY_STEPS,
     LeadingPair,
     between,
     by_steps,
@@ -168,7 +174,7 @@ def test_tables_say_what_was_missed():
 
 
 def test_peers_that_are_not_installed_are_skipped_with_a_line(monkeypatch, tmp_path):
-    monkeypatch.setattr(contenders, "installed", lambda _: None)
+    monkeypatch.setattr(continuation, "installed", lambda _: None)
     monkeypatch.setattr(shutil, "which", lambda _: None)
     found, skipped = continuation_codes(tmp_path, quick=True)
     assert [line.split(" is skipped")[0] for line in skipped] == ["AUTO-07p", "PyCont-Lite"]
@@ -184,14 +190,14 @@ def test_a_program_that_crashes_is_a_failure(tmp_path):
 
 
 def test_auto_without_its_library_is_not_there(monkeypatch, tmp_path):
-    monkeypatch.setattr(auto_07p, "AUTO_LIBRARY", tmp_path / "nowhere")
+    monkeypatch.setattr(continuation, "AUTO_LIBRARY", tmp_path / "nowhere")
     assert auto_program(tmp_path) is None
 
 
 def test_the_study_writes_its_text_and_its_figure(monkeypatch, tmp_path):
     monkeypatch.setattr(thresholds, "QUICK_CASES", (CASE["filament"], CASE["Fig. 2d"]))
-    monkeypatch.setattr(contenders, "GRIDS", (20, 40))
-    monkeypatch.setattr(contenders, "installed", lambda _: None)
+    monkeypatch.setattr(thresholds, "GRIDS", (20, 40))
+    monkeypatch.setattr(continuation, "installed", lambda _: None)
     study = thresholds_study(quick=True)
     rows = [line.split(" | ") for line in study.text.splitlines() if line.startswith("| rodsweep")]
     assert len(rows) == 4

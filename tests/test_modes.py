@@ -10,21 +10,19 @@ from numpy.polynomial import legendre
 from scipy.linalg import expm
 
 from rodsweep.determinant.value import distance_to_next
-from rodsweep.discretization.basis import differentiation
 from rodsweep.discretization.pencil import assemble, shear_force, tip_scale
-from rodsweep.discretization.quadrature import gauss_lobatto, lobatto_points
+from rodsweep.discretization.quadrature import differentiation, gauss_lobatto, lobatto_points
 from rodsweep.discretization.resolution import Resolution
 from rodsweep.model.rod import Rod
 from rodsweep.solve.modes import convergence as convergence_module
 from rodsweep.solve.modes import inverse_iteration as inverse_module
 from rodsweep.solve.modes import norm_maximum as peak_module
 from rodsweep.solve.modes import transient_growth as growth_module
-from rodsweep.solve.modes.dense_operator import dense_operator
 from rodsweep.solve.modes.inverse_iteration import mode_vectors, null_vectors
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
 from rodsweep.solve.modes.norm_maximum import highest
-from rodsweep.solve.modes.numerical_abscissa import numerical_abscissa
 from rodsweep.solve.modes.propagator import Propagator, exponential
+from rodsweep.solve.modes.transient_growth import numerical_abscissa
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 
@@ -271,7 +269,7 @@ def test_left_null_vector_of_the_pencil_has_the_adjoint_ends():
     left_over = []
     for order in (8, 12, 16):
         pencil = assemble(1, order)
-        A, B = dense_operator(rod, pencil)
+        A, B = pencil.dense(rod)
         _, z = null_vectors(A, B, w)
         force = shear_force(pencil, z[:, None].astype(complex), np.linspace(0, 1, 11))
         left_over.append(abs(force[-1, 0]) / abs(force).max())

@@ -16,10 +16,7 @@ INFINITE_BELOW = 1e-11
 
 def whole_matrices(rod: Rod, mesh: Resolution) -> tuple[Array, Array]:
     """(A, diagonal of B), shape (unknowns, unknowns) and (unknowns,), the statical unknowns last."""
-    pencil = assemble(mesh.elements, mesh.order)
-    A = np.zeros((pencil.unknowns, pencil.unknowns))
-    A[pencil.rows, pencil.columns] = pencil.stiffness(rod)
-    return A, pencil.inertia(rod)
+    return assemble(mesh.elements, mesh.order).dense(rod)
 
 
 def inverse_spectrum(A: Array, B: Array) -> Eigenvalues:

@@ -1,8 +1,8 @@
-"""What a benchmark gives: methods timed in turn on cases, their errors, and the text that presents them."""
+"""What a benchmark gives: methods timed in turn on cases, their errors, and tables of them in Markdown."""
 
 import resource
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from math import inf, isfinite, isnan, nan
@@ -164,3 +164,24 @@ def middle(values: Iterable[float]) -> float:
     """The median of those that are numbers; nan if none is."""
     numbers = [value for value in values if not isnan(value)]
     return float(median(numbers)) if numbers else nan
+
+
+class Shown(float):
+    """A number that is written as nothing where it is nan."""
+
+    def __format__(self, form: str) -> str:
+        return "" if isnan(self) else super().__format__(form)
+
+
+def table(head: str, line: str, rows: Iterable[Mapping[str, object]]) -> str:
+    """A table: its head, and the line that each row fills in, as in "{method} | {seconds:.2f}"."""
+    lines = [f"| {head} |", "|" + "---|" * (head.count("|") + 1)]
+    for row in rows:
+        cells = {k: Shown(value) if isinstance(value, int | float) else value for k, value in row.items()}
+        lines.append(f"| {line.format_map(cells)} |")
+    return "\n".join(lines)
+
+
+def plural(count: int, noun: str) -> str:
+    """As in "1 round", "2 rounds"."""
+    return f"{count} {noun}{'s' * (count != 1)}"

@@ -15,9 +15,6 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from .parameter_plane import Plane, ValueOnPlane
 
-Vector = Array
-Matrix = Array
-
 MOST_CORRECTIONS = 12
 SMALL_STEP = 1e-3
 STENCIL = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
@@ -28,14 +25,14 @@ ONE_SIDED = ((0, -25 / 12), (1, 4.0), (2, -3.0), (3, 4 / 3), (4, -1 / 4))
 class OnBoundary(NamedTuple):
     """A point v of a boundary, the 2 x 3 Jacobian of its equations, and the error of v."""
 
-    v: Vector
-    jacobian: Matrix
+    v: Array
+    jacobian: Array
     error: float
 
     @property
-    def tangent(self) -> Vector:
+    def tangent(self) -> Array:
         """The unit null vector of the Jacobian, shape (3,)."""
-        t: Vector = np.cross(self.jacobian[0], self.jacobian[1])
+        t: Array = np.cross(self.jacobian[0], self.jacobian[1])
         return t / np.linalg.norm(t)
 
 
@@ -51,16 +48,16 @@ class Boundary:
         size = math.exp(h)
         return (self.sign * size, 0.0) if self.sign else (0.0, size)
 
-    def equations(self, v: Vector) -> tuple[Vector, Matrix, float]:
+    def equations(self, v: Array) -> tuple[Array, Array, float]:
         """(residual, Jacobian, rounding error of the residual), shapes (2,), (2, 3)."""
         return self._double_equations(v) if self.sign else self._hopf_equations(v)
 
-    def tangent(self, v: Vector) -> Vector:
+    def tangent(self, v: Array) -> Array:
         """The unit tangent at v, shape (3,)."""
         _, jacobian, error = self.equations(v)
         return OnBoundary(v, jacobian, error).tangent
 
-    def corrected(self, guess: Vector, normal: NDArray[np.floating]) -> OnBoundary | None:
+    def corrected(self, guess: Array, normal: NDArray[np.floating]) -> OnBoundary | None:
         """The point of the boundary in the plane through `guess` with that normal, both (3,), or None."""
         v, last = guess.copy(), math.inf
         for _ in range(MOST_CORRECTIONS):
@@ -84,11 +81,7 @@ class Boundary:
             last = size
         return None
 
-    def on_line(self, guess: Vector, axis: int) -> OnBoundary | None:
-        """The point of the boundary near the guess, (3,), with its coordinate of an axis, or None."""
-        return self.corrected(guess, np.eye(3)[axis])
-
-    def _hopf_equations(self, v: Vector) -> tuple[Vector, Matrix, float]:
+    def _hopf_equations(self, v: Array) -> tuple[Array, Array, float]:
         """`equations` of D(i exp(h); x, y)."""
         w = complex(0.0, math.exp(v[2]))
         D, D_w, D_x, D_y, _, blur = self.plane.determinant(w, v[0], v[1])
@@ -97,7 +90,7 @@ class Boundary:
         jacobian = np.array([rows.real, rows.imag]) / scale
         return np.array([D.real, D.imag]) / scale, jacobian, blur / scale
 
-    def _double_equations(self, v: Vector) -> tuple[Vector, Matrix, float]:
+    def _double_equations(self, v: Array) -> tuple[Array, Array, float]:
         """`equations` of (D, w D_w) at w = sign exp(h), where D is real."""
         w, here = self._real(v)
         slope = (w * here.D_w).real  # w D_w = dD/dh
@@ -117,7 +110,7 @@ class Boundary:
         residual = np.array([here.D.real, slope]) / scale
         return residual, jacobian / scale[:, None], float(here.blur / scale.min())
 
-    def _real(self, v: Vector) -> tuple[complex, ValueOnPlane]:
+    def _real(self, v: Array) -> tuple[complex, ValueOnPlane]:
         """(w, D there) at w = sign exp(h)."""
         w = complex(self.sign * math.exp(v[2]), 0.0)
         return w, self.plane.determinant(w, v[0], v[1])

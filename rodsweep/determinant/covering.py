@@ -149,9 +149,8 @@ def cover(first: Array, origin: Coefficients, direction: Coefficients) -> tuple[
         eta, p = (box.eta_from + box.eta_to) / 2, (box.p_from + box.p_to) / 2
         half = (box.eta_to - box.eta_from) / 2, (box.p_to - box.p_from) / 2
         examined += 1
-        kind, cost_w, cost_p = examine(
-            complex(0.0, eta), coefficients_at(p, origin, direction), direction, half
-        )
+        coefficients = coefficients_at(p, origin, direction)
+        kind, cost_w, cost_p = examine(complex(0.0, eta), coefficients, direction, half)
         if kind == EMPTY:
             continue
         if kind == REGULAR:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from .boundary import Boundary, OnBoundary, Vector
+from .boundary import Boundary, OnBoundary
 from .parameter_plane import Plane
 
 STEP_FIRST, STEP_LARGEST, STEP_SMALLEST = 0.01, 0.04, 1e-9
@@ -25,9 +25,6 @@ FOLD_ACCURACY = 1e-13
 """Component of the tangent, or length of the bracket, that counts as none."""
 HOPF_TANGENT, DOUBLE_TANGENT = 1e-12, 1e-11
 """Uncertainty of a tangent: from rounding, and from the differences in the Jacobian of D_w."""
-
-WithTangent = tuple[Vector, Vector]
-"""(point, tangent)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +52,6 @@ class BoundaryCurve:
     frequency: Array
     growth_rate: Array
     folds: tuple[Fold, ...]
-    closed: bool
     scaled: Array
     """(x, y, h) of each point, shape (points, 3)."""
 
@@ -81,15 +77,15 @@ def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: flo
     back = [] if closed else _follow(boundary, first.v, -1.0)[0]
     points = np.array([*back[::-1], first.v, *ahead])
     apart = np.abs(np.diff(points, axis=0)).max(axis=1) > COINCIDENT
-    return _curve(boundary, points[np.append(apart, True)], closed)
+    return _curve(boundary, points[np.append(apart, True)])
 
 
-def _follow(boundary: Boundary, start: Vector, sign: float) -> tuple[list[Vector], bool]:
+def _follow(boundary: Boundary, start: Array, sign: float) -> tuple[list[Array], bool]:
     """(points after the start in one direction, whether the curve came back to it)."""
     v = start
     t = sign * boundary.tangent(v)
     t0, step = t, STEP_FIRST
-    points: list[Vector] = []
+    points: list[Array] = []
     while len(points) < MOST_CURVE_POINTS and step >= STEP_SMALLEST:
         there = boundary.corrected(v + step * t, t)
         if there is None:
@@ -112,23 +108,26 @@ def _follow(boundary: Boundary, start: Vector, sign: float) -> tuple[list[Vector
     return points, False
 
 
-def _edge(boundary: Boundary, inner: Vector, outer: Vector) -> Vector | None:
+def _edge(boundary: Boundary, inner: Array, outer: Array) -> Array | None:
     """The point where the curve leaves the plane between two points, one inside and one not."""
     for axis in (0, 1):
         for limit in (0.0, 1.0):
             if (inner[axis] - limit) * (outer[axis] - limit) < 0:
                 guess = inner + (limit - inner[axis]) / (outer[axis] - inner[axis]) * (outer - inner)
-                found = boundary.on_line(guess, axis)
+                found = boundary.corrected(guess, np.eye(3)[axis])
                 if found is not None and -1e-9 <= found.v[1 - axis] <= 1 + 1e-9:
                     return found.v
     return None
 
 
-def _curve(boundary: Boundary, points: Array, closed: bool) -> BoundaryCurve:
+def _curve(boundary: Boundary, points: Array) -> BoundaryCurve:
     """The curve through these points, with the folds between them."""
     folds = []
     if len(points) > 1:
-        tangents = _oriented(np.array([boundary.tangent(v) for v in points]), points)
+        tangents = np.array([boundary.tangent(v) for v in points])
+        # Each is turned along the direction from its point to the next.
+        forward = np.diff(points, axis=0, append=points[-1:] + (points[-1:] - points[-2:-1]))
+        tangents *= np.where((tangents * forward).sum(axis=1) < 0, -1.0, 1.0)[:, None]
         for axis in (0, 1):
             for i in np.flatnonzero(tangents[:-1, axis] * tangents[1:, axis] < 0):
                 fold = _fold(boundary, (points[i], tangents[i]), (points[i + 1], tangents[i + 1]), axis)
@@ -138,18 +137,11 @@ def _curve(boundary: Boundary, points: Array, closed: bool) -> BoundaryCurve:
     growth_rate, frequency = np.array([boundary.eigenvalue(h) for h in points[:, 2]]).T
     axes = boundary.plane.axes
     values = np.array([[axis.value(x) for axis, x in zip(axes, v[:2], strict=True)] for v in points])
-    return BoundaryCurve(boundary.sign, values, frequency, growth_rate, tuple(folds), closed, points)
+    return BoundaryCurve(boundary.sign, values, frequency, growth_rate, tuple(folds), points)
 
 
-def _oriented(tangents: Array, points: Array) -> Array:
-    """The tangents, each turned along the direction from its point to the next."""
-    forward = np.diff(points, axis=0, append=points[-1:] + (points[-1:] - points[-2:-1]))
-    return tangents * np.where((tangents * forward).sum(axis=1) < 0, -1.0, 1.0)[:, None]
-
-
-def _fold(boundary: Boundary, left: WithTangent, right: WithTangent, axis: int) -> Fold | None:
-    """The point between two points of a curve where the tangent has no component along an axis."""
-    a, b = left, right
+def _fold(boundary: Boundary, a: tuple[Array, Array], b: tuple[Array, Array], axis: int) -> Fold | None:
+    """The point between two of a curve, (v, tangent), where the tangent has no component along an axis."""
     noise, fold = DOUBLE_TANGENT if boundary.sign else HOPF_TANGENT, None
     for i in range(MOST_FOLD_STEPS):
         # Bisection every third step keeps the bracket shrinking from both sides.

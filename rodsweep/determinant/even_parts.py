@@ -171,14 +171,8 @@ def together(
     s1 = 2 * (C + M * (C_M - s) - 2 * square * H_M) * per_R
     d1 = (H / 2 + M * (H_M / 2 - 2 * d) - C_M) * per_R
     dd = (M * H_square / 2 - C_square + 4 * d) * per_R / 4
-    noise_s, noise_d = _noise_together(
-        (M, square, u, v),
-        apart,
-        of_u,
-        of_v,
-        (s, d),
-        (one, blur_M, blur_square),
-    )
+    squares, blurs = (M, square, u, v), (one, blur_M, blur_square)
+    noise_s, noise_d = _noise_together(squares, apart, of_u, of_v, (s, d), blurs)
     return EvenFunctions(S, s, d, s1, d1, dd), noise_s, noise_d
 
 
@@ -243,13 +237,8 @@ def each(w: complex, coefficients: Coefficients, blur_M: float, blur_square: flo
     s, s1 = E_plus + E_minus, E1_plus + E1_minus
     d, d1 = (E_plus - E_minus) * difference, (E1_plus - E1_minus) * difference
     dd = (s1 - 2 * d) * difference * difference
-    noise = _noise_each(
-        (modulus(w), modulus(P)),
-        coefficients,
-        (root_plus, root_minus),
-        (slope_plus, slope_minus),
-        (blur_M, blur_square),
-    )
+    sizes, roots, slopes = (modulus(w), modulus(P)), (root_plus, root_minus), (slope_plus, slope_minus)
+    noise = _noise_each(sizes, coefficients, roots, slopes, (blur_M, blur_square))
     return EvenFunctions(S, s, d, s1, d1, dd), slope_plus * E_plus + slope_minus * E_minus, noise
 
 

@@ -105,9 +105,8 @@ def _real(
     x: float, p: float, origin: Coefficients, direction: Coefficients
 ) -> tuple[float, float, float, float, float]:
     """`determinant_along` at real w = x, where D is real."""
-    D, D_w, D_p, S, noise = determinant_along(
-        complex(x, 0.0), coefficients_at(p, origin, direction), direction
-    )
+    coefficients = coefficients_at(p, origin, direction)
+    D, D_w, D_p, S, noise = determinant_along(complex(x, 0.0), coefficients, direction)
     return D.real, D_w.real, D_p.real, S, noise
 
 

@@ -154,11 +154,7 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
 
 @compiled
 def _refined_all(
-    first: Complex,
-    error: Array,
-    wave: Array,
-    near: NDArray[np.bool_],
-    coefficients: Coefficients,
+    first: Complex, error: Array, wave: Array, near: NDArray[np.bool_], coefficients: Coefficients
 ) -> tuple[Complex, NDArray[np.bool_]]:
     """(the roots near the first guesses, which of them are one); error and wave become those of the roots."""
     w = first.copy()

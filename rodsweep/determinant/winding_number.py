@@ -105,9 +105,7 @@ def node_at(w: complex, coefficients: Coefficients) -> Node:
 
 
 @compiled
-def phase_change(
-    start: complex, end: complex, coefficients: Coefficients, most_nodes: int
-) -> tuple[float, int]:
+def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tuple[float, int]:
     """(change of arg D along the segment, nodes used); the nodes are negative where it failed."""
     length = abs(end - start)
     direction = (end - start) / length
@@ -124,9 +122,9 @@ def phase_change(
             w = start + direction * t
             goal = min(length, t + patience * abs(w))
             to = end if goal == length else start + direction * goal
-            change, used = stepped_change(w, to, coefficients, most_nodes)
+            change, used = stepped_change(w, to, coefficients)
             nodes += abs(used)
-            if used < 0 or nodes > most_nodes:
+            if used < 0 or nodes > MOST_NODES:
                 return 0.0, -nodes
             total += change
             t = goal
@@ -134,16 +132,14 @@ def phase_change(
 
 
 @compiled
-def stepped_change(
-    start: complex, end: complex, coefficients: Coefficients, most_nodes: int
-) -> tuple[float, int]:
+def stepped_change(start: complex, end: complex, coefficients: Coefficients) -> tuple[float, int]:
     """(change of arg D along the segment, nodes used); the nodes are negative where it failed."""
     length = abs(end - start)
     direction = (end - start) / length
     t, total, nodes = 0.0, 0.0, 1
     here = node_at(start, coefficients)
     while t < length:
-        if not here.reach > SMALLEST_REACH * abs(here.w) or nodes > most_nodes:
+        if not here.reach > SMALLEST_REACH * abs(here.w) or nodes > MOST_NODES:
             return 0.0, -nodes
         # The next node may lie beyond this one's reach if it reaches back; otherwise step inside.
         ahead = min(1.9 * here.reach, length - t)
@@ -170,15 +166,15 @@ def contour_change(
     The nodes are negative where it failed.
     """
     top = complex(line, corner.imag)
-    right, nodes = phase_change(complex(corner.real, 0.0), corner, coefficients, MOST_NODES)
+    right, nodes = phase_change(complex(corner.real, 0.0), corner, coefficients)
     if nodes < 0:
         return 0.0, nodes
-    above, used = phase_change(corner, top, coefficients, MOST_NODES)
+    above, used = phase_change(corner, top, coefficients)
     nodes += abs(used)
     if used < 0 or foot == corner.imag:  # then D is near 1 all along the line
         return right + above, nodes if used > 0 else -nodes
     # Upwards, because steps from the top could not resolve a foot below its rounding.
-    left, used = phase_change(complex(line, foot), top, coefficients, MOST_NODES)
+    left, used = phase_change(complex(line, foot), top, coefficients)
     nodes += abs(used)
     return right + above - left, nodes if used > 0 else -nodes
 

@@ -11,10 +11,9 @@ import numpy as np
 
 from ..arrays import Array
 from ..model.rod import Rod
-from .basis import differentiation, interpolation
 from .body_frame import BeamParameters, Element, jacobians, rates
 from .pencil import assemble
-from .quadrature import gauss, gauss_lobatto
+from .quadrature import differentiation, gauss, gauss_lobatto, interpolation
 
 EXTRA_POINTS = 10
 """Gauss points beyond the nodes with which shapes are integrated: theta turns by a radian or two."""

@@ -26,8 +26,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array, Complex
 from ..model.rod import Rod
-from .basis import differentiation, interpolation
-from .quadrature import gauss, gauss_lobatto
+from .quadrature import differentiation, gauss, gauss_lobatto, interpolation
 
 SHEAR_WEIGHT = 1e-9
 """Weight of s in the norm. Nearly crushed rods lose seven digits at 1e-3, none below 1e-8."""
@@ -85,6 +84,12 @@ class Pencil:
         whole = np.zeros((6, self.unknowns**2))
         whole[:, self.columns.astype(int) * self.unknowns + self.rows] = self.pieces
         return whole
+
+    def dense(self, rod: Rod) -> tuple[Array, Array]:
+        """(A, diagonal of B) of the rod as whole arrays, shapes (unknowns, unknowns) and (unknowns,)."""
+        A = np.zeros((self.unknowns, self.unknowns))
+        A[self.rows, self.columns] = self.stiffness(rod)
+        return A, self.inertia(rod)
 
     def inertia(self, rod: Rod) -> Array:
         """The diagonal of B, shape (unknowns,)."""

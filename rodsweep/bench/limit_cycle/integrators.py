@@ -30,7 +30,6 @@ CVODE_MODULE = "sksundae.cvode"
 """Of scikit-sundae, which is an optional extra (`cvode`)."""
 MOST_CVODE_STEPS = 200_000
 
-
 Integration = Callable[[Beam, Array, float, float], Trajectory]
 """(beam, z, duration, tolerance) to the run; raises ArithmeticError where the integration fails."""
 
@@ -111,8 +110,7 @@ def by_cvode(cvode: Any, beam: Beam, z: Array, duration: float, tolerance: float
 
 
 DEFAULT, CVODE = "ARKIMEX 5 (default)", "CVODE"
-
-
+RADAU = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6)
 CAREFUL = (1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9)
 FAMILIES = (
     Family("ARKIMEX 2", partial(by_petsc, "arkimex", "2e"), (1e-4, 1e-5, 1e-6, 3e-7, 2e-7)),
@@ -123,12 +121,7 @@ FAMILIES = (
     Family("ROSW ra34pw2", partial(by_petsc, "rosw", "ra34pw2"), (1e-4, 1e-5, 3e-6, 1e-6, 1e-7)),
     Family("ROSW rodas3", partial(by_petsc, "rosw", "rodas3"), (1e-4, 1e-5, 3e-6, 1e-6, 3e-7)),
     Family("SciPy BDF", partial(by_scipy, "BDF"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
-    Family(
-        "SciPy Radau",
-        partial(by_scipy, "Radau"),
-        (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6),
-        (1e-4, 3e-5, 1e-5, *CAREFUL[:4]),
-    ),
+    Family("SciPy Radau", partial(by_scipy, "Radau"), RADAU, (*RADAU[2:5], *CAREFUL[:4])),
     Family("SciPy LSODA", partial(by_scipy, "LSODA"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8), CAREFUL),
 )
 """BDF 5 is at the edge of its stability until the tolerance is tight."""

@@ -53,11 +53,8 @@ def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
         for w, error in zip(found.eigenvalues, found.error_estimate, strict=True):
             start = mp.mpc(complex(w))
             root = mp.findroot(D, (start, start * (1 + STEP)), tol=STEP**5, verify=False)
-            nearby = abs(D(root * (1 + STEP)))
-            if (
-                abs(root - start) > FARTHEST_ROOT * error
-                or abs(D(root)) > nearby * mp.mpf(10) ** -DIGITS / STEP
-            ):
+            small = abs(D(root * (1 + STEP))) * mp.mpf(10) ** -DIGITS / STEP
+            if abs(root - start) > FARTHEST_ROOT * error or abs(D(root)) > small:
                 raise ArithmeticError(f"{rod}: {complex(w)} does not lead to a root of D")
             roots.append(root)
     return roots

@@ -10,11 +10,9 @@ import numpy as np
 from ...model.rod import Rod
 from ...solve.spectrum.search import warm_up
 from ..lapack import Eigenvalues
-from ..study import Contender, Measurement, Study, contest, failsafe, grouped, middle, race
-from ..tables import plural, table
-from .contenders import PLAIN, contenders
+from ..study import Contender, Measurement, Study, contest, failsafe, grouped, middle, plural, race, table
+from .eigensolvers import PLAIN, WANTED_MODES, contenders
 from .exact import exact_spectrum, relative_error
-from .same_pencil import WANTED_MODES
 
 PAPER_RODS = {
     "Fig. 2a": (1e4, 1e4, 1e-4, 60.0),
@@ -49,9 +47,8 @@ def spectrum_study(quick: bool) -> Study:
     exact = [exact_spectrum(rod, WANTED_MODES) for rod in rods]
     blocks = [equal_errors(rods, exact, target, rounds) for target in TARGETS[: 1 if quick else None]]
     measurements = every_size(contenders(QUICK_STRIDE if quick else 1), rounds)
-    return Study(
-        "spectrum", "\n\n".join([*blocks, hard_table(measurements)]), measurements, "point", TARGETS[0]
-    )
+    blocks.append(hard_table(measurements))
+    return Study("spectrum", "\n\n".join(blocks), measurements, "point", TARGETS[0])
 
 
 def cheapest(rod: Rod, exact: list[Any], target: float) -> dict[str, Contender]:

@@ -1,4 +1,4 @@
-"""Runs of the command as a user starts them, and what they took: time, memory of each rank, bytes on disk.
+"""Sweeps, and runs of them as a user starts them: time, memory of each rank, bytes on disk.
 
 The words that start the command are given. They are followed by a directory, into which every rank writes
 its peak memory in bytes, in a file FIRST_RANK-PID or OTHER_RANKS-PID; by what takes the place of the solver,
@@ -21,13 +21,71 @@ import numpy as np
 from ...errors import EnvironmentLacks
 from ...results.file.view import read_view
 from ...results.run.journal import journal_directory
-from .cases import CONFIG, SweepCase
 
 RESULT, NOTES = "c.h5", "notes"
 """Names in the directory of a case."""
 FIRST_RANK, OTHER_RANKS = "first", "other"
 SOLVED, INSTANT, KILLED = "solved", "instant", "killed"
 """The solver itself, outcomes that cost nothing, and the same with a kill at the last point."""
+CONFIG = "c.yaml"
+SPECTRUM_CONFIG = """
+task: spectrum
+parameters:
+  F: {{start: 0, stop: 90, num: {forces}}}
+  k1: [200, .inf]
+  k2: {{start: 100, stop: 1.0e4, num: {softnesses}, spacing: log}}
+  gamma3: 1.0e-4
+spectrum: {{modes: 2}}
+"""
+CYCLE_CONFIG = "task: limit_cycle\nparameters: {points: points.csv}\n"
+HOPF_FORCE = 27.4271941267592812
+"""F of the Hopf point of k1 = 1e4, k2 = 1e2, gamma3 = 1e-2."""
+
+
+@dataclass(frozen=True, slots=True)
+class SweepCase:
+    """A sweep to be run: how many points it has, and where its config is.
+
+    kind: what takes the place of the solver. Of several directories each has a share of the points, which a
+    command of its own runs at the same time as the others.
+    """
+
+    name: str
+    points: int
+    directories: tuple[Path, ...]
+    kind: str
+
+
+def spectrum_case(directory: Path, name: str, points: int, kind: str) -> SweepCase:
+    """A grid of two k1 and of F and k2; 200 points or more are rounded down to hundreds."""
+    forces = 50 if points >= 200 else 2
+    softnesses = points // (2 * forces)
+    directory.mkdir()
+    (directory / CONFIG).write_text(SPECTRUM_CONFIG.format(forces=forces, softnesses=softnesses))
+    return SweepCase(name, 2 * forces * softnesses, (directory,), kind)
+
+
+def cycle_case(directory: Path, points: int, kind: str) -> SweepCase:
+    """Limit cycles of very different cost, in an order that mixes them."""
+    directory.mkdir()
+    rows = [f"{F!r},1e4,1e2,1e-2,1" for F in uneven_forces(points).tolist()]
+    (directory / "points.csv").write_text("\n".join(["F,k1,k2,gamma3,gamma1", *rows]) + "\n")
+    (directory / CONFIG).write_text(CYCLE_CONFIG)
+    return SweepCase("limit cycles", points, (directory,), kind)
+
+
+def uneven_forces(count: int) -> np.ndarray:
+    """Forces far below the Hopf point, just below it, just above it, and ordinary ones, shape (count,)."""
+    below, close, above = count // 5, count // 6, count // 4
+    forces = np.concatenate(
+        [
+            np.linspace(5, 27, below),
+            HOPF_FORCE * (1 - np.geomspace(1e-6, 1e-2, close)),
+            HOPF_FORCE * (1 + np.geomspace(1e-7, 1e-2, above)),
+            np.linspace(28, 90, count - below - close - above),
+        ]
+    )
+    return np.random.default_rng(1).permutation(forces)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,7 +119,8 @@ def launcher(ranks: int) -> list[str]:
 def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = True) -> CommandRun:
     """Runs a case on some ranks; EnvironmentLacks where that fails without having been killed."""
     others, began = _seconds_of_others(), time.monotonic()
-    started = [_start(command, case.kind, directory, ranks, fresh) for directory in case.directories]
+    words = [*launcher(ranks), *command]
+    started = [_start(words, case.kind, directory, fresh) for directory in case.directories]
     said = [_inside(process, case.kind) for process in started]
     seconds = time.monotonic() - began
     elsewhere = np.maximum(0.0, (_seconds_of_others() - others) / seconds)
@@ -71,10 +130,7 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
         seconds=seconds,
         inside=max(said),
         solving=sum(spent for spent, _ in solved),
-        memory=tuple(
-            max(_notes(directory, rank) for directory in case.directories)
-            for rank in (FIRST_RANK, OTHER_RANKS)[:ranks]
-        ),
+        memory=tuple(_peak(case, rank) for rank in (FIRST_RANK, OTHER_RANKS)[:ranks]),
         file=sum(file.stat().st_size for file in files),
         journal=sum(page.stat().st_size for file in files for page in journal_directory(file).glob("rank-*")),
         elsewhere=float(elsewhere),
@@ -82,15 +138,13 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
     )
 
 
-def _start(
-    command: Sequence[str], kind: str, directory: Path, ranks: int, fresh: bool
-) -> subprocess.Popen[str]:
+def _start(words: Sequence[str], kind: str, directory: Path, fresh: bool) -> subprocess.Popen[str]:
     notes = directory / NOTES
     shutil.rmtree(notes, ignore_errors=True)
     notes.mkdir()
-    words = ["run", CONFIG, "-o", RESULT, *(["--fresh"] if fresh else [])]
+    run = ["run", CONFIG, "-o", RESULT, *(["--fresh"] if fresh else [])]
     return subprocess.Popen(
-        [*launcher(ranks), *command, str(notes), kind, *words],
+        [*words, str(notes), kind, *run],
         cwd=directory,
         env=dict(os.environ),  # as this process got it: MPI, once started in here, adds to the one in C
         stdout=subprocess.PIPE,
@@ -109,9 +163,10 @@ def _inside(process: subprocess.Popen[str], kind: str) -> float:
     return float(said[1]) if said else nan
 
 
-def _notes(directory: Path, rank: str) -> int:
+def _peak(case: SweepCase, rank: str) -> int:
     """The peak memory in bytes that the first rank has noted, or the largest of the others."""
-    return max((int(note.read_text()) for note in (directory / NOTES).glob(f"{rank}-*")), default=0)
+    notes = (note for directory in case.directories for note in (directory / NOTES).glob(f"{rank}-*"))
+    return max((int(note.read_text()) for note in notes), default=0)
 
 
 def _solving(file: Path) -> tuple[float, float]:

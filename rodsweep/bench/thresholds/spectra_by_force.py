@@ -5,14 +5,16 @@ for the first onset or the first Hopf point above F = 0 and prove nothing.
 """
 
 from collections.abc import Callable
+from functools import partial
 from math import nan
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import bisect, brentq
 
 from ...arrays import Array
 from ..lapack import Eigenvalues, inverse_spectrum, leading, whole_matrices
-from .cases import FirstThreshold, ThresholdCase
+from .cases import HOPF, ONSET, FirstThreshold, ThresholdCase
 
 MARCH = 2.0
 """Step in F at which a sign is looked for before a root is."""
@@ -100,3 +102,17 @@ def discriminant(w: Eigenvalues) -> float:
 def leads_real(w: Eigenvalues) -> float:
     """1 where a real eigenvalue leads, -1 where a pair does."""
     return -1.0 if w[0].imag else 1.0
+
+
+BY_GRID = {
+    ONSET: {"grid, between two forces": between, "grid, square-root law": square_root_law},
+    HOPF: {"grid, linear interpolation": interpolated_growth},
+}
+BY_STEPS = {
+    ONSET: {
+        "steps, bisection on Im w > 0": partial(by_steps, bisect, leads_real),
+        "steps, Brent on (w1 - w2)^2": partial(by_steps, brentq, discriminant),
+    },
+    HOPF: {"steps, Brent on Re w": partial(by_steps, brentq, growth)},
+}
+"""The estimates on a grid and the searches by steps, by what they are for."""

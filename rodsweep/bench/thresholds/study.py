@@ -11,17 +11,19 @@ from math import isinf, isnan, log10, nan
 from pathlib import Path
 from typing import Any
 
-from ...solve.changes.thresholds import warm_up
-from ..study import Contender, Measurement, Study, contest, grouped, middle
-from ..tables import plural, table
+from ...solve.changes.thresholds import ThresholdsRequest, solve_thresholds, warm_up
+from ..study import Contender, Measurement, Study, contest, grouped, middle, plural, table
 from .cases import CASES, HOPF, MESH_ACCURACY, ONSET, QUICK_CASES, FirstThreshold, ThresholdCase
-from .contenders import AUTO, F_MAX, PYCONT, contenders, continuation_codes
-from .pycont_lite import BEYOND_HOPF
-from .spectra_by_force import MARCH
+from .continuation import AUTO, BEYOND_HOPF, PYCONT, continuation_codes
+from .spectra_by_force import BY_GRID, BY_STEPS, MARCH, on_grid
 
 TITLES = {ONSET: "onset", HOPF: "Hopf point"}
 ROUNDS, QUICK_ROUNDS = 5, 1
 MOST_DIGITS = 16
+F_MAX = 200.0
+GRIDS, LARGE_GRID = (50, 200), 800
+TOLERANCES = (1e-3, 1e-6, 1e-12)
+RODSWEEP, SWEEP = "rodsweep", "grid and interpolation"
 
 
 def thresholds_study(quick: bool) -> Study:
@@ -35,6 +37,32 @@ def thresholds_study(quick: bool) -> Study:
     blocks = [introduction(rounds, [code.method for code in codes])]
     blocks += [threshold_table(ONSET, onsets), threshold_table(HOPF, hopf_points), *skipped]
     return Study("thresholds", "\n\n".join(blocks), onsets + hopf_points, "rod")
+
+
+def contenders(kind: str, quick: bool) -> list[Contender]:
+    """rodsweep and those that need SciPy only."""
+    grids = GRIDS if quick else (*GRIDS, LARGE_GRID)
+    return [
+        Contender("rodsweep, all changes", "with proof", RODSWEEP, partial(own_threshold, kind, True)),
+        Contender("rodsweep, all changes", "without proof", RODSWEEP, partial(own_threshold, kind, False)),
+        *(
+            Contender(name, f"{n} forces", SWEEP, partial(on_grid, estimate, n), n == LARGE_GRID)
+            for name, estimate in BY_GRID[kind].items()
+            for n in grids
+        ),
+        *(
+            Contender(name, f"tolerance {tolerance:.0e}", SWEEP, partial(search, tolerance))
+            for name, search in BY_STEPS[kind].items()
+            for tolerance in TOLERANCES
+        ),
+    ]
+
+
+def own_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstThreshold:
+    """All changes of the rod, and of them the first of a kind."""
+    result = solve_thresholds(case.k1, case.k2, case.gamma3, ThresholdsRequest(F_MAX, 1e-10, certify, 64))
+    at = next((change.at for change in result.crossings if change.kind.name == kind), nan)
+    return FirstThreshold(at, result.transitions.solves, determinants=result.transitions.boxes)
 
 
 def timed_on(

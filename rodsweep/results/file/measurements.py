@@ -21,14 +21,13 @@ def write_measurements(path: Path, tables: Mapping[str, Table], attributes: Mapp
             file.attrs.update(attributes)
             for study, table in tables.items():
                 group = file.create_group(study)
-                for n, (name, values) in enumerate(table.items()):
+                rows = group.create_dataset("measurement", data=np.arange(len(table["case"])))
+                rows.make_scale("measurement")
+                for name, values in table.items():
                     words = bool(values) and isinstance(values[0], str)
                     column = np.array(values, dtype=h5py.string_dtype() if words else float)
                     dataset = group.create_dataset(name, data=column)
-                    if n == 0:
-                        count = group.create_dataset("measurement", data=np.arange(len(values)))
-                        count.make_scale("measurement")
-                    dataset.dims[0].attach_scale(count)
+                    dataset.dims[0].attach_scale(rows)
                     if name in UNITS:
                         dataset.attrs["units"] = UNITS[name]
     except OSError as error:

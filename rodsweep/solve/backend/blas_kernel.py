@@ -6,7 +6,6 @@ have a library each.
 """
 
 from pathlib import Path
-from typing import Any
 
 from threadpoolctl import threadpool_info
 
@@ -21,7 +20,8 @@ def blas() -> str:
     found: dict[str, set[str]] = {"PETSc": set(), "NumPy": set(), "SciPy": set()}
     for library in threadpool_info():
         if library["user_api"] == "blas":
-            found[_owner(library["filepath"])].add(_described(library))
+            words = (library["internal_api"], library["version"], library.get("architecture"))
+            found[_owner(library["filepath"])].add(" ".join(str(word) for word in words if word))
     petscs, numpys = (" and ".join(sorted(found[name])) for name in ("PETSc", "NumPy"))
     if numpys in ("", petscs):
         return petscs or NAMELESS
@@ -32,9 +32,3 @@ def _owner(path: str) -> str:
     """Whose a library is: wheels of NumPy and SciPy bring their own, any other is the system's or PETSc's."""
     names = {part.removesuffix(".libs") for part in Path(path).parts}
     return "NumPy" if "numpy" in names else "SciPy" if "scipy" in names else "PETSc"
-
-
-def _described(library: dict[str, Any]) -> str:
-    """Such as openblas 0.3.21 Haswell."""
-    words = (library["internal_api"], library["version"], library.get("architecture"))
-    return " ".join(str(word) for word in words if word)

@@ -59,9 +59,8 @@ def transitions(path: Path, start: float, stop: float, certify: bool = True) -> 
     oscillates = tracer.anchor(path.variable(start)).oscillates
     edges = [a for a, _ in slabs(path, low, high)] + [high]
     for _ in range(2):
-        crossings, at_end = counts.along(
-            sorted(tracer.changes(edges) + hopfs, key=lambda c: c.at), (start, stop), unstable
-        )
+        ordered = sorted(tracer.changes(edges) + hopfs, key=lambda c: c.at)
+        crossings, at_end = counts.along(ordered, (start, stop), unstable)
         missed = _pairs_that_do_not_lead(path, crossings, oscillates, unstable)
         if not missed:
             break

@@ -114,7 +114,7 @@ def _at_height(boundary: Boundary, a: Array, b: Array, y: float) -> Array | None
         guess = a + share * (b - a)
         level = guess.copy()
         level[1] = y
-        there = boundary.on_line(level, 1)
+        there = boundary.corrected(level, np.eye(3)[1])
         if there is not None:
             return there.v
         there = boundary.corrected(guess, (b - a) / np.linalg.norm(b - a))

@@ -116,17 +116,14 @@ class Tracer:
             polished, slope[i], _ = self._followed(complex(guess), p)
             if abs(polished - guess) <= max(10 * found.error_estimate[i], 1e-12 * abs(guess)):
                 w[i] = polished
-        return Anchor(p, w, slope, *self._relaxation(p))
+        here, rate = coefficients_at(p, self.path.origin, self.path.direction), self.path.direction
+        relaxation = here.nu * here.nu + here.c2 + here.gamma3  # in tau2; never zero
+        return Anchor(p, w, slope, relaxation, 2 * here.nu * rate.nu + rate.c2 + rate.gamma3)
 
     def _followed(self, guess: complex, p: float) -> tuple[complex, complex, float]:
         """(eigenvalue near the guess, its slope, its error) at p."""
         coefficients = coefficients_at(p, self.path.origin, self.path.direction)
         return eigenvalue_newton(guess, coefficients, self.path.direction)
-
-    def _relaxation(self, p: float) -> tuple[float, float]:
-        """(nu^2 + c2 + gamma3, its slope), in tau2; never zero."""
-        rod, rate = coefficients_at(p, self.path.origin, self.path.direction), self.path.direction
-        return rod.nu * rod.nu + rod.c2 + rod.gamma3, 2 * rod.nu * rate.nu + rate.c2 + rate.gamma3
 
     def changes(self, edges: list[float]) -> list[Crossing]:
         """All changes between the first and the last of `edges`, in increasing order of p."""
@@ -149,9 +146,8 @@ class Tracer:
                     found.append(change)
                     continue
                 if b - a <= 1e-12 * max(abs(a), abs(b)):
-                    raise Unsolvable(
-                        f"the change of the leading eigenvalue near {self.path.at(a)} is not found"
-                    )
+                    where = self.path.at(a)
+                    raise Unsolvable(f"the change of the leading eigenvalue near {where} is not found")
                 share = 0.5
             middle = a + share * (b - a)
             stack += [(middle, b), (a, middle)]
@@ -192,11 +188,10 @@ class Tracer:
         """Newton's method on the lead of the real eigenvalue over the pair, each followed by its own."""
         if all(w.imag != 0 for w in pair.w) or all(w.imag == 0 for w in real.w):
             return None  # there is nothing of the other kind to overtake
-        w_real, w_pair = complex(real.w[0]), complex(pair.w[0])
         p, ends = (pair.p + real.p) / 2, sorted((pair.p, real.p))
         # Start each eigenvalue from the anchor where it leads and carry it to the middle.
-        w_real = self._carried(w_real, real.p, p)
-        w_pair = self._carried(w_pair, pair.p, p)
+        w_real = self._carried(complex(real.w[0]), real.p, p)
+        w_pair = self._carried(complex(pair.w[0]), pair.p, p)
         for _ in range(MOST_OVERTAKING_STEPS):
             w_real, s_real, e_real = self._followed(w_real, p)
             w_pair, s_pair, e_pair = self._followed(w_pair, p)
@@ -221,10 +216,8 @@ class Tracer:
         for i in range(1, CARRIED + 1):
             w, slope, _ = self._followed(w, p)
             following = start + (stop - start) * i / CARRIED
-            real = w.imag == 0
-            w = w + slope * (following - p)
-            w = complex(w.real, 0.0) if real else w
-            p = following
+            ahead = w + slope * (following - p)
+            w, p = complex(ahead.real, 0.0) if w.imag == 0 else ahead, following
         return w
 
 

@@ -82,22 +82,17 @@ def nothing_found(status: ThresholdStatus, end: float, message: str = "") -> Thr
 
 
 def judged(found: Transitions, end: float, accuracy: float, certify: bool, most: int) -> Thresholds:
-    """The changes along a path, and how far they can be relied on."""
-    status = _status(found, accuracy, certify, most)
-    return Thresholds(status=status, transitions=found, end=end, message=found.why_not)
-
-
-def _status(found: Transitions, accuracy: float, certify: bool, most: int) -> ThresholdStatus:
-    """How far a list of changes can be relied on; what matters most is said first."""
+    """The changes along a path, and how far they can be relied on; what matters most is said first."""
+    status = ThresholdStatus.ok
     if not math.isnan(found.open_range[0]):
-        return ThresholdStatus.window_open
-    if len(found.crossings) > most:
-        return ThresholdStatus.list_full
-    if any(c.error > accuracy * abs(c.at) for c in found.crossings):
-        return ThresholdStatus.accuracy_not_reached
-    if certify and not found.proved:
-        return ThresholdStatus.not_certified
-    return ThresholdStatus.ok
+        status = ThresholdStatus.window_open
+    elif len(found.crossings) > most:
+        status = ThresholdStatus.list_full
+    elif any(c.error > accuracy * abs(c.at) for c in found.crossings):
+        status = ThresholdStatus.accuracy_not_reached
+    elif certify and not found.proved:
+        status = ThresholdStatus.not_certified
+    return Thresholds(status=status, transitions=found, end=end, message=found.why_not)
 
 
 def warm_up() -> None:

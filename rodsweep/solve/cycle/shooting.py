@@ -4,10 +4,12 @@
 
 Waiting for a cycle costs 1/|1 - mu| periods per digit, mu the largest multiplier; this costs a few periods
 whatever mu is. phi_T is `steps` equal steps of ARKIMEX 5 with stages solved to round-off, a smooth function
-of (z, T), so the iteration closes to round-off; twice the steps tell the error.
+of (z, T), so the iteration closes to round-off; twice the steps tell the error. Whether a period is the
+minimal one the harmonics of its orbit say.
 """
 
 from dataclasses import dataclass
+from math import gcd
 
 import numpy as np
 
@@ -31,6 +33,12 @@ SLOW_CLOSING, STALLED_CLOSING = 0.05, 0.3
 """Decrease of the closure in one iteration from which a new matrix is due; from which rounding is reached."""
 LONGEST_STEP, LONGEST_STRETCH = 0.3, 0.1
 """Largest change of state and period in one iteration, relative."""
+PRESENT = 1e-3
+"""Share of the largest harmonic from which another one is taken for present before errors are known."""
+CERTAIN = 10.0
+"""Share of the largest harmonic, in units of the relative error of the extrema, that is no error for sure."""
+LEAST_PRESENT = 1e-6
+"""What is asked of a harmonic at least, whatever the error estimate, which is the tip's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,14 +70,6 @@ def angle_weights(beam: Beam) -> Array:
     return row
 
 
-def period_run(beam: Beam, z: Array, period: float, steps: int) -> Trajectory | None:
-    """`steps` equal steps over a period from z, (unknowns,); None where PETSc had to shorten one."""
-    run = integrator(beam.mesh, PERIOD_MAP).run(
-        beam, z, period, period / steps, RunLimit(most_steps=steps + 2)
-    )
-    return run if run.ending == Ending.reached and len(run.times) == steps + 1 else None
-
-
 def shoot(beam: Beam, z: Array, period: float, steps: int, known: Monodromy | None = None) -> Orbit | None:
     """The orbit near z, shape (unknowns,), or None where none is found.
 
@@ -80,9 +80,10 @@ def shoot(beam: Beam, z: Array, period: float, steps: int, known: Monodromy | No
     row = angle_weights(beam)
     section, closure, M, fresh = row @ z, np.inf, known, False
     run: Trajectory | None = None
+    run_limit = RunLimit(most_steps=steps + 2)
     for _ in range(MOST_SHOTS):
-        run = period_run(beam, z, period, steps)
-        if run is None:
+        run = integrator(beam.mesh, PERIOD_MAP).run(beam, z, period, period / steps, run_limit)
+        if run.ending != Ending.reached or len(run.times) != steps + 1:  # PETSc had to shorten one
             return None
         size, last = np.abs(run.states).max(), closure
         residual = np.append(run.states[-1] - z, row @ z - section)
@@ -95,7 +96,9 @@ def shoot(beam: Beam, z: Array, period: float, steps: int, known: Monodromy | No
         fresh = M is None or closure > SLOW_CLOSING * last
         if M is None or fresh:
             M = monodromy(beam, run)
-        step = np.linalg.solve(_matrix(beam, M, run.states[-1], row), -residual)
+        by_period = beam.rate(run.states[-1])[:, None]
+        slope = np.block([[M.matrix - np.eye(len(row)), by_period], [row, np.zeros(1)]])
+        step = np.linalg.solve(slope, -residual)
         bounds = LONGEST_STEP * size / np.abs(step[:-1]).max(), LONGEST_STRETCH * period / abs(step[-1])
         limit = min(1.0, *bounds)
         z, period = z + limit * step[:-1], period + limit * step[-1]
@@ -104,6 +107,31 @@ def shoot(beam: Beam, z: Array, period: float, steps: int, known: Monodromy | No
     return Orbit(beam, z, closure, run, M if M is not None else monodromy(beam, run))
 
 
-def _matrix(beam: Beam, M: Monodromy, end: Array, row: Array) -> Array:
-    """Derivative of (phi_T(z) - z, theta_tip) by (z, T), shape (unknowns + 1, unknowns + 1)."""
-    return np.block([[M.matrix - np.eye(len(row)), beam.rate(end)[:, None]], [row, np.zeros(1)]])
+def common_divisor(orbit: Orbit, present: float) -> int:
+    """g of the harmonics larger than `present` times the largest; 1 proves that the period is minimal.
+
+    An orbit that closes after T has the minimal period T/g, where g is the greatest common divisor of the
+    numbers of all its harmonics; those of the bending moments that stand out of its error are there for sure.
+    """
+    moments = orbit.run.states[:-1, 2 * orbit.beam.mesh.nodes :]
+    sizes = np.linalg.norm(np.fft.rfft(moments, axis=0)[1:], axis=1)
+    return gcd(*map(int, np.nonzero(sizes > present * sizes.max())[0] + 1))
+
+
+def undecided_divisor(orbit: Orbit, error: float) -> int:
+    """How many times shorter than the orbit's its period may be for all that is known; 1 is a proof.
+
+    error: relative, of the extrema.
+    """
+    return common_divisor(orbit, max(CERTAIN * error, LEAST_PRESENT))
+
+
+def shortened(orbit: Orbit) -> Orbit | None:
+    """The orbit with the period that its harmonics have in common; None where it does not close then."""
+    while (g := common_divisor(orbit, PRESENT)) > 1:
+        steps = max(FIRST_STEPS, orbit.steps // g)
+        shorter = shoot(orbit.beam, orbit.state, orbit.period / g, steps)
+        if shorter is None:
+            return None
+        orbit = shorter
+    return orbit

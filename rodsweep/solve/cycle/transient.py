@@ -117,7 +117,9 @@ class Transient:
                 return self._ended(CycleStatus.straight, "decays at the rate of the leading mode")
             factor = self._jump(times, states)
             if factor is not None:
-                z, self.jumps = self._scaled(z, factor), self.jumps + 1
+                scaled = factor * z
+                scaled[: self.beam.mesh.nodes] *= factor  # the stretch is quadratic in the deflection
+                z, self.jumps = relaxed(self.beam, scaled, self.mode.period), self.jumps + 1
                 self.past.clear()
                 continue
             outcome = self._closed(z, times, states)
@@ -196,12 +198,6 @@ class Transient:
         else:
             return None
         return factor if abs(factor - 1) >= NEAR else None
-
-    def _scaled(self, z: Array, factor: float) -> Array:
-        """z, the end of a run, with its deflection scaled."""
-        scaled = factor * z
-        scaled[: self.beam.mesh.nodes] *= factor  # the stretch is quadratic in the deflection
-        return relaxed(self.beam, scaled, self.mode.period)
 
     def _closed(self, z: Array, times: Array, states: Array) -> TransientOutcome | None:
         """The cycle, if the returns repeat and Newton's method finds it from z, the end of the run."""

@@ -15,7 +15,6 @@ from ...determinant.value import ROUND_OFF
 from ...discretization.pencil import Pencil, shear_force, slope, tip_scale
 from ...discretization.resolution import Resolution
 from ...model.rod import Rod
-from .dense_operator import dense_operator
 
 ITERATIONS = 4
 """Inverse iterations: with the eigenvalue known two suffice but next to a double one."""
@@ -92,7 +91,7 @@ def no_vectors(resolution: Resolution, modes: int, points: int) -> Vectors:
 
 def _vectors(rod: Rod, pencil: Pencil, eigenvalues: Complex) -> tuple[Complex, Complex, Array]:
     """The right and left vectors, shape (unknowns, modes), scaled at the tip, and `Vectors.rounding`."""
-    A, B = dense_operator(rod, pencil)
+    A, B = pencil.dense(rod)
     m = len(eigenvalues)
     X, Z = np.empty((pencil.unknowns, m), complex), np.empty((pencil.unknowns, m), complex)
     for i, w in enumerate(eigenvalues):

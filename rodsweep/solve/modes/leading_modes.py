@@ -91,7 +91,9 @@ def _solve(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
     if request.growth:
         rate = float(abs(spectrum.eigenvalues[0]))
         mesh = resolution_for(max(wave, GROWTH_WAVE_NUMBER), request.accuracy)
-        stable = _stable(spectrum)
+        grows = (spectrum.eigenvalues.real > SURELY * spectrum.error_estimate).any()
+        known = spectrum.status != SpectrumStatus.undecided
+        stable = False if grows or spectrum.unstable_count > 0 else (True if known else None)
         growth = growth_of(rod, mesh, request.accuracy, stable, rate)
         errors |= growth.errors(rate)
         result = replace(result, growth=growth if stable is not None else replace(growth, growth_error=nan))
@@ -100,10 +102,3 @@ def _solve(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
         return result
     message = f"the error of the {culprit} is {error:.0e}"
     return replace(result, status=SpectrumStatus.accuracy_not_reached, message=message)
-
-
-def _stable(spectrum: Spectrum) -> bool | None:
-    """Whether the rod is stable; None where it is undecided."""
-    if (spectrum.eigenvalues.real > SURELY * spectrum.error_estimate).any() or spectrum.unstable_count > 0:
-        return False
-    return None if spectrum.status == SpectrumStatus.undecided else True

@@ -18,6 +18,18 @@ TAYLOR_ORDER = 16
 """Terms that sum exp of a matrix of norm 1/2 to rounding; a multiple of 4."""
 
 
+def shifted_inverse(A: Array, B: Array, shift: float) -> Array:
+    """B^1/2 (A - shift B)^-1 B^1/2 on the n unknowns that carry a time derivative, shape (n, n).
+
+    Without a shift it is G, the inverse of L where the Gamma norm is Euclidean. It exists in every limit;
+    infinite eigenvalues are its zeros. For gamma3 = 0 the state and the norm are y alone: theta follows.
+    """
+    moving = B > 0
+    root = np.sqrt(B[moving])
+    inverse = np.linalg.inv(A - np.diag(shift * B))[np.ix_(moving, moving)]
+    return root[:, None] * inverse * root
+
+
 class Propagator:
     """exp(L t) from the spectral decomposition of G = L^-1 on one mesh, for any number k of leading modes.
 

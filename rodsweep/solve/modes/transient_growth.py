@@ -1,4 +1,4 @@
-"""How far a perturbation of a stable rod can grow in the Gamma norm: S = sup_t |exp(L t)|.
+"""How far a perturbation of a stable rod can grow in the Gamma norm, S = sup_t |exp(L t)|, how fast at first.
 
 With a the numerical abscissa |exp(L t)| <= exp(a t), on a mesh as well as in the rod (the form that bounds
 both is the same). So nothing that a mesh gets wrong at times t < log(S)/a can matter, and no more
@@ -14,13 +14,13 @@ from math import ceil, exp, inf, isnan, log, nan, pi, sqrt
 
 import numpy as np
 
-from ...discretization.pencil import Pencil, assemble
+from ...determinant.box import eigenvalue_box
+from ...discretization.pencil import Pencil, angle_weight, assemble
 from ...discretization.resolution import Resolution
+from ...model.adjoint import hermitian_tip
 from ...model.rod import Rod
-from .dense_operator import dense_operator, shifted_inverse
 from .norm_maximum import LARGEST_EXPONENT, highest
-from .numerical_abscissa import numerical_abscissa
-from .propagator import Propagator
+from .propagator import Propagator, shifted_inverse
 
 FEWEST_MODES, MORE_MODES = 8, 1.5
 """Modes that represent exp(L t) at first, and the factor to the next attempt."""
@@ -32,6 +32,12 @@ FIRST_FINER, ORDER_FACTOR, MOST_GROWTH_MESHES = 4, 1.4, 5
 """How much finer the second mesh is, and the factor to the next: layers at the tip ask for high orders."""
 MOST_GROWTH_UNKNOWNS = 400
 """Unknowns beyond which no further mesh is tried: all of its modes take a second."""
+MOST_SHIFTS = 60
+"""Shifts tried to get above the numerical abscissa where no bound is known; each doubles the last."""
+CLOSE_SHIFT = 0.05
+"""Relative distance at which a shift above the abscissa no longer costs digits."""
+POSITIVE = 1e-9
+"""Relative size above which an eigenvalue of the shifted inverse is not rounding."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,9 +104,37 @@ def growth_of(rod: Rod, mesh: Resolution, accuracy: float, stable: bool | None, 
     return best
 
 
+def numerical_abscissa(rod: Rod, pencil: Pencil) -> float:
+    """sup Re (xi, L xi)/(xi, xi) over the domain of L, in 1/tau2: the growth rate at t = 0+.
+
+    The largest eigenvalue of the Hermitian part (`rodsweep.model.adjoint`), approached by shifts from
+    above: nan where none is above it, which only a rod without rotational drag and g < 0 can bring about.
+    """
+    A, B = pencil.dense(rod)
+    n, t, tip_mass = pencil.nodes, angle_weight(rod.gamma3), pencil.mass[-1]
+    pair, layer = hermitian_tip(rod)
+    A[n - 1, 2 * n - 1] += pair / (t * tip_mass)
+    A[2 * n - 1, n - 1] -= pair / (t * tip_mass)
+    A[n - 1, n - 1] -= layer / tip_mass
+    bound, _ = eigenvalue_box(rod)
+    shift = bound + 1 if bound < inf else rod.F**2 + 1
+    for _ in range(MOST_SHIFTS):
+        H = shifted_inverse(A, B, shift)
+        values = np.linalg.eigvalsh((H + H.T) / 2)
+        if values[-1] > -POSITIVE * values[0]:  # something lies above the shift
+            shift = 2 * abs(shift) + 1
+            continue
+        abscissa = shift + 1 / float(values[0])
+        close = abscissa + CLOSE_SHIFT * abs(abscissa) + CLOSE_SHIFT
+        if shift - abscissa <= 2 * (close - abscissa):
+            return abscissa
+        shift = close
+    return nan
+
+
 def propagator_of(rod: Rod, pencil: Pencil) -> Propagator:
     """exp(L t) of the rod on one mesh, in coordinates in which the Gamma norm is Euclidean."""
-    return Propagator(shifted_inverse(*dense_operator(rod, pencil), 0.0))
+    return Propagator(shifted_inverse(*pencil.dense(rod), 0.0))
 
 
 def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accuracy: float) -> Growth:
@@ -125,19 +159,12 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
         k = min(int(MORE_MODES * k), len(fine.w))
     hidden = max(ceiling, before) / best[0] - 1 + tail
     if best[0] > 1:
-        times = best[1], max(first, log(best[0]) / abscissa)
-        hidden += _mesh_error(coarse, fine, k, times)
+        # The meshes are compared at the peak and half way, in the logarithm, to the earliest time that may
+        # matter, the coarser with more modes if it has them.
+        coarse.keep(int(MORE_MODES * k))
+        times = best[1], sqrt(best[1] * max(first, log(best[0]) / abscissa))
+        hidden += max(abs(coarse.norm(t)[0] / fine.norm(t)[0] - 1) for t in times)
     return Growth(transient_growth=best[0], transient_time=best[1], growth_error=hidden)
-
-
-def _mesh_error(coarse: Propagator, fine: Propagator, k: int, times: tuple[float, float]) -> float:
-    """Relative difference of |exp(L t)| between the meshes, the coarser with more modes if it has them.
-
-    Asked at the peak and half way, on a logarithmic scale, to the earliest time that may matter.
-    """
-    peak, earliest = times
-    coarse.keep(int(MORE_MODES * k))
-    return max(abs(coarse.norm(t)[0] / fine.norm(t)[0] - 1) for t in (peak, sqrt(peak * earliest)))
 
 
 def _end(propagator: Propagator, first: float, patience: float) -> tuple[float, float]:

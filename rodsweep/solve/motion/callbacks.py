@@ -17,15 +17,7 @@ from numba import types
 from ...discretization.beam import Beam, Mesh
 from ...discretization.body_frame import BeamParameters, Element, jacobian, rate
 from ...model.compilation import compiled
-from ..backend.c_functions import (
-    POINTER,
-    c_function,
-    call,
-    floats,
-    integers,
-    petsc_function,
-    record_at,
-)
+from ..backend.c_functions import POINTER, c_function, call, floats, integers, petsc_function, record_at
 from ..backend.petsc import PETSc
 from .context import AT_BASE, AT_ITERATE, CONTENT, CONTEXT, TAKEN, UP_TO_DATE
 from .stage_newton import newton_test

@@ -12,7 +12,7 @@ class TimeScheme:
 
     tolerance: local error per step of each component of z, absolute, in units of the motion's size.
     newton: error of a stage in units of the tolerance. equal_steps: no step control, each step as given.
-    prefix: of the PETSc options that override; options: further ones without it, as (name, value).
+    prefix: of the PETSc options that override.
     """
 
     family: str = "arkimex"
@@ -21,7 +21,6 @@ class TimeScheme:
     newton: float = 0.1
     equal_steps: bool = False
     prefix: str = CYCLE_PREFIX
-    options: tuple[tuple[str, str], ...] = ()
 
     def petsc_options(self, family: str) -> dict[str, str]:
         """The options, without prefix, of this scheme where the TS type is `family`."""
@@ -42,5 +41,4 @@ class TimeScheme:
             "snes_max_it": "20" if self.equal_steps else "10",
             **own,
             **adapt,
-            **dict(self.options),
         }

@@ -47,10 +47,6 @@ class Candidates:
         errors, w = self.roots.error[:modes].tolist(), self.roots.w[:modes].tolist()
         return max(0.0, *map(truediv, errors, map(abs, w)))
 
-    def coarseness(self, modes: int) -> float:
-        """Largest displacement of the leading modes."""
-        return float(self.roots.displacement[:modes].max())
-
 
 @dataclass(frozen=True, slots=True)
 class Verdict:

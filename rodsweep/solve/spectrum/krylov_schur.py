@@ -67,9 +67,8 @@ class EigenSolver:
         else:
             values = np.ones(len(self.indices))
             self.A.createAIJ([n, n], csr=(self.indptr, self.indices, values), comm=PETSc.COMM_SELF)
-        line = np.arange(n + 1, dtype=PETSc.IntType)
-        self.B.createAIJ([n, n], csr=(line, line[:-1], np.ones(n)), comm=PETSc.COMM_SELF)
-        self.line = line
+        self.line = np.arange(n + 1, dtype=PETSc.IntType)
+        self.B.createAIJ([n, n], csr=(self.line, self.line[:-1], np.ones(n)), comm=PETSc.COMM_SELF)
         self.gamma3, self.pace = -1.0, 1.0
         self.inertia: Array = np.ones(n)
         first = np.zeros(n)
@@ -108,7 +107,10 @@ class EigenSolver:
         coefficients = self.pencil.coefficients(rod)
         if not math.isfinite(coefficients.sum() + shift):
             raise FloatingPointError("the parameters overflow the matrix entries")
-        self._set_inertia(rod)
+        if rod.gamma3 != self.gamma3:
+            self.gamma3, self.inertia = rod.gamma3, self.pencil.inertia(rod)
+            self.B.setValuesCSR(self.line, self.line[:-1], self.inertia)
+            self.B.assemble()
         if self.dense:
             _fill(self.A.getDenseArray().T, coefficients, self.pieces, shift * self.inertia)
         else:
@@ -129,13 +131,6 @@ class EigenSolver:
         found = self.eps.getConverged()
         w: Complex = np.array([self.eps.getEigenvalue(i) for i in range(found)], complex)
         return (w + shift) / self.pace**2
-
-    def _set_inertia(self, rod: Rod) -> None:
-        """B of the rod, which differs from the last one's only where gamma3 does."""
-        if rod.gamma3 != self.gamma3:
-            self.gamma3, self.inertia = rod.gamma3, self.pencil.inertia(rod)
-            self.B.setValuesCSR(self.line, self.line[:-1], self.inertia)
-            self.B.assemble()
 
     def vectors(self, found: int) -> Complex:
         """The vectors of what the last `solve` found, shape (unknowns, found)."""

@@ -141,7 +141,9 @@ class Search:
             self.keep(judged)
             if judged.short <= SAFETY or self.stalled >= NO_PROGRESS:
                 break
-            self.mesh = self.next_mesh(found)
+            # What the wave numbers now known ask for, at least the next finer one.
+            informed = resolution_for(float(found.roots.wave[: self.modes].max()), self.aim)
+            self.mesh = max(informed, finer(found.resolution), key=lambda mesh: mesh.unknowns)
         return self.concluded()
 
     def judged(self, found: Candidates) -> Judged | None:
@@ -171,9 +173,8 @@ class Search:
         if verdict is not None and verdict.agrees and not self.with_vectors:
             return error
         allowed = LARGEST_DISPLACEMENT if self.bounded else UNBOUNDED_DISPLACEMENT
-        return max(
-            error, found.coarseness(self.modes) / (self.request.accuracy if self.with_vectors else allowed)
-        )
+        coarseness = float(found.roots.displacement[: self.modes].max())
+        return max(error, coarseness / (self.request.accuracy if self.with_vectors else allowed))
 
     def search_more(self, number: int, here: int) -> None:
         """Asks for more after a count of `number`, of which `here` were found."""
@@ -194,12 +195,6 @@ class Search:
         self.stalled = 0 if progress else self.stalled + 1
         if best is None or judged.grade <= best.grade or judged.short <= SAFETY:
             self.best = judged
-
-    def next_mesh(self, found: Candidates) -> Resolution:
-        """A finer mesh: what the wave numbers now known ask for, at least the next finer one."""
-        informed = resolution_for(float(found.roots.wave[: self.modes].max()), self.aim)
-        least = finer(found.resolution)
-        return informed if informed.unknowns >= least.unknowns else least
 
     def concluded(self) -> Spectrum:
         """The best that was found, or why there is nothing."""

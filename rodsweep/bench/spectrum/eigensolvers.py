@@ -1,0 +1,192 @@
+"""The methods of the spectrum benchmark: rodsweep, others' eigensolvers on its pencil, other discretisations.
+
+Each takes a rod and a size, the order of the elements or the intervals of a collocation, and returns the
+leading eigenvalues, WANTED_MODES and one more, for a pair may straddle the end, largest real part first.
+"""
+
+from collections.abc import Callable
+from functools import lru_cache, partial
+from math import ceil
+from typing import NamedTuple
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse.linalg
+
+from ...arrays import Array
+from ...determinant.newton import refined
+from ...discretization.pencil import SHEAR_WEIGHT, assemble
+from ...discretization.resolution import LARGEST_ORDER, Resolution
+from ...model.dispersion import most_amplified_wave
+from ...model.rod import Rod
+from ...solve.spectrum.krylov_schur import eigen_solver
+from ...solve.spectrum.search import SHIFT_ABOVE_GROWTH, SpectrumRequest, solve_spectrum
+from ..lapack import Eigenvalues, inverse_spectrum, leading, qz, whole_matrices
+from ..study import Contender
+
+WANTED_MODES = 4
+ACCURACY = 1e-12
+"""Asked of rodsweep, whose error does not depend on it."""
+
+
+def own_spectrum(rod: Rod, certify: bool) -> Eigenvalues:
+    """This tool as its task uses it; it chooses the size itself."""
+    return solve_spectrum(rod, SpectrumRequest(WANTED_MODES, ACCURACY, certify)).eigenvalues
+
+
+def mesh_of(order: int) -> Resolution:
+    """One element of this order, or as many equal ones as keep to LARGEST_ORDER."""
+    elements = ceil(order / LARGEST_ORDER)
+    return Resolution(elements, ceil(order / elements))
+
+
+def shift_of(rod: Rod) -> float:
+    """The shift of rodsweep's own shift-and-invert."""
+    return SHIFT_ABOVE_GROWTH * most_amplified_wave(rod)[0]
+
+
+def krylov_schur(rod: Rod, size: int) -> Eigenvalues:
+    """SLEPc's Krylov-Schur to its last digit, without refinement on D."""
+    w = eigen_solver(mesh_of(size)).solve(rod, shift_of(rod), WANTED_MODES, tight=True)
+    return leading(w, WANTED_MODES + 1)
+
+
+def dense_qz(rod: Rod, size: int) -> Eigenvalues:
+    """LAPACK's QZ (ggev), eigenvalues only; s at full weight, as its rounding needs."""
+    A, B = whole_matrices(rod, mesh_of(size))
+    scale = np.ones(len(B))
+    scale[2 * len(B) // 3 :] = SHEAR_WEIGHT
+    return leading(qz(A * scale[:, None] * scale, np.diag(B)), WANTED_MODES + 1)
+
+
+def dense_inverse(rod: Rod, size: int) -> Eigenvalues:
+    """LAPACK's LU and geev."""
+    return leading(inverse_spectrum(*whole_matrices(rod, mesh_of(size))), WANTED_MODES + 1)
+
+
+def scipy_eigs(rod: Rod, size: int) -> Eigenvalues:
+    """ARPACK through SciPy on the factorised shift-and-invert operator, with rodsweep's shift."""
+    A, B = whole_matrices(rod, mesh_of(size))
+    shift = shift_of(rod)
+    factors = scipy.linalg.lu_factor(A - np.diag(shift * B), check_finite=False)
+    operator = scipy.sparse.linalg.LinearOperator(
+        A.shape, matvec=lambda x: scipy.linalg.lu_solve(factors, B * x, check_finite=False), dtype=float
+    )
+    theta = scipy.sparse.linalg.eigs(operator, WANTED_MODES, v0=np.ones(len(B)), return_eigenvectors=False)
+    return leading(shift + 1 / theta, WANTED_MODES + 1)
+
+
+def lapack_on_d(rod: Rod, size: int) -> Eigenvalues:
+    """LAPACK on a coarse pencil, then Newton's method on D: what a root polisher does."""
+    return np.array([refined(complex(w), rod.coefficients) for w in dense_inverse(rod, size)])
+
+
+def displacement_elements(rod: Rod, size: int) -> Eigenvalues:
+    """Spectral elements of (y, theta) alone with lumped masses, stiffnesses as they are, then geev."""
+    bending, couple, tip = _displacement_pieces(size)
+    mu, n = rod.k2 * rod.nu + rod.F, len(tip)
+    A = np.block(
+        [
+            [-rod.k2 * bending, mu * couple - rod.F * tip],
+            [mu * couple.T, -bending - rod.nu * mu * np.eye(n)],
+        ]
+    )
+    A[n:] /= rod.gamma3
+    return leading(scipy.linalg.eigvals(A, check_finite=False), WANTED_MODES + 1)
+
+
+@lru_cache(maxsize=64)
+def _displacement_pieces(size: int) -> tuple[Array, Array, Array]:
+    """<a', b'>, <a', b> and a(1) b(1) in units of the masses, from the pencil's own pieces."""
+    mesh = mesh_of(size)
+    pencil = assemble(mesh.elements, mesh.order)
+    n = pencil.nodes
+    whole = pencil.dense_pieces().reshape(6, 3 * n, 3 * n).transpose(0, 2, 1)
+    tip = np.diag(np.append(np.zeros(n - 1), 1 / pencil.mass[-1]))
+    return -whole[1, n : 2 * n, n : 2 * n], whole[2, :n, n : 2 * n] + tip, tip
+
+
+@lru_cache(maxsize=64)
+def _chebyshev(n: int) -> Array:
+    """The differentiation matrix at n + 1 Chebyshev points from the tip to the clamp (Trefethen's)."""
+    x = np.cos(np.pi * np.arange(n + 1) / n)
+    c = np.r_[2, np.ones(n - 1), 2] * (-1) ** np.arange(n + 1)
+    D = np.outer(c, 1 / c) / (x[:, None] - x + np.eye(n + 1))
+    return 2 * (D - np.diag(D.sum(axis=1)))
+
+
+def chebyshev_qz(rod: Rod, size: int) -> Eigenvalues:
+    """Collocation of (y, theta) at Chebyshev points, boundary rows replaced, then QZ."""
+    D, one, n = _chebyshev(size), np.eye(size + 1), size + 1
+    zero = np.zeros_like(one)
+    mu = rod.k2 * rod.nu + rod.F
+    A = np.block([[rod.k2 * (D @ D), -mu * D], [mu * D, D @ D - rod.nu * mu * one]])
+    B = scipy.linalg.block_diag(one, rod.gamma3 * one)
+    rows = [0, n - 1, n, 2 * n - 1]  # y and theta, each at the tip and at the clamp
+    A[rows] = np.block(
+        [[D[:1], -rod.nu * one[:1]], [one[-1:], zero[:1]], [zero[:1], D[:1]], [zero[:1], one[-1:]]]
+    )
+    B[rows] = 0.0
+    largest = np.abs(A).max(axis=1, keepdims=True)  # without it QZ finds nothing at k2 = 1e8
+    return leading(qz(A / largest, B / largest), WANTED_MODES + 1)
+
+
+def chebyshev_first_order(rod: Rod, size: int) -> Eigenvalues:
+    """The same of the first-order system in (y, theta, s, theta'), where no stiffness appears."""
+    D, one, n = _chebyshev(size), np.eye(size + 1), size + 1
+    zero = np.zeros_like(one)
+    A = np.block(
+        [
+            [zero, zero, D, -rod.F * one],
+            [zero, zero, rod.g * one, D],
+            [D, -rod.nu * one, -rod.c2 * one, zero],
+            [zero, D, zero, -one],
+        ]
+    )
+    B = scipy.linalg.block_diag(one, rod.gamma3 * one, zero, zero)
+    rows = [0, n, 3 * n - 1, 4 * n - 1]  # y and theta at the tip, s and theta' at the clamp, make room for
+    A[rows] = np.eye(4 * n)[[2 * n, 3 * n, n - 1, 2 * n - 1]]  # s, theta' = 0 at the tip, y, theta = 0 there
+    B[rows] = 0.0
+    return leading(qz(A, B), WANTED_MODES + 1)
+
+
+ORDERS = (8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 40, 56, 80)
+INTERVALS = (10, 12, 14, 16, 18, 20, 22, 24, 28, 32, 40, 56, 80)
+START_ORDERS = (8, 10, 11, 12, 14, 18, 24, 32, 40)
+"""Of meshes whose eigenvalues are refined on D."""
+PLAIN, PROVED = "rodsweep, certificate off", "rodsweep, certificate on"
+THIS_TOOL, PENCIL, OTHER_MESH = "this tool", "the same pencil", "other discretisations"
+
+
+class Peer(NamedTuple):
+    """What a user would write instead, and the group it belongs to in a figure."""
+
+    name: str
+    group: str
+    solve: Callable[..., Eigenvalues]
+    sizes: tuple[int, ...]
+
+
+PEERS = (
+    Peer("Krylov-Schur alone, same pencil", PENCIL, krylov_schur, ORDERS),
+    Peer("dense LAPACK QZ, same pencil", PENCIL, dense_qz, ORDERS),
+    Peer("dense LAPACK LU and geev, same pencil", PENCIL, dense_inverse, ORDERS),
+    Peer("SciPy eigs (ARPACK), same pencil", PENCIL, scipy_eigs, ORDERS),
+    Peer("displacement spectral elements, geev", OTHER_MESH, displacement_elements, ORDERS),
+    Peer("Chebyshev collocation, QZ", OTHER_MESH, chebyshev_qz, INTERVALS),
+    Peer("Chebyshev, first-order system, QZ", OTHER_MESH, chebyshev_first_order, INTERVALS),
+    Peer("LAPACK on a coarse mesh, Newton on D", "roots of D", lapack_on_d, START_ORDERS),
+)
+
+
+def contenders(stride: int = 1) -> list[Contender]:
+    """This tool, and the peers at each stride-th of their sizes."""
+    return [
+        Contender(PLAIN, "", THIS_TOOL, partial(own_spectrum, certify=False)),
+        Contender(PROVED, "", THIS_TOOL, partial(own_spectrum, certify=True)),
+        *(
+            Contender(peer.name, str(size), peer.group, partial(peer.solve, size=size))
+            for peer in PEERS
+            for size in peer.sizes[::stride]
+        ),
+    ]
