@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from rodsweep.discretization.basis import differentiation
 from rodsweep.discretization.beam import Beam, configuration, mesh
-from rodsweep.discretization.quadrature import differentiation, gauss_lobatto
+from rodsweep.discretization.quadrature import gauss_lobatto
 from rodsweep.model.balance import plane_material
 from rodsweep.model.longitudinal import longitudinal_rates
 from rodsweep.model.rod import Rod

@@ -24,8 +24,9 @@ from rodsweep.solve.cycle.limit_cycle import (
     warm_up,
 )
 from rodsweep.solve.cycle.measures import measures_of
+from rodsweep.solve.cycle.minimal_period import common_divisor, shortened, undecided_divisor
 from rodsweep.solve.cycle.refinement import _on_mesh
-from rodsweep.solve.cycle.shooting import common_divisor, shoot, shortened, undecided_divisor
+from rodsweep.solve.cycle.shooting import shoot
 from rodsweep.solve.motion.integrator import forget_integrators
 
 SOFT = (1e4, 1e2, 1e-2, 1.0)

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from rodsweep.discretization.basis import differentiation, interpolation
 from rodsweep.discretization.pencil import assemble
-from rodsweep.discretization.quadrature import differentiation, gauss, gauss_lobatto, interpolation
+from rodsweep.discretization.quadrature import gauss, gauss_lobatto
 from rodsweep.discretization.resolution import LARGEST_ORDER, finer, required_order, resolution_for
 from rodsweep.model.rod import Rod
 

@@ -10,8 +10,9 @@ from numpy.polynomial import legendre
 from scipy.linalg import expm
 
 from rodsweep.determinant.value import distance_to_next
+from rodsweep.discretization.basis import differentiation
 from rodsweep.discretization.pencil import assemble, shear_force, tip_scale
-from rodsweep.discretization.quadrature import differentiation, gauss_lobatto, lobatto_points
+from rodsweep.discretization.quadrature import gauss_lobatto, lobatto_points
 from rodsweep.discretization.resolution import Resolution
 from rodsweep.model.rod import Rod
 from rodsweep.solve.modes import convergence as convergence_module
@@ -21,8 +22,8 @@ from rodsweep.solve.modes import transient_growth as growth_module
 from rodsweep.solve.modes.inverse_iteration import mode_vectors, null_vectors
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
 from rodsweep.solve.modes.norm_maximum import highest
+from rodsweep.solve.modes.numerical_abscissa import numerical_abscissa
 from rodsweep.solve.modes.propagator import Propagator, exponential
-from rodsweep.solve.modes.transient_growth import numerical_abscissa
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 

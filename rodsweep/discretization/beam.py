@@ -11,9 +11,10 @@ import numpy as np
 
 from ..arrays import Array
 from ..model.rod import Rod
+from .basis import differentiation, interpolation
 from .body_frame import BeamParameters, Element, jacobians, rates
 from .pencil import assemble
-from .quadrature import differentiation, gauss, gauss_lobatto, interpolation
+from .quadrature import gauss, gauss_lobatto
 
 EXTRA_POINTS = 10
 """Gauss points beyond the nodes with which shapes are integrated: theta turns by a radian or two."""

@@ -26,7 +26,8 @@ from numpy.typing import NDArray
 
 from ..arrays import Array, Complex
 from ..model.rod import Rod
-from .quadrature import differentiation, gauss, gauss_lobatto, interpolation
+from .basis import differentiation, interpolation
+from .quadrature import gauss, gauss_lobatto
 
 SHEAR_WEIGHT = 1e-9
 """Weight of s in the norm. Nearly crushed rods lose seven digits at 1e-3, none below 1e-8."""

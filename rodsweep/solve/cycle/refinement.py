@@ -16,7 +16,8 @@ from ..motion.integrator import Ending, integrator, relaxed
 from ..motion.time_scheme import TimeScheme
 from .floquet import monodromy
 from .measures import Measures, measures_of
-from .shooting import FIRST_STEPS, Orbit, shoot, shortened, undecided_divisor
+from .minimal_period import shortened, undecided_divisor
+from .shooting import FIRST_STEPS, Orbit, shoot
 
 TRANSIENT = TimeScheme("arkimex", "4", tolerance=1e-5)
 """The way to a cycle needs no accuracy: Newton's method supplies it."""

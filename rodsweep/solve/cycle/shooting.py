@@ -4,12 +4,10 @@
 
 Waiting for a cycle costs 1/|1 - mu| periods per digit, mu the largest multiplier; this costs a few periods
 whatever mu is. phi_T is `steps` equal steps of ARKIMEX 5 with stages solved to round-off, a smooth function
-of (z, T), so the iteration closes to round-off; twice the steps tell the error. Whether a period is the
-minimal one the harmonics of its orbit say.
+of (z, T), so the iteration closes to round-off; twice the steps tell the error.
 """
 
 from dataclasses import dataclass
-from math import gcd
 
 import numpy as np
 
@@ -33,12 +31,6 @@ SLOW_CLOSING, STALLED_CLOSING = 0.05, 0.3
 """Decrease of the closure in one iteration from which a new matrix is due; from which rounding is reached."""
 LONGEST_STEP, LONGEST_STRETCH = 0.3, 0.1
 """Largest change of state and period in one iteration, relative."""
-PRESENT = 1e-3
-"""Share of the largest harmonic from which another one is taken for present before errors are known."""
-CERTAIN = 10.0
-"""Share of the largest harmonic, in units of the relative error of the extrema, that is no error for sure."""
-LEAST_PRESENT = 1e-6
-"""What is asked of a harmonic at least, whatever the error estimate, which is the tip's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,33 +97,3 @@ def shoot(beam: Beam, z: Array, period: float, steps: int, known: Monodromy | No
     if run is None or not closure < CLOSED:
         return None
     return Orbit(beam, z, closure, run, M if M is not None else monodromy(beam, run))
-
-
-def common_divisor(orbit: Orbit, present: float) -> int:
-    """g of the harmonics larger than `present` times the largest; 1 proves that the period is minimal.
-
-    An orbit that closes after T has the minimal period T/g, where g is the greatest common divisor of the
-    numbers of all its harmonics; those of the bending moments that stand out of its error are there for sure.
-    """
-    moments = orbit.run.states[:-1, 2 * orbit.beam.mesh.nodes :]
-    sizes = np.linalg.norm(np.fft.rfft(moments, axis=0)[1:], axis=1)
-    return gcd(*map(int, np.nonzero(sizes > present * sizes.max())[0] + 1))
-
-
-def undecided_divisor(orbit: Orbit, error: float) -> int:
-    """How many times shorter than the orbit's its period may be for all that is known; 1 is a proof.
-
-    error: relative, of the extrema.
-    """
-    return common_divisor(orbit, max(CERTAIN * error, LEAST_PRESENT))
-
-
-def shortened(orbit: Orbit) -> Orbit | None:
-    """The orbit with the period that its harmonics have in common; None where it does not close then."""
-    while (g := common_divisor(orbit, PRESENT)) > 1:
-        steps = max(FIRST_STEPS, orbit.steps // g)
-        shorter = shoot(orbit.beam, orbit.state, orbit.period / g, steps)
-        if shorter is None:
-            return None
-        orbit = shorter
-    return orbit

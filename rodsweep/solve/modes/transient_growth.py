@@ -1,4 +1,4 @@
-"""How far a perturbation of a stable rod can grow in the Gamma norm, S = sup_t |exp(L t)|, how fast at first.
+"""How far a perturbation of a stable rod can grow in the Gamma norm, S = sup_t |exp(L t)|.
 
 With a the numerical abscissa |exp(L t)| <= exp(a t), on a mesh as well as in the rod (the form that bounds
 both is the same). So nothing that a mesh gets wrong at times t < log(S)/a can matter, and no more
@@ -14,12 +14,11 @@ from math import ceil, exp, inf, isnan, log, nan, pi, sqrt
 
 import numpy as np
 
-from ...determinant.box import eigenvalue_box
-from ...discretization.pencil import Pencil, angle_weight, assemble
+from ...discretization.pencil import Pencil, assemble
 from ...discretization.resolution import Resolution
-from ...model.adjoint import hermitian_tip
 from ...model.rod import Rod
 from .norm_maximum import LARGEST_EXPONENT, highest
+from .numerical_abscissa import numerical_abscissa
 from .propagator import Propagator, shifted_inverse
 
 FEWEST_MODES, MORE_MODES = 8, 1.5
@@ -32,12 +31,6 @@ FIRST_FINER, ORDER_FACTOR, MOST_GROWTH_MESHES = 4, 1.4, 5
 """How much finer the second mesh is, and the factor to the next: layers at the tip ask for high orders."""
 MOST_GROWTH_UNKNOWNS = 400
 """Unknowns beyond which no further mesh is tried: all of its modes take a second."""
-MOST_SHIFTS = 60
-"""Shifts tried to get above the numerical abscissa where no bound is known; each doubles the last."""
-CLOSE_SHIFT = 0.05
-"""Relative distance at which a shift above the abscissa no longer costs digits."""
-POSITIVE = 1e-9
-"""Relative size above which an eigenvalue of the shifted inverse is not rounding."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,34 +95,6 @@ def growth_of(rod: Rod, mesh: Resolution, accuracy: float, stable: bool | None, 
         if least <= accuracy or not improved:
             break
     return best
-
-
-def numerical_abscissa(rod: Rod, pencil: Pencil) -> float:
-    """sup Re (xi, L xi)/(xi, xi) over the domain of L, in 1/tau2: the growth rate at t = 0+.
-
-    The largest eigenvalue of the Hermitian part (`rodsweep.model.adjoint`), approached by shifts from
-    above: nan where none is above it, which only a rod without rotational drag and g < 0 can bring about.
-    """
-    A, B = pencil.dense(rod)
-    n, t, tip_mass = pencil.nodes, angle_weight(rod.gamma3), pencil.mass[-1]
-    pair, layer = hermitian_tip(rod)
-    A[n - 1, 2 * n - 1] += pair / (t * tip_mass)
-    A[2 * n - 1, n - 1] -= pair / (t * tip_mass)
-    A[n - 1, n - 1] -= layer / tip_mass
-    bound, _ = eigenvalue_box(rod)
-    shift = bound + 1 if bound < inf else rod.F**2 + 1
-    for _ in range(MOST_SHIFTS):
-        H = shifted_inverse(A, B, shift)
-        values = np.linalg.eigvalsh((H + H.T) / 2)
-        if values[-1] > -POSITIVE * values[0]:  # something lies above the shift
-            shift = 2 * abs(shift) + 1
-            continue
-        abscissa = shift + 1 / float(values[0])
-        close = abscissa + CLOSE_SHIFT * abs(abscissa) + CLOSE_SHIFT
-        if shift - abscissa <= 2 * (close - abscissa):
-            return abscissa
-        shift = close
-    return nan
 
 
 def propagator_of(rod: Rod, pencil: Pencil) -> Propagator:

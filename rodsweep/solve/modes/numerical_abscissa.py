@@ -1,0 +1,46 @@
+"""The numerical abscissa: how fast a perturbation can grow in the Gamma norm at t = 0+."""
+
+from math import inf, nan
+
+import numpy as np
+
+from ...determinant.box import eigenvalue_box
+from ...discretization.pencil import Pencil, angle_weight
+from ...model.adjoint import hermitian_tip
+from ...model.rod import Rod
+from .propagator import shifted_inverse
+
+MOST_SHIFTS = 60
+"""Shifts tried to get above the numerical abscissa where no bound is known; each doubles the last."""
+CLOSE_SHIFT = 0.05
+"""Relative distance at which a shift above the abscissa no longer costs digits."""
+POSITIVE = 1e-9
+"""Relative size above which an eigenvalue of the shifted inverse is not rounding."""
+
+
+def numerical_abscissa(rod: Rod, pencil: Pencil) -> float:
+    """sup Re (xi, L xi)/(xi, xi) over the domain of L, in 1/tau2: the growth rate at t = 0+.
+
+    The largest eigenvalue of the Hermitian part (`rodsweep.model.adjoint`), approached by shifts from
+    above: nan where none is above it, which only a rod without rotational drag and g < 0 can bring about.
+    """
+    A, B = pencil.dense(rod)
+    n, t, tip_mass = pencil.nodes, angle_weight(rod.gamma3), pencil.mass[-1]
+    pair, layer = hermitian_tip(rod)
+    A[n - 1, 2 * n - 1] += pair / (t * tip_mass)
+    A[2 * n - 1, n - 1] -= pair / (t * tip_mass)
+    A[n - 1, n - 1] -= layer / tip_mass
+    bound, _ = eigenvalue_box(rod)
+    shift = bound + 1 if bound < inf else rod.F**2 + 1
+    for _ in range(MOST_SHIFTS):
+        H = shifted_inverse(A, B, shift)
+        values = np.linalg.eigvalsh((H + H.T) / 2)
+        if values[-1] > -POSITIVE * values[0]:  # something lies above the shift
+            shift = 2 * abs(shift) + 1
+            continue
+        abscissa = shift + 1 / float(values[0])
+        close = abscissa + CLOSE_SHIFT * abs(abscissa) + CLOSE_SHIFT
+        if shift - abscissa <= 2 * (close - abscissa):
+            return abscissa
+        shift = close
+    return nan
