@@ -1,5 +1,8 @@
 """The record that every callback of a TS receives: the rod, its mesh, and how Newton's method fares."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
 from ...discretization.body_frame import BeamParameters, Element
@@ -27,7 +30,8 @@ CONTEXT = np.dtype(
     ]
 )
 """What every callback receives."""
-TAKEN, CONTENT = (CONTEXT.fields[name][1] for name in ("taken", "content"))  # type: ignore[index]  # has fields
+PLACES: Mapping[str, Any] = CONTEXT.fields or {}
+TAKEN, CONTENT = (PLACES[name][1] for name in ("taken", "content"))
 """Places in bytes of what PETSc writes."""
 
 UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
