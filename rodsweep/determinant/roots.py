@@ -127,7 +127,9 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
     `rodsweep.determinant.box.squared_amplification`; most_waves: |q| that the mesh can stand for. Rounding
     makes infinite eigenvalues finite: they lie outside the box or beyond the mesh, or have no root near.
     """
-    error, length, wave = np.empty(len(raw)), np.empty(len(raw)), np.empty(len(raw))
+    error: Array = np.empty(len(raw))
+    length: Array = np.empty(len(raw))
+    wave: Array = np.empty(len(raw))
     near, inside = np.zeros(len(raw), dtype=np.bool_), np.zeros(len(raw), dtype=np.bool_)
     first = raw.copy()
     for i in range(len(raw)):

@@ -5,6 +5,7 @@ exact to the spectral accuracy of the samples. Where N is even, the highest harm
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Array, Complex
 
@@ -21,7 +22,7 @@ def coefficients(samples: Array) -> Complex:
     return c
 
 
-def resampled(samples: Array, at: Array) -> Array:
+def resampled(samples: Array, at: NDArray[np.floating]) -> Array:
     """The polynomial through samples, shape (N, ...), at the times `at` in periods, (m,): shape (m, ...)."""
     c = coefficients(samples)
     waves = np.exp(2j * np.pi * np.outer(at, np.arange(len(c))))

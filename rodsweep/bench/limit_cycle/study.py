@@ -190,9 +190,9 @@ def _waited(at: Reference, family: Family) -> Wait:
             continue
         sizes = np.linalg.norm(found.states[1:], axis=1)
         distances = np.linalg.norm(np.diff(found.states, axis=0), axis=1) / sizes
-        settled = np.flatnonzero(distances <= SETTLED_WITHIN).tolist()
+        settled = list(map(int, np.flatnonzero(distances <= SETTLED_WITHIN)))
         for k in settled[:1]:
-            left = _error(at, found.times[k + 1] - found.times[k], found.heights[k])
+            left = _error(at, float(found.times[k + 1] - found.times[k]), float(found.heights[k]))
             if left <= SETTLED_WITHIN:
                 again = partial(run, float(found.times[k + 1]), tolerance)
                 return Wait(CYCLE_FORCE, WAITING + family.name, tolerance, k + 2, left, again, failed=failed)

@@ -14,6 +14,7 @@ from math import inf
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.interpolate import PPoly, make_interp_spline
 
 from ...arrays import Array
@@ -112,7 +113,7 @@ def judged_run(at: Reference, run: Trajectory) -> dict[str, Any]:
     return {"error": max(period, amplitude), "extra": extra}
 
 
-def _rms(values: Array) -> float:
+def _rms(values: NDArray[np.floating]) -> float:
     return float(np.sqrt(np.mean(values**2))) if len(values) else inf
 
 
@@ -132,7 +133,7 @@ def returns_of(beam: Beam, run: Trajectory) -> Returns:
     """All returns of a run."""
     row, y = angle_weights(beam), beam.tip(run.states)[1]
     angle = run.states @ row
-    rising = np.flatnonzero((angle[:-1] < 0) & (angle[1:] >= 0)).tolist()
+    rising = list(map(int, np.flatnonzero((angle[:-1] < 0) & (angle[1:] >= 0))))
     times, states, heights = [], [], []
     for k in rising:
         again = _again(beam, run.states[k], OVERSHOOT * (run.times[k + 1] - run.times[k]))

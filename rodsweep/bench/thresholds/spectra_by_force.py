@@ -44,8 +44,8 @@ def on_grid(
     estimate: Callable[[Array, Eigenvalues], float], points: int, case: ThresholdCase
 ) -> FirstThreshold:
     """An estimate from the leading eigenvalue at equal steps of F from 0 to the top, shapes (points,)."""
-    forces, pair = np.linspace(0.0, case.top, points), LeadingPair(case)
-    return FirstThreshold(estimate(forces, np.array([pair(F)[0] for F in forces.tolist()])), points)
+    forces, pair = np.linspace(0.0, case.top, points, dtype=np.float64), LeadingPair(case)
+    return FirstThreshold(estimate(forces, np.array([pair(F)[0] for F in map(float, forces)])), points)
 
 
 def between(forces: Array, w: Eigenvalues) -> float:
@@ -68,7 +68,7 @@ def interpolated_growth(forces: Array, w: Eigenvalues) -> float:
 
 def _zero(forces: Array, values: NDArray[np.floating]) -> float:
     """Where the line through the first two points vanishes."""
-    (a, b), (p, q) = forces[:2].tolist(), values[:2].tolist()
+    (a, b), (p, q) = map(float, forces[:2]), map(float, values[:2])
     return a - p * (b - a) / (q - p)
 
 
@@ -77,7 +77,7 @@ def by_steps(
 ) -> FirstThreshold:
     """Steps from F = 0 until a test changes its sign, then a search of SciPy's between the two forces."""
     pair = LeadingPair(case)
-    forces = np.append(np.arange(0.0, case.top, MARCH), case.top).tolist()
+    forces = [*map(float, np.arange(0.0, case.top, MARCH)), case.top]
     behind, value = forces[0], test(pair(forces[0]))
     for ahead in forces[1:]:
         value_ahead = test(pair(ahead))

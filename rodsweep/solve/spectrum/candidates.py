@@ -7,6 +7,7 @@ missing. What to do about it is `rodsweep.solve.spectrum.search`'s to decide.
 from dataclasses import dataclass
 from math import sqrt
 from operator import truediv
+from typing import Any
 
 import numpy as np
 
@@ -44,7 +45,8 @@ class Candidates:
 
     def worst(self, modes: int) -> float:
         """Largest relative error estimate of the leading modes."""
-        errors, w = self.roots.error[:modes].tolist(), self.roots.w[:modes].tolist()
+        errors: Any = self.roots.error[:modes].tolist()
+        w: Any = self.roots.w[:modes].tolist()
         return max(0.0, *map(truediv, errors, map(abs, w)))
 
 
@@ -87,13 +89,14 @@ def attempt(
 
 def judge(rod: Rod, found: Roots, modes: int) -> Verdict:
     """Counts the eigenvalues right of a line below the last wanted and below every unstable mode."""
-    w: list[complex] = found.w.tolist()  # so few that Python is faster than NumPy
+    w: Any = found.w.tolist()  # so few that Python is faster than NumPy
+    errors: Any = found.error.tolist()
     for line in lines(w, modes):
         count = count_right_of(line, rod)
         if count.number is not None:
             break
     here = sum(value.real > line for value in w)
-    clear = all(abs(v.real - line) > 2 * error for v, error in zip(w, found.error.tolist(), strict=True))
+    clear = all(abs(v.real - line) > 2 * error for v, error in zip(w, errors, strict=True))
     return Verdict(count, here, clear)
 
 

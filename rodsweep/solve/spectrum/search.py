@@ -7,6 +7,7 @@ what to change next; all must be in order before a point is ok.
 
 from dataclasses import dataclass
 from math import isfinite
+from typing import Any
 
 import numpy as np
 
@@ -213,14 +214,16 @@ def _result(best: Judged, rod: Rod, request: SpectrumRequest) -> Spectrum:
     found, verdict = best.found.roots, best.verdict
     status = SpectrumStatus.ok if best.short <= STALLED_SAFETY else SpectrumStatus.accuracy_not_reached
     proved = verdict is not None and verdict.agrees
-    undecided = any(found.on_the_axis.tolist())
+    w: Any = found.w.tolist()
+    on_the_axis: Any = found.on_the_axis.tolist()
+    undecided = any(on_the_axis)
     message = ""
     if status == SpectrumStatus.ok and request.certify:
         if undecided:
             status = SpectrumStatus.undecided
         elif not proved:
             status, message = SpectrumStatus.not_certified, verdict.count.why_not if verdict else ""
-    unstable = sum(value.real > 0 for value in found.w.tolist())
+    unstable = sum(value.real > 0 for value in w)
     # Where no proof is asked for the unstable modes are counted if the search went past them.
     known = not undecided and (proved if request.certify else unstable < len(found.w))
     return Spectrum(

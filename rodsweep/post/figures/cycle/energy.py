@@ -46,7 +46,7 @@ def draw_energy(view: View, points: Sequence[int]) -> tuple[Figure, str]:
 def _budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
     """The three panels of a cycle."""
     top, middle, bottom = column
-    phase = np.linspace(0, 1, 401)
+    phase = np.linspace(0, 1, 401, dtype=np.float64)
     time = phase * cycle.period
     energy, injection, dissipation = (resampled(cycle.values[name], phase) for name in ENERGIES)
     top.plot(time, energy, color="k", lw=1.5)

@@ -96,7 +96,7 @@ def _phase_bar(figure: Figure, panels: list[Axes], colours: ListedColormap, step
 
 def tip_path(axes: Axes, cycle: StoredCycle) -> None:
     """The closed path of the tip."""
-    phase = np.linspace(0, 1, 401)
+    phase = np.linspace(0, 1, 401, dtype=np.float64)
     axes.plot(*(resampled(v, phase) for v in cycle.tip), color="0.6", lw=0.8, ls=(0, (4, 2)), zorder=1)
 
 
@@ -132,7 +132,7 @@ def frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
 
 def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
     """x and y of the tip against time in tau2, and in the paper's tau1 where there is one."""
-    time = np.linspace(0, end, 801)
+    time = np.linspace(0, end, 801, dtype=np.float64)
     for axes, values, colour in zip((upper, lower), cycle.tip, (FIRST, SECOND), strict=True):
         axes.plot(time, resampled(values, time / cycle.period), color=colour, lw=1.4)
         if len(values) < FEW_SAMPLES:
