@@ -20,7 +20,12 @@ class Lock:
         self.directory = directory
         patience = time.monotonic() + LOCK_PATIENCE
         while True:
-            directory.mkdir(exist_ok=True)
+            try:
+                directory.mkdir(exist_ok=True)
+            except FileExistsError:
+                if os.path.lexists(directory):
+                    raise
+                continue  # it was there, and a run that ended just now took it away
             try:
                 self.handle = os.open(directory / "lock", os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
             except FileNotFoundError:  # a run that ended just now took the directory away
