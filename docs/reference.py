@@ -38,7 +38,7 @@ WHOLE = {
     "modes": "parameters: {F: 30, k1: 200, k2: 1.0e+4, gamma3: 1.0e-4}",
     "limit_cycle": """
         parameters: {F: 50, k1: 1.0e+4, k2: 100, gamma3: 0.01, gamma1: 1}
-        limit_cycle: {samples: 64, shapes: 8, time: tau1}""",
+        limit_cycle: {samples: 64, shapes: 8, transient: 99, time: tau1}""",
 }
 """A config of every task with all its parameters and everything that may be asked for."""
 WITHOUT = {
@@ -46,6 +46,7 @@ WITHOUT = {
     "spectrum.longitudinal: true": ("spectrum.longitudinal=false", "parameters.gamma1=null"),
     "modes.growth: true": ("modes.growth=false",),
     "limit_cycle.samples > 0": ("limit_cycle.samples=0",),
+    "limit_cycle.transient > 0": ("limit_cycle.transient=0",),
     "limit_cycle.shapes > 0": ("limit_cycle.shapes=0",),
     "limit_cycle.time: tau1": ("limit_cycle.time=tau2",),
 }
@@ -58,8 +59,10 @@ LENGTHS = {
     "curve_point": "as found",
     "fold": "as found",
     "harmonic": "`limit_cycle.harmonics`",
+    "multiplier_number": "6",
     "sample": "`limit_cycle.samples`",
     "shape": "`limit_cycle.shapes`",
+    "transient": "`limit_cycle.transient`",
 }
 """What says how long a dimension is that is not a parameter."""
 KINDS = {
@@ -133,10 +136,9 @@ An axis is
 - a list in increasing order, each number once: `k1: [200, 1.0e4, inf]`;
 - a range: `{start: 10, stop: 1.0e6, num: 31, spacing: log}`; `spacing` is `linear` (the default) or `log`.
 
-F must be below every k1; only a phase diagram may reach into the crushed rods, F >= k1. A limit cycle needs
-finite k1 and k2, and gamma3 > 0. A phase diagram needs exactly two parameters with more than one value. A
-spectrum takes gamma1 with `spectrum.longitudinal: true` only, and as one number. The header of a CSV file
-names the parameters of the task, in any order.
+F must be below every k1; only a phase diagram may reach into the crushed rods, F >= k1. A phase diagram needs
+exactly two parameters with more than one value. A spectrum takes gamma1 with `spectrum.longitudinal: true`
+only, and as one number. The header of a CSV file names the parameters of the task, in any order.
 """
 FILE = """
 ## The result file

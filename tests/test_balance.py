@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from rodsweep.discretization.beam import Beam, mesh
+from rodsweep.discretization.beam import Beam
+from rodsweep.discretization.mesh import mesh
 from rodsweep.discretization.quadrature import gauss
 from rodsweep.model.balance import (
     IN_SPACE,
@@ -141,19 +142,19 @@ def test_energy_law(material, size):
 def stress_of(beam, z):
     """Sigma of z at all nodes, (3, nodes + 1), the tip's load included; complex for a complex z."""
     Sigma = np.zeros((3, beam.mesh.nodes + 1), z.dtype)
-    Sigma[:, :-1] = z.reshape(3, -1) * beam.stiffness_roots[:, None]
+    Sigma[:, :-1] = z.reshape(3, -1) / beam.roots[:, None]
     Sigma[0] -= beam.rod.F
     return Sigma
 
 
 def collocated(beam, z):
     """dz/dt by the balance at the nodes of a mesh of one element, where the clamp is natural."""
-    D, w = beam.mesh.element.D, beam.mesh.element.weights
+    D, w = beam.mesh.matrices.D, beam.mesh.quadrature
     Sigma = stress_of(beam, z)
     V = PLANE.velocity(Sigma, Sigma @ D.T)
     rate = strain_rate(PLANE.strain(Sigma), V, V @ D.T)[:, :-1]
     rate[:, 0] += V[:, 0] / w[0]
-    return (rate * beam.stiffness_roots[:, None]).ravel()
+    return (rate / beam.roots[:, None]).ravel()
 
 
 def rough(beam):
@@ -184,5 +185,5 @@ def test_compiled_rate_of_a_smooth_rod_is_that_of_the_balance(elements, order):
     Sigma, dSigma, ddSigma = stresses(u, 3)
     _, exact = rates(PLANE, Sigma, dSigma, ddSigma)
     z = beam.unknown(PLANE.strain(Sigma))
-    rate = beam.rate(z).reshape(3, -1) / beam.stiffness_roots[:, None]
+    rate = beam.rate(z).reshape(3, -1) * beam.roots[:, None]
     assert np.abs(rate - exact[:, :-1])[:, 1:].max() <= 1e-7 * np.abs(exact).max()

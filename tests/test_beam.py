@@ -4,16 +4,26 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.basis import differentiation
-from rodsweep.discretization.beam import Beam, configuration, mesh
+from rodsweep.discretization.beam import Beam
+from rodsweep.discretization.mesh import configuration, mesh
 from rodsweep.discretization.quadrature import gauss_lobatto
-from rodsweep.model.balance import plane_material
+from rodsweep.model.balance import plane_material, strain_rate
 from rodsweep.model.longitudinal import longitudinal_rates
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
-from rodsweep.solve.cycle.shooting import PERIOD_MAP
-from rodsweep.solve.motion.integrator import Ending, forget_integrators, integrator
+from rodsweep.solve.motion.context import MOST_POINTS
+from rodsweep.solve.motion.integrator import (
+    RELAXATION,
+    Ending,
+    Integrator,
+    RunLimit,
+    forget_integrators,
+    integrator,
+)
 from rodsweep.solve.motion.leading_mode import leading_mode
-from rodsweep.solve.motion.time_scheme import TimeScheme
+from rodsweep.solve.motion.predictor import extrapolate
+from rodsweep.solve.motion.step_record import FIRST_ROOM
+from rodsweep.solve.motion.time_scheme import POINTS, TimeScheme
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 ROD = Rod(50.0, 1e4, 1e2, 1e-2)
@@ -40,16 +50,15 @@ def rough(beam):
 
 def injected_and_dissipated(beam, z):
     """-F v1(1), by the reaction v1(1) of the tip's stress, and <Gamma V, V>."""
-    material, element, p = plane_material(beam.rod, beam.gamma1), beam.mesh.element, beam.mesh.order
+    material, matrices = plane_material(beam.rod, beam.gamma1), beam.mesh.matrices
     stress = np.zeros((3, beam.mesh.nodes + 1))
-    stress[:, :-1] = z.reshape(3, -1) * beam.stiffness_roots[:, None]
+    stress[:, :-1] = z.reshape(3, -1) / beam.roots[:, None]
     stress += material.tip_stress[:, None]
-    dissipated = 0.0
-    for first in range(0, beam.mesh.nodes, p):
-        here = stress[:, first : first + p + 1]
-        V = material.velocity(here, here @ element.D.T)
-        dissipated += material.dissipation(V) @ element.weights
-    return -beam.rod.F * (element.D[:, -1] @ (element.weights * V[0])), dissipated
+    V = material.velocity(stress, stress @ matrices.D.T)
+    dissipated = material.dissipation(V) @ matrices.weights
+    straining = strain_rate(material.strain(stress), V, 0 * V)[0, -1]  # ad_E V of the tip
+    reaction = matrices.weights[-1] * straining - matrices.D[:, -1] @ (matrices.weights * V[0])
+    return beam.rod.F * reaction, dissipated
 
 
 @MESHES
@@ -165,6 +174,20 @@ def test_equal_steps_have_the_order_of_the_method(variant, order):
     assert measured == pytest.approx(order, abs=0.35)
 
 
+def test_all_steps_of_a_long_run_are_kept():
+    beam = Beam(ROD, 1.0, mesh(1, 6))
+    start, steps = 0.1 * leading_mode(beam).z.real, 3 * FIRST_ROOM
+    method = TimeScheme("arkimex", "3", equal_steps=True)
+    run = integrator(beam.mesh, method).run(beam, start, 0.03, 0.03 / steps)
+    assert run.times == pytest.approx(np.linspace(0.0, 0.03, steps + 1))
+    assert np.array_equal(run.states[0], start)
+    seen = []
+    watched = RunLimit(lambda z: seen.append(z) is not None)
+    again = integrator(beam.mesh, method).run(beam, start, 0.03, 0.03 / steps, watched)
+    assert np.array_equal(again.states, run.states)
+    assert np.array_equal(seen, run.states[1:])
+
+
 METHODS = [
     TimeScheme(tolerance=1e-6),
     TimeScheme("arkimex", "3", 1e-7),
@@ -172,6 +195,8 @@ METHODS = [
     TimeScheme("bdf", "5", 1e-7),
     TimeScheme("rosw", "ra34pw2", 1e-6),
     TimeScheme("rosw", "rodas3", 1e-6),
+    TimeScheme("alpha", "", 1e-5),  # its rates are not taken at the unknown of its stage
+    TimeScheme("cn", "", 1e-5),  # its stage has a right side, and its slope a shift of its own
 ]
 if PETSc.Sys.getVersion() >= (3, 20):  # its first slopes come from a solve whose matrix PETSc scales in place
     METHODS += [TimeScheme("dirk", "es325sal", 1e-7), TimeScheme("dirk", "es648sa", 1e-7)]
@@ -186,6 +211,38 @@ def test_every_method_follows_the_same_motion(method):
     assert run.ending == Ending.reached
     assert run.times[-1] == pytest.approx(0.03)
     assert np.abs(run.states[-1] - exact).max() < 2e-4 * np.abs(exact).max()
+
+
+def test_stages_of_a_polynomial_motion_are_predicted_exactly():
+    rng = np.random.default_rng(2)
+    times, coefficients = rng.random(8), rng.standard_normal((4, 5))
+    states, out = np.polynomial.polynomial.polyval(times, coefficients).T, np.empty(5)
+    extrapolate(np.array([6, 1, 3, 4]), times, states, 1.3, out)
+    assert out == pytest.approx(np.polynomial.polynomial.polyval(1.3, coefficients), abs=1e-11)
+
+
+@pytest.mark.parametrize("variant", POINTS)
+def test_predicted_stages_are_known_by_then(variant):
+    stages = len(POINTS[variant]) + 1
+    for stage, (this, last) in POINTS[variant].items():
+        assert all(k < stage for k in this)
+        assert all(k < stages for k in last)
+        assert 0 < len(this) + len(last) <= MOST_POINTS
+
+
+@pytest.mark.parametrize("variant", POINTS)
+def test_prediction_spares_iterations_and_leaves_the_motion_alone(variant):
+    beam = Beam(ROD, 1.0, mesh(1, 14))
+    start, scheme = 0.3 * leading_mode(beam).z.real, TimeScheme("arkimex", variant, 1e-6)
+    predicting, plain = Integrator(beam.mesh, scheme), Integrator(beam.mesh, scheme)
+    plain.workspace.predict_as("")
+    ends, iterations = [], []
+    for made in (predicting, plain):
+        ends.append(made.run(beam, start, 0.03).states[-1])
+        iterations.append(made.ts.getSNESIterations())
+        made.destroy()
+    assert np.abs(ends[0] - ends[1]).max() < 1e-4 * np.abs(ends[1]).max()
+    assert 0 < iterations[0] < 0.75 * iterations[1]
 
 
 def test_jacobian_is_right_whatever_petsc_did_to_the_matrix():
@@ -235,7 +292,17 @@ def test_users_options_override_the_method(petsc_options):
     assert integrator(grid, TimeScheme()).ts.getType() == "arkimex"
     petsc_options("cycle_ts_type", "bdf")
     assert integrator(grid, TimeScheme()).ts.getType() == "bdf"
-    assert integrator(grid, PERIOD_MAP).ts.getType() == "arkimex"
+    assert integrator(grid, RELAXATION).ts.getType() == "beuler"
+
+
+def test_newtons_method_may_be_petscs(petsc_options):
+    beam = Beam(ROD, 1.0, mesh(1, 14))
+    start = 0.3 * leading_mode(beam).z.real
+    ours = evolve(beam, start, 0.03, TimeScheme(tolerance=1e-8))
+    petsc_options("cycle_snes_type", "newtonls")
+    assert integrator(beam.mesh, TimeScheme()).ts.getSNES().getType() == "newtonls"
+    theirs = evolve(beam, start, 0.03, TimeScheme(tolerance=1e-8))
+    assert np.abs(theirs.states[-1] - ours.states[-1]).max() < 1e-6 * np.abs(ours.states[-1]).max()
 
 
 def test_defaults_of_the_method_are_not_recorded_as_the_users_options():
@@ -252,6 +319,14 @@ def test_a_failed_integration_is_an_ending(petsc_options):
     run = evolve(beam, bent(beam), 1.0)
     assert run.ending == Ending.failed
     assert len(run.times) == len(run.states)
+
+
+def test_an_error_inside_petsc_is_an_ending(petsc_options):
+    petsc_options("cycle_pc_factor_mat_solver_type", "nosuch")
+    beam = Beam(ROD, 1.0, mesh(1, 14))
+    run = evolve(beam, bent(beam), 1.0)
+    assert run.ending == Ending.failed
+    assert run.message
 
 
 def test_a_crushed_rod_has_left_the_model():

@@ -12,6 +12,8 @@ import pytest
 from conftest import ROOT
 from scipy.optimize import brentq
 
+from rodsweep.bench import auto as auto_peer
+from rodsweep.bench.auto import auto_program
 from rodsweep.bench.machine import installed, peer_versions
 from rodsweep.bench.study import Contender
 from rodsweep.bench.thresholds import continuation
@@ -20,7 +22,6 @@ from rodsweep.bench.thresholds.cases import CASES, HOPF, ONSET, FirstThreshold, 
 from rodsweep.bench.thresholds.continuation import (
     CONTINUATION,
     PYCONT_MODULE,
-    auto_program,
     continuation_codes,
     hopf_by_auto,
     hopf_by_pycont,
@@ -47,7 +48,7 @@ needs_pycont = pytest.mark.skipif(installed(PYCONT_MODULE) is None, reason="PyCo
 
 @pytest.fixture(scope="module")
 def auto(tmp_path_factory):
-    program = auto_program(tmp_path_factory.mktemp("auto"))
+    program = auto_program(tmp_path_factory.mktemp("auto"), continuation.EQUATIONS)
     if program is None:
         pytest.skip("AUTO-07p or gfortran is not installed")
     return program
@@ -190,8 +191,8 @@ def test_a_program_that_crashes_is_a_failure(tmp_path):
 
 
 def test_auto_without_its_library_is_not_there(monkeypatch, tmp_path):
-    monkeypatch.setattr(continuation, "AUTO_LIBRARY", tmp_path / "nowhere")
-    assert auto_program(tmp_path) is None
+    monkeypatch.setattr(auto_peer, "AUTO_LIBRARY", tmp_path / "nowhere")
+    assert auto_program(tmp_path, continuation.EQUATIONS) is None
 
 
 def test_the_study_writes_its_text_and_its_figure(monkeypatch, tmp_path):

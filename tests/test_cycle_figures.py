@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-import h5py
 import numpy as np
 import pytest
+from known_cycles import NAMES, SHAPES, arm, make_view, store
 from matplotlib.animation import writers
 from matplotlib.colors import to_rgb
 from matplotlib.quiver import Quiver
@@ -19,62 +19,8 @@ from rodsweep.post.figures.cycle.portrait import ARROW, draw_portrait, drawn_sha
 from rodsweep.post.figures.cycle.selection import chosen_cycles
 from rodsweep.post.figures.limit_cycle import figure_name
 from rodsweep.post.figures.request import FigureRequest
-from rodsweep.results.file.creation import Plan, create_file
-from rodsweep.results.file.view import View
-from rodsweep.results.layouts import layout_of
-from rodsweep.sweep.grid import Points
 
 pytestmark = pytest.mark.filterwarnings("error::UserWarning")  # a layout that fails is only a warning
-
-NAMES = ("F", "k1", "k2", "gamma3", "gamma1")
-FLAGS = {-1: "missing", 0: "cycle", 1: "straight", 2: "not_settled", 3: "left_the_model", 4: "failed"}
-PERIODS = {1.0: 0.034, 0.5: 0.026}
-SAMPLES, SHAPES = 64, 24
-
-
-def arm(phase, size):
-    """(x, y, theta) of an arc of constant curvature that swings, shape (3, times, nodes), and u."""
-    u = np.linspace(0, 1, 21)
-    bend = size * np.cos(2 * np.pi * phase)[:, None] + 1e-9
-    return np.array([np.sin(bend * u) / bend, (1 - np.cos(bend * u)) / bend, bend * u]), u
-
-
-def energies(phase, period):
-    """U, injection and dissipation with dU/dt = injection - dissipation."""
-    a = 4 * np.pi * phase
-    injection = 2000 + 500 * np.sin(a)
-    return 3 + 0.3 * np.cos(a), injection, injection + 0.3 * np.sin(a) * 4 * np.pi / period
-
-
-def make_view(axes, statuses, *, stored=("shapes", "samples"), name="fake.h5", as_list=False):
-    """A result as the task writes it, whose amplitude depends on F and gamma1; axes in the order of NAMES."""
-    table = np.meshgrid(*axes, indexing="ij") if not as_list else [np.asarray(a, float) for a in axes]
-    shape = table[0].shape
-    status = np.array(statuses, "i1").reshape(shape)
-    v = {n: np.asarray(a, float) for n, a in zip(NAMES, axes, strict=True)} | {"status": status}
-    if as_list:
-        v["point"] = np.arange(shape[0])
-    size = np.sqrt(table[0]) / 8 / (1 + table[4])
-    period = np.vectorize(lambda g: PERIODS.get(g, 0.03))(table[4])
-    points = list(zip(size.ravel(), period.ravel(), strict=True))
-    kept = np.where(status == 0, 1.0, np.nan)
-    v |= {"period": period * kept, "tip_y_max": size * kept}
-    v |= {"tip_x_min": (0.9 - size) * kept, "tip_x_max": (0.9 + size) * kept}
-    v |= {"injection_mean": 2000 * kept, "energy_imbalance": 1e-9 * kept}
-    phase, few = np.arange(SAMPLES) / SAMPLES, np.arange(SHAPES) / SHAPES
-
-    def fill(names, arrays):
-        for i, key in enumerate(names):
-            v[key] = np.array([a[i] for a in arrays]).reshape(*shape, *np.shape(arrays[0][i]))
-
-    if "samples" in stored:
-        fill(("energy", "injection", "dissipation"), [energies(phase, T) for _, T in points])
-        fill(("tip_x", "tip_y", "tip_theta"), [arm(phase, s)[0][..., -1] for s, _ in points])
-    if "shapes" in stored:
-        fill(("shape_x", "shape_y", "shape_theta"), [arm(few, s)[0] for s, _ in points])
-        v["u"] = arm(few, 1.0)[1]
-    return View(Path(name), {"task": "limit_cycle", "title": "two $ arms"}, v, NAMES, FLAGS, 0)
-
 
 TWO = ([50.0], [1e4], [1e2], [1e-2], [1.0, 0.5])
 
@@ -302,24 +248,12 @@ def test_suffix_has_to_suit_the_figure(tmp_path, what, suffix):
         draw(two_cycles(), tmp_path / f"f.{suffix}", what=what)
 
 
-OPTIONS = {"harmonics": 8, "samples": SAMPLES, "shapes": SHAPES, "nodes": 21, "time": "tau2"}
-
-
 @pytest.mark.parametrize("as_list", [False, True])
 def test_file_as_the_task_lays_it_out_is_drawn(command, as_list):
     """The figures name no variable that the file does not have."""
     columns = [np.ravel(c) for c in np.meshgrid(*TWO, indexing="ij")] if as_list else TWO
     view = make_view(columns, [0, 0], as_list=as_list)
-    config = {"task": "limit_cycle", "limit_cycle": OPTIONS}
-    flags = tuple(item for item in FLAGS.items() if item[0] >= 0)
-    title = {"task": "limit_cycle", "title": "arms"}
-    layout = layout_of(config)
-    points = Points(layout.parameters, tuple(np.asarray(c, float) for c in columns), not as_list)
-    path = command.directory / "arms.h5"
-    create_file(path, Plan(points, layout, {}, (), config, title, flags))
-    with h5py.File(path, "r+") as file:
-        for name in view.variables.keys() - {*NAMES, "point"}:
-            file[name][...] = view.variables[name]
+    store(view, command.directory / "arms.h5")
     figures = {
         "arms.png": (),
         "e.pdf": ("--what", "energy", "-o", "e.pdf"),

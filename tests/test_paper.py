@@ -171,3 +171,16 @@ def test_what_a_restabilised_rod_does_depends_on_where_it_comes_from(command):
                 assert file["period"][:].ravel()[1] == pytest.approx(period, rel=1e-7)
                 assert file["tip_y_max"][:].ravel()[1] == pytest.approx(y, rel=1e-7)
                 assert file["linear_growth_rate"][:].ravel()[1] < 0
+
+
+def test_filament(command):
+    threshold, _, frequency, period, height = stated("filament")
+    assert threshold == pytest.approx(FILAMENT, rel=1e-14)
+    forces = f"parameters.F=[{threshold * (1 - 1e-4)}, {threshold * (1 + 1e-4)}, 40]"
+    with run(command, "filament", forces, "parameters.gamma1=1", "accuracy=1e-6") as file:
+        here = (slice(None), 0, 0, 0, 0)
+        assert file["status"][here].tolist() == [1, 0, 0]
+        assert file["frequency"][here][1] == pytest.approx(frequency, rel=1e-4)
+        assert file["period"][here][2] == pytest.approx(period, rel=1e-8)
+        assert file["tip_y_max"][here][2] == pytest.approx(height, rel=1e-6)
+        assert file["least_stretch"][here][1:].tolist() == [1, 1]

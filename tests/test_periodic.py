@@ -3,7 +3,16 @@
 import numpy as np
 import pytest
 
-from rodsweep.discretization.periodic import derivative, maximum, resampled, rise_through_mean
+from rodsweep.discretization.periodic import (
+    coefficients,
+    derivative,
+    hermite_coefficients,
+    maxima,
+    resampled,
+    rise_through_mean,
+    sampled_at,
+    samples_of,
+)
 
 SAMPLES = pytest.mark.parametrize("n", [31, 32])
 
@@ -16,7 +25,8 @@ def wave(t):
 @SAMPLES
 def test_a_smooth_period_is_interpolated_and_differentiated(n):
     t = np.arange(n) / n
-    assert maximum(wave(t)) == pytest.approx(np.e, rel=1e-12)
+    samples = wave(t)[:, None]
+    assert maxima(coefficients(samples), samples)[0] == pytest.approx(np.e, rel=1e-12)
     at = np.array([0.01, 0.373, 0.9, 1.9])
     assert resampled(wave(t), at) == pytest.approx(wave(at), rel=1e-12)
     slope = 2 * np.pi * np.cos(2 * np.pi * (t - 0.123)) * wave(t)
@@ -43,3 +53,16 @@ def test_the_highest_harmonic_of_an_even_number_of_samples_is_a_cosine():
     alternating = np.array([1.0, -1.0, 1.0, -1.0])
     assert resampled(alternating, np.array([0.125])) == pytest.approx(0.0, abs=1e-14)
     assert derivative(alternating) == pytest.approx(np.zeros(4), abs=1e-14)
+
+
+def test_values_and_slopes_tell_twice_as_many_harmonics_as_values():
+    m, k = 9, np.arange(10)
+    rng = np.random.default_rng(3)
+    exact = rng.standard_normal((10, 2)) + 1j * rng.standard_normal((10, 2))
+    exact[0], exact[m] = exact[0].real, 1j * exact[m].imag  # at the nodes harmonic m shows as a sine only
+    waves = np.exp(2j * np.pi * np.outer(np.arange(m) / m, k))
+    values, slopes = (waves @ exact).real, (waves @ (2j * np.pi * k[:, None] * exact)).real
+    found = hermite_coefficients(values, slopes)
+    assert np.abs(found - exact).max() < 1e-13 * np.abs(exact).max()
+    t = np.arange(40) / 40
+    assert samples_of(found, 40) == pytest.approx(sampled_at(exact, t), abs=1e-12)

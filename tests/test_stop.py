@@ -20,7 +20,7 @@ parameters:
 CYCLES = """
 task: limit_cycle
 parameters: {F: {start: 30, stop: 60, num: 6}, k1: 1.0e4, k2: 100, gamma3: 1.0e-2}
-limit_cycle: {continue_from: previous}
+limit_cycle: {start: neighbour}
 """
 
 

@@ -35,7 +35,7 @@ task: limit_cycle
 parameters: {F: [20, 35, 45, 60], k1: 1.0e4, k2: [90, 100], gamma3: 1.0e-2}
 limit_cycle: {samples: 8}
 """
-CHAINS = CYCLES.replace("samples: 8", "samples: 8, continue_from: previous")
+CHAINS = CYCLES.replace("samples: 8", "samples: 8, start: neighbour")
 FAULTS = ("kill a rank", "kill all", "kill the launcher", "SIGTERM to a rank", "SIGUSR1 to the launcher")
 
 

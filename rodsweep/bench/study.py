@@ -56,13 +56,17 @@ class Measurement:
 
 @dataclass(frozen=True, slots=True)
 class Study:
-    """One benchmark, done. unit: what a run is, as in "ms a point"; target: the error to be reached."""
+    """One benchmark, done. unit: what a run is, as in "ms a point"; target: the error to be reached.
+
+    undrawn: measurements that the figure leaves out.
+    """
 
     name: str
     text: str
     measurements: Sequence[Measurement]
     unit: str = "run"
     target: float | None = None
+    undrawn: Sequence[Measurement] = ()
 
     @property
     def drawable(self) -> bool:
@@ -71,17 +75,22 @@ class Study:
 
     def draw(self, output: Path) -> None:
         """Writes the figure: errors against time, a panel for each case, a curve for each method."""
-        draw_work_precision(self.table(), f"ms a {self.unit}", self.target, output)
+        draw_work_precision(columns_of(self.measurements), f"ms a {self.unit}", self.target, output)
 
     def table(self) -> Table:
         """The measurements as columns, for the file."""
-        columns: Table = {
-            name: [getattr(m, name) for m in self.measurements]
-            for name in ("case", "method", "group", "setting", "seconds", "least_seconds", "error", "failure")
-        }
-        for name in dict.fromkeys(name for m in self.measurements for name in m.extra):
-            columns[name] = [m.extra.get(name, nan) for m in self.measurements]
-        return columns
+        return columns_of([*self.measurements, *self.undrawn])
+
+
+def columns_of(measurements: Sequence[Measurement]) -> Table:
+    """Measurements as columns."""
+    columns: Table = {
+        name: [getattr(m, name) for m in measurements]
+        for name in ("case", "method", "group", "setting", "seconds", "least_seconds", "error", "failure")
+    }
+    for name in dict.fromkeys(name for m in measurements for name in m.extra):
+        columns[name] = [m.extra.get(name, nan) for m in measurements]
+    return columns
 
 
 class Timed(NamedTuple, Generic[Outcome]):
@@ -137,18 +146,32 @@ def failsafe(run: Callable[[Any], Outcome], case: Any) -> Outcome | Exception:
         return error
 
 
+class Entry(NamedTuple):
+    """A case by its name, and what judges: the error, and other fields, of the Measurement of an outcome."""
+
+    name: str
+    case: Any
+    judge: Callable[[Any], dict[str, Any]]
+
+
 def contest(
     name: str, case: Any, contenders: Sequence[Contender], rounds: int, judge: Callable[[Any], dict[str, Any]]
 ) -> list[Measurement]:
-    """All contenders on one case; judge: the error, and other fields, of the Measurement of an outcome."""
-    runs = [partial(failsafe, contender.run, case) for contender in contenders]
-    raced = race(runs, [0 if contender.slow else rounds for contender in contenders])
+    """All contenders on one case."""
+    return tournament([Entry(name, case, judge)], contenders, rounds)
+
+
+def tournament(entries: Sequence[Entry], contenders: Sequence[Contender], rounds: int) -> list[Measurement]:
+    """All contenders on all cases, all of them in turn."""
+    pairs = [(entry, contender) for entry in entries for contender in contenders]
+    runs = [partial(failsafe, contender.run, entry.case) for entry, contender in pairs]
+    raced = race(runs, [0 if contender.slow else rounds for _, contender in pairs])
     measurements = []
-    for c, timed in zip(contenders, raced, strict=True):
+    for (entry, c), timed in zip(pairs, raced, strict=True):
         least, failed = min(timed.seconds), isinstance(timed.outcome, Exception)
-        empty = Measurement(name, c.method, c.setting, timed.median, inf, c.group, least_seconds=least)
+        empty = Measurement(entry.name, c.method, c.setting, timed.median, inf, c.group, least_seconds=least)
         failure = {"failure": f"failed ({type(timed.outcome).__name__})"}
-        measurements.append(replace(empty, **(failure if failed else judge(timed.outcome))))
+        measurements.append(replace(empty, **(failure if failed else entry.judge(timed.outcome))))
     return measurements
 
 

@@ -120,7 +120,7 @@ def show(file: Path) -> None:
 )
 @click.option(
     "--what",
-    type=click.Choice(["cycle", "amplitude", "energy", "animation"]),
+    type=click.Choice(["cycle", "amplitude", "maps", "energy", "transient", "animation"]),
     help="Which figure of limit_cycle; by default what the file's content suggests.",
 )
 @click.option(

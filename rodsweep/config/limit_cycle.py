@@ -1,6 +1,6 @@
 """The keys of the task limit_cycle: the nonlinear rod, whose axial drag is a parameter like the others."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -9,7 +9,11 @@ from .axes import NonlinearParameters
 from .schema import Config, Nodes
 from .values import Number, Strict
 
-Along = Literal[NONLINEAR_PARAMETERS]  # type: ignore[valid-type]  # pydantic reads it at run time, from the table
+FORMER_STARTS = {"none": "mode", "previous": "neighbour"}
+"""Values of the former key `continue_from`."""
+
+LONGEST = "longest"
+Along = Literal[(*NONLINEAR_PARAMETERS, LONGEST)]  # type: ignore[valid-type]  # pydantic reads it at run time, from the table
 
 
 class LimitCycleOptions(Strict):
@@ -17,10 +21,12 @@ class LimitCycleOptions(Strict):
 
     amplitude: Annotated[Number, Field(gt=0, le=1, description="a number above 0, at most 1")] = 0.01
     """Tip deflection of the leading mode from which a point starts, in L."""
-    continue_from: Literal["none", "previous"] = "none"
-    """Whether each point starts from the cycle of its neighbour."""
-    along: Along = "F"
-    """The parameter along which neighbours follow each other."""
+    start: Literal["mode", "neighbour", "hopf"] = "mode"
+    """From where each point starts: the leading mode, its neighbour's cycle, or the Hopf point."""
+    continue_from: Annotated[Literal[tuple(FORMER_STARTS)], Field(exclude=True)] = "none"  # type: ignore[valid-type]
+    """What `start` was called, which stays understood: none is mode, previous is neighbour."""
+    along: Along = LONGEST
+    """The parameter along which neighbours follow each other; longest is that with most points."""
     direction: Literal["up", "down"] = "up"
     """Whether that parameter grows or falls from a point to the next."""
     harmonics: Annotated[int, Field(ge=1, le=100)] = 8
@@ -31,10 +37,24 @@ class LimitCycleOptions(Strict):
     """Times over a period at which the shape of the rod is stored; 0 stores none."""
     nodes: Nodes = 33
     """Lobatto nodes on which shapes are given."""
+    transient: Annotated[int, Field(ge=0, le=100_000)] = 0
+    """Times from the start to the cycle at which the tip of the real motion is stored; 0 stores none."""
     most_periods: Annotated[int, Field(ge=1, le=1_000_000)] = 400
     """Periods after which a point that is not settled is given up."""
     time: Literal["tau2", "tau1"] = "tau2"
     """tau1 adds the period in units of tau1; all else stays in tau2."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_former_key(cls, given: Any) -> Any:
+        """`continue_from` is what `start` was called."""
+        former = given.get("continue_from") if isinstance(given, dict) else None
+        if not isinstance(former, str) or former not in FORMER_STARTS:
+            return given
+        if "start" in given:
+            raise ValueError("continue_from and start are both given; continue_from is its former name")
+        rest = {key: value for key, value in given.items() if key != "continue_from"}
+        return rest | {"start": FORMER_STARTS[former]}
 
 
 class LimitCycleConfig(Config):
@@ -42,7 +62,7 @@ class LimitCycleConfig(Config):
 
     task: Literal["limit_cycle"]
     parameters: NonlinearParameters
-    accuracy: Annotated[Number, Field(ge=1e-10, le=1e-2)] = 1e-7
+    accuracy: Annotated[Number, Field(ge=1e-11, le=1e-2)] = 1e-7
     """Relative error of the period and of the tip's extrema."""
     limit_cycle: LimitCycleOptions = LimitCycleOptions()
 
@@ -50,17 +70,28 @@ class LimitCycleConfig(Config):
     def names(self) -> tuple[str, ...]:
         return NONLINEAR_PARAMETERS
 
+    @property
+    def along(self) -> str:
+        """The parameter along which neighbours follow each other: the first of those with most points."""
+        axes = self.parameters.axes
+        given = self.limit_cycle.along
+        return max(axes, key=lambda name: axes[name].size) if given == LONGEST else given
+
     @model_validator(mode="after")
     def _only_what_is_used(self) -> "LimitCycleConfig":
         self.parameters.require(self.names)
-        if self.limit_cycle.continue_from == "none":
-            self.refuse_unused("along", remedy="continue_from: previous")
-            self.refuse_unused("direction", remedy="continue_from: previous")
+        if self.limit_cycle.start != "neighbour":
+            self.refuse_unused("along", remedy="start: neighbour")
+            self.refuse_unused("direction", remedy="start: neighbour")
         elif self.parameters.points is not None:
             raise ValueError(
-                "limit_cycle.continue_from: previous needs a grid, in which a point has neighbours; remove "
-                "it, or give axes instead of parameters.points"
+                "limit_cycle.start: neighbour needs a grid, in which a point has neighbours; remove it, or "
+                "give axes instead of parameters.points"
             )
+        if self.limit_cycle.start == "hopf":
+            self.refuse_unused("amplitude", remedy="start: mode")
+            self.refuse_unused("most_periods", remedy="start: mode")
+            self.refuse_unused("transient", remedy="start: mode")
         if not self.limit_cycle.shapes:
             self.refuse_unused("nodes", remedy="shapes")
         return self

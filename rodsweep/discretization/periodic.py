@@ -11,6 +11,8 @@ from ..arrays import Array, Complex
 
 EXTREMUM_STEPS = 8
 """Newton steps from the largest sample to the maximum."""
+EXTREMUM_FOUND = 1e-9
+"""Last step in periods; what it leaves of the maximum is its square."""
 BISECTIONS = 50
 
 
@@ -22,11 +24,40 @@ def coefficients(samples: Array) -> Complex:
     return c
 
 
+def hermite_coefficients(values: Array, slopes: Array) -> Complex:
+    """c, shape (m + 1, ...), with Re sum_k c_k exp(2 pi i k t) through values and slopes at k/m, (m, ...).
+
+    slopes: by the time in periods. The slopes tell harmonic k from harmonic m - k, which look alike in the
+    values: twice as many harmonics are resolved as by values alone.
+    """
+    m = len(values)
+    k = np.arange(m).reshape(-1, *(1,) * (values.ndim - 1))
+    sums = np.fft.fft(values, axis=0) / m  # c_k + c_(k - m), of the series over k = -m ... m - 1
+    rates = np.fft.fft(slopes, axis=0) / (2j * np.pi * m)  # k c_k + (k - m) c_(k - m)
+    below = (k * sums - rates) / m
+    c: Complex = np.zeros((m + 1, *values.shape[1:]), complex)
+    c[:m] = sums - below
+    c[1:] += np.conj(below[::-1])
+    c[0] = sums[0]  # the harmonic m shows in the slopes only: it is a sine
+    return c
+
+
+def samples_of(c: Complex, count: int) -> Array:
+    """Re sum_k c_k exp(2 pi i k t) at `count` equidistant times, shape (count, ...), more than 2 len(c)."""
+    half = c * (count / 2)
+    half[0] *= 2
+    return np.fft.irfft(half, count, axis=0)
+
+
 def resampled(samples: Array, at: NDArray[np.floating]) -> Array:
     """The polynomial through samples, shape (N, ...), at the times `at` in periods, (m,): shape (m, ...)."""
-    c = coefficients(samples)
+    return sampled_at(coefficients(samples), at)
+
+
+def sampled_at(c: Complex, at: NDArray[np.floating]) -> Array:
+    """Re sum_k c_k exp(2 pi i k t) at the times `at` in periods, (m,): shape (m, ...)."""
     waves = np.exp(2j * np.pi * np.outer(at, np.arange(len(c))))
-    return (waves @ c.reshape(len(c), -1)).real.reshape(len(at), *samples.shape[1:])
+    return (waves @ c.reshape(len(c), -1)).real.reshape(len(at), *c.shape[1:])
 
 
 def derivative(samples: Array) -> Array:
@@ -38,16 +69,21 @@ def derivative(samples: Array) -> Array:
     return np.fft.irfft(k.reshape(-1, *(1,) * (samples.ndim - 1)) * np.fft.rfft(samples, axis=0), n, axis=0)
 
 
-def maximum(samples: Array) -> float:
-    """The maximum of the polynomial through samples of shape (N,)."""
-    n, c = len(samples), coefficients(samples)
-    k = 2j * np.pi * np.arange(len(c))
-    t = int(np.argmax(samples)) / n
+def maxima(c: Complex, samples: Array) -> Array:
+    """The maxima, (m,), of Re sum_k c_k exp(2 pi i k t), (count, m), near those of its samples, (n, m)."""
+    n = len(samples)
+    k = 2j * np.pi * np.arange(len(c))[:, None]
+    t = np.argmax(samples, axis=0) / n
     for _ in range(EXTREMUM_STEPS):
         e = c * np.exp(k * t)
-        first, second = (k * e).sum().real, (k * k * e).sum().real
-        t -= float(np.clip(first / second, -1 / n, 1 / n)) if second < 0 else 0.0
-    return float((c * np.exp(k * t)).sum().real)
+        slope, curvature = (k * e).sum(axis=0).real, (k * k * e).sum(axis=0).real
+        curved = curvature < 0
+        step = np.where(curved, np.clip(slope / np.where(curved, curvature, 1.0), -1 / n, 1 / n), 0.0)
+        t = t - step
+        if np.abs(step).max() < EXTREMUM_FOUND:
+            break
+    highest: Array = (c * np.exp(k * t)).sum(axis=0).real
+    return highest
 
 
 def rise_through_mean(samples: Array) -> float:

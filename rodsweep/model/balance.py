@@ -12,8 +12,9 @@ where <ad*_E Sigma, V> = -<Sigma, ad_E V>. Multiplied by V and by Sigma and inte
 law dU/dt = Sigma(1) V(1) - <Gamma V, V> with U = <Sigma, C Sigma>/2 and Sigma(1) V(1) = -F v1(1).
 
 Arrays have the shape (3, ...) in the plane and (6, ...) in space. A compliance may be 0, for nothing is
-divided by one. `rodsweep.discretization.body_frame` has the same balance compiled, on a mesh, in the plane;
-tests hold the one against the other, and nothing else of the package calls this module yet.
+divided by one. `rodsweep.discretization.mixed_form` is made of these functions;
+`rodsweep.discretization.stress_balance` has the same balance compiled, on a mesh, in the plane, and tests
+hold the one against the other.
 """
 
 from dataclasses import dataclass

@@ -36,8 +36,6 @@ class Parameter:
     remark: str = ""
     """What follows the meaning in the result file."""
     allowed: Range
-    nonlinear: Range = ANYTHING
-    """What the nonlinear rod asks for beyond `allowed`."""
     linear: bool = True
     """Whether the transverse linear problem contains it."""
     rigid: str = ""
@@ -72,7 +70,6 @@ def stiffness(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
         allowed=Range(
             lambda value: value > 0 and 1 / value < inf, f"a number above 0, or inf for an {rigid} rod"
         ),
-        nonlinear=Range(isfinite, "a finite number"),
         rigid=rigid,
     )
 
@@ -96,7 +93,6 @@ PARAMETERS = {
             unit="gamma2 L^2",
             meaning="rotational drag",
             allowed=Range(lambda value: 0 <= value < inf, "a finite number, 0 or above"),
-            nonlinear=Range(lambda value: value > 0, "a number above 0"),
         ),
         Parameter(
             name="gamma1",

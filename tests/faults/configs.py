@@ -52,7 +52,7 @@ def yaml_of(value: Any) -> str:
         return "{" + ", ".join(f"{key}: {yaml_of(item)}" for key, item in value.items()) + "}"
     if isinstance(value, list):
         return "[" + ", ".join(map(yaml_of, value)) + "]"
-    return json.dumps(value)
+    return json.dumps(value).replace("Infinity", ".inf")
 
 
 def text_of(tree: dict) -> bytes:

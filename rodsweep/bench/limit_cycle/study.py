@@ -1,4 +1,4 @@
-"""The limit-cycle benchmark: work and precision of following a settled cycle, and of reaching one."""
+"""The limit-cycle benchmark: a settled cycle followed, waited for, and solved."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -10,7 +10,9 @@ import numpy as np
 from ...solve.cycle.limit_cycle import warm_up
 from ...solve.motion.leading_mode import leading_mode
 from ..study import Measurement, Study, Timed, grouped, plural, race, table
+from .continuation import beside_auto
 from .integrators import CVODE, DEFAULT, Family, families
+from .sweeping import QUICK_RODS, RODS, sweep_introduction, sweep_points, sweep_table
 from .tracking import (
     AMPLITUDE,
     CYCLE_FORCE,
@@ -22,12 +24,15 @@ from .tracking import (
     Reference,
     cycle_at,
     on_cycle,
+    orbit_of,
     reference,
     returns_of,
     work_precision,
 )
 
 ROUNDS, QUICK_ROUNDS = 9, 1
+CONTINUATION_ROUNDS = 3
+"""Of AUTO-07p, whose runs take seconds."""
 DRAWN_ERRORS = {"error of the period": "period_error", "error of the largest tip y": "amplitude_error"}
 NEAR_HOPF = 27.43
 """A force 0.003 above the Hopf point."""
@@ -46,12 +51,15 @@ def limit_cycle_study(quick: bool) -> Study:
     if CVODE not in [family.name for family in every]:
         blocks.append(f"{CVODE} is skipped: scikit-sundae is not installed (extra `cvode`).")
     blocks.append(settling(at, every, rounds))
+    points = sweep_points(QUICK_RODS if quick else RODS, rounds)
+    beside, cycles = beside_auto(min(rounds, CONTINUATION_ROUNDS), quick)
+    blocks += [sweep_introduction(), sweep_table(points), *beside]
     drawn = [
         replace(m, case=case, error=m.extra.get(error, m.error))
         for case, error in DRAWN_ERRORS.items()
         for m in found
     ]
-    return Study("limit_cycle", "\n\n".join(blocks), drawn, "period", TARGET)
+    return Study("limit_cycle", "\n\n".join(blocks), drawn, "period", TARGET, points + cycles)
 
 
 def introduction(rounds: int) -> str:
@@ -202,7 +210,7 @@ def _waited(at: Reference, family: Family) -> Wait:
 def _near_hopf(tolerances: dict[Family, float]) -> list[Wait]:
     """Next to the Hopf point, where waiting is estimated from the largest multiplier."""
     cycle = cycle_at(NEAR_HOPF)
-    beam, z = on_cycle(cycle, NEAR_HOPF, cycle.elements, cycle.order)
+    beam, z = on_cycle(orbit_of(cycle))
     count = log(SETTLED_WITHIN) / log(cycle.multiplier)
     error = max(cycle.errors.period_error, cycle.errors.amplitude_error)
     waits = [Wait(NEAR_HOPF, SOLVE, nan, cycle.periods, error, partial(cycle_at, NEAR_HOPF))]

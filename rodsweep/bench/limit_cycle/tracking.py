@@ -1,9 +1,9 @@
 """Work and precision of following a settled cycle.
 
-Every integrator starts on the cycle of one rod. The reference is the cycle on the same mesh by Newton's
-method on its period map. Period and amplitude are measured alike for all: the steps next to a return of the
-tip and next to the largest y are made again in small steps, so that an error is that of the integration and
-not of an interpolant.
+Every integrator starts on the cycle of one rod. The reference is the cycle on the same mesh in space, and on
+one in time that leaves rounding only. Period and amplitude are measured alike for all: the steps next to a
+return of the tip and next to the largest y are made again in small steps, so that an error is that of the
+integration and not of an interpolant.
 """
 
 from collections.abc import Sequence
@@ -18,12 +18,14 @@ from numpy.typing import NDArray
 from scipy.interpolate import PPoly, make_interp_spline
 
 from ...arrays import Array
-from ...discretization.beam import Beam, mesh
-from ...model.rod import Rod
-from ...solve.cycle.limit_cycle import Cycle, CyclePoint, CycleRequest, solve_cycle, state_from_neighbour
-from ...solve.cycle.measures import measures_of
-from ...solve.cycle.shooting import PERIOD_MAP, angle_weights, shoot
-from ...solve.motion.integrator import RunLimit, Trajectory, integrator, relaxed
+from ...discretization.beam import Beam
+from ...discretization.mesh import mesh
+from ...solve.cycle.limit_cycle import Cycle, CyclePoint, CycleRequest, solve_cycle
+from ...solve.cycle.neighbour import Neighbour
+from ...solve.cycle.orbit import Orbit, newton
+from ...solve.cycle.transient import angle_weights
+from ...solve.motion.integrator import RunLimit, Trajectory, integrator
+from ...solve.motion.time_scheme import TimeScheme
 from ..study import Contender, Measurement, contest
 from .integrators import Family, Integration
 
@@ -32,8 +34,12 @@ FIG5_ROD = (1e4, 1e2, 1e-2, 1.0)
 CYCLE_FORCE = 50.0
 CYCLE_ORDER = 18
 """Of the one element; it leaves 1e-9 of period and amplitude at F = 50."""
-REFERENCE_STEPS = 1024
-"""Equal steps of the reference over its period; half as many change it by 2e-12."""
+REFERENCE_INTERVALS, REFERENCE_STAGES = 32, 6
+"""Of the reference in time, over half its period."""
+EXACT = 1e-13
+"""Relative, of the reference by Newton's method."""
+PERIOD_MAP = TimeScheme("arkimex", "5", tolerance=1e-8, newton=1e-6, equal_steps=True, prefix="bench_map_")
+"""With it events are located, in equal steps: their number rules the error, and Newton's leaves none."""
 FOLLOWED_PERIODS = 6.3
 """Length of a run; the first return is left out, for a start is not a settled cycle."""
 TARGET = 1e-6
@@ -60,28 +66,35 @@ class Reference:
     tip_y_max: float
 
 
+def asked(accuracy: float) -> CycleRequest:
+    """A cycle with its numbers at an accuracy, and nothing else to store."""
+    return CycleRequest(accuracy, AMPLITUDE, 1, 0, 0, 0, MOST_RETURNS)
+
+
 def cycle_at(force: float) -> Cycle:
     """The rod's cycle as the task limit_cycle finds it."""
-    request = CycleRequest(SETTLED_WITHIN, AMPLITUDE, 1, 0, 0, 0, MOST_RETURNS)
-    return solve_cycle(CyclePoint(force, *FIG5_ROD), request)
+    return solve_cycle(CyclePoint(force, *FIG5_ROD), asked(SETTLED_WITHIN), along="F")
 
 
-def on_cycle(cycle: Cycle, force: float, elements: int, order: int) -> tuple[Beam, Array]:
-    """The rod on a mesh, and its state on the cycle, shape (unknowns,)."""
-    if cycle.state is None:
-        raise ArithmeticError(f"no cycle: {cycle.message}")
-    beam = Beam(Rod(force, *FIG5_ROD[:3]), FIG5_ROD[3], mesh(elements, order))
-    return beam, relaxed(beam, state_from_neighbour(beam, cycle.state), cycle.measures.period)
+def orbit_of(cycle: Cycle) -> Orbit:
+    """The orbit on the mesh that was chosen for it; raises ArithmeticError where there is none."""
+    if cycle.neighbour is None:
+        raise ArithmeticError(f"no cycle: {cycle.status.name} {cycle.message}")
+    return Neighbour.unpack(cycle.neighbour).fine.orbit
+
+
+def on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
+    """The rod as integrators see it, and its state z on the cycle where y is largest, shape (unknowns,)."""
+    form = orbit.form
+    beam = Beam(form.rod, form.gamma1, form.mesh)
+    return beam, (orbit.start.reshape(3, -1) * beam.roots[:, None]).ravel()
 
 
 def reference() -> Reference:
-    """The cycle on the benchmark's mesh, by Newton's method on its period map."""
-    cycle = cycle_at(CYCLE_FORCE)
-    beam, z = on_cycle(cycle, CYCLE_FORCE, 1, CYCLE_ORDER)
-    orbit = shoot(beam, z, cycle.measures.period, REFERENCE_STEPS)
-    if orbit is None:
-        raise ArithmeticError(f"no cycle on one element of order {CYCLE_ORDER}")
-    return Reference(beam, orbit.state, orbit.period, measures_of(beam, orbit.run).tip_y_max)
+    """The cycle on the benchmark's mesh, by collocation in time."""
+    near = orbit_of(cycle_at(CYCLE_FORCE)).on(mesh(1, CYCLE_ORDER), REFERENCE_INTERVALS, REFERENCE_STAGES)
+    orbit = newton(near, EXACT).orbit
+    return Reference(*on_cycle(orbit), orbit.period, float(abs(orbit.form.tip(orbit.start)[1])))
 
 
 def follow(integrate: Integration, tolerance: float, at: Reference) -> Trajectory:
@@ -144,11 +157,15 @@ def returns_of(beam: Beam, run: Trajectory) -> Returns:
         times.append(run.times[k] + when)
         states.append(_again(beam, run.states[k], when).states[-1])
     for first, last in pairwise(rising):
-        k = first + int(np.argmax(y[first : last + 1]))
-        again = _again(beam, run.states[k - 1], run.times[k + 1] - run.times[k - 1])
-        height = _spline(again.times, beam.tip(again.states)[1])
-        heights.append(height(height.derivative().roots(extrapolate=False)).max())
+        heights.append(height_near(beam, run, first + int(np.argmax(y[first : last + 1]))))
     return Returns(np.array(times), np.array(states), np.array(heights))
+
+
+def height_near(beam: Beam, run: Trajectory, k: int) -> float:
+    """The largest y of the tip in L between the steps next to the k-th."""
+    again = _again(beam, run.states[k - 1], run.times[k + 1] - run.times[k - 1])
+    height = _spline(again.times, beam.tip(again.states)[1])
+    return float(height(height.derivative().roots(extrapolate=False)).max())
 
 
 def _again(beam: Beam, z: Array, duration: float) -> Trajectory:

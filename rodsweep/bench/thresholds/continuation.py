@@ -5,9 +5,6 @@ Both follow u = 0 of the ordinary differential equation du/dt = M(F) u.
 
 import contextlib
 import io
-import os
-import shutil
-import subprocess
 import tempfile
 from functools import partial
 from math import ceil, isnan, nan
@@ -17,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array
+from ..auto import AUTO, SKIPPED, auto_program, run_auto, table_lines
 from ..machine import installed
 from ..study import Contender
 from .cases import FirstThreshold, ThresholdCase
@@ -26,10 +24,8 @@ AUTO_SETTINGS = ((5.0, 1e-7), (1.0, 1e-4), (1.0, 1e-10))
 """(step in F, EPSS)."""
 PYCONT_STEPS = (0.25, 0.5)
 """From 0.5 upwards it is chance on some rods whether it finds the Hopf point; quick runs do without 0.5."""
-AUTO, PYCONT = "AUTO-07p", "PyCont-Lite"
+PYCONT = "PyCont-Lite"
 CONTINUATION = "continuation"
-AUTO_LIBRARY = Path(os.environ.get("AUTO_DIR", "/usr/lib/auto-07p")) / "lib"
-"""The compiled parts of AUTO-07p: AUTO_DIR is its own variable, the default is where Debian has it."""
 EQUATIONS = """
 subroutine func(ndim, u, icp, par, ijac, f, dfdu, dfdp)
   integer ndim, icp(*), ijac
@@ -69,8 +65,8 @@ ICP=[1], UZSTOP={{1: {top!r}}}, STOP=['HB1']
 NMX=9999, NPR=0, ITMX=20, ITNW=5, EPSL=1e-9, EPSU=1e-9, EPSS={tolerance!r}
 DS={step!r}, DSMIN=1e-3, DSMAX={step!r}, IADS=0
 """
-HEAD, HOPF_POINT = "0", "3"
-"""In AUTO's file fort.7: the first word of a line of its head, and the third of the line of a Hopf point."""
+HOPF_POINT = "3"
+"""In AUTO's file fort.7: the third word of the line of a Hopf point."""
 DIFFERENCE_STEP = 1e-8
 """Of the code's differences, which are exact on a linear field, and in its search for the root."""
 CHECKED = 5
@@ -84,12 +80,12 @@ HEAD_START, BEYOND_HOPF = 0.1, 6.0
 def continuation_codes(directory: Path, quick: bool) -> tuple[list[Contender], list[str]]:
     """Those that are here, and a line for each that is not; programs are compiled in the directory."""
     found, skipped = [], []
-    if program := auto_program(directory):
+    if program := auto_program(directory, EQUATIONS):
         for step, tolerance in AUTO_SETTINGS:
             by_auto = partial(hopf_by_auto, program, step, tolerance)
             found.append(Contender(AUTO, f"step {step:g}, EPSS {tolerance:.0e}", CONTINUATION, by_auto))
     else:
-        skipped.append(f"{AUTO} is skipped: it needs the program (Debian: auto-07p) and gfortran.")
+        skipped.append(SKIPPED)
     if module := installed(PYCONT_MODULE):
         for step in PYCONT_STEPS[: 1 if quick else None]:
             by_pycont = partial(hopf_by_pycont, module, step)
@@ -116,17 +112,6 @@ def reduced(case: ThresholdCase) -> Array:
     return np.array(pieces) / B[:n, None]
 
 
-def auto_program(directory: Path) -> Path | None:
-    """AUTO-07p compiled with the equations; None where it or gfortran is missing."""
-    compiler, parts = shutil.which("gfortran"), sorted(map(str, AUTO_LIBRARY.glob("*.o")))
-    if compiler is None or not parts:
-        return None
-    (directory / "equations.f90").write_text(EQUATIONS)
-    words = [compiler, "-O2", "-fopenmp", "equations.f90", *parts, "-o", "rod"]
-    done = subprocess.run(words, cwd=directory, capture_output=True, check=False)
-    return directory / "rod" if done.returncode == 0 else None
-
-
 def hopf_by_auto(program: Path, step: float, tolerance: float, case: ThresholdCase) -> FirstThreshold:
     """AUTO-07p from F = 0 in equal steps up to the first Hopf point, located to its EPSS = tolerance."""
     pieces = reduced(case)
@@ -134,18 +119,10 @@ def hopf_by_auto(program: Path, step: float, tolerance: float, case: ThresholdCa
         directory = Path(place)
         (directory / "matrices").write_bytes(pieces.transpose(0, 2, 1).tobytes())
         constants = CONSTANTS.format(unknowns=pieces.shape[1], top=case.top, tolerance=tolerance, step=step)
-        (directory / "fort.2").write_text(constants)
-        environment = os.environ | {"OMP_NUM_THREADS": "1"}
-        done = subprocess.run(
-            [program], cwd=directory, capture_output=True, text=True, check=False, env=environment
-        )
-        table = directory / "fort.7"
-        points = [line.split() for line in table.read_text().splitlines()] if table.exists() else []
-    if done.returncode or not points:
-        raise RuntimeError(f"AUTO-07p ended with status {done.returncode}")
-    at = [float(line.split()[1]) for line in done.stdout.splitlines() if line.startswith("at")]
+        said, points = run_auto(program, directory, constants), table_lines(directory)
+    at = [float(line.split()[1]) for line in said.splitlines() if line.startswith("at")]
     solves = 1 + int(np.count_nonzero(np.diff(at)))
-    rounded = [float(words[4]) for words in points if words[0] != HEAD and words[2] == HOPF_POINT]
+    rounded = [float(words[4]) for words in points if words[2] == HOPF_POINT]
     # fort.7 has eleven digits of the force, the output all.
     force = min(at, key=lambda F: abs(F - rounded[0])) if rounded else nan
     return FirstThreshold(force, solves)

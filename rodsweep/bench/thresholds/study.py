@@ -12,9 +12,10 @@ from pathlib import Path
 from typing import Any
 
 from ...solve.changes.thresholds import ThresholdsRequest, solve_thresholds, warm_up
+from ..auto import AUTO
 from ..study import Contender, Measurement, Study, contest, grouped, middle, plural, table
 from .cases import CASES, HOPF, MESH_ACCURACY, ONSET, QUICK_CASES, FirstThreshold, ThresholdCase
-from .continuation import AUTO, BEYOND_HOPF, PYCONT, continuation_codes
+from .continuation import BEYOND_HOPF, PYCONT, continuation_codes
 from .spectra_by_force import BY_GRID, BY_STEPS, MARCH, on_grid
 
 TITLES = {ONSET: "onset", HOPF: "Hopf point"}

@@ -1,14 +1,23 @@
 """The task limit_cycle: the beating of the nonlinear rod at every point, or that it straightens."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from math import isfinite, nan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...config.limit_cycle import LimitCycleConfig
 from ...discretization.quadrature import lobatto_points
-from ...model.parameters import PARAMETERS
-from ...results.layouts.limit_cycle import CYCLE, ENERGY, PERIOD_TAU1, SHAPE, TIP
+from ...model.parameters import Range
+from ...results.layouts.limit_cycle import (
+    CYCLE,
+    ENERGY,
+    PERIOD_TAU1,
+    SHAPE,
+    STORED_MULTIPLIERS,
+    TIP,
+    TRANSIENT,
+)
 from ...results.layouts.variables import Variable
 from ...sweep.chains import Chains, State
 from ...sweep.estimate import CYCLE_SECONDS, Estimate
@@ -19,8 +28,10 @@ from .protocol import Part, Solver, Task
 if TYPE_CHECKING:
     from ...solve.cycle.limit_cycle import Cycle
 
-OF_THE_SWEEP = ("continue_from", "along", "direction", "time")
+OF_THE_SWEEP = ("along", "direction", "time")
 """Options that say how points follow each other and what the file adds; a cycle is asked for all others."""
+FINITE_STIFFNESS = Range(isfinite, "a finite number")
+POSITIVE_DRAG = Range(lambda value: value > 0, "a number above 0")
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,35 +41,40 @@ class LimitCycleTask(Task):
     config: LimitCycleConfig
 
     def __post_init__(self) -> None:
-        for name, column in self.points.by_name.items():
-            why = ", because the nonlinear rod stretches, shears and turns against drag"
-            refuse_outside(PARAMETERS[name].nonlinear, name, column, " in the task limit_cycle", why)
+        if self.config.limit_cycle.time == "tau1":
+            why = ", because tau1 = gamma3/k2 is the unit of time that limit_cycle.time asks for"
+            refuse_outside(FINITE_STIFFNESS, "k2", self.points.by_name["k2"], "", why)
+            refuse_outside(POSITIVE_DRAG, "gamma3", self.points.by_name["gamma3"], "", why)
 
     @property
     def chains(self) -> Chains | None:
         """The chains in which points start one from the other, where they do."""
         options = self.config.limit_cycle
-        if options.continue_from == "none":
+        if options.start != "neighbour":
             return None
-        axis = self.points.names.index(options.along)
+        axis = self.points.names.index(self.config.along)
         return Chains(self.points.shape, axis, options.direction == "up")
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """Times of the samples and shapes in periods, and the material coordinate of the shapes' nodes."""
+        """Times of samples, shapes and transients in their units; where along the rod shapes are given."""
         options = self.config.limit_cycle
         extents = {"sample": options.samples, "shape": options.shapes}
         times = {name: np.arange(count) / count for name, count in extents.items() if count}
+        if options.transient:
+            times["transient"] = np.linspace(0.0, 1.0, options.transient)
         return times | ({"u": lobatto_points(options.nodes)} if options.shapes else {})
 
     def headline(self) -> str:
         options, chains = self.config.limit_cycle, self.chains
         start = f"the leading mode with tip deflection {options.amplitude:g} L"
+        if options.start == "hopf":
+            start = "the Hopf point below its force"
         if chains is None:
             return f"{count_of(self.points)}, each started from {start}"
         return (
             f"{count_of(self.points)} in {chains.count} chains of {chains.length}, {options.direction} in "
-            f"{options.along}: each started from its neighbour's cycle, the first, and any after none, from "
-            f"{start}; at most {chains.count} ranks share the work"
+            f"{self.config.along}: each started from its neighbour's cycle, the first, and any after none, "
+            f"from {start}; at most {chains.count} ranks share the work"
         )
 
     def parts(self) -> list[Part]:
@@ -71,6 +87,7 @@ class LimitCycleTask(Task):
             ("energy budget", True, "means and fluctuations over a cycle"),
             self._stored("tip and energy over a cycle", "samples", TIP + ENERGY),
             self._stored("shapes over a cycle", "shapes", SHAPE),
+            self._stored("tip from the start to the cycle", "transient", TRANSIENT),
             ("period in tau1 too", options.time == "tau1", f"limit_cycle.time: {options.time}"),
             ("gravity, inertia, motion out of the plane", False, "not part of the overdamped problem"),
         ]
@@ -93,13 +110,14 @@ class LimitCycleTask(Task):
 
         options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
         request = CycleRequest(accuracy=self.config.accuracy, **options)
+        along = self.config.along if self.chains else None
 
         def solve(index: int, start: State = None) -> "Cycle":
-            return solve_cycle(CyclePoint(**self.points.values(index)), request, start)
+            return solve_cycle(CyclePoint(**self.points.values(index)), request, start, along)
 
         def solve_from(index: int, start: State) -> "tuple[Cycle, State]":
             cycle = solve(index, start)
-            return cycle, cycle.state if cycle.status == CycleStatus.cycle else None
+            return cycle, cycle.neighbour if cycle.status == CycleStatus.cycle else None
 
         chains = self.chains
         return Solver(
@@ -113,7 +131,11 @@ class LimitCycleTask(Task):
     def record(self, point: dict[str, float], cycle: "Cycle") -> dict[str, Any]:
         """A Cycle as the variables of the file, which are its fields and those of its measures and errors."""
         options = self.config.limit_cycle
-        fields = vars(cycle) | vars(cycle.measures) | vars(cycle.errors)
+        mu = (
+            np.full(STORED_MULTIPLIERS, complex(nan, nan)) if cycle.multipliers is None else cycle.multipliers
+        )
+        fields = vars(cycle) | vars(cycle.measures) | asdict(cycle.errors)
+        fields |= {"multiplier_real": mu.real, "multiplier_imag": mu.imag}
         values = {variable.name: fields[variable.name] for variable in CYCLE}
         values["status"] = int(cycle.status)
         if options.time == "tau1":  # t/tau1 = (t/tau2) k2/gamma3
@@ -122,6 +144,8 @@ class LimitCycleTask(Task):
             values |= _along(TIP, cycle.tip) | _along(ENERGY, cycle.energy)
         if options.shapes:
             values |= _along(SHAPE, cycle.shape)
+        if options.transient:
+            values |= _along(TRANSIENT, cycle.transient)
         return values
 
 

@@ -1,12 +1,23 @@
 """Which figure of limit cycles is drawn: what the user names, or else what the file's content suggests."""
 
+import numpy as np
+
 from ...errors import InputError
-from .cycle.amplitude import draw_amplitude
+from ...results.file.view import View
+from .cycle.amplitude import BRANCH_LOOKS, abscissa, draw_amplitude
 from .cycle.animation import FILMS, write_animation
 from .cycle.energy import draw_energy
+from .cycle.maps import draw_maps
+from .cycle.point_map import point_map, varied_parameters
 from .cycle.portrait import draw_portrait
-from .cycle.selection import MOST_CYCLES, SHAPES, outcomes
+from .cycle.selection import MOST_CYCLES, SHAPES, TRACE, outcomes
+from .cycle.transient import draw_transients
 from .request import FigureRequest
+
+ALL_POINTS = {"amplitude": "amplitudes", "maps": "maps"}
+"""Figures that show every point of a file."""
+OF_POINTS = {"cycle": draw_portrait, "energy": draw_energy, "transient": draw_transients}
+"""Figures that show a few points, those that are chosen or the first."""
 
 
 def draw_limit_cycle(request: FigureRequest) -> str:
@@ -18,25 +29,51 @@ def draw_limit_cycle(request: FigureRequest) -> str:
     request.check_output()
     if name == "amplitude":
         return request.write(*draw_amplitude(request.views))
-    return request.write(*{"cycle": draw_portrait, "energy": draw_energy}[name](view, points))
+    if name == "maps":
+        return request.write(*draw_maps(view))
+    return request.write(*OF_POINTS[name](view, points))
 
 
 def figure_name(request: FigureRequest) -> str:
-    """What --what names; else an animation for a film's suffix, shapes if of few points, or amplitudes."""
+    """What --what names, or what the files suggest; InputError where the choices do not fit."""
     first, *others = request.views
     for view in others:
         if view.task != first.task:
             request.refuse_choices(view)
-    name, points = request.what, request.points
-    if name is None and request.output.suffix in FILMS:
-        name = "animation"
-    if name is None:
-        varies = len(set(map(float, first.point_columns["F"]))) > 1
-        few = len(points) > 0 or (outcomes(first) == "cycle").sum() <= MOST_CYCLES
-        shapes = few and not others and SHAPES[0] in first.variables
-        name = "amplitude" if others or (varies and not points and not shapes) else "cycle"
+    name = request.what or _suggested(request)
     if others and name != "amplitude":
         raise InputError(f"--what {name} draws one file; only amplitudes of several files make one figure")
-    if points and name == "amplitude":
-        raise InputError("--point is given but amplitudes are drawn of all points; remove it")
+    if request.points and name in ALL_POINTS:
+        raise InputError(f"--point is given but {ALL_POINTS[name]} are drawn of all points; remove it")
     return name
+
+
+def _suggested(request: FigureRequest) -> str:
+    """A film for its suffix; shapes or transients of few points; maps of many lines; else amplitudes."""
+    first, *others = request.views
+    if request.output.suffix in FILMS:
+        return "animation"
+    if others:
+        return "amplitude"
+    beats, chosen = outcomes(first) == "cycle", [number - 1 for number in request.points]
+    few_cycles = len(chosen) > 0 or beats.sum() <= MOST_CYCLES
+    few_points = len(chosen) > 0 or beats.size <= MOST_CYCLES
+    shaped = SHAPES[0] in first.variables
+    drawable = shaped and beats.any() and beats[[n for n in chosen if 0 <= n < beats.size]].all()
+    if few_points and TRACE[0] in first.variables and not drawable:
+        return "transient"
+    if chosen or (few_cycles and shaped):
+        return "cycle"
+    if _has_many_lines(first):
+        return "maps"
+    return "amplitude" if "F" in varied_parameters(first) else "cycle"
+
+
+def _has_many_lines(view: View) -> bool:
+    """Whether the points form a map of more lines than the figure of amplitudes has room for."""
+    try:
+        points = point_map(view)
+    except InputError:
+        return False
+    across = next(name for name in points.names if name != abscissa(view))
+    return len(np.unique(view.point_columns[across])) > len(BRANCH_LOOKS)

@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
@@ -30,7 +31,13 @@ TITLE_CHARACTERS = 70
 """Characters of a title in one line of a figure."""
 FEW_DECADES = 50
 """Ratio of the ends of a logarithmic axis below which 1, 2 and 5 of each decade are labelled."""
-STYLE = {"font.size": 10, "axes.grid": False, "axes.spines.top": False, "axes.spines.right": False}
+STYLE = {
+    "font.size": 10,
+    "axes.grid": False,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "hatch.linewidth": 0.6,
+}
 
 
 def plain(text: object) -> str:
@@ -100,8 +107,12 @@ def scale(axes: Axes, which: Literal["x", "y"], values: np.ndarray) -> None:
     if not is_logarithmic(values):
         return
     axes.set(**{f"{which}scale": "log"})
-    if values[-1] < FEW_DECADES * values[0]:
-        axis = axes.xaxis if which == "x" else axes.yaxis
+    label_few_decades(axes.xaxis if which == "x" else axes.yaxis, values[0], values[-1])
+
+
+def label_few_decades(axis: Axis, low: float, high: float) -> None:
+    """Labels 1, 2 and 5 of each decade of a logarithmic axis that spans few."""
+    if high < FEW_DECADES * low:
         axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_formatter(NullFormatter())

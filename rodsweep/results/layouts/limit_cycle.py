@@ -6,6 +6,8 @@ from ...model.parameters import NONLINEAR_PARAMETERS
 from .variables import MESH, SECONDS, STATUS, Layout, Variable, real, whole
 
 POWER = "k3/(L tau2)"
+STORED_MULTIPLIERS = 6
+"""Floquet multipliers, without the trivial one, whose modulus is above 1e-6; NaN where there are fewer."""
 CYCLE = (
     real("period", "tau2", "period of the limit cycle"),
     real("frequency", "1/tau2", "angular frequency of the limit cycle, 2 pi/period"),
@@ -24,7 +26,15 @@ CYCLE = (
     real("dissipation_rms", POWER, "power lost to the fluid, root mean square of its fluctuation"),
     real("energy_imbalance", "1", "relative difference of energy injected and dissipated over a period"),
     real("multiplier", "1", "modulus of the largest Floquet multiplier but the one that is 1"),
-    real("closure", "1", "relative distance of the state to itself one period later"),
+    real("multiplier_error", "1", "estimate of the absolute error of multiplier"),
+    real("trivial_multiplier_error", "1", "distance from 1 of the Floquet multiplier that is 1"),
+    real(
+        "multiplier_real",
+        "1",
+        "real part of a Floquet multiplier, by descending modulus",
+        "multiplier_number",
+    ),
+    real("multiplier_imag", "1", "imaginary part of a Floquet multiplier", "multiplier_number"),
     real("least_stretch", "1", "smallest stretch h1 along the rod over a period"),
     whole("periods", "returns to the section that were waited for"),
     *MESH,
@@ -42,13 +52,20 @@ ENERGY = (
 SHAPE = tuple(
     real(f"shape_{name}", units, f"{name} along the rod", "shape", "u") for name, units in PLACE.items()
 )
+TRANSIENT = (
+    real("transient_time", "tau2", "time from the start, to where the motion was left", "transient"),
+    *(
+        real(f"transient_{name}", units, f"{name} of the tip on its way from the start", "transient")
+        for name, units in PLACE.items()
+    ),
+)
 
 
 def layout(config: dict[str, Any]) -> Layout:
     """The layout that a resolved config asks for; traces and shapes only where asked for."""
     options = config["limit_cycle"]
     variables: tuple[Variable, ...] = CYCLE
-    extents = {"harmonic": options["harmonics"]}
+    extents = {"harmonic": options["harmonics"], "multiplier_number": STORED_MULTIPLIERS}
     if options["time"] == "tau1":
         variables += (PERIOD_TAU1,)
     if options["samples"]:
@@ -57,4 +74,7 @@ def layout(config: dict[str, Any]) -> Layout:
     if options["shapes"]:
         variables += SHAPE
         extents |= {"shape": options["shapes"], "u": options["nodes"]}
+    if options["transient"]:
+        variables += TRANSIENT
+        extents |= {"transient": options["transient"]}
     return Layout(variables, extents, NONLINEAR_PARAMETERS)

@@ -24,8 +24,10 @@ DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
     "curve_point": ("1", "points of all curves, each curve's one after another"),
     "fold": ("1", "points where a curve turns back"),
     "harmonic": ("1", "multiple of the cycle's frequency"),
+    "multiplier_number": ("1", "Floquet multipliers by descending modulus, without the trivial one"),
     "sample": ("1", "time in periods, from where y of the tip rises through its mean"),
     "shape": ("1", "time in periods, from where y of the tip rises through its mean"),
+    "transient": ("1", "time from the start, in units of the last one that is stored of the motion"),
 }
 """Units and long names of all dimensions."""
 

@@ -1,10 +1,10 @@
 """The limit cycle of one rod, from a start to its numbers (paper, Sec. VII).
 
-The rod starts from its leading eigenmode, or from a neighbour's cycle. Its motion is followed until it comes
-near a cycle (`transient`), for which Newton's method solves on ever finer meshes and steps (`refinement`,
-`shooting`), and which is then measured (`measures`). It is called a cycle only if it closes and is proved
-stable by its multipliers (`floquet`); that two peaks are close proves nothing near the Hopf point, where
-motions decay slowly.
+The rod starts from its leading eigenmode, or from a neighbour's cycle. From the mode its motion is followed
+until it comes near a cycle (`transient`); a neighbour predicts the cycle (`neighbour`). Newton's method then
+solves for the periodic orbit (`orbit`, `condensation`) on meshes of its own choice (`refinement`), and it is
+measured (`measures`). It is called a cycle only if it is proved stable by its multipliers; that two peaks are
+close proves nothing near the Hopf point, where motions decay slowly.
 """
 
 from dataclasses import dataclass, replace
@@ -12,21 +12,26 @@ from math import nan
 
 import numpy as np
 
-from ...arrays import Array
-from ...discretization.beam import Beam, mesh
-from ...discretization.quadrature import lobatto_points
+from ...arrays import Array, Complex
+from ...discretization.beam import Beam
+from ...discretization.mesh import mesh
 from ...discretization.resolution import expected_wave_number, resolution_for
+from ...discretization.stress_form import StressForm
 from ...errors import EnvironmentLacks
 from ...model.dispersion import most_amplified_wave
 from ...model.rod import Rod
 from ..backend.petsc import options
+from ..hopf.normal_form import accurate_normal_form
 from ..motion.integrator import forget_integrators
 from ..motion.time_scheme import CYCLE_PREFIX
-from ..point import solved
-from .measures import Measures, shapes, traces
-from .refinement import UNKNOWN_ERRORS, CycleErrors, RefinedOrbit
+from ..point import Unsolvable, solved
+from ..spectrum.search import SpectrumRequest, solve_spectrum
+from .hopf_start import hopf_point_below, orbit_from_hopf
+from .measures import Measures
+from .neighbour import Neighbour, followed_cycle
+from .refinement import UNKNOWN_ERRORS, CycleErrors, RefinedCycle, refined_cycle
 from .status import CycleStatus
-from .transient import Transient
+from .transient import Transient, TransientOutcome
 
 __all__ = ["Cycle", "CyclePoint", "CycleRequest", "CycleStatus", "solve_cycle", "warm_up"]
 
@@ -38,13 +43,21 @@ FOLDS = 2.5
 KNOWN_PERIOD, KNOWN_WITHIN = 0.04204870, 1e-3
 """Period in tau2 of the rod (40, 1e4, 1e2, 1e-2, 1), which a displacement-form code confirms, and how far
 off it may come out at the accuracy that is asked of it here."""
-STATE_NODES = 65
-"""Lobatto nodes on which a state is handed to a neighbour."""
+MOTION_ACCURACY = 1e-5
+"""Of the mesh on which the motion is followed: it decides the basin, Newton's method supplies the digits."""
+STIFFEST, LEAST_DRAG = 1e8, 1e-6
+"""Largest stiffness and least gamma3 in a motion: what is beyond moves like these, to 1e-6 at least."""
+STORED_MULTIPLIERS, LEAST_MULTIPLIER = 6, 1e-6
+"""Floquet multipliers that are stored, and the least modulus of one."""
+FADING = 0.02
+"""Cubic part of the growth rate, relative, below which a small motion decays as the linear one does."""
+SPECTRUM = SpectrumRequest(1, 1e-9, True)
+"""What is asked of the straight rod."""
 
 
 @dataclass(frozen=True, slots=True)
 class CyclePoint:
-    """One rod: k1, k2 finite, gamma3 > 0. Its F need not be below k1: what crushes the rod is an outcome."""
+    """One rod, in any limit. Its F need not be below k1: what crushes the rod is an outcome."""
 
     F: float
     k1: float
@@ -57,9 +70,12 @@ class CyclePoint:
 class CycleRequest:
     """What is asked of every rod.
 
-    accuracy: relative, of period and extrema. amplitude: the tip's y of the start, in L. harmonics: how many.
-    samples: of the tip and of the energy over a period; shapes, nodes: shapes over a period and Lobatto
-    nodes of each; 0 for none. most_periods: returns of the tip to wait for.
+    accuracy: relative, of period and extrema. amplitude: the tip's y of the start, in L. start: "mode" for
+    the leading mode, "neighbour" for it where there is no neighbour, "hopf" for the Hopf point. harmonics:
+    how many. samples: of the tip and of the energy over a period; shapes, nodes: shapes over a period and
+    Lobatto nodes of each; 0 for none. most_periods: returns of the tip to wait for. transient: times of the
+    tip's path from the start; 0 for none. A path that is wanted has no jumps, and is followed where its end
+    is known without it.
     """
 
     accuracy: float
@@ -69,6 +85,8 @@ class CycleRequest:
     shapes: int
     nodes: int
     most_periods: int
+    start: str = "mode"
+    transient: int = 0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,13 +94,15 @@ class Cycle:
     """What became of one rod, and the numbers of its cycle: NaN or None where there is none.
 
     linear_growth_rate and linear_frequency of the leading mode about the straight rod, 1/tau2; periods:
-    returns waited for. multiplier: the largest nontrivial Floquet multiplier's modulus; closure:
-    |z(T) - z(0)|/|z|.
+    returns waited for. multiplier: the largest nontrivial Floquet multiplier's modulus; multipliers: the
+    largest ones, complex, (STORED_MULTIPLIERS,); trivial_multiplier_error: distance of the trivial one from
+    1.
 
     tip: x, y, theta at equidistant times, (3, samples); energy: U in k3/L, injection, dissipation, (3,
     samples); shape: x, y, theta, (3, shapes, nodes). Time starts where the tip's y rises through its mean.
-    state: the stresses (n + F, s, m) in k3/L^2 and k3/L on Lobatto nodes, (3, STATE_NODES), from which a
-    neighbour can start, whatever its mesh and stiffness.
+    transient: time in tau2, x, y, theta of the tip from the start to where the motion was left, (4,
+    transient); None where no motion was followed.
+    neighbour: what the next point of a chain starts from.
     """
 
     status: CycleStatus
@@ -96,17 +116,22 @@ class Cycle:
     measures: Measures = Measures()
     errors: CycleErrors = UNKNOWN_ERRORS
     multiplier: float = nan
-    closure: float = nan
+    multipliers: Complex | None = None
+    trivial_multiplier_error: float = nan
     tip: Array | None = None
     energy: Array | None = None
     shape: Array | None = None
-    state: Array | None = None
+    transient: Array | None = None
+    neighbour: Array | None = None
 
 
-def solve_cycle(point: CyclePoint, request: CycleRequest, start: Array | None = None) -> Cycle:
-    """The cycle that the rod reaches from its leading mode, or from a neighbour's `state`, (3, STATE_NODES).
+def solve_cycle(
+    point: CyclePoint, request: CycleRequest, start: Array | None = None, along: str | None = None
+) -> Cycle:
+    """The cycle that the rod reaches from its leading mode, or that a neighbour's `Cycle.neighbour` leads to.
 
-    Failures are a status, never an exception.
+    start: flat, (any length,). along: the parameter by which neighbours differ. Failures are a status, never
+    an exception.
     """
     if not point.k1 > point.F:
         crushed = f"F = {point.F:g} crushes a rod of k1 = {point.k1:g} at rest"
@@ -116,7 +141,7 @@ def solve_cycle(point: CyclePoint, request: CycleRequest, start: Array | None = 
         forget_integrators()  # a PETSc object is not usable after an error inside it
         return Cycle(status=CycleStatus.failed, message=cause)
 
-    return solved(lambda: _solve(point, request, start), failed)
+    return solved(lambda: _solve(point, request, start, along), failed)
 
 
 def warm_up() -> None:
@@ -137,57 +162,119 @@ def warm_up() -> None:
         )
 
 
-def _solve(point: CyclePoint, request: CycleRequest, start: Array | None) -> Cycle:
+def _solve(point: CyclePoint, request: CycleRequest, start: Array | None, along: str | None) -> Cycle:
     rod = Rod(point.F, point.k1, point.k2, point.gamma3)
-    wave = max(expected_wave_number(EXPECTED_MODES, most_amplified_wave(rod)[1]), FOLDS * abs(rod.F) ** 0.5)
-    resolution = resolution_for(wave, request.accuracy)
-    beam = Beam(rod, point.gamma1, mesh(resolution.elements, resolution.order))
-    transient = Transient(beam, request.accuracy, request.most_periods)
-    mode = transient.mode
-    z = request.amplitude * mode.z.real if start is None else state_from_neighbour(beam, start)
-    end = transient.follow(z)
-    cycle = Cycle(
-        status=end.status,
-        message=end.message,
-        linear_growth_rate=mode.w.real,
-        linear_frequency=mode.w.imag,
+    spectrum = solve_spectrum(rod, SPECTRUM)
+    leading = complex(spectrum.eigenvalues[0]) if len(spectrum.eigenvalues) else complex(nan, nan)
+    straight = Cycle(
+        status=CycleStatus.straight, linear_growth_rate=leading.real, linear_frequency=abs(leading.imag)
+    )
+    beam, form = _beam_and_form(rod, point.gamma1)
+    if request.start == "hopf":
+        return _from_hopf(form, request, straight)
+    neighbour = Neighbour.unpack(start) if start is not None else None
+    if neighbour is not None and along is not None:
+        try:
+            found = followed_cycle(neighbour, form, along, request.accuracy)
+        except Unsolvable:
+            found = None
+        if found is not None and settled_by(found, request.accuracy) and found.stable:
+            cycle = _measured(replace(straight, status=CycleStatus.cycle), found, request)
+            return replace(cycle, neighbour=Neighbour.of(found, neighbour, along).pack())
+    faded = _fades(rod, point.gamma1, leading, request.amplitude) if neighbour is None else ""
+    if faded and not request.transient:
+        return replace(straight, message=faded)
+    traced = request.transient > 0
+    transient = Transient(beam, form, request.accuracy, request.most_periods, along, traced=traced)
+    end = _from_motion(transient, request, neighbour)
+    cycle = replace(
+        straight,
+        status=CycleStatus.straight if faded else end.status,
+        message=faded or end.message,
         periods=end.periods,
         elements=beam.mesh.elements,
         order=beam.mesh.order,
+        transient=transient.trace.at_equal_times(request.transient) if transient.trace else None,
     )
-    return cycle if end.found is None else _measured(cycle, end.found, request)
+    if faded or end.found is None:
+        return cycle
+    cycle = _measured(cycle, end.found, request)
+    return replace(cycle, neighbour=Neighbour.of(end.found, None, along).pack()) if along else cycle
 
 
-def _measured(cycle: Cycle, found: RefinedOrbit, request: CycleRequest) -> Cycle:
+def _from_hopf(form: StressForm, request: CycleRequest, straight: Cycle) -> Cycle:
+    """The cycle on the branch from the Hopf point; straight: the outcome where there is none below."""
+    if hopf_point_below(form.rod) is None and straight.linear_growth_rate < 0:
+        return replace(straight, message="no Hopf point at any smaller force")
+    try:
+        found = refined_cycle(orbit_from_hopf(form), request.accuracy)
+    except Unsolvable as why:
+        return replace(straight, status=CycleStatus.not_settled, message=str(why))
+    status, message = CycleStatus.cycle if found.stable else CycleStatus.unstable, ""
+    if not settled_by(found, request.accuracy):
+        status, message = CycleStatus.not_settled, "the cycle is less accurate than asked for"
+    elif found.stable is None:
+        status, message = CycleStatus.not_settled, f"its multiplier is 1 within {found.margin:.0e}"
+    return _measured(replace(straight, status=status, message=message), found, request)
+
+
+def _fades(rod: Rod, gamma1: float, w: complex, amplitude: float) -> str:
+    """Why a small motion in the leading mode decays; empty where only the motion itself can tell."""
+    if not (w.real < 0 < w.imag):
+        return ""
+    try:
+        normal = accurate_normal_form(rod, gamma1, w, FADING)
+    except Unsolvable:
+        return ""
+    share = abs(normal.c.real) * amplitude**2 / -w.real
+    return (
+        f"decays: what bends its growth rate is {share:.0e} of it at this amplitude" if share < FADING else ""
+    )
+
+
+def settled_by(found: RefinedCycle, accuracy: float) -> bool:
+    """Whether a cycle is as accurate as asked for, and its period minimal."""
+    return found.errors.largest <= accuracy and found.divisor == 1 and found.measures.least_stretch > 0
+
+
+def _beam_and_form(rod: Rod, gamma1: float) -> tuple[Beam, StressForm]:
+    """The rod as the time stepper sees it, and as the orbit does, on one mesh."""
+    wave = max(expected_wave_number(EXPECTED_MODES, most_amplified_wave(rod)[1]), FOLDS * abs(rod.F) ** 0.5)
+    resolution = resolution_for(wave, MOTION_ACCURACY)
+    grid = mesh(resolution.elements, resolution.order)
+    near = Rod(rod.F, min(rod.k1, STIFFEST), min(rod.k2, STIFFEST), max(rod.gamma3, LEAST_DRAG))
+    return Beam(near, gamma1, grid), StressForm(rod, gamma1, grid)
+
+
+def _from_motion(
+    transient: Transient, request: CycleRequest, neighbour: Neighbour | None
+) -> TransientOutcome:
+    """Where the rod goes from its leading mode, or from a state of its neighbour's cycle."""
+    beam = transient.beam
+    if neighbour is None:
+        return transient.follow(request.amplitude * transient.mode.z.real)
+    orbit = neighbour.fine.orbit
+    stresses = orbit.form.stresses(orbit.start) @ orbit.form.mesh.evaluation(beam.mesh.positions).T
+    return transient.follow((stresses[:, :-1] * beam.roots[:, None]).ravel())
+
+
+def _measured(cycle: Cycle, found: RefinedCycle, request: CycleRequest) -> Cycle:
     """The cycle with its numbers, and what is stored of it where it is asked for."""
-    orbit, amplitudes = found.orbit, found.measures.harmonic_amplitude[: request.harmonics]
-    beam, run = orbit.beam, orbit.run
+    orbit, path, mu = found.orbit, found.path, found.multipliers[:STORED_MULTIPLIERS]
+    amplitudes = found.measures.harmonic_amplitude[: request.harmonics]
     unresolved = request.harmonics - len(amplitudes)  # they are below the error of the cycle
-    tip, energy = traces(beam, run, request.samples) if request.samples else (None, None)
+    mu = np.where(np.abs(mu) >= LEAST_MULTIPLIER, mu, complex(nan, nan))
     wanted = request.shapes and request.nodes
     return replace(
         cycle,
-        elements=beam.mesh.elements,
-        order=beam.mesh.order,
+        elements=orbit.form.mesh.elements,
+        order=orbit.form.mesh.order,
         measures=replace(found.measures, harmonic_amplitude=np.pad(amplitudes, (0, unresolved))),
         errors=found.errors,
-        multiplier=orbit.monodromy.largest,
-        closure=orbit.closure,
-        tip=tip,
-        energy=energy,
-        shape=shapes(beam, run, request.shapes, request.nodes) if wanted else None,
-        state=state_for_neighbour(beam, orbit.state),
+        multiplier=found.largest_multiplier,
+        multipliers=np.pad(mu, (0, STORED_MULTIPLIERS - len(mu)), constant_values=complex(nan, nan)),
+        trivial_multiplier_error=found.trivial_error,
+        tip=path.tip(request.samples) if request.samples else None,
+        energy=path.energy(request.samples) if request.samples else None,
+        shape=path.shapes(request.shapes, request.nodes) if wanted else None,
     )
-
-
-def state_from_neighbour(beam: Beam, state: Array) -> Array:
-    """z, shape (unknowns,), of a `Cycle.state`; its tip has the straight rod's stress, whatever the force."""
-    there = mesh(1, state.shape[1] - 1).evaluation(beam.mesh.positions[:-1])
-    return (state @ there.T / beam.stiffness_roots[:, None]).ravel()
-
-
-def state_for_neighbour(beam: Beam, z: Array) -> Array:
-    """`Cycle.state` of z, shape (3, STATE_NODES)."""
-    stresses = np.zeros((3, beam.mesh.nodes + 1))
-    stresses[:, :-1] = z.reshape(3, -1) * beam.stiffness_roots[:, None]
-    return stresses @ beam.mesh.evaluation(lobatto_points(STATE_NODES)).T

@@ -24,3 +24,9 @@ class CycleStatus(PointStatus):
         "from a neighbour's cycle, or lower F or raise k1",
     )
     failed = 4, "the integration failed and nothing is stored; the message says why"
+    unstable = (
+        5,
+        "the rod can beat so, but leaves this cycle at the least disturbance: a Floquet multiplier lies "
+        "outside the circle",
+        True,
+    )

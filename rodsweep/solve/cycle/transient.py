@@ -5,7 +5,7 @@ tenth go to Newton's method. Slow motions about the straight rod are not waited 
 g = g0 - c a^2 at amplitude a, with the exact linear growth g0, so that a cycle lies at a*^2 = g0/c and the
 state is scaled to it; c is measured where it shows in g, which near a* may be lost in the integrator's error.
 What decays slowly is scaled down until it decays at the linear rate; what grows slowly, and the faster the
-larger it is (c < 0), is scaled up.
+larger it is (c < 0), is scaled up. A motion whose path is stored is never scaled, but waited for.
 """
 
 from collections import deque
@@ -16,17 +16,27 @@ import numpy as np
 
 from ...arrays import Array
 from ...discretization.beam import Beam
-from ..motion.integrator import Ending, RunLimit, Trajectory, integrator, relaxed
+from ...discretization.stress_form import StressForm
+from ..motion.integrator import RELAXATION_SHARE, Ending, RunLimit, Trajectory, integrator, relaxed
 from ..motion.leading_mode import leading_mode
-from .floquet import hermite
-from .refinement import CAREFUL, TRANSIENT, RefinedOrbit, refine
-from .shooting import angle_weights
+from ..motion.time_scheme import TimeScheme
+from ..point import Unsolvable
+from .from_motion import orbit_from_motion
+from .refinement import RefinedCycle, refined_cycle
 from .status import CycleStatus
+from .trace import TipTrace
+
+TRANSIENT = TimeScheme("arkimex", "4", tolerance=1e-5)
+"""The way to a cycle needs no accuracy: Newton's method supplies it."""
+CAREFUL = TimeScheme("arkimex", "5", tolerance=1e-9)
+"""Where the growth per period is small its sign has to be right, and a path that is stored has to be."""
 
 CHUNK = 5
 """Returns to the section per run; then the sequence is judged."""
 NEWTON_DISTANCE = 0.1
 """Relative distance of two returns from which Newton's method starts; a tenth after each failure."""
+SHOWN_DISTANCE = 1e-3
+"""The same for a path that is stored, in the first half of the wait: it is to show how the motion settles."""
 MOST_NEWTON_FAILURES = 5
 """Failures of Newton's method, after each of which twice as many chunks are waited for the next."""
 SLOW_GROWTH = 0.2
@@ -48,6 +58,8 @@ SAME_CROSSING = 0.03
 """Relative distance of two returns that are one and the same crossing of the orbit."""
 LONGEST_ORBIT = 8
 """Returns to the section that one period may take."""
+NEUTRAL = 3e-8
+"""Distance of the largest multiplier from 1 below which a closed orbit says nothing of its amplitude."""
 STEPS_PER_CHUNK = 20_000
 CROSSING_BISECTIONS = 50
 
@@ -59,7 +71,21 @@ class TransientOutcome:
     status: CycleStatus
     message: str
     periods: int
-    found: RefinedOrbit | None = None
+    found: RefinedCycle | None = None
+
+
+def angle_weights(beam: Beam) -> Array:
+    """The row c, shape (unknowns,), with c z = theta of the tip."""
+    row = np.zeros(beam.mesh.unknowns)
+    row[2 * beam.mesh.nodes :] = beam.mesh.quadrature[:-1]
+    return row
+
+
+def hermite(ends: Array, slopes: Array, at: Array | float) -> Array:
+    """The cubic with values and slopes (per unit of `at`) at 0 and 1, shapes (2, n), at `at`: (..., n)."""
+    x = np.asarray(at)[..., None]
+    value: Array = ends[0] + x * x * (3 - 2 * x) * (ends[1] - ends[0])
+    return value + x * (1 - x) * ((1 - x) * slopes[0] - x * slopes[1])
 
 
 def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
@@ -81,13 +107,30 @@ def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
 
 
 class Transient:
-    """The motion of one rod from a start; `follow` is called once."""
+    """The motion of one rod from a start; `follow` is called once.
 
-    def __init__(self, beam: Beam, accuracy: float, most_periods: int) -> None:
-        self.beam, self.accuracy, self.most_periods = beam, accuracy, most_periods
+    beam: the rod as the time stepper sees it, form: the rod whose cycle is wanted; they differ in a limit
+    only, which the time stepper comes near. along: the parameter along which the cycle's tangent is wanted.
+    traced: whether `trace` is to hold the tip's path; without it that is None.
+    """
+
+    def __init__(
+        self,
+        beam: Beam,
+        form: StressForm,
+        accuracy: float,
+        most_periods: int,
+        along: str | None = None,
+        *,
+        traced: bool = False,
+    ) -> None:
+        self.beam, self.form, self.along = beam, form, along
+        self.accuracy, self.most_periods = accuracy, most_periods
         self.mode, self.row = leading_mode(beam), angle_weights(beam)
         self.faint = abs(self.mode.w.real) * self.mode.period < FAINT
-        self.noise = CAREFUL_NOISE if self.faint else NOISE
+        careful = self.faint or traced
+        self.scheme, self.noise = (CAREFUL, CAREFUL_NOISE) if careful else (TRANSIENT, NOISE)
+        self.trace = TipTrace(beam) if traced else None
         self.bend = nan
         """c in g = g0 - c |z|^2, once it has shown."""
         self.step = self.mode.period / 1000
@@ -95,13 +138,17 @@ class Transient:
         self.past: deque[tuple[float, Array]] = deque(maxlen=LONGEST_ORBIT + 1)
         """Times and bending moments of the last returns of one motion."""
         self.clock = 0.0
+        self.last_run: Trajectory | None = None
+        self.unstable: RefinedCycle | None = None
         self.waited = self.jumps = self.attempts = self.next_attempt = 0
 
     def follow(self, z: Array) -> TransientOutcome:
         """Where the rod goes from z, shape (unknowns,)."""
-        z = relaxed(self.beam, z, self.mode.period)
+        z = self._relaxed(z)
         while self.waited < self.most_periods:
             run = self._chunk(z)
+            if self.trace:
+                self.trace.add(run, self.clock)
             if run.ending not in (Ending.reached, Ending.stopped):
                 return self._broken(run)
             z, (times, states) = run.states[-1], section_crossings(self.beam, run)
@@ -116,6 +163,8 @@ class Transient:
             if self._decays(times, states):
                 return self._ended(CycleStatus.straight, "decays at the rate of the leading mode")
             factor = self._jump(times, states)
+            if factor is not None and self.trace:
+                continue  # a path that is stored has no jumps
             if factor is not None:
                 scaled = factor * z
                 scaled[: self.beam.mesh.nodes] *= factor  # the stretch is quadratic in the deflection
@@ -127,7 +176,15 @@ class Transient:
                 return outcome
         return self._ended(CycleStatus.not_settled, f"{self.waited} returns of the tip, none periodic")
 
-    def _ended(self, status: CycleStatus, why: str, found: RefinedOrbit | None = None) -> TransientOutcome:
+    def _relaxed(self, z: Array) -> Array:
+        """What the start relaxes to, in a time that a stored path counts."""
+        after = relaxed(self.beam, z, self.mode.period)
+        if self.trace:
+            self.clock = RELAXATION_SHARE * self.mode.period
+            self.trace.begin(z, after, self.clock)
+        return after
+
+    def _ended(self, status: CycleStatus, why: str, found: RefinedCycle | None = None) -> TransientOutcome:
         return TransientOutcome(status, why, self.waited, found)
 
     def _broken(self, run: Trajectory) -> TransientOutcome:
@@ -149,11 +206,12 @@ class Transient:
             return count >= CHUNK
 
         period = self.mode.period
-        stepper = integrator(self.beam.mesh, CAREFUL if self.faint else TRANSIENT)
+        stepper = integrator(self.beam.mesh, self.scheme)
         limit = RunLimit(enough, STEPS_PER_CHUNK)
         run = stepper.run(self.beam, z, 3 * CHUNK * period, self.step, limit)
         if len(run.times) > 2:
             self.step = run.times[-1] - run.times[-2]
+        self.last_run = run
         return run
 
     def _growth(self, times: Array, states: Array) -> tuple[float, float]:
@@ -205,21 +263,42 @@ class Transient:
         turns, distance = self._repetition()
         known = self.bend > 0 and self._slow(times, growth, linear)
         decays = linear < 0 and growth < linear * (1 - SLOW_GROWTH) + (self.noise if known else 0)
-        if decays or distance >= NEWTON_DISTANCE / 10**self.attempts or self.waited < self.next_attempt:
+        if decays or distance >= self._near_enough() or self.waited < self.next_attempt:
             return None
         self.next_attempt = self.waited + CHUNK * 2**self.attempts
         self.attempts = min(self.attempts + 1, MOST_NEWTON_FAILURES)
-        period = self.past[-1][0] - self.past[-1 - turns][0]
-        found = refine(self.beam, z, period, turns, self.accuracy)
+        found = self._cycle_near(z, self.past[-1][0] - self.past[-1 - turns][0], turns)
         if found is None:
             return None
-        if max(found.errors.period_error, found.errors.amplitude_error) > self.accuracy:
+        if found.errors.largest > self.accuracy:
             why = "the cycle is less accurate than asked for"
         elif found.divisor != 1:
             why = f"that its period is {found.divisor} times shorter cannot be excluded"
         else:
             return self._ended(CycleStatus.cycle, "", found)
         return self._ended(CycleStatus.not_settled, why, found)
+
+    def _near_enough(self) -> float:
+        """The distance of two returns below which Newton's method is tried."""
+        distance = NEWTON_DISTANCE / 10**self.attempts
+        settles = self.trace and self.waited < self.most_periods // 2
+        return min(distance, SHOWN_DISTANCE) if settles else distance
+
+    def _cycle_near(self, z: Array, period: float, turns: int) -> RefinedCycle | None:
+        """The stable cycle of the motion that has come to z, by Newton's method; None where there is none."""
+        run = self.last_run
+        if run is None or run.times[-1] < period:
+            run = integrator(self.beam.mesh, self.scheme).run(self.beam, z, period, self.step)
+            if run.ending != Ending.reached:
+                return None
+        orbit = orbit_from_motion(self.beam, self.form, run, period, turns)
+        try:
+            found = refined_cycle(orbit, self.accuracy, self.along)
+        except Unsolvable:
+            return None
+        if found.stable is False:
+            self.unstable = found
+        return found if found.stable and 1 - found.largest_multiplier >= NEUTRAL else None
 
     def _repetition(self) -> tuple[int, float]:
         """(m, relative distance): after how many returns the state comes closest to itself.

@@ -9,53 +9,60 @@ the step implicit and only the rest explicit, the axial tension k1 Pi^2 still fo
 period.
 """
 
-from typing import Any
+from collections.abc import Mapping
 
 import numpy as np
 from numba import types
 
-from ...discretization.beam import Beam, Mesh
-from ...discretization.body_frame import BeamParameters, Element, jacobian, rate
-from ...model.compilation import compiled
+from ...discretization.beam import Beam
+from ...discretization.mesh import Mesh
+from ...discretization.stress_balance import rate, rate_jacobian
 from ..backend.c_functions import POINTER, c_function, call, floats, integers, petsc_function, record_at
 from ..backend.petsc import PETSc
-from .context import AT_BASE, AT_ITERATE, CONTENT, CONTEXT, TAKEN, UP_TO_DATE
-from .stage_newton import newton_test
+from .context import (
+    AT_BASE,
+    AT_ITERATE,
+    CONTENT,
+    CONTEXT,
+    HANDLES,
+    MOST_STAGES,
+    TAKEN,
+    UP_TO_DATE,
+    matrices_of,
+    parameters_of,
+    roots_of,
+)
+from .petsc_calls import read_array, unread_array, unwrite_array, write_array
+from .predictor import begin_step, points_of
+from .stage_newton import newton_test, solve_stage
+from .step_record import take_steps
 
-_read, _unread = petsc_function("VecGetArrayRead"), petsc_function("VecRestoreArrayRead")
-_write, _unwrite = petsc_function("VecGetArray"), petsc_function("VecRestoreArray")
+MIDDLE = 0.5
+"""Where in a step its matrix is made; methods of one stage have it at the start."""
 _dense, _undense = petsc_function("MatDenseGetArray"), petsc_function("MatDenseRestoreArray")
 _content = petsc_function("PetscObjectStateGet")
 
 
-@compiled
-def _parameters(c: Any) -> BeamParameters:
-    return BeamParameters(c.F, c.nu, c.root_k1, c.root_k2, c.gamma1, c.gamma3)
-
-
-@compiled
-def _element(c: Any) -> Element:
-    m = c.order + 1
-    D, D_transposed = floats(c.D, m * m).reshape(m, m), floats(c.D_transposed, m * m).reshape(m, m)
-    return Element(D, D_transposed, floats(c.weak_second, m * m).reshape(m, m), floats(c.weights, m))
-
-
 @c_function(POINTER, types.float64, POINTER, POINTER, POINTER, POINTER)
 def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
-    """R = Udot - f(U)."""
+    """R = Udot - f(U), or Udot alone."""
     c = record_at(context, CONTEXT)
     n, at = c.unknowns, context + TAKEN
     taken = integers(at, 3)
-    _read(U, at)
-    _read(Udot, at + 8)
-    _write(R, at + 16)
+    read_array(U, at)
+    read_array(Udot, at + 8)
+    write_array(R, at + 16)
     out, dot = floats(taken[2], n), floats(taken[1], n)
-    rate(floats(taken[0], n), out, _parameters(c), _element(c))
-    for i in range(n):
-        out[i] = dot[i] - out[i]
-    _unread(U, at)
-    _unread(Udot, at + 8)
-    _unwrite(R, at + 16)
+    c.time = t
+    if c.without_rate:
+        out[:] = dot
+    else:
+        rate(floats(taken[0], n), out, roots_of(c), parameters_of(c), matrices_of(c))
+        for i in range(n):
+            out[i] = dot[i] - out[i]
+    unread_array(U, at)
+    unread_array(Udot, at + 8)
+    unwrite_array(R, at + 16)
     return 0
 
 
@@ -68,9 +75,9 @@ def no_explicit_part(ts: int, t: float, U: int, F: int, context: int) -> int:
     """
     c = record_at(context, CONTEXT)
     at = context + TAKEN
-    _write(F, at)
+    write_array(F, at)
     floats(integers(at, 1)[0], c.unknowns)[:] = 0.0
-    _unwrite(F, at)
+    unwrite_array(F, at)
     return 0
 
 
@@ -83,23 +90,23 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     n, at = c.unknowns, context + TAKEN
     taken = integers(at, 1)
     _content(B, at)
-    untouched = c.matrix == B and c.content == taken[0]
+    untouched = c.made == B and c.content == taken[0]
     if c.matrix_due == UP_TO_DATE and c.shift == shift and untouched:
         return 0
     J = floats(c.jacobian, n * n).reshape(n, n)
     if c.matrix_due == AT_ITERATE:
-        _read(U, at)
-        jacobian(floats(taken[0], n), J, _parameters(c), _element(c))
-        _unread(U, at)
+        read_array(U, at)
+        rate_jacobian(floats(taken[0], n), J, roots_of(c), parameters_of(c), matrices_of(c))
+        unread_array(U, at)
     elif c.matrix_due == AT_BASE:
-        jacobian(floats(c.base, n), J, _parameters(c), _element(c))
+        rate_jacobian(floats(c.base, n), J, roots_of(c), parameters_of(c), matrices_of(c))
     _dense(B, at)
     M = floats(taken[0], n * n).reshape(n, n)
     M[:, :] = -J
     for i in range(n):
         M[i, i] += shift
     _undense(B, at)
-    c.matrix = B
+    c.made = B
     _content(B, context + CONTENT)
     c.matrix_due, c.shift = UP_TO_DATE, shift
     c.factorisations += 1
@@ -111,35 +118,72 @@ class Workspace:
 
     def __init__(self, mesh: Mesh) -> None:
         n = mesh.unknowns
-        self.base, self._jacobian = np.zeros(n), np.zeros((n, n))
+        self.base = np.zeros(n)
         self._mesh = mesh  # PETSc's callbacks read its arrays by address: they must live as long
-        self.context = np.zeros((), CONTEXT)
-        self.context["order"], self.context["unknowns"] = mesh.order, n
-        arrays = mesh.element._asdict() | {"jacobian": self._jacobian, "base": self.base}
-        for name, array in arrays.items():
-            self.context[name] = array.ctypes.data
-        self.context["matrix_due"] = AT_BASE
-
-    def prepare(self, beam: Beam, error: float, floor: float) -> None:
-        """Takes the rod, and the error of a stage (rms) at which Newton's method stops, or may stagnate."""
-        root = beam.mesh.unknowns**0.5
-        values = beam.parameters._asdict() | {
-            "matrix_due": AT_BASE,
-            "shift": 0.0,
-            "last_step": 0.0,
-            "contraction": 1.0,
-            "small_error": error * root,
-            "rounding": floor * root,
-            "growing": 0,
+        self._arrays = mesh.matrices._asdict() | {
+            "roots": np.ones(3),
+            "base": self.base,
+            "jacobian": np.zeros((n, n)),
+            "times": np.zeros(2 * MOST_STAGES),
+            "states": np.zeros((2 * MOST_STAGES, n)),
+            "points": points_of(""),
+            "constant": np.zeros(n),
+            "rates": np.zeros(n),
         }
+        self._vectors = [PETSc.Vec().createSeq(n, comm=PETSc.COMM_SELF) for _ in range(2)]
+        self.context = np.zeros((), CONTEXT)
+        self._set({"nodes": mesh.nodes + 1, "unknowns": n, "matrix_due": AT_BASE})
+        self._set({name: array.ctypes.data for name, array in self._arrays.items()})
+
+    def _set(self, values: Mapping[str, float]) -> None:
         for name, value in values.items():
             self.context[name] = value
 
+    def prepare(self, beam: Beam, error: float, floor: float) -> None:
+        """Takes the rod, and the error of a stage (rms) at which Newton's method stops, or may stagnate."""
+        self._arrays["roots"][:] = beam.roots
+        root = beam.mesh.unknowns**0.5
+        rest = np.zeros(beam.mesh.unknowns)
+        straight, pressed = beam.least_stretch(rest), beam.least_stretch(rest - 1)
+        fresh = {"matrix_due": AT_BASE, "shift": 0.0, "last_step": 0.0, "contraction": 1.0, "measured": 0}
+        self._set(
+            beam.parameters._asdict() | fresh | dict.fromkeys(("growing", "stages", "steps", "left"), 0)
+        )
+        self._set({"small_error": error * root, "rounding": floor * root})
+        self.context["crushed"] = straight / (pressed - straight)  # h1 is affine in z1
+        take_steps(self.context)
+
+    def predict_as(self, variant: str) -> None:
+        """Stages are extrapolated as is best for this variant of ARKIMEX, or not at all if it is unknown."""
+        self._arrays["points"][:] = points_of(variant)
+
     def attach(self, ts: "PETSc.TS", matrix: "PETSc.Mat") -> None:
-        """Gives the TS, whose type is set, its functions."""
-        context, B = self.context.ctypes.data, matrix.handle
+        """Gives the TS, whose options are set, its functions."""
+        context, B, snes = self.context.ctypes.data, matrix.handle, ts.getSNES()
         if ts.getType() == "arkimex":
             call("TSSetRHSFunction", ts.handle, 0, no_explicit_part.address, context)
+            self.predict_as(ts.getARKIMEXType())
+            self.context["middle"] = MIDDLE
         call("TSSetIFunction", ts.handle, 0, residual.address, context)
         call("TSSetIJacobian", ts.handle, B, B, residual_jacobian.address, context)
-        call("SNESSetConvergenceTest", ts.getSNES().handle, newton_test.address, context, 0)
+        call("TSSetApplicationContext", ts.handle, context)
+        call("TSSetPreStep", ts.handle, begin_step.address)
+        if snes.getType() == "shell":
+            self._solve_stages_of(ts, snes, matrix)
+        else:
+            call("SNESSetConvergenceTest", snes.handle, newton_test.address, context, 0)
+
+    def _solve_stages_of(self, ts: "PETSc.TS", snes: "PETSc.SNES", matrix: "PETSc.Mat") -> None:
+        ksp = snes.getKSP()
+        ksp.setOperators(matrix)
+        made = ts, matrix, ksp, *self._vectors
+        self._set({name: made.handle for name, made in zip(HANDLES, made, strict=True)})
+        self.context["most_iterations"] = snes.getTolerances()[3]
+        call("SNESShellSetContext", snes.handle, self.context.ctypes.data)
+        call("SNESShellSetSolve", snes.handle, solve_stage.address)
+
+    def destroy(self) -> None:
+        """Gives memory and PETSc objects back."""
+        take_steps(self.context)
+        for vector in self._vectors:
+            vector.destroy()

@@ -1,31 +1,61 @@
-"""The record that every callback of a TS receives: the rod, its mesh, and how Newton's method fares."""
+"""The record that every callback of a TS receives: the rod, its mesh, the motion so far, and how Newton's
+method fares.
+"""
 
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from ...discretization.body_frame import BeamParameters, Element
+from ...discretization.stress_balance import BeamParameters, NodeMatrices
+from ...model.compilation import compiled
+from ..backend.c_functions import floats
+
+MOST_STAGES, MOST_POINTS = 16, 8
+"""Stages of a step that are remembered, and points through which the next is extrapolated."""
 
 REAL, WHOLE = "<f8", "<i8"
+ARRAYS = ("roots", "jacobian", "base", "times", "states", "points", "constant", "rates")
+"""Addresses of what a `Workspace` holds: the square roots of the compliances; the last Jacobian; the state at
+which a step's matrix is made; times, (2 MOST_STAGES,), and states, (2 MOST_STAGES, unknowns), of the stages
+of this step and the last; the points through which each is extrapolated, (MOST_STAGES, MOST_POINTS); a
+stage's equation and its rates."""
+HANDLES = ("ts", "matrix", "ksp", "residual", "correction")
+"""PETSc's objects."""
 CONTEXT = np.dtype(
     [
         *((name, REAL) for name in BeamParameters._fields),
-        *((name, WHOLE) for name in Element._fields),  # addresses, as are the next two
-        ("jacobian", WHOLE),
-        ("base", WHOLE),  # the state at which a step's matrix is made
-        ("order", WHOLE),
+        *((name, WHOLE) for name in (*NodeMatrices._fields, *ARRAYS, *HANDLES)),
+        ("nodes", WHOLE),  # the tip included
         ("unknowns", WHOLE),
         ("matrix_due", WHOLE),  # UP_TO_DATE, AT_BASE or AT_ITERATE
         ("shift", REAL),  # with which the matrix was made
-        ("matrix", WHOLE),  # the one that was last made here
+        ("made", WHOLE),  # the matrix that was last made here
         ("content", WHOLE),  # PETSc's number of its content, which rises with every change, PETSc's included
         ("factorisations", WHOLE),  # how many, which tests ask
         ("contraction", REAL),  # rate at which the steps of Newton's method shrink
+        ("measured", WHOLE),  # whether it is that of the present matrix
         ("growing", WHOLE),  # how many of them in a row have grown
         ("last_step", REAL),  # the size of the last one: 2-norm, as are the two below
         ("small_error", REAL),  # error that is small enough
         ("rounding", REAL),  # the largest step that rounding leaves
+        ("most_iterations", WHOLE),
+        ("without_rate", WHOLE),  # whether the residual leaves f out
+        ("time", REAL),  # at which the residual was last asked for
+        ("current", WHOLE),  # 0 or 1: which half of `times` and `states` is that of this step
+        ("stages", WHOLE),  # how many of them are known
+        ("steps", WHOLE),  # how many are known before this one: 0, or 1 for one or more
+        ("length", REAL),  # of this step, in tau2
+        ("middle", REAL),  # where in it the matrix is made, in units of it
+        (
+            "rows",
+            WHOLE,
+        ),  # address of the steps so far, a row (time, state) each, which compiled code allocates
+        ("kept", WHOLE),  # how many
+        ("room", WHOLE),  # for how many there is memory
+        ("crushed", REAL),  # z1 at which h1 = 0
+        ("left", WHOLE),  # whether the rod has left the model
+        ("error", WHOLE),  # PETSc's, inside a stage
         ("taken", WHOLE, (3,)),  # where PETSc puts what it is asked for
     ]
 )
@@ -36,3 +66,31 @@ TAKEN, CONTENT = (PLACES[name][1] for name in ("taken", "content"))
 
 UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
 """Whether a new matrix is due, and where it is to be made."""
+
+
+@compiled
+def parameters_of(c: Any) -> BeamParameters:
+    return BeamParameters(c.F, c.nu, c.c1, c.c2, c.gamma1, c.gamma3)
+
+
+@compiled
+def matrices_of(c: Any) -> NodeMatrices:
+    m = c.nodes
+    D, D_transposed = floats(c.D, m * m).reshape(m, m), floats(c.D_transposed, m * m).reshape(m, m)
+    weak, second = floats(c.weak, m * m).reshape(m, m), floats(c.second, m * m).reshape(m, m)
+    return NodeMatrices(D, D_transposed, weak, second, floats(c.weights, m))
+
+
+@compiled
+def roots_of(c: Any) -> Any:
+    return floats(c.roots, 3)
+
+
+@compiled
+def times_of(c: Any) -> Any:
+    return floats(c.times, 2 * MOST_STAGES)
+
+
+@compiled
+def states_of(c: Any) -> Any:
+    return floats(c.states, 2 * MOST_STAGES * c.unknowns).reshape(2 * MOST_STAGES, c.unknowns)

@@ -1,8 +1,9 @@
 """Time evolution of one rod by PETSc TS: a run from one state, its steps and how it ended.
 
-The default is ARKIMEX of order 5 with everything implicit, chosen by measurement. What makes it fast:
-compiled callbacks; stages extrapolated from the last step; Newton's test tied to the step's tolerance; one
-Jacobian a step, that of the state expected half-way (at its start it costs a quarter more iterations).
+The default is ARKIMEX of order 5 with everything implicit, chosen by measurement. What makes it fast: stages
+predicted from those of this step and the last; Newton's method compiled, and its test tied to the step's
+tolerance; one Jacobian a step, that of the state expected half-way (at its start it costs a quarter more
+iterations).
 """
 
 from collections import OrderedDict
@@ -13,10 +14,12 @@ from enum import IntEnum
 import numpy as np
 
 from ...arrays import Array
-from ...discretization.beam import Beam, Mesh
+from ...discretization.beam import Beam
+from ...discretization.mesh import Mesh
+from ..backend.c_functions import call
 from ..backend.petsc import PETSc
 from .callbacks import Workspace
-from .context import AT_BASE
+from .step_record import end_step, take_steps
 from .time_scheme import TimeScheme
 
 STAGE_ROUND_OFF = 1e-9
@@ -27,6 +30,8 @@ MOST_TIME_STEPS = 100_000
 MOST_REJECTIONS, MOST_FAILED_STAGES = 30, 1_000_000
 """Rejections of one step in a row, and failures of Newton's method in a run."""
 RELAXATION = TimeScheme("beuler", "", tolerance=1e-3, prefix="cycle_relaxation_")
+RELAXATION_SHARE = 1e-3
+"""How long a state is relaxed, in periods."""
 MOST_KEPT = 8
 """Integrators kept for the next run on an equal mesh."""
 
@@ -73,12 +78,8 @@ class Integrator:
         self.matrix.setUp()
         self.matrix.assemble()
         self.ts = self._create()
-        self.middle = 0.5 if self.ts.getType() == "arkimex" else 0.0
-        self._times: list[float] = []
-        self._states: list[Array] = []
-        self._left = self.broken = False
+        self.broken = False
         self._limit = UNLIMITED
-        self._beam: Beam | None = None
 
     def _create(self) -> "PETSc.TS":
         database, prefix = PETSc.Options(), self.scheme.prefix
@@ -95,31 +96,19 @@ class Integrator:
             database.setValue(name, value)
         ts.setErrorIfStepFails(False)
         ts.setExactFinalTime(PETSc.TS.ExactFinalTime.MATCHSTEP)
-        ts.setPreStep(self._start)
-        ts.setPostStep(self._record)
         try:
             ts.setFromOptions()
+            ts.getSNES().getKSP().setFromOptions()  # which a SNES of type shell leaves out
         finally:
             for name in ours:  # what is left is the user's, and recorded as such
                 database.delValue(name)
         self.workspace.attach(ts, self.matrix)
         return ts
 
-    def _start(self, ts: "PETSc.TS") -> None:
-        """The matrix of the step is that of the state half-way, extrapolated from the last step."""
-        base, states, times = self.workspace.base, self._states, self._times
-        base[:] = states[-1]
-        if len(times) > 1 and self.middle:
-            ahead = self.middle * ts.getTimeStep() / (times[-1] - times[-2])
-            base += (states[-1] - states[-2]) * ahead
-        self.workspace.context["matrix_due"] = AT_BASE
-
-    def _record(self, ts: "PETSc.TS") -> None:
-        z = self.vector.array_r.copy()
-        self._times.append(ts.getTime())
-        self._states.append(z)
-        self._left = self._beam is not None and self._beam.least_stretch(z) <= 0
-        if self._left or (self._limit.reached is not None and self._limit.reached(z)):
+    def _judge(self, ts: "PETSc.TS") -> None:
+        """The post-step where a function given to the run may end it."""
+        end_step.ctypes(ts.handle)
+        if self._limit.reached is not None and self._limit.reached(self.vector.array_r.copy()):
             ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_USER)
 
     def run(
@@ -131,8 +120,7 @@ class Integrator:
         so that small motions are followed as well as large ones.
         """
         ts, scheme = self.ts, self.scheme
-        self._times, self._states, self._left = [0.0], [z.copy()], False
-        self._beam, self._limit = beam, limit
+        self._limit = limit
         size = float(np.abs(z).max()) or 1.0
         self.vector.array_w[:] = z
         ts.setTolerances(rtol=0.0, atol=scheme.tolerance * size)
@@ -144,31 +132,32 @@ class Integrator:
         ts.setTimeStep(step or FIRST_SHARE * duration)
         ts.restartStep()
         ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_ITERATING)
+        if limit.reached is None:
+            call("TSSetPostStep", ts.handle, end_step.address)
+        else:
+            ts.setPostStep(self._judge)
         message = ""
         try:
             ts.solve(self.vector)
         except (PETSc.Error, SystemError) as error:
             message = str(error.__cause__ or error).splitlines()[-1]
             self.broken = True  # a PETSc object is not usable after an error inside it
-        return Trajectory(
-            ending=self._ending(message),
-            times=np.array(self._times),
-            states=np.array(self._states),
-            message=message,
-        )
+        rows = np.concatenate([[np.append(0.0, z)], take_steps(self.workspace.context)])
+        times, states = np.ascontiguousarray(rows[:, 0]), np.ascontiguousarray(rows[:, 1:])
+        return Trajectory(self._ending(message, states[-1]), times, states, message)
 
-    def _ending(self, message: str) -> Ending:
+    def _ending(self, message: str, end: Array) -> Ending:
         reason, reasons = self.ts.getConvergedReason(), PETSc.TS.ConvergedReason
-        if message or reason < 0 or not np.isfinite(self._states[-1]).all():
+        if message or reason < 0 or not np.isfinite(end).all():
             return Ending.failed
-        if self._left:
+        if self.workspace.context["left"]:
             return Ending.left_the_model
         named = {reasons.CONVERGED_TIME: Ending.reached, reasons.CONVERGED_USER: Ending.stopped}
         return named.get(reason, Ending.too_many_steps)
 
     def destroy(self) -> None:
         """Gives the PETSc objects back: the TS refers to this object and this to the TS."""
-        for held in (self.ts, self.matrix, self.vector):
+        for held in (self.ts, self.workspace, self.matrix, self.vector):
             held.destroy()
 
 
@@ -201,5 +190,5 @@ def relaxed(beam: Beam, z: Array, period: float) -> Array:
     k1, k2 and 1/gamma3 make fast. The first, explicit stage of ARKIMEX does not damp them, at no step length;
     backward Euler does within ten steps.
     """
-    run = integrator(beam.mesh, RELAXATION).run(beam, z, period / 1000, period / 1e5)
+    run = integrator(beam.mesh, RELAXATION).run(beam, z, RELAXATION_SHARE * period, period / 1e5)
     return run.states[-1] if run.ending == Ending.reached else z

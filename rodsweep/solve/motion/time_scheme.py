@@ -1,9 +1,41 @@
 """A time scheme as data: which of PETSc's, how accurate, and the options that make it so."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 CYCLE_PREFIX = "cycle_"
 """Prefix of the PETSc options that override the scheme, as in -cycle_ts_type bdf."""
+
+POINTS: Mapping[str, Mapping[int, tuple[tuple[int, ...], tuple[int, ...]]]] = {
+    "3": {1: ((), (0, 1, 2)), 2: ((0, 1), (0, 2)), 3: ((1,), (0, 1, 2))},
+    "4": {
+        1: ((), (1, 3, 4)),
+        2: ((0, 1), (2, 3)),
+        3: ((1,), (0, 2, 4)),
+        4: ((0, 2, 3), (0, 2)),
+        5: ((1, 4), (4,)),
+    },
+    "5": {
+        1: ((), (2, 3, 4, 6)),
+        2: ((), (0, 3, 4, 6)),
+        3: ((0, 2), (0, 2, 3)),
+        4: ((0, 1, 2), ()),
+        5: ((2, 4), (2, 5, 6)),
+        6: ((3, 4, 5), (6,)),
+        7: ((0, 4, 6), (3,)),
+    },
+}
+"""For ARKIMEX's variants and each stage after the state itself, 0: the stages of this step and of the last
+through which it is predicted. Of all choices, up to six points, those nearest on two dozen motions, most of
+them of stiff rods."""
+
+
+NEWTON: Mapping[str, str] = {
+    "rosw": "ksponly",
+    **dict.fromkeys(("arkimex", "dirk", "bdf", "theta", "beuler", "cn"), "shell"),
+}
+"""PETSc's SNES for its TS types: `stage_newton`'s where the unknown of a stage is the state whose rates are
+taken, which is not so for all, as alpha."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,14 +61,15 @@ class TimeScheme:
         if family == self.family and self.variant:
             own[f"ts_{family}_{kind}"] = self.variant
         if family == "arkimex":
-            own |= {"ts_arkimex_fully_implicit": "true", "ts_arkimex_initial_guess_extrapolate": "true"}
+            linear = "false" if self.variant in POINTS else "true"  # PETSc's guess, where there is no other
+            own |= {"ts_arkimex_fully_implicit": "true", "ts_arkimex_initial_guess_extrapolate": linear}
         adapt = {"ts_adapt_type": "none"} if self.equal_steps else {"ts_adapt_dsp_filter": "PI42"}
         return {
             "ksp_type": "preonly",
             "pc_type": "lu",
             "ts_adapt_type": "dsp",  # rejects next to nothing, where `basic` rejects a tenth
             "ts_adapt_clip": "0.2,4.0",
-            "snes_type": "ksponly" if family == "rosw" else "newtonls",
+            "snes_type": NEWTON.get(family, "newtonls"),
             "snes_linesearch_type": "basic",
             "snes_max_it": "20" if self.equal_steps else "10",
             **own,

@@ -1,4 +1,4 @@
-"""Amplitudes of the tip against the force, as the paper's Fig. 6: the straight arm gives way to beating."""
+"""Amplitudes of the tip against the force, as the paper's Fig. 6: beyond F** the straight arm beats."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,20 +13,26 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import View
+from ...hopf_points import HopfPoint, lines_over
 from ..style import FIRST, LABELS, SECOND, THIRD, heading, legend_below, need, plain, scale
-from .selection import outcomes, told_apart
+from .hopf_marks import draw_laws, mark_hopf_points
+from .selection import CYCLE_WORDS, outcomes, told_apart
+from .square_root import SquareRootLaw, square_root_laws
 
 BRANCH_LOOKS = tuple(
     zip((FIRST, SECOND, THIRD, "#CC79A7", "#56B4E9", "#000000"), ("o", "s", "^", "D", "v", "P"), strict=True)
 )
 """Colour, of Okabe and Ito, and marker of each branch."""
+UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 3}
+"""Open markers, on those of the branch, for cycles that nothing stays on."""
 
 
 @dataclass(frozen=True, slots=True)
 class AmplitudeBranch:
     """Points in the order of the file that differ in one parameter only; amplitudes in L, NaN where unknown.
 
-    parameters: the other ones, by name; words: of the status; all arrays have the shape (points,).
+    parameters: the other ones, by name; words: of the status; all arrays have the shape (points,); hopf: the
+    Hopf points along the branch, none where it is not over F.
     """
 
     view: View
@@ -35,6 +41,12 @@ class AmplitudeBranch:
     amplitude_x: Array
     amplitude_y: Array
     words: NDArray[np.str_]
+    hopf: list[HopfPoint]
+
+    @property
+    def laws(self) -> list[SquareRootLaw]:
+        """The square-root laws that the largest y follows next to the Hopf points."""
+        return square_root_laws(self.x, self.amplitude_y, self.hopf)
 
     def broken_at_onset(self, values: Array) -> tuple[Array, Array]:
         """(x, values) with a gap between a straight arm and a beating one: a line would invent a slope."""
@@ -51,41 +63,65 @@ def draw_amplitude(views: Sequence[View]) -> tuple[Figure, str]:
     if len(branches) > len(BRANCH_LOOKS):
         raise InputError(
             f"{first.path} makes {len(branches)} lines over {name}, for which a figure has no room; "
-            f"run with at most {len(BRANCH_LOOKS)} combinations of the other parameters"
+            f"run with at most {len(BRANCH_LOOKS)} combinations of the other parameters; "
+            "two parameters alone, each combination once, are drawn as maps (--what maps)"
         )
     need(first, any(np.isfinite(branch.amplitude_y).any() for branch in branches), "amplitude")
     figure = Figure(figsize=(5.4, 6.0), layout="constrained")
-    top, bottom = figure.subplots(2, 1, sharex=True)
+    panels = figure.subplots(2, 1, sharex=True)
     shared, own = told_apart([branch.parameters for branch in branches])
-    handles, unknown = [], set[str]()
+    handles, lost = [], set[str]()
     for branch, text, (colour, marker) in zip(branches, own, BRANCH_LOOKS, strict=False):
         look: dict[str, Any] = {"color": colour, "marker": marker, "lw": 1.2, "ms": 3.5}
         if branch.view is not first:  # open, larger markers leave those of an earlier file to be seen
             look |= {"mfc": "none", "ms": 6.5, "ls": "--"}
         file = plain(branch.view.path.stem) if len(views) > 1 else ""
         handles.append(Line2D([], [], label=", ".join(filter(None, (file, text))), **look))
-        for axes, values in ((top, branch.amplitude_x), (bottom, branch.amplitude_y)):
-            axes.plot(*branch.broken_at_onset(values), **look)
-            unknown |= _mark_unknown(axes, branch, look["color"])
-    if unknown:
-        label = ", ".join(sorted(unknown)) + " (at the top)"
+        lost |= _draw_branch(panels, branch, look)
+    if any("unstable" in branch.words for branch in branches):
+        handles.append(Line2D([], [], color="0.3", marker="o", label="unstable cycle", **UNSTABLE_LOOK))
+    if lost:
+        label = ", ".join(sorted(lost)) + " (at the top)"
         handles.append(Line2D([], [], color="0.3", marker="x", ls="", ms=5, label=label))
-    for axes in (top, bottom):
-        height = axes.dataLim.y1 or 1.0
-        axes.set_ylim(-0.04 * height, 1.1 * height)
-        axes.axhline(0, color="0.8", lw=0.6, zorder=0)
-    top.set_ylabel(r"tip $(x_{\max} - x_{\min})/2$  [$L$]")
-    bottom.set(ylabel=r"tip $y_{\max}$  [$L$]", xlabel=LABELS[name])
-    scale(bottom, "x", np.unique(branches[0].x))
+    colours = (colour for colour, _ in BRANCH_LOOKS)
+    marks = [
+        (point, colour) for branch, colour in zip(branches, colours, strict=False) for point in branch.hopf
+    ]
+    handles += mark_hopf_points(panels, marks)
+    handles += draw_laws(panels[1], [law for branch in branches for law in branch.laws])
+    _label(panels, name)
+    scale(panels[1], "x", np.unique(branches[0].x))
     if legend := [handle for handle in handles if handle.get_label()]:
         legend_below(figure, legend, columns=min(2, len(legend)))
     figure.suptitle(heading(first, shared), fontsize=10)
     return figure, f"amplitudes of the tip against {name}"
 
 
+def _label(panels: Sequence[Axes], name: str) -> None:
+    """Axes and their labels: 0, of straight arms, is drawn, and a little below it shown."""
+    for axes in panels:
+        height = axes.dataLim.y1 or 1.0
+        axes.set_ylim(-0.04 * height, 1.1 * height)
+        axes.axhline(0, color="0.8", lw=0.6, zorder=0)
+    panels[0].set_ylabel(r"tip $(x_{\max} - x_{\min})/2$  [$L$]")
+    panels[1].set(ylabel=r"tip $y_{\max}$  [$L$]", xlabel=LABELS[name])
+
+
+def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, look: dict[str, Any]) -> set[str]:
+    """A branch in both panels, unstable cycles open; returns what became of points without an amplitude."""
+    unstable = branch.words == "unstable"
+    lost: set[str] = set()
+    for axes, values in zip(panels, (branch.amplitude_x, branch.amplitude_y), strict=True):
+        axes.plot(*branch.broken_at_onset(values), **look)
+        if unstable.any():
+            axes.plot(branch.x[unstable], values[unstable], **look | UNSTABLE_LOOK)
+        lost |= _mark_unknown(axes, branch, look["color"])
+    return lost
+
+
 def _mark_unknown(axes: Axes, branch: AmplitudeBranch, colour: str) -> set[str]:
     """Marks at the top where no amplitude is known; returns what became of those points."""
-    lost = ~np.isin(branch.words, ("cycle", "straight", "missing"))
+    lost = ~np.isin(branch.words, (*CYCLE_WORDS, "straight", "missing"))
     for x in branch.x[lost]:
         axes.plot(x, 1.0, "x", color=colour, ms=5, clip_on=False, transform=axes.get_xaxis_transform())
     return {str(word).replace("_", " ") for word in branch.words[lost]}
@@ -102,18 +138,16 @@ def abscissa(view: View) -> str:
 
 def branches_of(view: View, name: str) -> list[AmplitudeBranch]:
     """The file's points, one branch for each combination of the parameters other than `name`."""
-    columns = view.point_columns
-    x = columns.pop(name)
-    keys = list(zip(*(column.tolist() for column in columns.values()), strict=True))
     words, v = outcomes(view), view.variables
-    straight, cycle = words == "straight", words == "cycle"
+    straight, cycle = words == "straight", np.isin(words, CYCLE_WORDS)
     reach = (v["tip_x_max"] - v["tip_x_min"]).ravel() / 2
     along_x, along_y = (
         np.where(straight, 0.0, np.where(cycle, values, np.nan)) for values in (reach, v["tip_y_max"].ravel())
     )
     branches = []
-    for key in dict.fromkeys(keys):
-        at = np.array([k == key for k in keys]) & np.isfinite(x)
-        parameters = dict(zip(columns, key, strict=True))
-        branches.append(AmplitudeBranch(view, parameters, x[at], along_x[at], along_y[at], words[at]))
+    for line in lines_over(view, name):
+        at, hopf = line.at, line.hopf_points(view) if name == "F" else []
+        branches.append(
+            AmplitudeBranch(view, line.parameters, line.x, along_x[at], along_y[at], words[at], hopf)
+        )
     return branches

@@ -1,4 +1,8 @@
-"""The beating arm, as the paper's Fig. 5: shapes through the cycle with the force, and the tip in time."""
+"""The beating arm, as the paper's Fig. 5: shapes through the cycle with the force, and the tip in time.
+
+The tip is drawn from the start on where that is stored, so that the beating is seen to emerge, else over two
+periods.
+"""
 
 from collections.abc import Sequence
 from typing import Any
@@ -17,6 +21,7 @@ from ....discretization.periodic import resampled
 from ....results.file.view import View
 from ..style import FIRST, SECOND
 from .selection import SHAPES, StoredCycle, chosen_cycles
+from .transient import draw_emergence, label_time, label_tip
 
 MOST_SHAPES = 12
 """Shapes of one cycle that can still be told apart."""
@@ -35,6 +40,7 @@ def draw_portrait(view: View, points: Sequence[int]) -> tuple[Figure, str]:
     selection = chosen_cycles(view, points, SHAPES)
     cycles = selection.cycles
     figure, shapes, tips = _panels(len(cycles))
+    emerging = all(cycle.has_trace for cycle in cycles)
     end = TIP_PERIODS * max(c.period for c in cycles)
     drawn, step = drawn_shapes(len(cycles[0].values["shape_x"]))
     # Light to dark, in steps that the colour-blind see.
@@ -51,14 +57,17 @@ def draw_portrait(view: View, points: Sequence[int]) -> tuple[Figure, str]:
         if 0 < cycle.tau1 < np.inf:
             period += rf" = {cycle.period / cycle.tau1:.6g} $\tau_1$"
         axes.set_title(cycle.heading(period), fontsize=9)
-        _tip(upper, lower, cycle, end)
+        if emerging:
+            draw_emergence(upper, lower, cycle)
+        else:
+            _tip(upper, lower, cycle, end)
     frame(shapes, cycles)
     shapes[0].set_ylabel("$y/L$")
-    tips[0][0].set_ylabel("tip $x/L$", color=FIRST)
-    tips[0][1].set_ylabel("tip $y/L$", color=SECOND)
+    label_tip(*tips[0])
     _phase_bar(figure, shapes, colours, step)
     figure.suptitle(selection.title, fontsize=10)
-    return figure, "shapes through the cycle and the tip in time" + selection.left_out
+    tip = "the tip from the start on" if emerging else "the tip in time"
+    return figure, f"shapes through the cycle and {tip}{selection.left_out}"
 
 
 def _panels(count: int) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
@@ -140,13 +149,4 @@ def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
             axes.plot(at * cycle.period / len(values), values[at % len(values)], "o", color=colour, ms=2.5)
         axes.axvline(cycle.period, color="0.7", lw=0.8, ls=":")
         axes.margins(x=0)
-    upper.tick_params(labelbottom=False)
-    lower.axhline(0, color="0.8", lw=0.6, zorder=0)
-    lower.set_xlabel(r"time $t/\tau_2$")
-    if 0 < cycle.tau1 < np.inf:
-        unit = cycle.tau1
-        top = upper.secondary_xaxis(
-            "top", functions=(lambda t: np.asarray(t) / unit, lambda t: np.asarray(t) * unit)
-        )
-        top.set_xlabel(r"time $t/\tau_1$", fontsize=9)
-        top.tick_params(labelsize=8)
+    label_time(upper, lower, cycle.tau1)

@@ -1,4 +1,4 @@
-"""The limit cycles that a file holds, one `StoredCycle` for each point, and which of them a figure shows.
+"""The cycles and transients that a file holds, a `StoredCycle` for each point, and which a figure shows.
 
 Samples and shapes of a cycle are at the times k T / n, k = 0 ... n - 1, over one period T: what follows the
 last is the first.
@@ -17,13 +17,18 @@ from ..style import heading, need, parameter_text
 
 MOST_CYCLES = 3
 """Cycles for which one figure has room, side by side."""
+CYCLE_WORDS = ("cycle", "unstable")
+"""Statuses of points that have a cycle, stable or not."""
 SHAPES = ("shape_x", "shape_y", "shape_theta")
 ENERGIES = ("energy", "injection", "dissipation")
+TRACE = ("transient_time", "transient_x", "transient_y")
+OPTIONS = dict.fromkeys(SHAPES, "shapes") | dict.fromkeys(TRACE, "transient")
+"""What stores a variable; all others that are stored over a period are samples."""
 
 
 @dataclass(frozen=True, slots=True)
 class StoredCycle:
-    """A point's cycle: its parameters, its period in tau2 and every variable of the file there, by name."""
+    """A point: its parameters, the period in tau2 of its cycle, NaN without one, and all variables there."""
 
     number: int
     """Of the point in the file, from 1."""
@@ -32,6 +37,8 @@ class StoredCycle:
     parameters: dict[str, float]
     period: float
     values: dict[str, Array]
+    word: str = "cycle"
+    """Its status."""
 
     @property
     def tau1(self) -> float:
@@ -44,6 +51,11 @@ class StoredCycle:
         if "tip_x" in self.values:
             return self.values["tip_x"], self.values["tip_y"]
         return self.values["shape_x"][:, -1], self.values["shape_y"][:, -1]
+
+    @property
+    def has_trace(self) -> bool:
+        """Whether its motion from the start is stored."""
+        return TRACE[0] in self.values and bool(np.isfinite(self.values[TRACE[0]]).all())
 
     def heading(self, line: str) -> str:
         """The label, where there is one, above a line about the cycle."""
@@ -68,14 +80,39 @@ def outcomes(view: View) -> NDArray[np.str_]:
 
 def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> Selection:
     """The cycles of the points that the user names, else the first; InputError where a need is not stored."""
+    _refuse_missing(view, needs)
+    words = outcomes(view)
+    _refuse_bad_points(view, points)
+    for number in points:
+        if words[number - 1] != "cycle":
+            word = words[number - 1].replace("_", " ")
+            raise InputError(f"--point {number}: the point has no cycle to draw, its status is: {word}")
+    return _selection(view, points, words == "cycle", "cycle")
+
+
+def chosen_traces(view: View, points: Sequence[int]) -> Selection:
+    """The points that the user names, else the first whose motion is stored; InputError where none is."""
+    _refuse_missing(view, TRACE)
+    _refuse_bad_points(view, points)
+    there = np.isfinite(view.variables[TRACE[0]][..., -1].ravel())
+    for number in points:
+        if not there[number - 1]:
+            raise InputError(f"--point {number}: the point has no transient, its motion was not followed")
+    return _selection(view, points, there, "transient")
+
+
+def _refuse_missing(view: View, needs: Sequence[str]) -> None:
+    """InputError where a variable is not stored."""
     for name in needs:
         if name not in view.variables:
-            key = "limit_cycle.shapes" if name in SHAPES else "limit_cycle.samples"
+            key = f"limit_cycle.{OPTIONS.get(name, 'samples')}"
             raise InputError(f"{view.path} holds no {name}; run with {key} > 0, which stores it")
-    words = outcomes(view)
-    _refuse_bad_points(view, points, words)
-    there = np.flatnonzero(words == "cycle")
-    need(view, there.size, "cycle")
+
+
+def _selection(view: View, points: Sequence[int], drawable: NDArray[np.bool_], what: str) -> Selection:
+    """The points by number, else the first of those that are drawable, shape (points,)."""
+    there, words = np.flatnonzero(drawable), outcomes(view)
+    need(view, there.size, what)
     numbers = list(points) or [int(index) + 1 for index in there[:MOST_CYCLES]]
     columns = view.point_columns
     parameters = [{name: float(columns[name][n - 1]) for name in columns} for n in numbers]
@@ -83,25 +120,24 @@ def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> Se
     cycles = []
     for number, label, at in zip(numbers, own, parameters, strict=True):
         values = _values(view, number)
-        cycles.append(StoredCycle(number, label, at, float(values["period"]), values))
+        period, word = float(values["period"]), str(words[number - 1])
+        cycles.append(StoredCycle(number, label, at, period, values, word))
     left_out = ""
     if not points and there.size > len(cycles):
-        left_out = f", the first {len(cycles)} of {there.size} cycles (--point chooses others)"
+        left_out = f", the first {len(cycles)} of {there.size} {what}s (--point chooses others)"
     return Selection(cycles, heading(view, shared), left_out)
 
 
-def _refuse_bad_points(view: View, points: Sequence[int], words: NDArray[np.str_]) -> None:
-    """InputError where a figure has no room for the points, or one of them does not exist or has no cycle."""
+def _refuse_bad_points(view: View, points: Sequence[int]) -> None:
+    """InputError where a figure has no room for the points, or one of them does not exist."""
+    count = view.variables["status"].size
     if len(points) > MOST_CYCLES:
         raise InputError(
             f"--point is given {len(points)} times; one figure shows at most {MOST_CYCLES} points"
         )
     for number in points:
-        if not 1 <= number <= len(words):
-            raise InputError(f"--point {number}: {view.path} has the points 1 to {len(words)}")
-        if words[number - 1] != "cycle":
-            word = words[number - 1].replace("_", " ")
-            raise InputError(f"--point {number}: the point has no cycle to draw, its status is: {word}")
+        if not 1 <= number <= count:
+            raise InputError(f"--point {number}: {view.path} has the points 1 to {count}")
 
 
 def _values(view: View, number: int) -> dict[str, Array]:

@@ -1,0 +1,167 @@
+"""A cycle with its multipliers from its neighbour in F: this tool beside AUTO-07p, at equal error.
+
+AUTO's time of a cycle is the difference of two runs of different length by their difference in cycles: the
+start of its program, and the first cycle, cancel.
+"""
+
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+from math import inf, nan
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...discretization.mesh import mesh
+from ...solve.cycle.limit_cycle import CyclePoint, solve_cycle
+from ...solve.cycle.orbit import Linearisation, Orbit, newton
+from ..auto import AUTO, SKIPPED, auto_program
+from ..study import Measurement, Timed, failsafe, race, table
+from .auto_cycles import AutoSetting, Branch, continued
+from .auto_equations import EQUATIONS
+from .sweeping import RODS, ExactCycle, from_neighbour, name_of, swept
+from .tracking import (
+    EXACT,
+    REFERENCE_INTERVALS,
+    REFERENCE_STAGES,
+    SETTLED_WITHIN,
+    asked,
+    orbit_of,
+)
+
+STEP, FEW, MANY = 0.01, 3, 23
+"""AUTO's step in units of the force at which it ends, and cycles of its two runs."""
+LARGE = 0.5
+"""Modulus of a multiplier from which it is counted: next to 1 one is looked at."""
+OWN = "rodsweep"
+TARGETS = (1e-6, 1e-7)
+SETTINGS = (
+    AutoSetting(13, 19, 3, 3),
+    AutoSetting(14, 17, 3, 3),
+    AutoSetting(14, 21, 3, 3),
+    AutoSetting(14, 12, 4, 0),
+    AutoSetting(14, 7, 5, 3),
+    AutoSetting(15, 27, 3, 3),
+    AutoSetting(15, 29, 3, 3),
+    AutoSetting(15, 9, 5, 3),
+    AutoSetting(16, 29, 3, 3),
+    AutoSetting(16, 9, 5, 3),
+    AutoSetting(16, 14, 4, 3),
+)
+"""Those worth running. Where NTST and NCOL are odd, what is stiff has multipliers near -1, else near 1, where
+Newton's matrix is nearly singular: on meshes as coarse as these AUTO then fails, but for IAD = 0."""
+QUICK_SETTINGS = SETTINGS[1:6:4]
+"""One for each target."""
+
+
+def beside_auto(rounds: int, quick: bool) -> tuple[list[str], list[Measurement]]:
+    """Blocks of text, and the measurements; a sentence where AUTO is not installed."""
+    with tempfile.TemporaryDirectory() as directory:
+        program = auto_program(Path(directory), EQUATIONS)
+        if program is None:
+            return [SKIPPED], []
+        found = compared(program, RODS[0], QUICK_SETTINGS if quick else SETTINGS, rounds)
+    return [introduction(RODS[0]), cycle_table(found), ratio_table(found)], found
+
+
+def compared(
+    program: Path, point: CyclePoint, settings: Sequence[AutoSetting], rounds: int
+) -> list[Measurement]:
+    """This tool at all targets and AUTO at all settings, timed in turn."""
+    rods, step = [swept(point, target) for target in TARGETS], STEP * point.F
+    starts = first_cycles(replace(point, F=point.F - (MANY - 1) * step), settings)
+    runs: list[Callable[[], Any]] = [
+        partial(failsafe, partial(from_neighbour, "F", target), rod)
+        for target, rod in zip(TARGETS, rods, strict=True)
+    ]
+    for setting in settings:
+        run = partial(continued, program, starts[setting.order], setting, step)
+        runs += [partial(failsafe, run, cycles) for cycles in (FEW, MANY)]
+    raced = race(runs, [rounds] * len(runs))
+    ours, exact = len(TARGETS), rods[-1].exact
+    own = [
+        judged(exact, Measurement(name_of(point), OWN, f"{target:.0e}", timed.median, inf), timed.outcome)
+        for target, timed in zip(TARGETS, raced[:ours], strict=True)
+    ]
+    pairs = zip(settings, raced[ours::2], raced[ours + 1 :: 2], strict=True)
+    peers = [
+        judged(exact, Measurement(name_of(point), AUTO, str(setting), each(few, many), inf), many.outcome)
+        for setting, few, many in pairs
+    ]
+    return own + peers
+
+
+def first_cycles(point: CyclePoint, settings: Sequence[AutoSetting]) -> dict[int, Orbit]:
+    """AUTO's first cycle on one element of each order."""
+    near = orbit_of(solve_cycle(point, asked(SETTLED_WITHIN), along="F"))
+    orders = {setting.order for setting in settings}
+    moved = {order: near.on(mesh(1, order), REFERENCE_INTERVALS, REFERENCE_STAGES) for order in orders}
+    return {order: newton(orbit, EXACT).orbit for order, orbit in moved.items()}
+
+
+def each(few: Timed, many: Timed) -> float:
+    """Seconds of one cycle."""
+    return (many.median - few.median) / (MANY - FEW)
+
+
+def judged(exact: ExactCycle, m: Measurement, outcome: Any) -> Measurement:
+    """The measurement with its errors, or with the failure."""
+    if isinstance(outcome, Exception):
+        return replace(m, failure=f"failed ({outcome})", seconds=nan)
+    if isinstance(outcome, Branch):
+        errors = exact.at(outcome.F).errors_of(outcome.period, outcome.tip_y_max)
+        multipliers = outcome.multipliers
+    else:
+        errors = exact.errors_of(outcome.measures.period, outcome.measures.tip_y_max)
+        multipliers = Linearisation(orbit_of(outcome)).multipliers()
+    large = float(np.count_nonzero(np.abs(multipliers) > LARGE))
+    return replace(m, error=max(errors.values()), extra=errors | {"large": large})
+
+
+def introduction(point: CyclePoint) -> str:
+    """What is compared."""
+    return (
+        f"{AUTO} (IPS = 2, ISP = 2, NWTN = 1, the exact Jacobian compiled with -O3) continues the cycles of "
+        f"F, k1, k2, gamma3, gamma1 = {name_of(point)} with all multipliers up to this F, in {MANY - 1} "
+        f"steps of {STEP:.0%}, on one element of order p, from a cycle of rodsweep's; a cycle's time is the "
+        f"difference of this run and of one of {FEW} cycles, so that its start does not count. Errors are "
+        "those of the last cycle. rodsweep's time includes the choice of its mesh and the estimate of its "
+        f"error, neither of which {AUTO} gives. Multipliers beyond {LARGE:g} in modulus, the trivial one "
+        "among them: Gauss collocation adds some that the rod has not."
+    )
+
+
+def cycle_table(measurements: Sequence[Measurement]) -> str:
+    """All methods at all settings."""
+    nothing = dict.fromkeys(("period_error", "amplitude_error", "large"), nan)
+    return table(
+        f"method | setting | ms | error of period | error of amplitude | multipliers beyond {LARGE:g}",
+        "{method} | {setting} | {failure}{ms:.1f} | {period_error:.1e} | {amplitude_error:.1e} | {large:.0f}",
+        [
+            {"method": m.method, "setting": m.setting, "failure": m.failure, "ms": 1e3 * m.seconds}
+            | nothing
+            | m.extra
+            for m in measurements
+        ],
+    )
+
+
+def ratio_table(measurements: Sequence[Measurement]) -> str:
+    """At each target: this tool, asked for it, and AUTO's fastest setting that reaches it."""
+    rows = []
+    for target in TARGETS:
+        own = next(m for m in measurements if m.method == OWN and m.setting == f"{target:.0e}")
+        enough = [m for m in measurements if m.method == AUTO and m.error <= target]
+        best = min(enough, key=lambda m: m.seconds, default=None)
+        ms, setting = (best.seconds, best.setting) if best else (nan, "")
+        row = {"target": target, "own": 1e3 * own.seconds, "auto": 1e3 * ms, "setting": setting}
+        rows.append(row | {"ratio": ms / own.seconds})
+    return (
+        f"At equal error: rodsweep asked for it, {AUTO} at its fastest setting above that reaches it.\n\n"
+    ) + table(
+        f"error | ms, rodsweep | ms, {AUTO} | at | times rodsweep's time",
+        "{target:.0e} | {own:.1f} | {auto:.1f} | {setting} | {ratio:.1f}",
+        rows,
+    )

@@ -1,0 +1,187 @@
+"""What a point of a sweep costs: the cycle of a rod from that of a neighbour, and from a cold start.
+
+A point is what the task limit_cycle makes of it: mesh, Newton's method, all multipliers, the verdict and the
+estimate of its error. The errors are against the same cycle on meshes that leave 1e-11.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from math import nan
+from typing import Any
+
+from ...arrays import Array
+from ...model.parameters import NONLINEAR_PARAMETERS
+from ...solve.cycle.limit_cycle import Cycle, CyclePoint, CycleStatus, solve_cycle
+from ...solve.cycle.measures import CyclePath
+from ...solve.cycle.orbit import Linearisation, Orbit, newton
+from ...solve.cycle.refinement import mesh_of, refine
+from ..study import Contender, Entry, Measurement, grouped, middle, table, tournament
+from .tracking import EXACT, asked, orbit_of
+
+RODS = (
+    CyclePoint(50.0, 1e4, 1e2, 1e-2, 1.0),
+    CyclePoint(50.0, 1e4, 1e2, 1e-2, 0.5),
+    CyclePoint(30.0, 1e4, 1e2, 1e-2, 1.0),
+    CyclePoint(100.0, 1e4, 1e2, 1e-2, 1.0),
+    CyclePoint(40.0, 1e4, 1e4, 1e-4, 1.0),
+    CyclePoint(60.0, 200.0, 1e4, 1e-4, 1.0),
+    CyclePoint(100.0, 200.0, 1e4, 1e-4, 1.0),
+)
+"""Cycles near and far from their Hopf point, of stiff rods and of one that its force shortens by a half."""
+QUICK_RODS = (RODS[2],)
+SWEPT = NONLINEAR_PARAMETERS[:2]
+STEP = 1.01
+"""Of the axis from one point to the next, a factor."""
+ACCURACY, REFERENCE_ACCURACY = 1e-7, 1e-11
+SWEEP, COLD = "sweep over ", "cold, "
+COLD_STARTS = {"leading mode": "mode", "Hopf point": "hopf"}
+"""Starts without a neighbour, as the request names them."""
+NOTHING = dict.fromkeys(
+    ("period_error", "amplitude_error", "estimate", "multipliers", "order", "intervals", "stages"), nan
+)
+"""The columns of a point that failed."""
+
+
+@dataclass(frozen=True, eq=False)
+class ExactCycle:
+    """A cycle on a mesh that leaves REFERENCE_ACCURACY; period in tau2, the tip's largest y in L."""
+
+    orbit: Orbit
+    period: float
+    tip_y_max: float
+
+    @classmethod
+    def near(cls, orbit: Orbit) -> "ExactCycle":
+        """Of the same rod as the orbit."""
+        found = refine(orbit, REFERENCE_ACCURACY)
+        return cls(found.orbit, found.measures.period, found.measures.tip_y_max)
+
+    def at(self, F: float) -> "ExactCycle":
+        """Of the rod at a force near by."""
+        form = self.orbit.form
+        near = replace(self.orbit, form=replace(form, rod=replace(form.rod, F=F)))
+        orbit = newton(near, EXACT).orbit
+        return ExactCycle(orbit, orbit.period, CyclePath(orbit).extrema()["tip_y_max"])
+
+    def errors_of(self, period: float, tip_y_max: float) -> dict[str, float]:
+        """Relative errors by their names in the tables."""
+        return {
+            "period_error": abs(period / self.period - 1),
+            "amplitude_error": abs(tip_y_max / self.tip_y_max - 1),
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class SweptRod:
+    """A rod, its exact cycle, and for each axis what the point before it hands on."""
+
+    point: CyclePoint
+    exact: ExactCycle
+    neighbours: dict[str, Array | None]
+
+
+def swept(point: CyclePoint, accuracy: float) -> SweptRod:
+    """The rod with its neighbours, which are points of a sweep themselves, each with one before it."""
+    neighbours = {}
+    for axis in SWEPT:
+        first, second = (replace(point, **{axis: getattr(point, axis) / STEP**k}) for k in (2, 1))
+        start = solve_cycle(first, asked(accuracy), along=axis)
+        before = solve_cycle(second, asked(accuracy), start.neighbour, axis)
+        neighbours[axis] = settled(before).neighbour
+    here = solve_cycle(point, asked(accuracy), neighbours[SWEPT[0]], SWEPT[0])
+    return SweptRod(point, ExactCycle.near(orbit_of(here)), neighbours)
+
+
+def from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
+    """The point of a sweep over an axis."""
+    return settled(solve_cycle(rod.point, asked(accuracy), start=rod.neighbours[axis], along=axis))
+
+
+def from_cold(start: str, accuracy: float, rod: SweptRod) -> Cycle:
+    """The point without a neighbour."""
+    return settled(solve_cycle(rod.point, replace(asked(accuracy), start=start), along=SWEPT[0]))
+
+
+def settled(cycle: Cycle) -> Cycle:
+    """The cycle, if it is one; raises ArithmeticError."""
+    if cycle.status != CycleStatus.cycle:
+        raise ArithmeticError(f"no cycle: {cycle.status.name} {cycle.message}")
+    return cycle
+
+
+def ways(accuracy: float) -> list[Contender]:
+    """All starts of a point."""
+    setting = f"{accuracy:.0e}"
+    warm = [
+        Contender(SWEEP + axis, setting, SWEEP, partial(from_neighbour, axis, accuracy)) for axis in SWEPT
+    ]
+    cold = [
+        Contender(COLD + name, setting, COLD, partial(from_cold, start, accuracy))
+        for name, start in COLD_STARTS.items()
+    ]
+    return warm + cold
+
+
+def sweep_points(points: Sequence[CyclePoint], rounds: int) -> list[Measurement]:
+    """All starts of all points, timed in turn."""
+    rods = [swept(point, ACCURACY) for point in points]
+    entries = [Entry(name_of(rod.point), rod, partial(judged_cycle, rod.exact)) for rod in rods]
+    return tournament(entries, ways(ACCURACY), rounds)
+
+
+def name_of(point: CyclePoint) -> str:
+    """The rod, in the order in which its parameters stand in tables."""
+    return f"{point.F:g}, {point.k1:g}, {point.k2:g}, {point.gamma3:g}, {point.gamma1:g}"
+
+
+def judged_cycle(exact: ExactCycle, cycle: Cycle) -> dict[str, Any]:
+    """Errors and estimate of a cycle, its mesh, and how many multipliers were found.
+
+    What only the orbit tells is left out where a start does not hand it on.
+    """
+    errors = exact.errors_of(cycle.measures.period, cycle.measures.tip_y_max)
+    extra = errors | {"estimate": cycle.errors.largest, "order": float(cycle.elements * cycle.order)}
+    if cycle.neighbour is not None:
+        orbit = orbit_of(cycle)
+        mesh = mesh_of(orbit)
+        extra["multipliers"] = len(Linearisation(orbit).multipliers())
+        extra |= {"intervals": mesh.intervals, "stages": mesh.stages}
+    return {"error": max(errors.values()), "extra": extra}
+
+
+def sweep_introduction() -> str:
+    """What is measured."""
+    return (
+        f"Cycles solved: a point of a sweep, all its multipliers included, asked for {ACCURACY:.0e}; its "
+        f"neighbour is {STEP - 1:.0%} away and was a point itself. The time includes the straight rod's "
+        "spectrum, the choice of the mesh, the verdict, and the estimate of the error, the larger of the "
+        "period's and of the extrema's. Errors of period and largest tip y are relative, against meshes that "
+        f"leave {REFERENCE_ACCURACY:.0e}. Multipliers are those above rounding. The order in space is that "
+        "of one element; the intervals in time cover half a period where the cycle is symmetric."
+    )
+
+
+def milliseconds(m: Measurement) -> float:
+    """Of one run; nan where it failed."""
+    return nan if m.failure else 1e3 * m.seconds
+
+
+def sweep_table(measurements: Sequence[Measurement]) -> str:
+    """A line for each rod and start, and the medians over the rods."""
+    lines = [
+        {"rod": m.case, "way": m.method, "ms": milliseconds(m), "failure": m.failure} | NOTHING | m.extra
+        for m in measurements
+    ]
+    medians = [
+        {"rod": "median", "way": way, "ms": middle(map(milliseconds, own)), "failure": ""}
+        | {name: middle(m.extra.get(name, nan) for m in own) for name in NOTHING}
+        for (way,), own in grouped(measurements, "method").items()
+    ]
+    return table(
+        "F, k1, k2, gamma3, gamma1 | start | ms | error of period | error of amplitude | estimate | "
+        "multipliers | order | intervals | stages",
+        "{rod} | {way} | {failure}{ms:.1f} | {period_error:.0e} | {amplitude_error:.0e} | {estimate:.0e} | "
+        "{multipliers:.0f} | {order:.0f} | {intervals:.0f} | {stages:.0f}",
+        lines + medians,
+    )

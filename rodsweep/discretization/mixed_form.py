@@ -1,0 +1,193 @@
+"""The nonlinear rod in the plane in its mixed form: stresses and velocities in the body frame, on a mesh.
+
+The balance of `rodsweep.model.balance` with both fields kept as unknowns. S is what the stress has beyond
+that of the straight rod, (n1 + F, n2, m3), and V = (v1, v2, Omega3); W are the weights of the quadrature,
+D is the derivative:
+
+    W C dS/dt = -D^T W V + W ad_E V          at all nodes but the tip; the clamp V(0) = 0 is natural
+    0         = W (D*_E Sigma - Gamma V)     at all nodes; Sigma = (-F, 0, 0) + S, and S(1) = 0 is essential
+
+where E = (nu, 0, 0) + C S. With X = (n1 + F, n2, m3; v1, v2, Omega3) this is quadratic,
+
+    M dX/dt = A X + B(X, X)/2,
+
+and affine in F. No stiffness is divided by, so that c1 = c2 = gamma3 = 0 are ordinary values. M is singular:
+what of X carries no time derivative is bound by the equations. On several elements the fields are continuous
+and D = W^-1 sum_e W_e D_e. Summation by parts, W D + D^T W = diag(-1, 0, ..., 0, 1), and with it the energy
+law hold to rounding on every mesh.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..arrays import Array
+from ..model.balance import Material, Values, ad, coad, plane_material
+from ..model.rod import Rod
+from .mesh import Mesh, mesh
+
+COMPONENTS = 3
+"""Of an element of se(2)."""
+MIRROR = np.array([1.0, -1.0, -1.0])
+"""What the reflection of the plane in the straight rod does to the components of a stress or a velocity."""
+
+
+@dataclass(frozen=True, eq=False)
+class MixedForm:
+    """One rod, its axial drag gamma1 in gamma2, on one mesh; k1, k2 may be inf and gamma3 may be 0.
+
+    X has the shape (..., unknowns): with N = mesh.nodes first the N values of n1 + F, of n2 (k3/L^2) and of
+    m3 (k3/L) at the nodes but the tip, then the N + 1 values of v1, of v2 (L/tau2) and of Omega3 (1/tau2) at
+    all nodes. It may be complex everywhere.
+    """
+
+    rod: Rod
+    gamma1: float
+    mesh: Mesh
+
+    @property
+    def stresses(self) -> int:
+        """How many of the unknowns are stresses."""
+        return COMPONENTS * self.mesh.nodes
+
+    @property
+    def unknowns(self) -> int:
+        return COMPONENTS * (2 * self.mesh.nodes + 1)
+
+    @cached_property
+    def material(self) -> Material:
+        """C, Gamma and the force."""
+        return plane_material(self.rod, self.gamma1)
+
+    @cached_property
+    def straight(self) -> Array:
+        """E of the straight rod, (nu, 0, 0), shape (3,)."""
+        return np.array([self.rod.nu, 0.0, 0.0])
+
+    @cached_property
+    def parity(self) -> Array:
+        """The diagonal of R, which maps motions to their mirror images, motions too; +-1, (unknowns,)."""
+        nodes = self.mesh.nodes
+        return np.concatenate([np.repeat(MIRROR, nodes), np.repeat(MIRROR, nodes + 1)])
+
+    @cached_property
+    def M(self) -> Array:
+        """The diagonal of M, (W C, 0), shape (unknowns,)."""
+        M = np.zeros(self.unknowns)
+        M[: self.stresses] = np.kron(self.material.compliance, self.mesh.quadrature[:-1])
+        return M
+
+    @cached_property
+    def A(self) -> Array:
+        """A, shape (unknowns, unknowns)."""
+        N, stresses, velocities = self.mesh.nodes, slice(self.stresses), slice(self.stresses, None)
+        WD, each = -self.mesh.matrices.weak.T, np.eye(COMPONENTS)
+        A = self._coupling(self.straight, self.material.tip_stress, np.zeros(COMPONENTS))
+        A[stresses, velocities] -= np.kron(each, WD.T[:N])
+        A[velocities, stresses] += np.kron(each, WD[:, :N])
+        A[velocities, velocities] -= np.diag(np.kron(self.material.drag, self.mesh.quadrature))
+        return A
+
+    @cached_property
+    def A_F(self) -> Array:
+        """dA/dF, shape (unknowns, unknowns), the same for every F: E and Sigma at rest are affine."""
+        along = self.material.straight
+        return self._coupling(-self.rod.c1 * along, -along, np.zeros(COMPONENTS))
+
+    @cached_property
+    def tip_y(self) -> Array:
+        """The row that gives the tip's y in L to first order in X, int nu (1 - u) m3 + c2 n2, (unknowns,)."""
+        u, W = self.mesh.positions[:-1], self.mesh.quadrature[:-1]
+        row = np.zeros(self.unknowns)
+        row[self.mesh.nodes : self.stresses] = np.append(self.rod.c2 * W, self.rod.nu * (1 - u) * W)
+        return row
+
+    def fields(self, X: Values) -> tuple[Values, Values]:
+        """(S, V) at all nodes, the tip included, each of shape (3, ..., nodes + 1)."""
+        N, many = self.mesh.nodes, X.shape[:-1]
+        S = np.zeros((COMPONENTS, *many, N + 1), X.dtype)
+        S[..., :-1] = np.moveaxis(X[..., : self.stresses].reshape(*many, COMPONENTS, N), -2, 0)
+        return S, np.moveaxis(X[..., self.stresses :].reshape(*many, COMPONENTS, N + 1), -2, 0)
+
+    def unknown(self, S: Values, V: Values) -> Values:
+        """X of (S, V) at all nodes, each (3, ..., nodes + 1); what S has at the tip does not count."""
+        return np.concatenate([*S[..., :-1], *V], axis=-1)
+
+    def bilinear(self, X: Values, Y: Values) -> Values:
+        """B(X, Y) = B(Y, X), shape (..., unknowns)."""
+        (S, U), (T, V) = self.fields(X), self.fields(Y)
+        CS, CT, W = self._strain(S), self._strain(T), self.mesh.quadrature
+        return self.unknown(W * (ad(CS, V) + ad(CT, U)), W * (coad(CS, T) + coad(CT, S)))
+
+    def rate(self, X: Values) -> Values:
+        """M dX/dt = A X + B(X, X)/2, shape (..., unknowns)."""
+        return X @ self.A.T + self.bilinear(X, X) / 2
+
+    def jacobian(self, X: Values) -> Values:
+        """A + B(X, .) of one X, shape (unknowns, unknowns)."""
+        S, V = self.fields(X)
+        return self.A + self._coupling(self._strain(S), S, V)
+
+    def consistent(self, X: Values) -> Values:
+        """X with the velocities that its stresses give it, shape (..., unknowns).
+
+        Raises ValueError for gamma3 = 0, where the stresses themselves are bound.
+        """
+        if self.rod.gamma3 == 0:
+            raise ValueError("with gamma3 = 0 the stresses do not give the angular velocity")
+        S, _ = self.fields(X)
+        Sigma = S + self._along(self.material.tip_stress, S)
+        return self.unknown(S, self.material.velocity(Sigma, Sigma @ self.mesh.matrices.D.T))
+
+    def reaction(self, X: Values) -> Values:
+        """r = -D^T W V + W ad_E V at the tip, shape (3, ...): -V(1) in the limit of fine meshes.
+
+        F r1 is the power of the force: dU/dt = F r1 - <Gamma V, V> holds to rounding on every mesh.
+        """
+        _, V = self.fields(X)
+        WD = -self.mesh.matrices.weak.T
+        return self.mesh.quadrature[-1] * ad(self._along(self.straight, V), V)[..., -1] - V @ WD[:, -1]
+
+    def energy(self, X: Values) -> Values:
+        """U = 1/2 int Sigma C Sigma in k3/L, shape (...)."""
+        S, _ = self.fields(X)
+        return self.material.energy(S + self._along(self.material.tip_stress, S)) @ self.mesh.quadrature
+
+    def dissipation(self, X: Values) -> Values:
+        """<Gamma V, V>, the power lost to the fluid in k3/(L tau2), shape (...)."""
+        return self.material.dissipation(self.fields(X)[1]) @ self.mesh.quadrature
+
+    def _strain(self, S: Values) -> Values:
+        """C S, the strain beyond that of the straight rod."""
+        return self._along(self.material.compliance, S) * S
+
+    @staticmethod
+    def _along(constant: Values, field: Values) -> Values:
+        """One number a component, to be combined with a field."""
+        return constant.reshape(-1, *(1,) * (field.ndim - 1))
+
+    def _coupling(self, E: Values, Sigma: Values, V: Values) -> Values:
+        """The matrix of W (ad_E v + ad_{C s} V; ad*_E s + ad*_{C s} Sigma) in (s; v), node by node.
+
+        E, Sigma, V: at all nodes, (3, nodes + 1), or the same at each of them, (3,).
+        """
+        E, Sigma, V = (field.reshape(COMPONENTS, 1, -1) for field in (E, Sigma, V))
+        each, C = np.eye(COMPONENTS)[:, :, None], np.diag(self.material.compliance)[:, :, None]
+        N, W = self.mesh.nodes, self.mesh.quadrature
+        s = np.arange(self.stresses).reshape(COMPONENTS, N)
+        v = np.arange(self.stresses, self.unknowns).reshape(COMPONENTS, N + 1)[:, :N]
+        matrix = np.zeros((self.unknowns, self.unknowns), np.result_type(E, Sigma, V))
+        for rows, columns, blocks in (
+            (s, v, ad(E, each)),
+            (s, s, ad(C, V)),
+            (v, s, coad(E, each) + coad(C, Sigma)),
+        ):
+            # At the tip nothing is left of it: s = 0 there, and E only enters an equation that is not asked.
+            matrix[rows[:, None], columns[None]] = (W * blocks)[..., :N]
+        return matrix
+
+
+def mixed_form(rod: Rod, gamma1: float, elements: int, order: int) -> MixedForm:
+    """The mixed form on `elements` equal elements of order `order`."""
+    return MixedForm(rod, gamma1, mesh(elements, order))

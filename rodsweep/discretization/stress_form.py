@@ -1,0 +1,108 @@
+"""One nonlinear rod on one mesh, in its stresses: every limit, k1 = inf, k2 = inf and gamma3 = 0, included.
+
+The equations and the unknowns are `rodsweep.discretization.stress_balance`'s; here are the mesh, the
+parameters, and what follows from a state: strains, shape, energy, powers.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..arrays import Array
+from ..model.rod import Rod
+from .mesh import Mesh, configuration
+from .stress_balance import BeamParameters
+
+LEAST_ELIMINATED_DRAG = 1e-5
+"""gamma3 from which Omega is eliminated: below, the division by gamma3 costs multipliers their digits, 1e-8
+at 1e-6 and 1e-6 at 1e-8; as an unknown Omega costs 2.4 times the time."""
+
+
+@dataclass(frozen=True, eq=False)
+class StressForm:
+    """One rod, its axial drag gamma1 in gamma2, on one mesh.
+
+    A state x has shape (..., unknowns): n1 + F, n2 in k3/L^2 and m3 in k3/L at every node but the tip, where
+    they vanish, and Omega in 1/tau2 at all nodes where gamma3 is small.
+    """
+
+    rod: Rod
+    gamma1: float
+    mesh: Mesh
+
+    @cached_property
+    def parameters(self) -> BeamParameters:
+        """The parameters as the compiled functions take them."""
+        r = self.rod
+        return BeamParameters(*map(float, (r.F, r.nu, r.c1, r.c2, self.gamma1, r.gamma3)))
+
+    @property
+    def omega_unknown(self) -> bool:
+        """Whether Omega is among the unknowns."""
+        return self.rod.gamma3 < LEAST_ELIMINATED_DRAG
+
+    @property
+    def unknowns(self) -> int:
+        n = self.mesh.nodes
+        return 4 * n + 1 if self.omega_unknown else 3 * n
+
+    @cached_property
+    def compliances(self) -> Array:
+        """(c1, c2, 1), shape (3,)."""
+        return np.array([self.parameters.c1, self.parameters.c2, 1.0])
+
+    @cached_property
+    def mass(self) -> Array:
+        """The diagonal of W C, 0 for Omega, shape (unknowns,)."""
+        return self.mass_of(self.parameters.c1, self.parameters.c2)
+
+    def mass_of(self, c1: float, c2: float) -> Array:
+        """`mass` for other compliances."""
+        mass = np.zeros(self.unknowns)
+        mass[: 3 * self.mesh.nodes] = np.outer([c1, c2, 1.0], self.mesh.quadrature[:-1]).ravel()
+        return mass
+
+    @cached_property
+    def reflection(self) -> Array:
+        """The signs that reflect a state on the line of the straight rod, shape (unknowns,)."""
+        signs = -np.ones(self.unknowns)
+        signs[: self.mesh.nodes] = 1.0
+        return signs
+
+    def stresses(self, x: Array) -> Array:
+        """(n1 + F, n2, m3) at all nodes, the tip included, shape (3, ..., nodes + 1)."""
+        n = self.mesh.nodes
+        S = np.zeros((3, *x.shape[:-1], n + 1))
+        for a in range(3):
+            S[a, ..., :-1] = x[..., a * n : (a + 1) * n]
+        return S
+
+    def strains(self, x: Array) -> Array:
+        """(h1, h2, Pi) at all nodes, the tip included, shape (3, ..., nodes + 1)."""
+        E = self.stresses(x) * self.compliances.reshape(3, *(1,) * x.ndim)
+        E[0] += self.rod.nu
+        return E
+
+    def shape(self, x: Array) -> Array:
+        """(x, y, theta) at all nodes in L and rad, shape (3, ..., nodes + 1), the clamp at 0 along e_x."""
+        return configuration(self.mesh, self.strains(x), np.zeros(3))
+
+    def tip(self, x: Array) -> Array:
+        """(x, y, theta) of the tip, shape (3, ...)."""
+        return self.shape(x)[..., -1]
+
+    def energy(self, x: Array) -> Array:
+        """U = 1/2 int k1 (h1 - 1)^2 + k2 h2^2 + Pi^2 in k3/L, shape (...)."""
+        S = self.stresses(x)
+        S[0] -= self.rod.F
+        return 0.5 * np.tensordot(self.compliances, S * S @ self.mesh.quadrature, 1)
+
+    def size(self, x: Array) -> Array:
+        """sqrt of the energy of the stresses beyond the straight rod's, an amplitude of the motion, (...)."""
+        S = self.stresses(x)
+        return np.sqrt(np.tensordot(self.compliances, S * S @ self.mesh.quadrature, 1))
+
+    def least_stretch(self, x: Array) -> float:
+        """min h1 over the nodes of all states; the model holds while it is positive."""
+        return float(self.strains(x)[0].min())

@@ -1,0 +1,73 @@
+"""What a figure over F shows of Hopf points: where they lie, and the square-root law of amplitudes there."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from ....arrays import Array
+from ...hopf_points import HopfPoint
+from ..style import SYMBOLS
+from .square_root import SquareRootLaw
+
+HOPF_SYMBOL = rf"{SYMBOLS['F']}_{{**}}"
+HOPF_WORDS = {True: f"${HOPF_SYMBOL}$", False: "restabilization"}
+"""What the legend calls a Hopf point above which the rod is unstable, and one above which it is stable."""
+DOTTED: dict[str, Any] = {"ls": ":", "lw": 1.1}
+SHARED_GREY, LAW_GREY = "0.3", "0.45"
+MOST_COEFFICIENTS = 3
+"""Coefficients of square-root laws that one line of a legend can hold."""
+
+
+def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[HopfPoint, str]]) -> list[Line2D]:
+    """A vertical dotted line at each Hopf point in its branch's colour; returns what the legend says.
+
+    One that several branches share is drawn once, in grey; where a kind has one position the legend names it.
+    """
+    handles = []
+    for kind, word in HOPF_WORDS.items():
+        own = [mark for mark in marks if mark[0].destabilises == kind]
+        places: list[tuple[HopfPoint, set[str]]] = []
+        for point, colour in own:
+            same = next((colours for other, colours in places if other.agrees(point)), None)
+            if same is None:
+                places.append((point, {colour}))
+            else:
+                same.add(colour)
+        for point, colours in places:
+            colour = colours.pop() if len(colours) == 1 else SHARED_GREY
+            for axes in panels:
+                axes.axvline(point.position, color=colour, zorder=0.5, **DOTTED)
+        if len(places) == 1:
+            equals = f"{word} = " if kind else rf"{word} at $\tilde F$ = "
+            handles.append(Line2D([], [], color=colour, label=equals + places[0][0].text, **DOTTED))
+        elif places:
+            handles.append(Line2D([], [], color=SHARED_GREY, label=word, **DOTTED))
+    return handles
+
+
+def draw_laws(axes: Axes, laws: Sequence[SquareRootLaw]) -> list[Line2D]:
+    """The square-root laws as dashed curves; returns what the legend says: formula and coefficients."""
+    handles = []
+    for above in (True, False):
+        here = [law for law in laws if law.above == above]
+        if not here:
+            continue
+        look: dict[str, Any] = {"color": LAW_GREY, "lw": 1.0, "ls": (0, (5, 2.5))}
+        for law in here:
+            axes.plot(*law.curve(), zorder=1.5, **look)
+        difference = rf"\tilde F - {HOPF_SYMBOL}" if above else rf"{HOPF_SYMBOL} - \tilde F"
+        formula = rf"$a\sqrt{{({difference})/{HOPF_SYMBOL}}}$, $a$ = {_coefficients(here)}"
+        handles.append(Line2D([], [], label=formula, **look))
+    return handles
+
+
+def _coefficients(laws: Sequence[SquareRootLaw]) -> str:
+    """Those of the laws that differ in what is written, or their range where they are many."""
+    a: Array = np.array([law.coefficient for law in laws])
+    texts = list(dict.fromkeys(f"{value:.3g}" for value in a))
+    if len(texts) > MOST_COEFFICIENTS:
+        return f"{a.min():.3g} to {a.max():.3g}"
+    return ", ".join(texts)

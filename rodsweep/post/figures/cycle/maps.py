@@ -1,0 +1,152 @@
+"""Maps over two parameters: the cycle's period, the tip's largest y, what else became of the rod, and F**.
+
+The points of the file are the centres of the cells; nothing is interpolated but the line of Hopf points.
+"""
+
+from collections.abc import Sequence
+from itertools import cycle
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
+from matplotlib.colors import LogNorm, Normalize
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.patheffects import withStroke
+from numpy.typing import NDArray
+
+from ....arrays import Array
+from ....results.file.view import View
+from ..style import (
+    LABELS,
+    heading,
+    label_few_decades,
+    legend_below,
+    need,
+    parameter_text,
+    scale,
+)
+from .hopf_lines import hopf_lines
+from .hopf_marks import HOPF_SYMBOL
+from .point_map import PointMap, cell_edges, point_map
+from .selection import CYCLE_WORDS, outcomes
+
+STATUS_LOOKS = {
+    "straight": ("#E8EDF2", ""),
+    "missing": ("white", "...."),
+    "not_settled": ("#C4C4C4", "////"),
+    "left_the_model": ("#9A9A9A", "\\\\\\\\"),
+    "failed": ("#6E6E6E", "xxxx"),
+}
+"""Colour and hatching of cells without a cycle: greys, which the maps of colours do not have."""
+FURTHER_LOOKS = (("#D9CBBF", "++++"), ("#BFA893", "----"), ("#8F7A68", "oooo"))
+"""Of statuses beyond these, in the order in which they are met."""
+PANEL = 250
+"""Points of print across a panel."""
+MARKER = 1.0, 4.0
+"""Least and largest size in points of the open marker of an unstable cycle; between them, half a cell."""
+HATCHING = "0.25"
+ONE_ROW = 6
+"""Entries of a legend that one row can hold."""
+QUANTITIES = (
+    ("period", r"period $T$  [$\tau_2$]", "viridis", True),
+    ("tip_y_max", r"tip $y_{\max}$  [$L$]", "plasma", False),
+)
+"""Variable, label and colours of each panel, and whether those are logarithmic over more than a decade."""
+DECADE = 10
+"""Ratio of the longest to the shortest period above which their colours are logarithmic."""
+
+
+def draw_maps(view: View) -> tuple[Figure, str]:
+    """Period and largest y of the tip side by side, with the line of Hopf points over both."""
+    points = point_map(view)
+    words = outcomes(view)[points.at]
+    cycles = np.isin(words, CYCLE_WORDS)
+    need(view, cycles.any(), "cycle")
+    wide = ConstrainedLayoutEngine(wspace=0.06)  # the first bar's label is not the second panel's
+    figure = Figure(figsize=(9.6, 4.5), layout=wide)
+    panels = figure.subplots(1, 2, sharex=True, sharey=True)
+    lines = hopf_lines(points, view)
+    for axes, (name, label, colours, ratios) in zip(panels, QUANTITIES, strict=True):
+        values = np.where(cycles, view.variables[name].ravel()[points.at], np.nan)
+        mesh = _heat_map(axes, points, values, ratios)
+        mesh.set_cmap(colours)
+        bar = figure.colorbar(mesh, ax=axes, label=label)
+        if isinstance(mesh.norm, LogNorm):
+            label_few_decades(bar.ax.yaxis, *mesh.get_clim())
+        handles = _draw_hopf_lines(axes, points, lines)
+        handles += _draw_statuses(axes, points, words)
+        handles += _mark_unstable(axes, points, words == "unstable")
+        scale(axes, "x", points.x)
+        scale(axes, "y", points.y)
+        axes.set_xlabel(LABELS[points.names[0]])
+    panels[0].set_ylabel(LABELS[points.names[1]])
+    if handles:
+        rows = -(-len(handles) // ONE_ROW)
+        legend_below(figure, handles, columns=-(-len(handles) // rows))
+    figure.suptitle(heading(view, parameter_text(points.shared)), fontsize=10)
+    return figure, f"period and amplitude over {' and '.join(points.names)}{points.left_out}"
+
+
+def _heat_map(axes: Axes, points: PointMap, values: Array, ratios: bool) -> QuadMesh:
+    """The cells in the colours of their values, shape (ny, nx), NaN where there are none."""
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    norm = LogNorm(low, high) if ratios and high > DECADE * low > 0 else Normalize(low, high)
+    edges = cell_edges(points.x), cell_edges(points.y)
+    return axes.pcolormesh(*edges, np.ma.masked_invalid(values), norm=norm, rasterized=True)
+
+
+def _draw_statuses(axes: Axes, points: PointMap, words: NDArray[np.str_]) -> list[Artist]:
+    """Fills the cells that have no cycle, each status in its own way; returns what the legend says."""
+    further = cycle(FURTHER_LOOKS)
+    handles: list[Artist] = []
+    for word in dict.fromkeys([*STATUS_LOOKS, *np.unique(words).tolist()]):
+        there = words == word
+        if word in CYCLE_WORDS or not there.any():
+            continue
+        colour, hatch = STATUS_LOOKS.get(word) or next(further)
+        look: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": HATCHING}
+        for row, (bottom, top) in zip(there, _pairs(cell_edges(points.y)), strict=True):
+            axes.broken_barh(_runs(row, cell_edges(points.x)), (bottom, top - bottom), lw=0, **look)
+        handles.append(Patch(label=word.replace("_", " "), lw=0.5, **look))
+    return handles
+
+
+def _mark_unstable(axes: Axes, points: PointMap, there: NDArray[np.bool_]) -> list[Artist]:
+    """An open marker in the cells of unstable cycles, as for amplitudes; returns what the legend says."""
+    if not there.any():
+        return []
+    look: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": HATCHING, "ls": "", "mew": 0.6}
+    row, column = np.nonzero(there)
+    size = float(np.clip(PANEL / max(there.shape) / 2, *MARKER))
+    axes.plot(points.x[column], points.y[row], ms=size, **look)
+    return [Line2D([], [], label="unstable cycle", ms=MARKER[1], **look)]
+
+
+def _pairs(values: Array) -> list[tuple[float, float]]:
+    """Each of the values, shape (n,), with the next."""
+    return list(zip(values[:-1].tolist(), values[1:].tolist(), strict=True))
+
+
+def _runs(there: NDArray[np.bool_], edges: Array) -> list[tuple[float, float]]:
+    """(left, width) of each run of neighbouring cells of a row."""
+    steps = np.diff(np.concatenate(([0], there.astype(int), [0])))
+    starts, ends = edges[np.flatnonzero(steps > 0)], edges[np.flatnonzero(steps < 0)]
+    return list(zip(starts.tolist(), (ends - starts).tolist(), strict=True))
+
+
+def _draw_hopf_lines(axes: Axes, points: PointMap, lines: Sequence[Array]) -> list[Artist]:
+    """Where the leading growth rate is 0, lines of shape (2, n): x, y; returns what the legend says.
+
+    That is where the rod starts to beat, or stops: no eigenvalue passes through 0, for D(0) = 1.
+    """
+    look: dict[str, Any] = {"color": "k", "lw": 1.4}
+    halo = [withStroke(linewidth=3.0, foreground="white")]
+    for line in lines:
+        axes.plot(*line, path_effects=halo, **look)
+    symbol = f" ${HOPF_SYMBOL}$" if "F" in points.names else ""
+    return [Line2D([], [], label=f"Hopf points{symbol}", **look)] if lines else []

@@ -1,0 +1,78 @@
+"""The points of a file as a map over two parameters: its axes with their cells, and where each point lies."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....arrays import Array
+from ....errors import InputError
+from ....results.file.view import View
+from ..style import is_logarithmic
+
+
+@dataclass(frozen=True, slots=True)
+class PointMap:
+    """Points over two parameters that form a grid."""
+
+    names: tuple[str, str]
+    """The parameters, the horizontal one first."""
+    x: Array
+    """Values of the first, increasing, shape (nx,)."""
+    y: Array
+    """Values of the second, increasing, shape (ny,)."""
+    at: NDArray[np.intp]
+    """Index of the point in each place, shape (ny, nx)."""
+    shared: dict[str, float]
+    """The parameters that do not vary."""
+    left_out: str
+    """What the message says of values that have no place on an axis; empty where there are none."""
+
+
+def varied_parameters(view: View) -> list[str]:
+    """The parameters that take several values."""
+    return [name for name, column in view.point_columns.items() if len(np.unique(column)) > 1]
+
+
+def point_map(view: View) -> PointMap:
+    """The file's points as a map; InputError unless two parameters vary and each combination is there once.
+
+    A value inf has no place on an axis and is left out.
+    """
+    varied = varied_parameters(view)
+    if len(varied) != 2:
+        raise InputError(
+            f"{view.path} varies {len(varied)} parameters ({', '.join(varied) or 'none'}) and maps are drawn "
+            "over two; run with one value of each of the others"
+        )
+    columns = view.point_columns
+    (x, column), (y, row) = (np.unique(columns[name], return_inverse=True) for name in varied)
+    at = np.full((len(y), len(x)), -1)
+    at[row.ravel(), column.ravel()] = np.arange(row.size)
+    if (at < 0).any() or at.size != row.size:
+        raise InputError(
+            f"{view.path} holds points that form no grid over {varied[0]} and {varied[1]}; maps are drawn "
+            "where every combination is there once"
+        )
+    finite = np.isfinite(x), np.isfinite(y)
+    if min(np.count_nonzero(there) for there in finite) < 2:
+        raise InputError(f"{view.path} has fewer than two finite values of {varied[0]} or {varied[1]} to map")
+    without = [name for name, there in zip(varied, finite, strict=True) if not there.all()]
+    left_out = f"; {' and '.join(without)} = inf has no place on an axis and is left out" if without else ""
+    shared = {name: float(values[0]) for name, values in columns.items() if name not in varied}
+    return PointMap(
+        (varied[0], varied[1]), x[finite[0]], y[finite[1]], at[np.ix_(*finite[::-1])], shared, left_out
+    )
+
+
+def in_its_scale(values: Array) -> tuple[Array, Callable[[Array], Array]]:
+    """Values of an axis, shape (n,), as their scale places them, and the way back."""
+    return (np.log(values), np.exp) if is_logarithmic(values) else (values, np.asarray)
+
+
+def cell_edges(values: Array) -> Array:
+    """The edges of cells about increasing values, shape (n,), half-way in their scale; shape (n + 1,)."""
+    centres, back = in_its_scale(values)
+    inner = (centres[1:] + centres[:-1]) / 2
+    return back(np.concatenate(([2 * centres[0] - inner[0]], inner, [2 * centres[-1] - inner[-1]])))

@@ -1,0 +1,43 @@
+"""Products of small dense matrices in compiled code, by the BLAS that SciPy brings.
+
+At 50 unknowns its dgemm is four times as fast as loops, and ten times as fast as its own factorisation and
+substitution; `solve.cycle.condensation` is therefore made of products.
+"""
+
+from typing import Any
+
+import numpy as np
+from llvmlite import binding
+from numba import types
+from numba.core import typing
+from numba.extending import get_cython_function_address
+
+from ...arrays import Array
+from ...model.compilation import compiled
+
+_ADDRESS = types.intp
+binding.add_symbol("rodsweep_dgemm", get_cython_function_address("scipy.linalg.cython_blas", "dgemm"))
+# By name, not by address, so that what is compiled can be cached.
+_dgemm = types.ExternalFunction("rodsweep_dgemm", typing.signature(types.void, *[_ADDRESS] * 13))
+
+
+@compiled
+def product(a: Any, b: Any, c: Any, extents: Any, factors: Array) -> None:
+    """C = factors[0] A B + factors[1] C for rows stored one after another.
+
+    a, b, c: addresses of the first entries; extents: int32 (m, n, k, lda, ldb, ldc) of A (m, k), B (k, n) and
+    their row lengths.
+    """
+    plain = np.full(1, 78, np.uint8)  # "N"
+    no, e, f = plain.ctypes.data, extents.ctypes.data, factors.ctypes.data
+    # BLAS counts by columns: it is told to compute C^T = B^T A^T.
+    _dgemm(no, no, e + 4, e, e + 8, f, b, e + 16, a, e + 12, f + 8, c, e + 20)
+
+
+@compiled
+def square_product(A: Array, B: Array, C: Array, factor: float, keep: float) -> None:
+    """C = factor A B + keep C, all of shape (n, n) and contiguous."""
+    n = len(A)
+    extents = np.full(6, n, np.int32)
+    factors = np.array([factor, keep])
+    product(A.ctypes.data, B.ctypes.data, C.ctypes.data, extents, factors)

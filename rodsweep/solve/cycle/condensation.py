@@ -1,0 +1,263 @@
+"""The linear systems of a periodic orbit, condensed: Newton's matrix of a Radau collocation, compiled.
+
+On each of the intervals, from the state x_0 at its start, the stages x_1 ... x_s satisfy
+
+    sum_j d_ij M x_j = h F(x_i),        j = 0 ... s,
+
+with the method's differentiation matrix d (s is at least 2), the diagonal mass matrix M (0 where an unknown
+has no time derivative) and the balance F. The blocks of Newton's matrix off its diagonal are d_ij M: diagonal
+matrices. So the first stage is eliminated at the price of an inverse, the others by products of blocks, and
+the interval becomes a map of its start to its end. The maps' product P is the derivative of the flow over all
+intervals. A block's pivots are its own; the blocks on the diagonal, d_ii M - h F', are regular while h is
+short against what grows.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...arrays import Array
+from ...discretization.stress_balance import (
+    BeamParameters,
+    NodeMatrices,
+    balance,
+    jacobian,
+    torque_balance,
+)
+from ...model.compilation import compiled_for_vectors
+from ..backend.products import product, square_product
+
+PANEL = 12
+"""Columns that `invert` treats one by one before it updates the others by a product."""
+
+
+class Semidiscrete(NamedTuple):
+    """The rod on its mesh and the method in time: mass (n,), differentiation (s, s + 1)."""
+
+    parameters: BeamParameters
+    matrices: NodeMatrices
+    mass: Array
+    differentiation: Array
+
+
+class Factors(NamedTuple):
+    """Newton's matrix of all K intervals, eliminated.
+
+    blocks: (K, s, s, n, n), inverses of the pivots on the diagonal, multipliers below, what is left above;
+    its first row and column but the pivot are diagonal matrices and not stored. propagator: P, (n, n).
+    """
+
+    blocks: Array
+    propagator: Array
+
+
+@compiled_for_vectors
+def equations(x: Array, F: Array, V: Array, G: Array, p: Semidiscrete) -> None:
+    """F(x), shape (n,), with V and G, (3, nodes + 1), on the way."""
+    nodes = G.shape[1] - 1
+    balance(x, V, G, p.parameters, p.matrices)
+    for a in range(3):
+        for i in range(nodes):
+            F[a * nodes + i] = G[a, i]
+    if len(x) > 3 * nodes:
+        torque_balance(x, F[3 * nodes :], p.parameters, p.matrices)
+
+
+@compiled_for_vectors
+def residuals(start: Array, stages: Array, h: float, p: Semidiscrete, slopes: Array, out: Array) -> None:
+    """h F(x_i) - sum_j d_ij M x_j into out, and F(x_i) into slopes; both as stages, (K, s, n)."""
+    K, s, n = stages.shape
+    V, G = np.empty((3, len(p.matrices.weights))), np.empty((3, len(p.matrices.weights)))
+    d = p.differentiation
+    for k in range(K):
+        first = start if k == 0 else stages[k - 1, s - 1]
+        for i in range(s):
+            equations(stages[k, i], slopes[k, i], V, G, p)
+            for r in range(n):
+                change = d[i, 0] * first[r]
+                for j in range(s):
+                    change += d[i, j + 1] * stages[k, j, r]
+                out[k, i, r] = h * slopes[k, i, r] - p.mass[r] * change
+
+
+@compiled_for_vectors
+def invert(A: Array, pivots: Any, column: Array, rows: Array) -> None:
+    """A^-1 in place, by Gauss and Jordan with partial pivoting, PANEL columns at a time.
+
+    A: (n, n); work arrays: pivots (n,) of integers, column (n,), rows (n, PANEL). A row of A is read as a
+    column of its transpose, whose inverse is the transpose of the inverse.
+    """
+    n = len(A)
+    ones, extents = np.ones(2), np.empty(6, np.int32)
+    for first in range(0, n, PANEL):
+        last = min(n, first + PANEL)
+        _sweep_panel(A, first, last, pivots, column)
+        for j in range(n):
+            if j < first or j >= last:
+                for i in range(last - first):
+                    rows[j, i] = A[j, first + i]
+                    A[j, first + i] = 0.0
+        extents[:] = first, n, last - first, PANEL, n, n
+        panel, row = A.ctypes.data + 8 * n * first, 8 * n * last
+        product(rows.ctypes.data, panel, A.ctypes.data, extents, ones)
+        extents[0] = n - last
+        product(rows.ctypes.data + 8 * PANEL * last, panel, A.ctypes.data + row, extents, ones)
+    for k in range(n - 1, -1, -1):
+        if pivots[k] != k:
+            p = pivots[k]
+            for i in range(n):
+                A[k, i], A[p, i] = A[p, i], A[k, i]
+
+
+@compiled_for_vectors
+def _sweep_panel(A: Array, first: int, last: int, pivots: Any, column: Array) -> None:
+    """The steps of Gauss and Jordan for the columns from first to last, within these."""
+    n = len(A)
+    for k in range(first, last):
+        p = k
+        for i in range(k + 1, n):
+            if abs(A[k, i]) > abs(A[k, p]):
+                p = i
+        pivots[k] = p
+        if p != k:
+            for j in range(n):
+                A[j, k], A[j, p] = A[j, p], A[j, k]
+        inverse = 1.0 / A[k, k]
+        for i in range(n):
+            column[i] = -A[k, i] * inverse
+        column[k] = inverse - 1.0
+        for j in range(first, last):
+            if j != k:
+                factor = A[j, k]
+                for i in range(n):
+                    A[j, i] += factor * column[i]
+        A[k] = column
+        A[k, k] = inverse
+
+
+@compiled_for_vectors
+def eliminate(stages: Array, h: float, p: Semidiscrete, factors: Factors) -> None:
+    """Newton's matrix at the stages, (K, s, n), into the factors."""
+    K, s, n = stages.shape
+    size = len(p.matrices.weights)
+    V, G, tip, F = np.empty((3, size)), np.empty((3, size)), np.empty((3, n)), np.empty(n)
+    pivots, column, rows = np.empty(n, np.int64), np.empty(n), np.empty((n, PANEL))
+    right, end, product_so_far = np.empty((s, n, n)), np.empty((n, n)), np.empty((n, n))
+    for k in range(K):
+        B = factors.blocks[k]
+        for i in range(s):
+            equations(stages[k, i], F, V, G, p)
+            jacobian(stages[k, i], V, B[i, i], tip, p.parameters, p.matrices)
+            for r in range(n):
+                for q in range(n):
+                    B[i, i, r, q] *= -h
+                B[i, i, r, r] += p.differentiation[i, i + 1] * p.mass[r]
+        invert(B[0, 0], pivots, column, rows)
+        _eliminate_first(B, right, p)
+        for a in range(1, s):
+            invert(B[a, a], pivots, column, rows)
+            for i in range(a + 1, s):
+                square_product(B[i, a], B[a, a], end, 1.0, 0.0)
+                B[i, a] = end
+                for j in range(a + 1, s):
+                    square_product(end, B[a, j], B[i, j], -1.0, 1.0)
+                square_product(end, right[a], right[i], -1.0, 1.0)
+        square_product(B[s - 1, s - 1], right[s - 1], end, 1.0, 0.0)
+        product_so_far[:, :] = np.diag(p.mass) if k == 0 else factors.propagator
+        for r in range(n):
+            for q in range(n):
+                product_so_far[r, q] *= p.mass[r] if k > 0 else 1.0
+        square_product(end, product_so_far, factors.propagator, 1.0, 0.0)
+
+
+@compiled_for_vectors
+def _eliminate_first(B: Array, right: Array, p: Semidiscrete) -> None:
+    """The first stage out of one interval's others: their blocks, and their right side for x_0 = M^-1."""
+    s, n = B.shape[0], B.shape[2]
+    d, mass, X = p.differentiation, p.mass, B[0, 0]
+    for i in range(1, s):
+        for j in range(1, s):
+            if i != j:
+                B[i, j] = 0.0
+                for r in range(n):
+                    B[i, j, r, r] = d[i, j + 1] * mass[r]
+            factor = d[i, 1] * d[0, j + 1]
+            for r in range(n):
+                f = factor * mass[r]
+                for q in range(n):
+                    B[i, j, r, q] -= f * X[r, q] * mass[q]
+        factor = d[i, 1] * d[0, 0]
+        for r in range(n):
+            f = factor * mass[r]
+            for q in range(n):
+                right[i, r, q] = f * X[r, q]
+            right[i, r, r] -= d[i, 0]
+
+
+@compiled_for_vectors
+def _add_products(A: Array, x: Array, y: Array, factor: float) -> None:
+    """y += factor A x for each of the columns x, y, both of shape (columns, n)."""
+    n = x.shape[1]
+    for i in range(n):
+        for m in range(len(x)):
+            total = 0.0
+            for j in range(n):
+                total += A[i, j] * x[m, j]
+            y[m, i] += factor * total
+
+
+@compiled_for_vectors
+def substitute(start: Array, right: Array, p: Semidiscrete, factors: Factors, out: Array) -> None:
+    """The changes of all stages, out, for changes of the start and right sides; several at once.
+
+    start: (columns, n), right and out: (K, s, columns, n).
+    """
+    K, s, columns, n = right.shape
+    y, t, first = np.empty((s, columns, n)), np.empty((columns, n)), start.copy()
+    d, mass = p.differentiation, p.mass
+    for k in range(K):
+        B = factors.blocks[k]
+        for i in range(s):
+            y[i] = right[k, i] - d[i, 0] * mass * first
+        t[:] = 0.0
+        _add_products(B[0, 0], y[0], t, 1.0)
+        for i in range(1, s):
+            y[i] -= d[i, 1] * mass * t
+            for a in range(1, i):
+                _add_products(B[i, a], y[a], y[i], -1.0)
+        for a in range(s - 1, 0, -1):
+            for j in range(a + 1, s):
+                _add_products(B[a, j], out[k, j], y[a], -1.0)
+            out[k, a] = 0.0
+            _add_products(B[a, a], y[a], out[k, a], 1.0)
+            y[0] -= d[0, a + 1] * mass * out[k, a]
+        out[k, 0] = 0.0
+        _add_products(B[0, 0], y[0], out[k, 0], 1.0)
+        first[:] = out[k, s - 1]
+
+
+@compiled_for_vectors
+def strain_rates(states: Array, out: Array, p: Semidiscrete) -> None:
+    """dE/dt at all nodes but the tip, where it vanishes, of states (m, n) into out, (3, m, nodes + 1)."""
+    size = len(p.matrices.weights)
+    V, G = np.empty((3, size)), np.empty((3, size))
+    for k in range(len(states)):
+        balance(states[k], V, G, p.parameters, p.matrices)
+        for a in range(3):
+            for i in range(size - 1):
+                out[a, k, i] = G[a, i] / p.matrices.weights[i]
+            out[a, k, size - 1] = 0.0
+
+
+@compiled_for_vectors
+def powers(states: Array, out: Array, p: Semidiscrete) -> None:
+    """Power of the follower force, by the reaction, and power lost, of states (m, n) into out, (2, m)."""
+    size = len(p.matrices.weights)
+    V, G, c = np.empty((3, size)), np.empty((3, size)), p.parameters
+    for k in range(len(states)):
+        balance(states[k], V, G, c, p.matrices)
+        lost = 0.0
+        for i in range(size):
+            drag = c.gamma1 * V[0, i] ** 2 + V[1, i] ** 2 + c.gamma3 * V[2, i] ** 2
+            lost += p.matrices.weights[i] * drag
+        out[0, k], out[1, k] = c.F * G[0, size - 1], lost

@@ -1,0 +1,130 @@
+"""From the Hopf point to the cycle at a force: the branch that is born there, without following a motion.
+
+The Hopf point is the nearest below the force at which the straight rod starts to oscillate. Its normal form
+gives amplitude, frequency and shape of the cycles near it; the branch is then followed on a coarse mesh.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...discretization.collocation import radau
+from ...discretization.mesh import mesh
+from ...discretization.stress_form import StressForm
+from ...model.rod import Rod
+from ..hopf.normal_form import NormalForm, accurate_normal_form
+from ..point import Unsolvable
+from ..spectrum.search import SpectrumRequest, solve_spectrum
+from .neighbour import followed_from, in_steps
+from .orbit import Orbit, at_orbit, newton
+
+LEADING = SpectrumRequest(1, 1e-9, True)
+SCAN = 0.93
+"""Ratio of the forces at which the sign of the leading growth rate is looked at."""
+LEAST_FORCE = 1e-2
+"""Force below which no rod of finite length oscillates: F nu (nu + F c2) must exceed the order of pi^2."""
+FORCE_FOUND = 1e-10
+MOST_BISECTIONS = 60
+NORMAL_FORM_ACCURACY = 1e-3
+STARTS = (0.12, 0.03, 0.006)
+"""Relative distances from the Hopf point at which the normal form starts Newton's method, one after the
+other: in most rods its amplitude is off by 2 percent at the first, where k2 is small by more."""
+ORDER_PER_WAVE, LEAST_ORDER = 1.1, 12
+INTERVALS, STAGES = 8, 3
+"""In time, over half a period, of the mesh on which the branch is followed."""
+TOLERANCE = 1e-4
+"""To which the orbits on the way are solved."""
+
+
+@dataclass(frozen=True, slots=True)
+class Onset:
+    """F in k3/L^2 and the frequency of the leading mode there in 1/tau2."""
+
+    F: float
+    frequency: float
+
+
+def leading_eigenvalue(rod: Rod) -> complex:
+    """The leading eigenvalue of the straight rod, Im >= 0; raises Unsolvable where it is not found."""
+    found = solve_spectrum(rod, LEADING)
+    if not len(found.eigenvalues):
+        raise Unsolvable(f"the spectrum at F = {rod.F:g} is not known: {found.message}")
+    w = complex(found.eigenvalues[0])
+    return complex(w.real, abs(w.imag))
+
+
+def hopf_point_below(rod: Rod) -> Onset | None:
+    """The nearest force below the rod's own at which the leading mode starts to grow, if there is one."""
+    above, F = leading_eigenvalue(rod), rod.F
+    while F > LEAST_FORCE:
+        lower = F * SCAN
+        below = leading_eigenvalue(replace(rod, F=lower))
+        if below.real < 0 <= above.real:
+            return _bisected(rod, lower, F)
+        F, above = lower, below
+    return None
+
+
+def _bisected(rod: Rod, low: float, high: float) -> Onset:
+    """The change of sign between two forces, by the secant kept in the bracket."""
+    values = [leading_eigenvalue(replace(rod, F=F)).real for F in (low, high)]
+    for _ in range(MOST_BISECTIONS):
+        share = values[0] / (values[0] - values[1])
+        middle = low + (high - low) * float(np.clip(share, 1e-3, 1 - 1e-3))
+        w = leading_eigenvalue(replace(rod, F=middle))
+        if abs(w.real) <= FORCE_FOUND * abs(w):
+            break
+        if w.real < 0:  # the weight of an end that stays is halved (the Illinois rule)
+            low, values = middle, [w.real, values[1] / 2]
+        else:
+            high, values = middle, [values[0] / 2, w.real]
+    return Onset(middle, w.imag)
+
+
+def orbit_from_hopf(form: StressForm) -> Orbit:
+    """The orbit of a rod on the branch from the Hopf point below its force, on a coarse mesh.
+
+    Raises Unsolvable where there is none: no Hopf point, a branch that goes to smaller forces, or one that
+    cannot be followed.
+    """
+    rod = form.rod
+    hopf = hopf_point_below(rod)
+    if hopf is None:
+        raise Unsolvable(f"the straight rod does not start to oscillate at any force below {rod.F:g}")
+    at = replace(rod, F=hopf.F)
+    normal = accurate_normal_form(at, form.gamma1, 1j * hopf.frequency, NORMAL_FORM_ACCURACY)
+    if not normal.amplitude > 0:
+        raise Unsolvable(f"the cycles from the Hopf point at F = {hopf.F:g} go to smaller forces")
+    order = max(LEAST_ORDER, int(ORDER_PER_WAVE * 2.5 * abs(rod.F) ** 0.5))
+    coarse = replace(form, mesh=mesh(1, order))
+    for part in STARTS:
+        try:
+            return _followed_from(normal, min(rod.F, hopf.F * (1 + part)), coarse)
+        except Unsolvable as error:
+            why = error
+    raise why
+
+
+def _followed_from(normal: NormalForm, F: float, form: StressForm) -> Orbit:
+    """The orbit of a rod by way of the one that the normal form predicts at a force; raises Unsolvable."""
+    start = orbit_of(normal, replace(form, rod=replace(form.rod, F=F)))
+    found = at_orbit(newton(start, TOLERANCE, "F"), TOLERANCE, "F")
+    squared = normal.cycle(F)[0]
+    if not 0.3 < found.orbit.form.tip(found.orbit.start)[1] ** 2 / squared < 3.0:
+        raise Unsolvable(f"no cycle near the one that the Hopf point at F = {normal.F:g} predicts")
+    if form.rod.F == F:
+        return found.orbit
+    return in_steps(followed_from(found, None, "F"), form, "F", TOLERANCE).orbit
+
+
+def orbit_of(normal: NormalForm, form: StressForm) -> Orbit:
+    """The cycle that the normal form predicts for a rod at a force near its own."""
+    squared, frequency = normal.cycle(form.rod.F)
+    times = np.append(0.0, ((np.arange(INTERVALS)[:, None] + radau(STAGES).nodes) / INTERVALS).ravel())
+    X = normal.motion(squared**0.5, np.pi * times)
+    S, V = normal.form.fields(X)
+    E = normal.form.mesh.evaluation(form.mesh.positions)
+    parts = [*(S @ E.T)[..., :-1]] + ([V[2] @ E.T] if form.omega_unknown else [])
+    states = np.concatenate(parts, axis=1)
+    stages = np.ascontiguousarray(states[1:].reshape(INTERVALS, STAGES, -1))
+    return Orbit(form, True, 2 * np.pi / frequency, states[0].copy(), stages)

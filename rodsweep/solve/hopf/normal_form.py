@@ -1,0 +1,162 @@
+"""The normal form of a Hopf point: amplitude, frequency and motion of the cycles that are born there.
+
+About the straight rod the mixed form (`rodsweep.discretization.mixed_form`) is M dX/dt = A X + B(X, X)/2.
+With a simple pair of eigenvalues w, conj w of (A, M), A q = w M q and p^H A = w p^H M, its small motions at a
+force F' near F are, to second order,
+
+    X = z q + conj(z q) + Re(z^2 h20) + |z|^2 h11,      dz/dt = [w + lambda_F (F' - F)] z + c |z|^2 z,
+    h20 = (2 i Im w M - A)^-1 B(q, q),                  h11 = -A^-1 B(q, conj q),
+    c = p^H [B(conj q, h20) + 2 B(q, h11)]/2,           lambda_F = dw/dF = p^H A_F q.
+
+There is no cubic term. q is scaled to a tip deflection of 1/2, p to p^H M q = 1: with z = Z exp(i phase) the
+tip's y is Re z to second order, and |Z| its largest value in L.
+
+The mirror image of a motion is a motion too: q and p are transverse, h20 and h11 longitudinal. Where w has a
+real part, away from a Hopf point, h20 and h11 are those of a cycle, on which |z| stands still.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array, Complex
+from ...determinant.value import newton_correction
+from ...discretization.mixed_form import MixedForm, mixed_form
+from ...discretization.resolution import resolution_for
+from ...model.rod import Rod
+from ..point import Unsolvable
+
+OFFSET = 1e-10
+"""Relative distance of a shift from the eigenvalue that it is: the matrix must not be singular."""
+ITERATIONS = 3
+"""Inverse iterations with one shift."""
+FOUND = 1e-8
+"""Relative distance of a shift from its eigenvalue from which the iterations leave nothing but rounding."""
+MOST_SHIFTS = 10
+HARMONIC = 2
+"""Wave number of h20 and h11, and so of what c is made of, in units of that of q."""
+SAFETY = 0.1
+"""By the rule for eigenvalues alone c is off by five times the accuracy asked for, at worst."""
+MOST_NODES = 500
+"""Nodes beyond which a rod is given up: some seconds with dense matrices."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class NormalForm:
+    """The normal form of one eigenvalue w, Im w > 0, of a rod on a mesh.
+
+    w in 1/tau2, slope = dw/dF, c in 1/(tau2 L^2). q, p, h20 complex and h11 real, of the shape (unknowns,)
+    of `form`'s X. At a Hopf point w = i Im w but for the error of the mesh.
+    """
+
+    form: MixedForm
+    w: complex
+    slope: complex
+    c: complex
+    q: Complex
+    p: Complex
+    h20: Complex
+    h11: Array
+
+    @property
+    def F(self) -> float:
+        """The force at which w is the eigenvalue, in k3/L^2."""
+        return self.form.rod.F
+
+    @property
+    def supercritical(self) -> bool:
+        """Whether the nonlinearity saturates; cycles are stable if no other mode grows."""
+        return self.c.real < 0
+
+    @property
+    def amplitude(self) -> float:
+        """a of a Hopf point: the largest tip y is |a| sqrt(|F' - F|/|F|) in L.
+
+        a < 0 where the cycles are at F' < F.
+        """
+        squared = -self.slope.real / self.c.real
+        return float(np.sign(squared) * abs(self.F * squared) ** 0.5)
+
+    @property
+    def frequency_slope(self) -> float:
+        """b of a Hopf point: the frequency of the cycle at F' is Im w + b (F' - F), in 1/tau2."""
+        return self.slope.imag - self.c.imag * self.slope.real / self.c.real
+
+    def cycle(self, F: float) -> tuple[float, float]:
+        """(squared largest tip y in L^2, frequency in 1/tau2) of the cycle at a force near this one.
+
+        It is the cycle of the eigenvalue w + slope (F - self.F). A squared amplitude below 0 is no cycle.
+        """
+        w = self.w + self.slope * (F - self.F)
+        squared = -w.real / self.c.real
+        return squared, w.imag + self.c.imag * squared
+
+    def motion(self, amplitude: float, phases: Array) -> Array:
+        """X to second order of a cycle at some of its phases, (n,): shape (n, unknowns).
+
+        amplitude: the largest tip y, in L, which is reached at phase 0; a period has 2 pi.
+        """
+        z = (amplitude * np.exp(1j * phases))[:, None]
+        return 2 * (z * self.q).real + (z * z * self.h20).real + amplitude**2 * self.h11
+
+
+def normal_form(form: MixedForm, guess: complex) -> NormalForm:
+    """The normal form of the eigenvalue of (A, M) nearest to a guess, i Im w at a Hopf point.
+
+    Raises Unsolvable where it is real, or none is found.
+    """
+    axial = form.parity > 0
+    w, right, left = _modes(form, ~axial, guess)
+    q, p = np.zeros(form.unknowns, complex), np.zeros(form.unknowns, complex)
+    q[~axial], p[~axial] = right, left
+    A, M = form.A[np.ix_(axial, axial)], form.M[axial]
+    h20, h11 = np.zeros_like(q), np.zeros(form.unknowns)
+    h20[axial] = np.linalg.solve(np.diag(2j * w.imag * M) - A, form.bilinear(q, q)[axial])
+    h11[axial] = np.linalg.solve(-A, form.bilinear(q, q.conj())[axial].real)
+    c = np.vdot(p, form.bilinear(q.conj(), h20) / 2 + form.bilinear(q, h11))
+    slope = np.vdot(p, form.A_F @ q)
+    return NormalForm(form=form, w=w, slope=complex(slope), c=complex(c), q=q, p=p, h20=h20, h11=h11)
+
+
+def accurate_normal_form(rod: Rod, gamma1: float, w: complex, accuracy: float) -> NormalForm:
+    """The normal form of the eigenvalue w, on a mesh that gives c to a relative accuracy.
+
+    Raises Unsolvable where w is no eigenvalue to this accuracy, or no reasonable mesh is fine enough.
+    """
+    wave_number = newton_correction(w, rod.coefficients)[2]
+    resolution = resolution_for(HARMONIC * wave_number, SAFETY * accuracy)
+    nodes = resolution.elements * resolution.order
+    if nodes > MOST_NODES:
+        raise Unsolvable(f"the normal form at F = {rod.F:g} needs {nodes} nodes, more than {MOST_NODES}")
+    normal = normal_form(mixed_form(rod, gamma1, resolution.elements, resolution.order), w)
+    if abs(normal.w - w) > max(accuracy, FOUND) * abs(w):
+        raise Unsolvable(f"{w:.12g} is no eigenvalue at F = {rod.F:g}; the nearest is {normal.w:.12g}")
+    return normal
+
+
+def _modes(
+    form: MixedForm, transverse: NDArray[np.bool_], guess: complex
+) -> tuple[complex, Complex, Complex]:
+    """(w, q, p) of the eigenvalue nearest to a guess, of the transverse unknowns alone, scaled.
+
+    By inverse iteration from both sides; the two-sided Rayleigh quotient is the next shift.
+    """
+    A, M, y = form.A[np.ix_(transverse, transverse)], form.M[transverse], form.tip_y[transverse]
+    w = complex(guess)
+    for _ in range(MOST_SHIFTS):
+        shift = w * (1 + OFFSET)
+        inverse = np.linalg.inv(A - np.diag(shift * M))
+        q, p = np.ones(len(M), complex), np.ones(len(M), complex)
+        for _ in range(ITERATIONS):
+            q, p = inverse @ (M * q), inverse.conj().T @ (M * p)
+            q, p = q / np.abs(q).max(), p / np.abs(p).max()
+        w = complex(np.vdot(p, A @ q) / np.vdot(p, M * q))
+        if abs(w - shift) <= FOUND * abs(w):
+            break
+    else:
+        raise Unsolvable(f"no eigenvalue is found near {guess:.6g}")
+    if not w.imag > 0:
+        raise Unsolvable(f"the eigenvalue near {guess:.6g} is real: nothing oscillates")
+    q = q / (2 * (y @ q))
+    return w, q, p / np.vdot(p, M * q).conj()

@@ -1,0 +1,89 @@
+"""Cycles of random rods in and out of every limit, and their true errors by a mesh that is far finer."""
+
+from functools import cache
+from math import ceil, inf, log10
+from typing import NamedTuple
+
+import numpy as np
+
+from rodsweep.discretization.mesh import mesh
+from rodsweep.discretization.stress_form import StressForm
+from rodsweep.model.rod import Rod
+from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
+from rodsweep.solve.cycle.hopf_start import orbit_from_hopf
+from rodsweep.solve.cycle.measures import CyclePath
+from rodsweep.solve.cycle.orbit import at_orbit, newton
+from rodsweep.solve.cycle.refinement import RefinedCycle, mesh_of, multipliers_of, refined_cycle
+
+MOST_FORCE = 200.0
+FINER_ORDER, FINER_SHARE, FINER_STAGES, LEAST_INTERVALS = 8, 1.2, 6, 10
+"""What the reference has more of: order, intervals and stages. It differs from a finer one by at most a tenth
+of the error that it is to tell, or by what rounding leaves."""
+ROUNDING, MULTIPLIERS_ROUNDING = 2e-12, 10.0
+"""Of the reference, relative; of its multipliers, in units of what its trivial one is off."""
+EXTREMA = ("tip_x_min", "tip_x_max", "tip_y_max", "tip_theta_max")
+
+
+class Case(NamedTuple):
+    """A rod, its force in units of the first Hopf point's, and the accuracy asked for."""
+
+    k1: float
+    k2: float
+    gamma3: float
+    gamma1: float
+    beyond: float
+    accuracy: float
+
+
+def random_case(index):
+    """The case of that number, whatever others are asked for."""
+    random = np.random.default_rng([14, index])
+    k1, k2 = (inf if random.random() < 0.1 else 10 ** random.uniform(log10(30), 8) for _ in range(2))
+    gamma3 = 0.0 if random.random() < 0.12 else 10 ** random.uniform(-8, 0)
+    gamma1, above = random.uniform(0.5, 1), 10 ** random.uniform(-4, log10(4))
+    return Case(k1, k2, gamma3, gamma1, 1 + above, float(random.choice([1e-4, 1e-6, 1e-7, 1e-9])))
+
+
+@cache
+def first_hopf(k1, k2, gamma3):
+    """The force of the first Hopf point, None where there is none."""
+    found = solve_thresholds(k1, k2, gamma3, ThresholdsRequest(min(0.9999 * k1, MOST_FORCE), 1e-11, False, 6))
+    return next((c.at for c in found.crossings if c.kind.name == "hopf"), None)
+
+
+def cycle_of(case) -> RefinedCycle | None:
+    """The cycle from the Hopf point; None where the rod has none or is crushed; raises Unsolvable."""
+    hopf = first_hopf(case.k1, case.k2, case.gamma3)
+    if hopf is None or hopf * case.beyond >= case.k1:
+        return None
+    rod = Rod(hopf * case.beyond, case.k1, case.k2, case.gamma3)
+    start = orbit_from_hopf(StressForm(rod, case.gamma1, mesh(1, 16)))
+    return refined_cycle(start, case.accuracy)
+
+
+def finer(orbit):
+    """The same cycle on a mesh that is far finer, converged to rounding, with its matrix."""
+    here = mesh_of(orbit)
+    grid = mesh(here.elements, here.order + ceil(FINER_ORDER / here.elements))
+    intervals = max(LEAST_INTERVALS, ceil(FINER_SHARE * here.intervals))
+    return at_orbit(newton(orbit.on(grid, intervals, FINER_STAGES), 1e-13), 0.0)
+
+
+def broken_promises(found, accuracy):
+    """What of a cycle is less accurate than its estimates say, or than asked for: sentences."""
+    exact = finer(found.orbit)
+    extrema, measures, errors = CyclePath(exact.orbit).extrema(), found.measures, found.errors
+    period = abs(measures.period / exact.orbit.period - 1)
+    off = {name: abs(getattr(measures, name) - extrema[name]) / extrema["tip_y_max"] for name in EXTREMA}
+    multipliers, rounding = multipliers_of(exact)
+    multiplier = abs(found.largest_multiplier - abs(multipliers[0])) - MULTIPLIERS_ROUNDING * rounding
+    promised = {
+        "period": (period, errors.period_error),
+        "multiplier": (multiplier, errors.multiplier_error),
+        **{name: (error, errors.amplitude_error) for name, error in off.items()},
+    }
+    beyond = {k: (true, said) for k, (true, said) in promised.items() if true > said + ROUNDING}
+    broken = [f"{k}: {true:.1e} > {said:.1e}" for k, (true, said) in beyond.items()]
+    if errors.largest > accuracy:
+        broken.append(f"estimate {errors.largest:.1e} > {accuracy:.0e}")
+    return broken

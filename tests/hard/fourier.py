@@ -1,0 +1,66 @@
+"""Cycles by another method: Fourier collocation in time of the mixed form, solved densely.
+
+Half a period is enough, X(t + T/2) = R X(t): what R keeps has even harmonics, what it reverses odd ones.
+Nothing of the orbit solver is used but a first guess.
+"""
+
+import numpy as np
+
+from rodsweep.discretization.mesh import configuration
+from rodsweep.discretization.mixed_form import MixedForm
+from rodsweep.discretization.periodic import coefficients, maxima
+from rodsweep.discretization.stress_balance import balance
+
+MOST_STEPS, SOLVED = 12, 1e-11
+
+
+def half_period_derivatives(m):
+    """By the phase at m phases over half a period: of even harmonics and of odd ones, (m, m) each."""
+    shift = np.arange(2 * m)[:, None] - np.arange(2 * m)
+    with np.errstate(divide="ignore"):
+        D = 0.5 * (-1.0) ** shift / np.tan(np.pi * shift / (2 * m))
+    np.fill_diagonal(D, 0)
+    return D[:m, :m] + D[:m, m:], D[:m, :m] - D[:m, m:]
+
+
+def guess_at(orbit, m):
+    """X at m equidistant phases over half the period of a symmetric orbit, (m, unknowns)."""
+    form, V = orbit.form, np.empty((m, 3, orbit.form.mesh.nodes + 1))
+    states, reaction = orbit.at(np.arange(m) / m), np.empty(V.shape[1:])
+    for x, velocities in zip(states, V, strict=True):
+        balance(x, velocities, reaction, form.parameters, form.mesh.matrices)
+    return np.concatenate([states[:, : 3 * form.mesh.nodes], V.reshape(m, -1)], axis=1)
+
+
+def solved_cycle(form, X, frequency):
+    """(X, frequency) of the cycle near a guess; the tip is at rest in the first phase, to first order."""
+    m, unknowns = X.shape
+    even, odd = half_period_derivatives(m)
+    kept, each, r = form.parity > 0, np.arange(m), np.arange(unknowns)
+    D = np.where(kept[:, None, None], even, odd)
+    for _ in range(MOST_STEPS):
+        dX = np.einsum("rij,jr->ir", D, X)
+        J = np.zeros((m * unknowns + 1,) * 2)
+        blocks = J[:-1, :-1].reshape(m, unknowns, m, unknowns)
+        blocks[:, r, :, r] = frequency * form.M[:, None, None] * D
+        blocks[each, :, each, :] -= np.array([form.jacobian(x) for x in X])
+        J[:-1, -1] = (form.M * dX).ravel()
+        J[-1, :-1] = (odd[0][:, None] * form.tip_y).ravel()
+        residual = np.append((frequency * form.M * dX - form.rate(X)).ravel(), dX[0] @ form.tip_y)
+        step = np.linalg.solve(J, -residual)
+        X, frequency = X + step[:-1].reshape(m, unknowns), frequency + step[-1]
+        moved = np.abs(step[:-1].reshape(m, unknowns)[:, : form.stresses]).max()
+        if moved <= SOLVED * np.abs(X[:, : form.stresses]).max():
+            return X, frequency
+    raise AssertionError("no cycle")
+
+
+def period_and_largest_y(orbit, phases):
+    """Of the cycle near a symmetric orbit, on the orbit's mesh in space."""
+    form = MixedForm(orbit.form.rod, orbit.form.gamma1, orbit.form.mesh)
+    X, frequency = solved_cycle(form, guess_at(orbit, phases), 2 * np.pi / orbit.period)
+    S, _ = form.fields(X)
+    E = S * form.material.compliance[:, None, None] + form.straight[:, None, None]
+    y = configuration(form.mesh, np.ascontiguousarray(E), np.zeros(3))[1, :, -1]
+    whole = np.append(y, -y)[:, None]
+    return 2 * np.pi / frequency, float(maxima(coefficients(whole), whole)[0])

@@ -1,0 +1,92 @@
+"""Results of limit_cycle whose cycles are known in closed form: an arc that swings, with its energy."""
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from rodsweep.results.file.creation import Plan, create_file
+from rodsweep.results.file.view import View
+from rodsweep.results.layouts import layout_of
+from rodsweep.sweep.grid import Points
+
+NAMES = ("F", "k1", "k2", "gamma3", "gamma1")
+FLAGS = {-1: "missing", 0: "cycle", 1: "straight", 2: "not_settled", 3: "left_the_model", 4: "failed"}
+UNSTABLE, TORUS = 5, 6
+MORE_FLAGS = FLAGS | {UNSTABLE: "unstable", TORUS: "torus"}
+PERIODS = {1.0: 0.034, 0.5: 0.026}
+SAMPLES, SHAPES = 64, 24
+
+
+def arm(phase, size):
+    """(x, y, theta) of an arc of constant curvature that swings, shape (3, times, nodes), and u."""
+    u = np.linspace(0, 1, 21)
+    bend = size * np.cos(2 * np.pi * phase)[:, None] + 1e-9
+    return np.array([np.sin(bend * u) / bend, (1 - np.cos(bend * u)) / bend, bend * u]), u
+
+
+def energies(phase, period):
+    """U, injection and dissipation with dU/dt = injection - dissipation."""
+    a = 4 * np.pi * phase
+    injection = 2000 + 500 * np.sin(a)
+    return 3 + 0.3 * np.cos(a), injection, injection + 0.3 * np.sin(a) * 4 * np.pi / period
+
+
+def growth_rate(above):
+    """A smooth growth rate, by F - F**."""
+    return 6.9 * above * np.exp(above / 60)
+
+
+def make_view(axes, statuses, *, stored=("shapes", "samples"), name="fake.h5", as_list=False, hopf=None):
+    """A result as the task writes it, whose amplitude depends on F and gamma1; axes in the order of NAMES.
+
+    hopf gives F** from the five parameters, and the amplitude follows its law exactly; without it the rod has
+    no Hopf point.
+    """
+    table = np.meshgrid(*axes, indexing="ij") if not as_list else [np.asarray(a, float) for a in axes]
+    shape = table[0].shape
+    status = np.array(statuses, "i1").reshape(shape)
+    v = {n: np.asarray(a, float) for n, a in zip(NAMES, axes, strict=True)} | {"status": status}
+    if as_list:
+        v["point"] = np.arange(shape[0])
+    size = np.sqrt(table[0]) / 8 / (1 + table[4])
+    v |= {"linear_growth_rate": np.ones(shape), "linear_frequency": np.full(shape, 110.0)}
+    if hopf:
+        threshold = np.minimum(hopf(*table), 1e3)
+        v["linear_growth_rate"] = growth_rate(table[0] - threshold)
+        size = np.sqrt(np.clip(table[0] / threshold - 1, 0, None)) / (1 + table[4])
+    period = np.vectorize(lambda g: PERIODS.get(g, 0.03))(table[4])
+    points = list(zip(size.ravel(), period.ravel(), strict=True))
+    kept = np.where(np.isin(status, (0, UNSTABLE)), 1.0, np.nan)
+    v |= {"period": period * kept, "tip_y_max": size * kept}
+    v |= {"tip_x_min": (0.9 - size) * kept, "tip_x_max": (0.9 + size) * kept}
+    v |= {"injection_mean": 2000 * kept, "energy_imbalance": 1e-9 * kept}
+    phase, few = np.arange(SAMPLES) / SAMPLES, np.arange(SHAPES) / SHAPES
+
+    def fill(names, arrays):
+        for i, key in enumerate(names):
+            v[key] = np.array([a[i] for a in arrays]).reshape(*shape, *np.shape(arrays[0][i]))
+
+    if "samples" in stored:
+        fill(("energy", "injection", "dissipation"), [energies(phase, T) for _, T in points])
+        fill(("tip_x", "tip_y", "tip_theta"), [arm(phase, s)[0][..., -1] for s, _ in points])
+    if "shapes" in stored:
+        fill(("shape_x", "shape_y", "shape_theta"), [arm(few, s)[0] for s, _ in points])
+        v["u"] = arm(few, 1.0)[1]
+    return View(Path(name), {"task": "limit_cycle", "title": "two $ arms"}, v, NAMES, MORE_FLAGS, 0)
+
+
+OPTIONS = {"harmonics": 8, "samples": SAMPLES, "shapes": SHAPES, "nodes": 21, "transient": 0, "time": "tau2"}
+
+
+def store(view, path, **options):
+    """Writes what a view holds into a file as the task lays it out; options are those of limit_cycle."""
+    config = {"task": "limit_cycle", "limit_cycle": OPTIONS | options}
+    flags = tuple(item for item in view.flags.items() if item[0] >= 0)
+    layout = layout_of(config)
+    columns = tuple(np.asarray(view.variables[name], float) for name in layout.parameters)
+    points = Points(layout.parameters, columns, view.is_grid)
+    create_file(path, Plan(points, layout, {}, (), config, {"task": "limit_cycle", "title": "arms"}, flags))
+    with h5py.File(path, "r+") as file:
+        for name in view.variables.keys() - {*NAMES, "point"}:
+            file[name][...] = view.variables[name]

@@ -1,0 +1,187 @@
+"""The tip from the start to the cycle: a real motion of the rod, whatever becomes of it."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from known_cycles import make_view
+from scipy.integrate import solve_ivp
+
+from rodsweep.errors import InputError
+from rodsweep.model.rod import Rod
+from rodsweep.post.figures import draw
+from rodsweep.post.figures.cycle.portrait import draw_portrait
+from rodsweep.post.figures.cycle.transient import draw_transients
+from rodsweep.post.figures.limit_cycle import figure_name
+from rodsweep.post.figures.request import FigureRequest
+from rodsweep.solve.cycle import transient
+from rodsweep.solve.cycle.limit_cycle import CyclePoint, CycleRequest, _beam_and_form, solve_cycle
+from rodsweep.solve.motion.integrator import RELAXATION_SHARE
+from rodsweep.solve.motion.leading_mode import leading_mode
+
+SOFT = (1e4, 1e2, 1e-2, 1.0)
+STRETCHABLE = (200.0, 1e4, 1e-4, 1.0)
+COUNT = 1000
+
+
+@cache
+def followed(F, rod=SOFT, amplitude=0.01, count=COUNT):
+    """A rod whose transient is stored, once for all tests."""
+    return solve_cycle(CyclePoint(F, *rod), CycleRequest(1e-6, amplitude, 3, 0, 0, 0, 400, transient=count))
+
+
+def test_transient_begins_at_the_start_and_ends_at_the_cycle_at_equal_times():
+    c = followed(50.0)
+    time, x, y, theta = c.transient
+    assert c.transient.shape == (4, COUNT)
+    assert np.diff(time) == pytest.approx(time[-1] / (COUNT - 1), rel=1e-9)
+    assert (time[0], x[0], y[0]) == pytest.approx((0.0, 1 - 50 / 1e4, 0.01), abs=1e-3)
+    last = time > time[-1] - c.measures.period
+    ends = (x[last].min(), x[last].max(), y[last].max(), theta[last].max())
+    m = c.measures
+    assert ends == pytest.approx((m.tip_x_min, m.tip_x_max, m.tip_y_max, m.tip_theta_max), rel=2e-3)
+
+
+def test_transient_is_the_motion_that_another_integrator_finds():
+    """SciPy's LSODA on the same compiled equations, over the first two periods."""
+    c = followed(60.0, STRETCHABLE, 0.1)
+    time, *tip = c.transient[:, c.transient[0] < 2 * c.measures.period]
+    beam, _ = _beam_and_form(Rod(60.0, *STRETCHABLE[:3]), 1.0)
+    z = 0.1 * leading_mode(beam).z.real
+    atol = 1e-7 * np.abs(z).max()
+    found = solve_ivp(
+        lambda _, z: beam.rate(z), (0.0, time[-1]), z, "LSODA", time, rtol=1e-7, atol=atol,
+        jac=lambda _, z: beam.jacobian(z),
+    )  # fmt: skip
+    assert np.abs(beam.tip(found.y.T) - tip).max() < 1e-5
+
+
+def test_a_stored_motion_has_no_jumps():
+    """It grows so slowly, by a few percent a period, that without being stored it would be scaled."""
+    c = followed(27.6, amplitude=0.03, count=20_000)
+    assert c.linear_growth_rate * c.measures.period < transient.SLOW_GROWTH / 2
+    period = 2 * np.pi / c.linear_frequency
+    time, _, y, _ = c.transient
+    inner = (np.abs(y[1:-1]) > np.abs(y[:-2])) & (np.abs(y[1:-1]) >= np.abs(y[2:]))
+    peaks = np.abs(y[1:-1])[inner][1:]
+    assert len(peaks) > 10
+    growth = np.exp(c.linear_growth_rate * period / 2)
+    assert ((peaks[1:] / peaks[:-1]) < growth * 1.01).all()
+    assert np.abs(np.diff(y)).max() < 1.5 * y.max() * 2 * np.pi / period * time[1]
+    assert peaks[-1] == pytest.approx(c.measures.tip_y_max, rel=0.03)
+
+
+@pytest.mark.parametrize("F, rod, amplitude", [(50.0, SOFT, 0.01), (28.0, SOFT, 0.05), (10.0, SOFT, 0.01)])
+def test_storing_the_transient_does_not_change_the_fate(F, rod, amplitude):
+    with_it = followed(F, rod, amplitude)
+    without = solve_cycle(CyclePoint(F, *rod), CycleRequest(1e-6, amplitude, 3, 0, 0, 0, 400))
+    assert with_it.status == without.status
+    assert with_it.measures.period == pytest.approx(without.measures.period, rel=1e-6, nan_ok=True)
+    assert without.transient is None
+
+
+def test_a_rod_that_is_known_to_straighten_is_followed_all_the_same():
+    quick = solve_cycle(CyclePoint(27.0, *SOFT), CycleRequest(1e-6, 0.01, 3, 0, 0, 0, 400))
+    c = followed(27.0)
+    assert quick.periods == 0 < c.periods
+    assert (c.status, c.message) == (quick.status, quick.message)
+    assert c.status.name == "straight"
+    time, _, y, _ = c.transient
+    period = 2 * np.pi / c.linear_frequency
+    later = np.interp(time[time + period <= time[-1]] + period, time, y)
+    factor = np.linalg.norm(later) / np.linalg.norm(y[: len(later)])
+    assert factor == pytest.approx(np.exp(c.linear_growth_rate * period), rel=0.02)
+
+
+def test_a_rod_that_leaves_the_model_has_its_transient():
+    """To where it is crushed, in the run after the thousandth of a period in which the start relaxes."""
+    c = followed(195.0, STRETCHABLE, 0.2)
+    assert c.status.name == "left_the_model"
+    assert np.isfinite(c.transient).all()
+    assert c.transient[0, -1] * c.linear_frequency / (2 * np.pi) > 1.5 * RELAXATION_SHARE
+
+
+def test_a_rod_that_does_not_settle_in_time_has_its_transient():
+    c = solve_cycle(CyclePoint(30.0, *SOFT), CycleRequest(1e-6, 1e-7, 3, 0, 0, 0, 3, transient=50))
+    assert c.status.name == "not_settled"
+    assert c.transient[2, 0] == pytest.approx(1e-7, rel=1e-3)
+    assert np.isfinite(c.transient).all()
+
+
+def test_a_cycle_predicted_from_its_neighbour_has_no_transient():
+    request = CycleRequest(1e-6, 0.1, 3, 0, 0, 0, 400, start="neighbour", transient=50)
+    first = solve_cycle(CyclePoint(50.0, *SOFT), request, None, "F")
+    second = solve_cycle(CyclePoint(51.0, *SOFT), request, first.neighbour, "F")
+    assert first.transient is not None
+    assert (second.status.name, second.transient) == ("cycle", None)
+
+
+# --- the figure -------------------------------------------------------------------------------------------
+
+TWO = ([50.0], [1e4], [1e2], [1e-2], [1.0, 0.5])
+
+
+def view_with_transients(statuses=(0, 1), there=(True, True), **words):
+    view = make_view(TWO, statuses, **words)
+    time = np.linspace(0, 0.1, 200) * np.where(there, 1.0, np.nan)[:, None]
+    shape = (1, 1, 1, 1, 2, 200)
+    y = 0.3 * np.sin(300 * time) * np.array([[1.0], [0.5]])
+    values = {"time": time, "x": 1 - y**2, "y": y, "theta": 2 * y}
+    view.variables.update({f"transient_{name}": v.reshape(shape) for name, v in values.items()})
+    return view
+
+
+def test_transients_are_drawn_of_points_with_and_without_a_cycle():
+    view = view_with_transients()
+    figure, shown = draw_transients(view, ())
+    assert shown == "the tip from the start on"
+    upper, lower = figure.axes[:2], figure.axes[2:4]
+    for column in (0, 1):
+        stored = {n: view.variables[f"transient_{n}"][0, 0, 0, 0, column] for n in ("time", "x", "y")}
+        for axes, name in ((upper[column], "x"), (lower[column], "y")):
+            assert np.array_equal(axes.lines[0].get_xdata(), stored["time"])
+            assert np.array_equal(axes.lines[0].get_ydata(), stored[name])
+    y_max = float(view.variables["tip_y_max"].ravel()[0])
+    levels = [[line.get_ydata()[0] for line in axes.lines if line.get_ls() == "--"] for axes in lower]
+    assert levels == [[y_max, -y_max], []]
+    assert "straight" in upper[1].get_title()
+
+
+def test_portrait_shows_how_the_beating_emerges_where_all_its_cycles_have_a_transient():
+    for there, emerges in (((True, True), True), ((True, False), False)):
+        view = view_with_transients((0, 0), there)
+        figure, shown = draw_portrait(view, ())
+        assert ("from the start on" in shown) == emerges
+        points = len(figure.axes[2].lines[0].get_xdata())
+        assert points == (200 if emerges else 801)
+
+
+@pytest.mark.parametrize(
+    ("view", "points", "what"),
+    [
+        (view_with_transients((0, 0)), (), "cycle"),
+        (view_with_transients((1, 1)), (), "transient"),
+        (view_with_transients((0, 1)), (), "cycle"),
+        (view_with_transients((0, 1)), (2,), "transient"),
+        (view_with_transients((0, 0), stored=()), (), "transient"),
+        (view_with_transients((0, 0), stored=()), (1,), "transient"),
+    ],
+)
+def test_transients_are_suggested_where_there_are_no_shapes_to_draw(tmp_path, view, points, what):
+    assert figure_name(FigureRequest([view], tmp_path / "f.png", points=points)) == what
+    draw(view, tmp_path / "f.png", points=points)
+
+
+@pytest.mark.parametrize(
+    ("view", "points", "message"),
+    [
+        (make_view(TWO, [0, 0]), (), r"holds no transient_time; run with limit_cycle.transient > 0"),
+        (view_with_transients((0, 0), (True, False)), (2,), "no transient, its motion was not followed"),
+        (view_with_transients((0, 0), (False, False)), (), "holds no transient that could be drawn"),
+        (view_with_transients(), (3,), "points 1 to 2"),
+    ],
+)
+def test_transients_that_are_not_there_are_refused_in_one_sentence(tmp_path, view, points, message):
+    with pytest.raises(InputError, match=message) as refused:
+        draw(view, tmp_path / "f.png", what="transient", points=points)
+    assert len(str(refused.value).splitlines()) == 1
