@@ -10,7 +10,7 @@ from rodsweep.discretization.mesh import mesh
 from rodsweep.discretization.stress_form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
-from rodsweep.solve.cycle.hopf_start import orbit_from_hopf
+from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.measures import CyclePath
 from rodsweep.solve.cycle.orbit import at_orbit, newton
 from rodsweep.solve.cycle.refinement import RefinedCycle, mesh_of, multipliers_of, refined_cycle
@@ -57,7 +57,7 @@ def cycle_of(case) -> RefinedCycle | None:
     if hopf is None or hopf * case.beyond >= case.k1:
         return None
     rod = Rod(hopf * case.beyond, case.k1, case.k2, case.gamma3)
-    start = orbit_from_hopf(StressForm(rod, case.gamma1, mesh(1, 16)))
+    start = orbit_from_hopf(StressForm(rod, case.gamma1, mesh(1, 16)), hopf_point_below(rod))
     return refined_cycle(start, case.accuracy)
 
 

@@ -81,16 +81,12 @@ def _bisected(rod: Rod, low: float, high: float) -> Onset:
     return Onset(middle, w.imag)
 
 
-def orbit_from_hopf(form: StressForm) -> Orbit:
-    """The orbit of a rod on the branch from the Hopf point below its force, on a coarse mesh.
+def orbit_from_hopf(form: StressForm, hopf: Onset) -> Orbit:
+    """The orbit of a rod on the branch from a Hopf point below its force, on a coarse mesh.
 
-    Raises Unsolvable where there is none: no Hopf point, a branch that goes to smaller forces, or one that
-    cannot be followed.
+    Raises Unsolvable where there is none: the branch goes to smaller forces, or cannot be followed.
     """
     rod = form.rod
-    hopf = hopf_point_below(rod)
-    if hopf is None:
-        raise Unsolvable(f"the straight rod does not start to oscillate at any force below {rod.F:g}")
     at = replace(rod, F=hopf.F)
     normal = accurate_normal_form(at, form.gamma1, 1j * hopf.frequency, NORMAL_FORM_ACCURACY)
     if not normal.amplitude > 0:

@@ -204,14 +204,19 @@ def _solve(point: CyclePoint, request: CycleRequest, start: Array | None, along:
 
 def _from_hopf(form: StressForm, request: CycleRequest, straight: Cycle) -> Cycle:
     """The cycle on the branch from the Hopf point; straight: the outcome where there is none below."""
-    if hopf_point_below(form.rod) is None and straight.linear_growth_rate < 0:
-        return replace(straight, message="no Hopf point at any smaller force")
     try:
-        found = refined_cycle(orbit_from_hopf(form), request.accuracy)
+        hopf = hopf_point_below(form.rod)
+        if hopf is None:
+            stays = straight.linear_growth_rate < 0
+            status = CycleStatus.straight if stays else CycleStatus.not_settled
+            return replace(straight, status=status, message="no Hopf point at any smaller force")
+        found = refined_cycle(orbit_from_hopf(form, hopf), request.accuracy)
     except Unsolvable as why:
         return replace(straight, status=CycleStatus.not_settled, message=str(why))
     status, message = CycleStatus.cycle if found.stable else CycleStatus.unstable, ""
-    if not settled_by(found, request.accuracy):
+    if found.measures.least_stretch <= 0:
+        status, message = CycleStatus.left_the_model, f"h1 = {found.measures.least_stretch:.3g} on the cycle"
+    elif not settled_by(found, request.accuracy):
         status, message = CycleStatus.not_settled, "the cycle is less accurate than asked for"
     elif found.stable is None:
         status, message = CycleStatus.not_settled, f"its multiplier is 1 within {found.margin:.0e}"

@@ -28,8 +28,6 @@ OVERSAMPLING = 4
 """Samples for each node in time, of which extrema are sought."""
 TINY = 1e-30
 """Complex step of a velocity."""
-MOST_HARMONICS = 100
-"""Harmonics whose amplitudes are stored, at most."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -8,6 +8,7 @@ the same content however often it was interrupted.
 """
 
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ import numpy as np
 from ...arrays import Array
 from ...discretization.mesh import mesh
 from ...discretization.stress_form import StressForm
+from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ..point import Unsolvable
 from .orbit import Change, Converged, Orbit, at_orbit, coordinate, newton, relative_change
@@ -208,9 +210,9 @@ def in_steps(start: Followed, form: StressForm, name: str, tolerance: float) -> 
 
 def with_coordinate(form: StressForm, name: str, at: float) -> StressForm:
     """The rod with another value of a parameter, given by its coordinate."""
-    value = 1 / at if coordinate(name, 2.0) != 2.0 and at else at
-    if coordinate(name, 2.0) != 2.0 and not at:
-        value = float("inf")
+    value = at
+    if PARAMETERS[name].by_compliance:
+        value = 1 / at if at else inf
     if name == "gamma1":
         return replace(form, gamma1=value)
     return replace(form, rod=replace(form.rod, **{name: value}))
