@@ -285,10 +285,10 @@ def test_at_equal_error_auto_has_its_fastest_setting():
     own = [of(OWN, "1e-06", 4.0, 1e-8), of(OWN, "1e-07", 5.0, 1e-9)]
     peers = [of(AUTO, "a", 40.0, 9e-7), of(AUTO, "b", 10.0, 2e-6), of(AUTO, "c", 80.0, 1e-7)]
     text = ratio_table([*own, *peers])
-    assert "| 1e-06 | 4.0 | 40.0 | a | 10.0 |" in text
-    assert "| 1e-07 | 5.0 | 80.0 | c | 16.0 |" in text
+    assert "| 1e-06 | 4.0 | 1e-06 | 40.0 | a | 10.0 |" in text
+    assert "| 1e-07 | 4.0 | 1e-06 | 80.0 | c | 20.0 |" in text
     failed = judged(None, of(AUTO, "d", 1.0, np.inf), RuntimeError("lost"))
-    assert "| 1e-07 | 5.0 |  |  |  |" in ratio_table([*own, failed])
+    assert "| 1e-07 | 4.0 | 1e-06 |  |  |  |" in ratio_table([*own, failed])
     assert "| AUTO-07p | d | failed (lost) |" in cycle_table([failed])
 
 

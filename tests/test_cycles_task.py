@@ -8,18 +8,20 @@ import h5py
 import numpy as np
 import pytest
 import xarray
+from known_cycles import TORUS, make_view
 from ranks import wait_for_end
 
 from rodsweep.cli.checking import describe_job
 from rodsweep.cli.job import make_job
 from rodsweep.errors import InputError
 from rodsweep.post.summary import show_summary
+from rodsweep.post.summary.limit_cycle import limit_cycle_summary
 from rodsweep.results.file.creation import Plan
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.view import read_view
 from rodsweep.results.run.checkpoints import CHECKPOINTS, Checkpoints
 from rodsweep.results.run.journal import Journal, drop_files
-from rodsweep.solve.cycle.refinement import CycleErrors
+from rodsweep.solve.cycle.cycle_errors import CycleErrors
 from rodsweep.sweep.chains import Chains, ChainSolver
 from rodsweep.sweep.ranges import IndexSet
 from rodsweep.sweep.stop import StopRequest
@@ -224,12 +226,12 @@ def test_check_says_what_is_stored_and_in_which_chains(tmp_path, capsys):
 
 NUMBERS = (
     "period", "frequency", "linear_growth_rate", "linear_frequency", "tip_x_min", "tip_x_max", "tip_y_max",
-    "tip_theta_max", "period_error", "amplitude_error", "injection_mean", "injection_rms", "dissipation_mean",
-    "dissipation_rms", "energy_imbalance", "multiplier", "multiplier_error", "trivial_multiplier_error",
-    "least_stretch",
+    "tip_theta_max", "period_error", "amplitude_error", "extrema_error", "injection_mean", "injection_rms",
+    "dissipation_mean", "dissipation_rms", "energy_imbalance", "multiplier", "multiplier_error",
+    "trivial_multiplier_error", "least_stretch",
 )  # fmt: skip
 OF_THE_CYCLE = ("linear_growth_rate", "linear_frequency", "multiplier", "trivial_multiplier_error")
-ERRORS = ("period_error", "amplitude_error", "multiplier_error")
+ERRORS = ("period_error", "amplitude_error", "extrema_error", "multiplier_error")
 MEASURES = tuple(name for name in NUMBERS if name not in OF_THE_CYCLE + ERRORS)
 
 
@@ -263,14 +265,14 @@ def nothing(status=1, **sizes):
     found = cycle(0, **sizes)
     for name in vars(found.measures):
         setattr(found.measures, name, np.nan)
-    found.errors = CycleErrors(np.nan, np.nan, np.nan)
+    found.errors = CycleErrors(np.nan, np.nan, np.nan, np.nan)
     found.status, found.multiplier, found.trivial_multiplier_error = status, np.nan, np.nan
     found.tip = found.energy = found.shape = found.multipliers = found.transient = None
     return found
 
 
 STORED = "harmonics: 3, samples: 4, shapes: 2, nodes: 5, transient: 6, time: tau1"
-WORDS = ("cycle", "straight", "not_settled", "left_the_model", "failed", "unstable")
+WORDS = ("cycle", "straight", "not_settled", "left_the_model", "failed", "unstable", "torus")
 FLAGS = tuple(enumerate(WORDS))
 
 
@@ -378,9 +380,18 @@ def test_show_tells_ranges_and_worst_errors(tmp_path, capsys):
         "period: 2 to 8 tau2, 40 to 320 tau1",
         "tip: largest y 7 L",
         "multiplier: 0.25",
-        "worst relative errors: period 9.0e+00, amplitude 1.0e+01, energy balance 1.5e+01",
+        "worst relative errors: period 9.0e+00, amplitude 1.0e+01, other extrema 1.1e+01",
+        "energy balance 1.6e+01",
     ):
         assert words in text, words
+
+
+def test_show_tells_the_multipliers_of_the_cycles_that_tori_surround():
+    view = make_view(([50.0, 60.0], [1e4], [1e2], [1e-2], [1.0]), [1, TORUS])
+    view.variables["multiplier"] = np.array([np.nan, 1.25]).reshape(view.variables["status"].shape)
+    text = "\n".join(limit_cycle_summary(view, view.variables["status"] >= 0))
+    assert "1 torus" in text
+    assert "tori: the cycles that they surround have multipliers 1.25" in text
 
 
 def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
@@ -536,6 +547,7 @@ from types import ModuleType, SimpleNamespace
 class Errors:
     period_error: float
     amplitude_error: float
+    extrema_error: float
     multiplier_error: float
 
 class CycleStatus(IntEnum):
@@ -567,7 +579,7 @@ def solve_cycle(point, request, start=None, along=None):
     measures = SimpleNamespace(
         **dict.fromkeys(names, memory), period=period, frequency=1 / period, harmonic_amplitude=amplitudes
     )
-    errors = Errors(memory, memory, memory)
+    errors = Errors(memory, memory, memory, memory)
     return SimpleNamespace(
         linear_growth_rate=memory, linear_frequency=memory, multiplier=memory, multipliers=None,
         trivial_multiplier_error=memory, status=status, measures=measures, errors=errors, periods=3,
@@ -731,4 +743,4 @@ def test_statuses_of_a_cycle_are_those_of_the_file():
     from rodsweep.solve.cycle.status import CycleStatus
 
     assert tuple((int(status), status.name) for status in CycleStatus) == FLAGS
-    assert [s.name for s in CycleStatus if s.succeeded] == ["cycle", "straight", "unstable"]
+    assert [s.name for s in CycleStatus if s.succeeded] == ["cycle", "straight", "unstable", "torus"]

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.basis import differentiation, interpolation
+from rodsweep.discretization.mesh import configuration, mesh
 from rodsweep.discretization.pencil import assemble
 from rodsweep.discretization.quadrature import gauss, gauss_lobatto
 from rodsweep.discretization.resolution import LARGEST_ORDER, finer, required_order, resolution_for
+from rodsweep.discretization.tip_motion import tip_matrices, tip_motion
 from rodsweep.model.rod import Rod
 
 
@@ -82,3 +84,15 @@ def test_resolution_grows_with_waves_and_digits():
         assert resolution.unknowns > last
         assert finer(resolution).unknowns >= 1.2 * resolution.unknowns
         last = resolution.unknowns
+
+
+@pytest.mark.parametrize(("elements", "order"), [(1, 15), (3, 6)])
+def test_the_compiled_motion_of_the_tip_is_that_of_the_whole_shape(elements, order):
+    grid, rng = mesh(elements, order), np.random.default_rng(5)
+    strains, rates = rng.standard_normal((2, 3, 4, grid.nodes + 1))
+    tip, velocity = np.empty((2, 4, 3))
+    tip_motion(strains, rates, tip_matrices(elements, order), tip, velocity)
+    tiny = 1e-30
+    exact = configuration(grid, strains + 1j * tiny * rates, np.zeros(3))[..., -1].T
+    assert np.abs(tip - exact.real).max() < 1e-13 * np.abs(exact.real).max()
+    assert np.abs(velocity - exact.imag / tiny).max() < 1e-13 * np.abs(exact.imag / tiny).max()

@@ -184,3 +184,13 @@ def test_filament(command):
         assert file["period"][here][2] == pytest.approx(period, rel=1e-8)
         assert file["tip_y_max"][here][2] == pytest.approx(height, rel=1e-6)
         assert file["least_stretch"][here][1:].tolist() == [1, 1]
+
+
+def test_map_of_beating(command):
+    period, height, hopf = stated("beating_map")[-3:]
+    with run(command, "beating_map", "parameters.F=[27, 49.5, 50]", "parameters.k2=[100, 110]") as file:
+        here = (slice(None), 0, 0, 0, 0)
+        assert 27 < hopf < 49.5
+        assert file["status"][here].tolist() == [1, 0, 0]
+        assert file["period"][here][2] == pytest.approx(period, rel=1e-4)
+        assert file["tip_y_max"][here][2] == pytest.approx(height, rel=1e-4)

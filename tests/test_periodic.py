@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.periodic import (
+    MOST_BY_MATRIX,
     coefficients,
     derivative,
     hermite_coefficients,
@@ -55,14 +56,29 @@ def test_the_highest_harmonic_of_an_even_number_of_samples_is_a_cosine():
     assert derivative(alternating) == pytest.approx(np.zeros(4), abs=1e-14)
 
 
-def test_values_and_slopes_tell_twice_as_many_harmonics_as_values():
-    m, k = 9, np.arange(10)
-    rng = np.random.default_rng(3)
-    exact = rng.standard_normal((10, 2)) + 1j * rng.standard_normal((10, 2))
+@pytest.mark.parametrize("m", [9, MOST_BY_MATRIX, MOST_BY_MATRIX + 1])
+def test_values_and_slopes_tell_twice_as_many_harmonics_as_values(m):
+    k, rng = np.arange(m + 1), np.random.default_rng(3)
+    exact = rng.standard_normal((m + 1, 2)) + 1j * rng.standard_normal((m + 1, 2))
     exact[0], exact[m] = exact[0].real, 1j * exact[m].imag  # at the nodes harmonic m shows as a sine only
     waves = np.exp(2j * np.pi * np.outer(np.arange(m) / m, k))
     values, slopes = (waves @ exact).real, (waves @ (2j * np.pi * k[:, None] * exact)).real
     found = hermite_coefficients(values, slopes)
     assert np.abs(found - exact).max() < 1e-13 * np.abs(exact).max()
-    t = np.arange(40) / 40
-    assert samples_of(found, 40) == pytest.approx(sampled_at(exact, t), abs=1e-12)
+    for count in (8, 4 * m):
+        t = np.arange(count) / count
+        assert samples_of(found, count) == pytest.approx(sampled_at(exact, t), abs=1e-11)
+
+
+def test_maxima_are_those_of_dense_samples():
+    """Of several columns, from four samples for each harmonic; the largest dense one is hardly below."""
+    rng = np.random.default_rng(7)
+    decay = 0.6 ** np.arange(12)[:, None]
+    c = decay * (rng.standard_normal((12, 5)) + 1j * rng.standard_normal((12, 5)))
+    dense = samples_of(c, 40000).max(axis=0)
+    beyond = maxima(c, samples_of(c, 48)) - dense
+    assert np.all(beyond >= -1e-13) and np.all(beyond < 1e-6)
+
+
+def test_a_constant_is_its_own_maximum():
+    assert maxima(np.array([[2.0 + 0j]]), np.full((4, 1), 2.0)) == pytest.approx([2.0], rel=1e-15)

@@ -13,9 +13,12 @@ from typing import Any
 from ...arrays import Array
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...solve.cycle.limit_cycle import Cycle, CyclePoint, CycleStatus, solve_cycle
+from ...solve.cycle.linearisation import Linearisation
 from ...solve.cycle.measures import CyclePath
-from ...solve.cycle.orbit import Linearisation, Orbit, newton
-from ...solve.cycle.refinement import mesh_of, refine
+from ...solve.cycle.newton import newton
+from ...solve.cycle.orbit import Orbit
+from ...solve.cycle.orbit_mesh import mesh_of
+from ...solve.cycle.refinement import refine
 from ..study import Contender, Entry, Measurement, grouped, middle, table, tournament
 from .tracking import EXACT, asked, orbit_of
 
@@ -33,6 +36,8 @@ QUICK_RODS = (RODS[2],)
 SWEPT = NONLINEAR_PARAMETERS[:2]
 STEP = 1.01
 """Of the axis from one point to the next, a factor."""
+BEFORE = 6
+"""Points of the sweep before the one that is timed: its mesh is chosen by then."""
 ACCURACY, REFERENCE_ACCURACY = 1e-7, 1e-11
 SWEEP, COLD = "sweep over ", "cold, "
 COLD_STARTS = {"leading mode": "mode", "Hopf point": "hopf"}
@@ -62,7 +67,7 @@ class ExactCycle:
         form = self.orbit.form
         near = replace(self.orbit, form=replace(form, rod=replace(form.rod, F=F)))
         orbit = newton(near, EXACT).orbit
-        return ExactCycle(orbit, orbit.period, CyclePath(orbit).extrema()["tip_y_max"])
+        return ExactCycle(orbit, orbit.period, CyclePath(orbit).extrema["tip_y_max"])
 
     def errors_of(self, period: float, tip_y_max: float) -> dict[str, float]:
         """Relative errors by their names in the tables."""
@@ -82,13 +87,14 @@ class SweptRod:
 
 
 def swept(point: CyclePoint, accuracy: float) -> SweptRod:
-    """The rod with its neighbours, which are points of a sweep themselves, each with one before it."""
-    neighbours = {}
+    """The rod with its neighbours, which are points of a sweep themselves, with others before them."""
+    neighbours: dict[str, Array | None] = {}
     for axis in SWEPT:
-        first, second = (replace(point, **{axis: getattr(point, axis) / STEP**k}) for k in (2, 1))
-        start = solve_cycle(first, asked(accuracy), along=axis)
-        before = solve_cycle(second, asked(accuracy), start.neighbour, axis)
-        neighbours[axis] = settled(before).neighbour
+        before: Array | None = None
+        for k in range(BEFORE, 0, -1):
+            there = replace(point, **{axis: getattr(point, axis) / STEP**k})
+            before = settled(solve_cycle(there, asked(accuracy), before, axis)).neighbour
+        neighbours[axis] = before
     here = solve_cycle(point, asked(accuracy), neighbours[SWEPT[0]], SWEPT[0])
     return SweptRod(point, ExactCycle.near(orbit_of(here)), neighbours)
 

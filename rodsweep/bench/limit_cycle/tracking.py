@@ -22,7 +22,8 @@ from ...discretization.beam import Beam
 from ...discretization.mesh import mesh
 from ...solve.cycle.limit_cycle import Cycle, CyclePoint, CycleRequest, solve_cycle
 from ...solve.cycle.neighbour import Neighbour
-from ...solve.cycle.orbit import Orbit, newton
+from ...solve.cycle.newton import newton
+from ...solve.cycle.orbit import Orbit
 from ...solve.cycle.transient import angle_weights
 from ...solve.motion.integrator import RunLimit, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme

@@ -20,7 +20,7 @@ from ...results.layouts.limit_cycle import (
 )
 from ...results.layouts.variables import Variable
 from ...sweep.chains import Chains, State
-from ...sweep.estimate import CYCLE_SECONDS, Estimate
+from ...sweep.estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, Estimate
 from ...sweep.grid import refuse_outside
 from .parts import count_of, rod_parts
 from .protocol import Part, Solver, Task
@@ -103,7 +103,9 @@ class LimitCycleTask(Task):
         return what, True, f"{each} a point{nodes}, {self.points.count * each} in all: {8e-6 * values:.3g} MB"
 
     def cost(self) -> Estimate:
-        return Estimate(self.points.count * CYCLE_SECONDS)
+        first = self.chains.count if self.chains else self.points.count
+        rest = self.points.count - first
+        return Estimate(first * CYCLE_SECONDS + rest * CHAINED_CYCLE_SECONDS)
 
     def solver(self) -> Solver:
         from ...solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle, warm_up

@@ -26,8 +26,13 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> list[str]:
     rate, frequency = v["linear_growth_rate"][done], v["linear_frequency"][done]
     lines.append(f"straight rod: leading growth rate {span(rate)}, frequency {span(frequency)}")
     lines += stability_lines(view)
-    cycle = next((value for value, word in view.flags.items() if word == "cycle"), None)
-    beats = done & (v["status"] == cycle)
+    values = {word: value for value, word in view.flags.items()}
+    on_torus = done & (v["status"] == values.get("torus"))
+    if on_torus.any():
+        lines.append(
+            f"tori: the cycles that they surround have multipliers {span(v['multiplier'][on_torus])}"
+        )
+    beats = done & (v["status"] == values.get("cycle"))
     return [*lines, *_cycle_lines(v, beats)] if beats.any() else lines
 
 
@@ -76,7 +81,8 @@ def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
         f"multiplier: {span(v['multiplier'][beats])}; returns waited for: "
         f"{span(v['periods'][beats].astype(float))}; least stretch: {span(v['least_stretch'][beats])}",
         f"worst relative errors: period {_worst(v['period_error'][beats])}, amplitude "
-        f"{_worst(v['amplitude_error'][beats])}, energy balance {_worst(v['energy_imbalance'][beats])}, "
+        f"{_worst(v['amplitude_error'][beats])}, other extrema "
+        f"{_worst(v['extrema_error'][beats])}, energy balance {_worst(v['energy_imbalance'][beats])}, "
         f"multiplier {_worst(v['multiplier_error'][beats])}",
     ]
 

@@ -29,15 +29,23 @@ from ..backend.products import product, square_product
 
 PANEL = 12
 """Columns that `invert` treats one by one before it updates the others by a product."""
+LEAST_PIVOT = 0.1
+"""Pivots smaller than this share of the largest in their column are exchanged for it."""
 
 
 class Semidiscrete(NamedTuple):
-    """The rod on its mesh and the method in time: mass (n,), differentiation (s, s + 1)."""
+    """The rod on its mesh, the method in time, and how an orbit closes.
+
+    mass (n,); differentiation (s, s + 1); signs: what the state is multiplied with at the end, (n,); parts:
+    of the period that are equal but for the signs, 1 or 2.
+    """
 
     parameters: BeamParameters
     matrices: NodeMatrices
     mass: Array
     differentiation: Array
+    signs: Array
+    parts: float
 
 
 class Factors(NamedTuple):
@@ -45,10 +53,12 @@ class Factors(NamedTuple):
 
     blocks: (K, s, s, n, n), inverses of the pivots on the diagonal, multipliers below, what is left above;
     its first row and column but the pivot are diagonal matrices and not stored. propagator: P, (n, n).
+    inverse: of the matrix that is left for start and period, (n + 1, n + 1).
     """
 
     blocks: Array
     propagator: Array
+    inverse: Array
 
 
 @compiled_for_vectors
@@ -64,19 +74,22 @@ def equations(x: Array, F: Array, V: Array, G: Array, p: Semidiscrete) -> None:
 
 
 @compiled_for_vectors
-def residuals(start: Array, stages: Array, h: float, p: Semidiscrete, slopes: Array, out: Array) -> None:
-    """h F(x_i) - sum_j d_ij M x_j into out, and F(x_i) into slopes; both as stages, (K, s, n)."""
-    K, s, n = stages.shape
+def residuals(points: Array, h: float, p: Semidiscrete, slopes: Array, out: Array) -> None:
+    """h F(x_i) - sum_j d_ij M x_j into out, and F(x_i) into slopes; both as stages, (K, s, n).
+
+    points: the start and the stages one after the other, (1 + K s, n).
+    """
+    K, s, n = out.shape
     V, G = np.empty((3, len(p.matrices.weights))), np.empty((3, len(p.matrices.weights)))
     d = p.differentiation
     for k in range(K):
-        first = start if k == 0 else stages[k - 1, s - 1]
+        here = points[k * s : (k + 1) * s + 1]
         for i in range(s):
-            equations(stages[k, i], slopes[k, i], V, G, p)
+            equations(here[i + 1], slopes[k, i], V, G, p)
             for r in range(n):
-                change = d[i, 0] * first[r]
-                for j in range(s):
-                    change += d[i, j + 1] * stages[k, j, r]
+                change = 0.0
+                for j in range(s + 1):
+                    change += d[i, j] * here[j, r]
                 out[k, i, r] = h * slopes[k, i, r] - p.mass[r] * change
 
 
@@ -114,60 +127,79 @@ def _sweep_panel(A: Array, first: int, last: int, pivots: Any, column: Array) ->
     """The steps of Gauss and Jordan for the columns from first to last, within these."""
     n = len(A)
     for k in range(first, last):
-        p = k
-        for i in range(k + 1, n):
-            if abs(A[k, i]) > abs(A[k, p]):
-                p = i
+        row, largest, p = A[k], 0.0, k
+        for i in range(k, n):
+            largest = max(largest, abs(row[i]))
+        if abs(row[k]) < LEAST_PIVOT * largest:
+            for i in range(k, n):
+                if abs(row[i]) == largest:
+                    p = i
         pivots[k] = p
         if p != k:
             for j in range(n):
                 A[j, k], A[j, p] = A[j, p], A[j, k]
-        inverse = 1.0 / A[k, k]
+        inverse = 1.0 / row[k]
         for i in range(n):
-            column[i] = -A[k, i] * inverse
+            column[i] = -row[i] * inverse
         column[k] = inverse - 1.0
         for j in range(first, last):
             if j != k:
                 factor = A[j, k]
                 for i in range(n):
                     A[j, i] += factor * column[i]
-        A[k] = column
-        A[k, k] = inverse
+        for i in range(n):
+            row[i] = column[i]
+        row[k] = inverse
 
 
 @compiled_for_vectors
-def eliminate(stages: Array, h: float, p: Semidiscrete, factors: Factors) -> None:
-    """Newton's matrix at the stages, (K, s, n), into the factors."""
-    K, s, n = stages.shape
+def eliminate(points: Array, h: float, p: Semidiscrete, factors: Factors, columns: Array) -> Array:
+    """Newton's matrix at the points, (1 + K s, n), into the factors.
+
+    columns: right sides, (K, s, columns, n). Returns what they make of the last end where the start stays,
+    (columns, n).
+    """
+    K, s, n = columns.shape[0], columns.shape[1], columns.shape[3]
     size = len(p.matrices.weights)
     V, G, tip, F = np.empty((3, size)), np.empty((3, size)), np.empty((3, n)), np.empty(n)
-    pivots, column, rows = np.empty(n, np.int64), np.empty(n), np.empty((n, PANEL))
-    right, end, product_so_far = np.empty((s, n, n)), np.empty((n, n)), np.empty((n, n))
+    right, end = np.empty((s, n, n)), np.empty((n, n))
+    so_far, ends = np.diag(p.mass), np.zeros(columns.shape[2:])
     for k in range(K):
         B = factors.blocks[k]
         for i in range(s):
-            equations(stages[k, i], F, V, G, p)
-            jacobian(stages[k, i], V, B[i, i], tip, p.parameters, p.matrices)
+            x = points[1 + k * s + i]
+            equations(x, F, V, G, p)
+            jacobian(x, V, B[i, i], tip, p.parameters, p.matrices)
             for r in range(n):
                 for q in range(n):
                     B[i, i, r, q] *= -h
                 B[i, i, r, r] += p.differentiation[i, i + 1] * p.mass[r]
-        invert(B[0, 0], pivots, column, rows)
-        _eliminate_first(B, right, p)
-        for a in range(1, s):
-            invert(B[a, a], pivots, column, rows)
-            for i in range(a + 1, s):
-                square_product(B[i, a], B[a, a], end, 1.0, 0.0)
-                B[i, a] = end
-                for j in range(a + 1, s):
-                    square_product(end, B[a, j], B[i, j], -1.0, 1.0)
-                square_product(end, right[a], right[i], -1.0, 1.0)
+        _eliminate_interval(B, right, p)
+        forward(B, columns[k], p, ends)
         square_product(B[s - 1, s - 1], right[s - 1], end, 1.0, 0.0)
-        product_so_far[:, :] = np.diag(p.mass) if k == 0 else factors.propagator
+        square_product(end, so_far, factors.propagator, 1.0, 0.0)
         for r in range(n):
             for q in range(n):
-                product_so_far[r, q] *= p.mass[r] if k > 0 else 1.0
-        square_product(end, product_so_far, factors.propagator, 1.0, 0.0)
+                so_far[r, q] = p.mass[r] * factors.propagator[r, q]
+    return ends
+
+
+@compiled_for_vectors
+def _eliminate_interval(B: Array, right: Array, p: Semidiscrete) -> None:
+    """The blocks of one interval, (s, s, n, n), of which the diagonal is given; right side for x_0 = M^-1."""
+    s, n = B.shape[0], B.shape[2]
+    pivots, column, rows = np.empty(n, np.int64), np.empty(n), np.empty((n, PANEL))
+    end = np.empty((n, n))
+    invert(B[0, 0], pivots, column, rows)
+    _eliminate_first(B, right, p)
+    for a in range(1, s):
+        invert(B[a, a], pivots, column, rows)
+        for i in range(a + 1, s):
+            square_product(B[i, a], B[a, a], end, 1.0, 0.0)
+            B[i, a] = end
+            for j in range(a + 1, s):
+                square_product(end, B[a, j], B[i, j], -1.0, 1.0)
+            square_product(end, right[a], right[i], -1.0, 1.0)
 
 
 @compiled_for_vectors
@@ -177,21 +209,39 @@ def _eliminate_first(B: Array, right: Array, p: Semidiscrete) -> None:
     d, mass, X = p.differentiation, p.mass, B[0, 0]
     for i in range(1, s):
         for j in range(1, s):
-            if i != j:
-                B[i, j] = 0.0
-                for r in range(n):
-                    B[i, j, r, r] = d[i, j + 1] * mass[r]
             factor = d[i, 1] * d[0, j + 1]
             for r in range(n):
                 f = factor * mass[r]
-                for q in range(n):
-                    B[i, j, r, q] -= f * X[r, q] * mass[q]
+                if i == j:
+                    for q in range(n):
+                        B[i, j, r, q] -= f * X[r, q] * mass[q]
+                else:
+                    for q in range(n):
+                        B[i, j, r, q] = -f * X[r, q] * mass[q]
+                    B[i, j, r, r] += d[i, j + 1] * mass[r]
         factor = d[i, 1] * d[0, 0]
         for r in range(n):
             f = factor * mass[r]
             for q in range(n):
                 right[i, r, q] = f * X[r, q]
             right[i, r, r] -= d[i, 0]
+
+
+@compiled_for_vectors
+def forward(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> None:
+    """From what right sides, (s, columns, n), make of the start of one interval to its end; in place."""
+    s = B.shape[0]
+    d, mass = p.differentiation, p.mass
+    y, t = np.empty(columns.shape), np.zeros(ends.shape)
+    for i in range(s):
+        y[i] = columns[i] - d[i, 0] * mass * ends
+    _add_products(B[0, 0], y[0], t, 1.0)
+    for i in range(1, s):
+        y[i] -= d[i, 1] * mass * t
+        for a in range(1, i):
+            _add_products(B[i, a], y[a], y[i], -1.0)
+    ends[:] = 0.0
+    _add_products(B[s - 1, s - 1], y[s - 1], ends, 1.0)
 
 
 @compiled_for_vectors

@@ -36,8 +36,7 @@ def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: flo
     at = top + duration * np.append(0.0, nodes)
     at = np.where(at > run.times[-1], at - period, at)
     states = stressed(beam, form, spline(at))
-    stages = np.ascontiguousarray(states[1:].reshape(intervals, STAGES, -1))
-    return Orbit(form, symmetric, period, states[0].copy(), stages)
+    return Orbit.of(form, symmetric, period, states, STAGES)
 
 
 def asymmetry(beam: Beam, states: Array) -> float:

@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...determinant.newton import crossing_newton
+from ...determinant.parameter_path import Path
 from ...discretization.collocation import radau
 from ...discretization.mesh import mesh
 from ...discretization.stress_form import StressForm
@@ -16,20 +18,21 @@ from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..point import Unsolvable
 from ..spectrum.search import SpectrumRequest, solve_spectrum
 from .neighbour import followed_from, in_steps
-from .orbit import Orbit, at_orbit, newton
+from .newton import at_orbit, newton
+from .orbit import Orbit
 
-LEADING = SpectrumRequest(1, 1e-9, True)
+LEADING = SpectrumRequest(1, 1e-9, False)
 SCAN = 0.93
 """Ratio of the forces at which the sign of the leading growth rate is looked at."""
 LEAST_FORCE = 1e-2
 """Force below which no rod of finite length oscillates: F nu (nu + F c2) must exceed the order of pi^2."""
-FORCE_FOUND = 1e-10
-MOST_BISECTIONS = 60
+FOUND = 1e-6
+"""Growth rate of the leading mode at the Hopf point, in units of its frequency."""
 NORMAL_FORM_ACCURACY = 1e-3
 STARTS = (0.12, 0.03, 0.006)
 """Relative distances from the Hopf point at which the normal form starts Newton's method, one after the
 other: in most rods its amplitude is off by 2 percent at the first, where k2 is small by more."""
-ORDER_PER_WAVE, LEAST_ORDER = 1.1, 12
+ORDER_PER_WAVE, LEAST_ORDER = 0.55, 12
 INTERVALS, STAGES = 8, 3
 """In time, over half a period, of the mesh on which the branch is followed."""
 TOLERANCE = 1e-4
@@ -60,25 +63,30 @@ def hopf_point_below(rod: Rod) -> Onset | None:
         lower = F * SCAN
         below = leading_eigenvalue(replace(rod, F=lower))
         if below.real < 0 <= above.real:
-            return _bisected(rod, lower, F)
+            return _crossing(rod, (lower, below), (F, above))
         F, above = lower, below
     return None
 
 
-def _bisected(rod: Rod, low: float, high: float) -> Onset:
-    """The change of sign between two forces, by the secant kept in the bracket."""
-    values = [leading_eigenvalue(replace(rod, F=F)).real for F in (low, high)]
-    for _ in range(MOST_BISECTIONS):
-        share = values[0] / (values[0] - values[1])
-        middle = low + (high - low) * float(np.clip(share, 1e-3, 1 - 1e-3))
+def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex]) -> Onset:
+    """The Hopf point between two forces, each with the leading eigenvalue there; raises Unsolvable."""
+    path = Path(rod, "F")
+    (a, below), (b, above) = low, high
+    while b - a > FOUND * b:
+        share = below.real / (below.real - above.real)
+        eta, F = below.imag + share * (above.imag - below.imag), a + share * (b - a)
+        zero = crossing_newton(eta, F, path.origin, path.direction, (eta, F))
+        if a <= zero.p <= b:
+            w = leading_eigenvalue(replace(rod, F=zero.p))
+            if abs(w.real) <= FOUND * abs(w) and abs(w.imag - zero.eta_or_x) <= FOUND * abs(w):
+                return Onset(zero.p, zero.eta_or_x)
+        middle = (a + b) / 2
         w = leading_eigenvalue(replace(rod, F=middle))
-        if abs(w.real) <= FORCE_FOUND * abs(w):
-            break
-        if w.real < 0:  # the weight of an end that stays is halved (the Illinois rule)
-            low, values = middle, [w.real, values[1] / 2]
+        if w.real < 0:
+            a, below = middle, w
         else:
-            high, values = middle, [values[0] / 2, w.real]
-    return Onset(middle, w.imag)
+            b, above = middle, w
+    raise Unsolvable(f"what grows from F = {a:g} on does not oscillate there")
 
 
 def orbit_from_hopf(form: StressForm, hopf: Onset) -> Orbit:
@@ -122,5 +130,4 @@ def orbit_of(normal: NormalForm, form: StressForm) -> Orbit:
     E = normal.form.mesh.evaluation(form.mesh.positions)
     parts = [*(S @ E.T)[..., :-1]] + ([V[2] @ E.T] if form.omega_unknown else [])
     states = np.concatenate(parts, axis=1)
-    stages = np.ascontiguousarray(states[1:].reshape(INTERVALS, STAGES, -1))
-    return Orbit(form, True, 2 * np.pi / frequency, states[0].copy(), stages)
+    return Orbit.of(form, True, 2 * np.pi / frequency, states, STAGES)

@@ -7,6 +7,7 @@ measured (`measures`). It is called a cycle only if it is proved stable by its m
 close proves nothing near the Hopf point, where motions decay slowly.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import nan
 
@@ -26,11 +27,13 @@ from ..motion.integrator import forget_integrators
 from ..motion.time_scheme import CYCLE_PREFIX
 from ..point import Unsolvable, solved
 from ..spectrum.search import SpectrumRequest, solve_spectrum
+from .cycle_errors import UNKNOWN_ERRORS, CycleErrors
 from .hopf_start import hopf_point_below, orbit_from_hopf
 from .measures import Measures
 from .neighbour import Neighbour, followed_cycle
-from .refinement import UNKNOWN_ERRORS, CycleErrors, RefinedCycle, refined_cycle
+from .refinement import RefinedCycle, refined_cycle
 from .status import CycleStatus
+from .torus import torus_or
 from .transient import Transient, TransientOutcome
 
 __all__ = ["Cycle", "CyclePoint", "CycleRequest", "CycleStatus", "solve_cycle", "warm_up"]
@@ -96,7 +99,7 @@ class Cycle:
     linear_growth_rate and linear_frequency of the leading mode about the straight rod, 1/tau2; periods:
     returns waited for. multiplier: the largest nontrivial Floquet multiplier's modulus; multipliers: the
     largest ones, complex, (STORED_MULTIPLIERS,); trivial_multiplier_error: distance of the trivial one from
-    1.
+    1. On a torus these are all that is known, and those of the unstable cycle that it surrounds.
 
     tip: x, y, theta at equidistant times, (3, samples); energy: U in k3/L, injection, dissipation, (3,
     samples); shape: x, y, theta, (3, shapes, nodes). Time starts where the tip's y rises through its mean.
@@ -172,20 +175,19 @@ def _solve(point: CyclePoint, request: CycleRequest, start: Array | None, along:
     beam, form = _beam_and_form(rod, point.gamma1)
     if request.start == "hopf":
         return _from_hopf(form, request, straight)
-    neighbour = Neighbour.unpack(start) if start is not None else None
+    neighbour, found = Neighbour.unpack(start) if start is not None else None, None
     if neighbour is not None and along is not None:
-        try:
+        with suppress(Unsolvable):
             found = followed_cycle(neighbour, form, along, request.accuracy)
-        except Unsolvable:
-            found = None
-        if found is not None and settled_by(found, request.accuracy) and found.stable:
+        if found is not None and found.verdict(request.accuracy)[0] == CycleStatus.cycle:
             cycle = _measured(replace(straight, status=CycleStatus.cycle), found, request)
-            return replace(cycle, neighbour=Neighbour.of(found, neighbour, along).pack())
+            return replace(cycle, neighbour=Neighbour.of(found, neighbour, along, request.accuracy).pack())
     faded = _fades(rod, point.gamma1, leading, request.amplitude) if neighbour is None else ""
     if faded and not request.transient:
         return replace(straight, message=faded)
     traced = request.transient > 0
     transient = Transient(beam, form, request.accuracy, request.most_periods, along, traced=traced)
+    transient.unstable = found if found is not None and found.stable is False else None
     end = _from_motion(transient, request, neighbour)
     cycle = replace(
         straight,
@@ -197,9 +199,10 @@ def _solve(point: CyclePoint, request: CycleRequest, start: Array | None, along:
         transient=transient.trace.at_equal_times(request.transient) if transient.trace else None,
     )
     if faded or end.found is None:
-        return cycle
+        return cycle if faded or end.around is None else _with_multipliers(cycle, end.around)
     cycle = _measured(cycle, end.found, request)
-    return replace(cycle, neighbour=Neighbour.of(end.found, None, along).pack()) if along else cycle
+    packed = Neighbour.of(end.found, None, along, request.accuracy).pack() if along else None
+    return replace(cycle, neighbour=packed)
 
 
 def _from_hopf(form: StressForm, request: CycleRequest, straight: Cycle) -> Cycle:
@@ -213,13 +216,7 @@ def _from_hopf(form: StressForm, request: CycleRequest, straight: Cycle) -> Cycl
         found = refined_cycle(orbit_from_hopf(form, hopf), request.accuracy)
     except Unsolvable as why:
         return replace(straight, status=CycleStatus.not_settled, message=str(why))
-    status, message = CycleStatus.cycle if found.stable else CycleStatus.unstable, ""
-    if found.measures.least_stretch <= 0:
-        status, message = CycleStatus.left_the_model, f"h1 = {found.measures.least_stretch:.3g} on the cycle"
-    elif not settled_by(found, request.accuracy):
-        status, message = CycleStatus.not_settled, "the cycle is less accurate than asked for"
-    elif found.stable is None:
-        status, message = CycleStatus.not_settled, f"its multiplier is 1 within {found.margin:.0e}"
+    status, message = found.verdict(request.accuracy)
     return _measured(replace(straight, status=status, message=message), found, request)
 
 
@@ -237,11 +234,6 @@ def _fades(rod: Rod, gamma1: float, w: complex, amplitude: float) -> str:
     )
 
 
-def settled_by(found: RefinedCycle, accuracy: float) -> bool:
-    """Whether a cycle is as accurate as asked for, and its period minimal."""
-    return found.errors.largest <= accuracy and found.divisor == 1 and found.measures.least_stretch > 0
-
-
 def _beam_and_form(rod: Rod, gamma1: float) -> tuple[Beam, StressForm]:
     """The rod as the time stepper sees it, and as the orbit does, on one mesh."""
     wave = max(expected_wave_number(EXPECTED_MODES, most_amplified_wave(rod)[1]), FOLDS * abs(rod.F) ** 0.5)
@@ -257,29 +249,38 @@ def _from_motion(
     """Where the rod goes from its leading mode, or from a state of its neighbour's cycle."""
     beam = transient.beam
     if neighbour is None:
-        return transient.follow(request.amplitude * transient.mode.z.real)
+        return torus_or(transient.follow(request.amplitude * transient.mode.z.real), transient)
     orbit = neighbour.fine.orbit
     stresses = orbit.form.stresses(orbit.start) @ orbit.form.mesh.evaluation(beam.mesh.positions).T
-    return transient.follow((stresses[:, :-1] * beam.roots[:, None]).ravel())
+    return torus_or(transient.follow((stresses[:, :-1] * beam.roots[:, None]).ravel()), transient)
 
 
 def _measured(cycle: Cycle, found: RefinedCycle, request: CycleRequest) -> Cycle:
     """The cycle with its numbers, and what is stored of it where it is asked for."""
-    orbit, path, mu = found.orbit, found.path, found.multipliers[:STORED_MULTIPLIERS]
+    orbit, path = found.orbit, found.path
     amplitudes = found.measures.harmonic_amplitude[: request.harmonics]
     unresolved = request.harmonics - len(amplitudes)  # they are below the error of the cycle
-    mu = np.where(np.abs(mu) >= LEAST_MULTIPLIER, mu, complex(nan, nan))
     wanted = request.shapes and request.nodes
     return replace(
-        cycle,
+        _with_multipliers(cycle, found),
         elements=orbit.form.mesh.elements,
         order=orbit.form.mesh.order,
         measures=replace(found.measures, harmonic_amplitude=np.pad(amplitudes, (0, unresolved))),
         errors=found.errors,
-        multiplier=found.largest_multiplier,
-        multipliers=np.pad(mu, (0, STORED_MULTIPLIERS - len(mu)), constant_values=complex(nan, nan)),
-        trivial_multiplier_error=found.trivial_error,
         tip=path.tip(request.samples) if request.samples else None,
         energy=path.energy(request.samples) if request.samples else None,
         shape=path.shapes(request.shapes, request.nodes) if wanted else None,
+    )
+
+
+def _with_multipliers(cycle: Cycle, found: RefinedCycle) -> Cycle:
+    """The cycle with its multipliers and their error."""
+    mu = found.multipliers[:STORED_MULTIPLIERS]
+    mu = np.where(np.abs(mu) >= LEAST_MULTIPLIER, mu, complex(nan, nan))
+    return replace(
+        cycle,
+        errors=replace(cycle.errors, multiplier_error=found.errors.multiplier_error),
+        multiplier=found.largest_multiplier,
+        multipliers=np.pad(mu, (0, STORED_MULTIPLIERS - len(mu)), constant_values=complex(nan, nan)),
+        trivial_multiplier_error=found.trivial_error,
     )

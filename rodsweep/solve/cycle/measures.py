@@ -6,28 +6,29 @@ event located. Means are integrals by the method's own quadrature over its stage
 """
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from math import nan
 
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...discretization.mesh import configuration
+from ...discretization.mesh import Mesh, configuration
 from ...discretization.periodic import (
     hermite_coefficients,
     maxima,
     rise_through_mean,
-    sampled_at,
     samples_of,
 )
 from ...discretization.quadrature import lobatto_points
-from .condensation import powers, strain_rates
+from ...discretization.tip_motion import tip_matrices
+from .compiled_measures import means, node_motion
+from .condensation import powers
 from .orbit import Orbit
 
 OVERSAMPLING = 4
 """Samples for each node in time, of which extrema are sought."""
-TINY = 1e-30
-"""Complex step of a velocity."""
+REFLECTION = np.array([1.0, -1.0, -1.0])
+"""Signs of (x, y, theta) and (h1, h2, Pi) half a period later where the orbit is symmetric."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -58,27 +59,34 @@ class CyclePath:
     """An orbit over its whole period as trigonometric polynomials."""
 
     def __init__(self, orbit: Orbit) -> None:
-        self.orbit, form = orbit, orbit.form
-        ends = np.concatenate([orbit.start[None], orbit.states[:-1, -1]])
-        self._rates = np.empty((3, len(ends), form.mesh.nodes + 1))
-        strain_rates(ends, self._rates, orbit.semidiscrete)
-        self._strains = form.strains(ends)
-        steps = self._strains + 1j * TINY * self._rates
-        tip = configuration(form.mesh, steps, np.zeros(3))[..., -1]
-        self.tip_coefficients = self._series(tip.real, tip.imag / TINY)
+        self.orbit, grid = orbit, orbit.form.mesh
+        self._ends = np.concatenate([orbit.start[None], orbit.states[:-1, -1]])
+        K = len(self._ends)
+        self._nodes = np.empty((2, 3, K, grid.nodes + 1))
+        tip = np.empty((2, K, 3))
+        node_motion(self._ends, orbit.semidiscrete, tip_matrices(grid.elements, grid.order), self._nodes, tip)
+        if orbit.symmetric:
+            tip = np.concatenate([tip, tip * REFLECTION], axis=1)
+        self.tip_coefficients = hermite_coefficients(tip[0], tip[1] * orbit.period)
 
-    def _series(self, values: Array, rates: Array) -> Complex:
-        """Coefficients over the period, (count, 3, ...), of (x, y, theta) or (h1, h2, Pi), (3, m, ...)."""
+    def _series(self, strains: slice) -> Complex:
+        """Coefficients over the period, (count, strains, nodes + 1), of some of (h1, h2, Pi)."""
+        values, rates = self._nodes[:, strains].swapaxes(1, 2)
         if self.orbit.symmetric:
-            signs = np.array([1.0, -1.0, -1.0]).reshape(3, *(1,) * (values.ndim - 1))
-            values, rates = (np.concatenate([f, signs * f], axis=1) for f in (values, rates))
-        slopes = rates * self.orbit.period
-        return hermite_coefficients(values.swapaxes(0, 1), slopes.swapaxes(0, 1))
+            signs = REFLECTION[strains, None]
+            values, rates = (np.concatenate([f, signs * f]) for f in (values, rates))
+        return hermite_coefficients(values, rates * self.orbit.period)
 
     @cached_property
     def strain_coefficients(self) -> Complex:
         """Of (h1, h2, Pi) at all nodes, shape (count, 3, nodes + 1)."""
-        return self._series(self._strains, self._rates)
+        return self._series(slice(0, 3))
+
+    @cached_property
+    def bending_harmonics(self) -> Array:
+        """The size of Pi's harmonics from the first, sums of squares over all nodes, shape (count - 1,)."""
+        parts = self._series(slice(2, 3))[1:, 0].view(float)
+        return np.sqrt(np.einsum("ki,ki->k", parts, parts))
 
     @cached_property
     def tip_samples(self) -> Array:
@@ -89,67 +97,66 @@ class CyclePath:
         """`tip_samples` at another number of times, shape (count, 3)."""
         return samples_of(self.tip_coefficients, count)
 
+    @cached_property
     def extrema(self) -> dict[str, float]:
         """The tip's extrema as `Measures` names them."""
-        columns, signs = [0, 0, 1, 2], np.array([-1.0, 1.0, 1.0, 1.0])
-        c, samples = (f[:, columns] * signs for f in (self.tip_coefficients, self.tip_samples))
-        x_min, x_max, y_max, theta_max = map(float, maxima(c, samples))
-        return {"tip_x_min": -x_min, "tip_x_max": x_max, "tip_y_max": y_max, "tip_theta_max": theta_max}
+        c, samples = self.tip_coefficients, self.tip_samples
+        x_max, y_max, theta_max = maxima(c, samples).tolist()
+        x_min = -float(maxima(-c[:, :1], -samples[:, :1])[0])
+        return {"tip_x_min": x_min, "tip_x_max": x_max, "tip_y_max": y_max, "tip_theta_max": theta_max}
 
+    @cached_property
     def beginning(self) -> float:
         """When the tip's y rises through its mean, in periods."""
         return rise_through_mean(self.tip_samples[:, 1])
 
     def tip(self, samples: int) -> Array:
         """(x, y, theta) of the tip at equidistant times from `beginning`, (3, samples)."""
-        return sampled_at(self.tip_coefficients, self._times(samples)).T
+        return self._sampled(self.tip_coefficients, samples).T
 
     def energy(self, samples: int) -> Array:
         """(U, injection, dissipation) at equidistant times from `beginning`, (3, samples)."""
-        at, period = self._times(samples), self.orbit.period
-        times = 2j * np.pi * np.arange(len(self.tip_coefficients))
-        x, y, theta = sampled_at(self.tip_coefficients, at).T
-        dx, dy, _ = sampled_at(times[:, None] * self.tip_coefficients, at).T / period
+        period = self.orbit.period
+        times = 2j * np.pi / period * np.arange(len(self.tip_coefficients))
+        theta = self.tip(samples)[2]
+        dx, dy, _ = self._sampled(times[:, None] * self.tip_coefficients, samples).T
         injection = -self.orbit.form.rod.F * (np.cos(theta) * dx + np.sin(theta) * dy)
-        ends = np.concatenate([self.orbit.start[None], self.orbit.states[:-1, -1]])
-        U, power = self.orbit.form.energy(ends), np.empty((2, len(ends)))
-        powers(ends, power, self.orbit.semidiscrete)
+        U, power = self.orbit.form.energy(self._ends), np.empty((2, len(self._ends)))
+        powers(self._ends, power, self.orbit.semidiscrete)
         rates = (power[0] - power[1]) * period
         if self.orbit.symmetric:
             U, rates = np.tile(U, 2), np.tile(rates, 2)
         c = hermite_coefficients(U, rates)
-        change = sampled_at(times[: len(c)] * c, at) / period
-        return np.stack([sampled_at(c, at), injection, injection - change])
+        U, change = self._sampled(np.stack([c, times[: len(c)] * c], axis=1), samples).T
+        return np.stack([U, injection, injection - change])
 
     def shapes(self, count: int, nodes: int) -> Array:
         """(x, y, theta) at `count` equidistant times on `nodes` Lobatto nodes, shape (3, count, nodes)."""
-        strains = sampled_at(self.strain_coefficients, self._times(count)).swapaxes(0, 1)
+        strains = self._sampled(self.strain_coefficients, count).swapaxes(0, 1)
         grid = self.orbit.form.mesh
-        shape = configuration(grid, np.ascontiguousarray(strains), np.zeros(3))
-        return shape @ grid.evaluation(lobatto_points(nodes)).T
+        return configuration(grid, np.ascontiguousarray(strains), np.zeros(3)) @ _at_lobatto(grid, nodes)
 
-    def _times(self, count: int) -> Array:
-        return np.asarray(self.beginning() + np.arange(count) / count)
+    def _sampled(self, c: Complex, count: int) -> Array:
+        """Re sum_k c_k exp(2 pi i k t) at equidistant times from `beginning`, shape (count, ...)."""
+        turns = np.exp(2j * np.pi * self.beginning * np.arange(len(c)))
+        return samples_of(c * turns.reshape(-1, *(1,) * (c.ndim - 1)), count)
+
+
+@lru_cache(maxsize=64)
+def _at_lobatto(grid: Mesh, nodes: int) -> Array:
+    """Matrix, applied from the right, from values at all nodes of a mesh to Lobatto nodes of the rod."""
+    return grid.evaluation(lobatto_points(nodes)).T
 
 
 def measures_of(path: CyclePath) -> Measures:
     """The measures of an orbit."""
     orbit, y = path.orbit, path.tip_coefficients[:, 1]
-    stages = orbit.states.reshape(-1, orbit.states.shape[-1])
-    power = np.empty((2, len(stages)))
-    powers(stages, power, orbit.semidiscrete)
-    weights = np.tile(orbit.method.weights, len(orbit.states)) / len(orbit.states)
-    mean = power @ weights
-    rms = np.sqrt((power - mean[:, None]) ** 2 @ weights)
+    mean = means(np.ascontiguousarray(orbit.states), orbit.method.weights, orbit.semidiscrete)
     return Measures(
         period=orbit.period,
         frequency=2 * np.pi / orbit.period,
-        **path.extrema(),
+        **path.extrema,
         harmonic_amplitude=np.abs(y[1:]),
-        injection_mean=float(mean[0]),
-        injection_rms=float(rms[0]),
-        dissipation_mean=float(mean[1]),
-        dissipation_rms=float(rms[1]),
-        energy_imbalance=float(mean[0] / mean[1] - 1),
-        least_stretch=orbit.form.least_stretch(stages),
+        energy_imbalance=mean.injection_mean / mean.dissipation_mean - 1,
+        **mean._asdict(),
     )

@@ -24,8 +24,8 @@ LEAST_PRESENT = 1e-6
 
 def common_divisor(path: CyclePath, present: float) -> int:
     """g of the harmonics larger than `present` times the largest; 1 proves that the period is minimal."""
-    sizes = np.linalg.norm(path.strain_coefficients[1:, 2], axis=1)
-    return gcd(*map(int, np.nonzero(sizes > present * sizes.max())[0] + 1))
+    sizes = path.bending_harmonics
+    return gcd(*(np.nonzero(sizes > present * sizes.max())[0] + 1).tolist())
 
 
 def undecided_divisor(path: CyclePath, error: float) -> int:
@@ -41,7 +41,7 @@ def shortened(orbit: Orbit) -> Orbit:
     g = common_divisor(CyclePath(orbit), PRESENT)
     if g == 1:
         return orbit
-    K, s, _ = orbit.states.shape
-    times = ((np.arange(K)[:, None] + orbit.method.nodes) / K).ravel()
+    K = orbit.intervals
+    times = np.append(0.0, (np.arange(K)[:, None] + orbit.method.nodes) / K)
     # An even divisor of a symmetric orbit would contradict its symmetry: its harmonics are odd and even.
-    return replace(orbit, period=orbit.period / g, states=orbit.at(times / g).reshape(K, s, -1))
+    return replace(orbit, values=np.append(orbit.at(times / g), orbit.period / g))

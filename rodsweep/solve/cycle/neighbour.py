@@ -7,26 +7,28 @@ it is divided, on the coarse mesh. All of it follows from the neighbour alone, s
 the same content however often it was interrupted.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
+from itertools import pairwise
 from math import inf
-from typing import Any
 
 import numpy as np
 
 from ...arrays import Array
-from ...discretization.mesh import mesh
 from ...discretization.stress_form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ..point import Unsolvable
-from .orbit import Change, Converged, Orbit, at_orbit, coordinate, newton, relative_change
+from .linearisation import coordinate
+from .mesh_plan import planned_mesh
+from .newton import Converged, at_orbit, newton, relative_change
+from .orbit import Orbit
+from .orbit_mesh import OrbitMesh, mesh_of
 from .refinement import (
-    OrbitMesh,
+    COARSE_DISTANCE,
     RefinedCycle,
-    fine_cycle,
     judged,
-    mesh_by_error,
-    mesh_of,
+    matrix_distance,
+    newton_tolerance,
     refined_from,
 )
 
@@ -36,40 +38,49 @@ MOST_HALVINGS, MOST_STEPS = 6, 100
 """Of a step along the axis, and steps in all."""
 LONGER_STEP = 1.5
 """By how much a step that succeeded is followed by a longer one."""
-GENEROUS, ENOUGH = 25.0, 0.6
-"""How much more accurate than asked for a neighbour may be before the mesh is coarser; share of the accuracy
-that its error may have before it is finer."""
-HEAD, PART_HEAD = 7, 5
-"""Numbers at the head of a packed neighbour, and for each of its two orbits."""
-COARSE_DISTANCE = 1e-4
-"""Relative distance of the coarse matrix from its orbit: its multipliers only tell the error of others."""
+TANGENT_DISTANCE = 1e-4
+"""Relative distance from its orbit of a matrix whose tangent is good enough for a step of many."""
+ENOUGH, WORTHWHILE = 0.9, 0.9
+"""Share of the accuracy that a cycle's error may have for its neighbour to take over the mesh; share of its
+cost that another mesh may have to be taken instead."""
+HEAD = 8
+"""Numbers at the head of a packed neighbour: rod, symmetry, whether settled, Taylor terms."""
 
 
 @dataclass(frozen=True, eq=False)
 class Followed:
-    """An orbit and the coefficients of its Taylor polynomial in the coordinate of a parameter, from the
-    first.
+    """An orbit and the coefficients of its Taylor polynomial in the coordinate of a parameter, (terms, N),
+    from the first.
 
     One coefficient is the tangent alone; three make the cubic through two orbits and their tangents.
     """
 
     orbit: Orbit
-    taylor: tuple[Change, ...]
+    taylor: Array
+
+    def ahead(self, step: float) -> Array:
+        """What is added to the orbit's values at a distance in the coordinate, (N,)."""
+        change: Array = step ** np.arange(1, len(self.taylor) + 1) @ self.taylor
+        return change
 
     def at(self, form: StressForm, name: str) -> Orbit:
         """The prediction at another value of the parameter, for the rod `form`, whatever its mesh."""
-        step, moved = coordinate_of(form, name) - coordinate_of(self.orbit.form, name), self.orbit
-        for power, coefficient in enumerate(self.taylor):
-            moved = moved.moved(coefficient, step ** (power + 1))
-        return replace(moved, form=replace(form, mesh=self.orbit.form.mesh))
+        step = coordinate_of(form, name) - coordinate_of(self.orbit.form, name)
+        here = replace(form, mesh=self.orbit.form.mesh)
+        return replace(self.orbit, form=here, values=self.orbit.values + self.ahead(step))
 
     def on(self, target: OrbitMesh) -> "Followed":
         """The same on another mesh."""
         if target == mesh_of(self.orbit):
             return self
-        orbit = target.carry(self.orbit)
-        ahead = (target.carry(self.orbit.moved(coefficient)) for coefficient in self.taylor)
-        return Followed(orbit, tuple(difference(orbit, end) for end in ahead))
+        return Followed(
+            target.carry(self.orbit), np.array([carried(self.orbit, term, target) for term in self.taylor])
+        )
+
+
+def carried(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
+    """A change of an orbit, (N,), as one of the orbit on another mesh: to carry is linear."""
+    return target.carry(replace(orbit, values=change)).values
 
 
 def followed_from(found: Converged, before: Followed | None, name: str) -> Followed:
@@ -80,23 +91,16 @@ def followed_from(found: Converged, before: Followed | None, name: str) -> Follo
     last = before.on(mesh_of(orbit)) if before else None
     step = coordinate_of(orbit.form, name) - coordinate_of(last.orbit.form, name) if last else 0.0
     if last is None or step == 0:
-        return Followed(orbit, (tangent,))
-    back = difference(orbit.moved(tangent, -step), last.orbit)
-    turned = tangent.plus(last.taylor[0], -1.0)
+        return Followed(orbit, tangent[None])
     # With s = 0 here and -step there: A = q - r step, B = q - 3/2 r step for x + t s + q s^2 + r s^3.
-    A, B = back.times(step**-2), turned.times(0.5 / step)
-    bend = A.plus(B, -1.0)
-    return Followed(orbit, (tangent, A.plus(bend, 2.0), bend.times(2 / step)))
+    A = (last.orbit.values - orbit.values + step * tangent) * step**-2
+    B = (tangent - last.taylor[0]) * (0.5 / step)
+    return Followed(orbit, np.array([tangent, 3 * A - 2 * B, (A - B) * (2 / step)]))
 
 
 def coordinate_of(form: StressForm, name: str) -> float:
     """Where a rod stands along a parameter."""
     return coordinate(name, value_of(form, name))
-
-
-def difference(start: Orbit, end: Orbit) -> Change:
-    """What moves the one orbit to the other, on the same mesh."""
-    return Change(end.start - start.start, end.states - start.states, end.period - start.period)
 
 
 def value_of(form: StressForm, name: str) -> float:
@@ -106,53 +110,69 @@ def value_of(form: StressForm, name: str) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Neighbour:
-    """A cycle on a fine and on a coarse mesh, as the next point takes it; error: the larger of its two."""
+    """A cycle on a fine and on a coarse mesh, and the mesh on which the next point is solved.
+
+    drift: the derivative, by the coordinate, of what the coarse orbit differs by from the fine one carried to
+    its mesh, (N of the coarse,). settled: the mesh was planned for a cycle before this one and holds.
+    """
 
     fine: Followed
-    coarse: Followed
-    error: float
+    coarse: Orbit
+    drift: Array
+    next_mesh: OrbitMesh
+    settled: bool
 
     @classmethod
-    def of(cls, found: RefinedCycle, before: "Neighbour | None", name: str) -> "Neighbour":
-        """From a cycle that was solved with tangents; before: its own neighbour."""
-        last = (before.fine, before.coarse) if before else (None, None)
-        parts = (found.fine, found.coarse)
-        fine, coarse = (followed_from(*pair, name) for pair in zip(parts, last, strict=True))
-        return cls(fine, coarse, found.errors.largest)
+    def of(cls, found: RefinedCycle, before: "Neighbour | None", name: str, accuracy: float) -> "Neighbour":
+        """From a cycle that was solved with its tangent; before: its own neighbour."""
+        fine, coarse = followed_from(found.fine, before.fine if before else None, name), found.coarse.orbit
+        drift = np.zeros(len(coarse.values))
+        step = coordinate_of(coarse.form, name) - coordinate_of(before.coarse.form, name) if before else 0.0
+        if before and step and mesh_of(before.fine.orbit) == mesh_of(fine.orbit):
+            moved = carried(fine.orbit, fine.orbit.values - before.fine.orbit.values, mesh_of(coarse))
+            drift = (coarse.values - before.coarse.values - moved) / step
+        here, fits = mesh_of(fine.orbit), found.errors.largest <= ENOUGH * accuracy
+        if before and fits and (before.settled or here != before.next_mesh):
+            return cls(fine, coarse, drift, here, True)
+        planned = planned_mesh(coarse, fine.orbit, accuracy)
+        settled = before is not None and fits and planned.cost > WORTHWHILE * here.cost
+        return cls(fine, coarse, drift, here if settled else planned, settled)
 
     def pack(self) -> Array:
         """All of it as one flat array, shape (length,)."""
-        orbit = self.fine.orbit
-        rod, parts = orbit.form.rod, list[Any]()
-        head = [rod.F, rod.k1, rod.k2, rod.gamma3, orbit.form.gamma1, float(orbit.symmetric), self.error]
-        for followed in (self.fine, self.coarse):
-            orbit, m = followed.orbit, mesh_of(followed.orbit)
-            head += [m.elements, m.order, m.intervals, m.stages, len(followed.taylor)]
-            parts += [[orbit.period], orbit.start, orbit.states.ravel()]
-            for part in followed.taylor:
-                parts += [[part.period], part.start, part.states.ravel()]
-        return np.concatenate([head, *parts])
+        orbit, form = self.fine.orbit, self.fine.orbit.form
+        rod, terms = form.rod, len(self.fine.taylor)
+        head = [rod.F, rod.k1, rod.k2, rod.gamma3, form.gamma1, orbit.symmetric, self.settled, terms]
+        meshes = (mesh_of(orbit), mesh_of(self.coarse), self.next_mesh)
+        parts = [orbit.values, self.fine.taylor.ravel(), self.coarse.values, self.drift]
+        return np.concatenate([head, *map(astuple, meshes), *parts])
 
     @classmethod
     def unpack(cls, flat: Array) -> "Neighbour":
         """The reverse of `pack`, from its array, shape (length,)."""
-        F, k1, k2, gamma3, gamma1, symmetric, error = map(float, flat[:HEAD])
-        rod, rest = Rod(F, k1, k2, gamma3), flat[HEAD + 2 * PART_HEAD :]
-        pair = []
-        for first in (HEAD, HEAD + PART_HEAD):
-            elements, order, intervals, stages, terms = map(int, flat[first : first + PART_HEAD])
-            form = StressForm(rod, gamma1, mesh(elements, order))
-            n, changes = form.unknowns, []
-            for _ in range(1 + terms):
-                count = 1 + n + intervals * stages * n
-                states = rest[1 + n : count].reshape(intervals, stages, n).copy()
-                changes.append(Change(rest[1 : 1 + n].copy(), states, float(rest[0])))
-                rest = rest[count:]
-            here, *taylor = changes
-            orbit = Orbit(form, bool(symmetric), here.period, here.start, here.states)
-            pair.append(Followed(orbit, tuple(taylor)))
-        fine, coarse = pair
-        return cls(fine, coarse, error)
+        F, k1, k2, gamma3, gamma1, symmetric, settled, terms = map(float, flat[:HEAD])
+        ends = [HEAD + 4 * k for k in range(4)]
+        meshes = [OrbitMesh(*map(int, flat[a:b])) for a, b in pairwise(ends)]
+        rod, rest = Rod(F, k1, k2, gamma3), flat[ends[-1] :].copy()
+        orbits = []
+        for m, parts in zip(meshes[:2], (1 + int(terms), 2), strict=True):
+            form = StressForm(rod, gamma1, m.grid)
+            length = (1 + m.intervals * m.stages) * form.unknowns + 1
+            values, rest = rest[: parts * length].reshape(parts, length), rest[parts * length :]
+            orbits.append((Orbit(form, bool(symmetric), m.intervals, m.stages, values[0]), values[1:]))
+        (fine, taylor), (coarse, drift) = orbits
+        return cls(Followed(fine, taylor), coarse, drift[0], meshes[2], bool(settled))
+
+    def predicted(self, form: StressForm, name: str) -> tuple[Orbit, Orbit]:
+        """The predictions for another rod on the fine and the coarse mesh of the next point."""
+        fine = self.fine.on(self.next_mesh)
+        ahead, target = fine.at(form, name), self.next_mesh.coarser
+        there = target.carry(ahead)
+        if target != mesh_of(self.coarse):
+            return ahead, there
+        step = coordinate_of(form, name) - coordinate_of(self.coarse.form, name)
+        moved = there.values - target.carry(fine.orbit).values + step * self.drift
+        return ahead, replace(there, values=self.coarse.values + moved)
 
 
 def followed_cycle(neighbour: Neighbour, form: StressForm, name: str, accuracy: float) -> RefinedCycle:
@@ -162,25 +182,24 @@ def followed_cycle(neighbour: Neighbour, form: StressForm, name: str, accuracy: 
     """
     if form.omega_unknown != neighbour.fine.orbit.form.omega_unknown:
         raise Unsolvable("the neighbour has other unknowns")
-    tolerance = max(1e-2 * accuracy, 1e-13)
-    aim = _next_mesh(neighbour, accuracy)
-    fine, coarse = neighbour.fine.on(aim), neighbour.coarse.on(aim.coarser)
-    predicted = coarse.at(form, name)
+    tolerance, aim = newton_tolerance(accuracy), neighbour.next_mesh
+    guess, predicted = neighbour.predicted(form, name)
     try:
-        found = _near(predicted, tolerance, name)
-        moved = aim.carry(found.orbit), aim.carry(predicted)
-        guess = fine.at(form, name).moved(difference(moved[1], moved[0]))
+        found = _near(predicted, tolerance)
+        guess = guess.moved(carried(predicted, found.orbit.values - predicted.values, aim))
     except Unsolvable:
-        found = in_steps(coarse, form, name, tolerance)
+        coarse = neighbour.fine.on(aim.coarser)
+        found = newton(in_steps(coarse, form, name, tolerance).orbit, tolerance)
         guess = aim.carry(found.orbit)
-    cycle = judged(at_orbit(found, COARSE_DISTANCE, name), fine_cycle(guess, tolerance, name))
+    fine = at_orbit(newton(guess, tolerance, name), matrix_distance(accuracy), name)
+    cycle = judged(at_orbit(found, COARSE_DISTANCE), fine, accuracy)
     return cycle if cycle.errors.largest <= accuracy else refined_from(cycle, accuracy, name)
 
 
-def _near(predicted: Orbit, tolerance: float, name: str) -> Converged:
+def _near(predicted: Orbit, tolerance: float, name: str | None = None) -> Converged:
     """The orbit at a prediction; Unsolvable where it is not near."""
     found = newton(predicted, tolerance, name)
-    if relative_change(predicted, difference(predicted, found.orbit)) > FARTHEST:
+    if relative_change(predicted, found.orbit.values - predicted.values) > FARTHEST:
         raise Unsolvable("the cycle is far from its prediction")
     return found
 
@@ -203,7 +222,7 @@ def in_steps(start: Followed, form: StressForm, name: str, tolerance: float) -> 
             continue
         if end:
             return found
-        followed = followed_from(at_orbit(found, COARSE_DISTANCE, name), followed, name)
+        followed = followed_from(at_orbit(found, TANGENT_DISTANCE, name), followed, name)
         share, step = share + step, LONGER_STEP * step
     raise Unsolvable("the branch of cycles cannot be followed in so many steps")
 
@@ -216,10 +235,3 @@ def with_coordinate(form: StressForm, name: str, at: float) -> StressForm:
     if name == "gamma1":
         return replace(form, gamma1=value)
     return replace(form, rod=replace(form.rod, **{name: value}))
-
-
-def _next_mesh(neighbour: Neighbour, accuracy: float) -> OrbitMesh:
-    """The neighbour's mesh, as long as it is fine enough and not far too fine."""
-    if accuracy / GENEROUS <= neighbour.error <= ENOUGH * accuracy:
-        return mesh_of(neighbour.fine.orbit)
-    return mesh_by_error(neighbour.fine.orbit, neighbour.error, accuracy)

@@ -30,3 +30,10 @@ class CycleStatus(PointStatus):
         "outside the circle",
         True,
     )
+    torus = (
+        6,
+        "the rod beats for ever without repeating: the cycle there is unstable by a complex pair of Floquet "
+        "multipliers, and the motion goes round it with a second frequency, as the message says; the "
+        "multipliers are those of the cycle, and nothing else of it is stored",
+        True,
+    )

@@ -60,18 +60,24 @@ LONGEST_ORBIT = 8
 """Returns to the section that one period may take."""
 NEUTRAL = 3e-8
 """Distance of the largest multiplier from 1 below which a closed orbit says nothing of its amplitude."""
+MOST_RETURNS = 400
+"""That are kept, of which a torus is known."""
 STEPS_PER_CHUNK = 20_000
 CROSSING_BISECTIONS = 50
 
 
 @dataclass(frozen=True, eq=False)
 class TransientOutcome:
-    """What became of the rod, and the cycle if there is one; periods: returns that were waited for."""
+    """What became of the rod, and the cycle if there is one; periods: returns that were waited for.
+
+    around: the unstable cycle that a torus surrounds.
+    """
 
     status: CycleStatus
     message: str
     periods: int
     found: RefinedCycle | None = None
+    around: RefinedCycle | None = None
 
 
 def angle_weights(beam: Beam) -> Array:
@@ -135,7 +141,7 @@ class Transient:
         """c in g = g0 - c |z|^2, once it has shown."""
         self.step = self.mode.period / 1000
         """With which the next chunk begins."""
-        self.past: deque[tuple[float, Array]] = deque(maxlen=LONGEST_ORBIT + 1)
+        self.past: deque[tuple[float, Array]] = deque(maxlen=MOST_RETURNS)
         """Times and bending moments of the last returns of one motion."""
         self.clock = 0.0
         self.last_run: Trajectory | None = None
@@ -268,15 +274,7 @@ class Transient:
         self.next_attempt = self.waited + CHUNK * 2**self.attempts
         self.attempts = min(self.attempts + 1, MOST_NEWTON_FAILURES)
         found = self._cycle_near(z, self.past[-1][0] - self.past[-1 - turns][0], turns)
-        if found is None:
-            return None
-        if found.errors.largest > self.accuracy:
-            why = "the cycle is less accurate than asked for"
-        elif found.divisor != 1:
-            why = f"that its period is {found.divisor} times shorter cannot be excluded"
-        else:
-            return self._ended(CycleStatus.cycle, "", found)
-        return self._ended(CycleStatus.not_settled, why, found)
+        return None if found is None else self._ended(*found.verdict(self.accuracy), found)
 
     def _near_enough(self) -> float:
         """The distance of two returns below which Newton's method is tried."""
@@ -306,7 +304,7 @@ class Transient:
         By the bending moments: what the interpolation between two steps misses of the stiff components, 1e-2
         at k1 = 1e7, is no distance.
         """
-        moments = [state for _, state in self.past]
+        moments = [state for _, state in self.past][-1 - LONGEST_ORBIT :]
         size = np.linalg.norm(moments[-1])
         found = [
             (float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))

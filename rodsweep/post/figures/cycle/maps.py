@@ -41,9 +41,10 @@ STATUS_LOOKS = {
     "not_settled": ("#C4C4C4", "////"),
     "left_the_model": ("#9A9A9A", "\\\\\\\\"),
     "failed": ("#6E6E6E", "xxxx"),
+    "torus": ("#D9CBBF", "++++"),
 }
 """Colour and hatching of cells without a cycle: greys, which the maps of colours do not have."""
-FURTHER_LOOKS = (("#D9CBBF", "++++"), ("#BFA893", "----"), ("#8F7A68", "oooo"))
+FURTHER_LOOKS = (("#BFA893", "----"), ("#8F7A68", "oooo"))
 """Of statuses beyond these, in the order in which they are met."""
 PANEL = 250
 """Points of print across a panel."""

@@ -1,0 +1,35 @@
+"""Eigenvalues of small dense matrices in compiled code, by the LAPACK that SciPy brings."""
+
+import numpy as np
+from llvmlite import binding
+from numba import types
+from numba.core import typing
+from numba.extending import get_cython_function_address
+
+from ...arrays import Array, Complex
+from ...model.compilation import compiled
+
+_ADDRESS = types.intp
+binding.add_symbol("rodsweep_dgeev", get_cython_function_address("scipy.linalg.cython_lapack", "dgeev"))
+# By name, not by address, so that what is compiled can be cached.
+_dgeev = types.ExternalFunction("rodsweep_dgeev", typing.signature(types.void, *[_ADDRESS] * 14))
+WORK = 12
+"""Work memory in units of the order; LAPACK asks for 3, and uses more by itself for blocks."""
+
+
+@compiled
+def eigenvalues(A: Array) -> Complex:
+    """The eigenvalues, (n,), of a matrix (n, n) of finite numbers; nan where LAPACK finds them not."""
+    n = len(A)
+    a, parts, work = A.copy(), np.empty((2, n)), np.empty(WORK * n)
+    extents = np.array([n, len(work), 0], np.int32)
+    none = np.full(1, 78, np.uint8)  # "N"
+    no, e, v, w = none.ctypes.data, extents.ctypes.data, parts.ctypes.data, work.ctypes.data
+    # Of A^T, as LAPACK counts by columns: it has the same eigenvalues.
+    _dgeev(no, no, e, a.ctypes.data, e, v, v + 8 * n, w, e, w, e, w, e + 4, e + 8)
+    values = np.empty(n, np.complex128)
+    for i in range(n):
+        values[i] = complex(parts[0, i], parts[1, i])
+    if extents[2] != 0:
+        values[:] = np.nan
+    return values

@@ -1,0 +1,74 @@
+"""The eigenvalues of a matrix of low rank, as the derivative of a flow over a period is: all but rounding.
+
+Few directions survive a period. A = Q R of that rank, found by pivoted Gram-Schmidt, has the nonzero
+eigenvalues of the small matrix R Q. For this Q need not be orthogonal: only A = Q R must hold to rounding,
+and it does, however much the columns of A differ in size.
+"""
+
+import numpy as np
+
+from ...arrays import Array, Complex
+from ...model.compilation import compiled_for_vectors
+from ..backend.small_eigenvalues import eigenvalues
+
+NEGLIGIBLE = 1e-17
+"""Share of the derivative of the flow below which it is rounding."""
+
+
+def nonzero_eigenvalues(A: Array) -> Complex:
+    """The eigenvalues, (rank,), of a matrix (n, n) of low rank, without those that are 0 to rounding.
+
+    Raises LinAlgError where A has entries that are not finite.
+    """
+    small = compressed(np.ascontiguousarray(A), NEGLIGIBLE)
+    if not np.isfinite(small).all():
+        raise np.linalg.LinAlgError("the derivative of the flow is not finite")
+    return eigenvalues(small)
+
+
+@compiled_for_vectors
+def compressed(A: Array, negligible: float) -> Array:
+    """A matrix (rank, rank) with the eigenvalues of A, (n, n), but those that a change of A makes 0.
+
+    negligible: the largest column of that change in units of A's.
+    """
+    n = len(A)
+    columns, norms = A.T.copy(), np.empty(n)
+    Q, R = np.empty((n, n)), np.zeros((n, n))  # as rows q and r of A = sum q r^T
+    for j in range(n):
+        norms[j] = np.linalg.norm(columns[j])
+    least, rank = negligible * norms.max(), 0
+    while rank < n:
+        p = np.argmax(norms)
+        size = norms[p]
+        if rank > 0 and size <= least:
+            break
+        q, r = Q[rank], R[rank]
+        q[:] = columns[p] / max(size, 1e-300)
+        for j in range(n):
+            if norms[j] > least:
+                norms[j] = _without(columns[j], q, r, j)
+        # What rounding leaves of the column is none of its own.
+        r[p], norms[p] = size, 0.0
+        rank += 1
+    small = np.zeros((rank, rank))
+    for a in range(rank):
+        for b in range(rank):
+            total = 0.0
+            for j in range(n):
+                total += R[a, j] * Q[b, j]
+            small[a, b] = total
+    return small
+
+
+@compiled_for_vectors
+def _without(column: Array, q: Array, r: Array, j: int) -> float:
+    """The norm of a column after its part along q is taken out of it and into r[j]."""
+    along, left = 0.0, 0.0
+    for i in range(len(q)):
+        along += q[i] * column[i]
+    for i in range(len(q)):
+        column[i] -= along * q[i]
+        left += column[i] ** 2
+    r[j] = along
+    return np.sqrt(left)

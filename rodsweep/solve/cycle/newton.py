@@ -1,0 +1,75 @@
+"""Newton's method for a periodic orbit on one mesh."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...arrays import Array
+from ..point import Unsolvable
+from .linearisation import Linearisation, largest_change
+from .orbit import Orbit
+
+SLUGGISH = 0.1
+"""Decrease of the steps in one iteration from which Newton's matrix is made anew."""
+LONGEST_STEP = 0.5
+"""Largest change of state or period in one iteration, relative; what asks for more is far from any orbit."""
+QUADRATIC = 1e5
+"""What Newton's method leaves, in units of the square of its step, where the orbit is nearly neutral."""
+
+
+@dataclass(frozen=True, eq=False)
+class Converged:
+    """What Newton's method ended with: the orbit and its last matrix, made at a relative distance from it."""
+
+    orbit: Orbit
+    matrix: Linearisation
+    distance: float
+
+
+def newton(orbit: Orbit, tolerance: float, parameter: str | None = None, most: int = 12) -> Converged:
+    """The orbit near this one; raises Unsolvable.
+
+    tolerance: relative, of states and period. parameter: along which the matrix has the tangent. The matrix
+    is kept while the steps shrink fast.
+    """
+    matrix, distance, last = Linearisation(orbit, parameter), 0.0, np.inf
+    step = matrix.step
+    for iteration in range(1, most + 1):
+        change = relative_change(orbit, step)
+        if not np.isfinite(change):
+            raise Unsolvable("Newton's method for the orbit broke down")
+        if iteration > 1 and change > max(last, LONGEST_STEP):
+            raise Unsolvable("there is no orbit near the start of Newton's method")
+        share = min(1.0, LONGEST_STEP / change) if change > 0 else 1.0
+        orbit, distance = orbit.moved(step, share), distance + share * change
+        if not orbit.period > 0:
+            raise Unsolvable("Newton's method lost the orbit")
+        fresh = distance == share * change
+        left = QUADRATIC * change**2 if fresh else change * min(1.0, change / last)
+        if left <= tolerance:
+            return Converged(orbit, matrix, distance)
+        if change > SLUGGISH * min(last, 1.0):
+            matrix, distance = Linearisation(orbit, parameter), 0.0
+            step = matrix.step
+        else:
+            step = matrix.correction(orbit)
+        last = change
+    raise Unsolvable(f"Newton's method for the orbit is at {change:.0e} after {most} iterations")
+
+
+def at_orbit(found: Converged, distance: float, parameter: str | None = None) -> Converged:
+    """The same with a matrix made at most at this distance from the orbit."""
+    if found.distance <= distance:
+        return found
+    return linearised(found.orbit, parameter)
+
+
+def linearised(orbit: Orbit, parameter: str | None = None) -> Converged:
+    """An orbit that was found, after one more step, with the matrix at itself."""
+    matrix = Linearisation(orbit, parameter)
+    return Converged(orbit.moved(matrix.step), matrix, relative_change(orbit, matrix.step))
+
+
+def relative_change(orbit: Orbit, step: Array) -> float:
+    """The largest change of n2, m3 and the period by a step, (N,), each in units of its largest value."""
+    return float(largest_change(orbit.values, step, orbit.form.unknowns, orbit.form.mesh.nodes))

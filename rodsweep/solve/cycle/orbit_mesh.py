@@ -1,0 +1,197 @@
+"""Meshes of an orbit in space and time, and the one that an accuracy needs.
+
+How fine a mesh must be is judged by the last coefficients of the orbit's polynomials, its tails. Their
+squares are what period and largest deflection follow: these converge twice as fast as states do.
+"""
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from math import ceil, log
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from ...arrays import Array
+from ...discretization.mesh import Mesh, mesh
+from ...discretization.resolution import LARGEST_ORDER
+from ...model.compilation import compiled_for_vectors
+from .orbit import Orbit
+
+SPACE_FACTOR, TIME_FACTOR = 1.0, 50.0
+"""Largest errors of period and extrema in units of the squared tails: 0.1 to 1.3 and 10 to 80 were seen."""
+EXPECTED_SHARE = 1 / 3
+"""Share of the accuracy that a mesh is chosen for, in space and in time each."""
+COARSER_ORDER, COARSER_SHARE = 2, 0.6
+"""The coarse mesh has so much less order in each element, and this share of the intervals: both errors are
+then about ten times those of the fine one, and it hardly matters which of them dominates."""
+LEAST_ORDER, LEAST_INTERVALS, MOST_INTERVALS = 8, 4, 256
+LEAST_DECAY, LARGEST_DECAY = 0.2, 1.2
+"""Bounds of the decay of the coefficients in space, per order, natural logarithm."""
+MOST_STATE_UNKNOWNS = 400
+"""Unknowns of a state beyond which a cycle is given up: a second for each of Newton's steps."""
+
+
+@dataclass(frozen=True, slots=True)
+class OrbitMesh:
+    """Equal elements of an order in space, equal intervals with Radau stages in time."""
+
+    elements: int
+    order: int
+    intervals: int
+    stages: int
+
+    @property
+    def grid(self) -> Mesh:
+        return mesh(self.elements, self.order)
+
+    @property
+    def coarser(self) -> "OrbitMesh":
+        """The mesh that the error of this one is measured by."""
+        order = max(LEAST_ORDER - COARSER_ORDER, self.order - COARSER_ORDER)
+        intervals = max(LEAST_INTERVALS - 1, round(COARSER_SHARE * self.intervals))
+        return replace(self, order=order, intervals=intervals)
+
+    @property
+    def allowed(self) -> bool:
+        return 3 * self.elements * self.order <= MOST_STATE_UNKNOWNS and self.intervals <= MOST_INTERVALS
+
+    @property
+    def cost(self) -> float:
+        """Of an elimination, in any unit; processors and their BLAS take numbers in eights."""
+        unknowns = 8 * ceil(3 * self.elements * self.order / 8)
+        return float(unknowns**3 * self.intervals * self.stages**2)
+
+    def carry(self, orbit: Orbit) -> Orbit:
+        """The orbit's polynomials on this mesh."""
+        return orbit.on(self.grid, self.intervals, self.stages)
+
+
+def mesh_of(orbit: Orbit) -> OrbitMesh:
+    """The mesh of an orbit."""
+    grid = orbit.form.mesh
+    return OrbitMesh(grid.elements, grid.order, orbit.intervals, orbit.stages)
+
+
+def stages_for(accuracy: float) -> int:
+    """Stages of the method in time with which an accuracy costs least."""
+    return 3 if accuracy > 3e-6 else 4 if accuracy > 3e-9 else 5 if accuracy > 3e-11 else 6
+
+
+@dataclass(frozen=True, slots=True)
+class Tails:
+    """The last coefficients of the polynomials in space and in time in units of the largest ones.
+
+    decay: of those in space, per order, natural logarithm.
+    """
+
+    space: float
+    time: float
+    decay: float
+
+
+def tails_of(orbit: Orbit) -> Tails:
+    """The tails of an orbit."""
+    c = _space_coefficients(orbit)
+    last = np.hypot(c[:, -1], c[:, -2]) / np.maximum(c.max(axis=1), 1e-300)
+    return Tails(float(last.max()), _tail_in_time(orbit), _decay(c))
+
+
+def space_decay(orbit: Orbit) -> float:
+    """Of the coefficients in space, per order, natural logarithm."""
+    return _decay(_space_coefficients(orbit))
+
+
+@compiled_for_vectors
+def _decay(c: Array) -> float:
+    """The mean slope of the envelope of coefficients, (fields, p + 1), over their upper half."""
+    fields, size = c.shape
+    middle, highest = (size - 1) / 2 + (size // 2) / 2, 1e-16
+    along, squares = 0.0, 0.0
+    for k in range(size - 1, size // 2 - 1, -1):
+        for a in range(fields):
+            highest = max(highest, c[a, k] / max(c[a].max(), 1e-300))
+        along += (k - middle) * np.log(highest)
+        squares += (k - middle) ** 2
+    return min(max(-along / squares, LEAST_DECAY), LARGEST_DECAY)
+
+
+def _space_coefficients(orbit: Orbit) -> Array:
+    """The largest Legendre coefficients of n1, n2 and m3 at the ends of the intervals, (3, p + 1)."""
+    grid, ends = orbit.form.mesh, np.ascontiguousarray(orbit.states[:, -1])
+    return largest_coefficients(ends, grid.elements, _analysis_on_element(grid.order))
+
+
+@lru_cache(maxsize=64)
+def _analysis_on_element(order: int) -> Array:
+    """Matrix, applied from the right, from an element's nodes to Legendre coefficients, (p + 1, p + 1)."""
+    return np.ascontiguousarray(legendre_analysis(tuple(2 * mesh(1, order).positions - 1)).T)
+
+
+@compiled_for_vectors
+def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array:
+    """The largest moduli of the coefficients of n1, n2, m3, (3, p + 1), of states (m, n) in all elements."""
+    size = len(analysis)
+    nodes = elements * (size - 1)
+    largest, c = np.zeros((3, size)), np.empty(size)
+    for k in range(len(states)):
+        for a in range(3):
+            for e in range(elements):
+                first = a * nodes + e * (size - 1)
+                known = size if e < elements - 1 else size - 1  # at the tip stresses vanish
+                c[:] = 0.0
+                for j in range(known):
+                    stress = states[k, first + j]
+                    for i in range(size):
+                        c[i] += stress * analysis[j, i]
+                for i in range(size):
+                    largest[a, i] = max(largest[a, i], abs(c[i]))
+    return largest
+
+
+def _tail_in_time(orbit: Orbit) -> float:
+    """Of n1, n2 and m3 the worst."""
+    K, s, _ = orbit.states.shape
+    n = orbit.form.mesh.nodes
+    values = np.concatenate([orbit.interval_starts[:, None], orbit.states], axis=1)[..., : 3 * n]
+    row = legendre_analysis(tuple(2 * np.append(0.0, orbit.method.nodes) - 1))[-1]
+    top = np.einsum("j,kjr->kr", row, values).reshape(K, 3, n)
+    sizes = np.linalg.norm(values.reshape(K, s + 1, 3, n), axis=-1).max(axis=(0, 1))
+    return float((np.linalg.norm(top, axis=-1).max(axis=0) / np.maximum(sizes, 1e-300)).max())
+
+
+_analyses: dict[tuple[float, ...], Array] = {}
+
+
+def legendre_analysis(nodes: tuple[float, ...]) -> Array:
+    """Matrix from values at n nodes in [-1, 1] to Legendre coefficients, shape (n, n)."""
+    if nodes not in _analyses:
+        _analyses[nodes] = np.linalg.inv(legendre.legvander(np.array(nodes), len(nodes) - 1))
+    return _analyses[nodes]
+
+
+def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
+    """The smallest mesh that is expected to reach an accuracy, by the tails of an orbit near by."""
+    here, tails = mesh_of(orbit), tails_of(orbit)
+    aim_space = (EXPECTED_SHARE * accuracy / SPACE_FACTOR) ** 0.5
+    aim_time = (EXPECTED_SHARE * accuracy / TIME_FACTOR) ** 0.5
+    order = here.order + ceil(log(max(tails.space, 1e-15) / aim_space) / tails.decay / here.elements)
+    elements = here.elements
+    while order > LARGEST_ORDER:
+        order, elements = ceil(0.6 * order), 2 * elements
+    # A tail falls as the power `stages` of the intervals; of other stages' tails little more is known.
+    tail = max(tails.time, 1e-15) ** (stages / here.stages)
+    intervals = ceil(here.intervals * (tail / aim_time) ** (1 / stages))
+    order = min(max(order, LEAST_ORDER), here.order + 12)
+    intervals = min(max(intervals, LEAST_INTERVALS), 4 * here.intervals)
+    # Even numbers, for which matrices and memory are more often there already.
+    return OrbitMesh(elements, order + order % 2, intervals + intervals % 2, stages)
+
+
+def finer_mesh(mesh: OrbitMesh, wanted: OrbitMesh) -> OrbitMesh:
+    """At least the wanted mesh, and finer than the present one."""
+    order = max(wanted.order, mesh.order) if wanted.elements == mesh.elements else wanted.order
+    intervals, stages = max(wanted.intervals, mesh.intervals), max(wanted.stages, mesh.stages)
+    finer = replace(wanted, order=order, intervals=intervals, stages=stages)
+    if finer != mesh:
+        return finer
+    return replace(mesh, order=mesh.order + 2, intervals=ceil(1.2 * mesh.intervals))

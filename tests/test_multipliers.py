@@ -1,0 +1,45 @@
+"""Eigenvalues of matrices of low rank, against NumPy's of the whole matrix and against exact ones."""
+
+import numpy as np
+import pytest
+
+from rodsweep.solve.cycle.multipliers import NEGLIGIBLE, compressed, nonzero_eigenvalues
+
+
+def by_modulus(values):
+    return values[np.lexsort((values.imag, values.real, -np.round(np.abs(values), 9)))]
+
+
+@pytest.mark.parametrize("n, rank", [(1, 1), (12, 3), (45, 7), (60, 60)])
+def test_the_nonzero_eigenvalues_are_those_of_the_whole_matrix(n, rank):
+    rng = np.random.default_rng(n)
+    A = rng.standard_normal((n, rank)) @ rng.standard_normal((rank, n)) / n
+    found, exact = by_modulus(nonzero_eigenvalues(A)), by_modulus(np.linalg.eigvals(A))
+    assert found[:rank] == pytest.approx(exact[:rank], abs=1e-12 * np.abs(exact[0]))
+    assert np.abs(found[rank:]).max(initial=0.0) < 1e-13 * np.abs(exact[0])
+
+
+def test_eigenvalues_of_any_size_are_right_to_the_largest_times_rounding():
+    """As of a flow over a period: each is smaller by a factor, in directions that are not orthogonal."""
+    n, rng = 40, np.random.default_rng(1)
+    X = np.eye(n) + 0.3 * rng.standard_normal((n, n)) / np.sqrt(n)
+    exact = 0.05 ** np.arange(n)
+    found = nonzero_eigenvalues(X @ np.diag(exact) @ np.linalg.inv(X))
+    found = found[np.argsort(-np.abs(found))]
+    assert len(found) < n
+    assert np.abs(found[:10] - exact[:10]).max() < 1e-13
+
+
+def test_what_is_left_out_is_rounding():
+    A = np.diag([1.0, 1e-8, 0.1 * NEGLIGIBLE, 0.0])
+    assert compressed(A, NEGLIGIBLE).shape == (2, 2)
+    assert sorted(nonzero_eigenvalues(A).real) == pytest.approx([1e-8, 1.0], rel=1e-14)
+    assert nonzero_eigenvalues(np.zeros((3, 3))) == pytest.approx([0.0])
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_what_is_not_finite_is_refused(bad):
+    A = np.eye(4)
+    A[1, 2] = bad
+    with pytest.raises(np.linalg.LinAlgError, match="not finite"):
+        nonzero_eigenvalues(A)
