@@ -1,6 +1,59 @@
 """rodsweep: when a follower-loaded soft rod in a viscous fluid oscillates and flutters.
 
-Importing the package starts neither MPI nor PETSc.
+Its Python interface, `import rodsweep as rs`, is described in docs/python.md. Importing the package starts
+neither MPI nor PETSc, and loads nothing but this module: each name is fetched when it is first used.
 """
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .api.answer import Answer
+    from .api.axes import linspace, logspace
+    from .api.dataset import open_result as open  # noqa: A004 - `rs.open`
+    from .api.picture import Picture, plot
+    from .api.rod import SoftRod as Rod
+    from .api.sweeping import sweep
+    from .errors import EnvironmentLacks, InputError
+
 __version__ = "0.1.0"
+__all__ = [
+    "Answer",
+    "EnvironmentLacks",
+    "InputError",
+    "Picture",
+    "Rod",
+    "linspace",
+    "logspace",
+    "open",
+    "plot",
+    "sweep",
+]
+
+_PLACES = {
+    "Answer": "api.answer.Answer",
+    "EnvironmentLacks": "errors.EnvironmentLacks",
+    "InputError": "errors.InputError",
+    "Picture": "api.picture.Picture",
+    "Rod": "api.rod.SoftRod",
+    "linspace": "api.axes.linspace",
+    "logspace": "api.axes.logspace",
+    "open": "api.dataset.open_result",
+    "plot": "api.picture.plot",
+    "sweep": "sweep",
+}
+"""Where the public names come from; `sweep` is a package that can be called."""
+
+
+def __getattr__(name: str) -> Any:
+    """A public name, fetched when it is first used."""
+    if name not in _PLACES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module, _, own = _PLACES[name].rpartition(".")
+    found = import_module(f".{module or own}", __name__)
+    globals()[name] = value = getattr(found, own) if module else found
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -3,6 +3,7 @@
 import importlib.util
 import re
 import shlex
+import shutil
 import textwrap
 import tomllib
 from functools import cache
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import click
 import h5py
+import numpy as np
 import pytest
 from conftest import ROOT
 
@@ -190,3 +192,24 @@ def test_every_attribute_of_a_file_is_explained(command):
     explained = {name for names in reference().ATTRIBUTES for name in names.split(", ")}
     with h5py.File(command.directory / "a.h5") as file:
         assert set(file.attrs) | SOMETIMES == explained
+
+
+PRINTED = re.compile(r"^```python\n(.*?)^```\n(?:\n```text\n(.*?)^```)?", re.MULTILINE | re.DOTALL)
+"""A block of Python and, where one follows, the block of what it prints."""
+NUMBER = re.compile(r"-?\d+\.?\d*(?:e[+-]?\d+)?")
+ROUNDING = 1e-9
+"""Below this a number on the page is an estimate of rounding, of which only the size is alike elsewhere."""
+
+
+def test_python_page_prints_what_it_says(tmp_path, monkeypatch, capsys):
+    """But for the last digits, which are the processor's."""
+    monkeypatch.chdir(tmp_path)
+    names: dict = {}
+    for code, text in PRINTED.findall((DOCS / "python.md").read_text()):
+        if "ranks=" in code and not shutil.which("mpiexec"):
+            continue
+        exec(compile(code, "python.md", "exec"), names)
+        printed = capsys.readouterr().out
+        assert NUMBER.sub("#", printed).split() == NUMBER.sub("#", text).split()
+        numbers = [np.array(NUMBER.findall(each), float) for each in (printed, text)]
+        assert numbers[0] == pytest.approx(numbers[1], rel=1e-5, abs=ROUNDING)

@@ -43,7 +43,11 @@ class Job:
 
 def make_job(path: Path, overrides: tuple[str, ...]) -> Job:
     """The job of a config file; InputError for everything that can be known to be wrong beforehand."""
-    config, text = load_config(path, overrides)
+    return job_of(path, *load_config(path, overrides))
+
+
+def job_of(path: Path, config: Config, text: str) -> Job:
+    """The job of a config with its YAML text, beside whose path a file of points is looked for."""
     count = grid_size(config)  # before any axis is made
     each = layout_of(canonical(config)).bytes_per_point
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")

@@ -23,13 +23,21 @@ def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, st
     for override in overrides:
         _override(tree, override)
         text += f"\n# --set {override}"
-    config = CONFIGS[_task(tree, where)]
     try:
-        return config.model_validate(tree), text
+        return validated(tree), text
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def validated(tree: dict[str, Any]) -> Config:
+    """The config that a tree of keys and values asks for; InputError for the first thing amiss."""
+    config = CONFIGS[_task(tree)]
+    try:
+        return config.model_validate(tree)
     except ValidationError as error:
         problems = sorted(error.errors(include_url=False), key=lambda problem: problem["type"] == "missing")
         more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
-        raise InputError(f"{where}: {sentence_of(config, problems[0])}{more}") from None
+        raise InputError(f"{sentence_of(config, problems[0])}{more}") from None
 
 
 def canonical(config: Config) -> dict[str, Any]:
@@ -57,18 +65,18 @@ def _override(tree: dict, override: str) -> None:
     node[path[-1]] = parse(value, where)
 
 
-def _task(tree: dict, where: str) -> str:
+def _task(tree: dict) -> str:
     """The task that the config names; InputError if it is none, or if a section belongs to another."""
     known = words(tuple(CONFIGS), "or")
     if "task" not in tree:
         others = [name for name in tree if isinstance(name, str) and name not in Config.model_fields]
         close = nearest("task", others)
         problem = f"unknown key {dotted(close)}; did you mean task?" if close else "task is missing;"
-        raise InputError(f"{where}: {problem} it should be {known}")
+        raise InputError(f"{problem} it should be {known}")
     task = tree["task"]
     if not isinstance(task, str) or task not in CONFIGS:
-        raise InputError(f"{where}: task = {short(task)} is not allowed; it should be {known}")
+        raise InputError(f"task = {short(task)} is not allowed; it should be {known}")
     for name in CONFIGS:
         if name in tree and name != task:
-            raise InputError(f"{where}: {name} is given but the task is {task}; remove it")
+            raise InputError(f"{name} is given but the task is {task}; remove it")
     return task

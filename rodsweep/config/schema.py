@@ -5,11 +5,12 @@ form only.
 """
 
 from abc import ABC, abstractmethod
-from typing import Annotated, ClassVar
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, model_validator
 
-from ..model.parameters import LINEAR_PARAMETERS
+from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS
 from .axes import Axes, LinearParameters
 from .values import Number, Strict, Text
 
@@ -36,6 +37,11 @@ class Config(Strict, ABC):
     def names(self) -> tuple[str, ...]:
         """The parameters that make a point of the sweep."""
 
+    @classmethod
+    def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
+        """The parameters that the task, with these options, takes of a rod that has all of them."""
+        return NONLINEAR_PARAMETERS
+
     def refuse_unused(self, option: str, remedy: str) -> None:
         """ValueError where an option is given that nothing uses unless the config has `remedy`."""
         if option in getattr(self, self.task).model_fields_set:
@@ -54,6 +60,10 @@ class LinearConfig(Config, ABC):
 
     @property
     def names(self) -> tuple[str, ...]:
+        return LINEAR_PARAMETERS
+
+    @classmethod
+    def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
         return LINEAR_PARAMETERS
 
     @model_validator(mode="after")

@@ -1,9 +1,11 @@
 """The keys of the task spectrum."""
 
-from typing import ClassVar, Literal
+from collections.abc import Mapping
+from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
 
+from ..model.parameters import LINEAR_PARAMETERS
 from .schema import LinearConfig, Modes, Nodes
 from .values import Strict
 
@@ -30,6 +32,10 @@ class SpectrumConfig(LinearConfig):
     spectrum: SpectrumOptions = SpectrumOptions()
 
     beyond: ClassVar[tuple[str, ...]] = ("gamma1",)
+
+    @classmethod
+    def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
+        return (*LINEAR_PARAMETERS, *cls.beyond) if options.get("longitudinal") else LINEAR_PARAMETERS
 
     @model_validator(mode="after")
     def _only_what_is_used(self) -> "SpectrumConfig":

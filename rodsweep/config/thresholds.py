@@ -1,7 +1,8 @@
 """The keys of the task thresholds."""
 
+from collections.abc import Mapping
 from math import inf
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -29,6 +30,10 @@ class ThresholdsConfig(LinearConfig):
 
     @property
     def names(self) -> tuple[str, ...]:
+        return all_but("F")
+
+    @classmethod
+    def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
         return all_but("F")
 
     @model_validator(mode="after")

@@ -76,10 +76,7 @@ def points_of(config: Config, directory: Path) -> Points:
         columns = _read_csv(directory / parameters.points, config.names)
         return Points(config.names, columns, is_grid=False)
     axes = {name: axis.array() for name, axis in parameters.axes.items()}
-    for name, column in axes.items():
-        refuse_outside(PARAMETERS[name].allowed, name, column)
-    if "F" in axes:
-        _refuse_crushed(axes["F"], axes["k1"], config.into_crushed)
+    refuse_axes(axes, config.into_crushed)
     return Points(config.names, tuple(axes[name] for name in config.names), is_grid=True)
 
 
@@ -92,6 +89,17 @@ def refuse_outside(
         raise InputError(
             f"parameters.{name} = {bad:g} is not allowed{where}; it must be {allowed.phrase}{why}"
         )
+
+
+def refuse_axes(axes: dict[str, Array], into_crushed: bool = False) -> None:
+    """InputError for a value of an axis, each (n,), that is not allowed, and for rods that are crushed.
+
+    into_crushed: whether some may be, though not all.
+    """
+    for name, column in axes.items():
+        refuse_outside(PARAMETERS[name].allowed, name, column)
+    if "F" in axes:
+        _refuse_crushed(axes["F"], axes["k1"], into_crushed)
 
 
 def _refuse_crushed(F: Array, k1: Array, some: bool) -> None:

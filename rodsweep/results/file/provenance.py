@@ -4,6 +4,7 @@ import platform
 import subprocess
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -87,6 +88,7 @@ def merged_history(several: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     return history
 
 
+@cache
 def git_commit() -> str:
     """The commit of the checkout that this code runs from, marked if it was changed; or unknown."""
     root = Path(__file__).resolve().parents[3]

@@ -1,0 +1,70 @@
+"""From the keywords of a call to the job that a config file with the same keys makes."""
+
+from collections.abc import Collection, Mapping
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+from ruamel.yaml import YAML
+
+from ..cli.job import Job, job_of
+from ..config.reading import validated
+from ..config.refusals import nearest
+from ..config.schema import Config
+from ..config.tasks import CONFIGS
+from .axes import plain
+
+Tree = dict[str, Any]
+"""Keys and values as YAML would be read."""
+
+
+def tree_of(task: str, keywords: Mapping[str, Any]) -> Tree:
+    """The keys of a config from keywords, each put into the section that has it, or one like it.
+
+    A whole section is taken too, so that what YAML has read can be given as keywords.
+    """
+    tree: Tree = {"task": plain(task)}
+    if not isinstance(task, str) or task not in CONFIGS:
+        return tree
+    sections = _sections(task)
+    for name, value in keywords.items():
+        if name in sections and isinstance(value, Mapping):
+            tree.setdefault(name, {}).update(plain(dict(value)))
+            continue
+        section = _section_of(name, sections) or _section_of(_meant(name, sections), sections)
+        place = tree.setdefault(section, {}) if section else tree
+        place[name] = plain(value)
+    return tree
+
+
+def job_from(tree: Tree) -> Job:
+    """The job of a tree; InputError, in the words of the command line, for anything amiss."""
+    config = validated(tree)
+    return job_of(Path(config.task), config, yaml_of(tree))
+
+
+def yaml_of(tree: Tree) -> str:
+    """A tree as the text of a config file."""
+    text, yaml = StringIO(), YAML()
+    yaml.default_flow_style = None  # lists of numbers on one line
+    yaml.dump(tree, text)
+    return text.getvalue()
+
+
+def _sections(task: str) -> dict[str, Collection[str]]:
+    """The known keys of a task's sections, by the name of the section; those at the top by ""."""
+    fields = CONFIGS[task].model_fields
+    inner: dict[str, Any] = {name: fields[name].annotation for name in (task, "parameters")}
+    top = [name for name in Config.model_fields if name not in ("task", "parameters")]
+    return {name: tuple(section.model_fields) for name, section in inner.items()} | {"": top}
+
+
+def _section_of(name: str, sections: Mapping[str, Collection[str]]) -> str | None:
+    """The section that has a key."""
+    return next((section for section, known in sections.items() if name in known), None)
+
+
+def _meant(name: str, sections: Mapping[str, Collection[str]]) -> str:
+    """The known key that an unknown one is most like; the first of the options where it is like none."""
+    known = [key for keys in sections.values() for key in keys]
+    return next(iter(nearest(name, known)), known[0])

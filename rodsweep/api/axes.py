@@ -1,0 +1,41 @@
+"""What Python has for the values of a config: ranges, arrays and paths, made plain as YAML would be read."""
+
+import os
+from typing import Any, TypedDict
+
+import numpy as np
+
+
+class AxisRange(TypedDict):
+    """A range of values as a config has it."""
+
+    start: float
+    stop: float
+    num: int
+    spacing: str
+
+
+def linspace(start: float, stop: float, num: int) -> AxisRange:
+    """`num` values from start to stop, equally spaced: an axis of a sweep."""
+    return {"start": start, "stop": stop, "num": num, "spacing": "linear"}
+
+
+def logspace(start: float, stop: float, num: int) -> AxisRange:
+    """`num` values from start to stop, in equal ratios: an axis of a sweep.
+
+    `start` and `stop` are values, as NumPy's `geomspace` takes them, not exponents.
+    """
+    return {"start": start, "stop": stop, "num": num, "spacing": "log"}
+
+
+def plain(value: Any) -> Any:
+    """A value without NumPy in it: arrays and tuples as lists, scalars as numbers, paths as text."""
+    if isinstance(value, dict):
+        return {key: plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple | range):
+        return [plain(item) for item in value]
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    if hasattr(value, "__array__"):
+        return np.asarray(value).tolist()
+    return value

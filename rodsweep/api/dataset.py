@@ -1,0 +1,113 @@
+"""Results as xarray's Dataset: of what was solved in this process, or from a file; alike in both."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..errors import InputError
+from ..results.file.creation import Plan
+from ..results.file.seal import check_seal
+from ..results.file.validation import PROGRAM, reading, refuse_absent
+from ..results.file.view import View
+from ..results.layouts import layout_of
+from ..results.layouts.variables import DIMENSIONS, MISSING, Filled, Variable
+
+ENGINE = "h5netcdf"
+
+
+def open_result(path: str | Path) -> xr.Dataset:
+    """The Dataset of a result file, whole in memory; of a sweep that still runs, as far as it has come.
+
+    Raises InputError where the file is no result or damaged.
+    """
+    path = Path(path)
+    refuse_absent(path)
+    with reading(path):
+        check_seal(path, values=True)
+        with xr.open_dataset(path, engine=ENGINE) as file:
+            data = file.load()
+    if data.attrs.get("program") != PROGRAM:
+        raise InputError(f"{path} is no result of rodsweep")
+    return data
+
+
+def dataset_of(
+    plan: Plan, values: Mapping[str, np.ndarray], filled: tuple[Filled, ...], attributes: Mapping[str, Any]
+) -> xr.Dataset:
+    """The Dataset of solved points, as from a file of `plan`.
+
+    values: the variables of the layout, each of the shape of the points and its own dimensions; filled: whole
+    variables beside them.
+    """
+    coordinates = _coordinates(plan)
+    variables = {}
+    for variable in plan.layout.variables:
+        dimensions = (*plan.dimensions, *variable.extra)
+        variables[variable.name] = (dimensions, values[variable.name], _described(variable))
+    for variable, array in filled:
+        data = array.astype(variable.dtype)
+        variables[variable.name] = (variable.extra, data, _described(variable))
+        for name, extent in zip(variable.extra, data.shape, strict=True):
+            coordinates.setdefault(name, ((name,), np.arange(1, extent + 1), _named(name)))
+    flags = ((MISSING, "missing"), *plan.flags)
+    variables["status"][2].update(_flags(flags))
+    header = {
+        "program": PROGRAM,
+        "fingerprint": plan.fingerprint,
+        "config_resolved": json.dumps(plan.config),
+    }
+    return xr.Dataset(variables, coordinates, header | plan.attributes | dict(attributes))
+
+
+def view_of(data: xr.Dataset, path: Path) -> View:
+    """A Dataset as `show` and `plot` see a file; InputError if it is not a whole result."""
+    try:
+        layout = layout_of(json.loads(data.attrs["config_resolved"]))
+        status = data["status"]
+        words = str(status.attrs["flag_meanings"]).split()
+        flags = dict(zip(map(int, np.atleast_1d(status.attrs["flag_values"])), words, strict=True))
+    except (LookupError, ValueError, TypeError):
+        raise InputError("the data are no result of rodsweep, of which all variables are needed") from None
+    points = ("point",) if "point" in data.dims else layout.parameters
+    for variable in layout.variables:
+        dimensions = (*points, *variable.extra)
+        if variable.name not in data or data[variable.name].dims != dimensions:
+            raise InputError(
+                f"the data are not whole: {variable.name} should be there with the dimensions "
+                f"{', '.join(dimensions)}; draw a selection by xarray's own plot"
+            )
+    variables = {str(name): array.values for name, array in data.variables.items()}
+    return View(path, dict(data.attrs), variables, layout.parameters, flags, journalled=0)
+
+
+def _coordinates(plan: Plan) -> dict[str, Any]:
+    """The coordinates of points and of extra dimensions."""
+    points = plan.points
+    found: dict[str, Any] = {}
+    if not points.is_grid:
+        found["point"] = (("point",), np.arange(points.count, dtype="<i4"), _named("point"))
+    for name, column in zip(plan.layout.parameters, points.columns, strict=True):
+        found[name] = ((name if points.is_grid else "point",), column, _named(name))
+    for name, extent in plan.layout.extents.items():
+        found[name] = ((name,), plan.coordinates.get(name, np.arange(1, extent + 1)), _named(name))
+    return found
+
+
+def _named(name: str) -> dict[str, Any]:
+    units, long_name = DIMENSIONS[name]
+    return {"units": units, "long_name": long_name}
+
+
+def _described(variable: Variable) -> dict[str, Any]:
+    """The attributes of a variable."""
+    described: dict[str, Any] = {"units": variable.units, "long_name": variable.long_name}
+    return described | (_flags(variable.flags) if variable.flags else {})
+
+
+def _flags(flags: tuple[tuple[int, str], ...]) -> dict[str, Any]:
+    values = np.array([value for value, _ in flags], dtype="i1")
+    return {"flag_values": values, "flag_meanings": " ".join(meaning for _, meaning in flags)}

@@ -1,0 +1,57 @@
+"""The keywords of a rod's tasks, for editors and type checkers: the keys of its options, and the accuracy.
+
+Meanings, ranges and defaults are those of the config, `rodsweep.config`; a test holds these names against it.
+"""
+
+from typing import Literal, TypedDict
+
+
+class OfEveryTask(TypedDict, total=False):
+    """What every task can be told."""
+
+    accuracy: float
+    title: str
+
+
+class OfSpectrum(OfEveryTask, total=False):
+    """Keys of the section `spectrum`."""
+
+    modes: int
+    certify: bool
+    vectors: bool
+    nodes: int
+    longitudinal: bool
+
+
+class OfThresholds(OfEveryTask, total=False):
+    """Keys of the section `thresholds`."""
+
+    F_max: float
+    crossings: int
+    certify: bool
+
+
+class OfModes(OfEveryTask, total=False):
+    """Keys of the section `modes`."""
+
+    modes: int
+    nodes: int
+    growth: bool
+    certify: bool
+
+
+class OfLimitCycle(OfEveryTask, total=False):
+    """Keys of the section `limit_cycle`."""
+
+    amplitude: float
+    start: Literal["mode", "neighbour", "hopf"]
+    continue_from: Literal["none", "previous"]
+    along: str
+    direction: Literal["up", "down"]
+    harmonics: int
+    samples: int
+    shapes: int
+    nodes: int
+    transient: int
+    most_periods: int
+    time: Literal["tau2", "tau1"]

@@ -1,0 +1,71 @@
+"""`rs.plot`: the figures of `rodsweep plot`, shown in a notebook or written into a file."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, Literal
+
+import xarray as xr
+
+from ..errors import InputError
+from ..post.figures import draw
+from ..results.file.view import View, read_view
+from .answer import Answer
+from .dataset import view_of
+
+Drawable = xr.Dataset | Answer | str | Path
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A figure, which a notebook shows; `save` draws it into a file of any format that `plot` knows."""
+
+    views: Sequence[View] = field(repr=False)
+    choices: dict[str, Any]
+    shown: str
+    """What the figure shows, in a sentence."""
+    image: bytes = field(repr=False)
+    """The PNG, or the GIF of an animation."""
+
+    def save(self, path: str | Path) -> str:
+        """Draws the figure into a file (.png, .pdf, .svg); returns a sentence about it."""
+        return draw(self.views, Path(path), **self.choices)
+
+    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:
+        kind = "png" if self.image.startswith(b"\x89PNG") else "gif"
+        return {f"image/{kind}": self.image, "text/plain": self.shown}
+
+
+def plot(
+    data: Drawable | Sequence[Drawable],
+    output: str | Path | None = None,
+    *,
+    roots: Literal["rightmost", "smallest"] = "smallest",
+    what: str | None = None,
+    points: Sequence[int] = (),
+) -> Picture:
+    """The figure that suits the task of `data`: a Dataset, an Answer, a file, or several of limit cycles.
+
+    output: a file to write too. The choices are the options of `rodsweep plot`. Raises InputError where there
+    is nothing that a figure could show.
+    """
+    several = [data] if isinstance(data, Drawable) else list(data)
+    if not several:
+        raise InputError("there is nothing to draw; give a Dataset, an answer or a file")
+    views = [_view(one) for one in several]
+    choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(points)}
+    with TemporaryDirectory(prefix="rodsweep-") as place:
+        path = Path(place, "figure.gif" if what == "animation" else "figure.png")
+        shown = draw(views, path, **choices).partition(": ")[2]
+        picture = Picture(views, choices, shown, path.read_bytes())
+    if output is not None:
+        picture.save(output)
+    return picture
+
+
+def _view(data: Drawable) -> View:
+    if isinstance(data, str | Path):
+        return read_view(Path(data))
+    whole = data.whole if isinstance(data, Answer) else data
+    return view_of(whole, Path(str(whole.attrs.get("title", "data"))))

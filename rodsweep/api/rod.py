@@ -1,0 +1,114 @@
+"""`rs.Rod`: one rod, which answers every task under its name."""
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, Unpack
+
+import numpy as np
+
+from ..config.refusals import nearest
+from ..config.tasks import CONFIGS
+from ..config.values import as_number
+from ..errors import InputError
+from ..model.parameters import PARAMETERS
+from ..sweep.grid import refuse_axes
+from .answer import Answer
+from .asking import job_from, tree_of
+from .axes import plain
+from .options import OfLimitCycle, OfModes, OfSpectrum, OfThresholds
+from .solving import solve_here
+
+
+class SoftRod:
+    """A slender soft rod in a viscous fluid with a follower force at its tip, in units of length and k3.
+
+    F: follower force, k3/L^2; not needed for thresholds, which find it. k1: stretch stiffness, k2: shear
+    stiffness, both k3/L^2, inf for a rigid one. gamma3: rotational drag, gamma2 L^2. gamma1: axial drag,
+    gamma2, by default 1.
+
+    Every task is a method of its name. It takes the options of the config as keywords, with the same
+    defaults, and returns an `Answer`. Raises InputError, in the command line's words, for values that are not
+    allowed.
+    """
+
+    __slots__ = ("_values",)
+
+    def __init__(
+        self,
+        *,
+        F: float | None = None,
+        k1: float,
+        k2: float,
+        gamma3: float,
+        gamma1: float | None = None,
+        **unknown: Any,
+    ):
+        for name in unknown:
+            close = nearest(name, list(PARAMETERS))
+            hint = f"did you mean {close[0]}?" if close else f"known keys are {', '.join(PARAMETERS)}"
+            raise InputError(f"unknown key parameters.{name}; {hint}")
+        given = {"F": F, "k1": k1, "k2": k2, "gamma3": gamma3, "gamma1": gamma1}
+        values = {name: p.default if given[name] is None else given[name] for name, p in PARAMETERS.items()}
+        self._values = {name: _number(name, value) for name, value in values.items() if value is not None}
+        refuse_axes({name: np.array([value]) for name, value in self._values.items()})
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The values by name."""
+        return dict(self._values)
+
+    def replace(self, **changed: float) -> "SoftRod":
+        """The same rod with other values of some parameters."""
+        values: dict[str, Any] = self._values | changed
+        return SoftRod(**values)
+
+    def spectrum(self, **options: Unpack[OfSpectrum]) -> Answer:
+        """The leading eigenvalues, growth_rate + i frequency in 1/tau2: `modes` of them, by default 4."""
+        return self._answer("spectrum", options)
+
+    def thresholds(self, **options: Unpack[OfThresholds]) -> Answer:
+        """The forces at which the rod starts to oscillate, flutters and is stable again, up to `F_max`."""
+        return self._answer("thresholds", options)
+
+    def modes(self, **options: Unpack[OfModes]) -> Answer:
+        """The leading modes with their adjoints, and the transient growth that they allow."""
+        return self._answer("modes", options)
+
+    def limit_cycle(self, **options: Unpack[OfLimitCycle]) -> Answer:
+        """How the rod beats: period, amplitude, energy and Floquet multipliers of its limit cycle."""
+        return self._answer("limit_cycle", options)
+
+    cycle = limit_cycle
+
+    if not TYPE_CHECKING:  # where a misspelt task shall be seen
+
+        def __getattr__(self, name: str) -> Callable[..., Answer]:
+            """Any other task, which needs no words of its own."""
+            if name not in CONFIGS:
+                raise AttributeError(f"a rod has no {name!r}; its tasks are {', '.join(CONFIGS)}")
+            return lambda **options: self._answer(name, options)
+
+    def _answer(self, task: str, options: Mapping[str, Any]) -> Answer:
+        for name in options:
+            if name in PARAMETERS:
+                raise InputError(f"{name} belongs to the rod: rod.replace({name}=...) is another one")
+        taken = CONFIGS[task].taken_of_a_rod(options)
+        values = {name: self._values[name] for name in taken if name in self._values}
+        data, messages = solve_here(job_from(tree_of(task, values | dict(options))))
+        return Answer(repr(self), data, messages[0])
+
+    def __repr__(self) -> str:
+        return f"Rod({', '.join(f'{name}={value:.15g}' for name, value in self._values.items())})"
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, SoftRod) and self._values == other._values
+
+    def __hash__(self) -> int:
+        return hash(tuple(self._values.items()))
+
+
+def _number(name: str, value: Any) -> float:
+    """A value of a parameter; InputError if it is no number."""
+    try:
+        return as_number(plain(value))
+    except ValueError as error:
+        raise InputError(f"parameters.{name}: {error}") from None

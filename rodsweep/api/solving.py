@@ -1,0 +1,93 @@
+"""Every point of a job, one after another in this process, without files and without other ranks."""
+
+import socket
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from threadpoolctl import ThreadpoolController
+
+from ..cli.job import Job
+from ..cli.running import plan_of
+from ..cli.tasks.protocol import Solver
+from ..results.file.creation import Plan
+from ..results.file.provenance import now
+from ..results.file.view import View
+from ..solve.backend.availability import require_petsc
+from ..sweep.shards import Shard
+from .dataset import dataset_of
+
+_warm: set[str] = set()
+"""Tasks that have been solved in this process."""
+
+
+def solve_here(job: Job) -> tuple[xr.Dataset, list[str]]:
+    """(the Dataset of all points, what each point's outcome has to say).
+
+    Raises EnvironmentLacks where PETSc is not to be found.
+    """
+    require_petsc()
+    solver, started = job.task.solver(), now()
+    plan = plan_of(job, solver, Shard(), _kernels())
+    if job.config.task not in _warm:
+        solver.warm_up()
+        _warm.add(job.config.task)
+    with _blas().limit(limits=1, user_api="blas"):  # as the command does: threads add in another order
+        values, messages = _solved(job, solver, plan)
+        attributes = {"ranks": 1, "hosts": socket.gethostname(), "started": started, "stopped": ""}
+        filled = tuple(plan.constants)
+        if solver.finish:
+            filled += tuple(solver.finish(_view(job, plan, values)))
+    return dataset_of(plan, values, filled, attributes | {"finished": now()}), messages
+
+
+def _solved(job: Job, solver: Solver, plan: Plan) -> tuple[dict[str, np.ndarray], list[str]]:
+    """(the variables of the layout, each of the points' shape and its own; the messages of all points)."""
+    count, layout = job.points.count, plan.layout
+    flat = {v.name: np.full((count, *layout.inner(v)), v.fill, v.dtype) for v in layout.variables}
+    messages = [""] * count
+    for index, outcome in _outcomes(count, solver):
+        record = solver.record(index, outcome)
+        for name, array in flat.items():
+            array[index] = record[name]
+        messages[index] = outcome.message
+    shape = job.points.shape
+    return {name: array.reshape(*shape, *array.shape[1:]) for name, array in flat.items()}, messages
+
+
+def _outcomes(count: int, solver: Solver) -> Iterator[tuple[int, Any]]:
+    """Every index with its outcome, along the chains where points start one from the other."""
+    if solver.chained is None:
+        yield from ((index, solver.solve(index)) for index in range(count))
+        return
+    chains, solve_from = solver.chained
+    for chain in range(chains.count):
+        state = None
+        for index in map(int, chains.indices(chain)):
+            outcome, state = solve_from(index, state)
+            yield index, outcome
+
+
+def _view(job: Job, plan: Plan, values: dict[str, np.ndarray]) -> View:
+    """The solved points as a file would show them."""
+    names = plan.layout.parameters if job.points.is_grid else ("point",)
+    columns = dict(zip(names, job.points.columns, strict=False)) | plan.coordinates
+    return View(
+        Path(job.name), plan.attributes, columns | values, plan.layout.parameters, dict(plan.flags), 0
+    )
+
+
+@cache
+def _kernels() -> str:
+    from ..solve.backend.blas_kernel import blas
+
+    return blas()
+
+
+@cache
+def _blas() -> ThreadpoolController:
+    """The BLAS libraries of this process, once PETSc has loaded its own."""
+    return ThreadpoolController()

@@ -1,0 +1,70 @@
+"""`rs.sweep`: a task over a grid or a list of points, here or on many ranks."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import xarray as xr
+
+from ..errors import EnvironmentLacks, InputError
+from .asking import Tree, job_from, tree_of, yaml_of
+from .axes import plain
+from .dataset import open_result
+from .solving import solve_here
+
+COMPUTED = (0, 1)
+"""Exit statuses of a run that is whole, whatever its points ended with."""
+REFUSED: dict[int, type[Exception]] = {2: InputError, 3: EnvironmentLacks}
+"""What the other exit statuses mean."""
+
+
+def sweep(task: str, *, ranks: int | None = None, **keywords: Any) -> xr.Dataset:
+    """The Dataset of a task over its points: the same as from the file of `rodsweep run`.
+
+    keywords: the keys of a config without their sections. Parameters are a number, a list or array of
+    increasing values, `linspace(...)` or `logspace(...)`; `points` is the name of a CSV file instead.
+    `accuracy`, `title` and the options of the task follow; what is not given has the config's default.
+
+    ranks: by default the points are solved in this process; otherwise by the command on so many ranks.
+
+    Raises InputError for what the command would refuse, in its words, and EnvironmentLacks where the machine
+    lacks something. A point that fails keeps its status.
+    """
+    if ranks is not None and (isinstance(ranks, bool) or not isinstance(ranks, int) or ranks < 1):
+        raise InputError(f"ranks = {ranks!r} is not allowed; it should be a whole number, 1 or above")
+    tree = tree_of(task, keywords)
+    job = job_from(tree)
+    return solve_here(job)[0] if ranks is None else _on_ranks(task, tree, ranks)
+
+
+def _on_ranks(task: str, tree: Tree, ranks: int) -> xr.Dataset:
+    """The Dataset that `rodsweep run` makes on so many ranks, in a directory that is then removed."""
+    points = tree["parameters"].get("points")
+    if points is not None:
+        tree = tree | {"parameters": {"points": str(Path(plain(points)).absolute())}}
+    with TemporaryDirectory(prefix="rodsweep-") as place:
+        config, output = Path(place, f"{task}.yaml"), Path(place, f"{task}.h5")
+        config.write_text(yaml_of(tree), encoding="utf-8")
+        words = [_mpiexec(), "-n", str(ranks), sys.executable, "-m", "rodsweep", "run", str(config)]
+        words += ["-o", str(output)]
+        # The environment as this process got it: MPI, once started in here, adds to the one in C.
+        given = dict(os.environ)
+        run = subprocess.run(words, cwd=place, env=given, capture_output=True, text=True, check=False)
+        if run.returncode not in COMPUTED:
+            lines = [line for line in run.stderr.splitlines() if line.startswith("rodsweep: ")]
+            sentence = lines[0].removeprefix("rodsweep: ") if lines else run.stderr[-2000:]
+            raise REFUSED.get(run.returncode, RuntimeError)(sentence)
+        return open_result(output)
+
+
+def _mpiexec() -> str:
+    """The launcher that was installed beside this Python, or the machine's."""
+    beside = shutil.which("mpiexec", path=str(Path(sys.executable).parent))
+    found = beside or shutil.which("mpiexec")
+    if found is None:
+        raise EnvironmentLacks("mpiexec is not found, which ranks need; `make install` provides it")
+    return found

@@ -1,0 +1,324 @@
+"""The Python interface: its names, that it says what the command says, and that it starts nothing early."""
+
+import inspect
+import json
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import xarray as xr
+from conftest import BIN
+from faults import small
+from ruamel.yaml import YAML
+
+import rodsweep as rs
+from rodsweep.api import options
+from rodsweep.api.asking import job_from, tree_of, yaml_of
+from rodsweep.config.schema import Config
+from rodsweep.config.tasks import CONFIGS
+from rodsweep.model.parameters import PARAMETERS
+
+NAMES = [
+    "Answer",
+    "EnvironmentLacks",
+    "InputError",
+    "Picture",
+    "Rod",
+    "linspace",
+    "logspace",
+    "open",
+    "plot",
+    "sweep",
+]
+METHODS = {"parameters", "replace", "spectrum", "thresholds", "modes", "limit_cycle", "cycle"}
+ROD = {"F": 50, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
+OF_A_RUN = {"seconds", "started", "finished", "config"}
+"""What differs between two runs of one config, and its text, which a file has as it was written."""
+OF_RANKS = {
+    "rank_points",
+    "rank_busy_seconds",
+    "rank_idle_seconds",
+    "mpi_library",
+    "slurm_job",
+}
+"""What only a run by the command has to tell."""
+
+
+def keywords_of(text):
+    """The keywords that say what a config file says."""
+    tree = YAML(typ="safe").load(text)
+    task = tree.pop("task")
+    return task, tree.pop("parameters") | tree.pop(task, {}) | tree
+
+
+def test_names_are_these():
+    assert rs.__all__ == NAMES
+    assert set(NAMES) <= set(dir(rs))
+    assert all(callable(getattr(rs, name)) for name in NAMES)
+    public = {name for name in vars(rs.Rod) if not name.startswith("_")}
+    assert public == METHODS
+
+
+def test_arguments_are_these():
+    assert list(inspect.signature(rs.sweep).parameters) == ["task", "ranks", "keywords"]
+    assert list(inspect.signature(rs.plot).parameters) == ["data", "output", "roots", "what", "points"]
+    assert list(inspect.signature(rs.open).parameters) == ["path"]
+    arguments = inspect.signature(rs.Rod).parameters
+    assert [name for name in arguments if name != "unknown"] == list(PARAMETERS)
+
+
+def test_import_loads_nothing():
+    code = (
+        "import sys, rodsweep as rs\n"
+        "heavy = {'numpy', 'mpi4py', 'petsc4py', 'slepc4py', 'xarray', 'h5py', 'matplotlib', 'pydantic'}\n"
+        "assert not heavy & set(sys.modules), heavy & set(sys.modules)\n"
+        "rod = rs.Rod(F=50, k1=1e4, k2=1e2, gamma3=1e-2)\n"
+        "rs.sweep, rs.logspace, rs.Answer\n"
+        "try: rod.spectrum(modes=0)\n"
+        "except rs.InputError: pass\n"
+        "assert not {'mpi4py', 'petsc4py', 'slepc4py', 'matplotlib'} & set(sys.modules)\n"
+        "rod.spectrum()\n"
+        "assert 'mpi4py' not in sys.modules\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_sweep_can_be_called_whatever_was_imported_first():
+    code = (
+        "import rodsweep.sweep.grid, rodsweep as rs\n"
+        "from rodsweep import sweep\n"
+        "assert rs.sweep is sweep\n"
+        "try: rs.sweep('nothing')\n"
+        "except rs.InputError as error: print(error)\n"
+    )
+    run = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert run.stdout.startswith("task = 'nothing' is not allowed; it should be spectrum, ")
+
+
+@pytest.mark.parametrize("name", list(small.CONFIGS))
+def test_sweep_gives_the_dataset_of_the_file(name, command, monkeypatch):
+    command.write("points.csv", small.POINTS)
+    command.write("c.yaml", small.CONFIGS[name])
+    command("run", "c.yaml")
+    monkeypatch.chdir(command.directory)
+    task, keywords = keywords_of(small.CONFIGS[name])
+    file, data = rs.open("c.h5"), rs.sweep(task, **{"title": "c"} | keywords)
+    assert data.attrs.keys() == file.attrs.keys() - OF_RANKS
+    same = data.attrs.keys() - OF_A_RUN - {"config_resolved", "fingerprint"}
+    assert {key: data.attrs[key] for key in same} == {key: file.attrs[key] for key in same}
+    resolved = [json.loads(each.attrs["config_resolved"]) | {"title": ""} for each in (data, file)]
+    assert resolved[0] == resolved[1]
+    for each in (data, file):
+        each.attrs.clear()
+    xr.testing.assert_identical(data.drop_vars("seconds"), file.drop_vars("seconds"))
+
+
+def test_text_of_the_config_gives_the_same_points(tmp_path):
+    """It is what ranks are given, and what the Dataset carries."""
+    tree = tree_of("thresholds", {"k1": [200, np.inf], "k2": rs.logspace(10, 1e6, 31), "gamma3": 1e-300})
+    again = job_from(YAML(typ="safe").load(yaml_of(tree)))
+    assert again.resolved == job_from(tree).resolved
+    assert again.text == yaml_of(tree)
+
+
+@pytest.mark.parametrize("name", list(small.CONFIGS))
+def test_what_yaml_has_read_can_be_given_as_keywords(name):
+    tree = YAML(typ="safe").load(small.CONFIGS[name])
+    whole = {key: value for key, value in tree.items() if key != "task"}
+    task, keywords = keywords_of(small.CONFIGS[name])
+    assert tree_of(task, keywords) == tree_of(task, whole) == tree
+
+
+@pytest.mark.skipif(not (BIN / "mpiexec").exists() and not shutil.which("mpiexec"), reason="no mpiexec")
+def test_ranks_give_the_same_numbers(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "p.csv").write_text("gamma3,F,k1,k2\n0,30,inf,inf\n1e-4,30,1e4,1e4\n")
+    here, there = (rs.sweep("spectrum", points="p.csv", modes=2, ranks=ranks) for ranks in (None, 2))
+    assert there.attrs["ranks"] == 2
+    for data in (here, there):
+        data.attrs.clear()
+    xr.testing.assert_identical(here.drop_vars("seconds"), there.drop_vars("seconds"))
+    assert [path.name for path in tmp_path.iterdir()] == ["p.csv"]
+
+
+@pytest.mark.parametrize("ranks", [0, -1, 1.5, True])
+def test_ranks_are_a_whole_number(ranks):
+    with pytest.raises(rs.InputError, match="ranks = "):
+        rs.sweep("thresholds", k1=200, k2=100, gamma3=0, ranks=ranks)
+
+
+@pytest.mark.parametrize("axis", [np.array([10, 20]), (10, 20.0), range(10, 30, 10), rs.linspace(10, 20, 2)])
+def test_axes_may_be_what_python_has(axis):
+    job = job_from(tree_of("spectrum", {"F": axis, "k1": np.int64(10**4), "k2": np.inf, "gamma3": 0}))
+    assert [column.tolist() for column in job.points.columns] == [[10, 20], [1e4], [np.inf], [0]]
+
+
+def test_a_rods_numbers_are_those_of_the_sweep():
+    rod, data = rs.Rod(**ROD), rs.sweep("spectrum", **ROD)
+    answer = rod.spectrum(modes=4)
+    assert answer.growth_rate.tolist() == data.growth_rate.values.ravel().tolist()
+    assert answer.data.growth_rate.dims == ("mode",)
+    assert float(answer.data.F) == 50
+    assert answer.units["growth_rate"] == answer.data.growth_rate.attrs["units"] == "1/tau2"
+    assert (answer.status, answer.unstable_count) == ("ok", 2)
+    assert answer.config["spectrum"]["modes"] == 4
+
+
+def test_every_task_answers_for_a_rod():
+    rod = rs.Rod(**ROD)
+    assert rod.thresholds().F_hopf == pytest.approx(27.427194, abs=1e-6)
+    assert rod.modes(nodes=9).Y_real.shape == (2, 9)
+    assert rod.cycle(accuracy=1e-3).period == pytest.approx(0.03445, abs=1e-4)
+    assert rod.replace(F=20).cycle(accuracy=1e-3).status == "straight"
+    assert rod.spectrum(longitudinal=True).longitudinal_rate[0] == pytest.approx(-1e4 * (np.pi / 2) ** 2)
+
+
+def test_parameters_that_are_not_given_have_the_defaults_of_the_table():
+    assert rs.Rod(**ROD).parameters == ROD | {"gamma1": PARAMETERS["gamma1"].default}
+    assert "F" not in rs.Rod(k1=200, k2=100, gamma3=0).parameters
+
+
+def test_keywords_of_a_rods_tasks_are_the_keys_of_the_config():
+    kinds = {
+        "spectrum": options.OfSpectrum,
+        "thresholds": options.OfThresholds,
+        "modes": options.OfModes,
+        "limit_cycle": options.OfLimitCycle,
+    }
+    for task, kind in kinds.items():
+        section = CONFIGS[task].model_fields[task].annotation
+        assert set(kind.__annotations__) == {*section.model_fields, "accuracy", "title"}
+
+
+def test_no_key_is_in_two_sections():
+    """So that keywords need none."""
+    for task, config in CONFIGS.items():
+        sections = [config.model_fields[name].annotation.model_fields for name in (task, "parameters")]
+        names = [name for section in (*sections, Config.model_fields) for name in section]
+        assert len(names) == len(set(names))
+
+
+WRONG = {
+    "task: spectrumm\nparameters: {F: 1, k1: 9, k2: 9, gamma3: 1}": "did",
+    "task: spectrum\nparameters: {F: 1, k1: 9, k2: 9, gamma3: -1}": "gamma3",
+    "task: spectrum\nparameters: {F: 10, k1: 9, k2: 9, gamma3: 1}": "crushed",
+    "task: spectrum\nparameters: {F: 1, k1: 9, K2: 9, gamma3: 1}": "k2",
+    "task: spectrum\nparameters: {F: [2, 1], k1: 9, k2: 9, gamma3: 1}": "sorted",
+    "task: spectrum\nparameters: {F: one, k1: 9, k2: 9, gamma3: 1}": "number",
+    "task: spectrum\nparameters: {F: 1, k1: 9, k2: 9}": "missing",
+    "task: spectrum\nparameters: {F: 1, k1: 9, k2: 9, gamma3: 1}\nspectrum: {modes: 0}": "100",
+    "task: spectrum\nparameters: {F: 1, k1: 9, k2: 9, gamma3: 1}\nspectrum: {mods: 4}": "modes",
+    "task: spectrum\nparameters: {F: 1, k1: 9, k2: 9, gamma3: 1}\naccuracy: 2": "accuracy",
+    "task: spectrum\nparameters: {points: none.csv}": "none.csv",
+    "task: thresholds\nparameters: {F: 1, k1: 9, k2: 9, gamma3: 1}": "F_max",
+    "task: phase_diagram\nparameters: {F: 1, k1: 9, k2: 9, gamma3: 1}": "axes",
+}
+
+
+@pytest.mark.parametrize("text", WRONG)
+def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeypatch):
+    command.write("c.yaml", text)
+    monkeypatch.chdir(command.directory)
+    run = command("check", "c.yaml")
+    assert run.returncode == 2
+    sentence = run.stderr.strip().removeprefix("rodsweep: ").removeprefix("c.yaml: ")
+    task, keywords = keywords_of(text)
+    with pytest.raises(rs.InputError) as refusal:
+        rs.sweep(task, **keywords)
+    assert str(refusal.value) == sentence
+
+
+@pytest.mark.parametrize(
+    ("call", "sentence"),
+    [
+        (
+            lambda: rs.Rod(**ROD | {"gamma3": -1}),
+            "parameters.gamma3 = -1 is not allowed; it must be a finite",
+        ),
+        (lambda: rs.Rod(**ROD | {"k1": "stiff"}), "parameters.k1: 'stiff' is not a number"),
+        (lambda: rs.Rod(**ROD | {"F": 2e4}), "parameters.F reaches 20000 and parameters.k1 starts at 10000;"),
+        (lambda: rs.Rod(**ROD, K1=3), "unknown key parameters.K1; did you mean k1?"),
+        (
+            lambda: rs.Rod(k1=9, k2=9, gamma3=0).spectrum(),
+            "parameters.F is missing; give F, k1, k2 and gamma3",
+        ),
+        (lambda: rs.Rod(**ROD).spectrum(mods=3), "unknown key spectrum.mods; did you mean modes?"),
+        (lambda: rs.Rod(**ROD).spectrum(F=3), "F belongs to the rod: rod.replace(F=...) is another one"),
+        (lambda: rs.Rod(**ROD).phase_diagram(), "parameters has 0 axes with more than one value"),
+        (lambda: rs.open("none.h5"), "none.h5 does not exist"),
+        (lambda: rs.sweep(["spectrum"]), "task = ['spectrum'] is not allowed; it should be spectrum, "),
+        (lambda: rs.plot([]), "there is nothing to draw"),
+    ],
+)
+def test_bad_input_of_a_rod_is_refused(call, sentence):
+    with pytest.raises(rs.InputError) as refusal:
+        call()
+    assert str(refusal.value).startswith(sentence)
+
+
+def test_an_answer_prints_its_numbers_with_their_units():
+    answer = rs.Rod(**ROD).thresholds(crossings=2)
+    text, html = repr(answer), answer._repr_html_()
+    assert text.startswith("Rod(F=50, k1=10000, k2=100, gamma3=0.01, gamma1=1), thresholds: ")
+    for part in (
+        "F_hopf",
+        "27.427194",
+        "k3/L^2",
+        "smallest F at which a pair becomes unstable",
+        "onset, hopf",
+    ):
+        assert part in text
+        assert part in html
+    told = set(answer.data.data_vars) - {"status", "seconds"}
+    assert html.count("<tr>") == 1 + len(told)
+    assert [line.split()[0] for line in text.splitlines()[3:]] == [
+        name for name in answer.data if name in told
+    ]
+    assert "F_hopf" in dir(answer)
+    with pytest.raises(AttributeError, match="no 'F_hop'"):
+        _ = answer.F_hop
+
+
+def test_a_sweep_is_written_read_and_drawn(tmp_path):
+    data = rs.sweep("thresholds", k1=200, k2=rs.logspace(10, 1e4, 4), gamma3=1e-4, F_max=60)
+    data.to_netcdf(tmp_path / "d.nc")
+    xr.testing.assert_identical(rs.open(tmp_path / "d.nc"), data)
+    assert "F_onset" in data._repr_html_()
+    picture = rs.plot(data, tmp_path / "d.pdf")
+    assert picture.shown == "critical forces against k2"
+    assert picture._repr_mimebundle_()["image/png"].startswith(b"\x89PNG")
+    assert (tmp_path / "d.pdf").read_bytes().startswith(b"%PDF")
+    picture.save(tmp_path / "d.svg")
+    assert (tmp_path / "d.svg").exists()
+    with pytest.raises(rs.InputError, match="not whole: F_onset"):
+        rs.plot(data.isel(k2=0))
+    with pytest.raises(rs.InputError, match="no result of rodsweep"):
+        rs.plot(xr.Dataset())
+
+
+def test_an_answer_is_drawn():
+    picture = rs.plot(rs.Rod(**ROD).modes(nodes=9, growth=False))
+    assert picture.shown.startswith("the leading mode")
+
+
+def test_no_variable_hides_behind_an_attribute_of_answers():
+    for task in ("spectrum", "thresholds", "modes", "limit_cycle"):
+        tree = tree_of(task, {name: ROD[name] for name in CONFIGS[task].taken_of_a_rod({}) if name in ROD})
+        names = {variable.name for variable in job_from(tree).layout.variables}
+        assert names & set(dir(rs.Answer)) == {"status"}
+
+
+def test_other_attributes_of_a_rod_are_refused():
+    with pytest.raises(AttributeError, match="its tasks are spectrum, "):
+        _ = rs.Rod(**ROD).spectrm
+
+
+def test_what_is_no_result_is_not_opened(tmp_path):
+    xr.Dataset({"x": 1}).to_netcdf(tmp_path / "x.nc", engine="h5netcdf")
+    (tmp_path / "x.h5").write_text("text")
+    with pytest.raises(rs.InputError, match="is no result of rodsweep"):
+        rs.open(tmp_path / "x.nc")
+    with pytest.raises(rs.InputError, match="is not a whole rodsweep result file"):
+        rs.open(tmp_path / "x.h5")
