@@ -139,7 +139,7 @@ def test_python_is_python(page):
 @each_page
 def test_commands_are_accepted(page):
     for text in code_of(page):
-        for words in re.findall(r"\brodsweep ((?:run|merge|check|show|plot|bench)\b.*)", text):
+        for words in re.findall(r"\brodsweep ((?:run|merge|check|show|plot|bench|arm)\b.*)", text):
             assert accepts(shlex.split(words)), text
         if text.startswith("--") and not text.startswith(NOT_OURS):
             assert is_option(shlex.split(text)), text

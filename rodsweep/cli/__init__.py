@@ -1,4 +1,4 @@
-"""The command `rodsweep`: run, merge, check, show, plot, bench. Joins the other packages.
+"""The command `rodsweep`: run, merge, check, show, plot, bench, arm. Joins the other packages.
 
 Exit status: 0 when every point succeeded, 1 when the run is whole but some point did not, 2 for bad
 input, 3 when the machine lacks something, 75 when a run was asked to stop and wants to be continued.
@@ -20,6 +20,7 @@ import click  # noqa: E402 - after the environment is set
 
 from .. import __version__  # noqa: E402 - after the environment is set
 from ..errors import EnvironmentLacks, InputError  # noqa: E402 - after the environment is set
+from .arm_options import arm_options  # noqa: E402 - after the environment is set
 
 FILE = click.Path(path_type=Path)
 LONGEST_MESSAGE = 350
@@ -155,6 +156,16 @@ def bench(what: str | None, quick: bool, output: Path | None) -> None:
     if unfit or not output.parent.is_dir() or output.suffix in {".png", ".h5"}:
         raise InputError(f"--output {output} is no name for Markdown in an existing directory")
     run_benchmarks(what, quick, output)
+
+
+@commands.command()
+@arm_options
+@click.option("--poisson", type=float, default=0.5, show_default=True, help="Poisson's ratio of the arm.")
+def arm(poisson: float, **quantities: str | None) -> None:
+    """Say when an arm flutters, from quantities with units such as "10 cm" and "100 kPa"."""
+    from .arm_report import describe_arm
+
+    describe_arm(quantities, poisson)
 
 
 def _followed(path: Path) -> Path:

@@ -1,0 +1,189 @@
+"""An arm in SI units as the rod of the paper: stiffness, drag and force without dimension.
+
+Stiffness is of the paper's Sec. III, the force of Sec. IV, scales and dimensionless parameters of Sec. VI.
+Knows no mesh and no solver. Quantities are given as text with a unit, or as numbers in SI.
+"""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from ..errors import InputError
+from .drag import LEAST_SLENDERNESS, Drag, range_of_drag
+from .section import Circle, Rectangle, Section
+from .units import Given, in_si
+
+UNITS = {
+    "length": ("m", "10 cm"),
+    "radius": ("m", "5 mm"),
+    "width": ("m", "10 mm"),
+    "height": ("m", "8 mm"),
+    "young": ("Pa", "100 kPa"),
+    "viscosity": ("Pa*s", "1.4 Pa s"),
+    "pressure": ("Pa", "2 kPa"),
+    "force": ("N", "0.16 N"),
+    "fluid_density": ("kg/m^3", "1260 kg/m^3"),
+    "density_difference": ("kg/m^3", "-160 kg/m^3"),
+}
+"""SI unit of each quantity, and how it may be written."""
+SIGNED = ("pressure", "force", "density_difference")
+
+
+@dataclass(frozen=True, slots=True)
+class InSI:
+    """What is given of an arm, in SI units; what is not given is nan."""
+
+    length: float
+    radius: float
+    width: float
+    height: float
+    young: float
+    viscosity: float
+    pressure: float
+    force: float
+    fluid_density: float
+    density_difference: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class SlenderArm:
+    """An arm, clamped at one end, in a viscous fluid, with a pressure on its tip's section or a force there.
+
+    Either a radius or width and height, of which the height lies in the plane of motion; either a pressure
+    or a force; positive ones push. density_difference: of the arm over the fluid. Raises
+    InputError, naming the quantity.
+    """
+
+    length: Given
+    young: Given
+    viscosity: Given
+    radius: Given | None = None
+    width: Given | None = None
+    height: Given | None = None
+    pressure: Given | None = None
+    force: Given | None = None
+    poisson: float = 0.5
+    fluid_density: Given = "1000 kg/m^3"
+    density_difference: Given | None = None
+    si: InSI = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Reads the units, and refuses what is no slender arm."""
+        self._refuse_other_sets()
+        object.__setattr__(self, "si", InSI(**{name: self._read(name) for name in UNITS}))
+        if not -1 < self.poisson <= 0.5:
+            raise InputError(f"poisson = {self.poisson} is not a number above -1 and up to 0.5")
+        if self.si.density_difference <= -self.si.fluid_density:
+            least = -self.si.fluid_density
+            given = f"density_difference = '{self.density_difference}'"
+            raise InputError(f"{given} leaves the arm no mass; it must be above {least:.4g} kg/m^3")
+        slenderness = self.si.length / self.section.drag_radius
+        if slenderness < LEAST_SLENDERNESS:
+            raise InputError(
+                f"length = '{self.length}' is {slenderness:.3g} radii; the drag of a slender arm needs at "
+                f"least {LEAST_SLENDERNESS:g}"
+            )
+        self._refuse_crushed()
+
+    def _refuse_crushed(self) -> None:
+        """InputError where F is not below k1."""
+        if self.k1 > self.F:
+            return
+        loaded = "force" if self.pressure is None else "pressure"
+        limit = self.si.young * (self.section.area if loaded == "force" else 1.0)
+        raise InputError(
+            f"{loaded} = '{getattr(self, loaded)}' compresses the arm to nothing; it must be below "
+            f"{limit:.4g} {UNITS[loaded][0]}, where a linear material is crushed"
+        )
+
+    def _refuse_other_sets(self) -> None:
+        """InputError unless one section and one load are given."""
+        sides = (self.width, self.height)
+        if (self.radius is None) == (sides == (None, None)) or (self.radius is None and None in sides):
+            raise InputError("radius: give either a radius, or width and height")
+        if (self.pressure is None) == (self.force is None):
+            raise InputError("pressure: give either a pressure on the tip's cross section, or a force")
+
+    def _read(self, name: str) -> float:
+        """A quantity in SI; nan where it is not given."""
+        given = getattr(self, name)
+        if given is None:
+            return float("nan")
+        value = in_si(name, given, *UNITS[name])
+        if name not in SIGNED and not value > 0:
+            raise InputError(f"{name} = '{given}' is not above 0")
+        return value
+
+    @property
+    def section(self) -> Section:
+        """The cross section."""
+        return Circle(self.si.radius) if self.radius is not None else Rectangle(self.si.width, self.si.height)
+
+    @property
+    def tip_force(self) -> float:
+        """The resultant of the pressure over the tip's cross section, p A, in N (Sec. IV)."""
+        return self.si.force if self.pressure is None else self.si.pressure * self.section.area
+
+    @property
+    def bending_stiffness(self) -> float:
+        """k3 = E I, in N m^2 (Sec. III)."""
+        return self.si.young * self.section.second_moment
+
+    @property
+    def force_scale(self) -> float:
+        """k3/L^2, in N: the unit of F, k1 and k2; drag is not in it."""
+        return self.bending_stiffness / self.si.length**2
+
+    @property
+    def shear_modulus(self) -> float:
+        """kappa G with G = E/(2 (1 + nu)), in Pa: the paper's effective G (Sec. III; Cowper 1966)."""
+        G = self.si.young / (2 * (1 + self.poisson))
+        return self.section.shear_coefficient(self.poisson) * G
+
+    @property
+    def k1(self) -> float:
+        """E A L^2/k3 (Sec. III and VI)."""
+        return self.si.young * self.section.area / self.force_scale
+
+    @property
+    def k2(self) -> float:
+        """kappa G A L^2/k3 (Sec. III and VI)."""
+        return self.shear_modulus * self.section.area / self.force_scale
+
+    @property
+    def F(self) -> float:
+        """p A L^2/k3 (Sec. IV and VI)."""
+        return self.tip_force / self.force_scale
+
+    @cached_property
+    def drags(self) -> tuple[Drag, ...]:
+        """The likeliest drag, then the corners of its range."""
+        section = self.section
+        return range_of_drag(self.si.viscosity, self.si.length, section.drag_radius, section.half_height)
+
+    def gamma3_with(self, drag: Drag) -> float:
+        """gamma3/(gamma2 L^2) (Sec. VI)."""
+        return drag.gamma3 / (drag.gamma2 * self.si.length**2)
+
+    def tau2_with(self, drag: Drag) -> float:
+        """gamma2 L^4/k3, in s (Sec. VI)."""
+        return drag.gamma2 * self.si.length**4 / self.bending_stiffness
+
+    @property
+    def gamma3(self) -> float:
+        """gamma3/(gamma2 L^2) with the likeliest drag (Sec. VI)."""
+        return self.gamma3_with(self.drags[0])
+
+    @property
+    def gamma1(self) -> float:
+        """gamma1/gamma2 with the likeliest drag (Sec. VI)."""
+        return self.drags[0].gamma1 / self.drags[0].gamma2
+
+    @property
+    def tau2(self) -> float:
+        """The longest time scale gamma2 L^4/k3 with the likeliest drag, in s (Sec. VI)."""
+        return self.tau2_with(self.drags[0])
+
+    @property
+    def tau1(self) -> float:
+        """The shortest time scale, dimensional gamma3/k2, with the likeliest drag, in s (Sec. VI)."""
+        return self.tau2 * self.gamma3 / self.k2

@@ -1,0 +1,86 @@
+"""Quantities as people write them, "10 cm" or "1.4 Pa s", to SI. The only importer of pint, late."""
+
+import math
+import re
+from functools import cache
+from typing import TYPE_CHECKING
+
+from ..errors import EnvironmentLacks, InputError
+
+if TYPE_CHECKING:
+    from pint import UnitRegistry
+
+Given = float | str
+"""A quantity as it is given: text with its unit, or a number in SI."""
+NUMBER_AND_UNIT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.ASCII)
+OF_A_UNIT = re.compile(r"[A-Za-zµμ]+|(?:\^|\*\*)?-?[1-4](?!\d)|[²³⁴]|[\s*/]")
+"""What units are made of; pint evaluates whatever it is given, and may take for ever."""
+TOWER = re.compile(r"[\d²³⁴]\s*(?:\*\*|\^)")
+LONGEST_UNIT = 40
+"""Characters of a unit."""
+
+
+@cache
+def registry() -> "UnitRegistry":
+    """The units, read once, at first use."""
+    try:
+        from pint import UnitRegistry
+    except ModuleNotFoundError:
+        raise EnvironmentLacks("units need pint: pip install pint") from None
+    return UnitRegistry()
+
+
+def split(given: str) -> tuple[float, str]:
+    """(number, unit) of a text; (nan, "") where it is none."""
+    found = NUMBER_AND_UNIT.fullmatch(given)
+    if not found:
+        return math.nan, ""
+    return float(found[1]), found[2].replace("·", "*").replace(".", "*")
+
+
+def in_si(name: str, given: Given, unit: str, example: str) -> float:
+    """The quantity `name` in the SI unit `unit`; InputError, beginning with the name, where it is none."""
+    if not isinstance(given, str):
+        value = float(given)
+    else:
+        number, written = split(given)
+        allowed = f"a number with a unit, as in '{example}'"
+        if math.isnan(number):
+            raise InputError(f"{name} = '{given}' is not {allowed}")
+        if not written:
+            raise InputError(f"{name} = '{given}' has no unit; write {allowed}")
+        value = number * factor(f"{name} = '{given}'", written, unit, allowed)
+    if not math.isfinite(value):
+        raise InputError(f"{name} = '{given}' is not a finite number")
+    return value
+
+
+def factor(subject: str, written: str, unit: str, allowed: str) -> float:
+    """How many `unit` one `written` is; InputError where they measure different things or it is unknown."""
+    if len(written) > LONGEST_UNIT or OF_A_UNIT.sub("", written) or TOWER.search(written):
+        raise InputError(
+            f"{subject} has the unit '{written[:LONGEST_UNIT]}', which is not understood; write {allowed}"
+        )
+    units = registry()
+    from pint.errors import PintError
+
+    try:
+        return float(units.Quantity(1.0, written).to(unit).magnitude)
+    except PintError as error:
+        known = "from" in str(error)  # "Cannot convert from ..."
+        why = f"is not measured in {unit}" if known else f"has the unknown unit '{written}'"
+        raise InputError(f"{subject} {why}; write {allowed}") from None
+    except Exception as error:  # what pint's parser raises on nonsense is of many kinds
+        raise InputError(
+            f"{subject} has the unit '{written}', which is not understood; write {allowed}"
+        ) from error
+
+
+def unit_of(given: Given, default: str) -> str:
+    """The unit in which a quantity was written, for answers in the same."""
+    return (split(given)[1] or default) if isinstance(given, str) else default
+
+
+def written_in(value: float, unit: str, si: str) -> float:
+    """A value in the SI unit `si`, in another unit."""
+    return value / factor("", unit, si, "")

@@ -1,0 +1,90 @@
+"""The numbers of an arm beside their formulas and sources, as rows of text."""
+
+from typing import NamedTuple
+
+from ..model.arm import SlenderArm
+from .sentences import rounded
+
+
+class NumberRow(NamedTuple):
+    """One number of an arm."""
+
+    name: str
+    value: str
+    formula: str
+    source: str
+
+
+def number_rows(arm: SlenderArm) -> list[NumberRow]:
+    """Every number that the arm becomes, dimensional ones first."""
+    return [*dimensional(arm), *drag_rows(arm), *dimensionless(arm)]
+
+
+def dimensional(arm: SlenderArm) -> list[NumberRow]:
+    """Section, stiffness and load."""
+    section = arm.section
+    kappa = section.shear_coefficient(arm.poisson)
+    return [
+        NumberRow("A", f"{section.area:.4g} m^2", section.formula.split(", ")[0], "geometry"),
+        NumberRow("I", f"{section.second_moment:.4g} m^4", section.formula.split(", ")[1], "geometry"),
+        NumberRow("kappa", f"{kappa:.4g}", section.shear_formula, "Cowper 1966"),
+        NumberRow("k3", f"{arm.bending_stiffness:.4g} N m^2", "E I", "paper, Sec. III"),
+        NumberRow("k3/L^2", f"{arm.force_scale:.4g} N", "unit of force", "paper, Sec. VI"),
+        NumberRow("tip force", f"{arm.tip_force:.4g} N", "p A, or as given", "paper, Sec. IV"),
+    ]
+
+
+def over(arm: SlenderArm, values: list[float], unit: str = "") -> str:
+    """The likeliest value and the range over drag."""
+    return f"{values[0]:.3g} ({rounded(min(values), max(values))}){unit}"
+
+
+def drag_rows(arm: SlenderArm) -> list[NumberRow]:
+    """Drag and times, each with its range."""
+    drags = arm.drags
+    translation = "Cox 1970; Gray & Hancock 1955, Lighthill 1976"
+    return [
+        NumberRow(
+            "drag across",
+            over(arm, [d.gamma2 for d in drags], " Pa s"),
+            "4 pi eta/(ln(2 L/a) - 1/2)",
+            translation,
+        ),
+        NumberRow(
+            "axial drag",
+            over(arm, [d.gamma1 for d in drags], " Pa s"),
+            "2 pi eta/(ln(2 L/a) - 3/2)",
+            translation,
+        ),
+        NumberRow(
+            "rotational drag",
+            over(arm, [d.gamma3 for d in drags], " Pa s m^2"),
+            "pi to 4 pi eta a^2",
+            "section turning about a diameter; Powers 2010",
+        ),
+        NumberRow(
+            "tau2", over(arm, [arm.tau2_with(d) for d in drags], " s"), "drag across L^4/k3", "paper, Sec. VI"
+        ),
+    ]
+
+
+def dimensionless(arm: SlenderArm) -> list[NumberRow]:
+    """What the other commands take as parameters."""
+    drags = arm.drags
+    return [
+        NumberRow("k1", f"{arm.k1:.5g}", "E A L^2/k3", "paper, Sec. III, VI"),
+        NumberRow("k2", f"{arm.k2:.5g}", "kappa G A L^2/k3, G = E/(2 (1 + nu))", "paper, Sec. III, VI"),
+        NumberRow(
+            "gamma3",
+            over(arm, [arm.gamma3_with(d) for d in drags]),
+            "rotational drag/(drag across L^2)",
+            "paper, Sec. VI",
+        ),
+        NumberRow(
+            "gamma1",
+            over(arm, [d.gamma1 / d.gamma2 for d in drags]),
+            "axial drag/drag across",
+            "paper, Sec. VI",
+        ),
+        NumberRow("F", f"{arm.F:.5g}", "tip force L^2/k3", "paper, Sec. IV, VI"),
+    ]

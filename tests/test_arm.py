@@ -1,0 +1,256 @@
+"""An arm in centimetres and kilopascals: formulas against hand-made numbers, units, verdict, command."""
+
+import math
+import subprocess
+import sys
+
+import pytest
+
+from rodsweep.errors import InputError
+from rodsweep.model.drag import cox, gray_hancock, least_rotational, lighthill, most_rotational
+from rodsweep.model.section import Circle, Rectangle
+from rodsweep.solve.changes.along_path import Transitions
+from rodsweep.solve.changes.thresholds import Thresholds, ThresholdStatus, nothing_found
+from rodsweep.solve.changes.unstable_modes import Crossing, Kind
+from rodsweep.verdict.arm import Arm
+from rodsweep.verdict.flutter import FlutterForces, FlutterRange
+from rodsweep.verdict.sentences import verdict_sentences
+
+OK = ThresholdStatus.ok
+
+SILICONE = {
+    "length": "10 cm",
+    "radius": "5 mm",
+    "young": "100 kPa",
+    "viscosity": "1.4 Pa s",
+    "pressure": "2 kPa",
+}
+OPTIONS = [word for name, text in SILICONE.items() for word in (f"--{name}", text)]
+
+
+def arm(**changes):
+    """The silicone arm in glycerol, changed; None leaves a quantity out."""
+    return Arm(**{name: given for name, given in (SILICONE | changes).items() if given is not None})
+
+
+def test_silicone_arm_by_hand():
+    """k1 = 4 (L/a)^2, k2 = kappa k1/3 with kappa = 9/10 at nu = 1/2, F = k1 p/E, k3 = E pi a^4/4."""
+    rod = arm()
+    assert rod.k1 == pytest.approx(1600, rel=1e-12)
+    assert rod.k2 == pytest.approx(480, rel=1e-12)
+    assert pytest.approx(32, rel=1e-12) == rod.F
+    assert rod.tip_force == pytest.approx(0.15707963, rel=1e-7)
+    assert rod.bending_stiffness == pytest.approx(4.9087385e-5, rel=1e-7)
+    assert rod.tau2 == pytest.approx(5.516960 * 1e-4 / 4.9087385e-5, rel=1e-6)
+    assert rod.gamma3 == pytest.approx(2.199115e-4 / (5.516960 * 0.01), rel=1e-6)
+    assert rod.tau1 == pytest.approx(2.199115e-4 / (1e5 / 3 * 0.9 * math.pi * 25e-6), rel=1e-6)
+
+
+def test_drag_by_hand():
+    """L/a = 20: ln 40 = 3.688879, ln 160 = 5.075174, ln 3.6 = 1.280934; per viscosity."""
+    assert cox(1, 20) == pytest.approx((2 * math.pi / 2.188879, 4 * math.pi / 3.188879), rel=1e-6)
+    assert gray_hancock(1, 20) == pytest.approx((2 * math.pi / 4.575174, 4 * math.pi / 5.575174), rel=1e-6)
+    assert lighthill(1, 20) == pytest.approx((2 * math.pi / 1.280934, 4 * math.pi / 1.780934), rel=1e-6)
+    assert (least_rotational(1, 1), most_rotational(1, 1)) == pytest.approx((math.pi, 4 * math.pi))
+
+
+def test_sections_by_hand():
+    circle, rectangle = Circle(2.0), Rectangle(3.0, 2.0)
+    assert (circle.area, circle.second_moment) == pytest.approx((12.566371, 12.566371), rel=1e-7)
+    assert (rectangle.area, rectangle.second_moment, rectangle.drag_radius) == pytest.approx((6, 2, 1.25))
+    assert (circle.shear_coefficient(0), rectangle.shear_coefficient(0)) == pytest.approx((6 / 7, 5 / 6))
+    assert rectangle.shear_coefficient(0.5) == pytest.approx(15 / 17.5)
+
+
+def test_least_rotational_drag_is_the_torque_of_its_flow():
+    """Of the axial flow -Omega a^2 cos(phi)/r around a section that turns, by quadrature."""
+    a, step, phi = 0.7, 1e-6, [2 * math.pi * k / 64 for k in range(64)]
+
+    def flow(r, angle):
+        return -(a**2) * math.cos(angle) / r
+
+    traction = [(flow(a + step, angle) - flow(a - step, angle)) / (2 * step) for angle in phi]
+    lever = [a * math.cos(angle) for angle in phi]
+    torque = sum(t * x for t, x in zip(traction, lever, strict=True)) * a * 2 * math.pi / 64
+    assert torque == pytest.approx(least_rotational(1, a), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"length": "100 mm", "radius": 0.005, "young": "0.1 MPa", "viscosity": "14 P", "pressure": "20 mbar"},
+        {"viscosity": "1400 mPa·s", "pressure": None, "force": f"{2000 * math.pi * 25e-6} N"},
+    ],
+)
+def test_units_do_not_matter(changes):
+    same, other = arm(), arm(**changes)
+    for name in ("k1", "k2", "gamma3", "gamma1", "F", "tau1", "tau2"):
+        assert getattr(other, name) == pytest.approx(getattr(same, name), rel=1e-12)
+
+
+def test_only_time_scales_with_viscosity():
+    thin, thick = arm(viscosity="0.7 Pa s"), arm()
+    for name in ("k1", "k2", "gamma3", "gamma1", "F"):
+        assert getattr(thin, name) == pytest.approx(getattr(thick, name), rel=1e-12)
+    assert thick.tau2 == pytest.approx(2 * thin.tau2)
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"length": "10 foo"}, "length = '10 foo' has the unknown unit 'foo'; write .* '10 cm'"),
+        ({"length": "10"}, "length = '10' has no unit"),
+        ({"length": ""}, "length = '' is not a number with a unit"),
+        ({"length": "1e400 m"}, "length = '1e400 m' is not a finite number"),
+        ({"length": "3 cm"}, "length = '3 cm' is 6 radii; .* at least 10"),
+        ({"length": "10 m**9**9**9**9"}, "length = .* not understood"),
+        ({"radius": "-1 mm"}, "radius = '-1 mm' is not above 0"),
+        ({"radius": None}, "radius: give either a radius, or width and height"),
+        ({"width": "1 cm"}, "radius: give either"),
+        ({"viscosity": "1400 mPas"}, "viscosity = '1400 mPas' is not measured in Pa"),
+        ({"pressure": "100 kPa"}, "pressure = '100 kPa' compresses .* below 1e.05 Pa"),
+        ({"pressure": None}, "pressure: give either"),
+        ({"force": "1 N"}, "pressure: give either"),
+        ({"poisson": math.nan}, "poisson = nan is not a number above -1 and up to 0.5"),
+        ({"density_difference": "-2 g/cm^3"}, "density_difference = '-2 g/cm.3' leaves the arm no mass"),
+    ],
+)
+def test_bad_quantities_are_refused_in_one_sentence(changes, sentence):
+    with pytest.raises(InputError, match=f"^{sentence}"):
+        arm(**changes)
+
+
+def test_silicone_arm_is_just_below_flutter():
+    """The issue's arm; a filament's F** = 37.695 would be 2.356 kPa, shear and drag lower it."""
+    rod = arm()
+    flutter = rod.flutter.force(Kind.hopf)
+    assert rod.F < flutter.low < flutter.high < 37.695
+    assert flutter.always
+    verdict = rod.report().verdict
+    assert verdict[0] == "2 kPa is 4 to 9 % below flutter, at 2.09 to 2.21 kPa: the arm stays straight."
+    assert verdict[1] == "Above, the straight arm gives way and begins to beat at 1.3 to 4.15 Hz."
+
+
+def test_frequency_follows_from_tau2():
+    rod = arm()
+    for drag, found in zip(rod.drags, rod.flutter.forces, strict=True):
+        rate = found.first(Kind.hopf).frequency
+        assert found.frequency(Kind.hopf) == pytest.approx(abs(rate) / (2 * math.pi * rod.tau2_with(drag)))
+
+
+def test_thresholds_inside_the_range_of_drag_lie_in_that_of_forces():
+    """The range's corners bound it: the threshold is monotonic in gamma3."""
+    from rodsweep.solve.changes.thresholds import solve_thresholds
+    from rodsweep.verdict.flutter import REQUEST
+
+    rod = arm()
+    flutter = rod.flutter.force(Kind.hopf)
+    all_gamma3 = [rod.gamma3_with(drag) for drag in rod.drags]
+    low, high = min(all_gamma3), max(all_gamma3)
+    for share in (0.1, 0.3, 0.5, 0.7, 0.9):
+        found = solve_thresholds(rod.k1, rod.k2, low * (high / low) ** share, REQUEST)
+        first = next(c.at for c in found.crossings if c.kind == Kind.hopf)
+        assert flutter.low <= first <= flutter.high
+
+
+@pytest.mark.parametrize(
+    ("pressure", "words"),
+    [
+        ("2.15 kPa", "2.15 kPa lies in the range of flutter"),
+        ("2.5 kPa", "2.5 kPa is 13 to 20 % above flutter"),
+        ("20 kPa", "20 kPa is 9.07 to 9.58 times flutter"),
+        ("-1 kPa", "Flutter is at 2.09 to 2.21 kPa; -1 kPa does not push"),
+    ],
+)
+def test_verdict_says_where_the_load_lies(pressure, words):
+    assert arm(pressure=pressure).report().verdict[0].startswith(words)
+
+
+def test_warnings_are_of_what_the_model_leaves_out():
+    fine = arm(length="30 cm", viscosity="100 Pa s", pressure="0.1 kPa", density_difference="0.1 kg/m^3")
+    assert all(check.fine for check in fine.report().checks)
+    bad = arm(
+        length="12 cm", radius=None, width="1.6 cm", height="2.4 cm", pressure="30 kPa", viscosity="1 mPa s",
+        poisson=0.1, density_difference="300 kg/m^3",
+    )  # fmt: skip
+    assert not any(check.fine for check in bad.report().checks)
+    named = ("Slenderness", "Compression", "Inertia", "Reynolds", "Weight", "Poisson", "Plane")
+    assert [check.sentence.split()[0].strip(":").removesuffix("'s") for check in bad.report().checks] == list(
+        named
+    )
+
+
+def test_command_prints_verdict_numbers_and_checks(command):
+    end = command("arm", *OPTIONS)
+    assert (end.returncode, end.stderr) == (0, "")
+    assert end.stdout.startswith("2 kPa is 4 to 9 % below flutter")
+    for words in ("Cowper 1966", "Lighthill 1976", "warning: Inertia", "k1 ", "1600", "480"):
+        assert words in end.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--radius", "5 foo"], "--radius = '5 foo' has the unknown unit 'foo'"),
+        (["--fluid-density", "1"], "--fluid-density = '1' has no unit"),
+        (["--poisson", "2"], "--poisson = 2.0 is not"),
+        (["--force", "1 N"], "--pressure: give either"),
+    ],
+)
+def test_command_refuses_in_one_sentence(command, words, sentence):
+    end = command("arm", *OPTIONS, *words)
+    assert (end.returncode, end.stdout) == (2, "")
+    assert end.stderr.startswith(f"rodsweep: {sentence}")
+    assert end.stderr.count("\n") == 1
+
+
+def test_numbers_need_no_solver_and_help_no_units():
+    """An arm's numbers do not start PETSc, and the command line does not load pint."""
+    code = (
+        "import sys, rodsweep.cli; from rodsweep.model.arm import SlenderArm;"
+        "assert 'pint' not in sys.modules;"
+        "SlenderArm(length='1 m', radius='1 cm', young='1 MPa', viscosity='1 Pa s', force='0 N').k2;"
+        "assert 'petsc4py' not in sys.modules"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def found(tau2, *changes, end=200.0):
+    """Changes of an arm that are given: (F, kind, unstable modes after it)."""
+    crossings = tuple(Crossing(F, kind, 10.0, 0.0, 0.0, after) for F, kind, after in changes)
+    transitions = Transitions(crossings=crossings, proved=True)
+    return FlutterForces(tau2=tau2, thresholds=Thresholds(status=OK, transitions=transitions, end=end))
+
+
+@pytest.mark.parametrize(
+    ("second", "sentences"),
+    [
+        (True, ["2 kPa is 28 to 60 % above flutter, at 1.25 to 1.56 kPa", "returns at 2.5 to 2.81 kPa."]),
+        (
+            False,
+            ["drag decides", "Part of the range of drag has no", "returns at 2.5 kPa, with part"],
+        ),
+    ],
+)
+def test_return_is_told_for_all_or_part_of_the_range(second, sentences):
+    window = found(1.0, (20.0, Kind.hopf, 2), (40.0, Kind.restabilization, 0))
+    other = [(25.0, Kind.hopf, 2), (45.0, Kind.restabilization, 0)] if second else []
+    told = " ".join(verdict_sentences(arm(), FlutterRange((window, found(2.0, *other)))))
+    assert all(words in told for words in sentences)
+
+
+def test_beyond_the_return_the_arm_is_straight_again():
+    window = found(1.0, (20.0, Kind.hopf, 2), (30.0, Kind.restabilization, 0))
+    told = verdict_sentences(arm(), FlutterRange((window,)))
+    assert told[0] == "2 kPa is beyond flutter, at 1.25 kPa: the straight arm has returned."
+
+
+def test_arm_without_flutter_and_failed_search_are_told():
+    none = verdict_sentences(arm(), FlutterRange((found(1.0),)))
+    assert none == [
+        "The arm does not flutter up to 12.5 kPa, where the search ends: it stays straight at 2 kPa."
+    ]
+    failed = FlutterForces(tau2=1.0, thresholds=nothing_found(ThresholdStatus.failed, 200.0, "no box"))
+    assert verdict_sentences(arm(), FlutterRange((failed,))) == [
+        "The thresholds could not be found with every drag: no box."
+    ]
