@@ -7,7 +7,6 @@ the meaning of the words and attributes that no declaration explains. `tests/tes
 with this.
 """
 
-import ast
 import inspect
 import tempfile
 import textwrap
@@ -15,16 +14,16 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
-from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from rodsweep.cli.job import Job, make_job
+from rodsweep.config.json_schema import meanings_of
 from rodsweep.config.phase_diagram import PhaseDiagramConfig
 from rodsweep.config.refusals import what_is_allowed
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.results.layouts.phase_diagram import CLASSES, curve_variables
-from rodsweep.results.layouts.thresholds import CROSSING_KINDS
+from rodsweep.results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from rodsweep.results.layouts.variables import DIMENSIONS, MISSING, Variable
 
 PAGE = Path(__file__).with_name("file-format.md")
@@ -65,17 +64,6 @@ LENGTHS = {
     "transient": "`limit_cycle.transient`",
 }
 """What says how long a dimension is that is not a parameter."""
-KINDS = {
-    "none": "no crossing: the list is longer than what was found",
-    "onset": "two real leading eigenvalues meet and become a pair: oscillations set in",
-    "hopf": "a pair becomes unstable",
-    "hopf_reverse": "an unstable pair becomes stable, and others stay unstable",
-    "restabilization": "the last unstable pair becomes stable",
-    "real_again": "the leading pair meets on the real axis and becomes two real eigenvalues",
-    "real_leads": "a real eigenvalue overtakes the leading pair, without meeting it",
-    "pair_leads": "a pair overtakes the leading real eigenvalue, without meeting it",
-}
-"""What happens at a crossing, as the parameter grows."""
 MOTIONS = {
     "missing": "not computed",
     "monotone": "stable; the slowest mode decays without oscillations",
@@ -91,7 +79,7 @@ ATTRIBUTES = {
     "title, task": "of the config; the file's name where it has no title",
     "config": "the text of the config, with what `--set` changed at its end",
     "config_resolved": "the config with all defaults, as JSON",
-    "fingerprint": "of `config_resolved` and all points: what a file must share to be continued",
+    "fingerprint": "of `config_resolved` without its title, and all points: what a continued file shares",
     "time_unit": "`tau2 = gamma2 L^4/k3`",
     "gamma1": "of a spectrum with `spectrum.longitudinal: true`",
     "coordinates": "names of the parameters along `point`, in a list of points",
@@ -158,7 +146,12 @@ def text() -> str:
     """The whole page."""
     parts = [HEAD, "\n### Parameters\n\n", parameters(), RANGES, common_keys()]
     parts += [task_keys(task) for task in CONFIGS]
-    parts += [FILE, "\n### Dimensions\n\n", dimensions(), words("Kinds of a crossing", KINDS, kinds())]
+    parts += [
+        FILE,
+        "\n### Dimensions\n\n",
+        dimensions(),
+        words("Kinds of a crossing", CROSSING_MEANINGS, kinds()),
+    ]
     parts += [words("Classes of a phase diagram", MOTIONS, CLASSES)]
     parts += [task_variables(task) for task in CONFIGS]
     parts += [
@@ -221,26 +214,6 @@ def yaml_of(value: object) -> str:
 
 def key_table(rows: Sequence[Sequence[str]]) -> str:
     return table(("key", "allowed", "default", "meaning"), rows)
-
-
-def meanings_of(section: type[BaseModel]) -> dict[str, str]:
-    """The docstring below every key of a section, those of the sections it is made from included."""
-    found: dict[str, str] = {}
-    for kind in reversed(section.__mro__):
-        if not (issubclass(kind, BaseModel) and kind.__module__.startswith("rodsweep.")):
-            continue
-        try:
-            source = inspect.getsource(kind)
-        except OSError:  # made of the table of parameters
-            continue
-        body = ast.parse(textwrap.dedent(source)).body[0]
-        assert isinstance(body, ast.ClassDef)
-        for key, below in zip(body.body, body.body[1:], strict=False):
-            if not (isinstance(key, ast.AnnAssign) and isinstance(key.target, ast.Name)):
-                continue
-            if isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant):
-                found[key.target.id] = inspect.cleandoc(str(below.value.value))
-    return found
 
 
 def dimensions() -> str:

@@ -17,6 +17,7 @@ from conftest import ROOT
 
 from rodsweep.cli import commands
 from rodsweep.config import load_config
+from rodsweep.config.parsing import parse
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.errors import InputError
 
@@ -213,3 +214,18 @@ def test_python_page_prints_what_it_says(tmp_path, monkeypatch, capsys):
         assert NUMBER.sub("#", printed).split() == NUMBER.sub("#", text).split()
         numbers = [np.array(NUMBER.findall(each), float) for each in (printed, text)]
         assert numbers[0] == pytest.approx(numbers[1], rel=1e-5, abs=ROUNDING)
+
+
+def test_bibtex_says_what_the_citation_file_says():
+    cited = parse((ROOT / "CITATION.cff").read_text(), "CITATION.cff")
+    (paper,) = cited["references"]
+    (block,) = blocks(DOCS / "guide.md", "bibtex")
+    fields = [dict(re.findall(r"(\w+) += \{+(.*?)\}+,?\n", entry)) for entry in block.split("\n\n")]
+    assert [fields[0][name] for name in ("title", "journal", "doi")] == [
+        paper[name] for name in ("title", "journal", "doi")
+    ]
+    names = (f"{author['family-names']}, {author['given-names']}" for author in paper["authors"])
+    assert fields[0]["author"] == " and ".join(names)
+    assert fields[0]["year"] == str(paper["year"])
+    assert f"arXiv:{fields[0]['eprint']}" == paper["identifiers"][0]["value"]
+    assert (fields[1]["title"], fields[1]["version"]) == (cited["title"], str(cited["version"]))

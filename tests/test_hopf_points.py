@@ -11,8 +11,8 @@ from rodsweep.cli.job import make_job
 from rodsweep.model.rod import Rod
 from rodsweep.post.figures.cycle.amplitude import draw_amplitude
 from rodsweep.post.figures.cycle.square_root import square_root_laws
-from rodsweep.post.hopf_points import HopfPoint, hopf_points, lines_over
-from rodsweep.post.summary.limit_cycle import stability_lines
+from rodsweep.post.hopf_points import HopfPoint, ParameterLine, hopf_points, lines_over
+from rodsweep.post.summary.stability import stability_lines
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 pytestmark = pytest.mark.filterwarnings("error::UserWarning")
@@ -209,7 +209,7 @@ def test_no_hopf_point_is_marked_over_another_parameter():
     view.variables["linear_growth_rate"][0, 0, 2] = -1
     figure = draw_amplitude([view])[0]
     assert dotted(figure.axes[1]) == []
-    assert stability_lines(view) == []
+    assert stability_lines(view, ParameterLine.hopf_points) == []
 
 
 def test_lines_over_a_parameter_hold_every_point_once_in_the_order_of_the_file():
@@ -236,7 +236,7 @@ def test_lines_over_a_parameter_hold_every_point_once_in_the_order_of_the_file()
     ],
 )
 def test_the_summary_tells_hopf_points_one_by_one_or_their_range(view, expected):
-    (line,) = stability_lines(view)
+    (line,) = stability_lines(view, ParameterLine.hopf_points)
     assert expected in re.sub(r"\d+\.\d+", lambda number: f"{float(number[0]):.4g}", line)
 
 
@@ -244,7 +244,9 @@ def test_the_summary_tells_every_window_of_flutter_on_a_line():
     axes = (np.arange(0.0, 100, 2.5), [1e4], [1e2], [1e-2], [1.0])
     view = make_view(axes, [0] * 40, stored=())
     view.variables["linear_growth_rate"] = -np.cos((axes[0] + 1) * np.pi / 20).reshape(-1, 1, 1, 1, 1)
-    for line, places in zip(stability_lines(view), ([9, 49, 89], [29, 69]), strict=True):
+    for line, places in zip(
+        stability_lines(view, ParameterLine.hopf_points), ([9, 49, 89], [29, 69]), strict=True
+    ):
         positions = line.split(": ")[1].split(" (+-")[0].split(" and ")
         assert [float(text) for text in positions] == pytest.approx(places, abs=0.01)
 

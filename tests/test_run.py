@@ -360,3 +360,26 @@ def test_full_disk_under_the_log_is_told_in_a_sentence(command):
         run = command.afresh("run", "c.yaml", stdout=full)
     assert (run.returncode, run.stderr) == (3, "rodsweep: standard output: No space left on device\n")
     assert command("run", "c.yaml").returncode == 0
+
+
+def test_another_title_continues_the_same_file(command):
+    command.write("c.yaml", SMALL)
+    assert command("run", "c.yaml", "--shard", "1/2", "-o", "c.h5").returncode in (0, 75)
+    with h5py.File(command.directory / "c.h5") as file:
+        done = int((file["status"][...] == 0).sum())
+        before = file["growth_rate"][...]
+    command.write("c.yaml", SMALL.replace("title: small", "title: renamed"))
+    run = command("run", "c.yaml")
+    assert run.returncode == 0, run.stderr
+    assert f"{done} kept" in run.stdout
+    assert "c.h5: renamed, task spectrum" in command("show", "c.h5").stdout
+    with h5py.File(command.directory / "c.h5") as file:
+        assert "title: renamed" in file.attrs["config"]
+        known = np.isfinite(before)
+        assert np.array_equal(file["growth_rate"][...][known], before[known])
+    again = command("run", "c.yaml", "--set", "title=third")
+    assert "complete, nothing to do" in again.stdout
+    assert "c.h5: third, task spectrum" in command("show", "c.h5").stdout
+    refused = command("run", "c.yaml", "--set", "title=fourth", "--set", "accuracy=1e-8")
+    assert refused.returncode == 2
+    assert "(accuracy is 1e-" in refused.stderr

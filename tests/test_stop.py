@@ -1,13 +1,18 @@
 """A run that is asked to stop: what is done is in the file, the exit status says "continue me"."""
 
 import os
+import pty
+import re
 import signal
+from contextlib import suppress
 
 import h5py
 import pytest
 from contents import content, same
-from ranks import PATIENCE, ranks_in
+from ranks import PATIENCE, kill, pause_until, ranks_in, wait_for_end
 from slow_runs import FOR_EVER, pause_until_journalled, slowly
+
+from rodsweep.results.file.view import read_view
 
 SPECTRA = """
 task: spectrum
@@ -31,7 +36,7 @@ def started(command, ranks, pause):
     return process
 
 
-@pytest.mark.parametrize("number", [signal.SIGUSR1, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGUSR1, signal.SIGTERM, signal.SIGINT])
 @pytest.mark.parametrize(
     ("ranks", "rank"), [(0, None), (2, 0), (3, 2)], ids=["alone", "first rank", "last rank"]
 )
@@ -41,7 +46,7 @@ def test_stopped_run_ends_with_its_points_in_the_file_and_goes_on(command, numbe
     os.kill(ranks_in(command.directory)[rank] if ranks else process.pid, number)
     out, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 75, err
-    assert f"stopped by {number.name}; the same command continues" in out
+    stopped = rf"stopped by {number.name}; (\d+) points kept, the same command continues"
     assert "Traceback" not in err
     assert not (command.directory / "c.h5.journal").exists()
     with h5py.File(command.directory / "c.h5") as file:
@@ -49,6 +54,8 @@ def test_stopped_run_ends_with_its_points_in_the_file_and_goes_on(command, numbe
         assert file.attrs["stopped"] == number.name
         assert "finished" not in file.attrs
     assert 0 < done < 1200
+    assert re.search(stopped, out)[1] == str(done)
+    assert ("stopping with the point in hand" in err) == (number == signal.SIGINT and not ranks)
     assert f"stopped by {number.name}" in command("show", "c.h5").stdout
     again = command("run", "c.yaml")
     assert again.returncode == 0, again.stderr
@@ -70,6 +77,51 @@ def test_further_signals_do_not_change_the_status(command):
     while process.poll() is None:
         process.send_signal(signal.SIGTERM)
     assert process.returncode == 75
+
+
+def typed_ctrl_c(command, ranks):
+    """(exit status, output) of a run on a terminal of its own on which Ctrl-C is typed after 61 points."""
+    patch = command.directory / "patch"
+    patch.mkdir()
+    (patch / "sitecustomize.py").write_text(slowly(FOR_EVER, points=61))
+    argv = command.argv("run", "c.yaml", ranks=ranks)
+    path = os.pathsep.join([str(patch), os.environ.get("PYTHONPATH", "")])
+    pid, terminal = pty.fork()
+    if not pid:
+        os.chdir(command.directory)
+        os.execve(argv[0], argv, os.environ | {"PYTHONPATH": path})
+    result, said = command.directory / "c.h5", b""
+    try:
+        pause_until(lambda: result.exists() and read_view(result).journalled >= 61, "61 points are not there")
+        os.write(terminal, b"\x03")
+        with suppress(OSError):  # once the terminal's other end is closed
+            while part := os.read(terminal, 4096):
+                said += part
+    finally:
+        if not said:
+            kill(pid, *ranks_in(command.directory).values())
+        status = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+        os.close(terminal)
+    return status, said.decode(errors="replace")
+
+
+def test_ctrl_c_in_a_terminal_ends_like_sigterm(command):
+    command.write("c.yaml", SPECTRA)
+    status, said = typed_ctrl_c(command, ranks=0)
+    assert status == 75
+    assert "stopping with the point in hand" in said
+    assert "stopped by SIGINT; 61 points kept, the same command continues" in said
+    assert "61 kept" in command("run", "c.yaml").stdout
+
+
+def test_ctrl_c_under_a_launcher_loses_no_point(command):
+    """What the launcher makes of it, and how it exits, is its own: Open MPI's asks the ranks by SIGTERM."""
+    command.write("c.yaml", SPECTRA)
+    typed_ctrl_c(command, ranks=2)
+    wait_for_end(command.directory)
+    again = command("run", "c.yaml")
+    assert again.returncode == 0
+    assert 61 <= int(re.search(r"(\d+) kept", again.stdout)[1]) < 1200
 
 
 def test_launcher_passes_the_warning_on(command):

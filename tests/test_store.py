@@ -192,6 +192,25 @@ def test_difference_names_the_first_key_that_differs():
     assert config_difference({"a": {"b": 1}}, {"a": {"b": 1}}) == ""
     assert config_difference({"a": {"b": 1}}, {"a": {"b": 2}}) == "a.b is 1 in the file and 2 in the config"
     assert config_difference({"a": 1, "c": 2}, {"a": 1}) == "c is 2 in the file and null in the config"
+    assert (
+        config_difference({"a": [1, 2]}, {"a": [1, 3]}) == "a is [1, 2] in the file and [1, 3] in the config"
+    )
+
+
+def test_difference_in_a_long_list_is_named():
+    long = [i / 8 for i in range(300)]
+    changed = [*long[:123], 15.4, *long[124:]]
+    assert config_difference({"F": {"values": long}}, {"F": {"values": changed}}) == (
+        "F.values has 300 values in the file and 300 in the config; "
+        "value 124 is 15.375 in the file and 15.4 in the config"
+    )
+    assert config_difference({"F": long}, {"F": [*long, 50.0]}).endswith(
+        "300 values in the file and 301 in the config; "
+        "value 301 is missing in the file and 50.0 in the config"
+    )
+    assert config_difference({"F": long}, {"F": long[:299]}).endswith(
+        "value 300 is 37.375 in the file and missing in the config"
+    )
 
 
 def test_a_view_is_of_one_file_though_a_run_exchanges_it_meanwhile(tmp_path, monkeypatch):

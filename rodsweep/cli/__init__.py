@@ -1,4 +1,4 @@
-"""The command `rodsweep`: run, merge, check, show, plot, bench, arm. Joins the other packages.
+"""The command `rodsweep`: run, merge, check, show, plot, export, schema, bench, arm. Joins the other packages.
 
 Exit status: 0 when every point succeeded, 1 when the run is whole but some point did not, 2 for bad
 input, 3 when the machine lacks something, 75 when a run was asked to stop and wants to be continued.
@@ -30,10 +30,14 @@ overrides_option = click.option(
 )
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True)
 @click.version_option(__version__, prog_name="rodsweep")
-def commands() -> None:
+@click.pass_context
+def commands(context: click.Context) -> None:
     """Spectra, thresholds, phase diagrams, modes and limit cycles of follower-loaded soft rods in a fluid."""
+    if context.invoked_subcommand is None:  # as click does, but with all lines and with every release of it
+        click.echo(context.get_help(), err=True)
+        sys.exit(2)
 
 
 @commands.command()
@@ -42,21 +46,25 @@ def commands() -> None:
 @overrides_option
 @click.option("--fresh", is_flag=True, help="Replace an existing result file instead of continuing it.")
 @click.option("--shard", metavar="I/N", default="1/1", help="Compute the I-th of N parts only, to be merged.")
-def run(config: Path, output: Path | None, overrides: tuple[str, ...], fresh: bool, shard: str) -> None:
+@click.option("-q", "--quiet", is_flag=True, help="Say nothing but what is amiss; show no progress.")
+def run(
+    config: Path, output: Path | None, overrides: tuple[str, ...], fresh: bool, shard: str, quiet: bool
+) -> None:
     """Compute CONFIG, continuing an interrupted result file. Start it with mpiexec for many ranks."""
     from ..sweep.stop import StopRequest
 
-    stop = StopRequest()
+    stop = StopRequest(speaks=not _rank_variables())
     stop.listen()  # before everything that takes time: a warning may come early
     from ..sweep.shards import shard_of
-    from .running import run_config
+    from .running import RunOptions, run_config
 
     part = shard_of(shard)
     suffix = f"-{part.number}-of-{part.of}.h5" if part.of > 1 else ".h5"
     output = _followed(output or Path(config.stem + suffix))
     if output.is_dir() or not output.name:
         raise InputError(f"--output {output} is a directory; name a file")
-    code = run_config(config, output, overrides, fresh, part, stop)
+    options = RunOptions(overrides=overrides, fresh=fresh, shard=part, quiet=quiet)
+    code = run_config(config, output, options, stop)
     stop.ignore()  # the status is decided
     sys.exit(code)
 
@@ -96,12 +104,15 @@ def check(config: Path, overrides: tuple[str, ...]) -> None:
 
 @commands.command()
 @click.argument("file", type=FILE)
-def show(file: Path) -> None:
-    """Summarise the result FILE."""
+@click.option(
+    "--statuses", is_flag=True, help="List every status that the task knows, not only those present."
+)
+def show(file: Path, statuses: bool) -> None:
+    """Print what the result FILE says: its numbers or their headline, statuses, accuracy, cost."""
     from ..post.summary import show_summary
     from ..results.file.view import read_view
 
-    show_summary(read_view(_followed(file)))
+    show_summary(read_view(_followed(file)), statuses)
 
 
 @commands.command()
@@ -144,6 +155,31 @@ def plot(
 
 
 @commands.command()
+@click.argument("file", type=FILE)
+@click.option("-o", "--output", type=FILE, help="CSV file; by default FILE's name with .csv.")
+@click.option("--units", is_flag=True, help="Put units into the headings: F_onset [k3/L^2].")
+@click.option("--replace", is_flag=True, help="Write over a file that is there already.")
+def export(file: Path, output: Path | None, units: bool, replace: bool) -> None:
+    """Write the result FILE as CSV: a line a point, a column a parameter and a number."""
+    from ..post.export import export as export_view
+    from ..results.file.view import read_view
+
+    output = output or file.with_suffix(".csv")
+    exported = export_view(read_view(_followed(file)), output, units, replace)
+    click.echo(f"wrote {output}: {exported.sentence}")
+
+
+@commands.command()
+def schema() -> None:
+    """Print the JSON schema of a config, from which editors complete keys and mark mistakes."""
+    import json
+
+    from ..config.json_schema import json_schema
+
+    click.echo(json.dumps(json_schema(), indent=2, allow_nan=False))
+
+
+@commands.command()
 @click.argument("what", type=click.Choice(["spectrum", "thresholds", "limit_cycle", "sweep"]), required=False)
 @click.option("--quick", is_flag=True, help="Fewer rounds, for a first impression.")
 @click.option("-o", "--output", type=FILE, help="Markdown file; the numbers (.h5) and figures go beside it.")
@@ -173,10 +209,15 @@ def _followed(path: Path) -> Path:
     return Path(os.path.realpath(path)) if path.is_symlink() else path
 
 
+def _rank_variables() -> list[str]:
+    """The rank of this process as each launcher tells it; nothing where there is none."""
+    names = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID")
+    return [os.environ[name] for name in names if name in os.environ]
+
+
 def _speaks() -> bool:
     """Whether this process is the one that talks, before MPI has been started."""
-    names = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID")
-    return next((os.environ[n] for n in names if n in os.environ), "0") == "0"
+    return next(iter(_rank_variables()), "0") == "0"
 
 
 def _one_line(message: str) -> str:

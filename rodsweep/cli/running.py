@@ -4,6 +4,7 @@ import os
 import socket
 import time
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -37,15 +38,25 @@ Contribution = tuple[str, list[str], Share]
 """A rank's host, the failures that it tells, and what it did."""
 
 
-def run_config(
-    path: Path, output: Path, overrides: tuple[str, ...], fresh: bool, shard: Shard, stop: StopRequest
-) -> int:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunOptions:
+    """What the user asks of a run beside the config."""
+
+    overrides: tuple[str, ...] = ()
+    fresh: bool = False
+    """Whether an existing file is replaced."""
+    shard: Shard
+    quiet: bool = False
+    """Whether only what is amiss is told."""
+
+
+def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest) -> int:
     """Runs a config, or a shard of it, on all ranks; returns the exit status."""
     team = Team()
     with team.together():
-        job = team.on_first(lambda: make_job(path, overrides))
+        job = team.on_first(lambda: make_job(path, options.overrides))
         team.all_can(require_petsc)
-        return _Run(team, job, output, shard, stop).run(fresh)
+        return _Run(team, job, output, options, stop).run()
 
 
 class _Run:
@@ -54,23 +65,24 @@ class _Run:
     store: Store
     """On the first rank, once it is open."""
 
-    def __init__(self, team: Team, job: Job, output: Path, shard: Shard, stop: StopRequest):
+    def __init__(self, team: Team, job: Job, output: Path, options: RunOptions, stop: StopRequest):
         from ..solve.backend.blas_kernel import blas
 
-        self.team, self.job, self.output, self.shard, self.stop = team, job, output, shard, stop
+        self.team, self.job, self.output, self.stop = team, job, output, stop
+        self.options, self.shard = options, options.shard
         self.began, self.started = time.monotonic(), provenance.now()
         self.solver = job.task.solver()
         self.kernels = provenance.united_kernels(team.gather(blas()) or [])
-        self.plan = plan_of(job, self.solver, shard, self.kernels)
+        self.plan = plan_of(job, self.solver, self.shard, self.kernels)
 
-    def run(self, fresh: bool) -> int:
+    def run(self) -> int:
         """Solves what is missing and folds it into the file; returns the exit status."""
-        missing = self.team.on_first(lambda: self._open(fresh))
+        missing = self.team.on_first(self._open)
         units, count = self._units(missing)
         if self.team.first:
             points, shard = self.job.points.count, f"; shard {self.shard}" if self.shard.of > 1 else ""
             kept = f", {points - total(missing)} kept" if points > total(missing) else ""
-            click.echo(f"{self.output}: {count} of {points} points to do{kept}{shard}")
+            self._say(f"{self.output}: {count} of {points} points to do{kept}{shard}")
         contributions: list[Contribution] = []
         if count:
             self.team.on_first(self._note_kernels)
@@ -78,9 +90,14 @@ class _Run:
             contributions = self.team.gather((socket.gethostname(), failures, share)) or []
         return self.team.on_first(lambda: self._finish(count, contributions))
 
-    def _open(self, fresh: bool) -> list[IndexRange]:
+    def _say(self, text: str, amiss: bool = False) -> None:
+        """Tells the user, who may want to hear only what is amiss."""
+        if amiss or not self.options.quiet:
+            click.echo(text)
+
+    def _open(self) -> list[IndexRange]:
         """Opens the file; returns the points that it misses."""
-        self.store = Store(self.output, self.plan, fresh)
+        self.store = Store(self.output, self.plan, self.options.fresh)
         return self.store.missing()
 
     def _units(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
@@ -117,7 +134,7 @@ class _Run:
                 failures.append(f"{where}: {result.status.name} {result.message}".rstrip())
 
         solver.warm_up()
-        tell = Teller(count, self.job.name) if self.team.first else None
+        tell = Teller(count, self.job.name) if self.team.first and not self.options.quiet else None
         try:
             directory = journal_directory(self.output)
             journal = Journal(directory, self.team.rank, plan.layout, plan.fingerprint)
@@ -155,18 +172,20 @@ class _Run:
             seconds, points = time.monotonic() - self.began, count - left
             each = 1e3 * seconds * self.team.size / max(points, 1)
             pace = f" ({each:.3g} ms a point and rank)" if points else ""
-            click.echo(f"{points} points in {seconds:.2f} s on {self.team.size} ranks{pace}")
+            self._say(f"{points} points in {seconds:.2f} s on {self.team.size} ranks{pace}")
         else:
-            click.echo(f"{part} is complete, nothing to do")
-        click.echo(f"{self.output}: " + ", ".join(f"{n} {name}" for name, n in counts.items()))
+            self._say(f"{part} is complete, nothing to do")
+        expected = {status.name for status in self.solver.statuses if status.succeeded} | {"missing"}
+        amiss = not set(counts) <= expected
+        self._say(f"{self.output}: " + ", ".join(f"{n} {name}" for name, n in counts.items()), amiss)
         told = [failure for _, failures, _ in contributions for failure in failures]
         for failure in told[:FAILURES_TOLD]:
             click.echo(f"  {failure}")
         if left:
-            click.echo(f"stopped by {self.stop.name}; the same command continues")
+            kept = self.job.points.count - total(missing)
+            click.echo(f"stopped by {self.stop.name}; {kept} points kept, the same command continues")
             return CONTINUE
-        expected = {status.name for status in self.solver.statuses if status.succeeded} | {"missing"}
-        if set(counts) <= expected:
+        if not amiss:
             return 0
         click.echo(f"  `rodsweep show {self.output}` says what each status means")
         return 1

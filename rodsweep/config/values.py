@@ -74,8 +74,36 @@ Number = Annotated[
 """A number, which JSON has only if it is finite."""
 
 
+NUMBER_SCHEMA: dict[str, Any] = {"anyOf": [{"type": "number"}, {"enum": ["inf", "+inf", "-inf"]}]}
+"""A number of an axis as a JSON schema."""
+AXIS_SCHEMA: dict[str, Any] = {
+    "description": "a number, a list in increasing order, or a range",
+    "anyOf": [
+        *NUMBER_SCHEMA["anyOf"],
+        {"type": "array", "items": NUMBER_SCHEMA, "minItems": 1},
+        {
+            "type": "object",
+            "properties": {
+                "start": {"type": "number", "description": "the first value"},
+                "stop": {"type": "number", "description": "the last value"},
+                "num": {"type": "integer", "minimum": 1, "maximum": MOST_VALUES, "description": "how many"},
+                "spacing": {"enum": ["linear", "log"], "default": "linear"},
+            },
+            "required": ["start", "stop", "num"],
+            "additionalProperties": False,
+        },
+    ],
+}
+"""What `as_axis` takes, as a JSON schema."""
+
+
 class Axis(Strict):
     """Values of one parameter: one number, a list, or `num` values from start to stop."""
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, *_: Any) -> dict[str, Any]:
+        """What the user writes, not what is made of it."""
+        return AXIS_SCHEMA
 
     values: tuple[Number, ...] | None = None
     start: float = 0.0

@@ -6,7 +6,7 @@ eigenvalue passes through 0 and those that reach the imaginary axis are a pair. 
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import floor, log10
+from math import floor, log10, nan
 
 import numpy as np
 
@@ -29,6 +29,8 @@ class HopfPoint:
     error: float
     destabilises: bool
     """Whether the rod is unstable above it; below it otherwise, and above it stable again."""
+    frequency: float = nan
+    """Of the modes that cross, in 1/tau2; nan where it is not known."""
 
     def agrees(self, other: "HopfPoint") -> bool:
         """Whether the two may be one: of a kind, and within their errors."""

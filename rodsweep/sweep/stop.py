@@ -1,17 +1,24 @@
-"""A request to stop early, which a scheduler's warning or a user's kill makes, heeded between two points."""
+"""A request to stop early, by a scheduler's warning, a user's kill or Ctrl-C, heeded between two points."""
 
+import os
 import signal
+from contextlib import suppress
 from types import FrameType
 
-STOP_SIGNALS = (signal.SIGTERM, signal.SIGUSR1)
-"""What asks for a stop: what `kill` and a scheduler's end send, and what schedulers warn with."""
+STOP_SIGNALS = (signal.SIGTERM, signal.SIGUSR1, signal.SIGINT)
+"""What asks for a stop: what `kill` and a scheduler's end send, what schedulers warn with, and Ctrl-C."""
+HEARD_CTRL_C = b"\nstopping with the point in hand, all is kept (Ctrl-\\ ends at once and loses that point)\n"
+"""What is said at once, where a point may take its time."""
 
 
 class StopRequest:
-    """Whether this process has been asked to stop, and by which signal."""
+    """Whether this process has been asked to stop, and by which signal.
 
-    def __init__(self) -> None:
-        self.name = ""
+    speaks: whether it answers Ctrl-C on standard error; ranks of a launcher would all do so.
+    """
+
+    def __init__(self, speaks: bool = False) -> None:
+        self.name, self.speaks = "", speaks
 
     def __bool__(self) -> bool:
         return bool(self.name)
@@ -28,4 +35,7 @@ class StopRequest:
             signal.signal(number, signal.SIG_IGN)
 
     def _note(self, number: int, _: FrameType | None) -> None:
+        if number == signal.SIGINT and self.speaks and not self.name:
+            with suppress(OSError):
+                os.write(2, HEARD_CTRL_C)  # print is not for signal handlers
         self.name = signal.Signals(number).name

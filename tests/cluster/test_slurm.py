@@ -42,7 +42,7 @@ with open(f"threads-{os.getpid()}", "w") as note:
 """A sitecustomize.py that makes every point take PAUSE seconds longer until the job has been requeued, and
 notes where a rank may run."""
 
-STOPPED = "stopped by SIGUSR1; the same command continues"
+STOPPED = "points kept, the same command continues"
 
 
 @pytest.fixture(scope="module")

@@ -26,14 +26,14 @@ SUMMARIES: dict[str, Callable[[View, np.ndarray], list[str]]] = {
 """What each task has to tell of its computed points, from (view, which points are computed)."""
 
 
-def show_summary(view: View) -> None:
-    """Prints a summary of a result file."""
+def show_summary(view: View, every_status: bool = False) -> None:
+    """Prints a summary of a result file; `every_status` lists those of no point, too."""
     console = Console(highlight=False)
     a, status = view.attributes, view.variables["status"]
     done = status != MISSING
     console.print(f"{view.path}: {a.get('title', '')}, task {view.task}", markup=False)
     console.print(_table(("parameter", "values", "from", "to", "unit"), _axes(view)))
-    console.print(_table(("status", "points", "meaning"), _statuses(view, status)))
+    console.print(_table(("status", "points", "meaning"), _statuses(view, status, every_status)))
     if not done.all():
         console.print(
             f"{int((~done).sum())} points are missing, of which {view.journalled} are done and wait in the "
@@ -85,9 +85,10 @@ def _axes(view: View) -> Iterable[tuple[str, ...]]:
         yield name, str(len(values)), f"{low:.6g}", f"{high:.6g}", DIMENSIONS[name][0]
 
 
-def _statuses(view: View, status: np.ndarray) -> Iterable[tuple[str, ...]]:
+def _statuses(view: View, status: np.ndarray, every: bool) -> Iterable[tuple[str, ...]]:
     lines = str(view.attributes.get("status_sentences", "")).splitlines()
     sentences = dict(line.split(": ", 1) for line in lines if ": " in line) | {"missing": "not computed yet"}
-    for value, count in zip(*np.unique(status, return_counts=True), strict=True):
-        name = view.flags.get(int(value), f"unknown ({value})")
-        yield name, str(count), sentences.get(name, "")
+    found = dict(zip(*(a.tolist() for a in np.unique(status, return_counts=True)), strict=True))
+    for value in sorted(view.flags.keys() | found.keys()) if every else found:
+        name = view.flags.get(value, f"unknown ({value})")
+        yield name, str(found.get(value, 0)), sentences.get(name, "")

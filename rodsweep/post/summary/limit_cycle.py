@@ -5,16 +5,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from ...results.file.view import View
-from ..hopf_points import HopfPoint, lines_over
-from .ranges import span
-
-FEW_LINES = 3
-"""Lines over F whose Hopf points are named one by one."""
-STABILITY_CHANGES = {
-    True: "F** (straight rod starts to beat)",
-    False: "restabilization (straight rod is stable again)",
-}
-"""What a Hopf point is called above which the rod is unstable, and one above which it is stable."""
+from ..hopf_points import ParameterLine
+from .ranges import span, to_error
+from .stability import stability_lines
 
 
 def limit_cycle_summary(view: View, done: np.ndarray) -> list[str]:
@@ -25,7 +18,7 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> list[str]:
     lines = [f"of {status.size} points: {', '.join(counts)}"]
     rate, frequency = v["linear_growth_rate"][done], v["linear_frequency"][done]
     lines.append(f"straight rod: leading growth rate {span(rate)}, frequency {span(frequency)}")
-    lines += stability_lines(view)
+    lines += stability_lines(view, ParameterLine.hopf_points)
     values = {word: value for value, word in view.flags.items()}
     on_torus = done & (v["status"] == values.get("torus"))
     if on_torus.any():
@@ -33,38 +26,25 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> list[str]:
             f"tori: the cycles that they surround have multipliers {span(v['multiplier'][on_torus])}"
         )
     beats = done & (v["status"] == values.get("cycle"))
+    orbit = done & np.isin(v["status"], [values[word] for word in ("cycle", "unstable") if word in values])
+    if done.size == 1 and orbit.any():
+        lines += orbit_lines(v, stable=bool(beats.any()))
     return [*lines, *_cycle_lines(v, beats)] if beats.any() else lines
 
 
-def stability_lines(view: View) -> list[str]:
-    """Where the straight rod changes its stability along F, one line a kind; none where F is no axis."""
-    if len(np.unique(view.point_columns["F"])) < 2:
-        return []
-    lines = list(lines_over(view, "F"))
-    varied = [n for n in lines[0].parameters if len({line.parameters[n] for line in lines}) > 1]
-    along = [line.hopf_points(view) for line in lines]
-    texts = []
-    for kind, words in STABILITY_CHANGES.items():
-        of_kind = [[point for point in points if point.destabilises == kind] for points in along]
-        found = {i: points for i, points in enumerate(of_kind) if points}
-        if found:
-            names = [", ".join(f"{name} = {line.parameters[name]:.6g}" for name in varied) for line in lines]
-            texts.append(f"{words}: {_positions(found, names)}")
-    return texts
+def orbit_lines(v: Mapping[str, np.ndarray], stable: bool) -> list[str]:
+    """The numbers of the one cycle of a file to their errors, and whether it is stable.
 
-
-def _positions(found: Mapping[int, list[HopfPoint]], names: list[str]) -> str:
-    """The Hopf points on those of the named lines that have any: one by one where few, else their range."""
-    points = [point for line in found.values() for point in line]
-    error = f" (+- {max(point.error for point in points):.0e})"
-    some = f", on {len(found)} of {len(names)} lines over F" if len(found) < len(names) else ""
-    if all(point.agrees(points[0]) for point in points):
-        return points[0].text + error + some
-    if len(found) > FEW_LINES:
-        first, *_, last = sorted(points, key=lambda point: point.position)
-        return f"{first.text} to {last.text}{error}{some}"
-    each = (" for ".join(filter(None, (" and ".join(p.text for p in found[i]), names[i]))) for i in found)
-    return f"{', '.join(each)}{error}"
+    v: the variables of the file, each of a shape that begins with (1, 1, 1, 1, 1) or, in a list, (1,).
+    """
+    period, y = float(v["period"].max()), float(v["tip_y_max"].max())
+    multiplier = to_error(v["multiplier"].max(), v["multiplier_error"].max())
+    verdict = "stable: all others are below 1" if stable else "unstable: it is above 1"
+    return [
+        f"period: {to_error(period, period * v['period_error'].max())} tau2",
+        f"largest y of the tip: {to_error(y, y * v['amplitude_error'].max())} L",
+        f"largest Floquet multiplier but the one that is 1: {multiplier}; the cycle is {verdict}",
+    ]
 
 
 def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:

@@ -3,11 +3,44 @@
 import numpy as np
 
 from ...results.file.view import View
+from ..stability_changes import stability_changes
+from .ranges import to_error
+from .stability import stability_lines
+
+HOW_FOUND = (
+    "zeros of the characteristic determinant D(i eta; F) where the leading growth rate changes sign between "
+    "two forces of the file; `task: thresholds` proves that none is missing"
+)
+"""What the forces are that `threshold_lines` tells."""
+PROOFS = {True: "proved by a winding number", False: "not proved"}
+"""What is said of the number of unstable modes at a single point."""
 
 
 def spectrum_summary(view: View, done: np.ndarray) -> list[str]:
     """The task's lines about the points that are `done`, a mask of the points' shape."""
-    return [*accuracy_lines(view, done), stability_line(view, done)]
+    if done.size == 1:
+        return [*eigenvalue_lines(view), accuracy_lines(view, done)[-1]]
+    return [*threshold_lines(view), *accuracy_lines(view, done), stability_line(view, done)]
+
+
+def threshold_lines(view: View) -> list[str]:
+    """The forces at which the rod becomes unstable or stable, and what they are; none where F is no axis."""
+    lines = stability_lines(view, stability_changes)
+    return [*lines, f"  ({HOW_FOUND})"] if lines else []
+
+
+def eigenvalue_lines(view: View) -> list[str]:
+    """The eigenvalues of the one point of a file, with their errors, and how many of them are unstable."""
+    v = view.variables
+    columns = (v[name].ravel() for name in ("growth_rate", "frequency", "error_estimate"))
+    lines = [
+        f"mode {number}: growth rate {to_error(growth, error)}, frequency {to_error(frequency, error)} 1/tau2"
+        for number, (growth, frequency, error) in enumerate(zip(*columns, strict=True), 1)
+        if np.isfinite(growth)
+    ]
+    unstable, proof = int(v["unstable_count"].max()), PROOFS[bool(v["certified"].all())]
+    count = f"unstable modes: {unstable}, {proof}" if unstable >= 0 else "unstable modes: not known"
+    return [*lines, count]
 
 
 def accuracy_lines(view: View, done: np.ndarray) -> list[str]:

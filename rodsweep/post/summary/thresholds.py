@@ -5,7 +5,8 @@ from itertools import product
 import numpy as np
 
 from ...results.file.view import View
-from .ranges import span
+from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
+from .ranges import span, to_error
 
 FORCES_AND_RATES = {
     "onset": ("F_onset", "growth rate", "onset_growth_rate"),
@@ -18,6 +19,8 @@ def thresholds_summary(view: View, done: np.ndarray) -> list[str]:
     """The task's lines about the points that are `done`, a mask of the points' shape."""
     v = view.variables
     points = int(done.sum())
+    if done.size == 1:
+        return [*crossing_lines(view), search_lines(view, done, 1)[-1]]
     lines = []
     for event, (force, word, number) in FORCES_AND_RATES.items():
         F = v[force][done]
@@ -26,6 +29,27 @@ def thresholds_summary(view: View, done: np.ndarray) -> list[str]:
         lines.append(f"{event}: at {there} of {points} points{where}")
     lines.append(f"searched up to F = {span(v['F_end'][done])}")
     return [*lines, *monotony_lines(view), *search_lines(view, done, points)]
+
+
+def crossing_lines(view: View) -> list[str]:
+    """Every crossing of the one rod of a file, and what is sure between them."""
+    v = {name: view.variables[name].ravel() for name in view.variables}
+    lines = []
+    for i in np.flatnonzero(v["crossing_kind"] > 0):
+        kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
+        F = to_error(v["crossing_F"][i], v["crossing_error"][i])
+        growth, frequency = v["crossing_growth_rate"][i], v["crossing_frequency"][i]
+        rates = f"growth rate {growth:.6g}, frequency {frequency:.6g} 1/tau2"
+        after = int(v["unstable_after"][i])
+        above = f"; unstable modes above: {after if after >= 0 else 'not known'}"
+        lines.append(f"{kind} at F = {F}: {CROSSING_MEANINGS[kind]}; {rates}{above}")
+    found, stored = int(v["crossing_count"][0]), len(lines)
+    more = f"; {found - stored} more are not stored, raise the option crossings" * (found > stored)
+    proof = "proved" if v["certified"].all() else "not proved"
+    lines.append(f"searched up to F = {v['F_end'][0]:.15g}; that no crossing is missing is {proof}{more}")
+    if np.isfinite(v["open_from"][0]):
+        lines.append(f"undecided: F = {v['open_from'][0]:.9g} to {v['open_to'][0]:.9g}")
+    return lines
 
 
 def monotony_lines(view: View) -> list[str]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...sweep.grid import Points
 from ..layouts.variables import DIMENSIONS, MISSING, Filled, Layout, Variable
-from .validation import PROGRAM
+from .validation import PROGRAM, what_is_asked
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class Plan:
     @property
     def fingerprint(self) -> str:
         """What two files must share for the one to continue the other."""
-        digest = sha256(json.dumps(self.config, sort_keys=True).encode())
+        digest = sha256(json.dumps(what_is_asked(self.config), sort_keys=True).encode())
         for column in self.points.columns:
             digest.update(np.ascontiguousarray(column).tobytes())
         return digest.hexdigest()

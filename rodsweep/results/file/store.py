@@ -24,7 +24,7 @@ from .creation import Plan, add_variables, create_file
 from .exchange import Exchange, disk_refusals
 from .points import missing_ranges, statuses, write_points
 from .seal import check_seal
-from .validation import DAMAGES, change_between, is_ours, reason_of, refuse_misfit
+from .validation import DAMAGES, change_between, is_ours, reason_of, refuse_misfit, what_is_asked
 
 SPACE_FACTOR, SPACE_FIXED = 3, 300_000
 """Room that a run needs: the file, the journals and the copy in units of the file, and bytes besides."""
@@ -49,7 +49,7 @@ class Store:
     def _open(self, fresh: bool) -> None:
         if self.path.exists() and not fresh:
             self._refuse_another()
-            self.fold({})
+            self.fold(self._new_title())
             return
         if self.path.exists() and not is_ours(self.path):
             raise InputError(f"{self.path} is no result file, so --fresh leaves it alone")
@@ -58,6 +58,13 @@ class Store:
         drop_files(self.journals, CHECKPOINTS)
         with self.exchange.replacing(None) as copy:
             create_file(copy, self.plan)
+
+    def _new_title(self) -> dict[str, Any]:
+        """The attributes that change where the config has another title than the file; else none."""
+        names = {name: self.plan.attributes.get(name, "") for name in ("title", "config")}
+        if names["title"] == self.attributes().get("title", ""):
+            return {}
+        return names | {"config_resolved": json.dumps(self.plan.config)}
 
     def _need_room(self) -> None:
         """EnvironmentLacks unless the file, its journals and the copy that replaces it have room."""
@@ -127,7 +134,7 @@ class Store:
                 f"{self.path} exists and is not a whole rodsweep result ({reason_of(error)}); it is left as "
                 "it is: choose another file with -o, or replace it with --fresh"
             ) from None
-        if fingerprint != self.plan.fingerprint or theirs != self.plan.config:
+        if fingerprint != self.plan.fingerprint or what_is_asked(theirs) != what_is_asked(self.plan.config):
             raise InputError(
                 f"{self.path} was made from another config ({change_between(theirs, self.plan.config)}); "
                 "choose another file with -o, or replace it with --fresh"

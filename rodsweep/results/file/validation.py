@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,8 @@ from .seal import HDF5_SIGNATURE, check_seal
 
 PROGRAM = "rodsweep"
 """The attribute `program` of our files."""
+LONGEST_VALUE = 80
+"""Characters of a config's value in a sentence."""
 LONGEST_REASON = 150
 """Characters of what a library says."""
 DAMAGES = (OSError, LookupError, ValueError, TypeError, RuntimeError, OverflowError, MemoryError)
@@ -104,9 +107,17 @@ def is_ours(path: Path) -> bool:
         return True
 
 
+def what_is_asked(config: dict[str, Any]) -> dict[str, Any]:
+    """A resolved config without its title, which changes no number."""
+    return config | {"title": ""} if "title" in config else config
+
+
 def change_between(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
     """How two resolved configs differ that do not ask for the same points, in words."""
-    return config_difference(theirs, ours) or "the points listed in parameters.points differ"
+    return (
+        config_difference(what_is_asked(theirs), what_is_asked(ours))
+        or "the points listed in parameters.points differ"
+    )
 
 
 def config_difference(theirs: Any, ours: Any, key: str = "") -> str:
@@ -119,4 +130,16 @@ def config_difference(theirs: Any, ours: Any, key: str = "") -> str:
         return ""
     if theirs == ours:
         return ""
-    return f"{key} is {json.dumps(theirs)[:80]} in the file and {json.dumps(ours)[:80]} in the config"
+    texts = json.dumps(theirs), json.dumps(ours)
+    if isinstance(theirs, list) and isinstance(ours, list) and max(map(len, texts)) > LONGEST_VALUE:
+        return f"{key} has {_list_difference(theirs, ours)}"
+    return f"{key} is {texts[0][:LONGEST_VALUE]} in the file and {texts[1][:LONGEST_VALUE]} in the config"
+
+
+def _list_difference(theirs: list[Any], ours: list[Any]) -> str:
+    """How two lists differ that are too long to be shown: their lengths, and the first value that differs."""
+    sizes = f"{len(theirs)} values in the file and {len(ours)} in the config"
+    pairs = enumerate(zip_longest(theirs, ours), 1)
+    number, values = next((i, pair) for i, pair in pairs if pair[0] != pair[1])
+    first, second = ("missing" if v is None else json.dumps(v)[:LONGEST_VALUE] for v in values)
+    return f"{sizes}; value {number} is {first} in the file and {second} in the config"

@@ -17,16 +17,18 @@ THRESHOLDS = (
     whole("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
 )
 
-CROSSING_KINDS = (
-    "none",
-    "onset",
-    "hopf",
-    "hopf_reverse",
-    "restabilization",
-    "real_again",
-    "real_leads",
-    "pair_leads",
-)
+CROSSING_MEANINGS = {
+    "none": "no crossing: the list is longer than what was found",
+    "onset": "two real leading eigenvalues meet and become a pair: oscillations set in",
+    "hopf": "a pair becomes unstable",
+    "hopf_reverse": "an unstable pair becomes stable, and others stay unstable",
+    "restabilization": "the last unstable pair becomes stable",
+    "real_again": "the leading pair meets on the real axis and becomes two real eigenvalues",
+    "real_leads": "a real eigenvalue overtakes the leading pair, without meeting it",
+    "pair_leads": "a pair overtakes the leading real eigenvalue, without meeting it",
+}
+"""What happens at a crossing, as the parameter grows."""
+CROSSING_KINDS = tuple(CROSSING_MEANINGS)
 """What happens at a crossing; the place in this list is what the file stores."""
 
 

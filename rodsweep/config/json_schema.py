@@ -1,0 +1,90 @@
+"""The config as a JSON schema, from which editors complete keys and mark mistakes while one writes.
+
+Made of the models of the tasks, with the sentences that stand below their keys. What only a whole config
+tells (which axes are missing, F < k1) is not in it; `rodsweep check` says that.
+"""
+
+import ast
+import inspect
+import textwrap
+from collections.abc import Iterator
+from math import isfinite
+from typing import Any
+
+from pydantic import BaseModel
+
+from ..model.parameters import PARAMETERS
+from .tasks import CONFIGS
+
+DIALECT = "http://json-schema.org/draft-07/schema#"
+"""What editors know best."""
+BOUNDS = {"ge": "minimum", "le": "maximum", "gt": "exclusiveMinimum", "lt": "exclusiveMaximum"}
+"""How JSON schemas call bounds that pydantic leaves as they are, where a validator of ours stands first."""
+
+
+def json_schema() -> dict[str, Any]:
+    """The schema of a config of any task."""
+    definitions: dict[str, Any] = {}
+    tasks = []
+    for config in CONFIGS.values():
+        schema = config.model_json_schema(ref_template="#/definitions/{model}")
+        definitions |= schema.pop("$defs", {})
+        _describe_keys(schema, config)
+        for section in sections_of(config):
+            _describe_keys(definitions[section.__name__], section)
+        tasks.append(schema)
+    whole = {"oneOf": tasks, "definitions": definitions}
+    for node in _nodes(whole):
+        for ours, theirs in BOUNDS.items():
+            if ours in node:
+                bound = node.pop(ours)
+                if isfinite(bound):
+                    node[theirs] = bound
+    return {"$schema": DIALECT, "title": "A config of rodsweep", **whole}
+
+
+def sections_of(config: type[BaseModel]) -> Iterator[type[BaseModel]]:
+    """The models of the sections that a config has."""
+    for field in config.model_fields.values():
+        kind = field.annotation
+        if isinstance(kind, type) and issubclass(kind, BaseModel):
+            yield kind
+
+
+def meanings_of(section: type[BaseModel]) -> dict[str, str]:
+    """The docstring below every key of a section, those of the sections it is made from included."""
+    found: dict[str, str] = {}
+    for kind in reversed(section.__mro__):
+        if not (issubclass(kind, BaseModel) and kind.__module__.startswith("rodsweep.")):
+            continue
+        try:
+            source = inspect.getsource(kind)
+        except OSError:  # made of the table of parameters
+            continue
+        body = ast.parse(textwrap.dedent(source)).body[0]
+        assert isinstance(body, ast.ClassDef)
+        for key, below in zip(body.body, body.body[1:], strict=False):
+            if not (isinstance(key, ast.AnnAssign) and isinstance(key.target, ast.Name)):
+                continue
+            if isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant):
+                found[key.target.id] = inspect.cleandoc(str(below.value.value))
+    return found
+
+
+def _describe_keys(schema: dict[str, Any], section: type[BaseModel]) -> None:
+    """Gives the keys of a section their sentences, instead of titles that repeat the key."""
+    parameters = {name: f"{p.long_name}, in {p.unit}" for name, p in PARAMETERS.items()}
+    meanings = parameters | meanings_of(section)
+    for name, key in schema["properties"].items():
+        key.pop("title", None)
+        if name in meanings:
+            key["description"] = meanings[name]
+
+
+def _nodes(schema: Any) -> Iterator[dict[str, Any]]:
+    """All mappings of a schema."""
+    if isinstance(schema, dict):
+        yield schema
+    if isinstance(schema, dict | list):
+        for inner in list(schema.values() if isinstance(schema, dict) else schema):
+            yield from _nodes(inner)

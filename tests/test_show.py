@@ -1,0 +1,134 @@
+"""`rodsweep show` tells the answer: the numbers of a single point, the headline of a grid, every status."""
+
+import re
+
+import pytest
+from conftest import ROOT
+
+from rodsweep.post.hopf_points import lines_over
+from rodsweep.post.stability_changes import stability_changes
+from rodsweep.post.summary.ranges import to_error
+from rodsweep.results.file.view import read_view
+from rodsweep.solve.changes.thresholds import ThresholdStatus
+
+HOPF, STABLE_AGAIN = 49.7580049161915, 155.600159298791
+"""Of configs/fig2c.yaml, 40-digit roots of D."""
+ROD = "k1: 200, k2: 1.0e4, gamma3: 1.0e-4"
+
+
+def shown(command, config, *options):
+    """What `show` says of the results of a config."""
+    command.write("c.yaml", config)
+    assert command("run", "c.yaml").returncode == 0
+    return command("show", "c.h5", *options).stdout
+
+
+def test_the_thresholds_of_the_demo_come_out_of_show(command):
+    told = shown(command, (ROOT / "configs" / "fig2c.yaml").read_text())
+    hopf, again = (
+        float(re.search(rf"{re.escape(words)}: ([\d.]+) \(\+- \de-1[34]\)", told)[1])
+        for words in ("F** (straight rod starts to beat)", "restabilization (straight rod is stable again)")
+    )
+    assert hopf == pytest.approx(HOPF, abs=1e-12)
+    assert again == pytest.approx(STABLE_AGAIN, abs=1e-12)
+    assert "frequency 334.321 1/tau2" in told
+    assert "zeros of the characteristic determinant" in told
+
+
+@pytest.mark.parametrize("step", [0.5, 7, 45])
+@pytest.mark.parametrize("certify", ["true", "false"])
+def test_thresholds_between_grid_points_do_not_depend_on_the_grid(command, step, certify):
+    forces = [round(1.3 + step * i, 3) for i in range(int(198 / step) + 1)]
+    config = f"task: spectrum\nparameters: {{F: {forces}, {ROD}}}\nspectrum: {{certify: {certify}}}\n"
+    shown(command, config)
+    view = read_view(command.directory / "c.h5")
+    (line,) = lines_over(view, "F")
+    found = stability_changes(line, view)
+    assert [point.destabilises for point in found] == [True, False]
+    for point, exact in zip(found, (HOPF, STABLE_AGAIN), strict=True):
+        assert abs(point.position - exact) <= point.error + 1e-12
+        assert point.error < 1e-12
+
+
+def test_a_change_that_is_not_understood_is_a_bracket(command):
+    """Here another mode is said to be unstable: one zero of D does not explain that."""
+    shown(command, f"task: spectrum\nparameters: {{F: [40, 60], {ROD}}}\n")
+    view = read_view(command.directory / "c.h5")
+    view.variables["unstable_count"][-1] = 4
+    (line,) = lines_over(view, "F")
+    (point,) = stability_changes(line, view)
+    assert (point.position, point.error, point.destabilises) == (50, 10, True)
+
+
+def test_thresholds_of_several_lines_are_named_by_what_differs(command):
+    config = "task: modes\nparameters: {F: [30, 60], k1: [200, .inf], k2: 1.0e4, gamma3: 1.0e-4}\n"
+    told = shown(command, config)
+    assert re.search(r"beat\): 49\.7580049161?\d+ for k1 = 200, 37\.5155341729\d+ for k1 = inf", told)
+
+
+def test_eigenvalues_of_a_single_point_are_told_with_errors_and_count(command):
+    told = shown(command, f"task: spectrum\nparameters: {{F: 60, {ROD}}}\n")
+    assert re.search(
+        r"mode 1: growth rate 72\.04009792307\d* \(\+- \de-1\d\), frequency 433\.79628096374\d*", told
+    )
+    assert re.search(r"mode 4: growth rate -19940\.00335896\d* \(\+- \de-1\d\), frequency 0 1/tau2", told)
+    assert "unstable modes: 2, proved by a winding number" in told
+
+
+def test_modes_of_a_single_point_are_told_with_their_eigenvalues(command):
+    told = shown(command, f"task: modes\nparameters: {{F: 30, {ROD}}}\n")
+    assert re.search(
+        r"mode 1: growth rate -115\.51902382007\d* \(\+- \de-1\d\), frequency 151\.864644304\d*", told
+    )
+    assert "unstable modes: 0, proved" in told
+    assert "largest transient growth: 1.26004 times" in told
+
+
+def test_thresholds_of_a_single_rod_are_told_one_by_one(command):
+    told = shown(command, f"task: thresholds\nparameters: {{{ROD}}}\n")
+    found = re.findall(r"^(\w+) at F = ([\d.]+) \(\+- \de-1[34]\).*above: (\d)$", told, re.MULTILINE)
+    assert [(kind, count) for kind, _, count in found] == [
+        ("onset", "0"),
+        ("hopf", "2"),
+        ("restabilization", "0"),
+    ]
+    assert [float(F) for _, F, _ in found] == pytest.approx([22.4709774737663, HOPF, STABLE_AGAIN], abs=1e-12)
+    assert "that no crossing is missing is proved" in told
+
+
+def test_a_single_cycle_is_told_with_its_verdict(command):
+    told = shown(
+        command,
+        "task: limit_cycle\nparameters: {F: 50, k1: 1.0e4, k2: 100, gamma3: 0.01}\naccuracy: 1.0e-5\n",
+    )
+    period = re.search(r"period: (0\.0344\d*) \(\+- \de-\d\d\) tau2", told)
+    assert float(period[1]) == pytest.approx(0.034450429, rel=1e-5)
+    assert re.search(r"largest y of the tip: 0\.645\d* \(", told)
+    assert re.search(r"multiplier but the one that is 1: .*the cycle is stable", told)
+
+
+def test_all_statuses_are_listed_on_request(command):
+    config = f"task: thresholds\nparameters: {{{ROD}}}\n"
+    names = [status.name for status in ThresholdStatus]
+    told = shown(command, config, "--statuses")
+    assert [name for name in names if not re.search(rf"^{name} +\d", told, re.MULTILINE)] == []
+    assert re.search(r"^failed +0 ", told, re.MULTILINE)
+    assert "failed" not in command("show", "c.h5").stdout
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [
+        (49.7580049161915, 2e-13, "49.758004916192 (+- 2e-13)"),
+        (-0.034450429123, 3e-10, "-0.034450429 (+- 3e-10)"),
+        (1.25e-9, 1e-12, "1.25e-09 (+- 1e-12)"),
+        (123456.0, 20.0, "123456 (+- 2e+01)"),
+        (0.5, float("nan"), "0.5 (error not known)"),
+        (float("nan"), 1.0, "none"),
+        (float("inf"), 1.0, "inf"),
+        (0.0, 1e-12, "0"),
+        (1.0, 2.0, "1 (+- 2e+00)"),
+    ],
+)
+def test_a_number_has_the_digits_that_its_error_leaves(value, error, text):
+    assert to_error(value, error) == text
