@@ -168,6 +168,7 @@ endef
 	esac
 	{ echo "$$WRAPPER"; echo "exec '$$mpiexec' \"\$$@\""; } | sed "$$names" > $(BIN)/mpiexec
 	chmod +x $(BIN)/mpiexec
-	$(BIN)/python -c 'from rodsweep.solve.spectrum.search import warm_up; warm_up()'  # compile the formulas now, not in the first run
+	# Compile the formulas now, not in the first run.
+	for formulas in spectrum.search cycle.limit_cycle; do $(BIN)/python -c "from rodsweep.solve.$$formulas import warm_up; warm_up()"; done
 	touch $@
 	echo 'Installed. Next: . .venv/bin/activate'

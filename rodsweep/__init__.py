@@ -15,10 +15,12 @@ if TYPE_CHECKING:
     from .api.rod import SoftRod as Rod
     from .api.sweeping import sweep
     from .errors import EnvironmentLacks, InputError
+    from .verdict.arm import Arm
 
 __version__ = "0.1.0"
 __all__ = [
     "Answer",
+    "Arm",
     "EnvironmentLacks",
     "InputError",
     "Picture",
@@ -32,6 +34,7 @@ __all__ = [
 
 _PLACES = {
     "Answer": "api.answer.Answer",
+    "Arm": "verdict.arm.Arm",
     "EnvironmentLacks": "errors.EnvironmentLacks",
     "InputError": "errors.InputError",
     "Picture": "api.picture.Picture",

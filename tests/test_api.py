@@ -22,6 +22,7 @@ from rodsweep.model.parameters import PARAMETERS
 
 NAMES = [
     "Answer",
+    "Arm",
     "EnvironmentLacks",
     "InputError",
     "Picture",

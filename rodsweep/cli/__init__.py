@@ -1,4 +1,4 @@
-"""The command `rodsweep`: run, merge, check, show, plot, export, schema, bench, arm. Joins the other packages.
+"""The command `rodsweep`: run, merge, check, show, plot, export, schema, arm, bench. It joins the packages.
 
 Exit status: 0 when every point succeeded, 1 when the run is whole but some point did not, 2 for bad
 input, 3 when the machine lacks something, 75 when a run was asked to stop and wants to be continued.

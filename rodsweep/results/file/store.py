@@ -62,7 +62,10 @@ class Store:
     def _new_title(self) -> dict[str, Any]:
         """The attributes that change where the config has another title than the file; else none."""
         names = {name: self.plan.attributes.get(name, "") for name in ("title", "config")}
-        if names["title"] == self.attributes().get("title", ""):
+        stored = self.attributes().get("title", "")
+        if (
+            not isinstance(stored, str) or names["title"] == stored
+        ):  # what another program wrote is left alone
             return {}
         return names | {"config_resolved": json.dumps(self.plan.config)}
 

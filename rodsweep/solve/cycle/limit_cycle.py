@@ -153,7 +153,10 @@ def warm_up() -> None:
     Raises EnvironmentLacks where options of the prefix cycle_ lose the cycle of a rod whose cycle is known.
     """
     rod = CyclePoint(40.0, 1e4, 1e2, 1e-2, 1.0)
-    cycle = solve_cycle(rod, CycleRequest(1e-3, 0.1, 1, 4, 1, 4, 50))
+    request = CycleRequest(1e-3, 0.1, 1, 4, 1, 4, 50)
+    cycle = solve_cycle(rod, request, None, "F")
+    if cycle.neighbour is not None:
+        solve_cycle(replace(rod, F=1.01 * rod.F), request, cycle.neighbour, "F")
     off = abs(cycle.measures.period / KNOWN_PERIOD - 1)
     known = cycle.status == CycleStatus.cycle and off < KNOWN_WITHIN
     given = options(CYCLE_PREFIX)
