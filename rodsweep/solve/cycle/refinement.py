@@ -11,7 +11,7 @@ import numpy as np
 
 from ...arrays import Complex
 from ..point import Unsolvable
-from .cycle_errors import CycleErrors, error_ratio, fine_errors
+from .cycle_errors import LEAST_CLAIM, CycleErrors, error_ratio, fine_errors
 from .measures import CyclePath, Measures, measures_of
 from .mesh_plan import planned_mesh
 from .minimal_period import PRESENT, common_divisor, shortened, undecided_divisor
@@ -107,7 +107,8 @@ def judged(coarse: Converged, fine: Converged, accuracy: float) -> RefinedCycle:
     # The nearest, not that of the same place, nor the moduli: two may change places, or happen to agree.
     moved = float(np.abs(before - multipliers[0]).min()) if len(before) and len(multipliers) else 0.0
     left = error_ratio(coarse.orbit, fine.orbit) * moved + fine.distance + trivial_error
-    errors = replace(errors, multiplier_error=MULTIPLIER_FACTOR * left)
+    # By luck two meshes agree in a multiplier too.
+    errors = replace(errors, multiplier_error=max(MULTIPLIER_FACTOR * left, LEAST_CLAIM * accuracy))
     return RefinedCycle(fine, coarse, path, measures_of(path), multipliers, trivial_error, errors)
 
 
