@@ -17,11 +17,13 @@ import numpy as np
 from pydantic.fields import FieldInfo
 
 from rodsweep.cli.job import Job, make_job
+from rodsweep.config.arm import ArmSection
 from rodsweep.config.json_schema import meanings_of
 from rodsweep.config.phase_diagram import PhaseDiagramConfig
 from rodsweep.config.refusals import what_is_allowed
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import PARAMETERS
+from rodsweep.results.layouts.arm import MEANINGS, QUANTITY_UNITS
 from rodsweep.results.layouts.phase_diagram import CLASSES, curve_variables
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from rodsweep.results.layouts.variables import DIMENSIONS, MISSING, Variable
@@ -82,7 +84,7 @@ ATTRIBUTES = {
     "fingerprint": "of `config_resolved` without its title, and all points: what a continued file shares",
     "time_unit": "`tau2 = gamma2 L^4/k3`",
     "gamma1": "of a spectrum with `spectrum.longitudinal: true`",
-    "coordinates": "names of the parameters along `point`, in a list of points",
+    "coordinates": "names of the parameters along `point`, in a list of points; of an arm's quantities",
     "status_sentences": "the sentence of every status, one a line",
     "rodsweep_version, git_commit": "of the program; a commit that ends in `-dirty` was changed",
     "python_version, numpy_version, numba_version": "of the libraries",
@@ -154,6 +156,7 @@ def text() -> str:
     ]
     parts += [words("Classes of a phase diagram", MOTIONS, CLASSES)]
     parts += [task_variables(task) for task in CONFIGS]
+    parts += [ARM, quantities()]
     parts += [
         TAIL,
         table(("attribute", "meaning"), (([code(names), what]) for names, what in ATTRIBUTES.items())),
@@ -181,7 +184,11 @@ def common_keys() -> str:
     assert isinstance(points, type)
     rows = [["`task`", code(", ".join(CONFIGS)), "", "What is computed."]]
     rows += [key_row(name, config.model_fields[name], meanings[name]) for name in ("title", "accuracy")]
-    rows.append(key_row("parameters.points", points.model_fields["points"], meanings_of(points)["points"]))
+    for name in ("points", "arm"):
+        rows.append(key_row(f"parameters.{name}", points.model_fields[name], meanings_of(points)[name]))
+    meanings = meanings_of(ArmSection)
+    fields = ArmSection.model_fields
+    rows += [key_row(f"parameters.arm.{name}", field, meanings[name]) for name, field in fields.items()]
     return "\n### Keys of every task\n\n" + key_table(rows)
 
 
@@ -224,6 +231,25 @@ def dimensions() -> str:
         if name not in PARAMETERS
     ]
     return table(("dimension", "length", "its coordinate"), rows)
+
+
+ARM = """
+### File of an arm
+
+With `parameters.arm` the file of any task has these coordinates too: a number each, or along F (the load) or
+k2 (Poisson's ratio) in a grid, along `point` in a list. What has the units tau2, 1/tau2, L, k3/L or
+k3/(L tau2), and forces whose name contains `F_`, stands in SI units beside, by the name with `_si` at its
+end: `period_si` in s, `growth_rate_si` in 1/s, `F_hopf_si` in Pa, or in N where the arm has a force.
+Tables over more than modes and crossings are not stored twice, nor are the curves and crossings of a phase
+diagram: times `pressure_scale` or `force_scale` a force is in SI, times `tau2` a time.
+
+"""
+
+
+def quantities() -> str:
+    """What the coordinates of an arm are."""
+    rows = [[f"`{name}`", QUANTITY_UNITS[name], meaning] for name, meaning in MEANINGS.items()]
+    return table(("coordinate", "unit", "meaning"), rows)
 
 
 def kinds() -> list[tuple[int, str]]:

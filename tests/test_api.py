@@ -242,6 +242,11 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
         (lambda: rs.Rod(**ROD | {"F": 2e4}), "parameters.F reaches 20000 and parameters.k1 starts at 10000;"),
         (lambda: rs.Rod(**ROD, K1=3), "unknown key parameters.K1; did you mean k1?"),
         (
+            lambda: rs.Rod(F=1, k1=9, k2=9, gama3=0),
+            "unknown key parameters.gama3; did you mean gamma3?",
+        ),
+        (lambda: rs.Rod(F=1, k1=9, k2=9), "parameters.gamma3 is missing; give k1, k2 and gamma3"),
+        (
             lambda: rs.Rod(k1=9, k2=9, gamma3=0).spectrum(),
             "parameters.F is missing; give F, k1, k2 and gamma3",
         ),

@@ -22,7 +22,7 @@ def test_the_rod_has_the_parameters_of_the_linear_problem():
 def test_every_config_has_every_parameter_as_a_key_and_every_file_as_a_dimension():
     for config in CONFIGS.values():
         keys = config.model_fields["parameters"].annotation.model_fields
-        assert {*NONLINEAR_PARAMETERS, "points"} == set(keys)
+        assert {*NONLINEAR_PARAMETERS, "points", "arm"} == set(keys)
     assert {DIMENSIONS[name] for name in PARAMETERS} == {(p.unit, p.long_name) for p in PARAMETERS.values()}
 
 

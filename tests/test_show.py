@@ -84,6 +84,38 @@ def test_modes_of_a_single_point_are_told_with_their_eigenvalues(command):
     assert "largest transient growth: 1.26004 times" in told
 
 
+@pytest.mark.parametrize("task", ["spectrum", "modes"])
+@pytest.mark.parametrize("listed", [False, True])
+def test_several_points_are_told_by_how_many_are_stable(command, task, listed):
+    """Of three rods the second flutters; a list says the same as the grid."""
+    command.write("p.csv", "F,k1,k2,gamma3\n30,200,1e4,1e-4\n100,200,1e4,1e-4\n180,200,1e4,1e-4\n")
+    points = "points: p.csv" if listed else f"F: [30, 100, 180], {ROD}"
+    told = shown(command, f"task: {task}\nparameters: {{{points}}}\n{task}: {{modes: 1}}\n")
+    rates = r"leading growth rate (-[\d.]+) to ([\d.]+), frequency"
+    low, high = map(
+        float, re.search(rf"straight rod: stable at 2, unstable at 1 of 3 points; {rates}", told).groups()
+    )
+    assert low < 0 < high
+
+
+def test_phase_diagram_is_told_by_its_shares_and_where_it_flutters(command):
+    """The window of configs/fig4.yaml closes at k1 = 147.92; exact thresholds of k1 = 200 lie in between."""
+    told = shown(
+        command,
+        "task: phase_diagram\nparameters: {F: {start: 0, stop: 199, num: 200}, k1: [100, 140, 200, 400],"
+        " k2: 1.0e4, gamma3: 1.0e-4}\n",
+    )
+    shares = re.findall(r"([\d.]+) % \w+", re.search("of the grid: (.*)", told)[1])
+    assert sum(map(float, shares)) == pytest.approx(100, abs=0.25)
+    assert "flutter on the rows k1 = 200 to 400; on none of k1 = 100 to 140" in told
+    low, high = map(
+        float, re.search(r"\nhopf: on 2 of 4 rows, F = ([\d.]+) to ([\d.]+), k1 = 200 to 400", told).groups()
+    )
+    assert high == pytest.approx(HOPF, abs=1e-4)
+    assert low < high
+    assert f"restabilization: on 1 of 4 rows, F = {STABLE_AGAIN:.6g}, k1 = 200" in told
+
+
 def test_thresholds_of_a_single_rod_are_told_one_by_one(command):
     told = shown(command, f"task: thresholds\nparameters: {{{ROD}}}\n")
     found = re.findall(r"^(\w+) at F = ([\d.]+) \(\+- \de-1[34]\).*above: (\d)$", told, re.MULTILINE)

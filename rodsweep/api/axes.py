@@ -9,18 +9,18 @@ import numpy as np
 class AxisRange(TypedDict):
     """A range of values as a config has it."""
 
-    start: float
-    stop: float
+    start: float | str
+    stop: float | str
     num: int
     spacing: str
 
 
-def linspace(start: float, stop: float, num: int) -> AxisRange:
-    """`num` values from start to stop, equally spaced: an axis of a sweep."""
+def linspace(start: float | str, stop: float | str, num: int) -> AxisRange:
+    """`num` values from start to stop, equally spaced: an axis of a sweep; of an arm also "2 kPa"."""
     return {"start": start, "stop": stop, "num": num, "spacing": "linear"}
 
 
-def logspace(start: float, stop: float, num: int) -> AxisRange:
+def logspace(start: float | str, stop: float | str, num: int) -> AxisRange:
     """`num` values from start to stop, in equal ratios: an axis of a sweep.
 
     `start` and `stop` are values, as NumPy's `geomspace` takes them, not exponents.

@@ -92,6 +92,8 @@ def _coordinates(plan: Plan) -> dict[str, Any]:
         found["point"] = (("point",), np.arange(points.count, dtype="<i4"), _named("point"))
     for name, column in zip(plan.layout.parameters, points.columns, strict=True):
         found[name] = ((name if points.is_grid else "point",), column, _named(name))
+    for variable, values in plan.quantities:
+        found[variable.name] = (variable.extra, values, _described(variable))
     for name, extent in plan.layout.extents.items():
         found[name] = ((name,), plan.coordinates.get(name, np.arange(1, extent + 1)), _named(name))
     return found

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
+from ..config.axes import words
 from ..config.refusals import nearest
 from ..config.tasks import CONFIGS
 from ..config.values import as_number
@@ -16,6 +17,9 @@ from .asking import job_from, tree_of
 from .axes import plain
 from .options import OfLimitCycle, OfModes, OfSpectrum, OfThresholds
 from .solving import solve_here
+
+NOT_GIVEN = float("nan")
+"""In place of a stiffness or a drag that is missing: so that a misspelt one is told first."""
 
 
 class SoftRod:
@@ -36,9 +40,9 @@ class SoftRod:
         self,
         *,
         F: float | None = None,
-        k1: float,
-        k2: float,
-        gamma3: float,
+        k1: float = NOT_GIVEN,
+        k2: float = NOT_GIVEN,
+        gamma3: float = NOT_GIVEN,
         gamma1: float | None = None,
         **unknown: Any,
     ):
@@ -46,6 +50,10 @@ class SoftRod:
             close = nearest(name, list(PARAMETERS))
             hint = f"did you mean {close[0]}?" if close else f"known keys are {', '.join(PARAMETERS)}"
             raise InputError(f"unknown key parameters.{name}; {hint}")
+        required = {"k1": k1, "k2": k2, "gamma3": gamma3}
+        for name, value in required.items():
+            if value is NOT_GIVEN:
+                raise InputError(f"parameters.{name} is missing; give {words(tuple(required), 'and')}")
         given = {"F": F, "k1": k1, "k2": k2, "gamma3": gamma3, "gamma1": gamma1}
         values = {name: p.default if given[name] is None else given[name] for name, p in PARAMETERS.items()}
         self._values = {name: _number(name, value) for name, value in values.items() if value is not None}

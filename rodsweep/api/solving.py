@@ -30,7 +30,7 @@ def solve_here(job: Job) -> tuple[xr.Dataset, list[str]]:
     Raises EnvironmentLacks where PETSc is not to be found.
     """
     require_petsc()
-    solver, started = job.task.solver(), now()
+    solver, started = job.solver(), now()
     plan = plan_of(job, solver, Shard(), _kernels())
     if job.config.task not in _warm:
         solver.warm_up()
@@ -75,6 +75,7 @@ def _view(job: Job, plan: Plan, values: dict[str, np.ndarray]) -> View:
     """The solved points as a file would show them."""
     names = plan.layout.parameters if job.points.is_grid else ("point",)
     columns = dict(zip(names, job.points.columns, strict=False)) | plan.coordinates
+    columns |= {variable.name: array for variable, array in plan.quantities}
     return View(
         Path(job.name), plan.attributes, columns | values, plan.layout.parameters, dict(plan.flags), 0
     )

@@ -1,8 +1,10 @@
 """What `rodsweep check` prints: the points, what is modelled and what is left out, and the cost."""
 
+import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from ..post.summary.ranges import span
 from ..sweep.estimate import SAMPLE
 from .job import Job
 
@@ -12,6 +14,8 @@ def describe_job(job: Job) -> None:
     console = Console(highlight=False)
     console.print(f"{job.path}: valid. {job.config.title}", markup=False)
     console.print(job.task.headline())
+    if job.quantities:
+        console.print(_arm_line(job), markup=False)
     table = Table("part", "modelled", "why", box=None, pad_edge=False)
     for part, is_modelled, why in job.task.parts():
         table.add_row(part, "yes" if is_modelled else "no", why)
@@ -30,3 +34,10 @@ def describe_job(job: Job) -> None:
             f"warning: about {cost.too_large} of {min(SAMPLE, job.points.count)} sampled points need more "
             "unknowns than the limit and will end with status failed"
         )
+
+
+def _arm_line(job: Job) -> str:
+    """The parameters that are made of an arm, and its unit of time."""
+    columns = job.points.by_name | {v.name: values for v, values in job.quantities if v.name == "tau2"}
+    told = (f"{name} = {span(np.asarray(values))}" for name, values in columns.items())
+    return f"the arm as a rod: {', '.join(told)} s"

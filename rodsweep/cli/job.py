@@ -1,17 +1,19 @@
 """From a config file to everything a run needs that is neither PETSc nor MPI."""
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from ..config import Config, load_config
 from ..config.reading import canonical
 from ..errors import InputError
-from ..results.layouts import layout_of
-from ..results.layouts.variables import Layout
+from ..results.layouts import LAYOUTS, layout_of
+from ..results.layouts.arm import in_si, quantities_of
+from ..results.layouts.variables import Filled, Layout
 from ..sweep.grid import Points, grid_size, points_of
 from .tasks import TASKS
-from .tasks.protocol import Task
+from .tasks.protocol import Solver, Task
 
 LARGEST_RECORD = 100_000_000
 """Bytes of one point's results, which are held in memory and written at once."""
@@ -35,6 +37,25 @@ class Job:
     @property
     def resolved(self) -> dict:
         return canonical(self.config)
+
+    @property
+    def quantities(self) -> tuple[Filled, ...]:
+        """The quantities of the arm, where the config has one, as coordinates of the points."""
+        return quantities_of(self.config.parameters, self.points.is_grid)
+
+    def solver(self) -> Solver:
+        """The task's solver, whose records tell an arm's results in SI units too. Starts PETSc."""
+        solver = self.task.solver()
+        if self.config.parameters.arm is None:
+            return solver
+        layout = LAYOUTS[self.config.task](self.resolved)
+        quantities = {variable.name: values for variable, values in self.quantities}
+
+        def record(index: int, outcome: Any) -> dict[str, Any]:
+            values = solver.record(index, outcome)
+            return values | in_si(values, index, layout, quantities)
+
+        return replace(solver, record=record)
 
     @property
     def layout(self) -> Layout:

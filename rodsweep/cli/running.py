@@ -71,7 +71,7 @@ class _Run:
         self.team, self.job, self.output, self.stop = team, job, output, stop
         self.options, self.shard = options, options.shard
         self.began, self.started = time.monotonic(), provenance.now()
-        self.solver = job.task.solver()
+        self.solver = job.solver()
         self.kernels = provenance.united_kernels(team.gather(blas()) or [])
         self.plan = plan_of(job, self.solver, self.shard, self.kernels)
 
@@ -230,6 +230,7 @@ def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
         layout=job.layout,
         coordinates=job.task.coordinates(),
         constants=job.task.constants(),
+        quantities=job.quantities,
         config=job.resolved,
         attributes=attributes | job.config.parameters.numbers | versions | provenance.provenance(),
         flags=tuple((int(s), s.name) for s in solver.statuses),

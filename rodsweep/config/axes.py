@@ -1,10 +1,12 @@
-"""The section `parameters` of a config: axes or a file of points, for the parameters that the model has."""
+"""The section `parameters` of a config: axes, an arm or a file of points, for the parameters of the model."""
 
-from typing import Annotated, Any
+import math
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, create_model, model_validator
 
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, PARAMETERS
+from .arm import MOST_LISTED, ArmSection
 from .values import Axis, Number, Strict, Text, Values
 
 BEYOND_LINEAR = tuple(name for name in NONLINEAR_PARAMETERS if name not in LINEAR_PARAMETERS)
@@ -25,11 +27,29 @@ class Axes(LinearAxes):
 
     points: Annotated[Text | None, Field(description="the name of a CSV file")] = None
     """A list of points instead of axes; the header names the parameters."""
+    arm: Annotated[ArmSection | None, Field(description="a mapping of an arm's quantities to values")] = None
+    """An arm in SI units; a parameter that is given beside it replaces the arm's."""
+
+    of_arm: ClassVar[tuple[str, ...]] = LINEAR_PARAMETERS
+    """The parameters for which the arm gives values."""
 
     @property
     def axes(self) -> dict[str, Axis]:
-        """The axes that are given, by name."""
+        """The axes of a grid, by name: those that are given, and those of the arm; of a list the given."""
+        if self.arm is None or self.is_list:
+            return self.given_axes
+        axes = self.arm.grid_axes() | self.given_axes
+        return {name: axes[name] for name in self.of_arm if name in axes}
+
+    @property
+    def given_axes(self) -> dict[str, Axis]:
+        """The axes that are given by name."""
         return {name: value for name, value in self._given.items() if isinstance(value, Axis)}
+
+    @property
+    def is_list(self) -> bool:
+        """Whether the points are a list: from a file, or of an arm whose axes move several parameters."""
+        return self.points is not None or not (self.arm is None or self.arm.is_grid)
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -45,10 +65,27 @@ class Axes(LinearAxes):
         if self.points is not None and self.axes:
             both = f"parameters.points and parameters.{next(iter(self.axes))}"
             raise ValueError(f"{both} are both given; give the axes or the file, not both")
+        if self.points is not None and self.arm is not None:
+            raise ValueError("parameters.points and parameters.arm are both given; give one of them")
+        if self.arm is not None:
+            self._require_arm(self.arm, "F" in names)
+            return
         missing = [name for name in names if name not in self.axes]
         if missing and self.points is None:
             hint = ", or points: FILE.csv" if or_points else ""
             raise ValueError(f"parameters.{missing[0]} is missing; give {words(names, 'and')}{hint}")
+
+    def _require_arm(self, arm: ArmSection, forced: bool) -> None:
+        """ValueError unless the arm, with what is given beside it, makes points."""
+        arm.refuse_misuse(forced, "F" in self.given_axes)
+        beside = {name: axis for name, axis in self.given_axes.items() if axis.size > 1}
+        count = arm.count(math.prod(axis.size for axis in beside.values()))
+        if self.is_list and count > MOST_LISTED:
+            raise ValueError(
+                f"parameters.arm makes a list of {count} points; at most {MOST_LISTED} are listed"
+            )
+        if not self.is_list:
+            arm.grid_axes()
 
 
 AxesAndNumbers: Any = _section(Axes, BEYOND_LINEAR, Number)
@@ -62,11 +99,13 @@ class LinearParameters(AxesAndNumbers):
 class NonlinearParameters(AllAxes):
     """The parameters of the nonlinear rod."""
 
+    of_arm: ClassVar[tuple[str, ...]] = NONLINEAR_PARAMETERS
+
     @model_validator(mode="before")
     @classmethod
     def _with_defaults(cls, given: Any) -> Any:
-        """A grid need not name what has a default; a file of points has a column for it."""
-        if not isinstance(given, dict) or given.get("points") is not None:
+        """A grid need not name what has a default; a file of points has a column for it, an arm its own."""
+        if not isinstance(given, dict) or given.get("points") is not None or given.get("arm") is not None:
             return given
         return DEFAULTS | given
 

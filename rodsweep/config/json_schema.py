@@ -14,7 +14,9 @@ from typing import Any
 from pydantic import BaseModel
 
 from ..model.parameters import PARAMETERS
+from .refusals import model_of
 from .tasks import CONFIGS
+from .values import Axis, Strict
 
 DIALECT = "http://json-schema.org/draft-07/schema#"
 """What editors know best."""
@@ -44,11 +46,12 @@ def json_schema() -> dict[str, Any]:
 
 
 def sections_of(config: type[BaseModel]) -> Iterator[type[BaseModel]]:
-    """The models of the sections that a config has."""
+    """The models of the sections that a config has, and of those in them."""
     for field in config.model_fields.values():
-        kind = field.annotation
-        if isinstance(kind, type) and issubclass(kind, BaseModel):
+        kind = model_of(field)
+        if isinstance(kind, type) and issubclass(kind, Strict) and not issubclass(kind, Axis):
             yield kind
+            yield from sections_of(kind)
 
 
 def meanings_of(section: type[BaseModel]) -> dict[str, str]:

@@ -84,10 +84,13 @@ class LimitCycleConfig(Config):
         if self.limit_cycle.start != "neighbour":
             self.refuse_unused("along", remedy="start: neighbour")
             self.refuse_unused("direction", remedy="start: neighbour")
-        elif self.parameters.points is not None:
+        elif self.parameters.is_list:
+            remedy = "give axes instead of parameters.points"
+            if self.parameters.arm is not None:
+                remedy = "give one arm, whose pressure or force has several values"
             raise ValueError(
                 "limit_cycle.start: neighbour needs a grid, in which a point has neighbours; remove it, or "
-                "give axes instead of parameters.points"
+                + remedy
             )
         if self.limit_cycle.start == "hopf":
             self.refuse_unused("amplitude", remedy="start: mode")

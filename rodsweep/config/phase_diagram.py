@@ -6,6 +6,7 @@ from typing import ClassVar, Literal
 from pydantic import model_validator
 
 from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS, all_but
+from .arm import AXIS_OF
 from .axes import words
 from .schema import Crossings, LinearConfig
 from .values import Strict
@@ -48,6 +49,12 @@ class PhaseDiagramConfig(LinearConfig):
                 f"{every}"
             )
         self.parameters.require(LINEAR_PARAMETERS, or_points=False)
+        if self.parameters.arm is not None and self.parameters.is_list:
+            several = next(name for name in self.parameters.arm.several if name not in AXIS_OF)
+            raise ValueError(
+                f"parameters.arm.{several} has several values, which move several parameters at once; a "
+                f"phase diagram of an arm is over {words(tuple(AXIS_OF), 'or')}, or parameters beside the arm"
+            )
         long = self.plane
         if len(long) != 2:
             raise ValueError(

@@ -41,8 +41,15 @@ def validated(tree: dict[str, Any]) -> Config:
 
 
 def canonical(config: Config) -> dict[str, Any]:
-    """The config with all defaults filled in, as JSON-compatible values; inf becomes "inf"."""
-    return config.model_dump(mode="json", exclude_none=True)
+    """The config with all defaults filled in, as JSON-compatible values; inf becomes "inf".
+
+    A grid of an arm has the axes too that are made of it.
+    """
+    tree = config.model_dump(mode="json", exclude_none=True)
+    if config.parameters.arm is not None:
+        axes = config.parameters.axes
+        tree["parameters"] |= {k: v.model_dump(mode="json", exclude_none=True) for k, v in axes.items()}
+    return tree
 
 
 def _override(tree: dict, override: str) -> None:

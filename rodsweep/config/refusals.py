@@ -2,6 +2,7 @@
 
 import difflib
 from collections.abc import Sequence
+from types import NoneType, UnionType
 from typing import Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel
@@ -53,11 +54,17 @@ def _section(config: type[Config], location: tuple[str, ...]) -> type[BaseModel]
     """The section of a config at a place."""
     section: type[BaseModel] = config
     for name in location:
-        kind = section.model_fields[name].annotation
+        kind = model_of(section.model_fields[name])
         if not (isinstance(kind, type) and issubclass(kind, BaseModel)):
             break
         section = kind
     return section
+
+
+def model_of(field: FieldInfo) -> Any:
+    """The type of a key, without None where it need not be given."""
+    kinds = [kind for kind in get_args(field.annotation) if kind is not NoneType]
+    return kinds[0] if get_origin(field.annotation) is UnionType and len(kinds) == 1 else field.annotation
 
 
 def what_is_allowed(field: FieldInfo) -> str:

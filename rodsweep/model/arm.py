@@ -74,12 +74,12 @@ class SlenderArm:
             raise InputError(f"poisson = {self.poisson} is not a number above -1 and up to 0.5")
         if self.si.density_difference <= -self.si.fluid_density:
             least = -self.si.fluid_density
-            given = f"density_difference = '{self.density_difference}'"
+            given = self._told("density_difference")
             raise InputError(f"{given} leaves the arm no mass; it must be above {least:.4g} kg/m^3")
         slenderness = self.si.length / self.section.drag_radius
         if slenderness < LEAST_SLENDERNESS:
             raise InputError(
-                f"length = '{self.length}' is {slenderness:.3g} radii; the drag of a slender arm needs at "
+                f"{self._told('length')} is {slenderness:.3g} radii; the drag of a slender arm needs at "
                 f"least {LEAST_SLENDERNESS:g}"
             )
         self._refuse_crushed()
@@ -91,7 +91,7 @@ class SlenderArm:
         loaded = "force" if self.pressure is None else "pressure"
         limit = self.si.young * (self.section.area if loaded == "force" else 1.0)
         raise InputError(
-            f"{loaded} = '{getattr(self, loaded)}' compresses the arm to nothing; it must be below "
+            f"{self._told(loaded)} compresses the arm to nothing; it must be below "
             f"{limit:.4g} {UNITS[loaded][0]}, where a linear material is crushed"
         )
 
@@ -110,8 +110,13 @@ class SlenderArm:
             return float("nan")
         value = in_si(name, given, *UNITS[name])
         if name not in SIGNED and not value > 0:
-            raise InputError(f"{name} = '{given}' is not above 0")
+            raise InputError(f"{self._told(name)} is not above 0")
         return value
+
+    def _told(self, name: str) -> str:
+        """A quantity as it was given, for a sentence."""
+        given = getattr(self, name)
+        return f"{name} = '{given}'" if isinstance(given, str) else f"{name} = {given:.6g} {UNITS[name][0]}"
 
     @property
     def section(self) -> Section:

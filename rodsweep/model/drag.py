@@ -34,7 +34,7 @@ def gray_hancock(viscosity: float, slenderness: float) -> tuple[float, float]:
 
 
 def lighthill(viscosity: float, slenderness: float) -> tuple[float, float]:
-    """(gamma1, gamma2) for waves of length L, about that of the fluttering mode (Lighthill 1976)."""
+    """(gamma1, gamma2) for helical waves of length L, about that of the fluttering mode (Lighthill 1976)."""
     logarithm = log(0.18 * slenderness)
     return 2 * pi * viscosity / logarithm, 4 * pi * viscosity / (logarithm + 0.5)
 

@@ -64,7 +64,7 @@ class Rectangle:
 
     @property
     def drag_radius(self) -> float:
-        """(w + h)/4, in m: that of the ellipse of the same width and height (Batchelor 1970)."""
+        """(w + h)/4, in m: that of the ellipse of the same sides in axial motion (Batchelor 1970)."""
         return (self.width + self.height) / 4
 
     def shear_coefficient(self, poisson: float) -> float:

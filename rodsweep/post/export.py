@@ -13,9 +13,11 @@ from pathlib import Path
 
 import numpy as np
 
+from ..config.arm import AXIS_OF
 from ..errors import InputError
 from ..results.file.view import View
 from ..results.layouts import layout_of
+from ..results.layouts.arm import QUANTITY_UNITS
 from ..results.layouts.variables import DIMENSIONS, Layout, Variable
 
 MOST_COLUMNS = 100
@@ -91,10 +93,24 @@ def _fits(layout: Layout, variable: Variable) -> bool:
     return not inner or (len(inner) == 1 and inner[0] <= MOST_COLUMNS)
 
 
+def _at_points(view: View) -> dict[str, np.ndarray]:
+    """The quantities of an arm at every point, each (points,); those along a row of a diagram left out."""
+    count, found = view.variables["status"].size, {}
+    for name, values in view.quantities.items():
+        along = AXIS_OF.get(name, "")
+        if values.size == 1 or not view.is_grid:
+            found[name] = np.broadcast_to(values, count)
+        elif along in view.parameters:
+            found[name] = values[np.searchsorted(view.axes[along], view.point_columns[along])]
+    return found
+
+
 def _columns(view: View, layout: Layout, variables: list[Variable]) -> Iterator[Column]:
     """The parameters, the status, and then what was measured."""
     for name, values in view.point_columns.items():
         yield Column(name, DIMENSIONS[name][0], values, {})
+    for name, values in _at_points(view).items():
+        yield Column(name, QUANTITY_UNITS[name], values, {})
     for variable in sorted(variables, key=lambda v: v.name != "status"):
         words = view.flags if variable.name == "status" else dict(variable.flags)
         inner = layout.inner(variable)

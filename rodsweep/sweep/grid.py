@@ -11,6 +11,7 @@ from typing import TextIO
 import numpy as np
 
 from ..arrays import Array
+from ..config.arm import ArmSection
 from ..config.axes import words
 from ..config.schema import Config
 from ..config.values import as_number, overflows
@@ -62,7 +63,7 @@ class Points:
 
 def grid_size(config: Config) -> int:
     """Number of points of a grid, known before its axes are made; 0 for a list."""
-    if config.parameters.points is not None:
+    if config.parameters.is_list:
         return 0
     return math.prod(config.parameters.axes[name].size for name in config.names)
 
@@ -76,8 +77,24 @@ def points_of(config: Config, directory: Path) -> Points:
         columns = _read_csv(directory / parameters.points, config.names)
         return Points(config.names, columns, is_grid=False)
     axes = {name: axis.array() for name, axis in parameters.axes.items()}
+    if parameters.arm is not None and parameters.is_list:
+        return _arms_listed(parameters.arm, axes, config.names)
     refuse_axes(axes, config.into_crushed)
     return Points(config.names, tuple(axes[name] for name in config.names), is_grid=True)
+
+
+def _arms_listed(arm: ArmSection, beside: dict[str, Array], names: tuple[str, ...]) -> Points:
+    """All combinations of an arm's axes with the parameters beside it, each (n,), as a list."""
+    for name, column in beside.items():
+        refuse_outside(PARAMETERS[name].allowed, name, column)
+    try:
+        columns = arm.listed(beside)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    if "F" in names and (columns["F"] >= columns["k1"]).any():
+        at = int(np.argmax(columns["F"] - columns["k1"]))
+        _refuse_crushed(columns["F"][at : at + 1], columns["k1"][at : at + 1], some=False)
+    return Points(names, tuple(columns[name] for name in names), is_grid=False)
 
 
 def refuse_outside(

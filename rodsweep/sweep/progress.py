@@ -5,7 +5,9 @@ import sys
 import time
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+
+from .pace import Pace, in_words, rate_in_words
 
 LINE_SECONDS = 10.0
 """Seconds between lines in a log; the first comes after one second."""
@@ -25,7 +27,7 @@ class Teller:
     """Tells how many of `total` points are done, with rate and remaining time."""
 
     def __init__(self, total: int, title: str):
-        self.total, self.began = total, time.monotonic()
+        self.total, self.began, self.pace = total, time.monotonic(), Pace(total)
         self.next = self.began + 1.0
         self.bar: Progress | None = None
         if on_terminal():
@@ -35,10 +37,10 @@ class Teller:
                 BarColumn(),
                 MofNCompleteColumn(),
                 TextColumn("{task.fields[rate]}"),
-                TimeRemainingColumn(),
+                TextColumn("{task.fields[left]}"),
             )
             self.bar = Progress(*columns, console=console, transient=True, auto_refresh=False)
-            self.task = self.bar.add_task(title, total=total, rate="")
+            self.task = self.bar.add_task(title, total=total, rate="", left="")
             self.bar.start()
 
     def __call__(self, done: int) -> None:
@@ -46,15 +48,17 @@ class Teller:
         now = time.monotonic()
         if now < self.next:
             return
-        rate = done / (now - self.began)
+        passed = now - self.began
+        rate, seconds = rate_in_words(done, passed), self.pace.left(done, passed)
+        left = "" if seconds is None else f"about {in_words(seconds)} left"
         if self.bar is not None:
             self.next = now + BAR_SECONDS
-            self.bar.update(self.task, completed=done, rate=f"{rate:.0f}/s")
+            self.bar.update(self.task, completed=done, rate=rate, left=left)
             self.bar.refresh()
             return
         self.next = now + LINE_SECONDS
-        left = (self.total - done) / rate if rate else float("inf")
-        print(f"{done} of {self.total} points, {rate:.0f}/s, {left:.0f} s left", file=sys.stderr, flush=True)
+        told = ", ".join(filter(None, (f"{done} of {self.total} points", rate, left)))
+        print(told, file=sys.stderr, flush=True)
 
     def close(self) -> None:
         if self.bar is not None:

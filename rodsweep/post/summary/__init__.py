@@ -9,7 +9,9 @@ from rich.table import Table
 
 from ...results.file.provenance import RANK_SHARES, kernels_of
 from ...results.file.view import View
+from ...results.layouts.arm import QUANTITY_UNITS
 from ...results.layouts.variables import DIMENSIONS, MISSING
+from .arm import arm_lines
 from .limit_cycle import limit_cycle_summary
 from .modes import modes_summary
 from .phase_diagram import phase_diagram_summary
@@ -45,7 +47,7 @@ def show_summary(view: View, every_status: bool = False) -> None:
             f"time a point: median {1e3 * np.median(seconds):.3g} ms, longest {1e3 * seconds.max():.3g} ms, "
             f"all together {seconds.sum():.3g} s"
         )
-        for line in SUMMARIES[view.task](view, done):
+        for line in [*SUMMARIES[view.task](view, done), *arm_lines(view, done)]:
             console.print(line, soft_wrap=True)
     for line in _ranks(a):
         console.print(line, soft_wrap=True)
@@ -83,6 +85,8 @@ def _axes(view: View) -> Iterable[tuple[str, ...]]:
     for name, values in view.axes.items():
         low, high = values.min(), values.max()
         yield name, str(len(values)), f"{low:.6g}", f"{high:.6g}", DIMENSIONS[name][0]
+    for name, values in view.quantities.items():
+        yield name, str(values.size), f"{values.min():.6g}", f"{values.max():.6g}", QUANTITY_UNITS[name]
 
 
 def _statuses(view: View, status: np.ndarray, every: bool) -> Iterable[tuple[str, ...]]:

@@ -4,7 +4,7 @@ import numpy as np
 
 from ...results.file.view import View
 from .ranges import span
-from .spectrum import accuracy_lines, eigenvalue_lines, stability_line, threshold_lines
+from .spectrum import accuracy_lines, eigenvalue_lines, leading_line, stability_line, threshold_lines
 
 
 def modes_summary(view: View, done: np.ndarray) -> list[str]:
@@ -13,7 +13,12 @@ def modes_summary(view: View, done: np.ndarray) -> list[str]:
     if done.size == 1:
         lines = [*eigenvalue_lines(view), accuracy_lines(view, done)[-1]]
     else:
-        lines = [*threshold_lines(view), *accuracy_lines(view, done), stability_line(view, done)]
+        lines = [
+            leading_line(view, done),
+            *threshold_lines(view),
+            *accuracy_lines(view, done),
+            stability_line(view, done),
+        ]
     errors = v["mode_error"][done]
     if np.isfinite(errors).any():
         lines.append(f"error of the modes, relative: worst {np.nanmax(errors):.1e}")

@@ -5,8 +5,11 @@ import numpy as np
 from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.phase_diagram import CLASSES
+from ...results.layouts.thresholds import CROSSING_KINDS
+from .ranges import span
 from .thresholds import search_lines
 
+FLUTTER = next(value for value, word in CLASSES if word == "flutter")
 SHARP = 1e-8
 """Resolution of a boundary, in units of the parameter, for which the uniform grid is counted."""
 
@@ -16,9 +19,14 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> list[str]:
     v = view.variables
     found = v["class"][done]
     counts = [f"{int((found == value).sum())} {word}" for value, word in CLASSES if (found == value).any()]
-    lines = [f"of {found.size} points: {', '.join(counts)}", *search_lines(view, done, int(done.sum()))]
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
     row = next(name for name in view.parameters if len(view.axes[name]) > 1)
+    lines = [
+        f"of {found.size} points: {', '.join(counts)}",
+        *share_lines(found),
+        *row_lines(view, done, line, row),
+    ]
+    lines += search_lines(view, done, int(done.sum()))
     solves, boxes = int(v["solves"][done].sum()), int(v["boxes"][done].sum())
     uniform = float(np.ptp(v[line])) / SHARP * int(done.sum())
     lines.append(
@@ -27,6 +35,31 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> list[str]:
         "times as many"
     )
     return lines + (curve_lines(view, line, row) if "curve_number" in v else [])
+
+
+def share_lines(found: np.ndarray) -> list[str]:
+    """How much of the grid each class takes; `found` has the classes of its points, of any shape."""
+    shares = ((100 * float((found == value).mean()), word) for value, word in CLASSES)
+    return [f"of the grid: {', '.join(f'{share:.1f} % {word}' for share, word in shares if share)}"]
+
+
+def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
+    """What changes on the rows that are `done`, a mask of their shape: on how many, where, and where not."""
+    v, of_row = view.variables, view.point_columns[row].reshape(done.shape)
+    lines = []
+    for number, word in enumerate(CROSSING_KINDS):
+        there = (v["crossing_kind"] == number) & done[..., np.newaxis]
+        on_row = there.any(axis=-1)
+        if number and on_row.any():
+            at, rows = span(v["crossing_at"][there]), span(of_row[on_row])
+            lines.append(
+                f"{word}: on {int(on_row.sum())} of {int(done.sum())} rows, {line} = {at}, {row} = {rows}"
+            )
+    flutters = (v["class"] == FLUTTER).any(axis=-1)
+    if (done & ~flutters).any() and (done & flutters).any():
+        with_it, without = (span(of_row[done & mask]) for mask in (flutters, ~flutters))
+        lines.append(f"flutter on the rows {row} = {with_it}; on none of {row} = {without}")
+    return lines
 
 
 def curve_lines(view: View, line: str, row: str) -> list[str]:

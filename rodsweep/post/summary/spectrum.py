@@ -4,7 +4,7 @@ import numpy as np
 
 from ...results.file.view import View
 from ..stability_changes import stability_changes
-from .ranges import to_error
+from .ranges import span, to_error
 from .stability import stability_lines
 
 HOW_FOUND = (
@@ -20,7 +20,25 @@ def spectrum_summary(view: View, done: np.ndarray) -> list[str]:
     """The task's lines about the points that are `done`, a mask of the points' shape."""
     if done.size == 1:
         return [*eigenvalue_lines(view), accuracy_lines(view, done)[-1]]
-    return [*threshold_lines(view), *accuracy_lines(view, done), stability_line(view, done)]
+    lines = [leading_line(view, done), *threshold_lines(view)]
+    return [*lines, *accuracy_lines(view, done), stability_line(view, done)]
+
+
+def leading_line(view: View, done: np.ndarray) -> str:
+    """How the straight rod fares over the points that are `done`, a mask of their shape."""
+    v = view.variables
+    unstable = v["unstable_count"][done]
+    counts = {
+        "stable": (unstable == 0).sum(),
+        "unstable": (unstable > 0).sum(),
+        "not known": (unstable < 0).sum(),
+    }
+    told = ", ".join(f"{word} at {int(count)}" for word, count in counts.items() if count)
+    rate, frequency = (span(v[name][done][:, 0]) for name in ("growth_rate", "frequency"))
+    return (
+        f"straight rod: {told} of {unstable.size} points; leading growth rate {rate}, frequency {frequency} "
+        "1/tau2"
+    )
 
 
 def threshold_lines(view: View) -> list[str]:

@@ -32,6 +32,8 @@ class Plan:
     attributes: dict[str, Any]
     flags: tuple[tuple[int, str], ...]
     """Values and meanings of `status`, beside MISSING."""
+    quantities: tuple[Filled, ...] = ()
+    """Those of an arm, which are coordinates of the points beside the parameters."""
 
     @property
     def dimensions(self) -> tuple[str, ...]:
@@ -57,6 +59,7 @@ def create_file(path: Path, plan: Plan) -> None:
             data = _contiguous(file, variable, plan.points.shape + plan.layout.inner(variable))
             _describe(file, data, variable, (*plan.dimensions, *variable.extra))
         add_variables(file, plan.constants)
+        add_variables(file, plan.quantities)
         _describe_flags(file["status"], ((MISSING, "missing"), *plan.flags))
         file.attrs["program"] = PROGRAM
         file.attrs["fingerprint"] = plan.fingerprint
@@ -86,8 +89,9 @@ def _write_parameters(file: h5py.File, plan: Plan) -> None:
             data = file.create_dataset(name, data=column)
             _name(data, name)
             data.dims[0].attach_scale(file["point"])
-    if not points.is_grid:
-        file.attrs["coordinates"] = " ".join(names)
+    beside = [variable.name for variable, _ in plan.quantities]
+    if beside or not points.is_grid:
+        file.attrs["coordinates"] = " ".join([*(() if points.is_grid else names), *beside])
 
 
 def _write_scale(file: h5py.File, name: str, values: NDArray[Any]) -> None:

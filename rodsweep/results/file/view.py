@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 
 from ...model.parameters import NONLINEAR_PARAMETERS
+from ..layouts.arm import QUANTITY_UNITS
 from ..layouts.variables import MISSING
 from ..run.journal import journal_directory, read_journals
 from .seal import check_seal
@@ -69,6 +70,11 @@ class View:
     def axes(self) -> dict[str, np.ndarray]:
         """The parameters that the file knows: axes of a grid, or columns of a list, each (n,)."""
         return {name: self.variables[name] for name in NONLINEAR_PARAMETERS if name in self.variables}
+
+    @property
+    def quantities(self) -> dict[str, np.ndarray]:
+        """Those of an arm in SI units, each of shape () or along a parameter or `point`; none without one."""
+        return {name: self.variables[name] for name in QUANTITY_UNITS if name in self.variables}
 
     @property
     def point_columns(self) -> dict[str, np.ndarray]:

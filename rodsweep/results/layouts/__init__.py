@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from . import limit_cycle, modes, phase_diagram, spectrum, thresholds
+from .arm import with_si
 from .variables import Layout
 
 LAYOUTS: dict[str, Callable[[dict[str, Any]], Layout]] = {
@@ -20,4 +21,4 @@ def layout_of(config: dict[str, Any]) -> Layout:
     task = config["task"]
     if task not in LAYOUTS:
         raise KeyError(f"unknown task {task}")
-    return LAYOUTS[task](config)
+    return with_si(LAYOUTS[task](config), config)

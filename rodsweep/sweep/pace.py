@@ -1,0 +1,76 @@
+"""How long a sweep will still take, from how many points were done when: a number that does not jump.
+
+Points cost unlike: the first of a chain is cold, others start from a neighbour, some are hard. So the pace is
+that of the later half of what is done, and never of what is heard of first, the cold start. What is told
+follows it slowly, by a share of the time that has passed, and faster the nearer the end is. Knows no clock.
+"""
+
+from math import exp
+
+FORGET = 0.5
+"""Share of the points done that the pace is taken from, the latest."""
+FEWEST = 2
+"""Points, after those that are heard of first, after which anything is said."""
+SLOWNESS = 0.25
+"""In which share of the time so far, and of the time still left, what is told follows what is found."""
+THINNED = 1.02
+"""Ratio of points done between records that are kept: some 35 for each doubling."""
+
+
+class Pace:
+    """The time left of `total` points; times are in s since the start."""
+
+    def __init__(self, total: int):
+        self.total = total
+        self.records: list[tuple[int, float]] = []
+        """(points done, time), both increasing: what was heard of first, ..., the latest."""
+        self.told: tuple[float, float] | None = None
+        """(time, what was said to be left then)."""
+
+    def left(self, done: int, now: float) -> float | None:
+        """The time left when `done` points are done at the time `now`; None where too few are."""
+        if done == self.total:
+            return 0.0
+        if done and (not self.records or done > self.records[-1][0]):
+            self._record(done, now)
+        if not self.records or done < self.records[0][0] + FEWEST:
+            return None
+        found = (self.total - done) * self._each(done, now)
+        if self.told is None:
+            self.told = now, found
+            return found
+        before, said = self.told
+        expected = max(said - (now - before), 0.0)
+        within = SLOWNESS * min(now, max(found, expected)) or 1.0
+        follow = 1 - exp(-(now - before) / within)
+        self.told = now, expected + follow * (found - expected)
+        return self.told[1]
+
+    def _record(self, done: int, now: float) -> None:
+        """Keeps the latest, and of those before a few for each doubling."""
+        if len(self.records) > 2 and self.records[-1][0] < THINNED * self.records[-2][0]:
+            self.records.pop()
+        self.records.append((done, now))
+
+    def _each(self, done: int, now: float) -> float:
+        """Time a point over the latest FORGET of what is done; longer while the next one takes longer."""
+        half = (record for record in reversed(self.records) if record[0] <= FORGET * done)
+        points, began = next(half, self.records[0])
+        latest = self.records[-1][1]
+        return max((latest - began) / (done - points), (now - began) / (done - points + 1))
+
+
+def in_words(seconds: float) -> str:
+    """A time as one says it, to two digits at most: 8 s, 1.5 min, 3.2 h, 12 d."""
+    for unit, length in (("d", 86400.0), ("h", 3600.0), ("min", 60.0)):
+        if seconds >= 1.45 * length:
+            return f"{float(f'{seconds / length:.2g}'):g} {unit}"
+    return f"{float(f'{seconds:.2g}'):.0f} s"
+
+
+def rate_in_words(done: int, seconds: float) -> str:
+    """How many points a time are done, or how long one takes where that is more than a second."""
+    if not done or not seconds:
+        return ""
+    rate = done / seconds
+    return f"{rate:.3g}/s" if rate >= 1 else f"{in_words(1 / rate)} a point"

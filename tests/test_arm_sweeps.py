@@ -1,0 +1,203 @@
+"""`parameters: {arm: ...}`: axes in SI units, what they become, what files have in SI."""
+
+import csv
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import xarray as xr
+from contents import content, same
+
+import rodsweep as rs
+from rodsweep.api.asking import job_from, tree_of
+from rodsweep.model.arm import SlenderArm
+
+SILICONE = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "1.4 Pa s"}
+LOADED = SILICONE | {"pressure": "2 kPa"}
+QUICK = {
+    "spectrum": {"arm": SILICONE | {"pressure": ["1 kPa", "2 kPa"], "poisson": [0.3, 0.5]}, "modes": 2},
+    "thresholds": {"arm": SILICONE | {"radius": ["4 mm", "5 mm"]}, "crossings": 4},
+    "phase_diagram": {
+        "arm": SILICONE | {"pressure": {"start": 0, "stop": "4 kPa", "num": 5}},
+        "gamma3": [0.002, 0.004],
+        "crossings": 4,
+    },
+    "modes": {"arm": LOADED | {"length": ["10 cm", "11 cm"]}, "nodes": 5},
+    "limit_cycle": {
+        "arm": SILICONE | {"force": ["0.19 N", "0.2 N"]},
+        "start": "neighbour",
+        "accuracy": 1e-3,
+        "harmonics": 2,
+    },
+}
+"""A config of every task with an arm, of a grid or a list."""
+
+
+def job(task, **keywords):
+    return job_from(tree_of(task, keywords))
+
+
+def test_load_becomes_an_axis_of_F():
+    """F = 4 (L/a)^2 p/E, k1 = 4 (L/a)^2, and k2 = 3 k1/(7 + 6 nu)."""
+    made = job("spectrum", arm=SILICONE | {"pressure": {"start": "0 kPa", "stop": "5 kPa", "num": 6}})
+    columns = made.points.by_name
+    assert made.points.shape == (6, 1, 1, 1)
+    assert columns["F"] == pytest.approx(16 * np.arange(6), rel=1e-12)
+    assert [columns[name][0] for name in ("k1", "k2")] == pytest.approx([1600, 480], rel=1e-12)
+    assert columns["gamma3"][0] == SlenderArm(**LOADED).gamma3
+
+
+def test_ratio_of_poisson_becomes_an_axis_of_k2_which_falls_as_it_rises():
+    made = job("modes", arm=LOADED | {"poisson": [0.2, 0.4, 0.5]})
+    (poisson,) = (values for variable, values in made.quantities if variable.name == "poisson")
+    assert made.points.shape == (1, 1, 3, 1)
+    assert made.points.by_name["k2"] == pytest.approx(4800 / (7 + 6 * poisson), rel=1e-12)
+    assert poisson.tolist() == [0.5, 0.4, 0.2]
+
+
+def test_logarithmic_ranges_stay_so():
+    made = job("spectrum", arm=SILICONE | {"pressure": rs.logspace("0.1 kPa", "10 kPa", 5)})
+    assert made.config.parameters.axes["F"].logarithmic
+    assert made.points.by_name["F"] == pytest.approx(np.geomspace(1.6, 160, 5), rel=1e-12)
+
+
+def test_axes_that_move_several_parameters_become_a_list_of_all_combinations():
+    axes = {"length": ["10 cm", "20 cm"], "young": ["50 kPa", "100 kPa"], "pressure": ["1 kPa", "2 kPa"]}
+    made = job("limit_cycle", arm=SILICONE | axes, gamma1=[0.5, 1])
+    assert made.points.shape == (16,)
+    quantities = {variable.name: values for variable, values in made.quantities}
+    for index in range(16):
+        at = {name: float(quantities[name][index]) for name in axes}
+        arm = SlenderArm(radius=0.005, viscosity=1.4, **at)
+        expected = {name: getattr(arm, name) for name in ("F", "k1", "k2", "gamma3")}
+        expected["gamma1"] = (0.5, 1)[index % 2]
+        assert made.points.values(index) == pytest.approx(expected, rel=1e-12)
+        assert quantities["tau2"][index] == pytest.approx(arm.tau2, rel=1e-12)
+        assert quantities["pressure_scale"][index] * expected["F"] == pytest.approx(at["pressure"], rel=1e-12)
+    order = list(zip(*(quantities[name] for name in axes), strict=True))
+    assert all(a <= b for a, b in pairwise(order))
+
+
+def test_parameter_beside_the_arm_replaces_its_own():
+    made = job("phase_diagram", **QUICK["phase_diagram"])
+    assert made.config.plane == ("F", "gamma3")
+    assert made.points.by_name["gamma3"].tolist() == [0.002, 0.004]
+    cycle = job("limit_cycle", arm=LOADED)
+    assert cycle.points.by_name["gamma1"][0] == SlenderArm(**LOADED).gamma1
+    assert job("limit_cycle", arm=LOADED, gamma1=1).points.by_name["gamma1"][0] == 1
+
+
+def test_other_units_ask_for_the_same():
+    keywords = [{"arm": LOADED}, {"arm": LOADED | {"length": "0.1 m", "pressure": 2000}}]
+    texts = [job("spectrum", **each).resolved for each in keywords]
+    assert texts[0] == texts[1]
+
+
+@pytest.mark.parametrize(
+    ("task", "arm", "beside", "sentence"),
+    [
+        ("spectrum", {"length": "10"}, {}, "parameters.arm.length = '10' has no unit"),
+        ("spectrum", {"length": "10 kg"}, {}, "parameters.arm.length = '10 kg' is not measured in m"),
+        ("spectrum", {"radius": ["6 mm", "5 mm"]}, {}, "parameters.arm.radius: .* is not sorted"),
+        ("spectrum", {"radius": True}, {}, "parameters.arm.radius: True is not a number"),
+        ("spectrum", {"radius": "-5 mm"}, {}, "parameters.arm.radius = -0.005 m is not above 0"),
+        ("spectrum", {"radius": "2 cm"}, {}, "parameters.arm.length = 0.1 m is 5 radii"),
+        ("spectrum", {"width": "1 cm"}, {}, "parameters.arm.radius: give either a radius, or width and"),
+        ("spectrum", {"poisson": 0.6}, {}, "parameters.arm.poisson = 0.6 is not a number above -1"),
+        ("spectrum", {"youn": "1 kPa"}, {}, "unknown key parameters.arm.youn; did you mean young?"),
+        ("spectrum", {"young": None}, {}, "parameters.arm.young"),
+        ("spectrum", {"viscosity": ["1 Pa s", "2 Pa s"]}, {}, "every time is proportional to it"),
+        ("spectrum", {"pressure": "100 kPa"}, {}, "pressure = 100000 Pa compresses the arm to nothing"),
+        ("spectrum", {"force": "1 N"}, {}, "give either a pressure"),
+        ("spectrum", {}, {"F": 3}, "parameters.F and parameters.arm.pressure are both given"),
+        ("spectrum", {}, {"points": "a.csv"}, "parameters.points and parameters.arm are both given"),
+        ("spectrum", {"length": ["9 cm", "10 cm"]}, {"k1": [-1, 5]}, "parameters.k1 = -1 is not allowed"),
+        ("spectrum", {"length": ["9 cm", "10 cm"]}, {"k1": [5, 5000]}, "F must stay below every k1"),
+        ("spectrum", {}, {"k1": 5}, "parameters.F reaches 32 and parameters.k1 starts at 5"),
+        ("thresholds", {}, {}, "finds the load itself; remove it"),
+        ("phase_diagram", {"young": ["90 kPa", "100 kPa"]}, {}, "arm.young has several values, which move"),
+        ("limit_cycle", {"length": ["9 cm", "10 cm"]}, {"start": "neighbour"}, "give one arm, whose"),
+    ],
+)  # fmt: skip
+def test_mistakes_are_told_in_a_sentence(task, arm, beside, sentence):
+    with pytest.raises(rs.InputError, match=sentence.replace("?", r"\?")):
+        job(task, arm=LOADED | arm, **beside)
+
+
+def test_load_is_missing():
+    with pytest.raises(rs.InputError, match=r"^parameters.arm.pressure is missing; give"):
+        job("spectrum", arm=SILICONE)
+
+
+def test_huge_lists_are_refused_before_they_are_made():
+    axes = {"radius": rs.linspace("1 mm", "5 mm", 10**4), "pressure": rs.linspace(0, 1e3, 10**4)}
+    with pytest.raises(rs.InputError, match="makes a list of 100000000 points"):
+        job("spectrum", arm=SILICONE | axes)
+
+
+def yaml(task):
+    """The config file that says what the keywords say."""
+    return job(task, **QUICK[task]).text
+
+
+@pytest.mark.parametrize("task", QUICK)
+def test_file_of_every_task_has_si_units_and_is_what_python_gives(command, task):
+    command.write("a.yaml", yaml(task))
+    for words in (("check", "a.yaml"), ("run", "a.yaml"), ("show", "a.h5"), ("export", "a.h5")):
+        done = command(*words)
+        assert done.returncode == 0, done.stderr
+    file, here = rs.open(command.directory / "a.h5"), rs.sweep(task, **QUICK[task])
+    assert set(file.coords) == set(here.coords)
+    for name in file.variables:
+        if name != "seconds":
+            xr.testing.assert_identical(file[name], here[name])
+    told = [name for name in file.data_vars if name.endswith("_si")]
+    assert told, "nothing is told in SI units"
+    for name in told:
+        dimensionless = file[name.removesuffix("_si")]
+        if dimensionless.units == "tau2":
+            xr.testing.assert_allclose(file[name], dimensionless * file.tau2, rtol=1e-12)
+        if dimensionless.units == "1/tau2":
+            xr.testing.assert_allclose(file[name], dimensionless / file.tau2, rtol=1e-12)
+    load = next((name for name in ("pressure", "force") if name in file.coords), None)
+    if load:
+        assert (file.F * file[f"{load}_scale"] - file[load]).values == pytest.approx(0, abs=1e-9)
+    with (command.directory / "a.csv").open(newline="") as stream:
+        assert {"length", "tau2"} <= set(next(csv.reader(stream)))
+
+
+def test_thresholds_of_an_arm_are_those_of_its_verdict():
+    data = rs.sweep("thresholds", arm=SILICONE | {"radius": ["4 mm", "5 mm"]})
+    assert data.F_hopf_si.units == "Pa"
+    assert data.radius.values.tolist() == [0.004, 0.005]
+    arm = SlenderArm(**LOADED)
+    F = rs.Rod(k1=arm.k1, k2=arm.k2, gamma3=arm.gamma3).thresholds().F_hopf
+    assert data.F_hopf_si.values[1] == pytest.approx(2000 * F / arm.F, rel=1e-9)
+    table = data.set_index(point=["radius"]).F_hopf_si
+    assert table.sel(point=0.005).item() == data.F_hopf_si.values[1]
+
+
+@pytest.mark.parametrize("task", ["thresholds", "spectrum"])
+def test_shards_and_a_stopped_run_of_an_arm_give_the_same_file(command, task):
+    command.write("a.yaml", yaml(task))
+    assert command("run", "a.yaml", "-o", "whole.h5").returncode == 0
+    for shard in (1, 2):
+        assert command("run", "a.yaml", "-o", f"{shard}.h5", "--shard", f"{shard}/2").returncode == 0
+    assert command("merge", "merged.h5", "1.h5", "2.h5").returncode == 0
+    assert command("run", "a.yaml", "-o", "1.h5").returncode == 0  # continues what the first shard began
+    whole = content(command.directory / "whole.h5")
+    for name in ("merged.h5", "1.h5"):
+        assert same(whole, content(command.directory / name))
+
+
+def test_figures_of_an_arm_are_drawn(command):
+    command.write("a.yaml", yaml("phase_diagram"))
+    assert command("run", "a.yaml").returncode == 0
+    assert command("plot", "a.h5").returncode == 0
+
+
+def test_configs_without_an_arm_have_no_trace_of_it():
+    made = job_from(tree_of("spectrum", {"F": 3, "k1": 200, "k2": 100, "gamma3": 0}))
+    assert "arm" not in made.resolved["parameters"]
+    assert made.quantities == ()
+    assert not any(variable.name.endswith("_si") for variable in made.layout.variables)

@@ -1,0 +1,93 @@
+"""docs/tasks.md from top to bottom: what it says is typed is typed, and what comes is what it says."""
+
+import re
+import shlex
+from contextlib import redirect_stdout
+from io import StringIO
+
+import numpy as np
+import pytest
+from conftest import ROOT
+
+PAGE = ROOT / "docs" / "tasks.md"
+BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+NUMBER = re.compile(r"-?\d+\.?\d*(?:e[+-]?\d+)?")
+
+
+def alike(said, come):
+    """Whether a line is as the page says, but for the last digits; `...` at its end stands for more."""
+    begins = said.removesuffix("...")
+    words = [" ".join(NUMBER.sub("#", text).split()) for text in (begins, come)]
+    if not (words[1].startswith(words[0]) if begins != said else words[0] == words[1]):
+        return False
+    first, second = (np.array(NUMBER.findall(text), float) for text in (begins, come))
+    return first == pytest.approx(second[: len(first)], rel=1e-3)
+
+
+def missing(said, come):
+    """The first line of the page that does not come; None where all do, in their order."""
+    come, skip = list(come), False
+    for line in said:
+        if line == "...":
+            skip = True
+            continue
+        while come and skip and not alike(line, come[0]):
+            come.pop(0)
+        if not come or not alike(line, come.pop(0)):
+            return line
+        skip = False
+    return None if skip or not come else f"nothing, but there is {come[0]!r}"
+
+
+def typed(text):
+    """(command, lines that come) of a console block."""
+    command, *blocks = re.split(r"^\$ ", text, flags=re.MULTILINE)
+    assert command == ""
+    for block in blocks:
+        first, *rest = block.rstrip("\n").split("\n")
+        yield first, rest
+
+
+def output_of(command, line):
+    """The lines that a command of the page writes; `>` and `head` as a shell has them."""
+    words = shlex.split(line)
+    if words[0] == "head":
+        return (command.directory / words[-1]).read_text().splitlines()[: int(words[2])]
+    assert words[0] == "rodsweep"
+    into = words[words.index(">") + 1] if ">" in words else ""
+    done = command(*words[1 : words.index(">")] if into else words[1:])
+    refused = done.returncode != 0
+    assert done.returncode in (0, 2), done.stderr
+    if into:
+        command.write(into, done.stdout)
+        return []
+    return [row.rstrip() for row in (done.stderr if refused else done.stdout).splitlines()]
+
+
+def test_page_says_what_comes(command, monkeypatch):
+    monkeypatch.chdir(command.directory)
+    names, printed = {}, None
+    for language, text in BLOCK.findall(PAGE.read_text()):
+        if language == "yaml":
+            command.write(text.split("\n")[0].removeprefix("# "), text)
+        elif language == "python":
+            with redirect_stdout(StringIO()) as stream:
+                exec(compile(text, PAGE.name, "exec"), names)
+            printed = stream.getvalue().splitlines()
+        elif language == "text" and printed is not None:
+            assert missing(text.splitlines(), printed) is None
+            printed = None
+        for line, said in typed(text) if language == "console" else ():
+            come = output_of(command, line)
+            assert missing(said, come) is None, (line, come)
+
+
+def test_a_line_that_does_not_come_is_seen():
+    come = ["a 1", "b 2.0001", "c"]
+    assert missing(["a 1", "...", "c"], come) is None
+    assert missing(["...", "b 2", "..."], come) is None
+    assert missing(["a 1", "c"], come) == "c"
+    assert missing(["...", "b 3", "..."], come) == "b 3"
+    assert missing(["a...", "b 2.0...", "c"], come) is None
+    assert missing(["a...", "b 3...", "c"], come) == "b 3..."
+    assert missing(["a 1"], come) == "nothing, but there is 'b 2.0001'"
