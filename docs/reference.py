@@ -81,7 +81,9 @@ ATTRIBUTES = {
     "title, task": "of the config; the file's name where it has no title",
     "config": "the text of the config, with what `--set` changed at its end",
     "config_resolved": "the config with all defaults, as JSON",
-    "fingerprint": "of `config_resolved` without its title, and all points: what a continued file shares",
+    "snapshot": "when `rodsweep snapshot` wrote the file; empty once a run has continued it",
+    "format": "1; see [which version reads what](#which-version-reads-what)",
+    "fingerprint": "of what the config means, and of all points: what a continued file shares",
     "time_unit": "`tau2 = gamma2 L^4/k3`",
     "gamma1": "of a spectrum with `spectrum.longitudinal: true`",
     "coordinates": "names of the parameters along `point`, in a list of points; of an arm's quantities",
@@ -138,6 +140,17 @@ their order, or `point` for a list of points, in whose file each parameter is a 
 file ends with checksums of its bytes behind HDF5's own end, where other programs do not see them. Words are
 stored as numbers, with the attributes `flag_values` and `flag_meanings`.
 """
+VERSIONS = """
+### Which version reads what
+
+The attribute `format` is a whole number, now 1, that grows when a variable is added or changes its meaning.
+
+- A file of a higher format is refused in one sentence that names the version which wrote it.
+- A file of a lower format, or without the attribute, is read, continued and merged like others where it has
+  the variables of today; else one sentence names the version and the commit that wrote it.
+
+HDF5, netCDF and xarray read files of every format.
+"""
 TAIL = """
 ### Attributes
 
@@ -160,6 +173,7 @@ def text() -> str:
     parts += [
         TAIL,
         table(("attribute", "meaning"), (([code(names), what]) for names, what in ATTRIBUTES.items())),
+        VERSIONS,
     ]
     return "".join(parts)
 

@@ -30,7 +30,7 @@ PLACE = re.compile(r"(rodsweep|tests|docs|configs|jobs|install|\.ci)/[\w./*-]*")
 TASKS = "|".join(CONFIGS)
 NOT_OURS = "--array"
 """An option of another program."""
-SOMETIMES = {"gamma1", "coordinates"}
+SOMETIMES = {"snapshot", "gamma1", "coordinates"}
 """Attributes that some files have not."""
 
 each_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -11,6 +11,7 @@ import pytest
 from contents import content, same
 from ranks import PATIENCE
 
+from rodsweep.cli.merging import plan_without_solver
 from rodsweep.errors import InputError
 from rodsweep.results.file.merge import merge
 from rodsweep.results.run import lock
@@ -118,17 +119,20 @@ def test_missing_shard_is_computed_by_a_run_of_the_merged_file(command):
 
 def test_what_does_not_belong_together_is_not_merged(command):
     command.write("c.yaml", SPECTRA)
-    command.write("d.yaml", SPECTRA.replace("num: 41", "num: 40"))
+    command.write("d.yaml", SPECTRA.replace("num: 41", "num: 40").replace("[100,", "[90,"))
+    command.write("e.yaml", SPECTRA + "spectrum: {modes: 3}")
     command.write("text.h5", "no result")
     assert command("run", "c.yaml", "--shard", "1/2").returncode == 0
     assert command("run", "d.yaml", "-o", "d.h5").returncode == 0
+    assert command("run", "e.yaml", "--shard", "1/99", "-o", "e.h5").returncode == 0
     shard = command.directory / "c-1-of-2.h5"
     before = shard.read_bytes()
     for names, sentence in (
-        (("m.h5", shard.name, "d.h5"), "made from another config"),
+        (("m.h5", shard.name, "d.h5"), "together the files are no full grid"),
+        (("m.h5", shard.name, "e.h5"), "spectrum.modes is 4 in c-1-of-2.h5 and 3 in e.h5"),
         (("m.h5", "text.h5"), "not a whole rodsweep result"),
         (("m.h5", "nowhere.h5"), "does not exist"),
-        (("d.h5", shard.name), "made from another config"),
+        (("e.h5", shard.name), "made from another config"),
         ((".", shard.name), "is a directory"),
     ):
         done = command("merge", *names)
@@ -155,7 +159,7 @@ def test_merge_takes_over_what_another_wrote_while_it_waited(command, monkeypatc
     clock = SimpleNamespace(monotonic=lambda: 0.0, sleep=lambda seconds: waits.set())  # patient without end
     monkeypatch.setattr(lock, "time", clock)
     with ThreadPoolExecutor(1) as pool:
-        waiting = pool.submit(merge, merged, [second])
+        waiting = pool.submit(merge, merged, [second], plan_without_solver)
         assert waits.wait(PATIENCE)
         shutil.copy(first, merged)
         held.release()

@@ -1,14 +1,11 @@
 """From the keywords of a call to the job that a config file with the same keys makes."""
 
 from collections.abc import Collection, Mapping
-from io import StringIO
 from pathlib import Path
 from typing import Any
 
-from ruamel.yaml import YAML
-
 from ..cli.job import Job, job_of
-from ..config.reading import validated
+from ..config.reading import validated, yaml_of
 from ..config.refusals import nearest
 from ..config.schema import Config
 from ..config.tasks import CONFIGS
@@ -41,14 +38,6 @@ def job_from(tree: Tree) -> Job:
     """The job of a tree; InputError, in the words of the command line, for anything amiss."""
     config = validated(tree)
     return job_of(Path(config.task), config, yaml_of(tree))
-
-
-def yaml_of(tree: Tree) -> str:
-    """A tree as the text of a config file."""
-    text, yaml = StringIO(), YAML()
-    yaml.default_flow_style = None  # lists of numbers on one line
-    yaml.dump(tree, text)
-    return text.getvalue()
 
 
 def _sections(task: str) -> dict[str, Collection[str]]:

@@ -10,11 +10,13 @@ import xarray as xr
 
 from ..errors import InputError
 from ..results.file.creation import Plan
+from ..results.file.recent import journalled_points, put_in, unfolded
 from ..results.file.seal import check_seal
-from ..results.file.validation import PROGRAM, reading, refuse_absent
+from ..results.file.validation import FORMAT, PROGRAM, read_header, reading, refuse_absent, refuse_newer
 from ..results.file.view import View
 from ..results.layouts import layout_of
 from ..results.layouts.variables import DIMENSIONS, MISSING, Filled, Variable
+from ..results.run.journal import journal_directory
 
 ENGINE = "h5netcdf"
 
@@ -25,6 +27,10 @@ def open_result(path: str | Path) -> xr.Dataset:
     Raises InputError where the file is no result or damaged.
     """
     path = Path(path)
+    return unfolded(path, lambda: _opened(path))
+
+
+def _opened(path: Path) -> xr.Dataset:
     refuse_absent(path)
     with reading(path):
         check_seal(path, values=True)
@@ -32,6 +38,11 @@ def open_result(path: str | Path) -> xr.Dataset:
             data = file.load()
     if data.attrs.get("program") != PROGRAM:
         raise InputError(f"{path} is no result of rodsweep")
+    refuse_newer(path, data.attrs)
+    if journal_directory(path).is_dir():
+        recent = journalled_points(read_header(path), data["status"].values.ravel())
+        for variable in data.variables.keys() & recent.dtype.fields.keys():
+            put_in(data[variable].values, str(variable), recent)
     return data
 
 
@@ -57,6 +68,7 @@ def dataset_of(
     variables["status"][2].update(_flags(flags))
     header = {
         "program": PROGRAM,
+        "format": FORMAT,
         "fingerprint": plan.fingerprint,
         "config_resolved": json.dumps(plan.config),
     }

@@ -10,8 +10,9 @@ from typing import Any
 
 import xarray as xr
 
+from ..config.reading import yaml_of
 from ..errors import EnvironmentLacks, InputError
-from .asking import Tree, job_from, tree_of, yaml_of
+from .asking import Tree, job_from, tree_of
 from .axes import plain
 from .dataset import open_result
 from .solving import solve_here

@@ -1,4 +1,6 @@
-"""The command `rodsweep`: run, merge, check, show, plot, export, schema, arm, bench. It joins the packages.
+"""The command `rodsweep`: run, merge, snapshot, check, show, plot, export, schema, arm, bench.
+
+It joins the packages.
 
 Exit status: 0 when every point succeeded, 1 when the run is whole but some point did not, 2 for bad
 input, 3 when the machine lacks something, 75 when a run was asked to stop and wants to be continued.
@@ -45,11 +47,10 @@ def commands(context: click.Context) -> None:
 @click.option("-o", "--output", type=FILE, help="Result file; by default CONFIG's name with .h5, here.")
 @overrides_option
 @click.option("--fresh", is_flag=True, help="Replace an existing result file instead of continuing it.")
+@click.option("--extend", is_flag=True, help="Add to a result file whose config this one contains.")
 @click.option("--shard", metavar="I/N", default="1/1", help="Compute the I-th of N parts only, to be merged.")
 @click.option("-q", "--quiet", is_flag=True, help="Say nothing but what is amiss; show no progress.")
-def run(
-    config: Path, output: Path | None, overrides: tuple[str, ...], fresh: bool, shard: str, quiet: bool
-) -> None:
+def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: str, **options: bool) -> None:
     """Compute CONFIG, continuing an interrupted result file. Start it with mpiexec for many ranks."""
     from ..sweep.stop import StopRequest
 
@@ -58,13 +59,15 @@ def run(
     from ..sweep.shards import shard_of
     from .running import RunOptions, run_config
 
+    if options["fresh"] and options["extend"]:
+        raise InputError("--fresh and --extend are both given: one replaces the file, the other adds to it")
     part = shard_of(shard)
     suffix = f"-{part.number}-of-{part.of}.h5" if part.of > 1 else ".h5"
     output = _followed(output or Path(config.stem + suffix))
     if output.is_dir() or not output.name:
         raise InputError(f"--output {output} is a directory; name a file")
-    options = RunOptions(overrides=overrides, fresh=fresh, shard=part, quiet=quiet)
-    code = run_config(config, output, options, stop)
+    asked = RunOptions(overrides=overrides, shard=part, **options)
+    code = run_config(config, output, asked, stop)
     stop.ignore()  # the status is decided
     sys.exit(code)
 
@@ -73,22 +76,33 @@ def run(
 @click.argument("output", type=FILE)
 @click.argument("shards", type=FILE, nargs=-1, required=True, metavar="SHARD...")
 def merge(output: Path, shards: tuple[Path, ...]) -> None:
-    """Put the points of all SHARD files of one config into OUTPUT."""
-    from ..results.file.merge import merge as merge_files
+    """Put the points of all SHARD files into OUTPUT: parts of a sweep, or grids that make a larger one."""
+    from .merging import merge_files
     from .running import CONTINUE
 
     if output.is_dir():
         raise InputError(f"{output} is a directory; name the file to write first")
     output = _followed(output)
     merged = merge_files(output, tuple(map(_followed, shards)))
-    click.echo(f"{output}: {merged.points} points from {len(shards)} files, {merged.missing} missing")
-    if merged.kernels:
-        click.echo(f"{output}: {merged.kernels}")
     if merged.missing:
         click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing ones")
         sys.exit(CONTINUE)
     if not merged.finished:
         click.echo(f"`rodsweep run CONFIG -o {output}` adds what only all points together give")
+
+
+@commands.command()
+@click.argument("file", type=FILE)
+@click.option("-o", "--output", type=FILE, help="By default FILE's name with -snapshot before .h5.")
+def snapshot(file: Path, output: Path | None) -> None:
+    """Write what is done of the result FILE so far, without disturbing the run that computes it."""
+    from ..results.file.recent import take_snapshot
+
+    output = _followed(output or file.with_name(f"{file.stem}-snapshot{file.suffix}"))
+    if output.is_dir():
+        raise InputError(f"--output {output} is a directory; name a file")
+    done, points = take_snapshot(_followed(file), output)
+    click.echo(f"wrote {output}: {done} of {points} points are done")
 
 
 @commands.command()

@@ -45,6 +45,8 @@ class RunOptions:
     overrides: tuple[str, ...] = ()
     fresh: bool = False
     """Whether an existing file is replaced."""
+    extend: bool = False
+    """Whether an existing file of a smaller config is extended."""
     shard: Shard
     quiet: bool = False
     """Whether only what is amiss is told."""
@@ -97,7 +99,9 @@ class _Run:
 
     def _open(self) -> list[IndexRange]:
         """Opens the file; returns the points that it misses."""
-        self.store = Store(self.output, self.plan, self.options.fresh)
+        self.store = Store(self.output, self.plan, self.options.fresh, self.options.extend)
+        if self.store.note:
+            self._say(f"{self.output}: {self.store.note}")
         return self.store.missing()
 
     def _units(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
@@ -234,4 +238,5 @@ def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
         config=job.resolved,
         attributes=attributes | job.config.parameters.numbers | versions | provenance.provenance(),
         flags=tuple((int(s), s.name) for s in solver.statuses),
+        chains=job.task.chains,
     )

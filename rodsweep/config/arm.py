@@ -105,6 +105,12 @@ class ArmSection(Strict):
         return tuple(name for name, axis in self._given.items() if axis.size > 1)
 
     @property
+    def meaning(self) -> dict[str, float | None]:
+        """The quantities, and the values of those that the points do not tell, in SI."""
+        told = AXIS_OF if self.is_grid else self.several
+        return {name: None if name in told else float(axis.array()[0]) for name, axis in self._given.items()}
+
+    @property
     def is_grid(self) -> bool:
         """Whether every axis moves one parameter only."""
         return all(name in AXIS_OF for name in self.several)

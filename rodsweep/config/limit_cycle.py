@@ -78,13 +78,27 @@ class LimitCycleConfig(Config):
         given = self.limit_cycle.along
         return max(axes, key=lambda name: axes[name].size) if given == LONGEST else given
 
+    @property
+    def unused(self) -> dict[str, str]:
+        options = self.limit_cycle
+        found: dict[str, str] = {}
+        if options.start != "neighbour":
+            found |= dict.fromkeys(("along", "direction"), "start: neighbour")
+        if options.start == "hopf":
+            found |= dict.fromkeys(("amplitude", "most_periods", "transient"), "start: mode")
+        return found if options.shapes else found | {"nodes": "shapes"}
+
+    @property
+    def meaning(self) -> dict[str, Any]:
+        meant = super().meaning
+        options = meant[self.task]
+        return meant | {self.task: options | ({"along": self.along} if "along" in options else {})}
+
     @model_validator(mode="after")
     def _only_what_is_used(self) -> "LimitCycleConfig":
         self.parameters.require(self.names)
-        if self.limit_cycle.start != "neighbour":
-            self.refuse_unused("along", remedy="start: neighbour")
-            self.refuse_unused("direction", remedy="start: neighbour")
-        elif self.parameters.is_list:
+        self.refuse_unused()
+        if self.limit_cycle.start == "neighbour" and self.parameters.is_list:
             remedy = "give axes instead of parameters.points"
             if self.parameters.arm is not None:
                 remedy = "give one arm, whose pressure or force has several values"
@@ -92,10 +106,4 @@ class LimitCycleConfig(Config):
                 "limit_cycle.start: neighbour needs a grid, in which a point has neighbours; remove it, or "
                 + remedy
             )
-        if self.limit_cycle.start == "hopf":
-            self.refuse_unused("amplitude", remedy="start: mode")
-            self.refuse_unused("most_periods", remedy="start: mode")
-            self.refuse_unused("transient", remedy="start: mode")
-        if not self.limit_cycle.shapes:
-            self.refuse_unused("nodes", remedy="shapes")
         return self

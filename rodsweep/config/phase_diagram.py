@@ -1,7 +1,7 @@
 """The keys of the task phase_diagram."""
 
 from math import inf
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
 
@@ -39,6 +39,16 @@ class PhaseDiagramConfig(LinearConfig):
     @property
     def names(self) -> tuple[str, ...]:
         return all_but(self.plane[0])
+
+    @property
+    def meaning(self) -> dict[str, Any]:
+        """With the values along every row; and, where curves are drawn, whether an axis is one of ratios."""
+        meant, axes, line = super().meaning, self.parameters.axes, self.plane[0]
+        asked: dict[str, Any] = {line: {"values": axes[line].array().tolist()}}
+        meant |= {"parameters": meant["parameters"] | asked}
+        if self.phase_diagram.curves:
+            meant |= {"together": {"logarithmic": [name for name in self.plane if axes[name].logarithmic]}}
+        return meant
 
     @model_validator(mode="after")
     def _two_axes(self) -> "PhaseDiagramConfig":

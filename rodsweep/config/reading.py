@@ -1,17 +1,20 @@
 """From a YAML file and --set overrides to a Config; every refusal is one sentence that names the key."""
 
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
+from ruamel.yaml import YAML
 
 from ..errors import InputError
+from .arm import ArmSection
 from .axes import words
 from .parsing import DEEPEST, parse, read_text
 from .refusals import KEY_SHOWN, dotted, nearest, sentence_of
 from .schema import Config
 from .tasks import CONFIGS
-from .values import named, short
+from .values import axis_of, named, short
 
 
 def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, str]:
@@ -50,6 +53,66 @@ def canonical(config: Config) -> dict[str, Any]:
         axes = config.parameters.axes
         tree["parameters"] |= {k: v.model_dump(mode="json", exclude_none=True) for k, v in axes.items()}
     return tree
+
+
+def config_of(resolved: dict[str, Any]) -> Config:
+    """The config that `canonical` made `resolved` of; ValueError if it is none that this version takes."""
+    try:
+        task = resolved["task"]
+        section: Any = CONFIGS[task].model_fields[task].annotation
+        fields = section.model_fields
+        parameters = _axes_of(resolved["parameters"])
+        if "arm" in parameters:
+            parameters = _without_those_of_the_arm(parameters | {"arm": _axes_of(parameters["arm"])})
+        # An option that is not used must not be given, but every resolved config has its default.
+        options = {
+            name: value
+            for name, value in resolved[task].items()
+            if name not in fields or value != fields[name].default
+        }
+        return validated(resolved | {"parameters": parameters, task: options})
+    except (InputError, LookupError, TypeError, AttributeError) as error:
+        raise ValueError(f"its config is none of this version of rodsweep: {error}") from None
+
+
+def _axes_of(section: dict[str, Any]) -> dict[str, Any]:
+    """The keys of a resolved section, its axes as such."""
+    return {
+        name: axis_of(value) if name != "arm" and isinstance(value, dict) else value
+        for name, value in section.items()
+    }
+
+
+def _without_those_of_the_arm(parameters: dict[str, Any]) -> dict[str, Any]:
+    """The parameters without the axes that `canonical` made of the arm."""
+    arm = ArmSection.model_validate(parameters["arm"])
+    made = arm.grid_axes() if arm.is_grid else {}
+    return {name: value for name, value in parameters.items() if name not in made or value != made[name]}
+
+
+def yaml_of(tree: dict[str, Any]) -> str:
+    """A tree as the text of a config file."""
+    text, yaml = StringIO(), YAML()
+    yaml.default_flow_style = None  # lists of numbers on one line
+    yaml.dump(tree, text)
+    return text.getvalue()
+
+
+def text_of(config: Config) -> str:
+    """A config as the text of a file: what is not a default, axes as a user writes them."""
+    given = config.model_dump(mode="json", exclude_defaults=True, exclude_none=True)
+    axes = {name: _written(value) for name, value in given["parameters"].items()}
+    return yaml_of({"task": config.task} | given | {"parameters": axes})
+
+
+def _written(axis: Any) -> Any:
+    """A resolved axis as a user writes it: a number, a list or a range; and the axes of an arm."""
+    if not isinstance(axis, dict):
+        return axis
+    if "length" in axis:
+        return {name: _written(value) for name, value in axis.items()}
+    values = axis.get("values", axis)
+    return values[0] if isinstance(values, list) and len(values) == 1 else values
 
 
 def _override(tree: dict, override: str) -> None:

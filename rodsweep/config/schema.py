@@ -42,12 +42,30 @@ class Config(Strict, ABC):
         """The parameters that the task, with these options, takes of a rod that has all of them."""
         return NONLINEAR_PARAMETERS
 
-    def refuse_unused(self, option: str, remedy: str) -> None:
-        """ValueError where an option is given that nothing uses unless the config has `remedy`."""
-        if option in getattr(self, self.task).model_fields_set:
-            raise ValueError(
-                f"{self.task}.{option} is given but not used; set {self.task}.{remedy} or remove it"
-            )
+    @property
+    def unused(self) -> dict[str, str]:
+        """The options that nothing uses in this config, each with the setting that would."""
+        return {}
+
+    def refuse_unused(self) -> None:
+        """ValueError where an option is given that nothing uses."""
+        for option, remedy in self.unused.items():
+            if option in getattr(self, self.task).model_fields_set:
+                raise ValueError(
+                    f"{self.task}.{option} is given but not used; set {self.task}.{remedy} or remove it"
+                )
+
+    @property
+    def meaning(self) -> dict[str, Any]:
+        """What is asked of every point, JSON-compatible: all that changes a number, but for the points.
+
+        `together`, where it is there, changes only what all points together give.
+        Two configs with equal meanings and equal points ask for the same, however they are written.
+        """
+        options = getattr(self, self.task).model_dump(mode="json", exclude=set(self.unused))
+        numbers = dict(self.parameters.numbers)
+        meant = {"task": self.task, "parameters": numbers, "accuracy": self.accuracy, self.task: options}
+        return meant if self.parameters.arm is None else meant | {"arm": self.parameters.arm.meaning}
 
 
 class LinearConfig(Config, ABC):

@@ -37,6 +37,10 @@ class SpectrumConfig(LinearConfig):
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
         return (*LINEAR_PARAMETERS, *cls.beyond) if options.get("longitudinal") else LINEAR_PARAMETERS
 
+    @property
+    def unused(self) -> dict[str, str]:
+        return {} if self.spectrum.vectors else {"nodes": "vectors: true"}
+
     @model_validator(mode="after")
     def _only_what_is_used(self) -> "SpectrumConfig":
         self.parameters.require(self.names)
@@ -47,6 +51,5 @@ class SpectrumConfig(LinearConfig):
             )
         if self.spectrum.longitudinal and "gamma1" not in self.parameters.numbers:
             raise ValueError("parameters.gamma1 is missing; spectrum.longitudinal: true needs it")
-        if not self.spectrum.vectors:
-            self.refuse_unused("nodes", remedy="vectors: true")
+        self.refuse_unused()
         return self

@@ -173,4 +173,10 @@ def _range(value: dict) -> Axis:
     return Axis(start=start, stop=stop, num=num, spacing=spacing)
 
 
+def axis_of(resolved: dict[str, Any]) -> Axis:
+    """The axis that a resolved config holds; ValueError or TypeError if it is none."""
+    values = resolved.get("values")
+    return Axis(**resolved | ({} if values is None else {"values": tuple(map(as_number, values))}))
+
+
 Values = Annotated[Axis, BeforeValidator(as_axis)]

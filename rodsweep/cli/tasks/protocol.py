@@ -42,6 +42,11 @@ class Task(ABC):
     """Of the task's own kind."""
     points: Points
 
+    @property
+    def chains(self) -> Chains | None:
+        """The chains in which points start one from the other, where they do."""
+        return None
+
     def coordinates(self) -> dict[str, np.ndarray]:
         """Values of the layout's extra dimensions that have some, shape (extent,)."""
         return {}

@@ -38,8 +38,11 @@ def show_summary(view: View, every_status: bool = False) -> None:
     console.print(_table(("status", "points", "meaning"), _statuses(view, status, every_status)))
     if not done.all():
         console.print(
-            f"{int((~done).sum())} points are missing, of which {view.journalled} are done and wait in the "
-            "journal; the same run again continues"
+            f"{int((~done).sum())} points are missing; where no run goes on, the same command continues"
+        )
+    if view.journalled:
+        console.print(
+            f"{view.journalled} of the points that are done wait in the journal for the end of the run"
         )
     if done.any():
         seconds = view.variables["seconds"][done]

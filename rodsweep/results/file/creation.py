@@ -3,7 +3,6 @@
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
-from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
+from ...sweep.chains import Chains
 from ...sweep.grid import Points
 from ..layouts.variables import DIMENSIONS, MISSING, Filled, Layout, Variable
-from .validation import PROGRAM, what_is_asked
+from .identity import fingerprint_of
+from .validation import FORMAT, PROGRAM
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +35,8 @@ class Plan:
     """Values and meanings of `status`, beside MISSING."""
     quantities: tuple[Filled, ...] = ()
     """Those of an arm, which are coordinates of the points beside the parameters."""
+    chains: Chains | None = None
+    """The chains in which points start one from the other, where they do."""
 
     @property
     def dimensions(self) -> tuple[str, ...]:
@@ -43,10 +46,7 @@ class Plan:
     @property
     def fingerprint(self) -> str:
         """What two files must share for the one to continue the other."""
-        digest = sha256(json.dumps(what_is_asked(self.config), sort_keys=True).encode())
-        for column in self.points.columns:
-            digest.update(np.ascontiguousarray(column).tobytes())
-        return digest.hexdigest()
+        return fingerprint_of(self.config, self.points.columns)
 
 
 def create_file(path: Path, plan: Plan) -> None:
@@ -62,6 +62,7 @@ def create_file(path: Path, plan: Plan) -> None:
         add_variables(file, plan.quantities)
         _describe_flags(file["status"], ((MISSING, "missing"), *plan.flags))
         file.attrs["program"] = PROGRAM
+        file.attrs["format"] = FORMAT
         file.attrs["fingerprint"] = plan.fingerprint
         file.attrs["config_resolved"] = json.dumps(plan.config)
         file.attrs.update(plan.attributes)

@@ -1,4 +1,4 @@
-"""Shards of a run put together: the points of several result files of one config, in one file.
+"""Shards of a run put together, or files whose grids make up a larger one: all their points in one file.
 
 Streamed a block of points at a time, so that memory does not grow with the files; the new file
 appears whole, by a rename.
@@ -13,11 +13,14 @@ import h5py
 
 from ...errors import InputError
 from ...sweep.ranges import total
+from ..layouts.variables import Layout
 from ..run.journal import JOURNALS, journal_directory
+from .creation import create_file
 from .exchange import Exchange, disk_refusals
+from .joining import Joint, Planner, joint_of
 from .points import missing_ranges, points_to_add, write_points
 from .provenance import KERNELS, kernels_sentence, merged_history, now
-from .validation import Header, change_between, read_header
+from .validation import Header, read_header
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,11 +34,12 @@ class Merged:
     """What is to be said of the BLAS kernels that computed the points, where they are several; else empty."""
 
 
-def merge(output: Path, paths: Sequence[Path]) -> Merged:
-    """Writes `output` from all points of the result files `paths`; of a point given twice the first stays.
+def merge(output: Path, paths: Sequence[Path], planner: Planner) -> Merged:
+    """Writes `output` from all points of the result files `paths`, parts of one grid or list, or several.
 
-    An existing `output` of the same config is the first of them. InputError if a file is no result, answers
-    another config or has points in its journal; EnvironmentLacks where the disk refuses.
+    An existing `output` is the first of them. Of a point given twice the first stays; where the files are of
+    different grids, both must be the same. InputError if a file is no result, was made for something else or
+    has points in its journal, or if the grids make up no larger one; EnvironmentLacks where the disk refuses.
     """
     sources = _opened(paths)
     with disk_refusals(output):
@@ -44,7 +48,9 @@ def merge(output: Path, paths: Sequence[Path]) -> Merged:
         with disk_refusals(output, "; the shards are untouched"):
             if output.exists():  # it may have appeared while another run had the lock
                 sources = _opened([output, *(path for path in paths if not os.path.samefile(output, path))])
-            return _merge(exchange, sources)
+            if all(_is_continued(sources[0], source) for source in sources):
+                return _merge(exchange, sources)
+            return _join(exchange, joint_of(sources, planner))
     finally:
         exchange.close()
 
@@ -57,16 +63,30 @@ def _merge(exchange: Exchange, sources: Sequence[Header]) -> Merged:
         for source in sources[1:]:
             if write_points(copy, points_to_add(copy, source.path, first.layout), first.layout):
                 gave.append(source)
-        missing = total(missing_ranges(copy))
-        finished = not missing and not first.layout.needs_all_points
-        history = merged_history([source.attributes for source in gave])
-        with h5py.File(copy, "r+") as file:
-            file.attrs.update(history | ({"finished": now()} if finished else {}))
-    return Merged(first.points - missing, missing, finished, kernels_sentence(history[KERNELS]))
+        return _finished(copy, first.layout, gave)
+
+
+def _join(exchange: Exchange, joint: Joint) -> Merged:
+    """Exchanges the file for one with the points of all files."""
+    with exchange.replacing(None) as copy:
+        create_file(copy, joint.plan)
+        gave = joint.write(copy)
+        return _finished(copy, joint.plan.layout, gave or joint.sources[:1])
+
+
+def _finished(copy: Path, layout: Layout, gave: Sequence[Header]) -> Merged:
+    """Notes in the merged file by whom its points were computed, and whether it is whole."""
+    left = missing_ranges(copy)
+    finished = not left and not layout.needs_all_points
+    history = merged_history([source.attributes for source in gave])
+    with h5py.File(copy, "r+") as file:
+        file.attrs.update(history | ({"finished": now()} if finished else {}))
+        points = file["status"].size
+    return Merged(points - total(left), total(left), finished, kernels_sentence(history[KERNELS]))
 
 
 def _opened(paths: Sequence[Path]) -> list[Header]:
-    """The files, all of one config, each with all of its points in it; else InputError."""
+    """The files, each with all of its points in it; else InputError."""
     files = []
     for path in paths:
         files.append(read_header(path))
@@ -74,11 +94,13 @@ def _opened(paths: Sequence[Path]) -> list[Header]:
             raise InputError(
                 f"{path} has points in its journal that are not in it yet: run its command again first"
             )
-    first, *others = files
-    for other in others:
-        if first.fingerprint != other.fingerprint:
-            change = change_between(first.config, other.config)
-            raise InputError(f"{other.path} was made from another config than {first.path} ({change})")
-        if (first.layout.record, first.points) != (other.layout.record, other.points):
-            raise InputError(f"{other.path} was written by another version of rodsweep than {first.path}")
     return files
+
+
+def _is_continued(first: Header, other: Header) -> bool:
+    """Whether two files were made for the same; InputError if yet their variables are not the same."""
+    if first.asked != other.asked and first.fingerprint != other.fingerprint:
+        return False
+    if (first.layout.record, first.points) != (other.layout.record, other.points):
+        raise InputError(f"{other.path} was written by another version of rodsweep than {first.path}")
+    return True

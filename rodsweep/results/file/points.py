@@ -12,6 +12,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from ...sweep.grid import Points
 from ...sweep.ranges import IndexRange, joined
 from ..layouts.variables import MISSING, Layout
 
@@ -43,20 +44,60 @@ def missing_ranges(path: Path) -> list[IndexRange]:
 
 def points_to_add(path: Path, other: Path, layout: Layout) -> Iterator[np.ndarray]:
     """Records, (n,) at a time, of points that `other` has and `path`, a file of that layout, misses."""
-    offsets = _offsets(other, layout)
-    at_once = min(POINTS_AT_ONCE, BYTES_AT_ONCE // layout.record.itemsize + 1)
-    with other.open("rb") as stream:
-        for (first, ours), (_, theirs) in zip(statuses(path, at_once), statuses(other, at_once), strict=True):
-            wanted = (ours == MISSING) & (theirs != MISSING)
+    at_once = _at_once(layout)
+    pairs = zip(statuses(path, at_once), statuses(other, at_once), strict=True)
+    yield from _read(
+        other,
+        layout,
+        ((first, (ours == MISSING) & (theirs != MISSING)) for (first, ours), (_, theirs) in pairs),
+    )
+
+
+def stored_points(path: Path, layout: Layout) -> Iterator[np.ndarray]:
+    """Records, (n,) at a time, of all points that a file of that layout has."""
+    blocks = statuses(path, _at_once(layout))
+    yield from _read(path, layout, ((first, status != MISSING) for first, status in blocks))
+
+
+def _at_once(layout: Layout) -> int:
+    """How many points of a layout are read together."""
+    return min(POINTS_AT_ONCE, BYTES_AT_ONCE // layout.record.itemsize + 1)
+
+
+def _read(path: Path, layout: Layout, blocks: Iterable[tuple[int, np.ndarray]]) -> Iterator[np.ndarray]:
+    """Records of the points that are wanted of each block, given as (flat index of the first, which)."""
+    offsets = _offsets(path, layout)
+    with path.open("rb") as stream:
+        for first, wanted in blocks:
             if wanted.any():
                 records = np.empty(wanted.sum(), layout.record)
                 records["index"] = first + np.flatnonzero(wanted)
                 for name, offset in offsets.items():
                     kind = layout.record[name]
                     stream.seek(offset + first * kind.itemsize)
-                    values = np.fromfile(stream, kind.base, len(ours) * prod(kind.shape))
-                    records[name] = values.reshape(len(ours), *kind.shape)[wanted]
+                    values = np.fromfile(stream, kind.base, len(wanted) * prod(kind.shape))
+                    records[name] = values.reshape(len(wanted), *kind.shape)[wanted]
                 yield records
+
+
+def points_at(path: Path, index: np.ndarray, layout: Layout) -> np.ndarray:
+    """Records, (n,), of a file of that layout at flat indices, (n,)."""
+    records = np.empty(len(index), layout.record)
+    records["index"] = index
+    offsets = _offsets(path, layout)
+    with path.open("rb") as stream:
+        for name, offset in offsets.items():
+            kind = layout.record[name]
+            for i, place in enumerate(index):
+                stream.seek(offset + int(place) * kind.itemsize)
+                records[name][i] = np.fromfile(stream, kind.base, prod(kind.shape)).reshape(kind.shape)
+    return records
+
+
+def parameters_of(path: Path, names: tuple[str, ...]) -> Points:
+    """The points of a file, made or not: the axes or columns of these names."""
+    with h5py.File(path, "r") as file:
+        return Points(names, tuple(file[name][...] for name in names), is_grid="point" not in file)
 
 
 def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> bool:

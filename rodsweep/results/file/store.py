@@ -7,7 +7,7 @@ in at the end of a run, or at the start of the next one where a run was killed.
 
 import json
 import shutil
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -16,48 +16,97 @@ import h5py
 import numpy as np
 
 from ...errors import EnvironmentLacks, InputError
-from ...sweep.ranges import IndexRange
-from ..layouts.variables import MISSING, Filled
+from ...sweep.ranges import IndexRange, total
+from ..layouts.variables import MISSING, Filled, Layout
 from ..run.checkpoints import CHECKPOINTS
 from ..run.journal import JOURNALS, drop_files, read_journals
 from .creation import Plan, add_variables, create_file
 from .exchange import Exchange, disk_refusals
-from .points import missing_ranges, statuses, write_points
+from .extension import extension_of
+from .identity import change_between
+from .points import missing_ranges, parameters_of, statuses, write_points
+from .provenance import merged_history
+from .recent import SNAPSHOT
 from .seal import check_seal
-from .validation import DAMAGES, change_between, is_ours, reason_of, refuse_misfit, what_is_asked
+from .validation import DAMAGES, Header, header_of, is_ours, reason_of
 
 SPACE_FACTOR, SPACE_FIXED = 3, 300_000
 """Room that a run needs: the file, the journals and the copy in units of the file, and bytes besides."""
+BEFORE = "before-*.h5"
+"""Files beside the journals as they were before an extension that is not complete yet."""
 KEPT = "; what is done is kept"
 
 
 class Store:
     """A result file under one run; only the first rank has one, and only one run at a time."""
 
-    def __init__(self, path: Path, plan: Plan, fresh: bool = False):
-        """Opens the file that continues `plan`, or creates it; InputError if it is another's."""
+    note = ""
+    """What is to be said of stored points that an extension computes anew."""
+
+    def __init__(self, path: Path, plan: Plan, fresh: bool = False, extend: bool = False):
+        """Opens the file that continues `plan`, or creates it; InputError if it is another's.
+
+        extend: whether the file of a smaller config becomes that of the plan, with the points that stay.
+        """
         self.path, self.plan = path, plan
         with disk_refusals(path, KEPT):
             self.exchange = Exchange(path)
             self.journals = self.exchange.journals
             try:
-                self._open(fresh)
+                self._open(fresh, extend)
             except BaseException:
                 self.close()
                 raise
 
-    def _open(self, fresh: bool) -> None:
+    def _open(self, fresh: bool, extend: bool) -> None:
         if self.path.exists() and not fresh:
-            self._refuse_another()
-            self.fold(self._new_title())
+            header = self._header()
+            if self.plan.fingerprint not in (header.asked, header.fingerprint):
+                if not extend:
+                    self._refuse(header)
+                self._extend(header)
+                return
+            if header.fingerprint != self.plan.fingerprint:  # an earlier version's, and its journals have it
+                self._fold(header, {"fingerprint": self.plan.fingerprint})
+            self.fold(self._new_title() | ({SNAPSHOT: ""} if self.attributes().get(SNAPSHOT) else {}))
             return
         if self.path.exists() and not is_ours(self.path):
             raise InputError(f"{self.path} is no result file, so --fresh leaves it alone")
         self._need_room()
-        drop_files(self.journals, JOURNALS)
-        drop_files(self.journals, CHECKPOINTS)
+        for pattern in (JOURNALS, CHECKPOINTS, BEFORE):
+            drop_files(self.journals, pattern)
         with self.exchange.replacing(None) as copy:
             create_file(copy, self.plan)
+
+    def _extend(self, header: Header) -> None:
+        """Exchanges the file of a smaller config for that of the plan, with all points that stay."""
+        points = parameters_of(self.path, header.layout.parameters)
+        extension = extension_of(header, points, self.plan)
+        self._need_room()
+        self._fold(header, {})
+        done = header.points - total(self.missing())
+        history = merged_history([header.attributes])
+        with self.exchange.replacing(None) as copy:
+            create_file(copy, self.plan)
+            any_kept = write_points(copy, extension.kept(), self.plan.layout)
+            anew = done - (self.plan.points.count - total(missing_ranges(copy)))
+            if any_kept:
+                with h5py.File(copy, "r+") as file:
+                    file.attrs.update(history)
+            if anew:
+                before = self._keep_before()
+                self.note = (
+                    f"{anew} of {done} stored points are computed anew; until all are done, {before} has them"
+                )
+        drop_files(self.journals, JOURNALS)
+        drop_files(self.journals, CHECKPOINTS)
+
+    def _keep_before(self) -> Path:
+        """Copies the file beside the journals, where it stays until the extension is complete."""
+        number = 1 + sum(1 for _ in self.journals.glob(BEFORE))
+        copy = self.journals / BEFORE.replace("*", str(number))
+        shutil.copyfile(self.path, copy)
+        return copy
 
     def _new_title(self) -> dict[str, Any]:
         """The attributes that change where the config has another title than the file; else none."""
@@ -92,20 +141,35 @@ class Store:
     def fold(self, attributes: dict[str, Any], additions: Sequence[Filled] = ()) -> None:
         """Puts journalled points, attributes and whole variables into the file at once; drops journals."""
         plan = self.plan
+        blocks = read_journals(self.journals, plan.layout, plan.fingerprint, plan.points.count)
+        self._fold_blocks(blocks, plan.layout, attributes, additions)
+        if not self.missing():
+            for pattern in (CHECKPOINTS, BEFORE):
+                drop_files(self.journals, pattern)
+
+    def _fold(self, header: Header, attributes: dict[str, Any]) -> None:
+        """Folds in the journals that were written for the file as it is."""
+        blocks = read_journals(self.journals, header.layout, header.fingerprint, header.points)
+        self._fold_blocks(blocks, header.layout, attributes)
+
+    def _fold_blocks(
+        self,
+        blocks: Iterator[np.ndarray],
+        layout: Layout,
+        attributes: dict[str, Any],
+        additions: Sequence[Filled] = (),
+    ) -> None:
         with disk_refusals(self.path, KEPT):
-            blocks = read_journals(self.journals, plan.layout, plan.fingerprint, plan.points.count)
             first = next(blocks, None)
             if first is not None or attributes or additions:
                 with self.exchange.replacing(self.path) as copy:
                     if first is not None:
-                        write_points(copy, chain([first], blocks), plan.layout)
+                        write_points(copy, chain([first], blocks), layout)
                     if attributes or additions:
                         with h5py.File(copy, "r+") as file:
                             add_variables(file, additions)
                             file.attrs.update(attributes)
             drop_files(self.journals, JOURNALS)
-            if not self.missing():
-                drop_files(self.journals, CHECKPOINTS)
 
     def status_counts(self) -> dict[str, int]:
         """How many points have each status, by the name of the status."""
@@ -121,24 +185,31 @@ class Store:
         """Releases the file for another run."""
         self.exchange.close()
 
-    def _refuse_another(self) -> None:
-        """InputError unless the existing file answers the same config."""
+    def _header(self) -> Header:
+        """The header of the existing file; InputError unless it is a whole result."""
         if not self.path.is_file():
             raise InputError(f"{self.path} is not a file; choose another with -o")
         try:
             check_seal(self.path, values=True)
             with h5py.File(self.path, "r") as file:
-                theirs = json.loads(file.attrs["config_resolved"])
-                fingerprint = file.attrs["fingerprint"]
-                if fingerprint == self.plan.fingerprint:
-                    refuse_misfit(file, self.plan.layout)
+                return header_of(self.path, file)
         except DAMAGES as error:
             raise InputError(
                 f"{self.path} exists and is not a whole rodsweep result ({reason_of(error)}); it is left as "
                 "it is: choose another file with -o, or replace it with --fresh"
             ) from None
-        if fingerprint != self.plan.fingerprint or what_is_asked(theirs) != what_is_asked(self.plan.config):
-            raise InputError(
-                f"{self.path} was made from another config ({change_between(theirs, self.plan.config)}); "
-                "choose another file with -o, or replace it with --fresh"
-            )
+
+    def _refuse(self, header: Header) -> None:
+        """Refuses a file that was made for something else."""
+        raise InputError(
+            f"{self.path} was made from another config ({change_between(header.config, self.plan.config)}); "
+            f"choose another file with -o, or replace it with --fresh{self._hint(header)}"
+        )
+
+    def _hint(self, header: Header) -> str:
+        """What else may be done about a file of another config, where its config is contained in ours."""
+        try:
+            extension_of(header, parameters_of(self.path, header.layout.parameters), self.plan)
+        except InputError:
+            return ""
+        return "; --extend computes what it lacks"

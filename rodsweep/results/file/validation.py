@@ -1,25 +1,27 @@
 """Whether a file is a whole rodsweep result, and which config it answers; what is said where it is not."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
 
+from ... import __version__
 from ...errors import InputError
 from ..layouts import layout_of
 from ..layouts.variables import Layout
+from .identity import fingerprint_of
 from .seal import HDF5_SIGNATURE, check_seal
 
 PROGRAM = "rodsweep"
 """The attribute `program` of our files."""
-LONGEST_VALUE = 80
-"""Characters of a config's value in a sentence."""
+FORMAT = 1
+"""The attribute `format` of our files: grows when a variable is added or changes its meaning. What was
+written before there was one has none, which counts as 0."""
 LONGEST_REASON = 150
 """Characters of what a library says."""
 DAMAGES = (OSError, LookupError, ValueError, TypeError, RuntimeError, OverflowError, MemoryError)
@@ -52,6 +54,9 @@ class Header:
     fingerprint: str
     layout: Layout
     points: int
+    asked: str
+    """The fingerprint as this version makes it: what the file was made for. `fingerprint` is what its journal
+    has, which an earlier version may have made otherwise."""
 
 
 def read_header(path: Path) -> Header:
@@ -70,12 +75,43 @@ def refuse_absent(path: Path) -> None:
 
 
 def header_of(path: Path, file: h5py.File) -> Header:
-    """The header of an open file; one of DAMAGES unless its variables are those of its config."""
+    """The header of an open file; one of DAMAGES unless its variables are those of its config.
+
+    InputError where another version of rodsweep wrote the file in a format that this one does not read.
+    """
     attributes = dict(file.attrs)
+    found = int(attributes.get("format", 0))
+    refuse_newer(path, attributes)
     config = json.loads(attributes["config_resolved"])
-    layout = layout_of(config)
-    refuse_misfit(file, layout)
-    return Header(path, attributes, config, str(attributes["fingerprint"]), layout, file["status"].size)
+    try:
+        layout = layout_of(config)
+        refuse_misfit(file, layout)
+        asked = fingerprint_of(config, [file[name][...] for name in layout.parameters])
+    except (LookupError, ValueError, TypeError) as error:
+        if found == FORMAT or "rodsweep_version" not in attributes:
+            raise
+        raise InputError(
+            f"{path} was written by an earlier rodsweep ({_writer(attributes)}) and is read by that only "
+            f"({reason_of(error)}); compute it again, with --fresh or into another file"
+        ) from None
+    points = file["status"].size
+    return Header(path, attributes, config, str(attributes["fingerprint"]), layout, points, asked)
+
+
+def refuse_newer(path: Path, attributes: Mapping[str, Any]) -> None:
+    """InputError for a file whose format is newer than this program knows."""
+    found = int(attributes.get("format", 0))
+    if found > FORMAT:
+        raise InputError(
+            f"{path} has format {found}, written by rodsweep {_writer(attributes)}; this one ({__version__}) "
+            f"reads formats up to {FORMAT}: update it"
+        )
+
+
+def _writer(attributes: Mapping[str, Any]) -> str:
+    """The version that wrote a file, and its commit."""
+    commit = str(attributes.get("git_commit", "unknown"))[:12]
+    return f"{attributes.get('rodsweep_version', 'unknown')}, commit {commit}"
 
 
 def refuse_misfit(file: h5py.File, layout: Layout) -> None:
@@ -105,41 +141,3 @@ def is_ours(path: Path) -> bool:
             return bool(file.attrs.get("program") == PROGRAM)
     except DAMAGES:
         return True
-
-
-def what_is_asked(config: dict[str, Any]) -> dict[str, Any]:
-    """A resolved config without its title, which changes no number."""
-    return config | {"title": ""} if "title" in config else config
-
-
-def change_between(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
-    """How two resolved configs differ that do not ask for the same points, in words."""
-    return (
-        config_difference(what_is_asked(theirs), what_is_asked(ours))
-        or "the points listed in parameters.points differ"
-    )
-
-
-def config_difference(theirs: Any, ours: Any, key: str = "") -> str:
-    """The first key in which two resolved configs differ, with both values; empty if none does."""
-    if isinstance(theirs, dict) and isinstance(ours, dict):
-        for name in [*ours, *(n for n in theirs if n not in ours)]:
-            found = config_difference(theirs.get(name), ours.get(name), f"{key}.{name}" if key else name)
-            if found:
-                return found
-        return ""
-    if theirs == ours:
-        return ""
-    texts = json.dumps(theirs), json.dumps(ours)
-    if isinstance(theirs, list) and isinstance(ours, list) and max(map(len, texts)) > LONGEST_VALUE:
-        return f"{key} has {_list_difference(theirs, ours)}"
-    return f"{key} is {texts[0][:LONGEST_VALUE]} in the file and {texts[1][:LONGEST_VALUE]} in the config"
-
-
-def _list_difference(theirs: list[Any], ours: list[Any]) -> str:
-    """How two lists differ that are too long to be shown: their lengths, and the first value that differs."""
-    sizes = f"{len(theirs)} values in the file and {len(ours)} in the config"
-    pairs = enumerate(zip_longest(theirs, ours), 1)
-    number, values = next((i, pair) for i, pair in pairs if pair[0] != pair[1])
-    first, second = ("missing" if v is None else json.dumps(v)[:LONGEST_VALUE] for v in values)
-    return f"{sizes}; value {number} is {first} in the file and {second} in the config"

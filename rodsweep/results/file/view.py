@@ -1,4 +1,4 @@
-"""A result file as it is, read only: what `show` and `plot` work on."""
+"""A result file with what its journals add to it, read only: what `show` and `plot` work on."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -10,8 +10,7 @@ import numpy as np
 
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ..layouts.arm import QUANTITY_UNITS
-from ..layouts.variables import MISSING
-from ..run.journal import journal_directory, read_journals
+from .recent import journalled_points, put_in, unfolded
 from .seal import check_seal
 from .validation import header_of, reading, refuse_absent
 
@@ -22,14 +21,18 @@ CHECKED_WHOLE = 10**9
 class Variables(Mapping[str, np.ndarray]):
     """The variables of an open file as NumPy arrays, each read when it is first asked for."""
 
-    def __init__(self, path: Path, file: h5py.File):
-        self.path, self.file = path, file
+    def __init__(self, path: Path, file: h5py.File, recent: np.ndarray):
+        """`recent`: records, (n,), of points that belong into the file and are not in it yet."""
+        self.path, self.file, self.recent = path, file, recent
         self.read: dict[str, np.ndarray] = {}
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self.read:
             with reading(self.path):
-                self.read[name] = self.file[name][...]
+                values = self.file[name][...]
+                if len(self.recent) and name in self.recent.dtype.fields:
+                    put_in(values, name, self.recent)
+                self.read[name] = values
         return self.read[name]
 
     def __contains__(self, name: object) -> bool:
@@ -55,7 +58,7 @@ class View:
     """What makes a point: the dimensions of a grid, or what is given along `point`."""
     flags: dict[int, str]
     journalled: int
-    """Finished points that wait in the journal for the next run."""
+    """Finished points that are shown and still in the journal: of a run that goes on, or was interrupted."""
 
     @property
     def task(self) -> str:
@@ -86,7 +89,11 @@ class View:
 
 
 def read_view(path: Path) -> View:
-    """The file, which stays open; InputError if it is no result."""
+    """The file, which stays open, with what its journals add to it; InputError if it is no result."""
+    return unfolded(path, lambda: _view(path))
+
+
+def _view(path: Path) -> View:
     refuse_absent(path)
     with reading(path):
         check_seal(path, values=path.stat().st_size <= CHECKED_WHOLE)
@@ -98,13 +105,6 @@ def read_view(path: Path) -> View:
         status = file["status"]
         words = str(status.attrs["flag_meanings"]).split()
         flags = dict(zip((int(v) for v in status.attrs["flag_values"]), words, strict=True))
-        variables = Variables(path, file)
-        done = variables["status"].ravel() != MISSING
-    journalled = 0
-    directory = journal_directory(path)
-    if directory.is_dir():
-        for block in read_journals(directory, layout, header.fingerprint, done.size):
-            indices = np.unique(block["index"])
-            journalled += int(np.count_nonzero(~done[indices]))
-            done[indices] = True
-    return View(path, header.attributes, variables, layout.parameters, flags, journalled)
+        recent = journalled_points(header, status[...].ravel())
+        variables = Variables(path, file, recent)
+    return View(path, header.attributes, variables, layout.parameters, flags, len(recent))

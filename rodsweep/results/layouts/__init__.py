@@ -5,7 +5,7 @@ from typing import Any
 
 from . import limit_cycle, modes, phase_diagram, spectrum, thresholds
 from .arm import with_si
-from .variables import Layout
+from .variables import Increase, Layout
 
 LAYOUTS: dict[str, Callable[[dict[str, Any]], Layout]] = {
     "spectrum": spectrum.layout,
@@ -14,6 +14,16 @@ LAYOUTS: dict[str, Callable[[dict[str, Any]], Layout]] = {
     "modes": modes.layout,
     "limit_cycle": limit_cycle.layout,
 }
+
+
+INCREASES: dict[str, dict[str, Increase]] = {
+    "spectrum": spectrum.INCREASES,
+    "thresholds": thresholds.INCREASES,
+    "phase_diagram": phase_diagram.INCREASES,
+    "modes": modes.INCREASES,
+    "limit_cycle": limit_cycle.INCREASES,
+}
+"""The options of every task that ask for more of a point; another value of any other makes another file."""
 
 
 def layout_of(config: dict[str, Any]) -> Layout:

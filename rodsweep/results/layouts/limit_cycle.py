@@ -2,8 +2,10 @@
 
 from typing import Any
 
+import numpy as np
+
 from ...model.parameters import NONLINEAR_PARAMETERS
-from .variables import MESH, SECONDS, STATUS, Layout, Variable, real, whole
+from .variables import ANEW, MESH, SECONDS, STATUS, Increase, Layout, Variable, real, whole
 
 POWER = "k3/(L tau2)"
 STORED_MULTIPLIERS = 6
@@ -60,6 +62,17 @@ TRANSIENT = (
         for name, units in PLACE.items()
     ),
 )
+
+NO_CYCLE = Increase(lambda records, before: np.isnan(records["period"]))
+"""More of a cycle, which a rod that does not beat has none of."""
+INCREASES = {
+    "harmonics": NO_CYCLE,
+    "samples": NO_CYCLE,
+    "shapes": NO_CYCLE,
+    "nodes": NO_CYCLE,
+    "transient": ANEW,
+    "time": Increase(NO_CYCLE.has, ("tau2", "tau1")),
+}
 
 
 def layout(config: dict[str, Any]) -> Layout:

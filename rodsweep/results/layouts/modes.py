@@ -3,7 +3,7 @@
 from typing import Any
 
 from .spectrum import EACH_MODE, EACH_POINT, VECTORS, complex_pair
-from .variables import Layout, real
+from .variables import ANEW, Layout, real
 
 MODE_FIELDS = (
     *VECTORS,
@@ -26,6 +26,8 @@ GROWTH = (
     real("transient_time", "tau2", "time at which transient_growth is reached"),
     real("growth_error", "1", "relative error of transient_growth"),
 )
+
+INCREASES = {"modes": ANEW, "nodes": ANEW, "growth": ANEW, "certify": ANEW}
 
 
 def layout(config: dict[str, Any]) -> Layout:

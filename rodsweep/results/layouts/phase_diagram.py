@@ -4,8 +4,8 @@ from typing import Any
 
 from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS, all_but
 from .spectrum import UNSTABLE_COUNT
-from .thresholds import search_variables
-from .variables import MISSING, Layout, Variable, real, whole
+from .thresholds import CROSSINGS, search_variables
+from .variables import ANEW, BESIDE, MISSING, Layout, Variable, real, whole
 
 CLASSES = (
     (-1, "missing"),
@@ -18,6 +18,8 @@ CLASSES = (
 """What the rod does at a point of a phase diagram."""
 CURVE_KINDS = ((0, "double"), (1, "hopf"))
 """What lies on a curve: double real eigenvalues, where oscillations set in or end, or Hopf points."""
+
+INCREASES = {"crossings": CROSSINGS, "certify": ANEW, "curves": BESIDE}
 
 
 def layout(config: dict[str, Any]) -> Layout:

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from .variables import MESH, SECONDS, STATUS, Layout, Variable, real, whole
+from .variables import ANEW, BESIDE, MESH, SECONDS, STATUS, Layout, Variable, real, whole
 
 
 def complex_pair(name: str, units: str, long_name: str) -> tuple[Variable, Variable]:
@@ -37,6 +37,8 @@ VECTORS = (
     *complex_pair("Y", "1", "the eigenmode's deflection, scaled to Y(1) = 1"),
     *complex_pair("Theta", "1", "the eigenmode's angle, scaled as Y"),
 )
+
+INCREASES = {"modes": ANEW, "certify": ANEW, "vectors": ANEW, "nodes": ANEW, "longitudinal": BESIDE}
 
 
 def layout(config: dict[str, Any]) -> Layout:

@@ -3,7 +3,7 @@
 from typing import Any
 
 from ...model.parameters import PARAMETERS, all_but
-from .variables import SECONDS, STATUS, Layout, Variable, real, whole
+from .variables import ANEW, SECONDS, STATUS, Increase, Layout, Variable, real, whole
 
 FORCE = PARAMETERS["F"].unit
 THRESHOLDS = (
@@ -53,6 +53,11 @@ def search_variables(line: str, at: str) -> tuple[Variable, ...]:
         SECONDS,
         STATUS,
     )
+
+
+CROSSINGS = Increase(lambda records, before: records["crossing_count"] <= before)
+"""A list of crossings that has room for all that were found needs no longer one."""
+INCREASES = {"crossings": CROSSINGS, "certify": ANEW}
 
 
 def layout(config: dict[str, Any]) -> Layout:

@@ -4,6 +4,7 @@ The same table makes the HDF5 datasets and the records of the journal; `rodsweep
 the table of every task.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import prod
 from typing import Any
@@ -63,6 +64,28 @@ MESH = (
     Variable("order", "<i2", 0, "1", "polynomial order used"),
 )
 """What every layout has, or every layout with a mesh."""
+
+
+@dataclass(frozen=True, slots=True)
+class Increase:
+    """An option of which a larger value asks for more of every point, and for nothing else."""
+
+    has: Callable[[np.ndarray, Any], NDArray[np.bool_]]
+    """From stored records, (n,), and the option's stored value: which have all that is asked, (n,)."""
+    values: tuple[Any, ...] = ()
+    """The option's values, of which the later ask for more; none where they are numbers or truths."""
+
+    def is_more(self, before: Any, now: Any) -> bool:
+        """Whether the value `now` asks for more than the one `before`."""
+        if self.values:
+            return self.values.index(now) > self.values.index(before)
+        return bool(now > before)
+
+
+ANEW = Increase(lambda records, before: np.zeros(len(records), bool))
+"""More that only solving a point anew gives."""
+BESIDE = Increase(lambda records, before: np.ones(len(records), bool))
+"""More that is computed beside the points."""
 
 Filled = tuple[Variable, NDArray[Any]]
 """A variable that is known as a whole, with its values; `extra` names all of its dimensions."""
