@@ -117,7 +117,7 @@ def test_amplitudes_are_zero_where_straight_and_unknown_where_there_is_no_cycle(
 def test_points_without_a_known_amplitude_are_marked_and_named_but_missing_ones_are_not():
     figure = draw_amplitude([make_view(SWEEP, SWEPT)])[0]
     texts = [t.get_text() for t in figure.legends[0].get_texts()]
-    assert texts == [r"$\tilde\gamma_1$ = 1", r"$\tilde\gamma_1$ = 0.5", "left the model (at the top)"]
+    assert texts == [r"$\tilde\gamma_1 = 1$", r"$\tilde\gamma_1 = 0.5$", "left the model (at the top)"]
     crosses = [line.get_xdata()[0] for line in figure.axes[0].lines if line.get_marker() == "x"]
     assert crosses == [40.0]
 

@@ -48,6 +48,12 @@ parameters: {F: [10, 40, 60], k1: [1.0e3, 1.0e4], k2: 100, gamma3: 0.01}
 accuracy: 1.0e-3
 limit_cycle: {harmonics: 2}
 """
+ARM = """
+task: spectrum
+parameters:
+  arm: {length: 10 cm, radius: 5 mm, young: 100 kPa, viscosity: 1.4 Pa s, pressure: [1 kPa, 2 kPa]}
+spectrum: {modes: 1}
+"""
 LONGITUDINAL = [("modes: 2", "modes: 2, longitudinal: true"), ("k2: 50", "k2: 50\n  gamma1: 1")]
 CHAINS = CYCLES.replace("harmonics: 2", "harmonics: 2, start: neighbour, along: F")
 
@@ -91,6 +97,7 @@ def extended(command, small, changes, ranks=0):
         (CYCLES, [("[10, 40,", "[10, 20, 40,")], "2 of 8"),
         (CYCLES, [("harmonics: 2", "harmonics: 3, samples: 4, shapes: 2, nodes: 5, time: tau1")], "4 of 6"),
         (CYCLES, [("harmonics: 2", "harmonics: 2, transient: 7")], "6 of 6"),
+        (ARM, [("[1 kPa,", "[1 kPa, 1.5 kPa,")], "1 of 3"),
         (CHAINS, [("60]", "60, 70]")], "2 of 8"),
         (CHAINS, [("40,", "40, 50,")], "4 of 8"),
         (CHAINS, [("1.0e3,", "1.0e3, 2.0e3,")], "3 of 9"),

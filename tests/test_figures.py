@@ -3,12 +3,15 @@
 import numpy as np
 import pytest
 from conftest import ROOT
+from matplotlib.figure import Figure
+from PIL import Image
 
 from rodsweep.cli.job import make_job
 from rodsweep.cli.tasks import TASKS
 from rodsweep.errors import InputError
 from rodsweep.post.figures import FIGURES, draw
-from rodsweep.post.figures.spectrum import broken, followed_roots
+from rodsweep.post.figures.spectrum import _mark_flutter, broken, followed_roots
+from rodsweep.post.figures.style import INVERSE_DRAG, LABELS, number
 from rodsweep.post.summary import SUMMARIES
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -104,3 +107,61 @@ def test_config_changes_stability_where_its_head_comment_says(name):
 def _with_force(job, force):
     rod = job.points.rod(0)
     return type(rod)(force, rod.k1, rod.k2, rod.gamma3)
+
+
+@pytest.mark.parametrize(
+    ("value", "written"),
+    [
+        (1e4, "10^{4}"),
+        (1e-4, "10^{-4}"),
+        (100.0, "10^{2}"),
+        (-1e3, "-10^{3}"),
+        (10.0, "10"),
+        (200.0, "200"),
+        (0.25, "0.25"),
+        (49.758, "49.758"),
+        (2.5e-4, r"2.5\times10^{-4}"),
+        (3.16e5, r"3.16\times10^{5}"),
+        (0.0, "0"),
+        (np.inf, r"\infty"),
+    ],
+)
+def test_powers_of_ten_are_written_as_such(value, written):
+    assert number(value) == written
+
+
+def test_labels_of_dimensionless_parameters_have_no_unit():
+    assert not any("[" in label for label in [*LABELS.values(), INVERSE_DRAG])
+
+
+def test_flutter_is_marked_at_its_threshold_however_coarse_the_forces_are(command):
+    command.write("c.yaml", LINE)
+    command("run", "c.yaml")
+    axes = Figure().subplots()
+    _mark_flutter(axes, read_view(command.directory / "c.h5"), "F")
+    (mark,) = axes.lines
+    assert mark.get_xdata()[0] == pytest.approx(27.4271941267593, rel=1e-12)
+    (shade,) = axes.patches
+    assert shade.get_x() == pytest.approx(27.4271941267593, rel=1e-12)
+    assert shade.get_x() + shade.get_width() == 30
+
+
+def test_the_legend_names_no_flutter_where_there_is_none(command):
+    command.write("c.yaml", LINE)
+    command("run", "c.yaml", "--set", "parameters.F={start: 0, stop: 20, num: 11}")
+    axes = Figure().subplots()
+    _mark_flutter(axes, read_view(command.directory / "c.h5"), "F")
+    assert axes.get_legend_handles_labels() == ([], [])
+
+
+def test_fonts_of_a_pdf_are_embedded_as_type_42_and_images_have_300_dots_an_inch(command):
+    command.write("c.yaml", LINE)
+    command("run", "c.yaml")
+    view = read_view(command.directory / "c.h5")
+    draw(view, command.directory / "f.pdf")
+    draw(view, command.directory / "f.png")
+    written = (command.directory / "f.pdf").read_bytes()
+    assert b"/Subtype /Type3" not in written
+    assert b"/CIDFontType2" in written
+    with Image.open(command.directory / "f.png") as image:
+        assert image.info["dpi"] == pytest.approx((300, 300), abs=0.1)

@@ -3,10 +3,11 @@
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from ...results.file.view import View
 from .request import FigureRequest
-from .style import FIRST, SECOND, heading, need, parameter_text
+from .style import FIRST, SECOND, heading, legend_below, need, parameter_text
 
 MOST_RODS = 4
 """Points for which one figure has room."""
@@ -35,8 +36,17 @@ def draw_modes(request: FigureRequest) -> str:
     for panel in panels[-1]:
         panel.set_xlabel("material coordinate $u/L$")
     figure.suptitle(heading(view), fontsize=9)
+    legend_below(figure, _parts(view, drawn), columns=2)
     left = f" of the first {len(drawn)} of {points.size} points" if points.size > len(drawn) else ""
     return request.write(figure, f"the leading mode{left}: real part solid, imaginary part dotted")
+
+
+def _parts(view: View, points: np.ndarray) -> list[Line2D]:
+    """What the legend says of solid and dotted lines; points: of the drawn ones, shape (n,)."""
+    modes = view.variables["frequency"].shape[-1]
+    oscillates = view.variables["frequency"].reshape(-1, modes)[points, 0].any()
+    looks = (("real part", "-"), ("imaginary part", ":"))[: 1 + bool(oscillates)]
+    return [Line2D([], [], color="0.3", lw=1.5, ls=style, label=word) for word, style in looks]
 
 
 def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], ...]) -> None:

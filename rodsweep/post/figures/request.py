@@ -44,5 +44,5 @@ class FigureRequest:
 
     def write(self, figure: Figure, shown: str) -> str:
         """Writes the figure; returns what it shows."""
-        figure.savefig(self.output, dpi=160)
+        figure.savefig(self.output)
         return shown

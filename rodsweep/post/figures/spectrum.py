@@ -1,20 +1,26 @@
 """The figure of the task spectrum: a line of spectra as in the paper's Fig. 2, or a map over two axes."""
 
 from dataclasses import replace
+from typing import Any
 
 import matplotlib
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ...errors import InputError
 from ...results.file.view import View
+from ..hopf_points import lines_over
+from ..stability_changes import stability_changes
 from .request import FigureRequest
-from .style import FIRST, LABELS, SECOND, fixed_text, heading, long_axes, need, need_grid, scale
+from .style import FIRST, LABELS, SECOND, SYMBOLS, fixed_text, heading, long_axes, need, need_grid, scale
 
 FOLLOWED_ROOTS = {
     "rightmost": "the two rightmost roots",
     "smallest": "of the stored roots, the two smallest in magnitude",
 }
+THRESHOLD_DIGITS = 6
+"""To which thresholds are written beside their marks."""
 
 
 def draw_spectrum(request: FigureRequest) -> str:
@@ -80,10 +86,7 @@ def _line(view: View, name: str, roots: str) -> Figure:
             x_broken, w[:, i].imag, ":", color=colour, lw=width, label=rf"$\mathrm{{Im}}\,\omega_{i + 1}$"
         )
         bottom.plot(w[:, i].real, w[:, i].imag, ".-", color=colour, lw=0.8, ms=3, label=rf"$\omega_{i + 1}$")
-    unstable = view.variables["unstable_count"].reshape(-1) > 0
-    top.fill_between(
-        x, 0, 1, where=unstable, transform=top.get_xaxis_transform(), color="0.92", lw=0, label="flutter"
-    )
+    _mark_flutter(top, view, name)
     top.axhline(0, color="0.5", lw=0.6)
     bottom.axvline(0, color="0.5", lw=0.6)
     scale(top, "x", x)
@@ -93,6 +96,31 @@ def _line(view: View, name: str, roots: str) -> Figure:
     bottom.legend(frameon=False, fontsize=8)
     figure.suptitle(heading(view, fixed_text(view, name), FOLLOWED_ROOTS[roots]), fontsize=9)
     return figure
+
+
+def _mark_flutter(axes: Axes, view: View, name: str) -> None:
+    """Shades where the rod is unstable, over F up to the thresholds themselves, which get a dotted line."""
+    x, unstable = view.axes[name], view.variables["unstable_count"].reshape(-1) > 0
+    shade: dict[str, Any] = {"color": "0.92", "lw": 0, "zorder": 0}
+    if name != "F":
+        if unstable.any():
+            across = axes.get_xaxis_transform()
+            axes.fill_between(x, 0, 1, where=unstable, transform=across, label="flutter", **shade)
+        return
+    (line,) = lines_over(view, name)
+    changes = stability_changes(line, view)
+    for change in changes:
+        word = rf"${SYMBOLS['F']}_{{**}}$" if change.destabilises else "restabilization"
+        label = f"{word} = {change.position:#.{THRESHOLD_DIGITS}g}"
+        axes.axvline(change.position, color="0.3", ls="--", lw=0.9, label=label)
+    starts = [change.position for change in changes if change.destabilises]
+    ends = [change.position for change in changes if not change.destabilises]
+    if ends and (not starts or ends[0] < starts[0]):
+        starts.insert(0, float(x[0]))
+    if len(starts) > len(ends):
+        ends.append(float(x[-1]))
+    for number, (start, end) in enumerate(zip(starts, ends, strict=True)):
+        axes.axvspan(start, end, label=None if number else "flutter", **shade)
 
 
 def _map(view: View, names: list[str]) -> Figure:
@@ -110,5 +138,5 @@ def _map(view: View, names: list[str]) -> Figure:
     scale(axes, "y", y)
     axes.set(xlabel=LABELS[horizontal], ylabel=LABELS[vertical])
     figure.colorbar(mesh, label=r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$")
-    axes.set_title(heading(view, "black: zero growth"), fontsize=9)
+    axes.set_title(heading(view, fixed_text(view, *names), "black: zero growth"), fontsize=9)
     return figure

@@ -1,8 +1,8 @@
 """What all figures share: symbols, labels, colours, titles, how an axis is scaled, what cannot be drawn."""
 
-import re
 import textwrap
 from collections.abc import Mapping
+from math import isinf
 from typing import Any, Literal
 
 import numpy as np
@@ -15,28 +15,28 @@ from ...errors import InputError
 from ...model.parameters import PARAMETERS
 from ...results.file.view import View
 
-
-def tex(unit: str) -> str:
-    """A unit of the table of parameters, such as gamma2 L^2, in TeX."""
-    return re.sub(r"(gamma|k)(\d)", r"\1_\2", unit).replace("gamma", r"\gamma")
-
-
 SYMBOLS = {name: parameter.symbol for name, parameter in PARAMETERS.items()}
-LABELS = {name: f"{p.meaning} ${p.symbol}$  [${tex(p.unit)}$]" for name, p in PARAMETERS.items()}
-FORCE_UNIT = f"[${tex(PARAMETERS['F'].unit)}$]"
-INVERSE_DRAG = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$  [$1/({tex(PARAMETERS['gamma3'].unit)})$]"
+LABELS = {name: f"{p.meaning} ${p.symbol}$" for name, p in PARAMETERS.items()}
+"""What is along an axis. The tilde makes a symbol dimensionless: it has no unit."""
+INVERSE_DRAG = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$"
 FIRST, SECOND, THIRD = "#0072B2", "#D55E00", "#009E73"
 """Blue, vermilion and green of Okabe and Ito: told apart by the colour-blind."""
 TITLE_CHARACTERS = 70
 """Characters of a title in one line of a figure."""
 FEW_DECADES = 50
 """Ratio of the ends of a logarithmic axis below which 1, 2 and 5 of each decade are labelled."""
+LEAST_POWER, PLAIN_BELOW = 2, 4
+"""From which exponent on powers of ten are written as such; below which other numbers are written out."""
 STYLE = {
     "font.size": 10,
     "axes.grid": False,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "hatch.linewidth": 0.6,
+    "savefig.dpi": 300,
+    # Journals refuse Type 3, matplotlib's own choice.
+    "pdf.fonttype": 42,
+    "ps.fonttype": 42,
 }
 
 
@@ -51,9 +51,24 @@ def heading(view: View, *lines: str) -> str:
     return "\n".join([*textwrap.wrap(title, TITLE_CHARACTERS), *filter(None, lines)])
 
 
+def number(value: float, digits: int = 6) -> str:
+    """A number in TeX without its dollars: 1e4 is 10^4, 2.5e-4 is 2.5 x 10^-4, and 200 stays 200."""
+    if isinf(value):
+        return r"\infty" if value > 0 else r"-\infty"
+    if value == 0:
+        return "0"
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    power, factor = int(exponent), float(mantissa)
+    if abs(factor) == 1 and abs(power) >= LEAST_POWER:
+        return f"{'-' * (factor < 0)}10^{{{power}}}"
+    if -LEAST_POWER <= power < PLAIN_BELOW:
+        return f"{value:.{digits}g}"
+    return rf"{factor:g}\times10^{{{power}}}"
+
+
 def parameter_text(parameters: Mapping[str, float], digits: int = 6) -> str:
     """Parameters and their values, in one line."""
-    return ", ".join(f"${SYMBOLS[name]}$ = {value:.{digits}g}" for name, value in parameters.items())
+    return ", ".join(f"${SYMBOLS[name]} = {number(value, digits)}$" for name, value in parameters.items())
 
 
 def fixed_text(view: View, *drawn: str) -> str:
@@ -114,5 +129,5 @@ def label_few_decades(axis: Axis, low: float, high: float) -> None:
     """Labels 1, 2 and 5 of each decade of a logarithmic axis that spans few."""
     if high < FEW_DECADES * low:
         axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"${number(value)}$"))
         axis.set_minor_formatter(NullFormatter())

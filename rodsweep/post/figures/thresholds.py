@@ -29,7 +29,7 @@ def draw_thresholds(request: FigureRequest) -> str:
     panels = figure.subplots(1, len(long), sharey=True, squeeze=False)[0]
     for panel, name in zip(panels, long, strict=True):
         _panel(panel, view, name, [other for other in long if other != name])
-    panels[0].set_ylabel(rf"critical force ${style.SYMBOLS['F']}$  {style.FORCE_UNIT}")
+    panels[0].set_ylabel(f"critical force ${style.SYMBOLS['F']}$")
     figure.suptitle(style.heading(view, style.fixed_text(view, *long)), fontsize=9)
     left_out = [name for name in long if not np.isfinite(view.axes[name]).all()]
     without = f"; {' and '.join(left_out)} = inf has no place on an axis and is left out" if left_out else ""
@@ -55,7 +55,7 @@ def _panel(panel: Axes, view: View, name: str, others: list[str]) -> None:
                 (drawn,) = panel.plot(x[keep], values[keep], LINE_STYLES[line], color=colour, marker=marker)
                 drawn.set(label=labels.pop(variable, None), markersize=2.5, linewidth=1.2)
     for line, at in enumerate(chosen if place else []):
-        text = rf"${style.SYMBOLS[str(place)]}$ = {view.axes[str(place)][at]:.3g}"
+        text = style.parameter_text({str(place): float(view.axes[str(place)][at])}, digits=3)
         panel.plot([], [], LINE_STYLES[line], color="0.3", label=text)
     style.scale(panel, "x", np.sort(x[np.isfinite(x)]))
     panel.set_xlabel(label)

@@ -61,7 +61,7 @@ def draw_work_precision(measured: Table, xlabel: str, target: float | None, outp
         handles = [Line2D([], [], label=method, **look) for method, look in looks.items()]
         figure.legend(handles=handles, loc="outside right center", frameon=False, fontsize=9)
         try:
-            figure.savefig(output, dpi=160)
+            figure.savefig(output)
         except OSError as error:
             raise EnvironmentLacks(f"{output} cannot be written: {error.strerror}") from error
 

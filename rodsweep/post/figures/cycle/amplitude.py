@@ -103,8 +103,8 @@ def _label(panels: Sequence[Axes], name: str) -> None:
         height = axes.dataLim.y1 or 1.0
         axes.set_ylim(-0.04 * height, 1.1 * height)
         axes.axhline(0, color="0.8", lw=0.6, zorder=0)
-    panels[0].set_ylabel(r"tip $(x_{\max} - x_{\min})/2$  [$L$]")
-    panels[1].set(ylabel=r"tip $y_{\max}$  [$L$]", xlabel=LABELS[name])
+    panels[0].set_ylabel(r"tip $(x_{\max} - x_{\min})/2L$")
+    panels[1].set(ylabel=r"tip $y_{\max}/L$", xlabel=LABELS[name])
 
 
 def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, look: dict[str, Any]) -> set[str]:

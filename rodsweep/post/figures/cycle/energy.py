@@ -33,9 +33,9 @@ def draw_energy(view: View, points: Sequence[int]) -> tuple[Figure, str]:
         numbers = rf"$T$ = {cycle.period:.6g} $\tau_2$, mean power {mean:.6g}, imbalance {imbalance:.1e}"
         column[0].set_title(cycle.heading(numbers), fontsize=8.5)
     rows[1, 0].set_ylim(bottom=min(0.0, rows[1, 0].get_ylim()[0]))
-    rows[0, 0].set_ylabel("energy $U$\n[$k_3/L$]")
-    rows[1, 0].set_ylabel("power\n" r"[$k_3/(L\,\tau_2)$]")
-    rows[2, 0].set_ylabel("$dU/dt$\n" r"[$k_3/(L\,\tau_2)$]")
+    rows[0, 0].set_ylabel("energy\n$U L/k_3$")
+    rows[1, 0].set_ylabel("power\n" r"$\times\, L\tau_2/k_3$")
+    rows[2, 0].set_ylabel(r"$\dot U L\tau_2/k_3$")
     handles = [handle for axes in rows[1:, 0] for handle in axes.get_legend_handles_labels()[0]]
     legend_below(figure, handles, columns=min(3, 1 + len(cycles)), size=8.5)
     figure.align_ylabels(rows[:, 0])

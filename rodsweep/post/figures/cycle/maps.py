@@ -54,8 +54,8 @@ HATCHING = "0.25"
 ONE_ROW = 6
 """Entries of a legend that one row can hold."""
 QUANTITIES = (
-    ("period", r"period $T$  [$\tau_2$]", "viridis", True),
-    ("tip_y_max", r"tip $y_{\max}$  [$L$]", "plasma", False),
+    ("period", r"period $T/\tau_2$", "viridis", True),
+    ("tip_y_max", r"tip $y_{\max}/L$", "plasma", False),
 )
 """Variable, label and colours of each panel, and whether those are logarithmic over more than a decade."""
 DECADE = 10
