@@ -70,7 +70,7 @@ test-peers: .venv/installed  ## install what the tests use where it is there: Sl
 	@$(APT_INSTALL)
 	apt_install slurm-wlm munge libpmix-dev auto-07p gfortran iproute2
 survey: .venv/installed  ## limit cycles of 300 random rods, or RODSWEEP_RODS: errors and two starts; 50 marched in time (some minutes)
-	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$${RODSWEEP_RODS:-300} $(BIN)/python -m pytest -n auto tests/hard/test_minimal_periods.py tests/hard/test_cycle_errors.py
+	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$${RODSWEEP_RODS:-300} $(BIN)/python -m pytest -n auto tests/hard/test_minimal_periods.py tests/hard/test_cycle_errors.py tests/hard/test_chain_errors.py
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$${RODSWEEP_RODS:-50} $(BIN)/python -m pytest -n auto tests/hard/test_time_marched_verdicts.py
 stress: .venv/installed  ## kill runs at random 120 times and more, and compare what comes of them (half an hour)
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_KILLS=$${RODSWEEP_KILLS:-40} $(BIN)/python -m pytest tests/test_stress.py

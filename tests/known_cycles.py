@@ -81,7 +81,9 @@ OPTIONS = {"harmonics": 8, "samples": SAMPLES, "shapes": SHAPES, "nodes": 21, "t
 
 def store(view, path, **options):
     """Writes what a view holds into a file as the task lays it out; options are those of limit_cycle."""
-    config = {"task": "limit_cycle", "limit_cycle": OPTIONS | options}
+    parameters = {name: {"values": np.unique(view.variables[name]).tolist()} for name in NAMES}
+    parameters = parameters if view.is_grid else {"points": "points.csv"}
+    config = {"task": "limit_cycle", "parameters": parameters, "limit_cycle": OPTIONS | options}
     flags = tuple(item for item in view.flags.items() if item[0] >= 0)
     layout = layout_of(config)
     columns = tuple(np.asarray(view.variables[name], float) for name in layout.parameters)

@@ -3,13 +3,16 @@
 import numpy as np
 import pytest
 from conftest import ROOT
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from PIL import Image
 
 from rodsweep.cli.job import make_job
 from rodsweep.cli.tasks import TASKS
 from rodsweep.errors import InputError
 from rodsweep.post.figures import FIGURES, draw
+from rodsweep.post.figures.request import Look
 from rodsweep.post.figures.spectrum import _mark_flutter, broken, followed_roots
 from rodsweep.post.figures.style import INVERSE_DRAG, LABELS, number
 from rodsweep.post.summary import SUMMARIES
@@ -165,3 +168,45 @@ def test_fonts_of_a_pdf_are_embedded_as_type_42_and_images_have_300_dots_an_inch
     assert b"/CIDFontType2" in written
     with Image.open(command.directory / "f.png") as image:
         assert image.info["dpi"] == pytest.approx((300, 300), abs=0.1)
+
+
+def line_of_spectra(command):
+    """A file of spectra over F, whose config has a title."""
+    command.write("c.yaml", "title: Onset of a soft rod\n" + LINE)
+    assert command("run", "c.yaml").returncode == 0
+    return command.directory / "c.h5"
+
+
+@pytest.mark.parametrize(("width", "inches"), [("single", 3.375), ("double", 7.0)])
+def test_width_is_that_of_a_column_with_type_of_8_points(command, width, inches, monkeypatch):
+    path, drawn = line_of_spectra(command), []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
+    draw(read_view(path), path.with_suffix(".png"), look=Look(width=width))
+    (figure,) = drawn
+    assert figure.get_size_inches()[0] == inches
+    assert {text.get_fontsize() for text in figure.findobj(Text) if text.get_text()} == {8.0}
+
+
+def test_title_stands_above_a_figure_only_where_it_is_asked_for(command, monkeypatch):
+    path, drawn = line_of_spectra(command), []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure.get_suptitle()))
+    for look in (Look(), Look(title=True)):
+        draw(read_view(path), path.with_suffix(".png"), look=look)
+    assert ["Onset of a soft rod" in title for title in drawn] == [False, True]
+
+
+def test_style_is_a_name_or_a_file_and_anything_else_is_refused(command, monkeypatch):
+    path, colours = line_of_spectra(command), []
+    own = command.directory / "own.mplstyle"
+    own.write_text("axes.facecolor: 123456\n")
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: colours.append(figure.axes[0].get_facecolor()))
+    for style in ("ggplot", str(own)):
+        draw(read_view(path), path.with_suffix(".png"), look=Look(style=style))
+    assert [to_hex(colour) for colour in colours] == ["#e5e5e5", "#123456"]
+    done = command("plot", "c.h5", "--style", "nosuch")
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert "nosuch is neither a style of matplotlib's nor a style file" in done.stderr
+
+
+def test_few_digits_of_a_large_number_are_written_with_a_power_of_ten():
+    assert [number(value, 3) for value in (2236.07, 200.0, 999.9)] == [r"2.24\times10^{3}", "200", "10^{3}"]

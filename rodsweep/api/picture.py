@@ -4,17 +4,26 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, Literal
+from typing import Any, Literal, TypedDict, Unpack
 
 import xarray as xr
 
 from ..errors import InputError
 from ..post.figures import draw
+from ..post.figures.request import Look
 from ..results.file.view import View, read_view
 from .answer import Answer
 from .dataset import view_of
 
 Drawable = xr.Dataset | Answer | str | Path
+
+
+class Looks(TypedDict, total=False):
+    """How a figure looks, as the options of `rodsweep plot` say."""
+
+    title: bool
+    width: Literal["single", "double"] | None
+    style: str | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +53,7 @@ def plot(
     roots: Literal["rightmost", "smallest"] = "smallest",
     what: str | None = None,
     points: Sequence[int] = (),
+    **look: Unpack[Looks],
 ) -> Picture:
     """The figure that suits the task of `data`: a Dataset, an Answer, a file, or several of limit cycles.
 
@@ -55,6 +65,7 @@ def plot(
         raise InputError("there is nothing to draw; give a Dataset, an answer or a file")
     views = [_view(one) for one in several]
     choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(points)}
+    choices["look"] = Look(**look)
     with TemporaryDirectory(prefix="rodsweep-") as place:
         path = Path(place, "figure.gif" if what == "animation" else "figure.png")
         shown = draw(views, path, **choices).partition(": ")[2]

@@ -12,6 +12,7 @@ import os
 import sys
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 # Each rank is one process on one core: threads inside its BLAS would compete with the other ranks.
 # This has to be said before NumPy is imported.
@@ -157,15 +158,37 @@ def show(file: Path, statuses: bool) -> None:
     metavar="N",
     help="Which points of limit_cycle, from 1; up to 3 times.",
 )
+@click.option("--title", is_flag=True, help="Put the title of the config above the figure.")
+@click.option(
+    "--width",
+    type=click.Choice(["single", "double"]),
+    help="Of a journal's single (3.375 in) or double column (7 in), with type of 8 pt.",
+)
+@click.option("--style", metavar="STYLE", help="A style of matplotlib's, by its name or file.")
 def plot(
-    files: tuple[Path, ...], output: Path | None, roots: str, what: str | None, points: tuple[int, ...]
+    files: tuple[Path, ...],
+    output: Path | None,
+    roots: str,
+    what: str | None,
+    points: tuple[int, ...],
+    **look: Any,
 ) -> None:
     """Draw the result FILE, or the amplitudes of several limit_cycle FILEs in one figure."""
     from ..post.figures import draw
+    from ..post.figures.request import Look
     from ..results.file.view import read_view
 
     output = output or files[0].with_suffix(".gif" if what == "animation" else ".png")
-    click.echo(draw([read_view(_followed(file)) for file in files], output, roots, what, points))
+    click.echo(
+        draw(
+            [read_view(_followed(file)) for file in files],
+            output,
+            roots,
+            what,
+            points,
+            Look(**look),
+        )
+    )
 
 
 @commands.command()

@@ -64,7 +64,7 @@ class LimitCycleConfig(Config):
     parameters: NonlinearParameters
     accuracy: Annotated[Number, Field(ge=1e-11, le=1e-2)] = 1e-7
     """Relative error of the period and of the tip's largest y. The tip's other extrema, in units of that, may
-    be off by thirty times as much; the file holds estimates of all."""
+    be off by a hundred times as much; the file holds estimates of all."""
     limit_cycle: LimitCycleOptions = LimitCycleOptions()
 
     @property

@@ -1,5 +1,6 @@
 """Cycles of random rods in and out of every limit, and their true errors by a mesh that is far finer."""
 
+from dataclasses import replace
 from functools import cache
 from math import ceil, inf, log10
 from typing import NamedTuple
@@ -12,9 +13,11 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.measures import CyclePath
-from rodsweep.solve.cycle.newton import at_orbit, newton
+from rodsweep.solve.cycle.neighbour import Neighbour, followed_cycle
+from rodsweep.solve.cycle.newton import at_orbit, multipliers_of, newton
 from rodsweep.solve.cycle.orbit_mesh import mesh_of
-from rodsweep.solve.cycle.refinement import RefinedCycle, multipliers_of, refined_cycle
+from rodsweep.solve.cycle.refinement import RefinedCycle, refined_cycle
+from rodsweep.solve.point import Unsolvable
 
 MOST_FORCE = 200.0
 FINER_ORDER, FINER_SHARE, FINER_STAGES, LEAST_INTERVALS = 8, 1.2, 6, 10
@@ -60,6 +63,23 @@ def cycle_of(case) -> RefinedCycle | None:
     rod = Rod(hopf * case.beyond, case.k1, case.k2, case.gamma3)
     start = orbit_from_hopf(StressForm(rod, case.gamma1, mesh(1, 16)), hopf_point_below(rod))
     return refined_cycle(start, case.accuracy)
+
+
+def chain_of(case, parameter, ratio, points):
+    """The cycles of a chain in steps of a parameter, from the one of the case on, as far as it goes."""
+    hopf = first_hopf(case.k1, case.k2, case.gamma3)
+    rod = Rod(hopf * case.beyond, case.k1, case.k2, case.gamma3)
+    form = StressForm(rod, case.gamma1, mesh(1, 16))
+    found = refined_cycle(orbit_from_hopf(form, hopf_point_below(rod)), case.accuracy, parameter)
+    neighbour = Neighbour.of(found, None, parameter, case.accuracy)
+    for _ in range(points):
+        rod = replace(rod, **{parameter: ratio * getattr(rod, parameter)})
+        try:
+            found = followed_cycle(neighbour, replace(form, rod=rod), parameter, case.accuracy)
+        except Unsolvable:
+            return
+        yield found
+        neighbour = Neighbour.of(found, neighbour, parameter, case.accuracy)
 
 
 def finer(orbit):

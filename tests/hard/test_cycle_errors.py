@@ -12,7 +12,7 @@ from math import inf
 import pytest
 
 from rodsweep.solve.cycle.measures import CyclePath
-from rodsweep.solve.cycle.refinement import multipliers_of
+from rodsweep.solve.cycle.newton import multipliers_of
 from rodsweep.solve.cycle.status import CycleStatus
 from rodsweep.solve.point import Unsolvable
 

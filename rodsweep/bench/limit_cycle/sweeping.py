@@ -36,8 +36,9 @@ QUICK_RODS = (RODS[2],)
 SWEPT = NONLINEAR_PARAMETERS[:2]
 STEP = 1.01
 """Of the axis from one point to the next, a factor."""
-BEFORE = 6
-"""Points of the sweep before the one that is timed: its mesh is chosen by then."""
+BEFORE, STRETCH = 6, 12
+"""Points of the sweep before those that are timed: its mesh is chosen by then; and those that are timed, as
+many as one calibration of the mesh's errors is for, it included."""
 ACCURACY, REFERENCE_ACCURACY = 1e-7, 1e-11
 SWEEP, COLD = "sweep over ", "cold, "
 COLD_STARTS = {"leading mode": "mode", "Hopf point": "hopf"}
@@ -79,7 +80,7 @@ class ExactCycle:
 
 @dataclass(frozen=True, eq=False)
 class SweptRod:
-    """A rod, its exact cycle, and for each axis what the point before it hands on."""
+    """A rod, its exact cycle, and for each axis what the point before the stretch to it hands on."""
 
     point: CyclePoint
     exact: ExactCycle
@@ -87,21 +88,30 @@ class SweptRod:
 
 
 def swept(point: CyclePoint, accuracy: float) -> SweptRod:
-    """The rod with its neighbours, which are points of a sweep themselves, with others before them."""
+    """The rod with its neighbours, which are points of a sweep downwards, with others before them."""
     neighbours: dict[str, Array | None] = {}
     for axis in SWEPT:
         before: Array | None = None
         for k in range(BEFORE, 0, -1):
-            there = replace(point, **{axis: getattr(point, axis) / STEP**k})
+            there = beyond(point, axis, k + STRETCH - 1)
             before = settled(solve_cycle(there, asked(accuracy), before, axis)).neighbour
         neighbours[axis] = before
-    here = solve_cycle(point, asked(accuracy), neighbours[SWEPT[0]], SWEPT[0])
+    here = solve_cycle(point, asked(accuracy), along=SWEPT[0])
     return SweptRod(point, ExactCycle.near(orbit_of(here)), neighbours)
 
 
+def beyond(point: CyclePoint, axis: str, steps: int) -> CyclePoint:
+    """The point of the sweep that is so many steps before this one."""
+    return replace(point, **{axis: getattr(point, axis) * STEP**steps})
+
+
 def from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
-    """The point of a sweep over an axis."""
-    return settled(solve_cycle(rod.point, asked(accuracy), start=rod.neighbours[axis], along=axis))
+    """The last of a stretch of points of a sweep over an axis."""
+    start = rod.neighbours[axis]
+    for k in range(STRETCH - 1, -1, -1):
+        cycle = settled(solve_cycle(beyond(rod.point, axis, k), asked(accuracy), start, axis))
+        start = cycle.neighbour
+    return cycle
 
 
 def from_cold(start: str, accuracy: float, rod: SweptRod) -> Cycle:
@@ -160,7 +170,8 @@ def sweep_introduction() -> str:
     """What is measured."""
     return (
         f"Cycles solved: a point of a sweep, all its multipliers included, asked for {ACCURACY:.0e}; its "
-        f"neighbour is {STEP - 1:.0%} away and was a point itself. The time includes the straight rod's "
+        f"neighbour is {STEP - 1:.0%} away; the mean of {STRETCH} points, the last of which is the rod, with "
+        "what finer meshes cost that their errors are calibrated by. The time includes the straight rod's "
         "spectrum, the choice of the mesh, the verdict, and the estimate of the error, the larger of the "
         "period's and of the extrema's. Errors of period and largest tip y are relative, against meshes that "
         f"leave {REFERENCE_ACCURACY:.0e}. Multipliers are those above rounding. The order in space is that "
@@ -169,8 +180,9 @@ def sweep_introduction() -> str:
 
 
 def milliseconds(m: Measurement) -> float:
-    """Of one run; nan where it failed."""
-    return nan if m.failure else 1e3 * m.seconds
+    """Of one point; nan where it failed."""
+    points = STRETCH if m.method.startswith(SWEEP) else 1
+    return nan if m.failure else 1e3 * m.seconds / points
 
 
 def sweep_table(measurements: Sequence[Measurement]) -> str:

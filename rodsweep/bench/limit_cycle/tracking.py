@@ -81,7 +81,7 @@ def orbit_of(cycle: Cycle) -> Orbit:
     """The orbit on the mesh that was chosen for it; raises ArithmeticError where there is none."""
     if cycle.neighbour is None:
         raise ArithmeticError(f"no cycle: {cycle.status.name} {cycle.message}")
-    return Neighbour.unpack(cycle.neighbour).fine.orbit
+    return Neighbour.unpack(cycle.neighbour).branch.orbit
 
 
 def on_cycle(orbit: Orbit) -> tuple[Beam, Array]:

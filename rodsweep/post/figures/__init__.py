@@ -1,17 +1,21 @@
 """Figures of result files: one module per task, and `draw`, which writes the figure of any of them."""
 
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib
+import matplotlib.style
 import numpy as np
+from matplotlib import rc_params_from_file
 
 from ...errors import EnvironmentLacks, InputError
 from ...results.file.view import View
 from .limit_cycle import draw_limit_cycle
 from .modes import draw_modes
 from .phase_diagram import draw_phase_diagram
-from .request import FigureRequest
+from .request import FigureRequest, Look
 from .spectrum import draw_spectrum
 from .style import STYLE
 from .thresholds import draw_thresholds
@@ -26,12 +30,29 @@ FIGURES: dict[str, Callable[[FigureRequest], str]] = {
 """How each task draws, which the first file names: writes the figure and returns what it shows."""
 
 
+PLAIN = Look()
+
+
+def _styled(look: Look) -> AbstractContextManager[None]:
+    """The settings of all figures, and the user's above them; InputError for a style that there is not."""
+    if look.style is None:
+        return matplotlib.rc_context(STYLE)
+    try:
+        own = matplotlib.style.library.get(look.style) or rc_params_from_file(
+            look.style, use_default_template=False
+        )
+    except OSError:
+        raise InputError(f"{look.style} is neither a style of matplotlib's nor a style file") from None
+    return matplotlib.rc_context(STYLE | dict(own))
+
+
 def draw(
     views: View | Sequence[View],
     output: Path,
     roots: str = "smallest",
     what: str | None = None,
     points: Sequence[int] = (),
+    look: Look = PLAIN,
 ) -> str:
     """Draws the figure of a file, or of several, into `output`; returns a sentence about it.
 
@@ -39,11 +60,15 @@ def draw(
     is nothing that a figure could show.
     """
     views = [views] if isinstance(views, View) else views
+    if look.width and what == "animation":
+        raise InputError("--width is for figures in print, and an animation is none; leave it out")
+    if not look.title:
+        views = [replace(view, attributes=view.attributes | {"title": ""}) for view in views]
     taken = output.exists() and (
         not output.is_file() or any(output.samefile(view.path) for view in views if view.path.exists())
     )
-    request = FigureRequest(views, output, roots, what, points, taken)
-    with matplotlib.rc_context(STYLE), np.errstate(all="ignore"):
+    request = FigureRequest(views, output, roots, what, points, taken, look)
+    with _styled(look), np.errstate(all="ignore"):
         try:
             shown = FIGURES[views[0].task](request)
         except OSError as error:

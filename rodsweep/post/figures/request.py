@@ -5,9 +5,42 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from ...errors import InputError
 from ...results.file.view import View
+
+WIDTHS = {"single": 3.375, "double": 7.0}
+"""Of a journal's columns, in inches."""
+HEIGHT_POWER = 0.5
+"""Of the ratio of the widths, by which a figure gets lower: panels get narrower, their text does not."""
+POINTS_OF_TYPE = 8.0
+"""Size of all text in a figure of such a width."""
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """How a figure looks, whatever it shows.
+
+    title: whether it has that of the config; width: one of WIDTHS, None: what the figure needs; style: a
+    style of matplotlib's, by name or file.
+    """
+
+    title: bool = False
+    width: str | None = None
+    style: str | None = None
+
+    def fit(self, figure: Figure) -> None:
+        """Gives a figure the width of a column, and its text the size that belongs to it."""
+        if self.width is None:
+            return
+        across, down = figure.get_size_inches()
+        width = WIDTHS[self.width]
+        figure.set_size_inches(width, down * min(1.0, width / across) ** HEIGHT_POWER)
+        for axes in figure.axes:
+            axes.tick_params(labelsize=POINTS_OF_TYPE)
+        for text in figure.findobj(Text):
+            text.set_fontsize(POINTS_OF_TYPE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,6 +54,7 @@ class FigureRequest:
     points: Sequence[int] = ()
     taken: bool = False
     """Whether the file to write is there already and is no figure."""
+    look: Look = Look()
 
     def only_view(self) -> View:
         """The file, for tasks that draw one and know neither --what nor --point; else InputError."""
@@ -44,5 +78,6 @@ class FigureRequest:
 
     def write(self, figure: Figure, shown: str) -> str:
         """Writes the figure; returns what it shows."""
+        self.look.fit(figure)
         figure.savefig(self.output)
         return shown

@@ -8,17 +8,32 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ...arrays import Complex
 from ...errors import InputError
 from ...results.file.view import View
 from ..hopf_points import lines_over
 from ..stability_changes import stability_changes
 from .request import FigureRequest
-from .style import FIRST, LABELS, SECOND, SYMBOLS, fixed_text, heading, long_axes, need, need_grid, scale
+from .style import (
+    FIRST,
+    LABELS,
+    SECOND,
+    SYMBOLS,
+    fixed_text,
+    heading,
+    legend_below,
+    long_axes,
+    need,
+    need_grid,
+    scale,
+)
 
 FOLLOWED_ROOTS = {
     "rightmost": "the two rightmost roots",
     "smallest": "of the stored roots, the two smallest in magnitude",
 }
+LARGE = 10.0
+"""Largest root in units of the median one from which on the axis of the roots is logarithmic but near 0."""
 THRESHOLD_DIGITS = 6
 """To which thresholds are written beside their marks."""
 
@@ -85,17 +100,33 @@ def _line(view: View, name: str, roots: str) -> Figure:
         top.plot(
             x_broken, w[:, i].imag, ":", color=colour, lw=width, label=rf"$\mathrm{{Im}}\,\omega_{i + 1}$"
         )
-        bottom.plot(w[:, i].real, w[:, i].imag, ".-", color=colour, lw=0.8, ms=3, label=rf"$\omega_{i + 1}$")
+        bottom.plot(w[:, i].real, w[:, i].imag, ".-", color=colour, lw=0.8, ms=3)
+        _point_along(bottom, w[:, i], colour)
     _mark_flutter(top, view, name)
     top.axhline(0, color="0.5", lw=0.6)
     bottom.axvline(0, color="0.5", lw=0.6)
     scale(top, "x", x)
     top.set(xlabel=LABELS[name], ylabel=r"$\omega\,\tau_2$", xlim=(x[0], x[-1]))
     bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
-    top.legend(facecolor="white", framealpha=1, edgecolor="0.8", fontsize=8, ncols=2)
-    bottom.legend(frameon=False, fontsize=8)
+    sizes = np.abs(w[np.isfinite(w)])
+    if sizes.max(initial=0.0) > LARGE * np.median(sizes):
+        top.set_yscale("symlog", linthresh=10 ** np.floor(np.log10(np.median(sizes) / 10)))
+    legend_below(figure, top.get_legend_handles_labels()[0], 2)
     figure.suptitle(heading(view, fixed_text(view, name), FOLLOWED_ROOTS[roots]), fontsize=9)
     return figure
+
+
+def _point_along(axes: Axes, w: Complex, colour: str) -> None:
+    """An arrow half way along a root's path, (n,), the way that it goes along the axis."""
+    path = w[np.isfinite(w)]
+    ranges = max(np.ptp(path.real), 1e-300), max(np.ptp(path.imag), 1e-300)
+    lengths = np.hypot(np.diff(path.real) / ranges[0], np.diff(path.imag) / ranges[1])
+    if not lengths.sum() > 0:
+        return
+    k = int(np.searchsorted(np.cumsum(lengths), lengths.sum() / 2))
+    start, end = ((z.real, z.imag) for z in path[k : k + 2])
+    arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.2, "mutation_scale": 14}
+    axes.annotate("", xy=end, xytext=start, arrowprops=arrow)
 
 
 def _mark_flutter(axes: Axes, view: View, name: str) -> None:

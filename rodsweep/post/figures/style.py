@@ -61,7 +61,7 @@ def number(value: float, digits: int = 6) -> str:
     power, factor = int(exponent), float(mantissa)
     if abs(factor) == 1 and abs(power) >= LEAST_POWER:
         return f"{'-' * (factor < 0)}10^{{{power}}}"
-    if -LEAST_POWER <= power < PLAIN_BELOW:
+    if -LEAST_POWER <= power < min(PLAIN_BELOW, digits):
         return f"{value:.{digits}g}"
     return rf"{factor:g}\times10^{{{power}}}"
 

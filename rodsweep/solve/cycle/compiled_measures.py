@@ -45,9 +45,9 @@ def means(stages: Array, weights: Array, p: Semidiscrete) -> Means:
     powers(flat, power, p)
     for a in range(2):
         for i in range(K * s):
-            mean[a] += weights[i % s] / K * power[a, i]
+            mean[a] += weights[i % s] * p.lengths[i // s] * power[a, i]
         for i in range(K * s):
-            square[a] += weights[i % s] / K * (power[a, i] - mean[a]) ** 2
+            square[a] += weights[i % s] * p.lengths[i // s] * (power[a, i] - mean[a]) ** 2
     least = 0.0  # of n1 + F, which vanishes at the tip
     for i in range(K * s):
         for j in range(nodes):

@@ -36,14 +36,15 @@ LEAST_PIVOT = 0.1
 class Semidiscrete(NamedTuple):
     """The rod on its mesh, the method in time, and how an orbit closes.
 
-    mass (n,); differentiation (s, s + 1); signs: what the state is multiplied with at the end, (n,); parts:
-    of the period that are equal but for the signs, 1 or 2.
+    mass (n,); differentiation (s, s + 1); lengths: of the intervals, of sum 1, (K,); signs: what the state is
+    multiplied with at the end, (n,); parts: of the period that are equal but for the signs, 1 or 2.
     """
 
     parameters: BeamParameters
     matrices: NodeMatrices
     mass: Array
     differentiation: Array
+    lengths: Array
     signs: Array
     parts: float
 
@@ -74,7 +75,7 @@ def equations(x: Array, F: Array, V: Array, G: Array, p: Semidiscrete) -> None:
 
 
 @compiled_for_vectors
-def residuals(points: Array, h: float, p: Semidiscrete, slopes: Array, out: Array) -> None:
+def residuals(points: Array, duration: float, p: Semidiscrete, slopes: Array, out: Array) -> None:
     """h F(x_i) - sum_j d_ij M x_j into out, and F(x_i) into slopes; both as stages, (K, s, n).
 
     points: the start and the stages one after the other, (1 + K s, n).
@@ -83,7 +84,7 @@ def residuals(points: Array, h: float, p: Semidiscrete, slopes: Array, out: Arra
     V, G = np.empty((3, len(p.matrices.weights))), np.empty((3, len(p.matrices.weights)))
     d = p.differentiation
     for k in range(K):
-        here = points[k * s : (k + 1) * s + 1]
+        here, h = points[k * s : (k + 1) * s + 1], duration * p.lengths[k]
         for i in range(s):
             equations(here[i + 1], slopes[k, i], V, G, p)
             for r in range(n):
@@ -153,7 +154,7 @@ def _sweep_panel(A: Array, first: int, last: int, pivots: Any, column: Array) ->
 
 
 @compiled_for_vectors
-def eliminate(points: Array, h: float, p: Semidiscrete, factors: Factors, columns: Array) -> Array:
+def eliminate(points: Array, duration: float, p: Semidiscrete, factors: Factors, columns: Array) -> Array:
     """Newton's matrix at the points, (1 + K s, n), into the factors.
 
     columns: right sides, (K, s, columns, n). Returns what they make of the last end where the start stays,
@@ -165,7 +166,7 @@ def eliminate(points: Array, h: float, p: Semidiscrete, factors: Factors, column
     right, end = np.empty((s, n, n)), np.empty((n, n))
     so_far, ends = np.diag(p.mass), np.zeros(columns.shape[2:])
     for k in range(K):
-        B = factors.blocks[k]
+        B, h = factors.blocks[k], duration * p.lengths[k]
         for i in range(s):
             x = points[1 + k * s + i]
             equations(x, F, V, G, p)

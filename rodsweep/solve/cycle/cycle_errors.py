@@ -12,6 +12,7 @@ import numpy as np
 from .measures import CyclePath
 from .orbit import Orbit
 from .orbit_mesh import COARSER_ORDER, space_decay
+from .path_differences import path_differences
 
 ROUNDING = 2e-14
 """Relative error that is left of period and extrema however fine the mesh."""
@@ -20,14 +21,14 @@ LEAST_RATIO, LARGEST_RATIO = 1e-3, 0.5
 SPACE_POWER = 1.5
 """Power of the decay of coefficients with which errors in space fall: ideally 2, far beyond the Hopf point
 so slowly."""
-SAFETY = 4.0
+SAFETY = 5.5
 PATH_SHARE, HEIGHT_SHARE, PERIOD_SHARE = 0.4, 0.006, 0.1
 """What the coarse mesh's errors of period and extrema are multiplied with; the shares of the largest distance
 between the tip's paths that count at least as an error of any extremum and of the largest y, and the share of
 this one that counts as an error of the period: a number may happen to agree on both meshes."""
 LEAST_CLAIM = 0.1
 """Share of the accuracy asked for that an error is never said to be below, for it may be by such luck."""
-EXTREMA_SLACK = 30.0
+EXTREMA_SLACK = 100.0
 """How much less accurate than period and largest y, which are met by a node in time and converge fastest, the
 tip's other extrema may be."""
 
@@ -58,14 +59,10 @@ def coarse_errors(coarse: CyclePath, fine: CyclePath) -> CycleErrors:
 
     An extremum may happen to agree on both: the whole paths of the tip are compared too.
     """
-    apart = np.abs(fine.tip_samples - coarse.resampled_tip(len(fine.tip_samples))).max()
-    extrema = fine.extrema
-    changes = {name: abs(value - extrema[name]) for name, value in coarse.extrema.items()}
-    size = abs(extrema["tip_y_max"])
-    height = max(SAFETY * changes["tip_y_max"], HEIGHT_SHARE * apart) / size
-    others = max(SAFETY * max(changes.values()), PATH_SHARE * apart) / size
-    period = SAFETY * abs(coarse.orbit.period / fine.orbit.period - 1)
-    return CycleErrors(max(period, PERIOD_SHARE * height), height, others, nan)
+    period, height, others, apart = path_differences(coarse, fine).tolist()
+    height = max(SAFETY * height, HEIGHT_SHARE * apart)
+    period = max(SAFETY * period, PERIOD_SHARE * height)
+    return CycleErrors(period, height, max(SAFETY * others, PATH_SHARE * apart), nan)
 
 
 def fine_errors(coarse: CyclePath, fine: CyclePath, accuracy: float) -> CycleErrors:
@@ -86,7 +83,7 @@ def error_ratio(coarse: Orbit, fine: Orbit) -> float:
     In time of order s + 1, what stiffness leaves at least of the 2 s - 1. Which of space and time the error
     comes from is not known: the larger ratio counts.
     """
-    in_time = (coarse.intervals / fine.intervals) ** (fine.stages + 1)
+    in_time = ((coarse.intervals - 1) / (fine.intervals - 1)) ** (fine.stages + 1)
     return min(max(space_ratio(fine), in_time, LEAST_RATIO), LARGEST_RATIO)
 
 

@@ -5,11 +5,10 @@ from scipy.interpolate import CubicSpline
 
 from ...arrays import Array
 from ...discretization.beam import Beam
-from ...discretization.collocation import radau
 from ...discretization.stress_balance import balance
 from ...discretization.stress_form import StressForm
 from ..motion.integrator import Trajectory
-from .orbit import Orbit
+from .orbit import Orbit, node_times
 
 STAGES, INTERVALS = 3, 20
 """Of the first orbit, over its period."""
@@ -32,8 +31,7 @@ def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: flo
     symmetric = asymmetry(beam, spline(times)) < SYMMETRIC
     intervals = INTERVALS * turns // (2 if symmetric else 1)
     duration = period / 2 if symmetric else period
-    nodes = ((np.arange(intervals)[:, None] + radau(STAGES).nodes) / intervals).ravel()
-    at = top + duration * np.append(0.0, nodes)
+    at = top + duration * node_times(intervals, STAGES)
     at = np.where(at > run.times[-1], at - period, at)
     states = stressed(beam, form, spline(at))
     return Orbit.of(form, symmetric, period, states, STAGES)

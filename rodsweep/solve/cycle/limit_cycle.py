@@ -184,7 +184,8 @@ def _solve(point: CyclePoint, request: CycleRequest, start: Array | None, along:
             found = followed_cycle(neighbour, form, along, request.accuracy)
         if found is not None and found.verdict(request.accuracy)[0] == CycleStatus.cycle:
             cycle = _measured(replace(straight, status=CycleStatus.cycle), found, request)
-            return replace(cycle, neighbour=Neighbour.of(found, neighbour, along, request.accuracy).pack())
+            there = Neighbour.of(found, neighbour, along, request.accuracy)
+            return replace(cycle, neighbour=there.pack())
     faded = _fades(rod, point.gamma1, leading, request.amplitude) if neighbour is None else ""
     if faded and not request.transient:
         return replace(straight, message=faded)
@@ -253,7 +254,7 @@ def _from_motion(
     beam = transient.beam
     if neighbour is None:
         return torus_or(transient.follow(request.amplitude * transient.mode.z.real), transient)
-    orbit = neighbour.fine.orbit
+    orbit = neighbour.branch.orbit
     stresses = orbit.form.stresses(orbit.start) @ orbit.form.mesh.evaluation(beam.mesh.positions).T
     return torus_or(transient.follow((stresses[:, :-1] * beam.roots[:, None]).ravel()), transient)
 

@@ -54,7 +54,7 @@ class Linearisation:
         return values[np.argsort(-np.abs(values), kind="stable")]
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=8)
 def _workspace(intervals: int, stages: int, unknowns: int) -> Factors:
     """Memory that is used again."""
     blocks = np.zeros((intervals, stages, stages, unknowns, unknowns))
@@ -82,7 +82,7 @@ def parameter_derivative(orbit: Orbit, name: str) -> tuple[Array, float]:
         moved = c._replace(**{field: there})
         moved = moved._replace(nu=1 - moved.F * moved.c1)
         nearby = p._replace(parameters=moved, mass=form.mass_of(moved.c1, moved.c2))
-        residuals(orbit.points, orbit.step, nearby, slopes, right)
+        residuals(orbit.points, orbit.duration, nearby, slopes, right)
         ends.append((right.copy(), phase(orbit.start, moved, p.matrices)))
     (above, offset), (below, offset_below) = ends
     return (above - below) / (2 * step), (offset_below - offset) / (2 * step)
@@ -131,14 +131,14 @@ def linearise(values: Array, columns: Array, shifts: Array, p: Semidiscrete, fac
     the right sides of the phase condition in shifts, (columns - 2,).
     """
     K, s, count, n = columns.shape
-    points, h = values[:-1].reshape(1 + K * s, n), values[-1] / (p.parts * K)
+    points, duration = values[:-1].reshape(1 + K * s, n), values[-1] / p.parts
     slopes, right = np.empty((K, s, n)), np.empty((K, s, n))
-    residuals(points, h, p, slopes, right)
+    residuals(points, duration, p, slopes, right)
     for k in range(K):
         for i in range(s):
-            columns[k, i, 0] = slopes[k, i] * (h / values[-1])
+            columns[k, i, 0] = slopes[k, i] * (p.lengths[k] / p.parts)
             columns[k, i, 1] = right[k, i]
-    ends = eliminate(points, h, p, factors, columns)
+    ends = eliminate(points, duration, p, factors, columns)
     inverse = factors.inverse
     inverse[:, :] = 0.0
     inverse[:n, :n] = factors.propagator
@@ -194,10 +194,10 @@ def steps_of(rights: Array, by_period: Array, columns: Array, p: Semidiscrete, f
 def correct(values: Array, by_period: Array, p: Semidiscrete, factors: Factors) -> Array:
     """Newton's step at an orbit, values and result (N,), by the matrix of another one near by."""
     K, s, n = by_period.shape
-    points, h = values[:-1].reshape(1 + K * s, n), values[-1] / (p.parts * K)
+    points, duration = values[:-1].reshape(1 + K * s, n), values[-1] / p.parts
     slopes, columns, ends = np.empty((K, s, n)), np.empty((K, s, 1, n)), np.zeros((1, n))
     right = np.empty((K, s, n))
-    residuals(points, h, p, slopes, right)
+    residuals(points, duration, p, slopes, right)
     for k in range(K):
         for i in range(s):
             columns[k, i, 0] = right[k, i]

@@ -60,7 +60,7 @@ class CyclePath:
 
     def __init__(self, orbit: Orbit) -> None:
         self.orbit, grid = orbit, orbit.form.mesh
-        self._ends = np.concatenate([orbit.start[None], orbit.states[:-1, -1]])
+        self._ends = np.ascontiguousarray(orbit.regular_states)
         K = len(self._ends)
         self._nodes = np.empty((2, 3, K, grid.nodes + 1))
         tip = np.empty((2, K, 3))

@@ -49,8 +49,8 @@ def planned_mesh(coarse: Orbit, fine: Orbit, accuracy: float) -> OrbitMesh:
     fewest = max(LEAST_INTERVALS, ceil(FEWER_INTERVALS * here.intervals))
     intervals = np.arange(fewest, min(MORE_INTERVALS * here.intervals, MOST_INTERVALS) + 1)
     fewer = np.array([replace(here, intervals=int(K)).coarser.intervals for K in intervals])
-    time = in_time * (rough.intervals / fewer) ** (here.stages + 1)
-    time_ratio = (fewer / intervals) ** (here.stages + 1)
+    time = in_time * ((rough.intervals - 1) / (fewer - 1)) ** (here.stages + 1)
+    time_ratio = ((fewer - 1) / (intervals - 1)) ** (here.stages + 1)
     enough = []
     for order in range(lowest, highest + 1):
         space = in_space * ratio ** ((order - here.order) / COARSER_ORDER)

@@ -12,7 +12,7 @@ from math import gcd
 import numpy as np
 
 from .measures import CyclePath
-from .orbit import Orbit
+from .orbit import Orbit, node_times
 
 PRESENT = 1e-3
 """Share of the largest harmonic from which another one is taken for present before errors are known."""
@@ -41,7 +41,6 @@ def shortened(orbit: Orbit) -> Orbit:
     g = common_divisor(CyclePath(orbit), PRESENT)
     if g == 1:
         return orbit
-    K = orbit.intervals
-    times = np.append(0.0, (np.arange(K)[:, None] + orbit.method.nodes) / K)
+    times = node_times(orbit.intervals, orbit.stages)
     # An even divisor of a symmetric orbit would contradict its symmetry: its harmonics are odd and even.
     return replace(orbit, values=np.append(orbit.at(times / g), orbit.period / g))

@@ -1,15 +1,14 @@
 """From a neighbour's cycle to that of the next point of a sweep: the tangent predicts, Newton corrects.
 
-A neighbour hands on its cycle on both meshes, each with its tangent along the axis. The coarse mesh is solved
-first; by what it moves the prediction on it, the prediction on the fine mesh is moved too, and is then so
-near that one elimination gives the cycle and its multipliers. Where the step is too long for Newton's method
-it is divided, on the coarse mesh. All of it follows from the neighbour alone, so that a chain of points has
-the same content however often it was interrupted.
+A neighbour hands on its cycle with its tangent along the axis; the cubic through two of them is mostly so
+near to the next that one elimination gives the cycle and its multipliers. Where the step is too long for
+Newton's method it is divided, on a coarser mesh. The mesh goes on too, and what is known of its errors. All
+of it follows from the neighbour alone, so that a chain of points has the same content however often it was
+interrupted.
 """
 
 from dataclasses import astuple, dataclass, replace
-from itertools import pairwise
-from math import inf
+from math import inf, nan
 
 import numpy as np
 
@@ -18,15 +17,14 @@ from ...discretization.stress_form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ..point import Unsolvable
+from .calibration import LENGTH, Calibration, calibrated
 from .linearisation import coordinate
-from .mesh_plan import planned_mesh
 from .newton import Converged, at_orbit, newton, relative_change
 from .orbit import Orbit
-from .orbit_mesh import OrbitMesh, mesh_of
+from .orbit_mesh import OrbitMesh, finer_mesh, mesh_of
 from .refinement import (
-    COARSE_DISTANCE,
     RefinedCycle,
-    judged,
+    judged_by,
     matrix_distance,
     newton_tolerance,
     refined_from,
@@ -40,11 +38,13 @@ LONGER_STEP = 1.5
 """By how much a step that succeeded is followed by a longer one."""
 TANGENT_DISTANCE = 1e-4
 """Relative distance from its orbit of a matrix whose tangent is good enough for a step of many."""
-ENOUGH, WORTHWHILE = 0.9, 0.9
+SCARCELY, ENOUGH, WORTHWHILE = 0.3, 0.9, 0.8
 """Share of the accuracy that a cycle's error may have for its neighbour to take over the mesh; share of its
 cost that another mesh may have to be taken instead."""
-HEAD = 8
-"""Numbers at the head of a packed neighbour: rod, symmetry, whether settled, Taylor terms."""
+MOST_MESHES = 3
+"""Meshes whose errors are measured before they are taken from a coarser one alone."""
+HEAD = 7
+"""Numbers at the head of a packed neighbour: rod, symmetry, Taylor terms."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,71 +108,68 @@ def value_of(form: StressForm, name: str) -> float:
     return float(form.gamma1 if name == "gamma1" else getattr(form.rod, name))
 
 
+def relative_distance(one: StressForm, other: StressForm, name: str) -> float:
+    """Of two rods along a parameter: of its coordinates in units of the larger."""
+    a, b = coordinate_of(one, name), coordinate_of(other, name)
+    return abs(a - b) / max(abs(a), abs(b)) if a != b else 0.0
+
+
 @dataclass(frozen=True, eq=False)
 class Neighbour:
-    """A cycle on a fine and on a coarse mesh, and the mesh on which the next point is solved.
+    """A cycle, and the mesh on which the next point is solved.
 
-    drift: the derivative, by the coordinate, of what the coarse orbit differs by from the fine one carried to
-    its mesh, (N of the coarse,). settled: the mesh was planned for a cycle before this one and holds.
+    calibration: of that mesh, or outdated; None where no calibration could be made.
     """
 
-    fine: Followed
-    coarse: Orbit
-    drift: Array
+    branch: Followed
     next_mesh: OrbitMesh
-    settled: bool
+    calibration: Calibration | None
 
     @classmethod
     def of(cls, found: RefinedCycle, before: "Neighbour | None", name: str, accuracy: float) -> "Neighbour":
         """From a cycle that was solved with its tangent; before: its own neighbour."""
-        fine, coarse = followed_from(found.fine, before.fine if before else None, name), found.coarse.orbit
-        drift = np.zeros(len(coarse.values))
-        step = coordinate_of(coarse.form, name) - coordinate_of(before.coarse.form, name) if before else 0.0
-        if before and step and mesh_of(before.fine.orbit) == mesh_of(fine.orbit):
-            moved = carried(fine.orbit, fine.orbit.values - before.fine.orbit.values, mesh_of(coarse))
-            drift = (coarse.values - before.coarse.values - moved) / step
-        here, fits = mesh_of(fine.orbit), found.errors.largest <= ENOUGH * accuracy
-        if before and fits and (before.settled or here != before.next_mesh):
-            return cls(fine, coarse, drift, here, True)
-        planned = planned_mesh(coarse, fine.orbit, accuracy)
-        settled = before is not None and fits and planned.cost > WORTHWHILE * here.cost
-        return cls(fine, coarse, drift, here if settled else planned, settled)
+        branch = followed_from(found.fine, before.branch if before else None, name)
+        return cls(branch, *_next_mesh(found, accuracy))
 
     def pack(self) -> Array:
         """All of it as one flat array, shape (length,)."""
-        orbit, form = self.fine.orbit, self.fine.orbit.form
-        rod, terms = form.rod, len(self.fine.taylor)
-        head = [rod.F, rod.k1, rod.k2, rod.gamma3, form.gamma1, orbit.symmetric, self.settled, terms]
-        meshes = (mesh_of(orbit), mesh_of(self.coarse), self.next_mesh)
-        parts = [orbit.values, self.fine.taylor.ravel(), self.coarse.values, self.drift]
-        return np.concatenate([head, *map(astuple, meshes), *parts])
+        orbit, form = self.branch.orbit, self.branch.orbit.form
+        rod, terms = form.rod, len(self.branch.taylor)
+        head = [rod.F, rod.k1, rod.k2, rod.gamma3, form.gamma1, orbit.symmetric, terms]
+        meshes = (mesh_of(orbit), self.next_mesh)
+        known = self.calibration.pack() if self.calibration else np.full(LENGTH, nan)
+        return np.concatenate([head, *map(astuple, meshes), known, orbit.values, self.branch.taylor.ravel()])
 
     @classmethod
     def unpack(cls, flat: Array) -> "Neighbour":
         """The reverse of `pack`, from its array, shape (length,)."""
-        F, k1, k2, gamma3, gamma1, symmetric, settled, terms = map(float, flat[:HEAD])
-        ends = [HEAD + 4 * k for k in range(4)]
-        meshes = [OrbitMesh(*map(int, flat[a:b])) for a, b in pairwise(ends)]
-        rod, rest = Rod(F, k1, k2, gamma3), flat[ends[-1] :].copy()
-        orbits = []
-        for m, parts in zip(meshes[:2], (1 + int(terms), 2), strict=True):
-            form = StressForm(rod, gamma1, m.grid)
-            length = (1 + m.intervals * m.stages) * form.unknowns + 1
-            values, rest = rest[: parts * length].reshape(parts, length), rest[parts * length :]
-            orbits.append((Orbit(form, bool(symmetric), m.intervals, m.stages, values[0]), values[1:]))
-        (fine, taylor), (coarse, drift) = orbits
-        return cls(Followed(fine, taylor), coarse, drift[0], meshes[2], bool(settled))
+        parts = np.split(flat.copy(), np.cumsum([HEAD, 4, 4, LENGTH]))
+        F, k1, k2, gamma3, gamma1, symmetric, terms = map(float, parts[0])
+        here, there = (OrbitMesh(*map(int, part)) for part in parts[1:3])
+        calibration = None if np.isnan(parts[3]).any() else Calibration.unpack(parts[3])
+        form = StressForm(Rod(F, k1, k2, gamma3), gamma1, here.grid)
+        values = parts[4].reshape(1 + int(terms), -1)
+        orbit = Orbit(form, bool(symmetric), here.intervals, here.stages, values[0])
+        return cls(Followed(orbit, values[1:]), there, calibration)
 
-    def predicted(self, form: StressForm, name: str) -> tuple[Orbit, Orbit]:
-        """The predictions for another rod on the fine and the coarse mesh of the next point."""
-        fine = self.fine.on(self.next_mesh)
-        ahead, target = fine.at(form, name), self.next_mesh.coarser
-        there = target.carry(ahead)
-        if target != mesh_of(self.coarse):
-            return ahead, there
-        step = coordinate_of(form, name) - coordinate_of(self.coarse.form, name)
-        moved = there.values - target.carry(fine.orbit).values + step * self.drift
-        return ahead, replace(there, values=self.coarse.values + moved)
+
+def _next_mesh(found: RefinedCycle, accuracy: float) -> tuple[OrbitMesh, Calibration | None]:
+    """The mesh for the cycle after this one, and its calibration if there is one."""
+    here, known, errors = mesh_of(found.orbit), found.calibration, found.errors
+    if known is None:
+        try:
+            known = calibrated(found.fine, accuracy)
+        except Unsolvable:
+            return here, None
+        errors = known.errors(accuracy)
+    fits = errors.largest <= ENOUGH * accuracy
+    if known.reach and not fits:
+        return here, known.outdated
+    if not fits or errors.largest < SCARCELY * accuracy:
+        planned = known.planned(here, accuracy)
+        if not fits or planned.cost <= WORTHWHILE * here.cost:
+            return planned, known.outdated
+    return here, known
 
 
 def followed_cycle(neighbour: Neighbour, form: StressForm, name: str, accuracy: float) -> RefinedCycle:
@@ -180,20 +177,48 @@ def followed_cycle(neighbour: Neighbour, form: StressForm, name: str, accuracy: 
 
     form: the rod, on any mesh.
     """
-    if form.omega_unknown != neighbour.fine.orbit.form.omega_unknown:
+    if form.omega_unknown != neighbour.branch.orbit.form.omega_unknown:
         raise Unsolvable("the neighbour has other unknowns")
-    tolerance, aim = newton_tolerance(accuracy), neighbour.next_mesh
-    guess, predicted = neighbour.predicted(form, name)
+    found = _converged(neighbour, form, name, accuracy)
+    known = neighbour.calibration
+    if known:
+        known = known.at(found.orbit, relative_distance(neighbour.branch.orbit.form, form, name))
+        if known.holds:
+            cycle = judged_by(known, found, accuracy)
+            if cycle.errors.largest <= accuracy:
+                return cycle
     try:
-        found = _near(predicted, tolerance)
-        guess = guess.moved(carried(predicted, found.orbit.values - predicted.values, aim))
+        return _calibrated_cycle(found, known, name, accuracy)
+    except Unsolvable:  # next to a Hopf point coarser meshes may have no cycle
+        return refined_from(found.orbit, accuracy, mesh_of(found.orbit), name)
+
+
+def _calibrated_cycle(
+    found: Converged, before: Calibration | None, name: str, accuracy: float
+) -> RefinedCycle:
+    """The cycle with errors that are measured; on finer meshes, if need be; raises Unsolvable."""
+    tolerance, distance = newton_tolerance(accuracy), matrix_distance(accuracy)
+    for _ in range(MOST_MESHES):
+        known, here = calibrated(found, accuracy, before), mesh_of(found.orbit)
+        cycle = judged_by(known, found, accuracy)
+        if cycle.errors.largest <= accuracy:
+            return cycle
+        before, aim = None, finer_mesh(here, known.planned(here, accuracy))
+        if not aim.allowed:
+            break
+        found = at_orbit(newton(aim.carry(found.orbit), tolerance, name), distance, name)
+    raise Unsolvable("no mesh was fine enough")
+
+
+def _converged(neighbour: Neighbour, form: StressForm, name: str, accuracy: float) -> Converged:
+    """The cycle on the mesh that the neighbour says, with its tangent and its multipliers."""
+    tolerance, aim = newton_tolerance(accuracy), neighbour.next_mesh
+    try:
+        found = _near(neighbour.branch.on(aim).at(form, name), tolerance, name)
     except Unsolvable:
-        coarse = neighbour.fine.on(aim.coarser)
-        found = newton(in_steps(coarse, form, name, tolerance).orbit, tolerance)
-        guess = aim.carry(found.orbit)
-    fine = at_orbit(newton(guess, tolerance, name), matrix_distance(accuracy), name)
-    cycle = judged(at_orbit(found, COARSE_DISTANCE), fine, accuracy)
-    return cycle if cycle.errors.largest <= accuracy else refined_from(cycle, accuracy, name)
+        start = in_steps(neighbour.branch.on(aim.coarser), form, name, tolerance)
+        found = newton(aim.carry(start.orbit), tolerance, name)
+    return at_orbit(found, matrix_distance(accuracy), name)
 
 
 def _near(predicted: Orbit, tolerance: float, name: str | None = None) -> Converged:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Complex
 from ..point import Unsolvable
 from .linearisation import Linearisation, largest_change
 from .orbit import Orbit
@@ -68,6 +68,23 @@ def linearised(orbit: Orbit, parameter: str | None = None) -> Converged:
     """An orbit that was found, after one more step, with the matrix at itself."""
     matrix = Linearisation(orbit, parameter)
     return Converged(orbit.moved(matrix.step), matrix, relative_change(orbit, matrix.step))
+
+
+def multipliers_of(found: Converged) -> tuple[Complex, float]:
+    """The multipliers, (rank - 1,), by descending modulus, and how far the trivial one is from 1."""
+    values = found.matrix.multipliers()
+    one = int(np.argmin(np.abs(values - 1)))
+    return np.delete(values, one), float(abs(values[one] - 1))
+
+
+def multiplier_change(multipliers: Complex, others: Complex) -> float:
+    """How far the largest of multipliers, (m,), is from the nearest of others, (l,), of another mesh.
+
+    Neither the one of the same place nor the moduli tell: two may change places, or happen to agree.
+    """
+    if not (len(multipliers) and len(others)):
+        return 0.0
+    return float(np.abs(others - multipliers[0]).min())
 
 
 def relative_change(orbit: Orbit, step: Array) -> float:

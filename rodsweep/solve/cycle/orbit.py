@@ -55,9 +55,14 @@ class Orbit:
         return self.points[1:].reshape(self.intervals, self.stages, -1)
 
     @property
-    def interval_starts(self) -> Array:
+    def states_at_starts(self) -> Array:
         """The states at the starts of the intervals, (K, n)."""
         return self.points[: -1 : self.stages]
+
+    @property
+    def regular_states(self) -> Array:
+        """The states at the starts of all intervals but the last, equal in time, (K - 1, n)."""
+        return self.states_at_starts[:-1]
 
     @property
     def method(self) -> Collocation:
@@ -69,23 +74,18 @@ class Orbit:
         return self.period / 2 if self.symmetric else self.period
 
     @property
-    def step(self) -> float:
-        """Length of an interval in tau2."""
-        return self.duration / self.intervals
-
-    @property
     def return_signs(self) -> Array:
         """What the state is multiplied with after the duration, shape (n,)."""
         return self.form.reflection if self.symmetric else np.ones(self.form.unknowns)
 
     @property
     def semidiscrete(self) -> Semidiscrete:
-        return _semidiscrete(self.form, self.symmetric, self.stages)
+        return _semidiscrete(self.form, self.symmetric, self.intervals, self.stages)
 
     @cached_property
     def node_states(self) -> Array:
-        """The states at the starts of all intervals of the whole period, equal in time, shape (m, n)."""
-        ends = self.interval_starts
+        """The states at the regular nodes of the whole period, equal in time, shape (m, n)."""
+        ends = self.regular_states
         return np.concatenate([ends, ends * self.form.reflection]) if self.symmetric else ends
 
     @property
@@ -120,30 +120,52 @@ class Orbit:
 
 
 @lru_cache(maxsize=16)
-def _semidiscrete(form: StressForm, symmetric: bool, stages: int) -> Semidiscrete:
+def _semidiscrete(form: StressForm, symmetric: bool, intervals: int, stages: int) -> Semidiscrete:
     """What all orbits of a form on one method have in common."""
     signs, parts = (form.reflection, 2.0) if symmetric else (np.ones(form.unknowns), 1.0)
-    differentiation = radau(stages).differentiation
-    return Semidiscrete(form.parameters, form.mesh.matrices, form.mass, differentiation, signs, parts)
+    d, lengths = radau(stages).differentiation, interval_lengths(intervals)
+    return Semidiscrete(form.parameters, form.mesh.matrices, form.mass, d, lengths, signs, parts)
+
+
+@lru_cache(maxsize=256)
+def interval_lengths(intervals: int) -> Array:
+    """In units of the duration, (intervals,): equal, but for the last two, which are halves.
+
+    What decays within an interval is as wrong at its end as that interval's length makes it, nearly whatever
+    the others are; and the end of the last is where the largest y is taken.
+    """
+    return np.append(np.ones(intervals - 2), (0.5, 0.5)) / (intervals - 1)
+
+
+def interval_starts(intervals: int) -> Array:
+    """When they begin, in units of the duration, (intervals,)."""
+    return np.append(0.0, np.cumsum(interval_lengths(intervals)[:-1]))
+
+
+def node_times(intervals: int, stages: int) -> Array:
+    """Of the start and the stages, in units of the duration, (1 + K s,)."""
+    starts, lengths = interval_starts(intervals)[:, None], interval_lengths(intervals)[:, None]
+    return np.append(0.0, starts + lengths * radau(stages).nodes)
 
 
 @lru_cache(maxsize=256)
 def between_intervals(source: tuple[int, int], target: tuple[int, int]) -> Array:
     """Matrix from the points of (intervals, stages) to those of others, (target points, source points)."""
     intervals, stages = target
-    times = ((np.arange(intervals)[:, None] + radau(stages).nodes) / intervals).ravel()
-    return piecewise(source, np.append(0.0, times))
+    return piecewise(source, node_times(intervals, stages))
 
 
 def piecewise(source: tuple[int, int], times: Array) -> Array:
     """Matrix from the start and the stages of (intervals, stages) to values at times in [0, 1], (m, ...)."""
     K, s = source
-    k = np.minimum((times * K).astype(int), K - 1)
+    starts, lengths = interval_starts(K), interval_lengths(K)
+    k = np.searchsorted(starts, times, side="right") - 1
     matrix = np.zeros((len(times), 1 + K * s))
     for interval in np.unique(k):
         here = k == interval
         first = interval * s  # the end of the interval before is the start of this one
-        matrix[here, first : first + s + 1] = radau(s).evaluation(times[here] * K - interval)
+        within = (times[here] - starts[interval]) / lengths[interval]
+        matrix[here, first : first + s + 1] = radau(s).evaluation(within)
     return matrix
 
 

@@ -33,7 +33,7 @@ MOST_STATE_UNKNOWNS = 400
 
 @dataclass(frozen=True, slots=True)
 class OrbitMesh:
-    """Equal elements of an order in space, equal intervals with Radau stages in time."""
+    """Equal elements of an order in space, intervals with Radau stages in time."""
 
     elements: int
     order: int
@@ -152,7 +152,7 @@ def _tail_in_time(orbit: Orbit) -> float:
     """Of n1, n2 and m3 the worst."""
     K, s, _ = orbit.states.shape
     n = orbit.form.mesh.nodes
-    values = np.concatenate([orbit.interval_starts[:, None], orbit.states], axis=1)[..., : 3 * n]
+    values = np.concatenate([orbit.states_at_starts[:, None], orbit.states], axis=1)[..., : 3 * n]
     row = legendre_analysis(tuple(2 * np.append(0.0, orbit.method.nodes) - 1))[-1]
     top = np.einsum("j,kjr->kr", row, values).reshape(K, 3, n)
     sizes = np.linalg.norm(values.reshape(K, s + 1, 3, n), axis=-1).max(axis=(0, 1))

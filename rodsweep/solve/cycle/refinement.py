@@ -11,13 +11,14 @@ import numpy as np
 
 from ...arrays import Complex
 from ..point import Unsolvable
+from .calibration import Calibration
 from .cycle_errors import LEAST_CLAIM, CycleErrors, error_ratio, fine_errors
 from .measures import CyclePath, Measures, measures_of
 from .mesh_plan import planned_mesh
 from .minimal_period import PRESENT, common_divisor, shortened, undecided_divisor
-from .newton import Converged, at_orbit, linearised, newton
+from .newton import Converged, at_orbit, linearised, multiplier_change, multipliers_of, newton
 from .orbit import Orbit
-from .orbit_mesh import OrbitMesh, finer_mesh, mesh_of, stages_for, wanted_mesh
+from .orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
 from .status import CycleStatus
 
 MATRIX_SHARE, LEAST_DISTANCE, LARGEST_DISTANCE = 3.0, 1e-7, 1e-5
@@ -40,18 +41,20 @@ MOST_ROUNDS = 8
 
 @dataclass(frozen=True, eq=False)
 class RefinedCycle:
-    """A cycle on two meshes, its measures, multipliers and errors.
+    """A cycle, its measures, multipliers and errors.
 
-    multipliers: by descending modulus, the trivial one taken out; trivial_error: its distance from 1.
+    coarse: the same on a coarser mesh, or calibration, by which the errors are known. multipliers: by
+    descending modulus, the trivial one taken out; trivial_error: its distance from 1.
     """
 
     fine: Converged
-    coarse: Converged
+    coarse: Converged | None
     path: CyclePath
     measures: Measures
     multipliers: Complex
     trivial_error: float
     errors: CycleErrors
+    calibration: Calibration | None = None
 
     @property
     def orbit(self) -> Orbit:
@@ -92,24 +95,26 @@ class RefinedCycle:
         return (CycleStatus.cycle if self.stable else CycleStatus.unstable), ""
 
 
-def multipliers_of(found: Converged) -> tuple[Complex, float]:
-    """The multipliers, (rank - 1,), by descending modulus, and how far the trivial one is from 1."""
-    values = found.matrix.multipliers()
-    one = int(np.argmin(np.abs(values - 1)))
-    return np.delete(values, one), float(abs(values[one] - 1))
-
-
 def judged(coarse: Converged, fine: Converged, accuracy: float) -> RefinedCycle:
     """The cycle on two meshes, with its multipliers and all errors."""
     path = CyclePath(fine.orbit)
     errors = fine_errors(CyclePath(coarse.orbit), path, accuracy)
-    (multipliers, trivial_error), (before, _) = multipliers_of(fine), multipliers_of(coarse)
-    # The nearest, not that of the same place, nor the moduli: two may change places, or happen to agree.
-    moved = float(np.abs(before - multipliers[0]).min()) if len(before) and len(multipliers) else 0.0
+    multipliers, trivial_error = multipliers_of(fine)
+    moved = multiplier_change(multipliers, multipliers_of(coarse)[0])
     left = error_ratio(coarse.orbit, fine.orbit) * moved + fine.distance + trivial_error
     # By luck two meshes agree in a multiplier too.
     errors = replace(errors, multiplier_error=max(MULTIPLIER_FACTOR * left, LEAST_CLAIM * accuracy))
     return RefinedCycle(fine, coarse, path, measures_of(path), multipliers, trivial_error, errors)
+
+
+def judged_by(calibration: Calibration, found: Converged, accuracy: float) -> RefinedCycle:
+    """The cycle on a mesh that is calibrated."""
+    path, errors = CyclePath(found.orbit), calibration.errors(accuracy)
+    multipliers, trivial_error = multipliers_of(found)
+    by_matrix = MULTIPLIER_FACTOR * (found.distance + trivial_error)
+    errors = replace(errors, multiplier_error=errors.multiplier_error + by_matrix)
+    measures = measures_of(path)
+    return RefinedCycle(found, None, path, measures, multipliers, trivial_error, errors, calibration)
 
 
 def refine(orbit: Orbit, accuracy: float, parameter: str | None = None) -> RefinedCycle:
@@ -124,7 +129,7 @@ def refine(orbit: Orbit, accuracy: float, parameter: str | None = None) -> Refin
     while True:
         try:
             near = same_motion(newton(start, NEAR), orbit.size).orbit
-            return _refined(near, accuracy, wanted_mesh(near, aim, stages_for(accuracy)), parameter)
+            return refined_from(near, accuracy, wanted_mesh(near, aim, stages_for(accuracy)), parameter)
         except Unsolvable:
             if aim <= LEAST_ACCURACY or not orbit.symmetric:  # those born at Hopf points are
                 raise
@@ -132,7 +137,7 @@ def refine(orbit: Orbit, accuracy: float, parameter: str | None = None) -> Refin
             start = wanted_mesh(orbit, aim, orbit.stages).carry(orbit)
 
 
-def _refined(near: Orbit, accuracy: float, aim: OrbitMesh, parameter: str | None) -> RefinedCycle:
+def refined_from(near: Orbit, accuracy: float, aim: OrbitMesh, parameter: str | None) -> RefinedCycle:
     """The cycle near an orbit, from a mesh on."""
     size, tolerance, last = near.size, newton_tolerance(accuracy), inf
     best: tuple[Converged, Converged, CycleErrors] | None = None
@@ -153,12 +158,6 @@ def _refined(near: Orbit, accuracy: float, aim: OrbitMesh, parameter: str | None
         raise Unsolvable("no mesh was fine enough")
     coarse, fine, _ = best
     return judged(at_orbit(coarse, COARSE_DISTANCE), linearised(fine.orbit, parameter), accuracy)
-
-
-def refined_from(found: RefinedCycle, accuracy: float, parameter: str | None) -> RefinedCycle:
-    """A cycle that is less accurate than asked for, on finer meshes."""
-    wanted = planned_mesh(found.coarse.orbit, found.orbit, accuracy)
-    return _refined(found.orbit, accuracy, finer_mesh(mesh_of(found.orbit), wanted), parameter)
 
 
 def same_motion(found: Converged, size: float) -> Converged:
@@ -186,7 +185,9 @@ def refined_cycle(orbit: Orbit, accuracy: float, parameter: str | None = None) -
 
 
 def _sharpened(found: RefinedCycle, accuracy: float, parameter: str | None) -> RefinedCycle:
-    """The same with matrices made at the orbits themselves."""
+    """The same, of two meshes, with matrices made at the orbits themselves."""
+    if found.coarse is None:
+        raise ValueError("the errors of the cycle are calibrated")
     return judged(linearised(found.coarse.orbit), linearised(found.orbit, parameter), accuracy)
 
 
