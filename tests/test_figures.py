@@ -203,9 +203,10 @@ def test_style_is_a_name_or_a_file_and_anything_else_is_refused(command, monkeyp
     for style in ("ggplot", str(own)):
         draw(read_view(path), path.with_suffix(".png"), look=Look(style=style))
     assert [to_hex(colour) for colour in colours] == ["#e5e5e5", "#123456"]
-    done = command("plot", "c.h5", "--style", "nosuch")
-    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
-    assert "nosuch is neither a style of matplotlib's nor a style file" in done.stderr
+    for wrong in ("nosuch", "c.h5"):
+        done = command("plot", "c.h5", "--style", wrong)
+        assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+        assert f"{wrong} is neither a style of matplotlib's nor a style file" in done.stderr
 
 
 def test_few_digits_of_a_large_number_are_written_with_a_power_of_ten():

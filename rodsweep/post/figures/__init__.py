@@ -38,10 +38,12 @@ def _styled(look: Look) -> AbstractContextManager[None]:
     if look.style is None:
         return matplotlib.rc_context(STYLE)
     try:
+        if look.style not in matplotlib.style.library:
+            Path(look.style).read_text(encoding="utf-8")  # matplotlib logs what is no text
         own = matplotlib.style.library.get(look.style) or rc_params_from_file(
             look.style, use_default_template=False
         )
-    except OSError:
+    except (OSError, ValueError):  # no such file, or one that is no text
         raise InputError(f"{look.style} is neither a style of matplotlib's nor a style file") from None
     return matplotlib.rc_context(STYLE | dict(own))
 
@@ -73,6 +75,8 @@ def draw(
             shown = FIGURES[views[0].task](request)
         except OSError as error:
             raise EnvironmentLacks(f"{output} cannot be written: {error.strerror or error}") from error
+        except RuntimeError as error:  # of programs that a style asks for, as LaTeX
+            raise EnvironmentLacks(f"the figure cannot be drawn: {str(error).splitlines()[0]}") from error
         except (ValueError, ArithmeticError, MemoryError) as error:  # what another program wrote into it
             raise InputError(
                 f"{views[0].path} holds numbers that no figure can show ({str(error)[:100]})"

@@ -119,9 +119,7 @@ class Calibration:
                 if _stated(space, time, accuracy).largest <= AIM * accuracy:
                     enough.append(mesh)
                     break
-        if enough:
-            return enough[-1]
-        return replace(here, order=here.order + 2, intervals=here.intervals * 6 // 5 + 1)
+        return enough[-1] if enough else here.finer
 
 
 LENGTH = 4 * PARTS + 3

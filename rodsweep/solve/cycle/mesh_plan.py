@@ -34,11 +34,10 @@ def planned_mesh(coarse: Orbit, fine: Orbit, accuracy: float) -> OrbitMesh:
     Where the third mesh has no cycle, or no mesh is enough, one that is finer by a step in both.
     """
     here, rough = mesh_of(fine), mesh_of(coarse)
-    finer = replace(here, order=here.order + 2, intervals=here.intervals * 6 // 5 + 1)
     try:
         between = newton(replace(rough, intervals=here.intervals).carry(fine), TOLERANCE * accuracy)
     except Unsolvable:
-        return finer
+        return here.finer
     paths = CyclePath(coarse), CyclePath(between.orbit), CyclePath(fine)
     in_time, in_space = (coarse_errors(*pair).largest for pair in (paths[:2], paths[1:]))
     ratio = space_ratio(fine)
@@ -56,4 +55,4 @@ def planned_mesh(coarse: Orbit, fine: Orbit, accuracy: float) -> OrbitMesh:
         space = in_space * ratio ** ((order - here.order) / COARSER_ORDER)
         reached = np.maximum(ratio, time_ratio) * (space + time) <= AIM * accuracy
         enough += [replace(here, order=order, intervals=int(K)) for K in intervals[reached][:1]]
-    return min(enough, key=lambda mesh: mesh.cost, default=finer)
+    return min(enough, key=lambda mesh: mesh.cost, default=here.finer)

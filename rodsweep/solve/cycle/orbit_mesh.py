@@ -52,6 +52,11 @@ class OrbitMesh:
         return replace(self, order=order, intervals=intervals)
 
     @property
+    def finer(self) -> "OrbitMesh":
+        """The mesh that is tried where nothing tells which one is enough."""
+        return replace(self, order=self.order + 2, intervals=self.intervals * 6 // 5 + 1)
+
+    @property
     def allowed(self) -> bool:
         return 3 * self.elements * self.order <= MOST_STATE_UNKNOWNS and self.intervals <= MOST_INTERVALS
 
