@@ -28,7 +28,7 @@ from rodsweep.solve.cycle.minimal_period import common_divisor, shortened, undec
 from rodsweep.solve.cycle.neighbour import Neighbour
 from rodsweep.solve.cycle.newton import at_orbit, newton
 from rodsweep.solve.cycle.orbit import Orbit, interval_lengths, node_times
-from rodsweep.solve.cycle.orbit_mesh import legendre_analysis, space_decay
+from rodsweep.solve.cycle.orbit_mesh import legendre_analysis, tails_of
 from rodsweep.solve.motion.integrator import forget_integrators
 
 SOFT = (1e4, 1e2, 1e-2, 1.0)
@@ -390,7 +390,7 @@ def test_the_tail_in_space_is_of_the_last_two_legendre_coefficients(elements, or
     envelope = np.maximum.accumulate((c / c.max(axis=1)[:, None]).max(axis=0)[::-1])[::-1]
     upper = np.arange(order + 1)[(order + 1) // 2 :]
     slope = np.polyfit(upper, np.log(envelope[upper]), 1)[0]
-    assert space_decay(half) == pytest.approx(-slope, rel=1e-9)
+    assert tails_of(half).decay == pytest.approx(-slope, rel=1e-9)
 
 
 @pytest.mark.parametrize(

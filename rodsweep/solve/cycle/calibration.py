@@ -1,20 +1,23 @@
-"""The errors of a mesh, calibrated by finer ones, for the cycles of a chain that are solved on it.
+"""The errors of a mesh, calibrated by finer ones, for a cycle and those that follow on the same mesh.
 
 Two meshes of which one is coarser tell the fine one's error only by what it should be in units of the coarse
-one's, which must be pessimistic. Where many cycles follow on one mesh, two finer meshes, one in space and one
-in time, measure it at the first of them; at the others both parts are larger by as much as the squares of the
-orbit's tails are, in absolute units. Two coarser meshes tell how fast both parts fall, hence which mesh costs
-least.
+one's, which must be pessimistic. Two finer meshes, one in space and one in time, measure it. Two coarser
+meshes tell how fast both parts fall, hence which mesh costs least; so do two that were measured. Where many
+cycles follow on one mesh, its errors are measured at the first of them; at the others both parts are larger
+by as much as the orbit's tails make them.
 """
 
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import astuple, dataclass, field, replace
 from math import ceil, inf
 
 import numpy as np
 
 from ...arrays import Array
 from ...discretization.resolution import LARGEST_ORDER
-from .cycle_errors import LEAST_CLAIM, ROUNDING, CycleErrors
+from ..point import Unsolvable
+from .cycle_errors import LEAST_CLAIM, ROUNDING, CycleErrors, largest_error
 from .measures import CyclePath
 from .newton import Converged, at_orbit, multiplier_change, multipliers_of, newton
 from .orbit import Orbit
@@ -23,21 +26,21 @@ from .orbit_mesh import (
     LEAST_ORDER,
     MOST_INTERVALS,
     OrbitMesh,
+    lasting_tails,
     mesh_of,
-    tails_of,
 )
 from .path_differences import APART, HEIGHT, OTHERS, PERIOD, path_differences
 
 MORE_ORDERS, MORE_INTERVALS = 2, 1.4
 """What the finer meshes have more of."""
-TOLERANCE, DISTANCE = 1e-2, 1e-3
+TOLERANCE, DISTANCE = 0.1, 1e-3
 """What Newton's method leaves on the other meshes, in units of the accuracy, and how far from the orbit the
 matrix may be that their multipliers are of."""
 SAFETY = 3.0
 HEIGHT_SHARE, PERIOD_SHARE, SHARE_IN_TIME = 0.08, 0.16, 0.005
 """Shares of the distance between the tip's paths that count at least as an error: a number may agree by luck,
 and no more do so at the next cycle. In time they differ most in theta, which is stiff and matters least."""
-AIM = 0.7
+AIM = 0.5
 """Share of the accuracy that a mesh is chosen for."""
 LEAST_FALL, LARGEST_FALL = 0.5, 2.2
 """Bounds of the fall of errors in space per order, natural logarithm."""
@@ -45,8 +48,9 @@ STEEPEST = 2.0
 """Largest order in time, in units of the least, which is one more than the stages."""
 FEWER_ORDERS, FEWER_INTERVALS, MOST_ORDERS, MOST_GROWTH = 3, 0.6, 12, 4
 """By how many orders, and times how many intervals, a mesh that is planned may differ."""
-FARTHEST, LARGEST_GROWTH = 0.12, 2.0
+FARTHEST, LARGEST_GROWTH = 0.2, 4.0
 """Relative change of the parameter, and growth of the errors, beyond which it is made anew."""
+LEAST_TAIL = 1e-15
 MULTIPLIER = 4
 """Place of the largest multiplier's error, behind those of `path_differences`."""
 PARTS = 5
@@ -54,14 +58,15 @@ PARTS = 5
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """space, time: what of the mesh's error comes from each, (5,): `path_differences`, and the largest
+    """space, time: what of the error of a mesh comes from each, (5,): `path_differences`, and the largest
     multiplier's, absolute.
 
     fall: of errors in space per order, natural logarithm, (5,); power: of the intervals with which those in
-    time fall, (5,); tails: squared, in space and in time, where it was made, (2,); reach: relative change of
-    the parameter since; growth: of both parts at an orbit since, (2,).
+    time fall, (5,); tails: `lasting_tails` and the orbit's size where it was made, (3,); reach: relative
+    change of the parameter since; growth: of both parts at an orbit since, (2,).
     """
 
+    mesh: OrbitMesh
     space: Array
     time: Array
     fall: Array
@@ -72,17 +77,19 @@ class Calibration:
 
     def pack(self) -> Array:
         """All of it as a flat array, (LENGTH,)."""
-        return np.concatenate([self.space, self.time, self.fall, self.power, self.tails, [self.reach]])
+        parts = (astuple(self.mesh), self.space, self.time, self.fall, self.power, self.tails, [self.reach])
+        return np.concatenate(parts)
 
     @classmethod
     def unpack(cls, flat: Array) -> "Calibration":
         """The reverse of `pack`, from its array, (LENGTH,)."""
-        space, time, fall, power = flat[: 4 * PARTS].reshape(4, PARTS)
-        return cls(space, time, fall, power, flat[4 * PARTS : -1], float(flat[-1]))
+        mesh = OrbitMesh(*map(int, flat[:4]))
+        space, time, fall, power = flat[4 : 4 + 4 * PARTS].reshape(4, PARTS)
+        return cls(mesh, space, time, fall, power, flat[4 + 4 * PARTS : -1], float(flat[-1]))
 
     def at(self, orbit: Orbit, change: float) -> "Calibration":
         """The same for an orbit of the next point, after a relative change of the parameter."""
-        return replace(self, growth=np.maximum(_squares(orbit) / self.tails, 1.0), reach=self.reach + change)
+        return replace(self, growth=_growth(self.tails, _tails(orbit)), reach=self.reach + change)
 
     @property
     def outdated(self) -> "Calibration":
@@ -97,78 +104,115 @@ class Calibration:
     def errors(self, accuracy: float) -> CycleErrors:
         """Of the orbit."""
         in_space, in_time = self.growth
-        return _stated(self.space * in_space, self.time * in_time, accuracy)
+        return CycleErrors(*_stated(self.space * in_space, self.time * in_time, accuracy).tolist())
 
-    def planned(self, here: OrbitMesh, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh that is expected to reach the accuracy; here: the one that is calibrated."""
+    def planned(self, accuracy: float) -> OrbitMesh:
+        """The cheapest mesh that is expected to reach the accuracy."""
+        here = self.mesh
         lowest = max(LEAST_ORDER, here.order - FEWER_ORDERS)
-        highest = min(LARGEST_ORDER, here.order + MOST_ORDERS)
+        orders = np.arange(lowest, min(LARGEST_ORDER, here.order + MOST_ORDERS) + 1)
         fewest = max(LEAST_INTERVALS, ceil(FEWER_INTERVALS * here.intervals))
-        most = min(MOST_GROWTH * here.intervals, MOST_INTERVALS)
-        enough: list[OrbitMesh] = []
-        for order in range(lowest, highest + 1):
-            # Beyond what is known all falls as the paths do, and in time with the least power.
-            fall = self.fall if order < here.order else np.minimum(self.fall, self.fall[APART])
-            space = self.space * np.exp(fall * (here.order - order))
-            for K in range(fewest, most + 1):
-                mesh = replace(here, order=order, intervals=K)
-                if enough and mesh.cost >= enough[-1].cost:
-                    break
-                power = self.power if here.intervals > K else here.stages + 1
-                time = self.time * ((here.intervals - 1) / (K - 1)) ** power
-                if _stated(space, time, accuracy).largest <= AIM * accuracy:
-                    enough.append(mesh)
-                    break
-        return enough[-1] if enough else here.finer
+        intervals = np.arange(fewest, min(MOST_GROWTH * here.intervals, MOST_INTERVALS) + 1)
+        # Beyond what is known all falls as the paths do, and in time with the least power.
+        least = np.minimum(self.fall, self.fall[APART])
+        fall = np.where(orders < here.order, self.fall[:, None], least[:, None])
+        space = self.space[:, None] * np.exp(fall * (here.order - orders))
+        power = np.where(intervals < here.intervals, self.power[:, None], here.stages + 1)
+        time = self.time[:, None] * ((here.intervals - 1) / (intervals - 1)) ** power
+        errors = _stated(space[:, :, None], time[:, None, :], accuracy)
+        enough = largest_error(*errors[:3]) <= AIM * accuracy
+        meshes = [
+            replace(here, order=int(orders[i]), intervals=int(intervals[np.argmax(enough[i])]))
+            for i in np.flatnonzero(enough.any(axis=1))
+        ]
+        return min(meshes, key=lambda mesh: mesh.cost, default=here.finer)
 
 
-LENGTH = 4 * PARTS + 3
+LENGTH = 4 * PARTS + 8
 """Of a packed calibration."""
 
 
-def _stated(space: Array, time: Array, accuracy: float) -> CycleErrors:
-    """The estimates for what a mesh differs by from finer ones, (5,)."""
-    whole = SAFETY * (space + time)
-    least, in_time = max(LEAST_CLAIM * accuracy, ROUNDING), SHARE_IN_TIME * time[APART]
-    return CycleErrors(
-        float(max(whole[PERIOD], PERIOD_SHARE * space[APART] + in_time, least)),
-        float(max(whole[HEIGHT], HEIGHT_SHARE * space[APART] + in_time, least)),
-        float(max(whole[OTHERS], space[APART] + time[APART], least)),
-        float(max(whole[MULTIPLIER], least)),
-    )
+def _stated(space: Array, time: Array, accuracy: float) -> Array:
+    """What `CycleErrors` holds, (4, ...), of meshes that differ by (5, ...) from finer ones."""
+    whole, apart = SAFETY * (space + time), space[APART] + time[APART]
+    in_time = SHARE_IN_TIME * time[APART]
+    stated = [
+        np.maximum(whole[PERIOD], PERIOD_SHARE * space[APART] + in_time),
+        np.maximum(whole[HEIGHT], HEIGHT_SHARE * space[APART] + in_time),
+        np.maximum(whole[OTHERS], apart),
+        whole[MULTIPLIER],
+    ]
+    least: Array = np.maximum(np.array(stated), max(LEAST_CLAIM * accuracy, ROUNDING))
+    return least
 
 
-def _squares(orbit: Orbit) -> Array:
-    """Of both tails in units of sqrt(energy), (2,)."""
-    tails, size = tails_of(orbit), orbit.size
-    return np.array([(size * max(tail, 1e-15)) ** 2 for tail in (tails.space, tails.time)])
+def _tails(orbit: Orbit) -> Array:
+    """In space and in time, no less than rounding, and the orbit's size, (3,)."""
+    return np.append(np.maximum(lasting_tails(orbit), LEAST_TAIL), orbit.size)
+
+
+def _growth(before: Array, after: Array) -> Array:
+    """Of both parts of the error with the tails and the size, (3,) each; what falls is not relied on, (2,).
+
+    Errors are as large as the squares of the tails in absolute units. Where a cycle dies at a Hopf point,
+    which the mesh puts elsewhere, that of its size is as large as the reciprocal of its square.
+    """
+    ratio = after / before
+    growth: Array = np.maximum((ratio[:2] * ratio[2]) ** 2, 1.0) * max(ratio[2] ** -2, 1.0)
+    return growth
 
 
 def calibrated(found: Converged, accuracy: float, before: Calibration | None = None) -> Calibration:
     """The calibration of the mesh of an orbit; raises Unsolvable.
 
-    before: of an orbit near by, on this mesh or another, whose errors fall alike; None: that is measured too.
+    before: of an orbit near by, on this mesh or another, which tells how fast errors fall; without it coarser
+    meshes do.
     """
-    orbit, here = found.orbit, mesh_of(found.orbit)
-    path, rough = CyclePath(orbit), here.coarser
-
-    def difference(mesh: OrbitMesh) -> Array:
-        other = newton(mesh.carry(orbit), TOLERANCE * accuracy)
-        change = multiplier_change(multipliers_of(found)[0], multipliers_of(at_orbit(other, DISTANCE))[0])
-        return np.append(path_differences(path, CyclePath(other.orbit)), change)
-
-    longer, least = ceil(MORE_INTERVALS * here.intervals), here.stages + 1
+    here, least = mesh_of(found.orbit), found.orbit.stages + 1
+    difference, longer = _differences(found, accuracy), ceil(MORE_INTERVALS * here.intervals)
     space = difference(replace(here, order=here.order + MORE_ORDERS))
     time = difference(replace(here, intervals=longer))
     # The finer mesh has an error in time itself.
-    whole = time / (1 - ((here.intervals - 1) / (longer - 1)) ** least)
-    if before:
-        return replace(before, space=space, time=whole, tails=_squares(orbit), reach=0.0, growth=np.ones(2))
-    fall = _logarithm(difference(replace(here, order=rough.order)), space) / (here.order - rough.order)
-    steps = np.log((here.intervals - 1) / (rough.intervals - 1))
-    power = _logarithm(difference(replace(here, intervals=rough.intervals)), time) / steps
-    fall, power = np.clip(fall, LEAST_FALL, LARGEST_FALL), np.clip(power, least, STEEPEST * least)
-    return Calibration(space, whole, fall, power, _squares(orbit), 0.0)
+    time = time / (1 - ((here.intervals - 1) / (longer - 1)) ** least)
+    tails = _tails(found.orbit)
+    if before is None:
+        rough, fall, power = here.coarser, np.full(PARTS, LEAST_FALL), np.full(PARTS, float(least))
+        with suppress(Unsolvable):  # next to a Hopf point coarser meshes may have no cycle
+            fall = _fall(difference(replace(here, order=rough.order)), space, here.order - rough.order)
+            power = _power(difference(replace(here, intervals=rough.intervals)), time, rough, here)
+        return Calibration(here, space, time, fall, power, tails, 0.0)
+    there, fall, power = before.mesh, before.fall, before.power
+    if there.order != here.order and there.elements == here.elements:
+        fall = _fall(before.space, space, here.order - there.order)
+    if there.intervals != here.intervals:
+        power = _power(before.time, time, there, here)
+    return Calibration(here, space, time, fall, power, tails, 0.0)
+
+
+def _differences(found: Converged, accuracy: float) -> Callable[[OrbitMesh], Array]:
+    """What another mesh's cycle differs by from one that was found, as `Calibration.space` says, (5,)."""
+    path, multipliers = CyclePath(found.orbit), multipliers_of(found)[0]
+
+    def difference(mesh: OrbitMesh) -> Array:
+        other = newton(mesh.carry(found.orbit), TOLERANCE * accuracy)
+        change = multiplier_change(multipliers, multipliers_of(at_orbit(other, DISTANCE))[0])
+        return np.append(path_differences(path, CyclePath(other.orbit)), change)
+
+    return difference
+
+
+def _fall(before: Array, after: Array, orders: int) -> Array:
+    """Of errors in space per order, from those before to those so many orders on, (5,) each."""
+    fall: Array = np.clip(_logarithm(before, after) / orders, LEAST_FALL, LARGEST_FALL)
+    return fall
+
+
+def _power(before: Array, after: Array, there: OrbitMesh, here: OrbitMesh) -> Array:
+    """Of the intervals with which errors in time fall, from those of one mesh to those of another, (5,)."""
+    least = here.stages + 1
+    steps = np.log((here.intervals - 1) / (there.intervals - 1))
+    power: Array = np.clip(_logarithm(before, after) / steps, least, STEEPEST * least)
+    return power
 
 
 def _logarithm(before: Array, after: Array) -> Array:

@@ -10,16 +10,16 @@ import numpy as np
 
 from ...determinant.newton import crossing_newton
 from ...determinant.parameter_path import Path
-from ...discretization.collocation import radau
 from ...discretization.mesh import mesh
 from ...discretization.stress_form import StressForm
 from ...model.rod import Rod
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..point import Unsolvable
+from ..spectrum.followed_leader import followed_leader
 from ..spectrum.search import SpectrumRequest, solve_spectrum
 from .neighbour import followed_from, in_steps
 from .newton import at_orbit, newton
-from .orbit import Orbit
+from .orbit import Orbit, node_times
 
 LEADING = SpectrumRequest(1, 1e-9, False)
 SCAN = 0.93
@@ -47,8 +47,14 @@ class Onset:
     frequency: float
 
 
-def leading_eigenvalue(rod: Rod) -> complex:
-    """The leading eigenvalue of the straight rod, Im >= 0; raises Unsolvable where it is not found."""
+def leading_eigenvalue(rod: Rod, near: complex | None = None) -> complex:
+    """The leading eigenvalue of the straight rod, Im >= 0; raises Unsolvable where it is not found.
+
+    near: the one of a rod near by.
+    """
+    followed = None if near is None else followed_leader(rod, near, LEADING.accuracy)
+    if followed is not None:
+        return followed
     found = solve_spectrum(rod, LEADING)
     if not len(found.eigenvalues):
         raise Unsolvable(f"the spectrum at F = {rod.F:g} is not known: {found.message}")
@@ -61,7 +67,7 @@ def hopf_point_below(rod: Rod) -> Onset | None:
     above, F = leading_eigenvalue(rod), rod.F
     while F > LEAST_FORCE:
         lower = F * SCAN
-        below = leading_eigenvalue(replace(rod, F=lower))
+        below = leading_eigenvalue(replace(rod, F=lower), above)
         if below.real < 0 <= above.real:
             return _crossing(rod, (lower, below), (F, above))
         F, above = lower, below
@@ -124,8 +130,7 @@ def _followed_from(normal: NormalForm, F: float, form: StressForm) -> Orbit:
 def orbit_of(normal: NormalForm, form: StressForm) -> Orbit:
     """The cycle that the normal form predicts for a rod at a force near its own."""
     squared, frequency = normal.cycle(form.rod.F)
-    times = np.append(0.0, ((np.arange(INTERVALS)[:, None] + radau(STAGES).nodes) / INTERVALS).ravel())
-    X = normal.motion(squared**0.5, np.pi * times)
+    X = normal.motion(squared**0.5, np.pi * node_times(INTERVALS, STAGES))
     S, V = normal.form.fields(X)
     E = normal.form.mesh.evaluation(form.mesh.positions)
     parts = [*(S @ E.T)[..., :-1]] + ([V[2] @ E.T] if form.omega_unknown else [])

@@ -26,6 +26,7 @@ from ..hopf.normal_form import accurate_normal_form
 from ..motion.integrator import forget_integrators
 from ..motion.time_scheme import CYCLE_PREFIX
 from ..point import Unsolvable, solved
+from ..spectrum.followed_leader import followed_leader
 from ..spectrum.search import SpectrumRequest, solve_spectrum
 from .cycle_errors import UNKNOWN_ERRORS, CycleErrors
 from .hopf_start import hopf_point_below, orbit_from_hopf
@@ -170,21 +171,21 @@ def warm_up() -> None:
 
 def _solve(point: CyclePoint, request: CycleRequest, start: Array | None, along: str | None) -> Cycle:
     rod = Rod(point.F, point.k1, point.k2, point.gamma3)
-    spectrum = solve_spectrum(rod, SPECTRUM)
-    leading = complex(spectrum.eigenvalues[0]) if len(spectrum.eigenvalues) else complex(nan, nan)
+    neighbour = Neighbour.unpack(start) if start is not None else None
+    leading = _leading_eigenvalue(rod, neighbour)
     straight = Cycle(
         status=CycleStatus.straight, linear_growth_rate=leading.real, linear_frequency=abs(leading.imag)
     )
     beam, form = _beam_and_form(rod, point.gamma1)
     if request.start == "hopf":
         return _from_hopf(form, request, straight)
-    neighbour, found = Neighbour.unpack(start) if start is not None else None, None
+    found = None
     if neighbour is not None and along is not None:
         with suppress(Unsolvable):
             found = followed_cycle(neighbour, form, along, request.accuracy)
         if found is not None and found.verdict(request.accuracy)[0] == CycleStatus.cycle:
             cycle = _measured(replace(straight, status=CycleStatus.cycle), found, request)
-            there = Neighbour.of(found, neighbour, along, request.accuracy)
+            there = Neighbour.of(found, neighbour, along, request.accuracy, leading)
             return replace(cycle, neighbour=there.pack())
     faded = _fades(rod, point.gamma1, leading, request.amplitude) if neighbour is None else ""
     if faded and not request.transient:
@@ -205,8 +206,18 @@ def _solve(point: CyclePoint, request: CycleRequest, start: Array | None, along:
     if faded or end.found is None:
         return cycle if faded or end.around is None else _with_multipliers(cycle, end.around)
     cycle = _measured(cycle, end.found, request)
-    packed = Neighbour.of(end.found, None, along, request.accuracy).pack() if along else None
-    return replace(cycle, neighbour=packed)
+    if along is None:
+        return cycle
+    return replace(cycle, neighbour=Neighbour.of(end.found, None, along, request.accuracy, leading).pack())
+
+
+def _leading_eigenvalue(rod: Rod, neighbour: Neighbour | None) -> complex:
+    """Of the straight rod, 1/tau2; NaN where none is found."""
+    followed = followed_leader(rod, neighbour.leading, SPECTRUM.accuracy) if neighbour else None
+    if followed is not None:
+        return followed
+    w = solve_spectrum(rod, SPECTRUM).eigenvalues
+    return complex(w[0]) if len(w) else complex(nan, nan)
 
 
 def _from_hopf(form: StressForm, request: CycleRequest, straight: Cycle) -> Cycle:

@@ -4,7 +4,7 @@ One elimination of the intervals (`condensation`) leaves a system for the state 
 the phase condition as its last row.
 """
 
-from functools import lru_cache
+from math import prod
 
 import numpy as np
 
@@ -17,12 +17,13 @@ from .multipliers import nonzero_eigenvalues
 from .orbit import Orbit
 
 DIFFERENCE = 1e-5
+_memory: list[Array] = [np.empty(0)]
 LEAST_COORDINATE = {"F": 1.0, "c1": 1e-4, "c2": 1e-4, "gamma1": 0.1, "gamma3": 1e-4}
 """Relative step of a difference by a parameter, and the least size of the parameter for it."""
 
 
 class Linearisation:
-    """Newton's matrix at an orbit; it corrects others until the next one of the same extents is made.
+    """Newton's matrix at an orbit; it corrects others until the next one is made.
 
     step: Newton's step there; tangent: the derivative of the orbit by the parameter, where one is given. Both
     are arrays like `Orbit.values`.
@@ -38,7 +39,6 @@ class Linearisation:
             columns[:, :, 2], shifts[0] = parameter_derivative(orbit, parameter)
         steps = linearise(orbit.values, columns, shifts, orbit.semidiscrete, self._factors)
         self._by_period = np.ascontiguousarray(columns[:, :, 0])
-        self._propagator = self._factors.propagator.copy()
         self.step, self.tangent = steps[0], None if parameter is None else steps[1]
 
     def correction(self, orbit: Orbit) -> Array:
@@ -48,16 +48,18 @@ class Linearisation:
 
     def multipliers(self) -> Complex:
         """All Floquet multipliers but rounding, (rank,), by descending modulus, the trivial one too."""
-        half = self.orbit.return_signs[:, None] * self._propagator
+        half = self.orbit.return_signs[:, None] * self._factors.propagator
         values = nonzero_eigenvalues(half)
         values = values**2 if self.orbit.symmetric else values
         return values[np.argsort(-np.abs(values), kind="stable")]
 
 
-@lru_cache(maxsize=8)
 def _workspace(intervals: int, stages: int, unknowns: int) -> Factors:
-    """Memory that is used again."""
-    blocks = np.zeros((intervals, stages, stages, unknowns, unknowns))
+    """Memory that every matrix uses again: new pages take as long as half an elimination."""
+    shape = (intervals, stages, stages, unknowns, unknowns)
+    if len(_memory[0]) < prod(shape):
+        _memory[0] = np.empty(prod(shape))
+    blocks = _memory[0][: prod(shape)].reshape(shape)
     return Factors(blocks, np.zeros((unknowns, unknowns)), np.zeros((unknowns + 1, unknowns + 1)))
 
 
@@ -76,16 +78,33 @@ def parameter_derivative(orbit: Orbit, name: str) -> tuple[Array, float]:
     field = {"k1": "c1", "k2": "c2"}.get(name, name)
     here = getattr(c, field)
     step = DIFFERENCE * max(abs(here), LEAST_COORDINATE[field])
-    slopes, right = np.empty((2, *orbit.states.shape))
-    ends = []
+    sides = []
     for there in (here + step, here - step):
         moved = c._replace(**{field: there})
         moved = moved._replace(nu=1 - moved.F * moved.c1)
-        nearby = p._replace(parameters=moved, mass=form.mass_of(moved.c1, moved.c2))
-        residuals(orbit.points, orbit.duration, nearby, slopes, right)
-        ends.append((right.copy(), phase(orbit.start, moved, p.matrices)))
-    (above, offset), (below, offset_below) = ends
-    return (above - below) / (2 * step), (offset_below - offset) / (2 * step)
+        sides.append(p._replace(parameters=moved, mass=form.mass_of(moved.c1, moved.c2)))
+    return difference(orbit.values, sides[0], sides[1], 2 * step, orbit.stages)
+
+
+@compiled_for_vectors
+def difference(
+    values: Array, above: Semidiscrete, below: Semidiscrete, step: float, stages: int
+) -> tuple[Array, float]:
+    """What residuals, (K, s, n), and phase of an orbit, (N,), differ by on both sides, by a step of it all.
+
+    The phase's is a right side and has the sign of one.
+    """
+    K, n = len(above.lengths), len(above.mass)
+    points, duration = values[:-1].reshape(1 + K * stages, n), values[-1] / above.parts
+    slopes, right, other = np.empty((K, stages, n)), np.empty((K, stages, n)), np.empty((K, stages, n))
+    residuals(points, duration, above, slopes, right)
+    residuals(points, duration, below, slopes, other)
+    for k in range(K):
+        for i in range(stages):
+            for r in range(n):
+                right[k, i, r] = (right[k, i, r] - other[k, i, r]) / step
+    after = phase(points[0], above.parameters, above.matrices)
+    return right, (phase(points[0], below.parameters, below.matrices) - after) / step
 
 
 @compiled_for_vectors

@@ -17,17 +17,17 @@ from ...discretization.stress_form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ..point import Unsolvable
-from .calibration import LENGTH, Calibration, calibrated
+from .calibration import LENGTH, Calibration
 from .linearisation import coordinate
 from .newton import Converged, at_orbit, newton, relative_change
 from .orbit import Orbit
-from .orbit_mesh import OrbitMesh, finer_mesh, mesh_of
+from .orbit_mesh import OrbitMesh, mesh_of
 from .refinement import (
     RefinedCycle,
+    calibrated_cycle,
     judged_by,
     matrix_distance,
     newton_tolerance,
-    refined_from,
 )
 
 FARTHEST = 0.3
@@ -38,13 +38,12 @@ LONGER_STEP = 1.5
 """By how much a step that succeeded is followed by a longer one."""
 TANGENT_DISTANCE = 1e-4
 """Relative distance from its orbit of a matrix whose tangent is good enough for a step of many."""
-SCARCELY, ENOUGH, WORTHWHILE = 0.3, 0.9, 0.8
+ENOUGH, WORTHWHILE = 0.9, 0.8
 """Share of the accuracy that a cycle's error may have for its neighbour to take over the mesh; share of its
 cost that another mesh may have to be taken instead."""
-MOST_MESHES = 3
-"""Meshes whose errors are measured before they are taken from a coarser one alone."""
-HEAD = 7
-"""Numbers at the head of a packed neighbour: rod, symmetry, Taylor terms."""
+UNKNOWN = complex(nan, nan)
+HEAD = 9
+"""Numbers at the head of a packed neighbour: rod, symmetry, Taylor terms, leading eigenvalue."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,55 +117,58 @@ def relative_distance(one: StressForm, other: StressForm, name: str) -> float:
 class Neighbour:
     """A cycle, and the mesh on which the next point is solved.
 
-    calibration: of that mesh, or outdated; None where no calibration could be made.
+    calibration: of that mesh, or outdated. leading: eigenvalue of the straight rod, 1/tau2, not below the
+    real axis; NaN where it is not known.
     """
 
     branch: Followed
     next_mesh: OrbitMesh
-    calibration: Calibration | None
+    calibration: Calibration
+    leading: complex = UNKNOWN
 
     @classmethod
-    def of(cls, found: RefinedCycle, before: "Neighbour | None", name: str, accuracy: float) -> "Neighbour":
+    def of(
+        cls,
+        found: RefinedCycle,
+        before: "Neighbour | None",
+        name: str,
+        accuracy: float,
+        leading: complex = UNKNOWN,
+    ) -> "Neighbour":
         """From a cycle that was solved with its tangent; before: its own neighbour."""
         branch = followed_from(found.fine, before.branch if before else None, name)
-        return cls(branch, *_next_mesh(found, accuracy))
+        return cls(branch, *_next_mesh(found, accuracy), leading)
 
     def pack(self) -> Array:
         """All of it as one flat array, shape (length,)."""
         orbit, form = self.branch.orbit, self.branch.orbit.form
         rod, terms = form.rod, len(self.branch.taylor)
         head = [rod.F, rod.k1, rod.k2, rod.gamma3, form.gamma1, orbit.symmetric, terms]
+        head += [self.leading.real, self.leading.imag]
         meshes = (mesh_of(orbit), self.next_mesh)
-        known = self.calibration.pack() if self.calibration else np.full(LENGTH, nan)
+        known = self.calibration.pack()
         return np.concatenate([head, *map(astuple, meshes), known, orbit.values, self.branch.taylor.ravel()])
 
     @classmethod
     def unpack(cls, flat: Array) -> "Neighbour":
         """The reverse of `pack`, from its array, shape (length,)."""
         parts = np.split(flat.copy(), np.cumsum([HEAD, 4, 4, LENGTH]))
-        F, k1, k2, gamma3, gamma1, symmetric, terms = map(float, parts[0])
+        F, k1, k2, gamma3, gamma1, symmetric, terms, real, imag = map(float, parts[0])
         here, there = (OrbitMesh(*map(int, part)) for part in parts[1:3])
-        calibration = None if np.isnan(parts[3]).any() else Calibration.unpack(parts[3])
         form = StressForm(Rod(F, k1, k2, gamma3), gamma1, here.grid)
         values = parts[4].reshape(1 + int(terms), -1)
         orbit = Orbit(form, bool(symmetric), here.intervals, here.stages, values[0])
-        return cls(Followed(orbit, values[1:]), there, calibration)
+        return cls(Followed(orbit, values[1:]), there, Calibration.unpack(parts[3]), complex(real, imag))
 
 
-def _next_mesh(found: RefinedCycle, accuracy: float) -> tuple[OrbitMesh, Calibration | None]:
-    """The mesh for the cycle after this one, and its calibration if there is one."""
+def _next_mesh(found: RefinedCycle, accuracy: float) -> tuple[OrbitMesh, Calibration]:
+    """The mesh for the cycle after this one, and its calibration, or an outdated one."""
     here, known, errors = mesh_of(found.orbit), found.calibration, found.errors
-    if known is None:
-        try:
-            known = calibrated(found.fine, accuracy)
-        except Unsolvable:
-            return here, None
-        errors = known.errors(accuracy)
     fits = errors.largest <= ENOUGH * accuracy
     if known.reach and not fits:
         return here, known.outdated
-    if not fits or errors.largest < SCARCELY * accuracy:
-        planned = known.planned(here, accuracy)
+    if not fits or not known.reach:
+        planned = known.planned(accuracy)
         if not fits or planned.cost <= WORTHWHILE * here.cost:
             return planned, known.outdated
     return here, known
@@ -180,34 +182,12 @@ def followed_cycle(neighbour: Neighbour, form: StressForm, name: str, accuracy: 
     if form.omega_unknown != neighbour.branch.orbit.form.omega_unknown:
         raise Unsolvable("the neighbour has other unknowns")
     found = _converged(neighbour, form, name, accuracy)
-    known = neighbour.calibration
-    if known:
-        known = known.at(found.orbit, relative_distance(neighbour.branch.orbit.form, form, name))
-        if known.holds:
-            cycle = judged_by(known, found, accuracy)
-            if cycle.errors.largest <= accuracy:
-                return cycle
-    try:
-        return _calibrated_cycle(found, known, name, accuracy)
-    except Unsolvable:  # next to a Hopf point coarser meshes may have no cycle
-        return refined_from(found.orbit, accuracy, mesh_of(found.orbit), name)
-
-
-def _calibrated_cycle(
-    found: Converged, before: Calibration | None, name: str, accuracy: float
-) -> RefinedCycle:
-    """The cycle with errors that are measured; on finer meshes, if need be; raises Unsolvable."""
-    tolerance, distance = newton_tolerance(accuracy), matrix_distance(accuracy)
-    for _ in range(MOST_MESHES):
-        known, here = calibrated(found, accuracy, before), mesh_of(found.orbit)
+    known = neighbour.calibration.at(found.orbit, relative_distance(neighbour.branch.orbit.form, form, name))
+    if known.holds:
         cycle = judged_by(known, found, accuracy)
         if cycle.errors.largest <= accuracy:
             return cycle
-        before, aim = None, finer_mesh(here, known.planned(here, accuracy))
-        if not aim.allowed:
-            break
-        found = at_orbit(newton(aim.carry(found.orbit), tolerance, name), distance, name)
-    raise Unsolvable("no mesh was fine enough")
+    return calibrated_cycle(found, known, accuracy, name)
 
 
 def _converged(neighbour: Neighbour, form: StressForm, name: str, accuracy: float) -> Converged:

@@ -27,6 +27,8 @@ then about ten times those of the fine one, and it hardly matters which of them 
 LEAST_ORDER, LEAST_INTERVALS, MOST_INTERVALS = 8, 4, 256
 LEAST_DECAY, LARGEST_DECAY = 0.2, 1.2
 """Bounds of the decay of the coefficients in space, per order, natural logarithm."""
+LASTING = 4
+"""Coefficients at the end whose size changes smoothly from one orbit to the next."""
 MOST_STATE_UNKNOWNS = 400
 """Unknowns of a state beyond which a cycle is given up: a second for each of Newton's steps."""
 
@@ -101,11 +103,6 @@ def tails_of(orbit: Orbit) -> Tails:
     return Tails(float(last.max()), _tail_in_time(orbit), _decay(c))
 
 
-def space_decay(orbit: Orbit) -> float:
-    """Of the coefficients in space, per order, natural logarithm."""
-    return _decay(_space_coefficients(orbit))
-
-
 @compiled_for_vectors
 def _decay(c: Array) -> float:
     """The mean slope of the envelope of coefficients, (fields, p + 1), over their upper half."""
@@ -153,15 +150,73 @@ def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array
     return largest
 
 
+def lasting_tails(orbit: Orbit) -> Array:
+    """Tails in space and in time that change as smoothly as an orbit does, (2,); in units of largest values.
+
+    A last coefficient alone comes and goes: in space the last LASTING of all points stand for their envelope.
+    """
+    grid = orbit.form.mesh
+    last = np.ascontiguousarray(_analysis_on_element(grid.order)[:, -LASTING:])
+    return np.array([largest_end(orbit.points, grid.elements, last), _tail_in_time(orbit)])
+
+
+@compiled_for_vectors
+def largest_end(points: Array, elements: int, analysis: Array) -> float:
+    """The largest end of the coefficients in an element of n1, n2 or m3, in units of its largest value.
+
+    points: (m, n); analysis: from an element's nodes to the coefficients at the end, (p + 1, count).
+    """
+    size, count = analysis.shape
+    nodes, c, worst = elements * (size - 1), np.empty(count), 0.0
+    for a in range(3):
+        largest, end = 0.0, 0.0
+        for k in range(len(points)):
+            for e in range(elements):
+                first = a * nodes + e * (size - 1)
+                known = size if e < elements - 1 else size - 1  # at the tip stresses vanish
+                c[:] = 0.0
+                for j in range(known):
+                    stress = points[k, first + j]
+                    largest = max(largest, abs(stress))
+                    for i in range(count):
+                        c[i] += stress * analysis[j, i]
+                end = max(end, (c * c).sum())
+        worst = max(worst, np.sqrt(end) / max(largest, 1e-300))
+    return worst
+
+
 def _tail_in_time(orbit: Orbit) -> float:
     """Of n1, n2 and m3 the worst."""
-    K, s, _ = orbit.states.shape
-    n = orbit.form.mesh.nodes
-    values = np.concatenate([orbit.states_at_starts[:, None], orbit.states], axis=1)[..., : 3 * n]
     row = legendre_analysis(tuple(2 * np.append(0.0, orbit.method.nodes) - 1))[-1]
-    top = np.einsum("j,kjr->kr", row, values).reshape(K, 3, n)
-    sizes = np.linalg.norm(values.reshape(K, s + 1, 3, n), axis=-1).max(axis=(0, 1))
-    return float((np.linalg.norm(top, axis=-1).max(axis=0) / np.maximum(sizes, 1e-300)).max())
+    return largest_tail(orbit.points, row, orbit.form.mesh.nodes)
+
+
+@compiled_for_vectors
+def largest_tail(points: Array, row: Array, nodes: int) -> float:
+    """The largest last coefficient of n1, n2, m3 in an interval, in units of the largest value of each.
+
+    points: start and stages one after the other, (1 + K s, n); row: from an interval's values to that
+    coefficient, (s + 1,). Sizes are those of the vectors of a stress at all nodes.
+    """
+    s, worst = len(row) - 1, 0.0
+    for a in range(3):
+        first = a * nodes
+        largest, tail = 0.0, 0.0
+        for m in range(len(points)):
+            size = 0.0
+            for i in range(first, first + nodes):
+                size += points[m, i] ** 2
+            largest = max(largest, size)
+        for k in range(0, len(points) - 1, s):
+            size = 0.0
+            for i in range(first, first + nodes):
+                top = 0.0
+                for j in range(s + 1):
+                    top += row[j] * points[k + j, i]
+                size += top**2
+            tail = max(tail, size)
+        worst = max(worst, np.sqrt(tail / max(largest, 1e-300)))
+    return float(worst)
 
 
 _analyses: dict[tuple[float, ...], Array] = {}

@@ -1,7 +1,7 @@
 """The cycle to an accuracy that is asked for, on meshes of its own choice.
 
-A cycle is solved on two meshes, first on ones that are good for a few digits. Their errors say which meshes
-reach the accuracy at least cost.
+A cycle is first solved on a mesh that is good for a few digits. How its errors fall (`calibration`) says
+which mesh reaches the accuracy at least cost.
 """
 
 from dataclasses import dataclass, replace
@@ -11,12 +11,11 @@ import numpy as np
 
 from ...arrays import Complex
 from ..point import Unsolvable
-from .calibration import Calibration
-from .cycle_errors import LEAST_CLAIM, CycleErrors, error_ratio, fine_errors
+from .calibration import Calibration, calibrated
+from .cycle_errors import CycleErrors
 from .measures import CyclePath, Measures, measures_of
-from .mesh_plan import planned_mesh
 from .minimal_period import PRESENT, common_divisor, shortened, undecided_divisor
-from .newton import Converged, at_orbit, linearised, multiplier_change, multipliers_of, newton
+from .newton import Converged, linearised, multipliers_of, newton
 from .orbit import Orbit
 from .orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
 from .status import CycleStatus
@@ -24,8 +23,6 @@ from .status import CycleStatus
 MATRIX_SHARE, LEAST_DISTANCE, LARGEST_DISTANCE = 3.0, 1e-7, 1e-5
 """Relative distance of Newton's matrix from the orbit that leaves the multipliers right, in units of the
 accuracy, and its bounds."""
-COARSE_DISTANCE = 1e-3
-"""The same for the coarse mesh, whose multipliers only tell the error of others."""
 MULTIPLIER_FACTOR = 10.0
 """Errors of multipliers in units of that distance, the trivial one's error, and what two meshes tell."""
 LEAST_ACCURACY = 1e-12
@@ -43,18 +40,17 @@ MOST_ROUNDS = 8
 class RefinedCycle:
     """A cycle, its measures, multipliers and errors.
 
-    coarse: the same on a coarser mesh, or calibration, by which the errors are known. multipliers: by
-    descending modulus, the trivial one taken out; trivial_error: its distance from 1.
+    calibration: by which the errors are known. multipliers: by descending modulus, the trivial one taken out;
+    trivial_error: its distance from 1.
     """
 
     fine: Converged
-    coarse: Converged | None
+    calibration: Calibration
     path: CyclePath
     measures: Measures
     multipliers: Complex
     trivial_error: float
     errors: CycleErrors
-    calibration: Calibration | None = None
 
     @property
     def orbit(self) -> Orbit:
@@ -95,18 +91,6 @@ class RefinedCycle:
         return (CycleStatus.cycle if self.stable else CycleStatus.unstable), ""
 
 
-def judged(coarse: Converged, fine: Converged, accuracy: float) -> RefinedCycle:
-    """The cycle on two meshes, with its multipliers and all errors."""
-    path = CyclePath(fine.orbit)
-    errors = fine_errors(CyclePath(coarse.orbit), path, accuracy)
-    multipliers, trivial_error = multipliers_of(fine)
-    moved = multiplier_change(multipliers, multipliers_of(coarse)[0])
-    left = error_ratio(coarse.orbit, fine.orbit) * moved + fine.distance + trivial_error
-    # By luck two meshes agree in a multiplier too.
-    errors = replace(errors, multiplier_error=max(MULTIPLIER_FACTOR * left, LEAST_CLAIM * accuracy))
-    return RefinedCycle(fine, coarse, path, measures_of(path), multipliers, trivial_error, errors)
-
-
 def judged_by(calibration: Calibration, found: Converged, accuracy: float) -> RefinedCycle:
     """The cycle on a mesh that is calibrated."""
     path, errors = CyclePath(found.orbit), calibration.errors(accuracy)
@@ -114,7 +98,7 @@ def judged_by(calibration: Calibration, found: Converged, accuracy: float) -> Re
     by_matrix = MULTIPLIER_FACTOR * (found.distance + trivial_error)
     errors = replace(errors, multiplier_error=errors.multiplier_error + by_matrix)
     measures = measures_of(path)
-    return RefinedCycle(found, None, path, measures, multipliers, trivial_error, errors, calibration)
+    return RefinedCycle(found, calibration, path, measures, multipliers, trivial_error, errors)
 
 
 def refine(orbit: Orbit, accuracy: float, parameter: str | None = None) -> RefinedCycle:
@@ -129,7 +113,8 @@ def refine(orbit: Orbit, accuracy: float, parameter: str | None = None) -> Refin
     while True:
         try:
             near = same_motion(newton(start, NEAR), orbit.size).orbit
-            return refined_from(near, accuracy, wanted_mesh(near, aim, stages_for(accuracy)), parameter)
+            first = _on(wanted_mesh(near, aim, stages_for(accuracy)), near, aim, parameter)
+            return calibrated_cycle(first, None, accuracy, parameter)
         except Unsolvable:
             if aim <= LEAST_ACCURACY or not orbit.symmetric:  # those born at Hopf points are
                 raise
@@ -137,27 +122,34 @@ def refine(orbit: Orbit, accuracy: float, parameter: str | None = None) -> Refin
             start = wanted_mesh(orbit, aim, orbit.stages).carry(orbit)
 
 
-def refined_from(near: Orbit, accuracy: float, aim: OrbitMesh, parameter: str | None) -> RefinedCycle:
-    """The cycle near an orbit, from a mesh on."""
-    size, tolerance, last = near.size, newton_tolerance(accuracy), inf
-    best: tuple[Converged, Converged, CycleErrors] | None = None
+def calibrated_cycle(
+    found: Converged, before: Calibration | None, accuracy: float, parameter: str | None
+) -> RefinedCycle:
+    """A cycle with errors that are measured, on finer meshes if need be; raises Unsolvable.
+
+    before: the calibration of one near by. The best is returned where limits do not allow the accuracy.
+    """
+    best, last = None, inf
     for _ in range(MOST_ROUNDS):
-        coarse = same_motion(newton(aim.coarser.carry(near), tolerance), size)
-        fine = same_motion(newton(aim.carry(coarse.orbit), tolerance), size)
-        near = fine.orbit
-        errors = fine_errors(CyclePath(coarse.orbit), CyclePath(near), accuracy)
-        if best is None or errors.largest < best[2].largest:
-            best = coarse, fine, errors
-        if errors.largest <= accuracy:
+        before = calibrated(found, accuracy, before)
+        cycle = judged_by(before, found, accuracy)
+        if best is None or cycle.errors.largest < best.errors.largest:
+            best = cycle
+        if cycle.errors.largest <= accuracy or cycle.errors.largest > last:
             break
-        finer = finer_mesh(aim, planned_mesh(coarse.orbit, near, accuracy))
-        if not finer.allowed or errors.largest > last:
+        finer, last = finer_mesh(before.mesh, before.planned(accuracy)), LUCK * cycle.errors.largest
+        if not finer.allowed:
             break
-        aim, last = finer, LUCK * errors.largest
+        found = _on(finer, found.orbit, accuracy, parameter)
     if best is None:
         raise Unsolvable("no mesh was fine enough")
-    coarse, fine, _ = best
-    return judged(at_orbit(coarse, COARSE_DISTANCE), linearised(fine.orbit, parameter), accuracy)
+    return best
+
+
+def _on(mesh: OrbitMesh, orbit: Orbit, accuracy: float, parameter: str | None) -> Converged:
+    """The orbit on another mesh, with the matrix at itself, whose multipliers are right to rounding."""
+    found = newton(mesh.carry(orbit), newton_tolerance(accuracy))
+    return linearised(same_motion(found, orbit.size).orbit, parameter)
 
 
 def same_motion(found: Converged, size: float) -> Converged:
@@ -170,25 +162,14 @@ def same_motion(found: Converged, size: float) -> Converged:
 def refined_cycle(orbit: Orbit, accuracy: float, parameter: str | None = None) -> RefinedCycle:
     """The cycle near an orbit, over its minimal period; raises Unsolvable where there is none.
 
-    Where it does not tell whether it is stable, its multipliers are taken at the orbit itself, and if they
-    do not tell either, on meshes for a hundredth of the accuracy.
+    Where its multipliers do not tell whether it is stable, those for a hundredth of the accuracy may.
     """
     found = refine(shortened(orbit), accuracy, parameter)
     if common_divisor(found.path, PRESENT) > 1:
         found = refine(shortened(found.orbit), accuracy, parameter)
     if found.stable is None:
-        found = _sharpened(found, accuracy, parameter)
-    if found.stable is None:
-        finer = max(accuracy / 100, LEAST_ACCURACY)
-        found = _sharpened(refine(found.orbit, finer, parameter), finer, parameter)
+        found = refine(found.orbit, max(accuracy / 100, LEAST_ACCURACY), parameter)
     return found
-
-
-def _sharpened(found: RefinedCycle, accuracy: float, parameter: str | None) -> RefinedCycle:
-    """The same, of two meshes, with matrices made at the orbits themselves."""
-    if found.coarse is None:
-        raise ValueError("the errors of the cycle are calibrated")
-    return judged(linearised(found.coarse.orbit), linearised(found.orbit, parameter), accuracy)
 
 
 def newton_tolerance(accuracy: float) -> float:
