@@ -37,6 +37,7 @@ WHOLE = {
     "thresholds": "parameters: {k1: 200, k2: 1.0e+4, gamma3: 1.0e-4}",
     "phase_diagram": "parameters: {F: [0, 100], k1: [200, 300], k2: 1.0e+4, gamma3: 1.0e-4}",
     "modes": "parameters: {F: 30, k1: 200, k2: 1.0e+4, gamma3: 1.0e-4}",
+    "criticality": "parameters: {k1: 200, k2: 1.0e+4, gamma3: 1.0e-4, gamma1: 1}",
     "limit_cycle": """
         parameters: {F: 50, k1: 1.0e+4, k2: 100, gamma3: 0.01, gamma1: 1}
         limit_cycle: {samples: 64, shapes: 8, transient: 99, time: tau1}""",
@@ -56,7 +57,7 @@ LENGTHS = {
     "point": "lines of the CSV file",
     "mode": "`spectrum.modes`, `modes.modes`",
     "u": "`spectrum.nodes`, `modes.nodes`, `limit_cycle.nodes`",
-    "crossing": "`thresholds.crossings`, `phase_diagram.crossings`",
+    "crossing": "`thresholds.crossings`, `phase_diagram.crossings`, `criticality.crossings`",
     "curve_point": "as found",
     "fold": "as found",
     "harmonic": "`limit_cycle.harmonics`",

@@ -33,7 +33,7 @@ NAMES = [
     "plot",
     "sweep",
 ]
-METHODS = {"parameters", "replace", "spectrum", "thresholds", "modes", "limit_cycle", "cycle"}
+METHODS = {"parameters", "replace", "spectrum", "thresholds", "modes", "limit_cycle", "cycle", "criticality"}
 ROD = {"F": 50, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
 OF_A_RUN = {"seconds", "started", "finished", "config"}
 """What differs between two runs of one config, and its text, which a file has as it was written."""
@@ -188,6 +188,7 @@ def test_keywords_of_a_rods_tasks_are_the_keys_of_the_config():
         "thresholds": options.OfThresholds,
         "modes": options.OfModes,
         "limit_cycle": options.OfLimitCycle,
+        "criticality": options.OfCriticality,
     }
     for task, kind in kinds.items():
         section = CONFIGS[task].model_fields[task].annotation

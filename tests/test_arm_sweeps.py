@@ -23,6 +23,7 @@ QUICK = {
         "crossings": 4,
     },
     "modes": {"arm": LOADED | {"length": ["10 cm", "11 cm"]}, "nodes": 5},
+    "criticality": {"arm": SILICONE | {"radius": ["4 mm", "5 mm"]}, "crossings": 4, "F_max": 60},
     "limit_cycle": {
         "arm": SILICONE | {"force": ["0.19 N", "0.2 N"]},
         "start": "neighbour",
@@ -115,6 +116,7 @@ def test_other_units_ask_for_the_same():
         ("spectrum", {"length": ["9 cm", "10 cm"]}, {"k1": [5, 5000]}, "F must stay below every k1"),
         ("spectrum", {}, {"k1": 5}, "parameters.F reaches 32 and parameters.k1 starts at 5"),
         ("thresholds", {}, {}, "finds the load itself; remove it"),
+        ("criticality", {}, {}, "finds the load itself; remove it"),
         ("phase_diagram", {"young": ["90 kPa", "100 kPa"]}, {}, "arm.young has several values, which move"),
         ("limit_cycle", {"length": ["9 cm", "10 cm"]}, {"start": "neighbour"}, "give one arm, whose"),
     ],

@@ -165,7 +165,8 @@ ALL = "F, k1, k2 and gamma3"
 REFUSED_BY_TASK = [
     (
         "parameters: {F: 1}",
-        "task is missing; it should be spectrum, thresholds, phase_diagram, modes or limit_cycle",
+        "task is missing; it should be spectrum, thresholds, phase_diagram, modes, limit_cycle or "
+        "criticality",
     ),
     ("task: [spectrum]", "task = ['spectrum'] is not allowed; it should be spectrum, thresholds"),
     (thresholds() + "spectrum: {modes: 3}", "spectrum is given but the task is thresholds; remove it"),
@@ -192,6 +193,16 @@ REFUSED_BY_TASK = [
         thresholds("F: 3, k1: 9"),
         "parameters.F is given but the task thresholds finds F itself; remove it and",
     ),
+    (config("criticality", "F: 3, k1: 9"), "parameters.F is given but the task criticality finds F itself"),
+    (
+        config("criticality", "k2: 9, gamma3: 0"),
+        "parameters.k1 is missing; give k1, k2, gamma3 and gamma1, or points: FILE.csv",
+    ),
+    (
+        config("criticality", "k1: 9, k2: 1, gamma3: 0", "F_max: 0"),
+        "F_max = 0 is not allowed; it should be a finite number above 0",
+    ),
+    (config("criticality", "k1: 9, k2: 1, gamma3: 0, gamma1: 0"), "parameters.gamma1 = 0 is not allowed"),
     (thresholds("gamma1: 3, k1: 9"), "parameters.gamma1 is given but the task thresholds does not use it"),
     (thresholds("k2: 9, gamma3: 0"), "parameters.k1 is missing; give k1, k2 and gamma3, or points: FILE.csv"),
     (

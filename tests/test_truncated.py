@@ -22,6 +22,10 @@ parameters: {F: [10, 30], k1: 1.0e4, k2: [50, 1.0e4], gamma3: 1.0e-4}
 task: thresholds
 parameters: {k1: [100, 1.0e4], k2: 1.0e4, gamma3: 1.0e-4}
 """,
+    "criticality": """
+task: criticality
+parameters: {k1: [200, 1.0e4], k2: 1.0e4, gamma3: 1.0e-4}
+""",
     "modes": """
 task: modes
 parameters: {F: [10, 30], k1: 1.0e4, k2: 1.0e4, gamma3: 1.0e-4}

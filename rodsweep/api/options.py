@@ -40,6 +40,14 @@ class OfModes(OfEveryTask, total=False):
     certify: bool
 
 
+class OfCriticality(OfEveryTask, total=False):
+    """Keys of the section `criticality`."""
+
+    F_max: float
+    crossings: int
+    certify: bool
+
+
 class OfLimitCycle(OfEveryTask, total=False):
     """Keys of the section `limit_cycle`."""
 

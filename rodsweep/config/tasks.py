@@ -1,5 +1,6 @@
 """The config of every task, by its name; the section of a task's options has that name too."""
 
+from .criticality import CriticalityConfig
 from .limit_cycle import LimitCycleConfig
 from .modes import ModesConfig
 from .phase_diagram import PhaseDiagramConfig
@@ -13,4 +14,5 @@ CONFIGS: dict[str, type[Config]] = {
     "phase_diagram": PhaseDiagramConfig,
     "modes": ModesConfig,
     "limit_cycle": LimitCycleConfig,
+    "criticality": CriticalityConfig,
 }

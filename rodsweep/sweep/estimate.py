@@ -15,6 +15,9 @@ SPARSE_FROM, SPARSE_MS = 300, 8e-3
 CERTIFICATE_MS = 0.15
 LINE_MS, LINE_CERTIFICATE_MS = 24.0, 16.0
 """Time of a search for crossings along one parameter, a mean over 72 rods: some take four times as long."""
+HOPF_SEARCH_MS, HOPF_CERTIFICATE_MS, HOPF_POINTS_MS = 25.0, 3.0, 18.0
+"""Time of a search for the Hopf points of a rod, of its certificate, and of the normal forms of those that it
+has, two or three: means over 90 rods."""
 MODES_MS, GROWTH_MS = 1.5, 20.0
 """Time that the vectors take beside the eigenvalues, in units of the modes squared, because the mesh grows
 with them, and that the growth takes: means over 24 rods."""
@@ -41,6 +44,12 @@ class Estimate:
 def estimate_lines(lines: int, certify: bool) -> Estimate:
     """The cost of searching `lines` rods for crossings, each along one parameter."""
     return Estimate(lines * 1e-3 * (LINE_MS + (LINE_CERTIFICATE_MS if certify else 0)))
+
+
+def estimate_criticality(rods: int, certify: bool) -> Estimate:
+    """The cost of the Hopf points of `rods` rods and their normal forms."""
+    each = HOPF_SEARCH_MS + HOPF_POINTS_MS + (HOPF_CERTIFICATE_MS if certify else 0)
+    return Estimate(rods * 1e-3 * each)
 
 
 def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> Estimate:

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ...sweep.grid import Points
+from .criticality import CriticalityTask
 from .limit_cycle import LimitCycleTask
 from .modes import ModesTask
 from .phase_diagram import PhaseDiagramTask
@@ -21,5 +22,6 @@ TASKS: dict[str, Callable[[Any, Points], Task]] = {
     "phase_diagram": PhaseDiagramTask,
     "modes": ModesTask,
     "limit_cycle": LimitCycleTask,
+    "criticality": CriticalityTask,
 }
 """How a task is made of its config and points; InputError for what only the task can know to be wrong."""

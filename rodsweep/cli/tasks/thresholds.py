@@ -13,6 +13,7 @@ from .protocol import Part, Solver
 
 if TYPE_CHECKING:
     from ...solve.changes.thresholds import Thresholds
+    from ...solve.hopf.criticality import Criticality
 
 EVENTS = {"onset": "growth_rate", "hopf": "frequency", "restabilization": "frequency"}
 """Crossings of which the first one is a threshold, and what the file has of it beside F."""
@@ -64,7 +65,7 @@ def record(result: "Thresholds", most: int) -> dict[str, Any]:
     return values | search_record(result, most, "crossing_F")
 
 
-def search_record(result: "Thresholds", most: int, at: str) -> dict[str, Any]:
+def search_record(result: "Thresholds | Criticality", most: int, at: str) -> dict[str, Any]:
     """The variables of a search: at most `most` crossings, whose place is the variable `at`."""
     found, crossings = result.transitions, result.crossings[:most]
     columns: dict[str, tuple[str, float]] = {

@@ -12,6 +12,7 @@ from matplotlib import rc_params_from_file
 
 from ...errors import EnvironmentLacks, InputError
 from ...results.file.view import View
+from .criticality import draw_criticality
 from .limit_cycle import draw_limit_cycle
 from .modes import draw_modes
 from .phase_diagram import draw_phase_diagram
@@ -26,6 +27,7 @@ FIGURES: dict[str, Callable[[FigureRequest], str]] = {
     "phase_diagram": draw_phase_diagram,
     "modes": draw_modes,
     "limit_cycle": draw_limit_cycle,
+    "criticality": draw_criticality,
 }
 """How each task draws, which the first file names: writes the figure and returns what it shows."""
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from . import limit_cycle, modes, phase_diagram, spectrum, thresholds
+from . import criticality, limit_cycle, modes, phase_diagram, spectrum, thresholds
 from .arm import with_si
 from .variables import Increase, Layout
 
@@ -13,6 +13,7 @@ LAYOUTS: dict[str, Callable[[dict[str, Any]], Layout]] = {
     "phase_diagram": phase_diagram.layout,
     "modes": modes.layout,
     "limit_cycle": limit_cycle.layout,
+    "criticality": criticality.layout,
 }
 
 
@@ -22,6 +23,7 @@ INCREASES: dict[str, dict[str, Increase]] = {
     "phase_diagram": phase_diagram.INCREASES,
     "modes": modes.INCREASES,
     "limit_cycle": limit_cycle.INCREASES,
+    "criticality": criticality.INCREASES,
 }
 """The options of every task that ask for more of a point; another value of any other makes another file."""
 

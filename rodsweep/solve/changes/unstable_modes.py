@@ -4,6 +4,7 @@ The covering and the directions in which pairs cross the axis give the number af
 winding number confirms it at both ends and between.
 """
 
+import math
 from dataclasses import dataclass, replace
 from enum import IntEnum
 
@@ -42,7 +43,8 @@ class Kind(IntEnum):
 class Crossing:
     """One change: the value of the parameter with its error, and the eigenvalue there, in 1/tau2.
 
-    unstable_after: unstable modes just beyond it, -1 where that is not known.
+    unstable_after: unstable modes just beyond it, -1 where that is not known. frequency_error: of the
+    frequency where a pair crosses the axis, nan elsewhere.
     """
 
     at: float
@@ -51,6 +53,7 @@ class Crossing:
     growth_rate: float
     error: float
     unstable_after: int = -1
+    frequency_error: float = math.nan
 
 
 class Counts:

@@ -19,11 +19,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import lu_factor, lu_solve
 
 from ...arrays import Array, Complex
 from ...determinant.value import newton_correction
 from ...discretization.mixed_form import MixedForm, mixed_form
-from ...discretization.resolution import resolution_for
+from ...discretization.resolution import Resolution, resolution_for
 from ...model.rod import Rod
 from ..point import Unsolvable
 
@@ -124,13 +125,27 @@ def accurate_normal_form(rod: Rod, gamma1: float, w: complex, accuracy: float) -
 
     Raises Unsolvable where w is no eigenvalue to this accuracy, or no reasonable mesh is fine enough.
     """
+    return normal_form_on(resolution_of(rod, w, accuracy), rod, gamma1, w, accuracy)
+
+
+def resolution_of(rod: Rod, w: complex, accuracy: float) -> Resolution:
+    """A mesh that gives c of the eigenvalue w to a relative accuracy, by the rule for eigenvalues."""
     wave_number = newton_correction(w, rod.coefficients)[2]
-    resolution = resolution_for(HARMONIC * wave_number, SAFETY * accuracy)
+    return resolution_for(HARMONIC * wave_number, SAFETY * accuracy)
+
+
+def normal_form_on(
+    resolution: Resolution, rod: Rod, gamma1: float, w: complex, accuracy: float
+) -> NormalForm:
+    """The normal form of the eigenvalue w on a mesh.
+
+    Raises Unsolvable where w is no eigenvalue to a relative accuracy, or the mesh is too fine to be solved.
+    """
     nodes = resolution.elements * resolution.order
     if nodes > MOST_NODES:
         raise Unsolvable(f"the normal form at F = {rod.F:g} needs {nodes} nodes, more than {MOST_NODES}")
     normal = normal_form(mixed_form(rod, gamma1, resolution.elements, resolution.order), w)
-    if abs(normal.w - w) > max(accuracy, FOUND) * abs(w):
+    if not abs(normal.w - w) <= max(accuracy, FOUND) * abs(w):
         raise Unsolvable(f"{w:.12g} is no eigenvalue at F = {rod.F:g}; the nearest is {normal.w:.12g}")
     return normal
 
@@ -146,10 +161,11 @@ def _modes(
     w = complex(guess)
     for _ in range(MOST_SHIFTS):
         shift = w * (1 + OFFSET)
-        inverse = np.linalg.inv(A - np.diag(shift * M))
+        factors = lu_factor(A - np.diag(shift * M), overwrite_a=True, check_finite=False)
         q, p = np.ones(len(M), complex), np.ones(len(M), complex)
         for _ in range(ITERATIONS):
-            q, p = inverse @ (M * q), inverse.conj().T @ (M * p)
+            q = lu_solve(factors, M * q, check_finite=False)
+            p = lu_solve(factors, M * p, trans=2, check_finite=False)
             q, p = q / np.abs(q).max(), p / np.abs(p).max()
         w = complex(np.vdot(p, A @ q) / np.vdot(p, M * q))
         if abs(w - shift) <= FOUND * abs(w):

@@ -1,0 +1,130 @@
+"""On which side of its Hopf points a rod's cycles are born, and how fast they grow: a map, or a line."""
+
+from math import floor, log10
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, Normalize
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from ...arrays import Array
+from ...errors import InputError
+from ...results.file.view import View
+from . import style
+from .cycle.point_map import PointMap, cell_edges, point_map, varied_parameters
+from .request import FigureRequest
+
+MARKS = {
+    -1: ("supercritical", style.FIRST, "o"),
+    1: ("subcritical", style.SECOND, "s"),
+    0: ("undecided", "0.3", "x"),
+}
+"""Word, colour and marker of a Hopf point, by its criticality."""
+CLASSES = (
+    ("no Hopf point with a normal form", "#DDDDDD"),
+    ("supercritical", "#9CC3E4"),
+    ("supercritical, a later one subcritical", "#4C8FC4"),
+    ("subcritical", style.SECOND),
+    ("undecided", "0.4"),
+)
+"""What a rod's first Hopf point is, and its colour: told apart by all, and in grey."""
+DECADE = 10
+"""Ratio of the largest to the smallest |a| above which their colours are logarithmic."""
+FEW = 0.1
+"""Share of the Hopf points whose |Re c| is on the linear part of an axis that has both signs."""
+
+
+def draw_criticality(request: FigureRequest) -> str:
+    """A map of the first Hopf points over two parameters; over one, a and Re c of all."""
+    view = request.only_view()
+    style.need(view, np.isfinite(view.variables["criticality"]).any(), "Hopf point with a normal form")
+    varied = varied_parameters(view)
+    if len(varied) == 1:
+        return request.write(_along(view, varied[0]), f"the normal forms of Hopf points along {varied[0]}")
+    if len(varied) != 2:
+        names = ", ".join(varied) or "none"
+        raise InputError(f"{view.path} varies {len(varied)} parameters ({names}); a figure needs one or two")
+    points = point_map(view)
+    shown = f"the normal form of the first Hopf point over {' and '.join(points.names)}{points.left_out}"
+    return request.write(_map(view, points), shown)
+
+
+def _by_point(view: View, name: str) -> Array:
+    """A variable along `crossing`, shape (points, crossings)."""
+    values = view.variables[name]
+    return values.reshape(-1, values.shape[-1])
+
+
+def _along(view: View, name: str) -> Figure:
+    """a above Re c against one parameter, each Hopf point marked by its criticality."""
+    x = view.point_columns[name]
+    keep = np.isfinite(x)
+    if np.count_nonzero(keep) < 2:
+        raise InputError(f"{view.path} has fewer than two rods with a finite {name}, which make no figure")
+    figure = Figure(figsize=(5.6, 5.4), layout="constrained")
+    upper, lower = figure.subplots(2, 1, sharex=True)
+    side, a, c = (
+        _by_point(view, key)[keep] for key in ("criticality", "amplitude_coefficient", "landau_real")
+    )
+    style.need(view, np.isfinite(c).any(), f"Hopf point with a finite {name}")
+    lower.set_yscale("symlog", linthresh=10.0 ** floor(log10(float(np.nanquantile(np.abs(c), FEW)))))
+    for axes, values in ((upper, a), (lower, c)):
+        handles = _mark(axes, x[keep], values, side)
+        axes.axhline(0, color="0.6", lw=0.8, zorder=0)
+        style.scale(axes, "x", np.sort(x[keep]))
+    upper.set_ylabel("amplitude coefficient $a/L$")
+    lower.set(ylabel=r"$\mathrm{Re}\,c$ in $1/(\tau_2 L^2)$", xlabel=style.LABELS[name])
+    style.legend_below(figure, handles, columns=3)
+    figure.suptitle(style.heading(view, style.fixed_text(view, name)), fontsize=9)
+    return figure
+
+
+def _mark(axes: Axes, x: Array, values: Array, side: Array) -> list[Line2D]:
+    """Marks every Hopf point, x of the shape (rods,), the others (rods, crossings); what the legend says."""
+    across = np.broadcast_to(x[:, None], values.shape)
+    handles = []
+    for number, (word, colour, marker) in MARKS.items():
+        there = side == number
+        if there.any():
+            (drawn,) = axes.plot(across[there], values[there], marker, color=colour, ms=3.5, label=word)
+            handles.append(drawn)
+    return handles
+
+
+def _map(view: View, points: PointMap) -> Figure:
+    """The criticality of the first Hopf points, and how fast their cycles grow."""
+    side = _by_point(view, "criticality")[points.at]
+    a = np.abs(_by_point(view, "amplitude_coefficient")[:, 0][points.at])
+    style.need(view, np.isfinite(a).any(), "first Hopf point with a normal form")
+    figure = Figure(figsize=(9.4, 4.5), layout="constrained")
+    panels = figure.subplots(1, 2, sharex=True, sharey=True)
+    edges = cell_edges(points.x), cell_edges(points.y)
+    classes = _classes(side)
+    norm = BoundaryNorm(np.arange(len(CLASSES) + 1) - 0.5, len(CLASSES))
+    colours = ListedColormap([colour for _, colour in CLASSES])
+    panels[0].pcolormesh(*edges, classes, cmap=colours, norm=norm, rasterized=True)
+    low, high = float(np.nanmin(a)), float(np.nanmax(a))
+    sizes = LogNorm(low, high) if high > DECADE * low > 0 else Normalize(low, high)
+    mesh = panels[1].pcolormesh(*edges, np.ma.masked_invalid(a), norm=sizes, rasterized=True)
+    panels[1].set_facecolor(CLASSES[0][1])
+    bar = figure.colorbar(mesh, ax=panels[1], label="amplitude coefficient $|a|/L$")
+    if isinstance(mesh.norm, LogNorm):
+        style.label_few_decades(bar.ax.yaxis, low, high)
+    for axes in panels:
+        style.scale(axes, "x", points.x)
+        style.scale(axes, "y", points.y)
+        axes.set_xlabel(style.LABELS[points.names[0]])
+    panels[0].set_ylabel(style.LABELS[points.names[1]])
+    there = [Patch(facecolor=c, label=word) for i, (word, c) in enumerate(CLASSES) if (classes == i).any()]
+    style.legend_below(figure, there, columns=3)
+    figure.suptitle(style.heading(view, style.parameter_text(points.shared)), fontsize=9)
+    return figure
+
+
+def _classes(side: Array) -> Array:
+    """The place in CLASSES of every rod from the criticality of its Hopf points, (ny, nx, crossings)."""
+    first, later = side[..., 0], (side[..., 1:] == 1).any(axis=-1)
+    classes = np.select([first == -1, first == 1, first == 0], [1.0, 3.0, 4.0], 0.0)
+    return np.where((first == -1) & later, 2.0, classes)

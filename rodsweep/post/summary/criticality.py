@@ -1,0 +1,134 @@
+"""What `rodsweep show` says of Hopf points and the cycles born there: on which side, how large, how sure."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...results.file.view import View
+from ...results.layouts.thresholds import CROSSING_KINDS
+from .ranges import span, to_error
+
+SIDES = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
+"""What a Hopf point is called, by its criticality."""
+NAMED_RODS = 8
+"""Rods with subcritical Hopf points that are named."""
+
+
+def criticality_summary(view: View, done: np.ndarray) -> list[str]:
+    """The task's lines about the points that are `done`, a mask of the points' shape."""
+    v = view.variables
+    if done.size == 1:
+        return [*_hopf_lines(view), _searched(view, done)]
+    side = v["criticality"][done]
+    first, known = side[:, 0], np.isfinite(side)
+    with_hopf = int((v["crossing_count"][done] > 0).sum())
+    lines = [f"Hopf points at {with_hopf} of {int(done.sum())} rods"]
+    if not known.any():
+        return [*lines, _searched(view, done)]
+    lines += [
+        f"first Hopf point: {_counts(first)}; F = {span(v['crossing_F'][done][:, 0])}, a = "
+        f"{span(v['amplitude_coefficient'][done][:, 0])} L",
+        f"all Hopf points: {_counts(side)}; a = {span(v['amplitude_coefficient'][done])} L, b = "
+        f"{span(v['frequency_slope'][done])} L^2/(k3 tau2)",
+        *_subcritical_lines(view),
+        f"worst relative errors: c {_worst(v['landau_error'][done])}, dw/dF "
+        f"{_worst(v['growth_slope_error'][done])}, a {_worst(v['amplitude_coefficient_error'][done])}, b "
+        f"{_worst(v['frequency_slope_error'][done])}",
+    ]
+    return [*lines, _searched(view, done)]
+
+
+def _hopf_lines(view: View) -> Iterator[str]:
+    """Every Hopf point of the one rod of a file, each number to its error."""
+    v = {name: view.variables[name].ravel() for name in view.variables}
+    for i in np.flatnonzero(v["crossing_kind"] > 0):
+        F = to_error(v["crossing_F"][i], v["crossing_error"][i])
+        frequency = to_error(v["crossing_frequency"][i], v["crossing_frequency_error"][i])
+        kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
+        after = int(v["unstable_after"][i])
+        yield (
+            f"{kind} at F = {F}, frequency {frequency} 1/tau2; unstable modes above: "
+            f"{after if after >= 0 else 'not known'}"
+        )
+        if not np.isfinite(v["landau_error"][i]):
+            yield "  its normal form is not known"
+            continue
+        yield f"  {SIDES[int(v['criticality'][i])]}: {_words(v, int(i))}"
+        for name, symbol, unit in (
+            ("landau", "c", "1/(tau2 L^2)"),
+            ("growth_slope", "dw/dF", "L^2/(k3 tau2)"),
+        ):
+            value = complex(v[f"{name}_real"][i], v[f"{name}_imag"][i])
+            error = abs(value) * v[f"{name}_error"][i]
+            real, imaginary = to_error(value.real, error), to_error(value.imag, error)
+            yield f"  Re {symbol} = {real}, Im {symbol} = {imaginary} {unit}"
+        for name, symbol, unit in (
+            ("amplitude_coefficient", "a", "L"),
+            ("frequency_slope", "b", "L^2/(k3 tau2)"),
+        ):
+            value = v[name][i]
+            yield f"  {symbol} = {to_error(value, abs(value) * v[f'{name}_error'][i])} {unit}"
+
+
+def _words(v: dict[str, np.ndarray], i: int) -> str:
+    """What is born at the i-th Hopf point of the one rod: on which side of it, and whether it is stable."""
+    side = int(v["criticality"][i])
+    if side == 0:
+        return "the sign of Re c is within its error"
+    above = "F above it" if v["amplitude_coefficient"][i] > 0 else "F below it"
+    after = int(v["unstable_after"][i])
+    hopf = CROSSING_KINDS[int(v["crossing_kind"][i])] == "hopf"
+    others = after - 2 if hopf else after
+    if side > 0:
+        return f"unstable cycles at {above}"
+    if after < 0:
+        return f"cycles at {above}"
+    return (
+        f"stable cycles at {above}" if others == 0 else f"cycles at {above}, unstable by {others} other modes"
+    )
+
+
+def _subcritical_lines(view: View) -> Iterator[str]:
+    """The rods with subcritical Hopf points, some by name: those before the others where the first one is."""
+    v = view.variables
+    extent = v["criticality"].shape[-1]
+    side = v["criticality"].reshape(-1, extent)
+    rods = np.flatnonzero((side == 1).any(axis=-1))
+    rods = rods[np.argsort(side[rods, 0] != 1, kind="stable")]
+    columns = view.point_columns
+    for rod in rods[:NAMED_RODS]:
+        name = ", ".join(f"{key} = {column[rod]:.6g}" for key, column in columns.items())
+        places = np.flatnonzero(side[rod] == 1)
+        forces = v["crossing_F"].reshape(-1, extent)[rod][places]
+        a = v["amplitude_coefficient"].reshape(-1, extent)[rod][places]
+        each = ", ".join(
+            f"F = {F:.9g} (Hopf point {i + 1}, a = {x:.6g})"
+            for F, i, x in zip(forces, places, a, strict=True)
+        )
+        yield f"subcritical for {name}: {each}"
+    if len(rods) > NAMED_RODS:
+        yield f"and subcritical for {len(rods) - NAMED_RODS} rods more"
+
+
+def _counts(side: np.ndarray) -> str:
+    """How many Hopf points are of each criticality."""
+    counts = {word: int((side == value).sum()) for value, word in SIDES.items()}
+    return ", ".join(f"{count} {word}" for word, count in counts.items() if count) or "none known"
+
+
+def _searched(view: View, done: np.ndarray) -> str:
+    """How far was searched, and whether all is found."""
+    v = view.variables
+    certified, rods = int(v["certified"][done].sum()), int(done.sum())
+    found, stored = int(v["crossing_count"][done].sum()), int((v["crossing_kind"][done] > 0).sum())
+    more = f"; {found - stored} more are not stored, raise the option crossings" * (found > stored)
+    return (
+        f"searched up to F = {span(v['F_end'][done])}; that no Hopf point is missing is proved at "
+        f"{certified} of {rods} rods{more}"
+    )
+
+
+def _worst(values: np.ndarray) -> str:
+    """The largest of the values that there are."""
+    known = values[~np.isnan(values)]
+    return f"{known.max():.1e}" if known.size else "not known"

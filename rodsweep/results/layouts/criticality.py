@@ -1,0 +1,67 @@
+"""What the file of the task criticality holds: the Hopf points of every rod and their normal forms."""
+
+from typing import Any
+
+from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS
+from .thresholds import CROSSINGS, search_variables
+from .variables import ANEW, Layout, Variable, real, whole
+
+FORCE = PARAMETERS["F"].unit
+SLOPE = "L^2/(k3 tau2)"
+LANDAU = "1/(tau2 L^2)"
+ALONG = "crossing"
+OF_NO_HOPF_POINT = ("crossing_growth_rate", "solves")
+"""Variables of a search that a search for Hopf points has not: 0 at all of them."""
+NORMAL_FORM = (
+    real("crossing_frequency_error", "1/tau2", "estimate of the absolute error of crossing_frequency", ALONG),
+    real("growth_slope_real", SLOPE, "d(growth rate)/dF of the pair at the crossing", ALONG),
+    real("growth_slope_imag", SLOPE, "d(frequency)/dF of the pair at the crossing", ALONG),
+    real("growth_slope_error", "1", "estimate of the error of the complex slope, relative to it", ALONG),
+    real("landau_real", LANDAU, "real part of the Landau coefficient c, for the tip's y = Re Z", ALONG),
+    real("landau_imag", LANDAU, "imaginary part of the Landau coefficient c", ALONG),
+    real("landau_error", "1", "estimate of the error of the complex c, relative to it", ALONG),
+    real(
+        "amplitude_coefficient",
+        "L",
+        "a: largest tip y of the cycles near by is |a| sqrt(|F - F_H|/F_H); below 0: cycles at F < F_H",
+        ALONG,
+    ),
+    real(
+        "amplitude_coefficient_error",
+        "1",
+        "estimate of the relative error of amplitude_coefficient",
+        ALONG,
+    ),
+    real(
+        "frequency_slope",
+        SLOPE,
+        "b: frequency of the cycles near by is that of the crossing + b (F - F_H)",
+        ALONG,
+    ),
+    real("frequency_slope_error", "1", "estimate of the relative error of frequency_slope", ALONG),
+    real(
+        "criticality",
+        "1",
+        "-1: supercritical, cycles where the pair grows, stable unless other modes grow; 1: subcritical; "
+        "0: the sign of landau_real is within its error",
+        ALONG,
+    ),
+    Variable("elements", "<i2", 0, "1", "spectral elements used", (ALONG,)),
+    Variable("order", "<i2", 0, "1", "polynomial order used", (ALONG,)),
+)
+
+INCREASES = {"crossings": CROSSINGS, "certify": ANEW}
+
+
+def layout(config: dict[str, Any]) -> Layout:
+    """The layout that a resolved config asks for."""
+    search = [v for v in search_variables("F", "crossing_F") if v.name not in OF_NO_HOPF_POINT]
+    names = [v.name for v in search]
+    after = names.index("unstable_after") + 1
+    ends = (
+        real("F_end", FORCE, "F up to which was searched"),
+        whole("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
+    )
+    variables = (*search[:after], *NORMAL_FORM, *ends, *search[after:])
+    parameters = tuple(name for name in NONLINEAR_PARAMETERS if name != "F")
+    return Layout(variables, {ALONG: config["criticality"]["crossings"]}, parameters)

@@ -1,0 +1,158 @@
+"""The task criticality for one rod: all its Hopf points, and on which side each bears its cycles.
+
+The Hopf points are those of `task: thresholds`, proved complete by the same covering; gamma1 moves none of
+them, so that neighbours along it share one search.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+from ...determinant.parameter_path import Path
+from ...model.rod import Rod
+from ..changes.along_path import Transitions, pair_crossings
+from ..changes.thresholds import SHORT_OF_CRUSHED
+from ..changes.unstable_modes import Crossing
+from ..point import FAILURES, cause_of, solved
+from ..status import PointStatus
+from .hopf_coefficients import HopfCoefficients, hopf_coefficients
+
+SEARCHES_KEPT = 8
+"""Rods whose Hopf points are remembered for their neighbours along gamma1."""
+
+
+class CriticalityStatus(PointStatus):
+    """Outcome of one rod: of the search for its Hopf points, and of their coefficients."""
+
+    ok = 0, "every Hopf point is found, and its coefficients are as accurate as asked for", True
+    not_certified = (
+        1,
+        "the coefficients are accurate, but a count of the unstable modes between the Hopf points could not "
+        "be decided or does not agree; `certify: false` accepts that",
+    )
+    window_open = (
+        2,
+        "within the open range two Hopf points are about to meet, so it is undecided whether a window of "
+        "flutter opens and closes there; those of all others are stored; move a parameter slightly",
+    )
+    accuracy_not_reached = (
+        3,
+        "a Hopf point or a coefficient is less accurate than asked for and its error says by how much; ask "
+        "for a lower accuracy there",
+    )
+    list_full = 4, "there are more Hopf points than the list holds; raise the option crossings"
+    failed = 5, "the search for Hopf points failed and nothing is stored; the log has its message"
+    coefficients_failed = (
+        6,
+        "a Hopf point has no coefficients, those of the others are stored; the log has its message",
+    )
+    sign_undecided = (
+        7,
+        "at a Hopf point the sign of Re c is within its error, next to a generalised Hopf point, where c is "
+        "right and on which side the cycles are is not known; move a parameter slightly",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class CriticalityRequest:
+    """What is asked of every rod: the largest force, a relative accuracy of the coefficients, a proof."""
+
+    F_max: float
+    accuracy: float
+    certify: bool
+    crossings: int
+    """Most Hopf points that will be kept."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Criticality:
+    """The Hopf points of a rod up to the force `end`, and the coefficients of those that are kept."""
+
+    status: CriticalityStatus
+    transitions: Transitions
+    coefficients: tuple[HopfCoefficients, ...]
+    end: float
+    seconds: float = 0.0
+    message: str = ""
+
+    @property
+    def crossings(self) -> tuple[Crossing, ...]:
+        """All Hopf points in increasing order of the force, kept or not."""
+        return self.transitions.crossings
+
+
+@dataclass(frozen=True, slots=True)
+class RodInFluid:
+    """A rod without a force: k1, k2 in k3/L^2, gamma3 in gamma2 L^2, gamma1 in gamma2."""
+
+    k1: float
+    k2: float
+    gamma3: float
+    gamma1: float = 1.0
+
+
+def solve_criticality(rod: RodInFluid, request: CriticalityRequest) -> Criticality:
+    """All Hopf points of one rod with their coefficients; failures are a status, never an exception."""
+    end = min(request.F_max, rod.k1 * (1 - SHORT_OF_CRUSHED))
+
+    def search() -> Criticality:
+        found = _hopf_points(rod.k1, rod.k2, rod.gamma3, end, request.certify)
+        coefficients = tuple(
+            _coefficients(rod, hopf, request) for hopf in found.crossings[: request.crossings]
+        )
+        status, message = _judged(found, coefficients, request)
+        return Criticality(
+            status=status, transitions=found, coefficients=coefficients, end=end, message=message
+        )
+
+    return solved(search, lambda cause: _nothing(end, cause))
+
+
+def warm_up() -> None:
+    """Loads what is compiled and created at first use, so that no point pays for it."""
+    solve_criticality(RodInFluid(1e4, 1e4, 1e-4), CriticalityRequest(40.0, 1e-8, True, 4))
+
+
+@lru_cache(maxsize=SEARCHES_KEPT)
+def _hopf_points(k1: float, k2: float, gamma3: float, end: float, certify: bool) -> Transitions:
+    return pair_crossings(Path(Rod(0.0, k1, k2, gamma3), "F"), 0.0, end, certify)
+
+
+def _coefficients(rod: RodInFluid, hopf: Crossing, request: CriticalityRequest) -> HopfCoefficients:
+    """The coefficients of one Hopf point, whose failure costs no other its own."""
+    at = Rod(hopf.at, rod.k1, rod.k2, rod.gamma3)
+    try:
+        return hopf_coefficients(at, rod.gamma1, hopf, request.accuracy)
+    except FAILURES as error:
+        return HopfCoefficients(message=f"Hopf point at F = {hopf.at:.12g}: {cause_of(error)}")
+
+
+def _nothing(end: float, cause: str) -> Criticality:
+    return Criticality(
+        status=CriticalityStatus.failed,
+        transitions=Transitions(proved=False),
+        coefficients=(),
+        end=end,
+        message=cause,
+    )
+
+
+def _judged(
+    found: Transitions, coefficients: tuple[HopfCoefficients, ...], request: CriticalityRequest
+) -> tuple[CriticalityStatus, str]:
+    """(status, message): what matters most is said first."""
+    failures = "; ".join(filter(None, (c.message for c in coefficients)))
+    known = [c for c in coefficients if c.known]
+    worse = any(c.error > request.accuracy * abs(c.at) for c in found.crossings) or any(
+        c.largest_error > request.accuracy for c in known
+    )
+    verdicts = {
+        CriticalityStatus.coefficients_failed: bool(failures),
+        CriticalityStatus.window_open: not math.isnan(found.open_range[0]),
+        CriticalityStatus.list_full: len(found.crossings) > request.crossings,
+        CriticalityStatus.sign_undecided: any(c.criticality == 0 for c in known),
+        CriticalityStatus.accuracy_not_reached: worse,
+        CriticalityStatus.not_certified: request.certify and not found.proved,
+    }
+    status = next((status for status, holds in verdicts.items() if holds), CriticalityStatus.ok)
+    return status, "; ".join(filter(None, (failures, found.why_not)))

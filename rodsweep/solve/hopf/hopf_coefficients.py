@@ -1,0 +1,139 @@
+"""The coefficients of a Hopf point with estimates of their errors, from two meshes and from D.
+
+The Landau coefficient is that of the finer of two meshes. What the coarser one changes is the estimate of its
+error, which the finer one undercuts by some decades; below that lies what rounding leaves, and what the last
+digits of the Hopf point itself do. The slope of the eigenvalue is that of the root of D, which knows no mesh,
+and the finer mesh has it too: what they differ by is the estimate.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...determinant.newton import eigenvalue_newton
+from ...determinant.parameter_path import Path
+from ...discretization.resolution import Resolution
+from ...discretization.resolution import finer as a_third_finer
+from ...model.rod import Rod
+from ..changes.unstable_modes import Crossing
+from .normal_form import SAFETY, NormalForm, normal_form_on, resolution_of
+
+MORE_ORDERS = 3
+"""By which the second mesh is finer than the first: its c is better by one to three decades."""
+MOST_REFINED = 4
+"""Meshes beyond the first."""
+COARSEST = 1e-2
+"""Accuracy of the coarsest mesh that is a start: the eigenvalue must be recognised on it."""
+ROUNDING = 1.5e-14
+"""Relative error of c that rounding leaves, in units of the condition number of the eigenvalue. The
+largest seen is 9e-15, of rods soft in stretch and shear, nearly crushed; of most rods it is 1e-15."""
+SENSITIVITY = 20.0
+"""Of c to the force, in units of what dw/dF and the distances to F = 0 and F = k1 suggest. The largest seen
+is 10, of high modes of rods soft in shear; where a window closes it is 1."""
+BESIDE = 1e-5
+"""Relative distance of the forces between which the curvature of w(F) is measured."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HopfCoefficients:
+    """The normal form of one Hopf point, dZ/dt = growth_slope (F - F_H) Z + landau |Z|^2 Z, tip y = Re Z.
+
+    growth_slope in L^2/(k3 tau2), landau in 1/(tau2 L^2), their errors relative to their moduli;
+    amplitude_coefficient a in L, frequency_slope b in L^2/(k3 tau2), their errors relative to their own
+    values. All are nan where `message` says why there is none.
+    """
+
+    growth_slope: complex = complex(math.nan, math.nan)
+    growth_slope_error: float = math.nan
+    landau: complex = complex(math.nan, math.nan)
+    landau_error: float = math.nan
+    amplitude_coefficient: float = math.nan
+    amplitude_coefficient_error: float = math.nan
+    frequency_slope: float = math.nan
+    frequency_slope_error: float = math.nan
+    elements: int = 0
+    order: int = 0
+    message: str = ""
+
+    @property
+    def known(self) -> bool:
+        """Whether there are any."""
+        return not math.isnan(self.landau_error)
+
+    @property
+    def criticality(self) -> float:
+        """-1 supercritical, 1 subcritical, 0 where the sign of Re c is within its error; nan if not known."""
+        if not self.known:
+            return math.nan
+        if abs(self.landau.real) <= self.landau_error * abs(self.landau):
+            return 0.0
+        return math.copysign(1.0, self.landau.real)
+
+    @property
+    def largest_error(self) -> float:
+        """Of c and dw/dF, of which the others are made."""
+        return max(self.landau_error, self.growth_slope_error)
+
+
+def hopf_coefficients(rod: Rod, gamma1: float, hopf: Crossing, accuracy: float) -> HopfCoefficients:
+    """The coefficients of a Hopf point of a rod, c to a relative accuracy; raises Unsolvable.
+
+    rod: at the force of the crossing. c may be worse where rounding leaves no more digits.
+    """
+    w = complex(0.0, hopf.frequency)
+    # The rule has a factor for what its errors are at worst; here the second mesh is there to tell.
+    start = resolution_of(rod, w, min(accuracy / SAFETY, COARSEST))
+    fine, change, rounding = normal_form_on(start, rod, gamma1, w, COARSEST), math.inf, 0.0
+    for number in range(MOST_REFINED):
+        here = Resolution(fine.form.mesh.elements, fine.form.mesh.order)
+        more = a_third_finer(here) if number else replace(here, order=here.order + MORE_ORDERS)
+        coarse, fine = fine, normal_form_on(more, rod, gamma1, w, accuracy)
+        change, rounding = abs(fine.c - coarse.c) / abs(fine.c), _rounding(fine)
+        if change <= max(accuracy, rounding):
+            break
+    slope, bend = _slope(rod, w)
+    moved = SENSITIVITY * hopf.error * (bend / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.k1 - rod.F))
+    landau_error = max(change, rounding) + moved
+    off = abs(fine.slope - slope) / abs(slope)
+    slope_error = max(off, rounding) + hopf.error * bend / abs(slope)
+    return _told(replace(fine, slope=slope), landau_error, slope_error, hopf.error / abs(rod.F))
+
+
+def _told(
+    normal: NormalForm, landau_error: float, slope_error: float, force_error: float
+) -> HopfCoefficients:
+    """All coefficients of a normal form, from the relative errors of c, dw/dF and the force."""
+    c, slope = normal.c, normal.slope
+    slope_off, c_off = slope_error * abs(slope), landau_error * abs(c)
+    ratio = c.imag / c.real
+    a, b = normal.amplitude, normal.frequency_slope
+    b_off = math.hypot(1, ratio) * (slope_off + abs(slope.real / c.real) * c_off)
+    return HopfCoefficients(
+        growth_slope=slope,
+        growth_slope_error=slope_error,
+        landau=c,
+        landau_error=landau_error,
+        amplitude_coefficient=a,
+        amplitude_coefficient_error=(slope_off / abs(slope.real) + c_off / abs(c.real) + force_error) / 2,
+        frequency_slope=b,
+        frequency_slope_error=b_off / abs(b) if b else math.inf,
+        elements=normal.form.mesh.elements,
+        order=normal.form.mesh.order,
+    )
+
+
+def _slope(rod: Rod, w: complex) -> tuple[complex, float]:
+    """(dw/dF, |d^2w/dF^2|) of the root of D at w."""
+    step = BESIDE * abs(rod.F)
+    direction = Path(rod, "F").direction
+    _, slope, _ = eigenvalue_newton(w, rod.coefficients, direction)
+    beside = replace(rod, F=rod.F - step)
+    _, before, _ = eigenvalue_newton(w - slope * step, beside.coefficients, direction)
+    return complex(slope), abs(slope - before) / step
+
+
+def _rounding(normal: NormalForm) -> float:
+    """The relative error of c that rounding leaves, by the condition of the eigenvalue."""
+    sizes = np.abs(normal.p) @ (np.abs(normal.form.A) @ np.abs(normal.q))
+    return ROUNDING * float(sizes) / abs(normal.w)
