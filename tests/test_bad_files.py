@@ -247,7 +247,7 @@ def test_result_that_another_program_edited_is_still_read(results, tmp_path, nam
 def test_interrupted_result_to_which_another_program_added_is_continued(results, tmp_path, name):
     complaints = []
     plain = results.copied(name, "whole", tmp_path / "plain")
-    drawn = results.run(plain.parent, *PLOT, seconds=LONG).status  # of a list of points there is no figure
+    drawn = results.run(plain.parent, *PLOT, seconds=LONG).status
     for addition, add in shared(ADDITIONS.items(), name, 2):
         path = changed(results, name, "half", add, tmp_path / "a")
         lines = [(SHOW, {0}), (RUN, {0}), (SHOW, {0}), (PLOT, {drawn}), (MERGE, {0})]

@@ -1,5 +1,7 @@
 """Figures of limit_cycle: what is drawn of a cycle that is known in closed form, and what is refused."""
 
+import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +10,7 @@ from known_cycles import NAMES, SHAPES, arm, make_view, store
 from matplotlib.animation import writers
 from matplotlib.colors import to_rgb
 from matplotlib.quiver import Quiver
+from matplotlib.text import Annotation
 from PIL import Image
 
 from rodsweep.discretization.periodic import derivative, resampled
@@ -79,7 +82,8 @@ def test_tip_is_drawn_in_its_own_period_with_the_clock_of_the_slowest():
         assert upper.lines[0].get_ydata() == pytest.approx(x, abs=1e-9)
         assert lower.lines[0].get_ydata() == pytest.approx(y, abs=1e-9)
         assert "two \\$ arms" in figure.get_suptitle()
-        assert f"T$ = {period:g} $\\tau_2$ = {period * 1e4:g} $\\tau_1$" in figure.axes[number].get_title()
+        title = figure.axes[number].get_title()
+        assert f"T = {period:g}\\,\\tau_2$\n$= {period * 1e4:g}\\,\\tau_1$" in title
 
 
 def test_energy_marks_are_the_derivative_of_the_stored_energy_not_the_difference():
@@ -136,6 +140,24 @@ def test_several_files_are_told_apart_by_name(tmp_path):
     texts = [t.get_text() for t in draw_amplitude(views)[0].legends[0].get_texts()]
     assert texts == ["up", "down"]
     assert "amplitudes" in draw(views, tmp_path / "both.pdf")
+
+
+def directed(view, way):
+    config = {"limit_cycle": {"start": "neighbour", "along": "F", "direction": way}}
+    return replace(view, attributes=view.attributes | {"config_resolved": json.dumps(config)})
+
+
+def test_sweeps_up_and_down_are_told_apart_by_words_and_arrows():
+    one = (*SWEEP[:4], [1.0])
+    both = [make_view(one, [1, 1, 1, 1], name=f"{way}.h5") for way in "ab"]
+    views = [directed(view, way) for view, way in zip(both, ("up", "down"), strict=True)]
+    figure, _ = draw_amplitude(views)
+    texts = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert [text.rsplit(" ")[-1] for text in texts[:2]] == ["rising", "falling"]
+    for panel in figure.axes:
+        arrows = [text for text in panel.texts if isinstance(text, Annotation)]
+        assert [arrow.xy[0] > arrow.xyann[0] for arrow in arrows] == [True, False]
+    assert not draw_amplitude(both)[0].axes[0].texts
 
 
 FEW = {"stored": ()}
@@ -273,7 +295,7 @@ def test_other_tasks_refuse_the_options_of_limit_cycle(command):
         "task: spectrum\nparameters: {F: [0, 10, 20], k1: 1e4, k2: 1e2, gamma3: 1e-2}\n",
     )
     command("run", "c.yaml")
-    for words, name in ((("--what", "cycle"), "--what"), (("--point", 1), "--point"), (("c.h5",), "several")):
+    for words, name in ((("--what", "cycle"), "--what"), (("--point", 1), "--point")):
         refused = command("plot", "c.h5", *words)
         assert refused.returncode == 2
         assert f"{name}" in refused.stderr

@@ -12,11 +12,15 @@ from rodsweep.cli.job import make_job
 from rodsweep.cli.tasks import TASKS
 from rodsweep.errors import InputError
 from rodsweep.post.figures import FIGURES, draw
+from rodsweep.post.figures.class_bars import CLASS_COLOURS
+from rodsweep.post.figures.phase_diagram import _without_stairs
 from rodsweep.post.figures.request import Look
-from rodsweep.post.figures.spectrum import _mark_flutter, broken, followed_roots
-from rodsweep.post.figures.style import INVERSE_DRAG, LABELS, number
+from rodsweep.post.figures.spectra.line import broken, followed_roots, mark_flutter
+from rodsweep.post.figures.style import INVERSE_DRAG, LABELS, number, scale
+from rodsweep.post.figures.thresholds import _alike
 from rodsweep.post.summary import SUMMARIES
 from rodsweep.results.file.view import read_view
+from rodsweep.results.layouts.phase_diagram import CLASSES
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 
@@ -59,8 +63,9 @@ def test_map_is_drawn_and_other_shapes_are_refused(command):
         "run", "c.yaml", "--set", "parameters.k2={start: 50, stop: 5e3, num: 5, spacing: log}", "-o", "map.h5"
     )
     assert "growth rate" in command("plot", "map.h5").stdout
-    command("run", "c.yaml", "--set", "parameters.F=3", "-o", "point.h5")
-    refused = command("plot", "point.h5")
+    three = ["--set", "parameters.F=[1, 2]", "--set", "parameters.k1=[1e4, 2e4]"]
+    command("run", "c.yaml", *three, "--set", "parameters.k2=[50, 100]", "-o", "three.h5")
+    refused = command("plot", "three.h5")
     assert refused.returncode == 2
     assert "one or two" in refused.stderr
     with pytest.raises(InputError, match="must end in"):
@@ -141,7 +146,7 @@ def test_flutter_is_marked_at_its_threshold_however_coarse_the_forces_are(comman
     command.write("c.yaml", LINE)
     command("run", "c.yaml")
     axes = Figure().subplots()
-    _mark_flutter(axes, read_view(command.directory / "c.h5"), "F")
+    mark_flutter(axes, read_view(command.directory / "c.h5"), "F")
     (mark,) = axes.lines
     assert mark.get_xdata()[0] == pytest.approx(27.4271941267593, rel=1e-12)
     (shade,) = axes.patches
@@ -153,7 +158,7 @@ def test_the_legend_names_no_flutter_where_there_is_none(command):
     command.write("c.yaml", LINE)
     command("run", "c.yaml", "--set", "parameters.F={start: 0, stop: 20, num: 11}")
     axes = Figure().subplots()
-    _mark_flutter(axes, read_view(command.directory / "c.h5"), "F")
+    mark_flutter(axes, read_view(command.directory / "c.h5"), "F")
     assert axes.get_legend_handles_labels() == ([], [])
 
 
@@ -211,3 +216,162 @@ def test_style_is_a_name_or_a_file_and_anything_else_is_refused(command, monkeyp
 
 def test_few_digits_of_a_large_number_are_written_with_a_power_of_ten():
     assert [number(value, 3) for value in (2236.07, 200.0, 999.9)] == [r"2.24\times10^{3}", "200", "10^{3}"]
+
+
+def drawn_of(command, monkeypatch, config, points=""):
+    """(the figure, what plot says) of a config, with a list of points where its text is given."""
+    drawn = []
+    command.write("c.yaml", config)
+    if points:
+        command.write("p.csv", points)
+    assert command("run", "c.yaml", "--fresh").returncode in (0, 1)
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
+    shown = draw(
+        read_view(command.directory / "c.h5"), command.directory / "f.png", look=Look(width="single")
+    )
+    return drawn[0], shown
+
+
+def inside(figure):
+    """Asserts that all legends lie within the figure, and outside the panels."""
+    figure.draw_without_rendering()
+    for legend in figure.legends:
+        box = legend.get_window_extent()
+        assert figure.bbox.x0 <= box.x0 < box.x1 <= figure.bbox.x1
+        assert not any(box.overlaps(axes.get_window_extent()) for axes in figure.axes)
+
+
+LIST = "F,k1,k2,gamma3\n50,1e4,1e2,1e-2\n3,200,1e4,1e-4\n10,1e4,inf,0\n"
+
+
+def test_one_spectrum_is_drawn_as_its_eigenvalues_in_the_complex_plane(command, monkeypatch):
+    config = "task: spectrum\nparameters: {F: 50, k1: 1e4, k2: 1e2, gamma3: 1e-2}\nspectrum: {modes: 4}\n"
+    figure, shown = drawn_of(command, monkeypatch, config)
+    assert "complex plane" in shown
+    inside(figure)
+    growing, decaying = figure.axes[0].lines[:2]
+    assert growing.get_xdata() == pytest.approx([252.90241] * 2, rel=1e-7)
+    assert growing.get_ydata() == pytest.approx([202.12569, -202.12569], rel=1e-7)
+    assert decaying.get_xdata() == pytest.approx([-331.49731, -1599.4628], rel=1e-7)
+
+
+def test_list_of_spectra_is_drawn_over_its_points_or_over_what_alone_varies(command, monkeypatch):
+    config = "task: spectrum\nparameters: {points: p.csv}\nspectrum: {modes: 3}\n"
+    figure, _ = drawn_of(command, monkeypatch, config, LIST)
+    inside(figure)
+    assert [axes.get_xlabel() for axes in figure.axes] == ["", "point of the list"]
+    marks = [line for line in figure.axes[0].lines if line.get_marker() in ("o", "s")]
+    assert sum(len(line.get_xdata()) for line in marks) == 9
+    same = "F,k1,k2,gamma3\n" + "".join(f"10,1e4,{k2},1e-2\n" for k2 in (300, 100, 200))  # as many as modes
+    figure, _ = drawn_of(command, monkeypatch, config, same)
+    assert figure.axes[0].get_xlabel() == LABELS["k2"]
+    assert figure.axes[0].lines[0].get_xdata().tolist() == [100, 200, 300]
+
+
+def test_one_rod_is_drawn_as_a_bar_of_its_classes_with_its_thresholds(command, monkeypatch):
+    config = "task: thresholds\nparameters: {k1: 200, k2: 1e4, gamma3: 1e-4}\n"
+    figure, _ = drawn_of(command, monkeypatch, config)
+    inside(figure)
+    edges = [(bar.get_x(), bar.get_x() + bar.get_width()) for bar in figure.axes[0].patches]
+    at = [0, 22.4709774737663, 49.7580049161915, 155.600159298791]
+    assert [start for start, _ in edges] == pytest.approx(at, rel=1e-10)
+    assert [end for _, end in edges][:3] == pytest.approx(at[1:], rel=1e-10)
+    colours = [to_hex(bar.get_facecolor()).upper() for bar in figure.axes[0].patches]
+    assert colours == [CLASS_COLOURS[w] for w in ("monotone", "oscillatory", "flutter", "oscillatory")]
+    marks = [line.get_xdata().item() for line in figure.axes[0].lines]
+    assert marks == pytest.approx(at[1:], rel=1e-10)
+
+
+def test_list_of_rods_has_a_bar_for_each_in_its_order(command, monkeypatch):
+    config = "task: thresholds\nparameters: {points: p.csv}\n"
+    rods = "k1,k2,gamma3\n200,1e4,1e-4\n1e4,1e2,1e-2\n"
+    figure, _ = drawn_of(command, monkeypatch, config, rods)
+    inside(figure)
+    hopf = next(line for line in figure.axes[0].lines if line.get_marker() == "s")
+    first = {rod: F for rod, F in zip(*(data[::-1] for data in hopf.get_data()), strict=True)}
+    assert [first[1], first[2]] == pytest.approx([49.7580049161915, 27.4271941267593], rel=1e-10)
+
+
+DIAGRAM = """task: phase_diagram
+parameters:
+  F: {start: 0, stop: 200, num: 6}
+  k1: {start: 30, stop: 1000, num: 5, spacing: log}
+  k2: 1.0e4
+  gamma3: 1.0e-4
+phase_diagram: {curves: true}
+"""
+
+
+def test_phase_diagram_has_its_edge_as_a_line_marks_apart_and_a_legend_inside(command, monkeypatch):
+    command.write("c.yaml", DIAGRAM)
+    command("run", "c.yaml")
+    drawn = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
+    for width in ("single", "double"):
+        draw(read_view(command.directory / "c.h5"), command.directory / "f.png", look=Look(width=width))
+        figure = drawn[-1]
+        figure.draw_without_rendering()
+        axes, (legend,) = figure.axes[0], figure.legends
+        box = legend.get_window_extent()
+        assert figure.bbox.x0 <= box.x0
+        assert box.x1 <= figure.bbox.x1
+        assert not box.overlaps(axes.get_tightbbox())
+        F, k1 = next(line.get_data() for line in axes.lines if len(line.get_xdata()) == 1000)
+        assert np.array_equal(F, k1)
+        marks = [line for line in axes.lines if line.get_marker() not in (None, "None", "")]
+        assert len(marks) == len({line.get_marker() for line in marks}) == 2
+        assert {text.get_text() for text in axes.texts} == {r"$\tilde F_*$", r"$\tilde F_{**}$"}
+
+
+def test_crushed_cells_take_the_class_above_the_edge():
+    crushed = next(number for number, word in CLASSES if word == "crushed")
+    table = np.array([[0, crushed, crushed], [0, 1, crushed], [0, 1, 2]])
+    assert _without_stairs(table).tolist() == [[0, 1, 2], [0, 1, 2], [0, 1, 2]]
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "written"),
+    [(30, 900, ["50", "100", "200", "500"]), (3e4, 4e5, [r"5\times10^{4}", "10^{5}", r"2\times10^{5}"])],
+)
+def test_ticks_of_an_axis_are_all_written_the_same_way(low, high, written):
+    axes = Figure().subplots()
+    scale(axes, "x", np.geomspace(low, high, 5))
+    axes.set_xlim(low, high)
+    axes.figure.draw_without_rendering()
+    shown = [
+        text.get_text().strip("$")
+        for value, text in zip(axes.get_xticks(), axes.get_xticklabels(), strict=True)
+        if low <= value <= high
+    ]
+    assert shown == written
+
+
+def test_lines_that_cannot_be_told_apart_are_one():
+    rise = np.linspace(1, 2, 5)
+    lines = {0: np.tile(rise, (3, 1)), 4: np.tile(1.001 * rise, (3, 1)), 9: np.tile(0.5 * rise, (3, 1))}
+    assert _alike(lines) == [[0, 4], [9]]
+    lines[4] = lines[4].copy()
+    lines[4][2] = np.nan
+    assert _alike(lines) == [[0], [4], [9]]
+
+
+def test_several_lines_of_spectra_are_panels_of_one_figure(command, monkeypatch):
+    for name, k1 in (("a", 200), ("b", 1e4)):
+        axes = f"F: {{start: 0, stop: 60, num: 13}}, k1: {k1}, k2: 1.0e4, gamma3: 1.0e-4"
+        command.write(f"{name}.yaml", f"task: spectrum\nparameters: {{{axes}}}\nspectrum: {{modes: 4}}\n")
+        command("run", f"{name}.yaml")
+    drawn = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
+    views = [read_view(command.directory / f"{name}.h5") for name in "ab"]
+    assert "for each of 2 files" in draw(views, command.directory / "f.png")
+    titles = [axes.get_title(loc="left") for axes in drawn[0].axes]
+    assert [title[:3] for title in titles] == ["(a)", "(b)"]
+    assert "49.758" in titles[0]
+    assert "37.656" in titles[1]
+    assert len(drawn[0].legends) == 1
+    command.write("t.yaml", "task: thresholds\nparameters: {k1: 200, k2: 1.0e4, gamma3: 1.0e-4}\n")
+    command("run", "t.yaml")
+    refused = command("plot", "a.h5", "t.h5", "-o", "x.png")
+    assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
+    assert "only lines of spectra" in refused.stderr
+    assert "several files are drawn of" in command("plot", "t.h5", "t.h5", "-o", "x.png").stderr

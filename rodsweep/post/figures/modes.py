@@ -7,7 +7,7 @@ from matplotlib.lines import Line2D
 
 from ...results.file.view import View
 from .request import FigureRequest
-from .style import FIRST, SECOND, heading, legend_below, need, parameter_text
+from .style import FIRST, SECOND, heading, legend_below, need, number, parameter_text
 
 MOST_RODS = 4
 """Points for which one figure has room."""
@@ -26,13 +26,18 @@ def draw_modes(request: FigureRequest) -> str:
     points = np.flatnonzero(np.isfinite(growth))
     need(view, points.size, "computed point")
     drawn = points[:MOST_RODS]
-    figure = Figure(figsize=(10.0, 2.8 * len(drawn) + 0.4), layout="constrained")
-    panels = figure.subplots(len(drawn), len(PANELS), squeeze=False)
-    for row, point in zip(panels, drawn, strict=True):
+    narrow = request.look.narrow
+    rows, columns = (len(drawn) * len(PANELS), 1) if narrow else (len(drawn), len(PANELS))
+    size = (4.6, 2.4 * rows + 0.4) if narrow else (10.0, 2.8 * rows + 0.4)
+    figure = Figure(figsize=size, layout="constrained")
+    panels = figure.subplots(rows, columns, squeeze=False)
+    for row, point in zip(panels.reshape(len(drawn), len(PANELS)), drawn, strict=True):
         for panel, (word, fields) in zip(row, PANELS, strict=True):
             _panel(panel, view, int(point), fields)
             panel.set_title(word, fontsize=9)
-        row[1].set_title(f"{_where(view, int(point))}\n{PANELS[1][0]}", fontsize=9)
+        place = 0 if narrow else 1
+        where = ("\n" if narrow else ": ").join(_where(view, int(point)))
+        row[place].set_title(f"{where}\n{PANELS[place][0]}", fontsize=9)
     for panel in panels[-1]:
         panel.set_xlabel("material coordinate $u/L$")
     figure.suptitle(heading(view), fontsize=9)
@@ -72,10 +77,10 @@ def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], .
     panel.set_xlim(0, 1)
 
 
-def _where(view: View, point: int) -> str:
-    """The parameters of a point and its leading eigenvalue, in one line."""
+def _where(view: View, point: int) -> tuple[str, str]:
+    """The parameters of a point, and its leading eigenvalue."""
     at = {name: values[point] for name, values in view.point_columns.items()}
     modes = view.variables["growth_rate"].shape[-1]
-    w = [view.variables[name].reshape(-1, modes)[point, 0] for name in ("growth_rate", "frequency")]
-    value = f"{w[0]:.6g}" + (f" + {w[1]:.6g}i" if w[1] else "")
-    return f"{parameter_text(at, digits=4)}: " + rf"$\omega_1\tau_2$ = {value}"
+    w = [float(view.variables[name].reshape(-1, modes)[point, 0]) for name in ("growth_rate", "frequency")]
+    imaginary = rf" + {number(w[1])}\,\mathrm{{i}}" if w[1] else ""
+    return parameter_text(at, digits=4), rf"$\omega_1\tau_2 = {number(w[0])}{imaginary}$"

@@ -2,9 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import ceil
 from pathlib import Path
 
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 from matplotlib.text import Text
 
 from ...errors import InputError
@@ -16,6 +18,8 @@ HEIGHT_POWER = 0.5
 """Of the ratio of the widths, by which a figure gets lower: panels get narrower, their text does not."""
 POINTS_OF_TYPE = 8.0
 """Size of all text in a figure of such a width."""
+MOST_COLUMNS, ROW = 3, 0.17
+"""Of a legend below a figure; the height of its rows, in inches."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +34,11 @@ class Look:
     width: str | None = None
     style: str | None = None
 
+    @property
+    def narrow(self) -> bool:
+        """Whether panels have no room beside each other."""
+        return self.width == "single"
+
     def fit(self, figure: Figure) -> None:
         """Gives a figure the width of a column, and its text the size that belongs to it."""
         if self.width is None:
@@ -41,6 +50,25 @@ class Look:
             axes.tick_params(labelsize=POINTS_OF_TYPE)
         for text in figure.findobj(Text):
             text.set_fontsize(POINTS_OF_TYPE)
+        for legend in list(figure.legends):
+            narrow(legend, figure)
+
+
+def narrow(legend: Legend, figure: Figure) -> None:
+    """Gives a legend that is wider than its figure fewer columns, and the figure the height of the rows."""
+    texts = [text.get_text() for text in legend.get_texts()]
+    handles = [handle for handle in legend.legend_handles if handle is not None]
+    size = legend.get_texts()[0].get_fontsize() if texts else POINTS_OF_TYPE
+    for columns in range(MOST_COLUMNS - 1, 0, -1):
+        if legend.get_window_extent().width <= figure.bbox.width:
+            return
+        legend.remove()
+        legend = figure.legend(
+            handles, texts, loc="outside lower center", ncols=columns, frameon=False, fontsize=size
+        )
+        width, height = figure.get_size_inches()
+        more = ceil(len(texts) / columns) - ceil(len(texts) / (columns + 1))
+        figure.set_size_inches(width, height + ROW * more)
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +92,15 @@ class FigureRequest:
 
     def refuse_choices(self, view: View) -> None:
         """InputError if anything is asked for that the task of `view` does not offer."""
-        asked = {"--what": self.what, "--point": self.points, "several files": self.views[1:]}
+        self.refuse_points(view)
+        if self.views[1:]:
+            raise InputError(
+                f"{view.path}: several files are drawn of limit_cycle or of spectrum, and this is {view.task}"
+            )
+
+    def refuse_points(self, view: View) -> None:
+        """InputError if a figure or points are chosen, which the task of `view` lacks."""
+        asked = {"--what": self.what, "--point": self.points}
         if word := next((word for word, given in asked.items() if given), ""):
             raise InputError(f"{view.path}: {word} is for results of limit_cycle, and this is {view.task}")
 

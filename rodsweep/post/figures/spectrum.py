@@ -1,53 +1,69 @@
-"""The figure of the task spectrum: a line of spectra as in the paper's Fig. 2, or a map over two axes."""
+"""Figures of the task spectrum: lines of spectra as in the paper's Fig. 2, a map over two axes, or points."""
 
 from dataclasses import replace
-from typing import Any
 
 import matplotlib
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ...arrays import Complex
 from ...errors import InputError
 from ...results.file.view import View
-from ..hopf_points import lines_over
-from ..stability_changes import stability_changes
+from .eigenvalues import draw_eigenvalues, draw_list_of_spectra
+from .lists import as_grid
 from .request import FigureRequest
-from .style import (
-    FIRST,
-    LABELS,
-    SECOND,
-    SYMBOLS,
-    fixed_text,
-    heading,
-    legend_below,
-    long_axes,
-    need,
-    need_grid,
-    scale,
-)
-
-FOLLOWED_ROOTS = {
-    "rightmost": "the two rightmost roots",
-    "smallest": "of the stored roots, the two smallest in magnitude",
-}
-LARGE = 10.0
-"""Largest root in units of the median one from which on the axis of the roots is logarithmic but near 0."""
-THRESHOLD_DIGITS = 6
-"""To which thresholds are written beside their marks."""
+from .spectra.line import FOLLOWED_ROOTS, draw_line
+from .spectra.panels import MOST_PANELS, draw_panels
+from .style import LABELS, fixed_text, heading, long_axes, need, scale
 
 
 def draw_spectrum(request: FigureRequest) -> str:
-    """A line or a map, as the file has one long axis or two."""
-    view, roots = request.only_view(), request.roots
-    need_grid(view, "points")
+    """A line or a map, as the file has one long axis or two; else the eigenvalues of each point.
+
+    The lines of several files are drawn side by side.
+    """
+    if len(request.views) > 1:
+        return _several(request)
+    view, roots = as_grid(request.only_view()), request.roots
     need(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
+    if view.variables["status"].size == 1:
+        return request.write(draw_eigenvalues(view), "the stored eigenvalues in the complex plane")
+    if not view.is_grid:
+        return request.write(draw_list_of_spectra(view), "the stored eigenvalues of every point")
     view = without_infinite(view)
     long = long_axes(view)
     if len(long) == 1:
-        return request.write(_line(view, long[0], roots), FOLLOWED_ROOTS[roots])
+        return request.write(draw_line(view, long[0], roots), FOLLOWED_ROOTS[roots])
     return request.write(_map(view, long), "the leading growth rate")
+
+
+def _several(request: FigureRequest) -> str:
+    """A panel for each file; InputError unless all are lines of spectra."""
+    request.refuse_points(request.views[0])
+    request.check_output()
+    if len(request.views) > MOST_PANELS:
+        raise InputError(f"{len(request.views)} files are given, and one figure has room for {MOST_PANELS}")
+    figure = draw_panels(
+        [_line_of(view, request) for view in request.views], request.roots, request.look.narrow
+    )
+    shown = f"{FOLLOWED_ROOTS[request.roots]}, in a panel for each of {len(request.views)} files"
+    return request.write(figure, shown)
+
+
+def _line_of(given: View, request: FigureRequest) -> View:
+    """A file of several that are drawn side by side; InputError unless it is a line of spectra."""
+    if given.task != request.views[0].task:
+        raise InputError(
+            f"{given.path} is of the task {given.task}; only lines of spectra make one figure together"
+        )
+    view = as_grid(given)
+    need(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
+    view = without_infinite(view) if view.is_grid else view
+    if not view.is_grid or sum(len(values) > 1 for values in view.axes.values()) != 1:
+        raise InputError(
+            f"{given.path} is no line of spectra, along which one parameter varies; only such files make one "
+            "figure together"
+        )
+    return view
 
 
 def without_infinite(view: View) -> View:
@@ -60,98 +76,6 @@ def without_infinite(view: View) -> View:
             for key in ("growth_rate", "frequency", "unstable_count"):
                 variables[key] = np.compress(finite, variables[key], axis=place)
     return replace(view, variables=variables)
-
-
-def followed_roots(growth: np.ndarray, frequency: np.ndarray, roots: str) -> np.ndarray:
-    """Two roots of each point, complex, shape (points, 2), from all stored ones, shape (points, modes).
-
-    Of a pair the positive frequency is first; two real roots are ordered as `roots` says.
-    """
-    w = growth + 1j * frequency
-    if roots == "smallest":
-        order = np.lexsort((-frequency, np.round(np.abs(w), 9)), axis=1)
-        w = np.take_along_axis(w, order, axis=1)
-    return w[:, :2]
-
-
-def broken(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(x, w) with a gap of NaN where the followed roots change places with others between two points."""
-    step = np.abs(np.diff(w, axis=0)).max(axis=1)
-    size = np.abs(w).max(axis=1)
-    around = np.array([np.median(step[max(0, i - 3) : i + 4]) for i in range(len(step))])
-    jump = np.flatnonzero((step > 8 * around) & (step > 0.5 * np.minimum(size[1:], size[:-1]))) + 1
-    return np.insert(x, jump, np.nan), np.insert(w, jump, np.nan, axis=0)
-
-
-def _line(view: View, name: str, roots: str) -> Figure:
-    x = view.axes[name]
-    modes = len(view.variables["mode"])
-    if modes < 2:
-        raise InputError(
-            f"{view.path} holds one mode; the figure follows two, so run with spectrum.modes >= 2"
-        )
-    growth = view.variables["growth_rate"].reshape(-1, modes)
-    w = followed_roots(growth, view.variables["frequency"].reshape(-1, modes), roots)
-    figure = Figure(figsize=(5.2, 6.6), layout="constrained")
-    top, bottom = figure.subplots(2, 1)
-    x_broken, w = broken(x, w)
-    for i, (colour, width) in enumerate(((FIRST, 3.0), (SECOND, 1.2))):  # the thin one on the thick
-        top.plot(x_broken, w[:, i].real, color=colour, lw=width, label=rf"$\mathrm{{Re}}\,\omega_{i + 1}$")
-        top.plot(
-            x_broken, w[:, i].imag, ":", color=colour, lw=width, label=rf"$\mathrm{{Im}}\,\omega_{i + 1}$"
-        )
-        bottom.plot(w[:, i].real, w[:, i].imag, ".-", color=colour, lw=0.8, ms=3)
-        _point_along(bottom, w[:, i], colour)
-    _mark_flutter(top, view, name)
-    top.axhline(0, color="0.5", lw=0.6)
-    bottom.axvline(0, color="0.5", lw=0.6)
-    scale(top, "x", x)
-    top.set(xlabel=LABELS[name], ylabel=r"$\omega\,\tau_2$", xlim=(x[0], x[-1]))
-    bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
-    sizes = np.abs(w[np.isfinite(w)])
-    if sizes.max(initial=0.0) > LARGE * np.median(sizes):
-        top.set_yscale("symlog", linthresh=10 ** np.floor(np.log10(np.median(sizes) / 10)))
-    legend_below(figure, top.get_legend_handles_labels()[0], 2)
-    figure.suptitle(heading(view, fixed_text(view, name), FOLLOWED_ROOTS[roots]), fontsize=9)
-    return figure
-
-
-def _point_along(axes: Axes, w: Complex, colour: str) -> None:
-    """An arrow half way along a root's path, (n,), the way that it goes along the axis."""
-    path = w[np.isfinite(w)]
-    ranges = max(np.ptp(path.real), 1e-300), max(np.ptp(path.imag), 1e-300)
-    lengths = np.hypot(np.diff(path.real) / ranges[0], np.diff(path.imag) / ranges[1])
-    if not lengths.sum() > 0:
-        return
-    k = int(np.searchsorted(np.cumsum(lengths), lengths.sum() / 2))
-    start, end = ((z.real, z.imag) for z in path[k : k + 2])
-    arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.2, "mutation_scale": 14}
-    axes.annotate("", xy=end, xytext=start, arrowprops=arrow)
-
-
-def _mark_flutter(axes: Axes, view: View, name: str) -> None:
-    """Shades where the rod is unstable, over F up to the thresholds themselves, which get a dotted line."""
-    x, unstable = view.axes[name], view.variables["unstable_count"].reshape(-1) > 0
-    shade: dict[str, Any] = {"color": "0.92", "lw": 0, "zorder": 0}
-    if name != "F":
-        if unstable.any():
-            across = axes.get_xaxis_transform()
-            axes.fill_between(x, 0, 1, where=unstable, transform=across, label="flutter", **shade)
-        return
-    (line,) = lines_over(view, name)
-    changes = stability_changes(line, view)
-    for change in changes:
-        word = rf"${SYMBOLS['F']}_{{**}}$" if change.destabilises else "restabilization"
-        label = f"{word} = {change.position:#.{THRESHOLD_DIGITS}g}"
-        axes.axvline(change.position, color="0.3", ls="--", lw=0.9, label=label)
-    starts = [change.position for change in changes if change.destabilises]
-    ends = [change.position for change in changes if not change.destabilises]
-    if ends and (not starts or ends[0] < starts[0]):
-        starts.insert(0, float(x[0]))
-    if len(starts) > len(ends):
-        ends.append(float(x[-1]))
-    for number, (start, end) in enumerate(zip(starts, ends, strict=True)):
-        axes.axvspan(start, end, label=None if number else "flutter", **shade)
 
 
 def _map(view: View, names: list[str]) -> Figure:

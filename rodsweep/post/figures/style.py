@@ -87,14 +87,6 @@ def long_axes(view: View) -> list[str]:
     return long
 
 
-def need_grid(view: View, points: str) -> None:
-    """InputError where the file is a list; `points` says of what."""
-    if not view.is_grid:
-        raise InputError(
-            f"{view.path} is a list of {points}; a figure needs a grid with one or two long axes"
-        )
-
-
 def need(view: View, there: object, what: str) -> None:
     """InputError unless something is there that could be drawn."""
     if not there:
@@ -126,8 +118,11 @@ def scale(axes: Axes, which: Literal["x", "y"], values: np.ndarray) -> None:
 
 
 def label_few_decades(axis: Axis, low: float, high: float) -> None:
-    """Labels 1, 2 and 5 of each decade of a logarithmic axis that spans few."""
+    """Labels 1, 2 and 5 of each decade of a logarithmic axis that spans few: all written out, or none."""
     if high < FEW_DECADES * low:
         axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"${number(value)}$"))
+        written_out = low >= 10.0**-LEAST_POWER and high < 10.0 ** (PLAIN_BELOW + 1)
+        axis.set_major_formatter(
+            FuncFormatter(lambda value, _: f"{value:g}" if written_out else f"${number(value)}$")
+        )
         axis.set_minor_formatter(NullFormatter())

@@ -3,9 +3,13 @@
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
+from ...arrays import Array
 from ...results.file.view import View
 from . import style
+from .class_bars import draw_class_bars
+from .lists import as_grid
 from .request import FigureRequest
 
 CRITICAL_FORCES = (
@@ -15,21 +19,32 @@ CRITICAL_FORCES = (
 )
 LINE_STYLES = ("-", "--", ":")
 """For the values of the other parameter for which lines are drawn in one panel."""
+UNSEEN = 0.01
+"""Distance of two lines, in units of the largest force, below which one of them is drawn."""
 
 
 def draw_thresholds(request: FigureRequest) -> str:
-    """One panel for each long axis: the first onset, Hopf point and restabilization along it."""
-    view = request.only_view()
-    style.need_grid(view, "rods")
+    """One panel for each long axis, the first thresholds along it; else a bar of classes for each rod."""
+    view = as_grid(request.only_view())
+    if not view.is_grid or view.variables["status"].size == 1:
+        return request.write(draw_class_bars(view), "what each rod does over F")
     long = style.long_axes(view)
     style.need(
         view, any(np.isfinite(view.variables[name]).any() for name, *_ in CRITICAL_FORCES), "threshold"
     )
-    figure = Figure(figsize=(4.6 * len(long) + 0.4, 4.0), layout="constrained")
-    panels = figure.subplots(1, len(long), sharey=True, squeeze=False)[0]
+    rows, columns = (len(long), 1) if request.look.narrow else (1, len(long))
+    figure = Figure(figsize=(4.6 * columns + 0.4, 4.0 * rows), layout="constrained")
+    panels = figure.subplots(rows, columns, sharey=True, squeeze=False).ravel()
     for panel, name in zip(panels, long, strict=True):
         _panel(panel, view, name, [other for other in long if other != name])
-    panels[0].set_ylabel(f"critical force ${style.SYMBOLS['F']}$")
+        if columns == 1 or panel is panels[0]:
+            panel.set_ylabel(f"critical force ${style.SYMBOLS['F']}$")
+    there = [
+        Line2D([], [], color=colour, marker=marker, ms=2.5, lw=1.2, label=word)
+        for variable, word, colour, marker in CRITICAL_FORCES
+        if np.isfinite(view.variables[variable]).any()
+    ]
+    style.legend_below(figure, there, columns=3)
     figure.suptitle(style.heading(view, style.fixed_text(view, *long)), fontsize=9)
     left_out = [name for name in long if not np.isfinite(view.axes[name]).all()]
     without = f"; {' and '.join(left_out)} = inf has no place on an axis and is left out" if left_out else ""
@@ -43,21 +58,50 @@ def _panel(panel: Axes, view: View, name: str, others: list[str]) -> None:
     if name == "gamma3":  # as the paper: against 1/gamma3
         x, label = 1 / x, style.INVERSE_DRAG
     place = others[0] if others else None
-    last = len(view.axes[place]) - 1 if place else 0
-    chosen = sorted({0, last // 2, last})
-    labels = {variable: word for variable, word, *_ in CRITICAL_FORCES}
-    for line, at in enumerate(chosen):
+    every = {}
+    for at in range(len(view.axes[place]) if place else 1):
         index = tuple(slice(None) if n == name else (at if n == place else 0) for n in axes)
-        for variable, _, colour, marker in CRITICAL_FORCES:
-            values = view.variables[variable][index]
+        every[at] = np.array([view.variables[variable][index] for variable, *_ in CRITICAL_FORCES])
+    lines = {at: every[at] for at in _far_apart(every)}
+    for look, alike in zip(LINE_STYLES, _alike(lines), strict=False):
+        for values, (_, _, colour, marker) in zip(lines[alike[0]], CRITICAL_FORCES, strict=True):
             keep = np.isfinite(x) & np.isfinite(values)
-            if keep.any():
-                (drawn,) = panel.plot(x[keep], values[keep], LINE_STYLES[line], color=colour, marker=marker)
-                drawn.set(label=labels.pop(variable, None), markersize=2.5, linewidth=1.2)
-    for line, at in enumerate(chosen if place else []):
-        text = style.parameter_text({str(place): float(view.axes[str(place)][at])}, digits=3)
-        panel.plot([], [], LINE_STYLES[line], color="0.3", label=text)
+            panel.plot(x[keep], values[keep], look, color=colour, marker=marker, ms=2, lw=1.2)
+        if place:
+            said = ", ".join(style.number(float(view.axes[place][at]), 3) for at in alike)
+            text = f"${style.SYMBOLS[place]} = {said}$" + (" (one line)" if len(alike) > 1 else "")
+            panel.plot([], [], look, color="0.3", label=text)
     style.scale(panel, "x", np.sort(x[np.isfinite(x)]))
     panel.set_xlabel(label)
     panel.set_ylim(bottom=0)
-    panel.legend(frameon=False, fontsize=8)
+    if place:
+        panel.legend(frameon=False, fontsize=8, loc="lower left", bbox_to_anchor=(0.0, 1.0))
+
+
+def _far_apart(lines: dict[int, Array]) -> list[int]:
+    """Of the numbers of lines, (3, points) each, the first, the last, and the one that lies most between."""
+    last = len(lines) - 1
+    if last < 2:
+        return sorted(lines)
+    heights = np.array(
+        [np.nanmean(values) if np.isfinite(values).any() else np.inf for values in lines.values()]
+    )
+    between = np.abs(heights - (heights[0] + heights[last]) / 2)
+    middle = 1 + int(np.argmin(between[1:last])) if np.isfinite(between[1:last]).any() else last // 2
+    return [0, middle, last]
+
+
+def _alike(lines: dict[int, Array]) -> list[list[int]]:
+    """The numbers of lines, (3, points) each, in groups of those that cannot be told apart."""
+    size = max(float(np.nanmax(values, initial=0.0)) for values in lines.values())
+    groups: list[list[int]] = []
+    for number, values in lines.items():
+        for group in groups:
+            other = lines[group[0]]
+            same = np.isnan(values) == np.isnan(other)
+            if same.all() and np.nanmax(np.abs(values - other), initial=0.0) < UNSEEN * size:
+                group.append(number)
+                break
+        else:
+            groups.append([number])
+    return groups

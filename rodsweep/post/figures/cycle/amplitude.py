@@ -1,7 +1,9 @@
 """Amplitudes of the tip against the force, as the paper's Fig. 6: beyond F** the straight arm beats."""
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,10 +13,11 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from ....arrays import Array
+from ....config.limit_cycle import LONGEST
 from ....errors import InputError
 from ....results.file.view import View
 from ...hopf_points import HopfPoint, lines_over
-from ..style import FIRST, LABELS, SECOND, THIRD, heading, legend_below, need, plain, scale
+from ..style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, need, plain, scale
 from .hopf_marks import draw_laws, mark_hopf_points
 from .selection import CYCLE_WORDS, outcomes, told_apart
 from .square_root import SquareRootLaw, square_root_laws
@@ -23,6 +26,8 @@ BRANCH_LOOKS = tuple(
     zip((FIRST, SECOND, THIRD, "#CC79A7", "#56B4E9", "#000000"), ("o", "s", "^", "D", "v", "P"), strict=True)
 )
 """Colour, of Okabe and Ito, and marker of each branch."""
+LEAST_FOR_ARROW = 4
+"""Points of a line that has an arrow."""
 UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 3}
 """Open markers, on those of the branch, for cycles that nothing stays on."""
 
@@ -70,19 +75,7 @@ def draw_amplitude(views: Sequence[View]) -> tuple[Figure, str]:
     figure = Figure(figsize=(5.4, 6.0), layout="constrained")
     panels = figure.subplots(2, 1, sharex=True)
     shared, own = told_apart([branch.parameters for branch in branches])
-    handles, lost = [], set[str]()
-    for branch, text, (colour, marker) in zip(branches, own, BRANCH_LOOKS, strict=False):
-        look: dict[str, Any] = {"color": colour, "marker": marker, "lw": 1.2, "ms": 3.5}
-        if branch.view is not first:  # open, larger markers leave those of an earlier file to be seen
-            look |= {"mfc": "none", "ms": 6.5, "ls": "--"}
-        file = plain(branch.view.path.stem) if len(views) > 1 else ""
-        handles.append(Line2D([], [], label=", ".join(filter(None, (file, text))), **look))
-        lost |= _draw_branch(panels, branch, look)
-    if any("unstable" in branch.words for branch in branches):
-        handles.append(Line2D([], [], color="0.3", marker="o", label="unstable cycle", **UNSTABLE_LOOK))
-    if lost:
-        label = ", ".join(sorted(lost)) + " (at the top)"
-        handles.append(Line2D([], [], color="0.3", marker="x", ls="", ms=5, label=label))
+    handles = _draw_branches(panels, branches, own, _file_words(views, name))
     colours = (colour for colour, _ in BRANCH_LOOKS)
     marks = [
         (point, colour) for branch, colour in zip(branches, colours, strict=False) for point in branch.hopf
@@ -95,6 +88,72 @@ def draw_amplitude(views: Sequence[View]) -> tuple[Figure, str]:
         legend_below(figure, legend, columns=min(2, len(legend)))
     figure.suptitle(heading(first, shared), fontsize=10)
     return figure, f"amplitudes of the tip against {name}"
+
+
+def _draw_branches(
+    panels: Sequence[Axes],
+    branches: Sequence[AmplitudeBranch],
+    texts: Sequence[str],
+    words: dict[Path, tuple[str, bool | None]],
+) -> list[Line2D]:
+    """All branches in both panels; returns what the legend says: texts of each, words of each file."""
+    handles, lost = [], set[str]()
+    for branch, text, (colour, marker) in zip(branches, texts, BRANCH_LOOKS, strict=False):
+        look: dict[str, Any] = {"color": colour, "marker": marker, "lw": 1.2, "ms": 3.5}
+        if branch.view is not branches[0].view:  # open, larger markers leave an earlier file's to be seen
+            look |= {"mfc": "none", "ms": 6.5, "ls": "--"}
+        word, upward = words[branch.view.path]
+        handles.append(Line2D([], [], label=", ".join(filter(None, (word, text))), **look))
+        lost |= _draw_branch(panels, branch, look)
+        if upward is not None:
+            _show_direction(panels, branch, upward, colour)
+    if any("unstable" in branch.words for branch in branches):
+        handles.append(Line2D([], [], color="0.3", marker="o", label="unstable cycle", **UNSTABLE_LOOK))
+    if lost:
+        label = ", ".join(sorted(lost)) + " (at the top)"
+        handles.append(Line2D([], [], color="0.3", marker="x", ls="", ms=5, label=label))
+    return handles
+
+
+def _file_words(views: Sequence[View], name: str) -> dict[Path, tuple[str, bool | None]]:
+    """What the legend calls each of several files, and whether its chains go upwards where that is said.
+
+    Files that were followed along the axis in both directions are told apart by these, others by their names.
+    """
+    if len(views) == 1:
+        return {views[0].path: ("", None)}
+    options = [
+        json.loads(view.attributes.get("config_resolved", "{}")).get("limit_cycle", {}) for view in views
+    ]
+    followed = all(
+        chosen.get("start") == "neighbour" and chosen.get("along", LONGEST) in (name, LONGEST)
+        for chosen in options
+    )
+    directions = [chosen.get("direction", "up") for chosen in options]
+    if not followed or len(set(directions)) < len(views):
+        return {view.path: (plain(view.path.stem), None) for view in views}
+    words = {"up": f"${SYMBOLS[name]}$ rising", "down": f"${SYMBOLS[name]}$ falling"}
+    return {
+        view.path: (words[direction], direction == "up")
+        for view, direction in zip(views, directions, strict=True)
+    }
+
+
+def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: bool, colour: str) -> None:
+    """An arrow beside each line, the way it was followed."""
+    for axes, values in zip(panels, (branch.amplitude_x, branch.amplitude_y), strict=True):
+        known = np.flatnonzero(np.isfinite(values))
+        if len(known) < LEAST_FOR_ARROW:
+            continue
+        ends = known[len(known) * 3 // 4 - 1], known[len(known) * 3 // 4]
+        here, there = ends if upward else ends[::-1]
+        axes.annotate(
+            "",
+            (branch.x[there], values[there]),
+            (branch.x[here], values[here]),
+            arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.2, "mutation_scale": 14},
+            zorder=4,
+        )
 
 
 def _label(panels: Sequence[Axes], name: str) -> None:

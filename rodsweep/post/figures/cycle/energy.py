@@ -30,8 +30,8 @@ def draw_energy(view: View, points: Sequence[int]) -> tuple[Figure, str]:
     for column, cycle in zip(rows.T, cycles, strict=True):
         _budget(column, cycle)
         mean, imbalance = (float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance"))
-        numbers = rf"$T$ = {cycle.period:.6g} $\tau_2$, mean power {mean:.6g}, imbalance {imbalance:.1e}"
-        column[0].set_title(cycle.heading(numbers), fontsize=8.5)
+        numbers = rf"$T = {cycle.period:.6g}\,\tau_2$", f"mean power {mean:.6g}", f"imbalance {imbalance:.1e}"
+        column[0].set_title(cycle.heading(*numbers), fontsize=8.5)
     rows[1, 0].set_ylim(bottom=min(0.0, rows[1, 0].get_ylim()[0]))
     rows[0, 0].set_ylabel("energy\n$U L/k_3$")
     rows[1, 0].set_ylabel("power\n" r"$\times\, L\tau_2/k_3$")

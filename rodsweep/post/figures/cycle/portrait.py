@@ -53,10 +53,10 @@ def draw_portrait(view: View, points: Sequence[int]) -> tuple[Figure, str]:
             axes.plot(x, y, color=colours(k), lw=1.8, solid_capstyle="round", zorder=2 + k / 100)
             force_arrow(axes, x, y, theta, colours(k))
         axes.set_xlabel("$x/L$")
-        period = rf"$T$ = {cycle.period:.6g} $\tau_2$"
+        period = [rf"$T = {cycle.period:.6g}\,\tau_2$"]
         if 0 < cycle.tau1 < np.inf:
-            period += rf" = {cycle.period / cycle.tau1:.6g} $\tau_1$"
-        axes.set_title(cycle.heading(period), fontsize=9)
+            period.append(rf"$= {cycle.period / cycle.tau1:.6g}\,\tau_1$")
+        axes.set_title(cycle.heading(*period), fontsize=9)
         if emerging:
             draw_emergence(upper, lower, cycle)
         else:

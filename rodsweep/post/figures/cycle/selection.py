@@ -57,9 +57,9 @@ class StoredCycle:
         """Whether its motion from the start is stored."""
         return TRACE[0] in self.values and bool(np.isfinite(self.values[TRACE[0]]).all())
 
-    def heading(self, line: str) -> str:
-        """The label, where there is one, above a line about the cycle."""
-        return "\n".join(filter(None, (self.label, line)))
+    def heading(self, *lines: str) -> str:
+        """The label, where there is one, above lines about the cycle, which a narrow panel has room for."""
+        return "\n".join(filter(None, (self.label, *lines)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,123 @@
+"""What single rods do over F: a bar of classes for each, with its thresholds marked."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from ...results.file.view import View
+from ...results.layouts.thresholds import CROSSING_KINDS
+from .lists import number_points, shared_parameters
+from .style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, need, parameter_text
+
+CLASS_COLOURS = {
+    "missing": "white",
+    "monotone": "#DCE9F5",
+    "oscillatory": "#9CC3E4",
+    "flutter": "#F2B28A",
+    "undecided": "#666666",
+    "crushed": "#BBBBBB",
+}
+"""Light to dark blue for stable rods and orange for unstable ones: told apart by all, and in grey."""
+STABLE_CLASS = {
+    "onset": "oscillatory",
+    "restabilization": "oscillatory",
+    "real_again": "monotone",
+    "real_leads": "monotone",
+    "pair_leads": "oscillatory",
+}
+"""What a rod does beyond a crossing where no mode grows, by the kind of the crossing."""
+MARKS = {
+    "onset": (FIRST, "o", rf"onset ${SYMBOLS['F']}_*$"),
+    "hopf": (SECOND, "s", rf"Hopf ${SYMBOLS['F']}_{{**}}$"),
+    "restabilization": (THIRD, "^", "restabilization"),
+}
+"""Colour, marker and word of the crossings that are marked."""
+FILL = 0.8
+"""Part of its place that the bar of a rod takes."""
+DIGITS = 6
+"""To which the thresholds of a single rod are written."""
+
+
+def draw_class_bars(view: View) -> Figure:
+    """A horizontal bar for one rod, upright ones side by side for a list, in its order."""
+    count = view.variables["status"].size
+    v = {name: view.variables[name] for name in ("F_end", "crossing_kind")}
+    need(view, np.isfinite(v["F_end"]).any(), "computed rod")
+    figure = Figure(figsize=(5.8, 2.2 if count == 1 else 4.0), layout="constrained")
+    axes = figure.subplots()
+    seen = set[str]()
+    for rod in range(count):
+        seen |= _bar(axes, view, rod, upright=count > 1)
+    handles: list = [
+        Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=word)
+        for word, colour in CLASS_COLOURS.items()
+        if word in seen
+    ]
+    handles += _mark(axes, view, upright=count > 1)
+    end = float(np.nanmax(v["F_end"]))
+    if count == 1:
+        axes.set(xlim=(0, end), ylim=(-0.75, 0.75), yticks=[], xlabel=LABELS["F"])
+        axes.spines["left"].set_visible(False)
+    else:
+        axes.set(ylim=(0, end), ylabel=LABELS["F"])
+        number_points(axes, count)
+    legend_below(figure, handles, columns=2)
+    figure.suptitle(heading(view, parameter_text(shared_parameters(view))), fontsize=9)
+    return figure
+
+
+def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str]]:
+    """(F from, F to, class) of a rod from F = 0, where all modes are real, to the end of the search."""
+    crossings = view.variables["crossing_F"].shape[-1]
+    kinds, F, after = (
+        view.variables[name].reshape(-1, crossings)[rod]
+        for name in ("crossing_kind", "crossing_F", "unstable_after")
+    )
+    end = float(view.variables["F_end"].ravel()[rod])
+    found = int(view.variables["crossing_count"].ravel()[rod])
+    start, word = 0.0, "monotone"
+    for place in np.flatnonzero(kinds > 0):
+        yield start, float(F[place]), word
+        start = float(F[place])
+        stable = STABLE_CLASS.get(CROSSING_KINDS[int(kinds[place])], "undecided")
+        word = "flutter" if after[place] > 0 else stable if after[place] == 0 else "undecided"
+    if found > np.count_nonzero(kinds > 0):  # more than the file has room for
+        word = "undecided"
+    if np.isfinite(end):
+        yield start, end, word
+
+
+def _bar(axes: Axes, view: View, rod: int, upright: bool) -> set[str]:
+    """Draws the bar of a rod; returns the classes that it has."""
+    pieces = list(classes_over_force(view, rod))
+    from_, to = (view.variables[name].ravel()[rod] for name in ("open_from", "open_to"))
+    if np.isfinite(from_):
+        pieces.append((float(from_), float(to), "undecided"))
+    for start, end, word in pieces:
+        if upright:
+            axes.bar(rod + 1, end - start, FILL, bottom=start, color=CLASS_COLOURS[word])
+        else:
+            axes.barh(0, end - start, FILL, left=start, color=CLASS_COLOURS[word])
+    return {word for *_, word in pieces}
+
+
+def _mark(axes: Axes, view: View, upright: bool) -> list[Line2D]:
+    """Marks the thresholds; returns what the legend says of them, with the numbers of a single rod."""
+    crossings = view.variables["crossing_F"].shape[-1]
+    kinds, F = (view.variables[name].reshape(-1, crossings) for name in ("crossing_kind", "crossing_F"))
+    handles = []
+    for kind, (colour, marker, word) in MARKS.items():
+        rods, places = np.nonzero(kinds == CROSSING_KINDS.index(kind))
+        if not rods.size:
+            continue
+        force = F[rods, places]
+        x, y = (rods + 1, force) if upright else (force, rods)
+        label = word if upright else f"{word} = " + ", ".join(f"{at:#.{DIGITS}g}" for at in force)
+        handles += axes.plot(
+            x, y, marker, color=colour, mec="white", mew=0.6, ms=6, label=label, clip_on=False
+        )
+    return handles

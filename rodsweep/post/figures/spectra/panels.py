@@ -1,0 +1,48 @@
+"""Lines of spectra of several files, a panel each, as the whole of the paper's Fig. 2."""
+
+from collections.abc import Sequence
+from string import ascii_lowercase
+
+from matplotlib.artist import Artist
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from ....results.file.view import View
+from ..style import fixed_text, heading, legend_below, long_axes
+from .line import FOLLOWED_ROOTS, change_text, draw_roots, mark_flutter
+
+MOST_PANELS = 12
+"""Files for which a page has room."""
+PANEL_HEIGHT = {1: 2.1, 2: 2.6}
+"""Inches, by the number of columns."""
+FIGURE_WIDTH = {1: 3.375, 2: 7.0}
+"""Inches, by the number of columns."""
+
+
+def draw_panels(views: Sequence[View], roots: str, narrow: bool) -> Figure:
+    """The two roots that are followed of each file, one below the other if narrow, with a common legend."""
+    columns = 1 if narrow else 2
+    rows = -(-len(views) // columns)
+    size = FIGURE_WIDTH[columns], PANEL_HEIGHT[columns] * rows + 0.8
+    figure = Figure(figsize=size, layout="constrained")
+    panels = figure.subplots(rows, columns, squeeze=False).ravel()
+    handles: dict[str, Artist] = {}
+    for letter, panel, view in zip(ascii_lowercase, panels, views, strict=False):
+        (name,) = long_axes(view)
+        draw_roots(panel, view, name, roots)
+        changes = mark_flutter(panel, view, name)
+        for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
+            handles.setdefault(label, handle)
+        for change in changes:
+            handles.pop(change_text(change), None)
+        if changes:
+            word = "change of stability"
+            handles[word] = Line2D([], [], color="0.3", ls="--", lw=0.9, label=word)
+        thresholds = ", ".join(map(change_text, changes))
+        text = heading(view, fixed_text(view, name), thresholds)
+        panel.set_title(f"({letter})  {text}", fontsize=8, loc="left")
+    for panel in panels[len(views) :]:
+        panel.remove()
+    legend_below(figure, list(handles.values()), 2 if narrow else 3)
+    figure.suptitle(FOLLOWED_ROOTS[roots], fontsize=9)
+    return figure
