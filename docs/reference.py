@@ -24,7 +24,7 @@ from rodsweep.config.refusals import what_is_allowed
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.results.layouts.arm import MEANINGS, QUANTITY_UNITS
-from rodsweep.results.layouts.phase_diagram import CLASSES, curve_variables
+from rodsweep.results.layouts.phase_diagram import CLASSES, criticality_variables, curve_variables
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from rodsweep.results.layouts.variables import DIMENSIONS, MISSING, Variable
 
@@ -35,7 +35,9 @@ WHOLE = {
         parameters: {F: 30, k1: 200, k2: 1.0e+4, gamma3: 1.0e-4, gamma1: 1}
         spectrum: {vectors: true, longitudinal: true}""",
     "thresholds": "parameters: {k1: 200, k2: 1.0e+4, gamma3: 1.0e-4}",
-    "phase_diagram": "parameters: {F: [0, 100], k1: [200, 300], k2: 1.0e+4, gamma3: 1.0e-4}",
+    "phase_diagram": """
+        parameters: {F: [0, 100], k1: [200, 300], k2: 1.0e+4, gamma3: 1.0e-4, gamma1: 1}
+        phase_diagram: {criticality: true}""",
     "modes": "parameters: {F: 30, k1: 200, k2: 1.0e+4, gamma3: 1.0e-4}",
     "criticality": "parameters: {k1: 200, k2: 1.0e+4, gamma3: 1.0e-4, gamma1: 1}",
     "limit_cycle": """
@@ -60,6 +62,7 @@ LENGTHS = {
     "crossing": "`thresholds.crossings`, `phase_diagram.crossings`, `criticality.crossings`",
     "curve_point": "as found",
     "fold": "as found",
+    "bautin": "as found",
     "harmonic": "`limit_cycle.harmonics`",
     "multiplier_number": "6",
     "sample": "`limit_cycle.samples`",
@@ -86,7 +89,7 @@ ATTRIBUTES = {
     "format": "1; see [which version reads what](#which-version-reads-what)",
     "fingerprint": "of what the config means, and of all points: what a continued file shares",
     "time_unit": "`tau2 = gamma2 L^4/k3`",
-    "gamma1": "of a spectrum with `spectrum.longitudinal: true`",
+    "gamma1": "where a spectrum or a phase diagram is given it",
     "coordinates": "names of the parameters along `point`, in a list of points; of an arm's quantities",
     "status_sentences": "the sentence of every status, one a line",
     "rodsweep_version, git_commit": "of the program; a commit that ends in `-dirty` was changed",
@@ -131,7 +134,8 @@ An axis is
 
 F must be below every k1; only a phase diagram may reach into the crushed rods, F >= k1. A phase diagram needs
 exactly two parameters with more than one value. A spectrum takes gamma1 with `spectrum.longitudinal: true`
-only, and as one number. The header of a CSV file names the parameters of the task, in any order.
+only, and as one number; a phase diagram with `phase_diagram.criticality: true` only, as one number,
+by default 1 or that of the arm. The header of a CSV file names the parameters of the task, in any order.
 """
 FILE = """
 ## The result file
@@ -185,7 +189,7 @@ def parameters() -> str:
     rows = []
     for name, p in PARAMETERS.items():
         having = [task for task, given in tasks.items() if getattr(given, name) is not None]
-        default = "" if p.default is None else f"{p.default:g} in a grid of `limit_cycle`"
+        default = "" if p.default is None else f"{p.default:g} in a grid; a spectrum has none"
         key, allowed = f"`parameters.{name}`", p.allowed.phrase
         rows.append([key, allowed, default, p.unit, p.long_name, code(", ".join(having))])
     return table(("key", "allowed", "default", "unit", "meaning", "tasks"), rows)
@@ -313,6 +317,8 @@ def curve_rows(job: Job) -> Iterator[list[str]]:
     for variable in curve_variables(line, row).values():
         beam = variable.name.startswith(("partial_beam", "filament"))
         yield variable_row(variable, list(variable.extra), "diagrams over F and k1" if beam else "")
+    for variable in criticality_variables(line, row).values():
+        yield variable_row(variable, list(variable.extra), "phase_diagram.criticality: true")
 
 
 def variables_of(job: Job) -> dict[str, tuple[Variable, list[str]]]:

@@ -173,7 +173,7 @@ def plot(
     points: tuple[int, ...],
     **look: Any,
 ) -> None:
-    """Draw the result FILE, or the amplitudes of several limit_cycle FILEs in one figure."""
+    """Draw the result FILE; or several: spectra in panels, amplitudes of limit cycles in one figure."""
     from ..post.figures import draw
     from ..post.figures.request import Look
     from ..results.file.view import read_view

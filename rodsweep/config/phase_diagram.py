@@ -7,7 +7,7 @@ from pydantic import model_validator
 
 from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS, all_but
 from .arm import AXIS_OF
-from .axes import words
+from .axes import DEFAULTS, words
 from .schema import Crossings, LinearConfig
 from .values import Strict
 
@@ -21,6 +21,8 @@ class PhaseDiagramOptions(Strict):
     """Confirm by winding numbers between the changes, and certify every spectrum."""
     curves: bool = True
     """Whether the boundaries between the rows are followed as curves."""
+    criticality: bool = False
+    """Whether Hopf curves tell on which side cycles are born, and where that changes; needs `curves`."""
 
 
 class PhaseDiagramConfig(LinearConfig):
@@ -30,6 +32,7 @@ class PhaseDiagramConfig(LinearConfig):
     phase_diagram: PhaseDiagramOptions = PhaseDiagramOptions()
 
     into_crushed: ClassVar[bool] = True
+    beyond: ClassVar[tuple[str, ...]] = ("gamma1",)
 
     @property
     def plane(self) -> tuple[str, ...]:
@@ -41,14 +44,43 @@ class PhaseDiagramConfig(LinearConfig):
         return all_but(self.plane[0])
 
     @property
+    def gamma1(self) -> float:
+        """The axial drag, which only the criticality feels: as given, the arm's, or the default."""
+        if "gamma1" in self.parameters.numbers:
+            return self.parameters.numbers["gamma1"]
+        if self.parameters.arm is not None:
+            return float(self.parameters.arm.grid_axes()["gamma1"].array()[0])
+        return DEFAULTS["gamma1"]
+
+    @property
     def meaning(self) -> dict[str, Any]:
         """With the values along every row; and, where curves are drawn, whether an axis is one of ratios."""
         meant, axes, line = super().meaning, self.parameters.axes, self.plane[0]
         asked: dict[str, Any] = {line: {"values": axes[line].array().tolist()}}
         meant |= {"parameters": meant["parameters"] | asked}
+        # Rows do not feel the criticality, which belongs to the curves; nor gamma1, which belongs to it.
+        asked_of_curves = meant["phase_diagram"].pop("criticality")
+        meant["parameters"].pop("gamma1", None)
         if self.phase_diagram.curves:
             meant |= {"together": {"logarithmic": [name for name in self.plane if axes[name].logarithmic]}}
+        if asked_of_curves:
+            meant["together"]["criticality"] = {"gamma1": self.gamma1}
         return meant
+
+    @model_validator(mode="after")
+    def _only_what_the_curves_use(self) -> "PhaseDiagramConfig":
+        options = self.phase_diagram
+        if options.criticality and not options.curves:
+            raise ValueError(
+                "phase_diagram.criticality is true but phase_diagram.curves is false; it is told along the "
+                "curves: set phase_diagram.curves: true or remove phase_diagram.criticality"
+            )
+        if "gamma1" in self.parameters.numbers and not options.criticality:
+            raise ValueError(
+                "parameters.gamma1 is given but the task phase_diagram does not use it without "
+                "phase_diagram.criticality: true; remove it or set that"
+            )
+        return self
 
     @model_validator(mode="after")
     def _two_axes(self) -> "PhaseDiagramConfig":

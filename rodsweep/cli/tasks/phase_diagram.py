@@ -1,6 +1,6 @@
 """The task phase_diagram: what the rod does over two parameters, row by row."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -11,7 +11,7 @@ from ...determinant.parameter_plane import Plane, PlaneAxis
 from ...model.parameters import CRUSHING
 from ...model.rod import Rod
 from ...results.file.view import View
-from ...results.layouts.phase_diagram import curve_variables
+from ...results.layouts.phase_diagram import criticality_variables, curve_variables
 from ...results.layouts.variables import Filled
 from ...sweep.estimate import Estimate, estimate_lines
 from .parts import LinearTask
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from ...determinant.curves import BoundaryCurve
     from ...solve.changes.boundaries import Boundaries
     from ...solve.changes.rows import DiagramRow
+    from ...solve.hopf.generalised import CurveCriticality
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,10 +49,16 @@ class PhaseDiagramTask(LinearTask):
     def asked(self) -> list[Part]:
         options = self.config.phase_diagram
         curves = "followed from row to row" if options.curves else "phase_diagram.curves: false"
+        criticality = "phase_diagram.criticality adds it"
+        if options.criticality:
+            criticality = (
+                f"gamma1 = {self.config.gamma1:g}; some 10 ms a point of a Hopf curve, after the rows"
+            )
         return [
             ("monotone, oscillatory, flutter", True, "task: phase_diagram"),
             ("crossings along each row", True, f"at most {options.crossings} are stored for each row"),
             ("boundaries as curves", options.curves, curves),
+            ("criticality of Hopf curves", options.criticality, criticality),
         ]
 
     def cost(self) -> Estimate:
@@ -100,7 +107,7 @@ class PhaseDiagramTask(LinearTask):
             for j in np.flatnonzero(kind[i])
         ]
         found = curves_through(plane, [seed for seed in seeds if seed is not None])
-        variables = curve_variables(line, row)
+        variables = curve_variables(line, row) | criticality_variables(line, row)
         # Where a list is full its last crossings are not stored, and no curve starts from them.
         cut = view.variables["crossing_count"].ravel() - np.count_nonzero(kind, axis=1)
         found = replace(found, untraced=found.untraced + int(cut[np.isfinite(rows)].clip(min=0).sum()))
@@ -108,7 +115,22 @@ class PhaseDiagramTask(LinearTask):
         if (line, row) == CRUSHING:  # the fold of the Hopf curve in the partial beam limit (Sec. VIII)
             Fc = filament_hopf()
             values |= {"filament_F_hopf": Fc, "partial_beam_k1": 4 * Fc, "partial_beam_F": 2 * Fc}
+        if self.config.phase_diagram.criticality:
+            values |= self._criticality(plane, found)
         return [(variables[name], np.asarray(value)) for name, value in values.items()]
+
+    def _criticality(self, plane: Plane, found: "Boundaries") -> dict[str, Any]:
+        """On which side of each Hopf curve cycles are born, as variables of the file."""
+        from ...solve.hopf.generalised import CurveCriticality, curve_criticality
+
+        gamma1, accuracy = self.config.gamma1, self.config.accuracy
+        told = [
+            curve_criticality(plane, curve, gamma1, accuracy)
+            if curve.hopf
+            else CurveCriticality(np.full(len(curve.values), np.nan), (), 0)
+            for curve in found.curves
+        ]
+        return criticality_record(told, self.config.plane) | {"curve_gamma1": gamma1}
 
 
 def record(result: "DiagramRow", most: int) -> dict[str, Any]:
@@ -143,4 +165,28 @@ def curve_record(found: "Boundaries", line: str, row: str) -> dict[str, Any]:
         values[f"curve_{name}"] = points[:, place]
         values[f"fold_{name}"] = [fold.values[place] for _, _, fold in folds]
         values[f"fold_{name}_error"] = [fold.errors[place] for _, _, fold in folds]
+    return values
+
+
+def criticality_record(told: Sequence["CurveCriticality"], along: tuple[str, ...]) -> dict[str, Any]:
+    """What was found along each curve, in their order, as the variables of the file."""
+    starts = np.cumsum([0, *(len(curve.criticality) for curve in told)])
+    found = [
+        (number, int(starts[number - 1]), point)
+        for number, curve in enumerate(told, 1)
+        for point in curve.points
+    ]
+    values: dict[str, Any] = {
+        "curve_criticality": np.concatenate([np.empty(0), *(curve.criticality for curve in told)]),
+        "bautin_curve": [number for number, _, _ in found],
+        "bautin_curve_point": [start + point.after for _, start, point in found],
+        "bautin_frequency": [point.frequency for _, _, point in found],
+        "bautin_growth_slope_real": [point.growth_slope.real for _, _, point in found],
+        "bautin_growth_slope_imag": [point.growth_slope.imag for _, _, point in found],
+        "bautin_landau_imag": [point.landau_imag for _, _, point in found],
+        "bautin_unlocated": sum(curve.unlocated for curve in told),
+    }
+    for place, name in enumerate(along):
+        values[f"bautin_{name}"] = [point.values[place] for _, _, point in found]
+        values[f"bautin_{name}_error"] = [point.errors[place] for _, _, point in found]
     return values

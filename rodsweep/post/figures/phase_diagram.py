@@ -21,6 +21,14 @@ CURVE_LOOKS = {1: ("Hopf points", 1.4, "-"), 0: ("double eigenvalue", 1.0, "--")
 """Legend, width and style of a curve, by its kind in the file."""
 CURVE_NAMES = {1: (r"$\tilde F_{**}$", 0.85), 0: (r"$\tilde F_*$", 0.12)}
 """What stands beside the longest curve of a kind, and where on the part of it that is in sight."""
+SIDE_LOOKS = {
+    -1: ("supercritical Hopf points", 1.4, "-"),
+    1: ("subcritical Hopf points", 1.4, "--"),
+    0: ("Hopf points, side undecided", 0.6, "-"),
+}
+"""Of the parts of Hopf curves, where the file tells on which side cycles are born; by Re c's sign."""
+BESIDE_SIDES = "double eigenvalue", 1.0, ":"
+"""Of double eigenvalues beside them, because dashed then means subcritical."""
 
 
 def draw_phase_diagram(request: FigureRequest) -> str:
@@ -61,7 +69,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     if "curve_number" in view.variables:
         handles += _curves(axes, view, line, row)
     handles += edge if (table == CRUSHED).any() else []
-    legend_below(figure, handles, columns=3)
+    legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
     axes.set_title(heading(view, fixed_text(view, line, row)), fontsize=9)
     return request.write(figure, f"what the rod does over {line} and {row}")
 
@@ -95,14 +103,16 @@ def _without_stairs(table: Array) -> Array:
 def _curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
     """Draws the boundaries and folds; returns what the legend says of them."""
     v = view.variables
-    handles = []
-    for number, (word, width, style) in CURVE_LOOKS.items():
+    sides = "curve_criticality" in v
+    handles = _sides(axes, view, line, row) if sides else []
+    for number, (word, width, style) in ({0: BESIDE_SIDES} if sides else CURVE_LOOKS).items():
         there = v["curve_kind"] == number
         curves = [v["curve_number"] == curve for curve in np.unique(v["curve_number"][there])]
         for one in curves:
             axes.plot(v[f"curve_{line}"][one], v[f"curve_{row}"][one], style, color="k", lw=width)
         if there.any():
             handles.append(Line2D([], [], color="k", lw=width, ls=style, label=word))
+        if there.any() and not sides:
             paths = [np.column_stack([v[f"curve_{line}"][one], v[f"curve_{row}"][one]]) for one in curves]
             _name_longest(axes, paths, *CURVE_NAMES[number])
     for i in range(len(v["fold"])):
@@ -118,3 +128,40 @@ def _curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
         (cross,) = axes.plot(x, y, "+", color="k", ls="", ms=10, mew=1.2, label=label)
         handles.append(cross)
     return handles
+
+
+def _sides(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
+    """Draws Hopf curves by the side on which cycles are born, and where it changes; returns the legend."""
+    v = view.variables
+    used = set()
+    for curve in np.unique(v["curve_number"][v["curve_kind"] == 1]):
+        for side, points in parts_of_one_side(view, int(curve), line, row):
+            _, width, style = SIDE_LOOKS[side]
+            axes.plot(*points.T, style, color="k", lw=width)
+            used.add(side)
+    handles = [
+        Line2D([], [], color="k", lw=width, ls=style, label=word)
+        for side, (word, width, style) in SIDE_LOOKS.items()
+        if side in used
+    ]
+    for i in range(len(v["bautin_curve"])):
+        x, y = v[f"bautin_{line}"][i], v[f"bautin_{row}"][i]
+        label = rf"Re $c$ = 0: ${SYMBOLS[line]}$ = {x:.6g}, ${SYMBOLS[row]}$ = {y:.6g}"
+        handles += axes.plot(x, y, "kD", mfc="white", ls="", ms=5, label=label)
+    return handles
+
+
+def parts_of_one_side(view: View, curve: int, line: str, row: str) -> list[tuple[int, np.ndarray]]:
+    """The parts of a Hopf curve between generalised Hopf points: (-1, 1 or 0 undecided, points (n, 2))."""
+    v = view.variables
+    rows = np.flatnonzero(v["curve_number"] == curve)
+    on = np.flatnonzero(v["bautin_curve"] == curve)
+    places = np.searchsorted(rows, v["bautin_curve_point"][on], side="right")
+    columns = [np.insert(v[f"curve_{name}"][rows], places, v[f"bautin_{name}"][on]) for name in (line, row)]
+    points = np.column_stack(columns)
+    side = np.insert(np.nan_to_num(v["curve_criticality"][rows]), places, 0)
+    # The sides of a piece are those of its ends; a point within the error of a change takes its neighbour's.
+    ends = side[:-1], side[1:]
+    pieces = np.where(ends[0] * ends[1] < 0, 0, np.sign(ends[0] + ends[1])).astype(int)
+    cuts = [0, *(np.flatnonzero(np.diff(pieces)) + 1), len(pieces)]
+    return [(int(pieces[a]), points[a : b + 1]) for a, b in zip(cuts[:-1], cuts[1:], strict=True) if b > a]

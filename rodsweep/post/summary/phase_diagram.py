@@ -83,4 +83,32 @@ def curve_lines(view: View, line: str, row: str) -> list[str]:
             f"partial beam limit: the Hopf curve folds at k1 = 4 Fc = {float(v['partial_beam_k1']):.13g}, "
             f"F = 2 Fc = {float(v['partial_beam_F']):.13g}"
         )
+    return lines + (criticality_lines(view, line, row) if "curve_criticality" in v else [])
+
+
+def criticality_lines(view: View, line: str, row: str) -> list[str]:
+    """On which side of the Hopf curves cycles are born, and the generalised Hopf points on them."""
+    v = view.variables
+    side = v["curve_criticality"][v["curve_kind"] == 1]
+    kinds = {
+        "supercritical": side < 0,
+        "subcritical": side > 0,
+        "undecided": side == 0,
+        "without a normal form": np.isnan(side),
+    }
+    told = [f"{int(there.sum())} {word}" for word, there in kinds.items() if there.any()]
+    lines = [
+        f"criticality, gamma1 = {float(v['curve_gamma1']):g}: of {len(side)} points of the Hopf curves "
+        f"{', '.join(told) or 'none'}"
+    ]
+    for i in range(len(v["bautin_curve"])):
+        where = ", ".join(
+            f"{name} = {v[f'bautin_{name}'][i]:.13g} (+- {v[f'bautin_{name}_error'][i]:.0e})"
+            for name in (row, line)
+        )
+        lines.append(f"generalised Hopf point (Re c = 0) on curve {int(v['bautin_curve'][i])}: {where}")
+    if v["bautin_unlocated"]:
+        lines.append(
+            f"{int(v['bautin_unlocated'])} changes of criticality were seen whose place could not be found"
+        )
     return lines

@@ -3,6 +3,7 @@
 from typing import Any
 
 from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS, all_but
+from .criticality import LANDAU, SLOPE
 from .spectrum import UNSTABLE_COUNT
 from .thresholds import CROSSINGS, search_variables
 from .variables import ANEW, BESIDE, MISSING, Layout, Variable, real, whole
@@ -64,4 +65,31 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
         real("partial_beam_k1", force, "4 Fc: k1 at the fold of the partial beam (k2 = inf, gamma3 = 0)"),
         real("partial_beam_F", force, "2 Fc: F at the fold of the partial beam"),
     )  # fmt: skip
+    return {variable.name: variable for variable in variables}
+
+
+def criticality_variables(line: str, row: str) -> dict[str, Variable]:
+    """What `phase_diagram.criticality` adds, by name: the sign of Re c on Hopf curves, and its zeros."""
+    along = (line, row)
+    units = {name: PARAMETERS[name].unit for name in along}
+    error = "estimate of the error of bautin_"
+    variables = (
+        real(
+            "curve_criticality",
+            "1",
+            "-1: supercritical, cycles where the pair grows, stable unless other modes grow; 1: "
+            "subcritical; 0: undecided within the error; NaN: no Hopf point, or no normal form there",
+            "curve_point",
+        ),
+        real("curve_gamma1", PARAMETERS["gamma1"].unit, "axial drag of curve_criticality and bautin_*"),
+        whole("bautin_curve", "number of the curve on which the generalised Hopf point lies", "bautin"),
+        whole("bautin_curve_point", "curve_point, from 0, behind which it lies on the curve", "bautin"),
+        *(real(f"bautin_{name}", units[name], f"{name} where Re c = 0", "bautin") for name in along),
+        *(real(f"bautin_{name}_error", units[name], f"{error}{name}", "bautin") for name in along),
+        real("bautin_frequency", "1/tau2", "frequency of the pair there", "bautin"),
+        real("bautin_growth_slope_real", SLOPE, "d(growth rate)/dF of the pair there", "bautin"),
+        real("bautin_growth_slope_imag", SLOPE, "d(frequency)/dF of the pair there", "bautin"),
+        real("bautin_landau_imag", LANDAU, "imaginary part of the Landau coefficient c there", "bautin"),
+        whole("bautin_unlocated", "changes of sign along Hopf curves whose place could not be found"),
+    )
     return {variable.name: variable for variable in variables}

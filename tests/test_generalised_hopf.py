@@ -1,0 +1,272 @@
+"""Generalised Hopf points: against other equations, meshes and planes, and as users see them."""
+
+from dataclasses import replace
+
+import h5py
+import numpy as np
+import pytest
+from contents import content, same
+from scipy.optimize import root
+from second_normal_form import Shape, coefficients
+from test_paper import run, stated
+
+import rodsweep as rs
+from rodsweep.cli.job import make_job
+from rodsweep.determinant.curves import trace
+from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
+from rodsweep.errors import InputError
+from rodsweep.model.rod import Rod
+from rodsweep.post.figures.phase_diagram import parts_of_one_side
+from rodsweep.results.file.view import read_view
+from rodsweep.solve.hopf import generalised
+from rodsweep.solve.hopf.generalised import curve_criticality
+from rodsweep.solve.point import Unsolvable
+
+K2, GAMMA3 = 1e4, 1e-4
+FOLD = 75.3972626336484526, 147.921519683199662, 770.860809443855688
+"""F, k1 and frequency, 30-digit roots: between it and the generalised Hopf point nothing changes side."""
+DIAGRAM = """
+task: phase_diagram
+parameters: {F: {start: 60, stop: 110, num: 6}, k1: [148, 150, 152, 154], k2: 1.0e4, gamma3: 1.0e-4}
+phase_diagram: {criticality: true}
+"""
+
+
+def curve_of(plane, F, k1, frequency):
+    start = [axis.scaled({"F": F, "k1": k1, "gamma3": GAMMA3}[axis.name]) for axis in plane.axes]
+    return trace(0.0, plane, tuple(start), frequency)
+
+
+def over_F_and_k1(F=(60.0, 110.0), k1=(145.0, 160.0), logarithmic=False):
+    """A plane of the rod and the Hopf curve through its fold."""
+    axes = PlaneAxis("F", *F), PlaneAxis("k1", *k1, logarithmic=logarithmic)
+    plane = Plane(Rod(0.0, 200.0, K2, GAMMA3), axes)
+    return plane, curve_of(plane, *FOLD)
+
+
+@pytest.fixture(scope="module")
+def found():
+    """Plane, curve, and what is found along it."""
+    plane, curve = over_F_and_k1()
+    return plane, curve, curve_criticality(plane, curve, 1.0, 1e-10)
+
+
+def test_a_generalised_hopf_point_is_that_of_other_equations(found):
+    """A search for it in (F, k1) by the second normal form, which starts beside it."""
+    (point,) = found[2].points
+
+    def growth_and_c(values):
+        rod = (*values, K2, GAMMA3, 1.0)
+        w = np.linalg.eigvals(Shape(*rod, 24).linear())
+        w = w[np.argmin(abs(w - 1j * point.frequency))]
+        c = coefficients(rod, w, 24)[0]
+        return w.real / abs(w), c.real / abs(c)
+
+    beside = point.values[0] * 1.001, point.values[1] * 0.9995
+    other = root(growth_and_c, beside, options={"xtol": 1e-12})
+    # Of these equations rounding leaves some 1e-11, from nodes to nodes.
+    assert point.values == pytest.approx(tuple(other.x), rel=1e-10)
+    c = coefficients((*point.values, K2, GAMMA3, 1.0), 1j * point.frequency, 24)[0]
+    assert point.landau_imag == pytest.approx(c.imag, rel=1e-6)
+    assert all(error <= 1e-9 * value for error, value in zip(point.errors, point.values, strict=True))
+
+
+def test_the_side_changes_once_and_at_the_point(found):
+    plane, curve, told = found
+    (point,) = told.points
+    assert told.unlocated == 0
+    assert set(told.criticality) == {-1.0, 1.0}
+    (after,) = np.flatnonzero(np.diff(told.criticality))
+    assert point.after == after
+    at = np.array([axis.scaled(v) for axis, v in zip(plane.axes, point.values, strict=True)])
+    a, b = curve.scaled[after : after + 2, :2]
+    assert np.linalg.norm(at - a) + np.linalg.norm(b - at) < 1.001 * np.linalg.norm(b - a)
+    for i, side in ((after, told.criticality[after]), (after + 1, told.criticality[after + 1])):
+        w = 1j * curve.frequency[i]
+        c = coefficients((*curve.values[i], K2, GAMMA3, 1.0), w, 24)[0]
+        assert np.sign(c.real) == side
+
+
+def test_it_is_the_same_on_finer_meshes_and_from_other_neighbours(found):
+    (point,) = found[2].points
+    finer = curve_criticality(*found[:2], 1.0, 1e-12).points
+    elsewhere = over_F_and_k1((50.0, 125.0), (146.0, 300.0), logarithmic=True)
+    others = curve_criticality(*elsewhere, 1.0, 1e-10).points
+    for (other,) in (finer, others):
+        for value, error, theirs, their_error in zip(
+            point.values, point.errors, other.values, other.errors, strict=True
+        ):
+            assert abs(value - theirs) <= error + their_error
+        assert other.frequency == pytest.approx(point.frequency, rel=1e-9)
+
+
+def test_another_plane_through_the_same_rod_has_it_too(found):
+    (point,) = found[2].points
+    F, k1 = point.values
+    axes = PlaneAxis("k1", 140.0, 160.0), PlaneAxis("gamma3", 1e-5, 1e-3, logarithmic=True)
+    plane = Plane(Rod(F, 200.0, K2, GAMMA3), axes)
+    (other,) = curve_criticality(plane, curve_of(plane, F, k1, point.frequency), 1.0, 1e-10).points
+    assert other.values == pytest.approx((k1, GAMMA3), rel=1e-8)
+
+
+def test_axial_drag_moves_it_along_the_hopf_curve(found):
+    plane, curve, told = found
+    (point,), (other,) = told.points, curve_criticality(plane, curve, 0.5, 1e-10).points
+    assert abs(other.values[0] - point.values[0]) > 1e-3
+    c = coefficients((*other.values, K2, GAMMA3, 0.5), 1j * other.frequency, 24)[0]
+    assert abs(c.real) < 1e-7 * abs(c)
+
+
+def test_where_the_normal_form_fails_the_side_is_not_known_and_no_other_is_lost(found, monkeypatch):
+    plane, curve, told = found
+    F = curve.values[3, 0]
+    real = generalised.hopf_coefficients
+
+    def fails_at_one(rod, *more):
+        if abs(rod.F - F) < 1e-9 * F:
+            raise Unsolvable("no normal form")
+        return real(rod, *more)
+
+    monkeypatch.setattr(generalised, "hopf_coefficients", fails_at_one)
+    again = curve_criticality(plane, curve, 1.0, 1e-10)
+    assert np.flatnonzero(np.isnan(again.criticality)).tolist() == [3]
+    assert np.array_equal(np.delete(again.criticality, 3), np.delete(told.criticality, 3))
+    assert again.points == told.points
+
+
+def test_a_change_that_cannot_be_located_is_counted(found, monkeypatch):
+    plane, curve, told = found
+    real = generalised.hopf_coefficients
+
+    def jumps(*asked):
+        """Re c/|c| changes its sign without vanishing."""
+        c = real(*asked)
+        return replace(c, landau=complex(np.sign(c.landau.real), 1.0))
+
+    monkeypatch.setattr(generalised, "hopf_coefficients", jumps)
+    again = curve_criticality(plane, curve, 1.0, 1e-10)
+    assert (again.points, again.unlocated) == ((), 1)
+    assert np.array_equal(again.criticality, told.criticality)
+
+
+def test_a_point_within_the_error_of_the_change_is_undecided_and_brackets_nothing(found):
+    """A point of the curve put where Re c vanishes: the bracket reaches over it."""
+    plane, curve, told = found
+    (point,) = told.points
+    x, y = (axis.scaled(v) for axis, v in zip(plane.axes, point.values, strict=True))
+    there = np.insert(curve.scaled, point.after + 1, [x, y, np.log(point.frequency)], axis=0)
+    again = curve_criticality(plane, replace(curve, scaled=there), 1.0, 1e-10)
+    assert again.criticality[point.after + 1] == 0
+    assert again.points[0].values == pytest.approx(point.values, rel=1e-10)
+    assert again.points[0].after in (point.after, point.after + 1)
+
+
+def test_a_diagram_tells_shows_and_draws_it(command):
+    k1, F = stated("generalised_hopf")[:2]
+    axes = "parameters.F.num=18", "parameters.k1.num=6"
+    with run(command, "generalised_hopf", *axes) as file:
+        assert file["bautin_k1"][:] == pytest.approx([k1], rel=1e-11)
+        assert file["bautin_F"][:] == pytest.approx([F], rel=1e-8)
+        hopf = file["curve_kind"][:] == 1
+        sides = file["curve_criticality"][:]
+        assert np.isnan(sides[~hopf]).all()
+        assert set(sides[hopf]) == {-1, 1}
+        after = int(file["bautin_curve_point"][0])
+        assert sides[after] * sides[after + 1] == -1
+        assert file["curve_number"][after] == file["bautin_curve"][0]
+    told = command("show", "generalised_hopf.h5").stdout.replace("\n", " ")
+    assert "generalised Hopf point (Re c = 0) on curve 2: k1 = 149.6168916" in told
+    assert "supercritical" in told
+    view = read_view(command.directory / "generalised_hopf.h5")
+    (one, before), (other, beyond) = parts_of_one_side(view, 2, "F", "k1")
+    assert {one, other} == {-1, 1}
+    assert before[-1] == pytest.approx((F, k1), rel=1e-8)
+    assert before[-1].tolist() == beyond[0].tolist()
+
+
+def test_it_does_not_depend_on_ranks_or_interruptions_nor_other_variables_on_it(command):
+    command.write("c.yaml", DIAGRAM)
+    command.write("plain.yaml", DIAGRAM.replace("criticality: true", "curves: true"))
+    for words in (("c.yaml",), ("c.yaml", "-o", "two.h5"), ("plain.yaml",)):
+        assert command("run", *words, ranks=2 if "two.h5" in words else 0).returncode == 0
+    for number in (1, 2):
+        assert command("run", "c.yaml", "--shard", f"{number}/2").returncode == 0
+    assert command("merge", "m.h5", "c-1-of-2.h5", "c-2-of-2.h5").returncode == 0
+    assert command("run", "c.yaml", "-o", "m.h5").returncode == 0
+    whole, two, merged, plain = (
+        content(command.directory / name) for name in ("c.h5", "two.h5", "m.h5", "plain.h5")
+    )
+    assert len(whole["bautin_F"]) == 1
+    assert same(whole, two)
+    assert same(whole, merged)
+    added = whole.keys() - plain.keys()
+    assert all(name in ("curve_criticality", "curve_gamma1") or name.startswith("bautin") for name in added)
+    assert same({name: whole[name] for name in whole.keys() - added}, plain)
+    # The rows are those of the plain file, which the criticality is added to.
+    refused = command("run", "c.yaml", "-o", "plain.h5")
+    assert refused.returncode == 2
+    assert command("run", "c.yaml", "-o", "plain.h5", "--extend").returncode == 0
+    assert same(whole, content(command.directory / "plain.h5"))
+
+
+def test_a_diagram_without_one_says_so(command):
+    command.write(
+        "c.yaml",
+        DIAGRAM.replace("[148, 150, 152, 154]", "[160, 170]").replace(
+            "start: 60, stop: 110", "start: 40, stop: 80"
+        ),
+    )
+    assert command("run", "c.yaml").returncode == 0
+    with h5py.File(command.directory / "c.h5") as file:
+        assert file["bautin_F"].shape == (0,)
+        assert (file["curve_criticality"][file["curve_kind"][:] == 1] == -1).all()
+    told = command("show", "c.h5").stdout
+    assert "supercritical" in told
+    assert "subcritical" not in told
+    assert command("plot", "c.h5", "-o", "c.png").returncode == 0
+
+
+def test_python_gives_the_same_with_the_axial_drag_that_is_asked_for():
+    asked = {"F": [60, 85, 110], "k1": [148, 150, 152], "k2": 1e4, "gamma3": 1e-4, "criticality": True}
+    one, half = (rs.sweep("phase_diagram", **asked, **more) for more in ({}, {"gamma1": 0.5}))
+    assert (float(one.curve_gamma1), float(half.curve_gamma1)) == (1.0, 0.5)
+    assert one.bautin_k1.values == pytest.approx([149.616891612], rel=1e-11)
+    assert np.array_equal(one.curve_F.values, half.curve_F.values)
+    assert abs(half.bautin_F.values[0] - one.bautin_F.values[0]) > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("more", "options", "sentence"),
+    [
+        ("", "criticality: true, curves: false", "criticality is true but phase_diagram.curves is false"),
+        ("gamma1: 2", "curves: true", "does not use it without phase_diagram.criticality: true"),
+        ("gamma1: [1, 2]", "criticality: true", "parameters.gamma1"),
+        ("gamma1: -1", "criticality: true", "parameters.gamma1 = -1 is not allowed"),
+        ("gamma1: 1", "criticality: 1", "phase_diagram.criticality = 1 is not allowed"),
+    ],
+)
+def test_what_cannot_be_is_refused(tmp_path, more, options, sentence):
+    path = tmp_path / "c.yaml"
+    path.write_text(
+        f"task: phase_diagram\nparameters: {{F: [1, 2], k1: [9, 10], k2: 9, gamma3: 1, {more}}}\n"
+        f"phase_diagram: {{{options}}}\n"
+    )
+    with pytest.raises(InputError, match=sentence):
+        make_job(path, ())
+
+
+def test_the_default_drag_asks_for_the_same_and_an_arm_has_its_own(tmp_path):
+    path = tmp_path / "c.yaml"
+    given = DIAGRAM.replace("k2: 1.0e4", "k2: 1.0e4, gamma1: 1")
+    meanings = []
+    for text in (DIAGRAM, given, given.replace("gamma1: 1", "gamma1: 0.5")):
+        path.write_text(text)
+        meanings.append(make_job(path, ()).config.meaning)
+    assert meanings[0] == meanings[1] != meanings[2]
+    path.write_text(
+        "task: phase_diagram\nparameters:\n  arm: {length: 10 cm, radius: 5 mm, young: 100 kPa, "
+        "viscosity: 1.4 Pa s, pressure: [1 kPa, 2 kPa]}\n  gamma3: [1.0e-4, 1.0e-3]\n"
+        "phase_diagram: {criticality: true}\n"
+    )
+    config = make_job(path, ()).config
+    assert config.gamma1 == config.parameters.arm.grid_axes()["gamma1"].array()[0] != 1
