@@ -19,6 +19,7 @@ from rodsweep.post.summary.limit_cycle import limit_cycle_summary
 from rodsweep.results.file.creation import Plan
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.view import read_view
+from rodsweep.results.run import checkpoints
 from rodsweep.results.run.checkpoints import CHECKPOINTS, Checkpoints
 from rodsweep.results.run.journal import Journal, drop_files
 from rodsweep.solve.cycle.cycle_errors import CycleErrors
@@ -531,6 +532,14 @@ def test_damaged_checkpoint_counts_as_none(tmp_path):
         assert kept.read(0) is None
     drop_files(tmp_path, CHECKPOINTS)
     assert not list(tmp_path.iterdir())
+
+
+def test_checkpoint_whose_states_held_other_numbers_counts_as_none(tmp_path, monkeypatch):
+    with monkeypatch.context() as earlier:
+        earlier.setattr(checkpoints, "CHECKPOINT_HEAD", b"rodsweep checkpoint 1\n")
+        Checkpoints(tmp_path, "print").write(0, 5, np.arange(3.0))
+        assert Checkpoints(tmp_path, "print").read(0) is not None
+    assert Checkpoints(tmp_path, "print").read(0) is None
 
 
 # --- runs -------------------------------------------------------------------------------------------------
