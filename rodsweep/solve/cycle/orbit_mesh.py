@@ -22,8 +22,8 @@ SPACE_FACTOR, TIME_FACTOR = 1.0, 50.0
 EXPECTED_SHARE = 1 / 3
 """Share of the accuracy that a mesh is chosen for, in space and in time each."""
 COARSER_ORDER, COARSER_SHARE = 2, 0.6
-"""The coarse mesh has so much less order in each element, and this share of the intervals: both errors are
-then about ten times those of the fine one, and it hardly matters which of them dominates."""
+"""The coarser mesh has so much less order in each element, or this share of the intervals: its errors are
+then some ten times as large."""
 LEAST_ORDER, LEAST_INTERVALS, MOST_INTERVALS = 8, 4, 256
 LEAST_DECAY, LARGEST_DECAY = 0.2, 1.2
 """Bounds of the decay of the coefficients in space, per order, natural logarithm."""
@@ -48,7 +48,7 @@ class OrbitMesh:
 
     @property
     def coarser(self) -> "OrbitMesh":
-        """The mesh that the error of this one is measured by."""
+        """A mesh whose errors, beside those of this one, tell how fast they fall."""
         order = max(LEAST_ORDER - COARSER_ORDER, self.order - COARSER_ORDER)
         intervals = max(LEAST_INTERVALS - 1, round(COARSER_SHARE * self.intervals))
         return replace(self, order=order, intervals=intervals)
