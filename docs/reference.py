@@ -40,6 +40,7 @@ WHOLE = {
         phase_diagram: {criticality: true}""",
     "modes": "parameters: {F: 30, k1: 200, k2: 1.0e+4, gamma3: 1.0e-4}",
     "criticality": "parameters: {k1: 200, k2: 1.0e+4, gamma3: 1.0e-4, gamma1: 1}",
+    "branch": "parameters: {k1: 200, k2: 1.0e+4, gamma3: 1.0e-4, gamma1: 1}",
     "limit_cycle": """
         parameters: {F: 50, k1: 1.0e+4, k2: 100, gamma3: 0.01, gamma1: 1}
         limit_cycle: {samples: 64, shapes: 8, transient: 99, time: tau1}""",
@@ -63,6 +64,8 @@ LENGTHS = {
     "curve_point": "as found",
     "fold": "as found",
     "bautin": "as found",
+    "branch_point": "`branch.cycles`",
+    "special": "`branch.special`",
     "harmonic": "`limit_cycle.harmonics`",
     "multiplier_number": "6",
     "sample": "`limit_cycle.samples`",
@@ -257,10 +260,11 @@ ARM = """
 
 With `parameters.arm` the file of any task has these coordinates too: a number each, or along F (the load) or
 k2 (Poisson's ratio) in a grid, along `point` in a list. What has the units tau2, 1/tau2, L, k3/L or
-k3/(L tau2), and forces whose name contains `F_`, stands in SI units beside, by the name with `_si` at its
-end: `period_si` in s, `growth_rate_si` in 1/s, `F_hopf_si` in Pa, or in N where the arm has a force.
-Tables over more than modes and crossings are not stored twice, nor are the curves and crossings of a phase
-diagram: times `pressure_scale` or `force_scale` a force is in SI, times `tau2` a time.
+k3/(L tau2), and forces whose name contains `F_` or along which branches are followed, stands in SI units
+beside, by the name with `_si` at its end: `period_si` in s, `growth_rate_si` in 1/s, `F_hopf_si` in Pa, or in
+N where the arm has a force. Tables over more than modes, crossings and branches are not stored twice, nor are
+the curves and crossings of a phase diagram: times `pressure_scale` or `force_scale` a force is in SI, times
+`tau2` a time.
 
 """
 

@@ -33,7 +33,17 @@ NAMES = [
     "plot",
     "sweep",
 ]
-METHODS = {"parameters", "replace", "spectrum", "thresholds", "modes", "limit_cycle", "cycle", "criticality"}
+METHODS = {
+    "parameters",
+    "replace",
+    "spectrum",
+    "thresholds",
+    "modes",
+    "limit_cycle",
+    "cycle",
+    "criticality",
+    "branch",
+}
 ROD = {"F": 50, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
 OF_A_RUN = {"seconds", "started", "finished", "config"}
 """What differs between two runs of one config, and its text, which a file has as it was written."""
@@ -189,6 +199,7 @@ def test_keywords_of_a_rods_tasks_are_the_keys_of_the_config():
         "modes": options.OfModes,
         "limit_cycle": options.OfLimitCycle,
         "criticality": options.OfCriticality,
+        "branch": options.OfBranch,
     }
     for task, kind in kinds.items():
         section = CONFIGS[task].model_fields[task].annotation

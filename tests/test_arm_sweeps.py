@@ -24,6 +24,7 @@ QUICK = {
     },
     "modes": {"arm": LOADED | {"length": ["10 cm", "11 cm"]}, "nodes": 5},
     "criticality": {"arm": SILICONE | {"radius": ["4 mm", "5 mm"]}, "crossings": 4, "F_max": 60},
+    "branch": {"arm": SILICONE | {"radius": ["4 mm", "5 mm"]}, "stop": 30, "cycles": 40, "accuracy": 1e-4},
     "limit_cycle": {
         "arm": SILICONE | {"force": ["0.19 N", "0.2 N"]},
         "start": "neighbour",
@@ -117,6 +118,8 @@ def test_other_units_ask_for_the_same():
         ("spectrum", {}, {"k1": 5}, "parameters.F reaches 32 and parameters.k1 starts at 5"),
         ("thresholds", {}, {}, "finds the load itself; remove it"),
         ("criticality", {}, {}, "finds the load itself; remove it"),
+        ("branch", {}, {}, "finds the load itself; remove it"),
+        ("branch", {}, {"along": "k1", "start": 10}, "branch.along: k1 is not allowed with parameters.arm"),
         ("phase_diagram", {"young": ["90 kPa", "100 kPa"]}, {}, "arm.young has several values, which move"),
         ("limit_cycle", {"length": ["9 cm", "10 cm"]}, {"start": "neighbour"}, "give one arm, whose"),
     ],

@@ -165,8 +165,8 @@ ALL = "F, k1, k2 and gamma3"
 REFUSED_BY_TASK = [
     (
         "parameters: {F: 1}",
-        "task is missing; it should be spectrum, thresholds, phase_diagram, modes, limit_cycle or "
-        "criticality",
+        "task is missing; it should be spectrum, thresholds, phase_diagram, modes, limit_cycle, "
+        "criticality or branch",
     ),
     ("task: [spectrum]", "task = ['spectrum'] is not allowed; it should be spectrum, thresholds"),
     (thresholds() + "spectrum: {modes: 3}", "spectrum is given but the task is thresholds; remove it"),
@@ -201,6 +201,28 @@ REFUSED_BY_TASK = [
     (
         config("criticality", "k1: 9, k2: 1, gamma3: 0", "F_max: 0"),
         "F_max = 0 is not allowed; it should be a finite number above 0",
+    ),
+    (config("branch", "F: 3, k1: 9"), "parameters.F is given but the task branch follows F; remove it"),
+    (
+        config("branch", "k1: 9, k2: 9, gamma3: 0", "along: k1, start: 1"),
+        "parameters.k1 is given but the task branch follows k1; remove it and set branch.start",
+    ),
+    (
+        config("branch", "k2: 9, gamma3: 0", "along: k1, start: 1"),
+        "parameters.F is missing; give F, k2, gamma3 and gamma1, or points: FILE.csv",
+    ),
+    (
+        config("branch", "F: 9, k2: 9, gamma3: 0", "along: k1"),
+        "start = 0 is not allowed along k1; allowed: a number above 0",
+    ),
+    (
+        config("branch", "F: 9, k2: 9, gamma3: 0", "along: k1, start: 3, stop: .inf"),
+        "stop = inf is not allowed; it should be a finite number",
+    ),
+    (config("branch", "k1: 9, k2: 9, gamma3: 0", "start: 300"), "start = 300 is not below stop = 200"),
+    (
+        config("branch", "k1: 9, k2: 9, gamma3: 0", "along: gamma1"),
+        "along = 'gamma1' is not allowed; it should be F, k1, k2 or gamma3",
     ),
     (config("criticality", "k1: 9, k2: 1, gamma3: 0, gamma1: 0"), "parameters.gamma1 = 0 is not allowed"),
     (thresholds("gamma1: 3, k1: 9"), "parameters.gamma1 is given but the task thresholds does not use it"),

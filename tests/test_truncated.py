@@ -26,6 +26,11 @@ parameters: {k1: [100, 1.0e4], k2: 1.0e4, gamma3: 1.0e-4}
 task: criticality
 parameters: {k1: [200, 1.0e4], k2: 1.0e4, gamma3: 1.0e-4}
 """,
+    "branch": """
+task: branch
+parameters: {k1: 150, k2: 1.0e4, gamma3: 1.0e-4}
+accuracy: 1.0e-4
+""",
     "modes": """
 task: modes
 parameters: {F: [10, 30], k1: 1.0e4, k2: 1.0e4, gamma3: 1.0e-4}

@@ -48,6 +48,17 @@ class OfCriticality(OfEveryTask, total=False):
     certify: bool
 
 
+class OfBranch(OfEveryTask, total=False):
+    """Keys of the section `branch`."""
+
+    along: Literal["F", "k1", "k2", "gamma3"]
+    start: float
+    stop: float
+    cycles: int
+    special: int
+    certify: bool
+
+
 class OfLimitCycle(OfEveryTask, total=False):
     """Keys of the section `limit_cycle`."""
 

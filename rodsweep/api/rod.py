@@ -15,7 +15,7 @@ from ..sweep.grid import refuse_axes
 from .answer import Answer
 from .asking import job_from, tree_of
 from .axes import plain
-from .options import OfCriticality, OfLimitCycle, OfModes, OfSpectrum, OfThresholds
+from .options import OfBranch, OfCriticality, OfLimitCycle, OfModes, OfSpectrum, OfThresholds
 from .solving import solve_here
 
 NOT_GIVEN = float("nan")
@@ -25,9 +25,9 @@ NOT_GIVEN = float("nan")
 class SoftRod:
     """A slender soft rod in a viscous fluid with a follower force at its tip, in units of length and k3.
 
-    F: follower force, k3/L^2; not needed for thresholds and criticality, which find it. k1: stretch
-    stiffness, k2: shear stiffness, both k3/L^2, inf for a rigid one. gamma3: rotational drag, gamma2 L^2.
-    gamma1: axial drag, gamma2, by default 1.
+    F: follower force, k3/L^2; not needed for thresholds, criticality and branch, which find
+    it. k1: stretch stiffness, k2: shear stiffness, both k3/L^2, inf for a rigid one. gamma3: rotational drag,
+    gamma2 L^2. gamma1: axial drag, gamma2, by default 1.
 
     Every task is a method of its name. It takes the options of the config as keywords, with the same
     defaults, and returns an `Answer`. Raises InputError, in the command line's words, for values that are not
@@ -90,6 +90,10 @@ class SoftRod:
     def criticality(self, **options: Unpack[OfCriticality]) -> Answer:
         """On which side of every Hopf point up to `F_max` its cycles are, and how they grow from there."""
         return self._answer("criticality", options)
+
+    def branch(self, **options: Unpack[OfBranch]) -> Answer:
+        """Its cycles, stable or not, followed in the parameter `along` from every Hopf point to the end."""
+        return self._answer("branch", options)
 
     if not TYPE_CHECKING:  # where a misspelt task shall be seen
 

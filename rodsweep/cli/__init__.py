@@ -37,7 +37,7 @@ overrides_option = click.option(
 @click.version_option(__version__, prog_name="rodsweep")
 @click.pass_context
 def commands(context: click.Context) -> None:
-    """Spectra, thresholds, phase diagrams, modes, criticality and limit cycles of soft rods in a fluid."""
+    """Spectra, thresholds, phase diagrams, modes, limit cycles and their branches of soft rods in a fluid."""
     if context.invoked_subcommand is None:  # as click does, but with all lines and with every release of it
         click.echo(context.get_help(), err=True)
         sys.exit(2)

@@ -90,7 +90,7 @@ class ArmSection(Strict):
     viscosity: Annotated[Quantities, Allowed]
     """Of the fluid; one value, because it scales the time only."""
     pressure: Annotated[Quantities | None, Allowed] = None
-    """On the tip's cross section; or give force. No key of thresholds and criticality, which find it."""
+    """On the tip's cross section; or give force. Not where the task finds F itself."""
     force: Annotated[Quantities | None, Allowed] = None
     """Follower force at the tip."""
 
@@ -135,7 +135,7 @@ class ArmSection(Strict):
         if self.load and not forced:
             raise ValueError(
                 f"parameters.arm.{self.load} is given but the task finds the load itself; remove it and set "
-                "its option F_max"
+                "its option F_max, or stop"
             )
         if forced and not (self.load or F_given):
             raise ValueError("parameters.arm.pressure is missing; give the pressure on the tip or a force")

@@ -1,5 +1,6 @@
 """The config of every task, by its name; the section of a task's options has that name too."""
 
+from .branch import BranchConfig
 from .criticality import CriticalityConfig
 from .limit_cycle import LimitCycleConfig
 from .modes import ModesConfig
@@ -15,4 +16,5 @@ CONFIGS: dict[str, type[Config]] = {
     "modes": ModesConfig,
     "limit_cycle": LimitCycleConfig,
     "criticality": CriticalityConfig,
+    "branch": BranchConfig,
 }

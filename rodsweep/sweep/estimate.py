@@ -23,6 +23,8 @@ MODES_MS, GROWTH_MS = 1.5, 20.0
 with them, and that the growth takes: means over 24 rods."""
 CYCLE_SECONDS, CHAINED_CYCLE_SECONDS = 0.1, 0.01
 """Time of a limit cycle from the leading mode, and from its neighbour: about those of the benchmark."""
+BRANCH_SECONDS = 4.0
+"""Time of all branches of a rod along F up to 200 at the accuracy 1e-7: from 1 to 15 were seen."""
 MEMORY_PER_UNKNOWN = 40_000
 BASE_MEMORY = 200_000_000
 
@@ -50,6 +52,11 @@ def estimate_criticality(rods: int, certify: bool) -> Estimate:
     """The cost of the Hopf points of `rods` rods and their normal forms."""
     each = HOPF_SEARCH_MS + HOPF_POINTS_MS + (HOPF_CERTIFICATE_MS if certify else 0)
     return Estimate(rods * 1e-3 * each)
+
+
+def estimate_branches(rods: int) -> Estimate:
+    """The cost of the branches of cycles of `rods` rods."""
+    return Estimate(rods * BRANCH_SECONDS)
 
 
 def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> Estimate:

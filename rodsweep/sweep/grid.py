@@ -5,6 +5,7 @@ import math
 from array import array
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 from typing import TextIO
 
@@ -21,6 +22,8 @@ from ..model.rod import Rod
 
 LONGEST_LINE = 10_000
 """Characters of a line of a CSV file."""
+STAND_INS = {"F": 0.0, "k1": inf, "k2": inf, "gamma3": 0.0}
+"""Values of parameters that are no column, with which a rod is one if it is with any."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +118,7 @@ def refuse_axes(axes: dict[str, Array], into_crushed: bool = False) -> None:
     """
     for name, column in axes.items():
         refuse_outside(PARAMETERS[name].allowed, name, column)
-    if "F" in axes:
+    if {"F", "k1"} <= axes.keys():
         _refuse_crushed(axes["F"], axes["k1"], into_crushed)
 
 
@@ -179,7 +182,7 @@ def _row(row: list[str], header: list[str], where: str) -> list[float]:
             numbers.append(as_number(float(cell)))
         except ValueError:
             raise InputError(f"{where}: {name} = {cell.strip()[:40]!r} is not a number") from None
-    values = {"F": 0.0} | dict(zip(header, numbers, strict=True))  # where F is no column
+    values = STAND_INS | dict(zip(header, numbers, strict=True))
     try:
         for name in set(header).difference(LINEAR_PARAMETERS):
             PARAMETERS[name].require(values.pop(name))

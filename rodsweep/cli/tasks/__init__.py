@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ...sweep.grid import Points
+from .branch import BranchTask
 from .criticality import CriticalityTask
 from .limit_cycle import LimitCycleTask
 from .modes import ModesTask
@@ -23,5 +24,6 @@ TASKS: dict[str, Callable[[Any, Points], Task]] = {
     "modes": ModesTask,
     "limit_cycle": LimitCycleTask,
     "criticality": CriticalityTask,
+    "branch": BranchTask,
 }
 """How a task is made of its config and points; InputError for what only the task can know to be wrong."""

@@ -12,6 +12,7 @@ from matplotlib import rc_params_from_file
 
 from ...errors import EnvironmentLacks, InputError
 from ...results.file.view import View
+from .branch import draw_branch
 from .criticality import draw_criticality
 from .limit_cycle import draw_limit_cycle
 from .modes import draw_modes
@@ -28,6 +29,7 @@ FIGURES: dict[str, Callable[[FigureRequest], str]] = {
     "modes": draw_modes,
     "limit_cycle": draw_limit_cycle,
     "criticality": draw_criticality,
+    "branch": draw_branch,
 }
 """How each task draws, which the first file names: writes the figure and returns what it shows."""
 

@@ -12,6 +12,7 @@ from ...results.file.view import View
 from ...results.layouts.arm import QUANTITY_UNITS
 from ...results.layouts.variables import DIMENSIONS, MISSING
 from .arm import arm_lines
+from .branch import branch_summary
 from .criticality import criticality_summary
 from .limit_cycle import limit_cycle_summary
 from .modes import modes_summary
@@ -26,6 +27,7 @@ SUMMARIES: dict[str, Callable[[View, np.ndarray], list[str]]] = {
     "modes": modes_summary,
     "limit_cycle": limit_cycle_summary,
     "criticality": criticality_summary,
+    "branch": branch_summary,
 }
 """What each task has to tell of its computed points, from (view, which points are computed)."""
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from . import criticality, limit_cycle, modes, phase_diagram, spectrum, thresholds
+from . import branch, criticality, limit_cycle, modes, phase_diagram, spectrum, thresholds
 from .arm import with_si
 from .variables import Increase, Layout
 
@@ -14,6 +14,7 @@ LAYOUTS: dict[str, Callable[[dict[str, Any]], Layout]] = {
     "modes": modes.layout,
     "limit_cycle": limit_cycle.layout,
     "criticality": criticality.layout,
+    "branch": branch.layout,
 }
 
 
@@ -24,6 +25,7 @@ INCREASES: dict[str, dict[str, Increase]] = {
     "modes": modes.INCREASES,
     "limit_cycle": limit_cycle.INCREASES,
     "criticality": criticality.INCREASES,
+    "branch": branch.INCREASES,
 }
 """The options of every task that ask for more of a point; another value of any other makes another file."""
 

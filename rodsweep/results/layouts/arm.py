@@ -31,7 +31,9 @@ FORCES = {
     "force": ("N", ("force_scale",), ()),
 }
 """What a follower force is told in: as the load of the arm is given, a pressure where none is."""
-WITHIN = ((), ("mode",), ("crossing",))
+OF_BRANCHES = ("branch_F", "special_at", "special_error")
+"""Forces along the branches of an arm, which are followed in nothing else."""
+WITHIN = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))
 """Dimensions beside the points of what is told in SI units too; longer tables are not stored twice."""
 MEANINGS = {
     "length": "length of the arm",
@@ -74,7 +76,7 @@ def _unit_of(variable: Variable, as_force: bool) -> tuple[str, tuple[str, ...], 
     """The SI unit of a variable, what to multiply and to divide by; an empty unit where it is told once."""
     if variable.dtype != "<f8" or variable.extra not in WITHIN:
         return "", (), ()
-    if variable.units == PARAMETERS["F"].unit and "F_" in variable.name:
+    if variable.units == PARAMETERS["F"].unit and ("F_" in variable.name or variable.name in OF_BRANCHES):
         return FORCES["force" if as_force else "pressure"]
     return OF_TIME_AND_LENGTH.get(variable.units, ("", (), ()))
 

@@ -24,6 +24,8 @@ DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
     "crossing": ("1", "in increasing order of the parameter that is varied"),
     "curve_point": ("1", "points of all curves, each curve's one after another"),
     "fold": ("1", "points where a curve turns back"),
+    "branch_point": ("1", "cycles of all branches of a rod, each branch's one after another"),
+    "special": ("1", "special points of all branches of a rod, each branch's one after another"),
     "bautin": ("1", "generalised Hopf points, of each Hopf curve one after another"),
     "harmonic": ("1", "multiple of the cycle's frequency"),
     "multiplier_number": ("1", "Floquet multipliers by descending modulus, without the trivial one"),

@@ -91,6 +91,11 @@ class Calibration:
         """The same for an orbit of the next point, after a relative change of the parameter."""
         return replace(self, growth=_growth(self.tails, _tails(orbit)), reach=self.reach + change)
 
+    def on_branch(self, orbit: Orbit, change: float) -> "Calibration":
+        """The same where cycles are told apart by the moment at the clamp: then none dies before another."""
+        growth = _growth(self.tails, _tails(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails * (0.0, 0.0, 1.0))
+        return replace(self, growth=growth, reach=self.reach + change)
+
     @property
     def outdated(self) -> "Calibration":
         """One that tells no more than how fast errors fall."""
@@ -162,14 +167,24 @@ def _growth(before: Array, after: Array) -> Array:
     return growth
 
 
-def calibrated(found: Converged, accuracy: float, before: Calibration | None = None) -> Calibration:
+def at_its_parameters(mesh: OrbitMesh, orbit: Orbit, tolerance: float) -> Converged:
+    """The same cycle of the same rod on another mesh; raises Unsolvable."""
+    return newton(mesh.carry(orbit), tolerance)
+
+
+def calibrated(
+    found: Converged,
+    accuracy: float,
+    before: Calibration | None = None,
+    on: Callable[[OrbitMesh, Orbit, float], Converged] = at_its_parameters,
+) -> Calibration:
     """The calibration of the mesh of an orbit; raises Unsolvable.
 
     before: of an orbit near by, on this mesh or another, which tells how fast errors fall; without it coarser
-    meshes do.
+    meshes do. on: the same cycle on another mesh, to a tolerance, whatever is held fixed.
     """
     here, least = mesh_of(found.orbit), found.orbit.stages + 1
-    difference, longer = _differences(found, accuracy), ceil(MORE_INTERVALS * here.intervals)
+    difference, longer = _differences(found, accuracy, on), ceil(MORE_INTERVALS * here.intervals)
     space = difference(replace(here, order=here.order + MORE_ORDERS))
     time = difference(replace(here, intervals=longer))
     # The finer mesh has an error in time itself.
@@ -189,12 +204,14 @@ def calibrated(found: Converged, accuracy: float, before: Calibration | None = N
     return Calibration(here, space, time, fall, power, tails, 0.0)
 
 
-def _differences(found: Converged, accuracy: float) -> Callable[[OrbitMesh], Array]:
+def _differences(
+    found: Converged, accuracy: float, on: Callable[[OrbitMesh, Orbit, float], Converged]
+) -> Callable[[OrbitMesh], Array]:
     """What another mesh's cycle differs by from one that was found, as `Calibration.space` says, (5,)."""
     path, multipliers = CyclePath(found.orbit), multipliers_of(found)[0]
 
     def difference(mesh: OrbitMesh) -> Array:
-        other = newton(mesh.carry(found.orbit), TOLERANCE * accuracy)
+        other = on(mesh, found.orbit, TOLERANCE * accuracy)
         change = multiplier_change(multipliers, multipliers_of(at_orbit(other, DISTANCE))[0])
         return np.append(path_differences(path, CyclePath(other.orbit)), change)
 

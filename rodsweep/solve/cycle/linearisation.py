@@ -32,7 +32,7 @@ class Linearisation:
     def __init__(self, orbit: Orbit, parameter: str | None = None) -> None:
         self.orbit = orbit
         K, s, n = orbit.intervals, orbit.stages, orbit.form.unknowns
-        self._factors = _workspace(K, s, n)
+        self._factors = workspace(K, s, n)
         columns = np.empty((K, s, 2 if parameter is None else 3, n))
         shifts = np.zeros(columns.shape[2] - 2)
         if parameter is not None:
@@ -48,13 +48,17 @@ class Linearisation:
 
     def multipliers(self) -> Complex:
         """All Floquet multipliers but rounding, (rank,), by descending modulus, the trivial one too."""
-        half = self.orbit.return_signs[:, None] * self._factors.propagator
-        values = nonzero_eigenvalues(half)
-        values = values**2 if self.orbit.symmetric else values
-        return values[np.argsort(-np.abs(values), kind="stable")]
+        return multipliers_by(self._factors.propagator, self.orbit)
 
 
-def _workspace(intervals: int, stages: int, unknowns: int) -> Factors:
+def multipliers_by(propagator: Array, orbit: Orbit) -> Complex:
+    """All Floquet multipliers but rounding, (rank,), by descending modulus, of an orbit with P, (n, n)."""
+    values = nonzero_eigenvalues(orbit.return_signs[:, None] * propagator)
+    values = values**2 if orbit.symmetric else values
+    return values[np.argsort(-np.abs(values), kind="stable")]
+
+
+def workspace(intervals: int, stages: int, unknowns: int) -> Factors:
     """Memory that every matrix uses again: new pages take as long as half an elimination."""
     shape = (intervals, stages, stages, unknowns, unknowns)
     if len(_memory[0]) < prod(shape):

@@ -1,6 +1,7 @@
 """Newton's method for a periodic orbit on one mesh."""
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -17,12 +18,24 @@ QUADRATIC = 1e5
 """What Newton's method leaves, in units of the square of its step, where the orbit is nearly neutral."""
 
 
+class HasMultipliers(Protocol):
+    """Newton's matrix, as far as it tells the stability of its orbit.
+
+    tangent: the derivative of the orbit by a parameter, if there is one.
+    """
+
+    tangent: Array | None
+
+    def multipliers(self) -> Complex:
+        """All Floquet multipliers but rounding, (rank,), by descending modulus, the trivial one too."""
+
+
 @dataclass(frozen=True, eq=False)
 class Converged:
     """What Newton's method ended with: the orbit and its last matrix, made at a relative distance from it."""
 
     orbit: Orbit
-    matrix: Linearisation
+    matrix: HasMultipliers
     distance: float
 
 

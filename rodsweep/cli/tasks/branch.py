@@ -1,0 +1,128 @@
+"""The task branch: the cycles of every rod, followed in one parameter from its Hopf points."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...config.branch import BranchConfig
+from ...results.layouts.branch import followed_variables, special_variables
+from ...sweep.estimate import Estimate, estimate_branches
+from .parts import count_of, rod_parts
+from .protocol import Part, Solver, Task
+
+if TYPE_CHECKING:
+    from ...solve.branch.branches import BranchesOfRod
+    from ...solve.branch.following import BranchPoint
+    from ...solve.branch.special_points import SpecialPoint
+    from ...solve.changes.unstable_modes import Crossing
+
+
+@dataclass(frozen=True, slots=True)
+class BranchTask(Task):
+    """Branches of cycles and their special points."""
+
+    config: BranchConfig
+
+    def headline(self) -> str:
+        options = self.config.branch
+        along, short = options.along, ", or to just below k1" * (options.along == "F")
+        ends = f"from {options.start:g} to {options.stop:g}"
+        return f"{count_of(self.points)}, each followed in {along} {ends}{short}"
+
+    def parts(self) -> list[Part]:
+        options = self.config.branch
+        why = "winding number of D" if options.certify else "branch.certify: false; Hopf points may be missed"
+        kept = f"at most {options.cycles} cycles and {options.special} special points of a rod are stored"
+        return [
+            *rod_parts(self.points.by_name | {options.along: np.array([options.start, options.stop])}),
+            ("axial drag", True, "parameters.gamma1; it moves no Hopf point, and every cycle"),
+            ("branches born at Hopf points", True, kept),
+            ("unstable cycles", True, "with all their Floquet multipliers"),
+            (
+                "branches without mirror symmetry",
+                False,
+                "where they are born is found; they are not followed",
+            ),
+            ("cycles on no such branch", False, "task: limit_cycle finds stable ones from a motion"),
+            ("certificate", options.certify, why),
+            ("gravity, inertia, motion out of the plane", False, "not part of the overdamped problem"),
+        ]
+
+    def cost(self) -> Estimate:
+        return estimate_branches(self.points.count)
+
+    def solver(self) -> Solver:
+        from ...solve.branch.branches import (
+            BranchRequest,
+            BranchRod,
+            BranchStatus,
+            solve_branches,
+            warm_up,
+        )
+
+        options = self.config.branch
+        request = BranchRequest(**options.model_dump(), accuracy=self.config.accuracy)
+        return Solver(
+            statuses=tuple(BranchStatus),
+            warm_up=warm_up,
+            solve=lambda index: solve_branches(BranchRod(**self.points.values(index)), request),
+            record=lambda index, result: record(result, options.along, options.cycles, options.special),
+        )
+
+
+def record(result: "BranchesOfRod", along: str, points: int, special: int) -> dict[str, Any]:
+    """All branches of a rod as the variables of the file; points, special: rooms of the two lists."""
+    cycles = [
+        _cycle(point, along) | {"branch": number}
+        for number, curve in enumerate(result.curves, 1)
+        for point in curve.points
+    ]
+    starts = [0]
+    for curve in result.curves:
+        starts.append(starts[-1] + len(curve.points))
+    after = {crossing.at: crossing for crossing in result.crossings}
+    specials = [
+        _special(one, starts[number - 1], after.get(one.at)) | {"special_branch": number}
+        for number, curve in enumerate(result.curves, 1)
+        for one in curve.special
+    ]
+    known = result.status.name != "failed"
+    counts = {"hopf": len(result.crossings), "branch": len(result.curves), "point": len(cycles)}
+    counts["special"] = len(specials)
+    values: dict[str, Any] = {f"{name}_count": count if known else -1 for name, count in counts.items()}
+    values |= {"unstable_at_start": result.unstable_at_start, "certified": result.proved}
+    for variables, rows, most in (
+        (followed_variables(along), cycles, points),
+        (special_variables(along), specials, special),
+    ):
+        empty = [{v.name: v.fill for v in variables}] * (most - len(rows))
+        values |= {v.name: [row[v.name] for row in [*rows[:most], *empty]] for v in variables}
+    return values | {"seconds": result.seconds, "status": result.status}
+
+
+def _cycle(point: "BranchPoint", along: str) -> dict[str, Any]:
+    """A cycle of a branch by the names of its variables."""
+    measures, errors = point.measures, point.errors
+    named = {
+        v.name: getattr(measures, v.name, getattr(errors, v.name, None)) for v in followed_variables(along)
+    }
+    return named | {
+        f"branch_{along}": point.at,
+        "multiplier": point.multiplier,
+        "unstable_multipliers": point.unstable,
+    }
+
+
+def _special(point: "SpecialPoint", start: int, hopf: "Crossing | None") -> dict[str, Any]:
+    """A special point by the names of its variables. start: place of its branch's first cycle."""
+    return {
+        "special_kind": int(point.kind),
+        "special_at": point.at,
+        "special_error": point.error,
+        "special_period": point.period,
+        "special_tip_y_max": point.tip_y_max,
+        "special_point": start + point.after if point.after >= 0 else -1,
+        "special_reason": int(point.reason or 0),
+        "special_unstable_after": hopf.unstable_after if hopf else -1,
+    }

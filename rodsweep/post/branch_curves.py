@@ -1,0 +1,154 @@
+"""Branches of cycles from a file of the task branch: curves and their stability, and ranges of the parameter.
+
+A branch is a curve through its cycles and its special points in their order; a piece of it between two of
+these is as stable as the cycle at one of its ends.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array
+from ..results.file.view import View
+from ..results.layouts.branch import END_REASONS, SPECIAL_KINDS
+
+HOPF, FOLD, END = (SPECIAL_KINDS.index(kind) for kind in ("hopf", "fold", "end"))
+SAME_PLACE = 1e-9
+"""Relative distance of the ends of two ranges below which they are one."""
+
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class SpecialOfBranch:
+    """A special point as the file has it."""
+
+    kind: str
+    at: float
+    error: float
+    period: float
+    tip_y_max: float
+    reason: str
+    unstable_after: int
+
+
+@dataclass(frozen=True, slots=True)
+class CurveOfCycles:
+    """A branch. at, y, period: at its vertices in order, (n,); cycles: which of these are stored ones, (n,).
+
+    stable: of the pieces between, (n - 1,): 1 stable, 0 unstable, -1 not known.
+    """
+
+    at: Array
+    y: Array
+    period: Array
+    stable: NDArray[np.integer]
+    cycles: NDArray[np.bool_]
+    special: tuple[SpecialOfBranch, ...]
+
+    @property
+    def stable_ranges(self) -> list[Range]:
+        """The values of the parameter that have a stable cycle of the branch."""
+        pieces = np.flatnonzero(self.stable == 1)
+        return union((min(self.at[i : i + 2]), max(self.at[i : i + 2])) for i in pieces)
+
+
+def followed_parameter(view: View) -> str:
+    """The parameter along which branches are followed."""
+    names = {str(name) for name in view.variables}
+    return next(name for name in ("F", "k1", "k2", "gamma3") if f"branch_{name}" in names)
+
+
+def curves_of(view: View, rod: int) -> list[CurveOfCycles]:
+    """The branches of a rod, by its place among all points."""
+    along, v = followed_parameter(view), _of_rod(view, rod)
+    curves = []
+    for number in range(1, int(v["branch_count"]) + 1):
+        cycles = np.flatnonzero(v["branch"] == number)
+        special = np.flatnonzero(v["special_branch"] == number)
+        before = special[v["special_point"][special] < 0]
+        order: list[tuple[bool, int]] = [(False, int(i)) for i in before]
+        for place in cycles:
+            order.append((True, int(place)))
+            order += [(False, int(i)) for i in special[v["special_point"][special] == place]]
+        values = [
+            (v[f"branch_{along}"][i], v["tip_y_max"][i], v["period"][i])
+            if is_cycle
+            else (v["special_at"][i], v["special_tip_y_max"][i], v["special_period"][i])
+            for is_cycle, i in order
+        ]
+        at, y, period = np.array(values, dtype=float).reshape(-1, 3).T
+        counts = [int(v["unstable_multipliers"][i]) if is_cycle else None for is_cycle, i in order]
+        is_cycle = np.array([cycle for cycle, _ in order], dtype=bool)
+        curves.append(CurveOfCycles(at, y, period, _stability(counts), is_cycle, _specials(v, special)))
+    return curves
+
+
+def _of_rod(view: View, rod: int) -> dict[str, Array]:
+    """The variables of one rod."""
+    shape = view.variables["status"].shape
+    values = {}
+    for name in view.variables:
+        data = view.variables[name]
+        if data.shape[: len(shape)] == shape:
+            values[name] = data.reshape(-1, *data.shape[len(shape) :])[rod]
+    return values
+
+
+def _stability(counts: list[int | None]) -> NDArray[np.integer]:
+    """Of the pieces between vertices of which some have counts of unstable multipliers."""
+    stable = []
+    for before, after in zip(counts[:-1], counts[1:], strict=True):
+        known = [count for count in (before, after) if count is not None and count >= 0]
+        stable.append(-1 if not known else int(known[0] == 0))
+    return np.array(stable, dtype=int)
+
+
+def _specials(v: dict[str, Array], places: Iterable[int]) -> tuple[SpecialOfBranch, ...]:
+    return tuple(
+        SpecialOfBranch(
+            SPECIAL_KINDS[int(v["special_kind"][i])],
+            float(v["special_at"][i]),
+            float(v["special_error"][i]),
+            float(v["special_period"][i]),
+            float(v["special_tip_y_max"][i]),
+            END_REASONS[int(v["special_reason"][i])],
+            int(v["special_unstable_after"][i]),
+        )
+        for i in places
+    )
+
+
+def straight_ranges(view: View, rod: int, ends: Range) -> tuple[list[Range], list[Range]]:
+    """(where the straight rod is stable, where it is not) between the ends of a range."""
+    v = _of_rod(view, rod)
+    hopf = v["special_kind"] == HOPF
+    at, first = np.unique(v["special_at"][hopf], return_index=True)
+    after = v["special_unstable_after"][hopf][first]
+    edges = [ends[0], *(float(a) for a in at), max(ends[1], *at) if len(at) else ends[1]]
+    counts = [int(v["unstable_at_start"]), *(int(count) for count in after)]
+    stable: list[Range] = []
+    unstable: list[Range] = []
+    for count, low, high in zip(counts, edges[:-1], edges[1:], strict=True):
+        if count >= 0:
+            (unstable if count else stable).append((low, high))
+    return union(stable), union(unstable)
+
+
+def union(ranges: Iterable[Range]) -> list[Range]:
+    """Ranges that touch or overlap, as one each, in increasing order."""
+    found: list[Range] = []
+    for low, high in sorted((float(a), float(b)) for a, b in ranges):
+        if found and low <= found[-1][1] * (1 + SAME_PLACE):
+            found[-1] = found[-1][0], max(high, found[-1][1])
+        else:
+            found.append((low, high))
+    return found
+
+
+def both(some: list[Range], others: list[Range]) -> list[Range]:
+    """What two lists of ranges have in common."""
+    common = [(max(a, c), min(b, d)) for a, b in some for c, d in others]
+    return [(low, high) for low, high in common if high > low * (1 + SAME_PLACE)]

@@ -1,0 +1,102 @@
+"""What the file of the task branch holds: the cycles of all branches of a rod, and their special points."""
+
+from typing import Any
+
+from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS
+from .variables import ANEW, SECONDS, STATUS, Increase, Layout, Variable, real, whole
+
+ALONG, SPECIAL = "branch_point", "special"
+
+SPECIAL_MEANINGS = {
+    "none": "no special point: the list is longer than what was found",
+    "hopf": "a Hopf point, where cycles are born: here a branch begins or ends",
+    "fold": "the branch turns back in the parameter; a multiplier is 1",
+    "torus": "a complex pair of multipliers crosses the circle: a motion with two frequencies is born",
+    "symmetry_breaking": "a multiplier is 1, and cycles without the mirror symmetry are born",
+    "left_the_model": "h1 reaches 0 somewhere on the cycle, where the model ends",
+    "end": "the branch ends here for the reason that special_reason says",
+}
+"""What happens at a special point; the place in this list is what the file stores."""
+SPECIAL_KINDS = tuple(SPECIAL_MEANINGS)
+END_REASONS = ("none", "range_end", "crushed", "no_cycle_found", "list_full")
+"""Why a branch ends at a point of the kind end."""
+
+
+def followed_variables(along: str) -> tuple[Variable, ...]:
+    """The cycles of all branches, one branch after another."""
+    unit = PARAMETERS[along].unit
+    return (
+        whole("branch", "number of the branch, from 1", ALONG),
+        real(f"branch_{along}", unit, f"{along} of the cycle", ALONG),
+        real("period", "tau2", "period of the cycle", ALONG),
+        real("tip_y_max", "L", "largest y of the tip", ALONG),
+        real("tip_x_min", "L", "smallest x of the tip", ALONG),
+        real("tip_x_max", "L", "largest x of the tip", ALONG),
+        real("tip_theta_max", "1", "largest angle of the tip", ALONG),
+        real("least_stretch", "1", "smallest h1 on the cycle; the model holds while it is positive", ALONG),
+        real("multiplier", "1", "modulus of the largest Floquet multiplier but the trivial one", ALONG),
+        whole(
+            "unstable_multipliers",
+            "Floquet multipliers outside the circle; 0 is stable; -1: one is on it within its error",
+            ALONG,
+        ),
+        real("period_error", "1", "estimate of the relative error of period", ALONG),
+        real("amplitude_error", "1", "estimate of the relative error of tip_y_max", ALONG),
+        real(
+            "extrema_error", "1", "estimate of the error of the other extrema, in units of tip_y_max", ALONG
+        ),
+        real("multiplier_error", "1", "estimate of the absolute error of multiplier", ALONG),
+    )
+
+
+def special_variables(along: str) -> tuple[Variable, ...]:
+    """The special points of all branches, one branch after another."""
+    unit = PARAMETERS[along].unit
+    kinds, reasons = tuple(enumerate(SPECIAL_KINDS)), tuple(enumerate(END_REASONS))
+    return (
+        Variable("special_kind", "|i1", 0, "1", "what happens at the special point", (SPECIAL,), kinds),
+        real("special_at", unit, f"{along} at the special point", SPECIAL),
+        real("special_error", unit, "estimate of the absolute error of special_at", SPECIAL),
+        real("special_period", "tau2", "period of the cycle there", SPECIAL),
+        real("special_tip_y_max", "L", "largest y of the tip there; 0 at a Hopf point", SPECIAL),
+        whole("special_branch", "number of the branch, from 1", SPECIAL),
+        whole(
+            "special_point",
+            "branch_point, from 0, behind which it lies on its branch; -1: before the first cycle of it",
+            SPECIAL,
+        ),
+        Variable("special_reason", "|i1", 0, "1", "why the branch ends there", (SPECIAL,), reasons),
+        whole(
+            "special_unstable_after",
+            "at a Hopf point, unstable modes of the straight rod beyond it in the parameter",
+            SPECIAL,
+        ),
+    )
+
+
+def _has(name: str) -> Increase:
+    """A list that has room left needs no longer one."""
+    return Increase(lambda records, before: records[name] < before)
+
+
+INCREASES = {"cycles": _has("point_count"), "special": _has("special_count"), "certify": ANEW}
+
+
+def layout(config: dict[str, Any]) -> Layout:
+    """The layout that a resolved config asks for."""
+    options = config["branch"]
+    along = options["along"]
+    variables = (
+        whole("hopf_count", f"Hopf points found between start and stop of {along}"),
+        whole("branch_count", "branches that begin at them, each once"),
+        whole("point_count", "cycles of all branches"),
+        whole("special_count", "special points of all branches, stored or not"),
+        whole("unstable_at_start", "unstable modes of the straight rod at start; -1: not known"),
+        Variable("certified", "|i1", 0, "1", "1 where it is proved that no Hopf point is missing"),
+        *followed_variables(along),
+        *special_variables(along),
+        SECONDS,
+        STATUS,
+    )
+    parameters = tuple(name for name in NONLINEAR_PARAMETERS if name != along)
+    return Layout(variables, {ALONG: options["cycles"], SPECIAL: options["special"]}, parameters)

@@ -1,0 +1,126 @@
+"""The first cycle of a branch, from the normal form of the Hopf point at which it is born.
+
+The normal form says how large the cycles are at a distance of the parameter, on either side. Turned round: a
+cycle of a given small amplitude lies at a known distance; Newton's method finds it with its moment held,
+which is as well posed at a Hopf point as anywhere.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...determinant.newton import eigenvalue_newton
+from ...determinant.parameter_path import Path
+from ...discretization.stress_form import StressForm
+from ...model.rod import Rod
+from ..changes.unstable_modes import Crossing
+from ..cycle.hopf_start import (
+    INTERVALS,
+    NORMAL_FORM_ACCURACY,
+    STAGES,
+)
+from ..cycle.neighbour import with_coordinate
+from ..cycle.orbit import Orbit, node_times
+from ..cycle.orbit_mesh import stages_for, wanted_mesh
+from ..cycle.refinement import FIRST_ACCURACY, NEAR, matrix_distance
+from ..hopf.normal_form import NormalForm, accurate_normal_form
+from ..point import Unsolvable
+from .arc import ArcPoint, arc_point, measured, tangent_at
+from .bordered import Condition, Scale, moment_of
+
+AMPLITUDES = (0.02, 0.008, 0.003)
+"""Largest tip y, in L, of the first cycle, tried one after the other."""
+SHARE = 0.05
+"""Largest one in units of the amplitude coefficient: beyond, the normal form's third order is not enough."""
+LEAST_UNIT = 0.1
+"""Tip y, in L, of the small cycle whose moment is the least unit of moments."""
+FIRST_STEP = 0.02
+MOMENT = np.array([1.0, 0.0, 0.0])
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class HopfBirth:
+    """A Hopf point along a parameter with what is born there.
+
+    coordinate: the parameter's; slope: dw/d(coordinate); normal: the normal form at the rod.
+    """
+
+    crossing: Crossing
+    rod: Rod
+    gamma1: float
+    name: str
+    coordinate: float
+    slope: complex
+    normal: NormalForm
+
+    @property
+    def period(self) -> float:
+        """Of the cycles as they are born, in tau2."""
+        return 2 * np.pi / self.crossing.frequency
+
+    def moved_by(self, amplitude: float) -> tuple[float, float]:
+        """(change of the coordinate, frequency) of the cycle whose largest tip y is given."""
+        c = self.normal.c
+        change = -c.real * amplitude**2 / self.slope.real
+        return change, self.crossing.frequency + self.slope.imag * change + c.imag * amplitude**2
+
+
+def hopf_point(rod: Rod, gamma1: float, name: str, crossing: Crossing) -> HopfBirth:
+    """The Hopf point of a rod at a crossing along a parameter; raises Unsolvable.
+
+    rod: with any value of the parameter that is allowed.
+    """
+    path, w = Path(rod, name), complex(0.0, crossing.frequency)
+    at = path.at(path.variable(crossing.at))
+    _, slope, _ = eigenvalue_newton(w, at.coefficients, path.direction)
+    normal = accurate_normal_form(at, gamma1, w, NORMAL_FORM_ACCURACY)
+    return HopfBirth(
+        crossing=crossing,
+        rod=at,
+        gamma1=gamma1,
+        name=name,
+        coordinate=path.variable(crossing.at),
+        slope=complex(slope),
+        normal=normal,
+    )
+
+
+def beginning(hopf: HopfBirth, accuracy: float) -> ArcPoint:
+    """The first cycle of the branch from a Hopf point; raises Unsolvable."""
+    a = abs(hopf.normal.c.real / (hopf.slope.real * hopf.coordinate)) ** -0.5
+    for amplitude in AMPLITUDES:
+        try:
+            return _cycle_of(hopf, min(amplitude, SHARE * a), accuracy)
+        except Unsolvable as error:
+            why = error
+    raise Unsolvable(f"no cycle is found beside the Hopf point: {why}") from why
+
+
+def _cycle_of(hopf: HopfBirth, amplitude: float, accuracy: float) -> ArcPoint:
+    """The cycle of an amplitude that the normal form predicts, to an accuracy."""
+    start = predicted_cycle(hopf, amplitude)
+    scale = Scale.of(start, hopf.name, abs(moment_of(start)) * LEAST_UNIT / amplitude)
+    border = np.sign(moment_of(start)) * MOMENT
+    condition = Condition.at(scale, border, start)
+    near = condition.solved(start, NEAR).orbit
+    y = float(near.form.tip(near.start)[1])
+    if not 0.5 < y / amplitude < 2.0:
+        raise Unsolvable("Newton's method left the cycle that the normal form predicts")
+    aim = max(accuracy, FIRST_ACCURACY)
+    first = condition.on(wanted_mesh(near, aim, stages_for(accuracy)), near, matrix_distance(accuracy))
+    cycle = measured(first, None, condition, 0.0, accuracy)
+    return arc_point(cycle, scale, tangent_at(cycle.orbit, scale, border), FIRST_STEP)
+
+
+def predicted_cycle(hopf: HopfBirth, amplitude: float) -> Orbit:
+    """What the normal form predicts, with the largest tip y in L, on its mesh in space, coarse in time."""
+    change, frequency = hopf.moved_by(amplitude)
+    form = StressForm(hopf.rod, hopf.gamma1, hopf.normal.form.mesh)
+    try:
+        form = with_coordinate(form, hopf.name, hopf.coordinate + change)
+    except (ValueError, ZeroDivisionError) as error:
+        raise Unsolvable(f"the branch leaves the rods: {error}") from error
+    X = hopf.normal.motion(amplitude, np.pi * node_times(INTERVALS, STAGES))
+    S, V = hopf.normal.form.fields(X)
+    parts = [*S[..., :-1]] + ([V[2]] if form.omega_unknown else [])
+    return Orbit.of(form, True, 2 * np.pi / frequency, np.concatenate(parts, axis=1), STAGES)

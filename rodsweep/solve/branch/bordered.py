@@ -1,0 +1,182 @@
+"""Newton's method for a cycle together with a parameter: a condition on the branch closes the system.
+
+At a fold the parameter does not tell cycles apart. What is prescribed instead is a combination of three
+numbers that no mesh changes the meaning of: the bending moment at the clamp at t = 0, in units of about its
+largest over the cycle, the logarithm of the period, and the parameter's `linearisation.coordinate` in units
+of a scale. So a branch has a length, and steps along it; at a Hopf point it has a length too, for
+there the moment goes through 0 as any other number does.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from ...arrays import Array, Complex
+from ..cycle.condensation import eliminate, residuals, substitute
+from ..cycle.linearisation import parameter_derivative, phase, phase_row, workspace
+from ..cycle.multipliers import nonzero_eigenvalues
+from ..cycle.neighbour import coordinate_of, with_coordinate
+from ..cycle.newton import Converged, relative_change
+from ..cycle.orbit import Orbit
+from ..cycle.orbit_mesh import OrbitMesh
+from ..point import Unsolvable
+
+LONGEST_STEP = 0.5
+"""Largest relative change of an orbit in one iteration."""
+MOST_ITERATIONS = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """What moments at the clamp and the parameter's coordinate are measured in, and the parameter's name.
+
+    least: the least unit of moments, for small cycles.
+    """
+
+    name: str
+    moment: float
+    coordinate: float
+    least: float
+
+    @classmethod
+    def of(cls, orbit: Orbit, name: str, least: float) -> "Scale":
+        """The one at an orbit."""
+        largest = float(np.abs(orbit.points[:, 2 * orbit.form.mesh.nodes]).max())
+        return cls(name, float(np.hypot(largest, least)), abs(coordinate_of(orbit.form, name)), least)
+
+    def place(self, orbit: Orbit) -> Array:
+        """(moment at the clamp, log of the period, coordinate), in these units, (3,)."""
+        moment = moment_of(orbit) / self.moment
+        at = coordinate_of(orbit.form, self.name) / self.coordinate
+        return np.array([moment, np.log(orbit.period), at])
+
+    def moved(self, orbit: Orbit, change: Array) -> Array:
+        """What a change of an orbit and the coordinate, (N + 1,), moves `place` by, (3,)."""
+        moment = change[2 * orbit.form.mesh.nodes] / self.moment
+        return np.array([moment, change[-2] / orbit.period, change[-1] / self.coordinate])
+
+
+def moment_of(orbit: Orbit) -> float:
+    """The bending moment at the clamp at t = 0, when the tip's y is largest."""
+    return float(orbit.start[2 * orbit.form.mesh.nodes])
+
+
+class BorderedMatrix:
+    """Newton's matrix at an orbit, with a parameter as a further unknown and one row still to be given.
+
+    Steps are arrays like `Orbit.values`, (N,), with the parameter's coordinate behind them. They can be had
+    until the next matrix is made; the multipliers for ever.
+    """
+
+    def __init__(self, orbit: Orbit, scale: Scale) -> None:
+        self.orbit, self.scale = orbit, scale
+        self.tangent: Array | None = None  # by which parameter is for the branch to say
+        p, (K, s, n) = orbit.semidiscrete, orbit.states.shape
+        self._columns, slopes = np.empty((K, s, 3, n)), np.empty((K, s, n))
+        right = np.empty((K, s, n))
+        residuals(orbit.points, orbit.duration, p, slopes, right)
+        by_parameter, shift = parameter_derivative(orbit, scale.name)
+        self._columns[:, :, 0] = slopes * (p.lengths[:, None, None] / p.parts)
+        self._columns[:, :, 1], self._columns[:, :, 2] = by_parameter, right
+        self._factors = workspace(K, s, n)
+        ends = eliminate(orbit.points, orbit.duration, p, self._factors, self._columns)
+        self._matrix = np.zeros((n + 2, n + 2))
+        self._matrix[:n, :n] = self._factors.propagator - np.diag(p.signs)
+        self._matrix[:n, n], self._matrix[:n, n + 1] = ends[0], ends[1]
+        row = np.empty(n)
+        phase_row(orbit.start, p.parameters, p.matrices, row)
+        self._matrix[n, :n], self._matrix[n, n + 1] = row, -shift
+        jump = p.signs * orbit.start - orbit.points[-1] - ends[2]
+        self._right = np.append(jump, -phase(orbit.start, p.parameters, p.matrices))
+
+    def step(self, border: Array, length: float) -> Array:
+        """Newton's step along which `border` . place, (3,), grows by a length, (N + 1,)."""
+        return self._solved(border, np.append(self._right, length), 1.0)
+
+    def direction(self, border: Array) -> Array:
+        """The tangent of the branch, of unit length in `Scale.place`, on the side of a border, (N + 1,)."""
+        change = self._solved(border, np.append(np.zeros(len(self._right)), 1.0), 0.0)
+        return change / np.linalg.norm(self.scale.moved(self.orbit, change))
+
+    @cached_property
+    def returns(self) -> Complex:
+        """The multipliers of the map over what is solved, half a period and the reflection, (rank,)."""
+        return nonzero_eigenvalues(self.orbit.return_signs[:, None] * self._factors.propagator)
+
+    def multipliers(self) -> Complex:
+        """All Floquet multipliers but rounding, (rank,), by descending modulus, the trivial one too."""
+        values = self.returns**2 if self.orbit.symmetric else self.returns
+        return values[np.argsort(-np.abs(values), kind="stable")]
+
+    def _solved(self, border: Array, right: Array, share: float) -> Array:
+        """The change for right sides of the ends and a share of those of the stages."""
+        n = len(self.orbit.start)
+        matrix = self._matrix.copy()
+        matrix[-1, 2 * self.orbit.form.mesh.nodes] = border[0] / self.scale.moment
+        matrix[-1, n:] = border[1] / self.orbit.period, border[2] / self.scale.coordinate
+        found = np.linalg.solve(matrix, right)
+        weights = np.array([found[n], found[n + 1], share])
+        stages = np.ascontiguousarray((weights @ self._columns)[:, :, None])
+        out = np.empty_like(stages)
+        substitute(found[None, :n].copy(), stages, self.orbit.semidiscrete, self._factors, out)
+        return np.concatenate([found[:n], out.ravel(), found[n:]])
+
+
+def bordered(found: Converged) -> BorderedMatrix:
+    """The matrix of an orbit that was found on a branch."""
+    if not isinstance(found.matrix, BorderedMatrix):
+        raise TypeError("the matrix does not know the parameter")
+    return found.matrix
+
+
+@dataclass(frozen=True, eq=False)
+class Condition:
+    """What closes the system: border . place, (3,), in a scale, is a number."""
+
+    scale: Scale
+    border: Array
+    value: float
+
+    @classmethod
+    def at(cls, scale: Scale, border: Array, orbit: Orbit, length: float = 0.0) -> "Condition":
+        """What holds at a length along a border from an orbit."""
+        return cls(scale, border, float(border @ scale.place(orbit)) + length)
+
+    def missed(self, orbit: Orbit) -> float:
+        """By how much an orbit's is less."""
+        return self.value - float(self.border @ self.scale.place(orbit))
+
+    def solved(self, orbit: Orbit, tolerance: float) -> Converged:
+        """The cycle near an orbit with the matrix at itself; raises Unsolvable.
+
+        tolerance: relative, of the distance of the matrix from the orbit.
+        """
+        for _ in range(MOST_ITERATIONS):
+            matrix = BorderedMatrix(orbit, self.scale)
+            step = matrix.step(self.border, self.missed(orbit))
+            change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
+            if not change <= LONGEST_STEP:
+                raise Unsolvable("there is no cycle near on the branch")
+            orbit = moved(orbit, self.scale.name, step)
+            if change <= tolerance:
+                return Converged(orbit, matrix, change)
+        raise Unsolvable(f"Newton's method on the branch is at {change:.0e}")
+
+    def on(self, mesh: OrbitMesh, orbit: Orbit, tolerance: float) -> Converged:
+        """The same cycle on another mesh; raises Unsolvable."""
+        return self.solved(mesh.carry(orbit), tolerance)
+
+
+def moved(orbit: Orbit, name: str, change: Array) -> Orbit:
+    """An orbit after a change of its values and the parameter's coordinate, (N + 1,); raises Unsolvable."""
+    try:
+        form = with_coordinate(orbit.form, name, coordinate_of(orbit.form, name) + float(change[-1]))
+    except (ValueError, ZeroDivisionError) as error:
+        raise Unsolvable(f"the branch leaves the rods: {error}") from error
+    there = replace(orbit, form=form, values=orbit.values + change[:-1])
+    if form.omega_unknown != orbit.form.omega_unknown:
+        raise Unsolvable(f"gamma3 = {form.rod.gamma3:.3g} needs other unknowns")
+    if not there.period > 0:
+        raise Unsolvable("Newton's method lost the cycle")
+    return there

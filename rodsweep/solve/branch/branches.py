@@ -1,0 +1,190 @@
+"""The task branch for one rod: the cycles born at its Hopf points along a parameter, followed to their ends.
+
+The Hopf points are those of `task: thresholds`, found by the same covering. A branch that arrives at another
+Hopf point of the rod is that one's too. Cycles that no such branch contains are not found.
+"""
+
+from dataclasses import dataclass, field, replace
+from math import nan
+
+from ...determinant.parameter_path import Path
+from ...model.rod import Rod
+from ..changes.along_path import Transitions, pair_crossings
+from ..changes.unstable_modes import Crossing
+from ..point import FAILURES, cause_of, solved
+from ..status import PointStatus
+from .beginning import hopf_point
+from .following import BranchCurve, Course, follow_branch
+from .special_points import EndReason
+
+SHORT_OF_CRUSHED = 1e-4
+"""How far below k1 a branch along F ends, relatively: beyond, the rod is all but crushed at rest."""
+
+
+class BranchStatus(PointStatus):
+    """Outcome of one rod: of the search for its Hopf points, and of the branches from them."""
+
+    ok = (
+        0,
+        "every branch that is born at a Hopf point within the range is followed to its end, as accurately as "
+        "asked for, and what changes on it is located",
+        True,
+    )
+    stopped = (
+        1,
+        "a branch stops short where no further cycle was found, the others are complete; the message says "
+        "where; ask for a lower accuracy, or shorten the range",
+    )
+    list_full = 2, "there are more cycles or special points than are kept; raise cycles or special"
+    special_undecided = (
+        3,
+        "a special point is located less accurately than asked for, as its error says, or multipliers cross "
+        "the circle for which none was found",
+    )
+    search_open = (
+        4,
+        "the branches are complete, but it is not proved that no Hopf point is missing: within an open range "
+        "two may be about to meet, or a count does not agree; `certify: false` accepts the latter",
+    )
+    failed = 5, "the search for Hopf points failed and nothing is stored; the message says why"
+
+
+@dataclass(frozen=True, slots=True)
+class BranchRequest:
+    """What is asked of every rod: the parameter that is followed, its range, a relative accuracy, a proof.
+
+    cycles, special: the most cycles and special points that are kept.
+    """
+
+    along: str
+    start: float
+    stop: float
+    accuracy: float
+    certify: bool
+    cycles: int
+    special: int
+
+
+@dataclass(frozen=True, slots=True)
+class BranchRod:
+    """A rod but for the parameter that is followed: F in k3/L^2, k1, k2 in k3/L^2, gamma3, gamma1."""
+
+    F: float = nan
+    k1: float = nan
+    k2: float = nan
+    gamma3: float = nan
+    gamma1: float = 1.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BranchesOfRod:
+    """The branches of a rod. crossings: its Hopf points within the range, by the parameter.
+
+    unstable_at_start: unstable modes of the straight rod where the range starts, -1 where that is not known.
+    """
+
+    status: BranchStatus
+    message: str = ""
+    seconds: float = 0.0
+    crossings: tuple[Crossing, ...] = ()
+    unstable_at_start: int = -1
+    proved: bool = False
+    curves: tuple[BranchCurve, ...] = field(default_factory=tuple)
+
+
+def solve_branches(rod: BranchRod, request: BranchRequest) -> BranchesOfRod:
+    """All branches born at Hopf points of one rod; failures are a status, never an exception."""
+    return solved(
+        lambda: _solve(rod, request), lambda cause: BranchesOfRod(status=BranchStatus.failed, message=cause)
+    )
+
+
+def warm_up() -> None:
+    """Loads what is compiled and created at first use, so that no point pays for it."""
+    solve_branches(
+        BranchRod(k1=1e4, k2=1e4, gamma3=1e-4), BranchRequest("F", 0.0, 40.0, 1e-5, False, 100, 10)
+    )
+
+
+def _solve(rod: BranchRod, request: BranchRequest) -> BranchesOfRod:
+    low, high, crushed = _range(rod, request)
+    if not low < high:
+        why = "F is not below k1 anywhere in the range"
+        return BranchesOfRod(status=BranchStatus.ok, message=why, proved=True)
+    values = {name: getattr(rod, name) for name in ("F", "k1", "k2", "gamma3")}
+    path = Path(Rod(**values | {request.along: low}), request.along)
+    found = pair_crossings(path, low, high, request.certify)
+    hopfs, failures = [], []
+    for crossing in found.crossings:
+        try:
+            hopfs.append(hopf_point(path.rod, rod.gamma1, request.along, crossing))
+        except FAILURES as error:
+            failures.append(f"the Hopf point at {request.along} = {crossing.at:.12g}: {cause_of(error)}")
+    ends = (path.variable(low), path.variable(high))
+    reasons = [EndReason.crushed if side == crushed else EndReason.range_end for side in (0, 1)]
+    if path.inverse:
+        ends, reasons = ends[::-1], reasons[::-1]
+    course = Course(hopfs, ends, (reasons[0], reasons[1]), request.accuracy, request.cycles)
+    curves = _followed(course)
+    status, message = _judged(found, curves, failures, request)
+    return BranchesOfRod(
+        status=status,
+        message=message,
+        crossings=found.crossings,
+        unstable_at_start=found.unstable_at_start,
+        proved=found.proved,
+        curves=tuple(curves),
+    )
+
+
+def _range(rod: BranchRod, request: BranchRequest) -> tuple[float, float, int]:
+    """(lowest value, highest value, which of the two is where the rod is crushed, -1 for none)."""
+    low, high = request.start, request.stop
+    if request.along == "F" and high > (1 - SHORT_OF_CRUSHED) * rod.k1:
+        return low, (1 - SHORT_OF_CRUSHED) * rod.k1, 1
+    if request.along == "k1" and low < rod.F * (1 + SHORT_OF_CRUSHED):
+        return rod.F * (1 + SHORT_OF_CRUSHED), high, 0
+    return low, high, -1
+
+
+def _followed(course: Course) -> list[BranchCurve]:
+    """The branches from all Hopf points, those that end at one another only once."""
+    curves: list[BranchCurve] = []
+    arrived: set[int] = set()
+    left = course.most
+    for number in range(len(course.hopfs)):
+        if number in arrived:
+            continue
+        here = replace(course, most=left)
+        curve = follow_branch(number, here)
+        arrived.add(curve.arrives)
+        left -= len(curve.points)
+        curves.append(curve)
+    return curves
+
+
+def _judged(
+    found: Transitions, curves: list[BranchCurve], failures: list[str], request: BranchRequest
+) -> tuple[BranchStatus, str]:
+    """(status, message): what matters most is said first."""
+    said = [
+        f"branch {number}: {special.message} at {request.along} = {special.at:.9g}"
+        for number, curve in enumerate(curves, 1)
+        for special in curve.special
+        if special.message
+    ]
+    count = sum(len(curve.special) for curve in curves)
+    special = [point for curve in curves for point in curve.special]
+    aim = max(request.accuracy, 1e-9)
+    rough = any(point.error > aim * abs(point.at) for point in special)
+    if any(not curve.explained for curve in curves):
+        said.append("multipliers cross the circle where no special point is found")
+    verdicts = {
+        BranchStatus.stopped: bool(failures)
+        or any(not curve.complete and not curve.full for curve in curves),
+        BranchStatus.list_full: any(curve.full for curve in curves) or count > request.special,
+        BranchStatus.special_undecided: rough or any(not curve.explained for curve in curves),
+        BranchStatus.search_open: request.certify and not found.proved,
+    }
+    status = next((status for status, holds in verdicts.items() if holds), BranchStatus.ok)
+    return status, "; ".join(filter(None, [*failures, *said, found.why_not]))

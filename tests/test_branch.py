@@ -1,0 +1,197 @@
+"""Branches of cycles: where they lead, where they change, and how sure both is."""
+
+from functools import lru_cache
+
+import numpy as np
+import pytest
+
+from rodsweep.determinant.parameter_path import Path
+from rodsweep.model.rod import Rod
+from rodsweep.solve.branch import branches, following
+from rodsweep.solve.branch.beginning import hopf_point
+from rodsweep.solve.branch.branches import BranchRequest, BranchRod, BranchStatus, solve_branches
+from rodsweep.solve.branch.following import Course, follow_branch
+from rodsweep.solve.branch.special_points import EndReason, SpecialKind
+from rodsweep.solve.changes.along_path import pair_crossings
+from rodsweep.solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.point import Unsolvable
+
+FIG_2C = BranchRod(k1=200.0, k2=1e4, gamma3=1e-4)
+SHORT = BranchRod(k1=150.0, k2=1e4, gamma3=1e-4)
+"""Its window of flutter is short, and so is its branch, with a fold just beyond the window."""
+
+
+@lru_cache(maxsize=16)
+def solved(rod, start=0.0, stop=200.0, accuracy=1e-7, along="F", points=500):
+    return solve_branches(rod, BranchRequest(along, start, stop, accuracy, True, points, 50))
+
+
+def kinds(curve):
+    return [point.kind.name for point in curve.special]
+
+
+def only(curve, kind):
+    (point,) = [point for point in curve.special if point.kind == kind]
+    return point
+
+
+def first_branch(rod, stop, accuracy=1e-7):
+    """The branch from the first Hopf point alone."""
+    straight = Rod(0.0, rod.k1, rod.k2, rod.gamma3)
+    crossing = pair_crossings(Path(straight, "F"), 0.0, stop).crossings[0]
+    hopf = hopf_point(straight, rod.gamma1, "F", crossing)
+    return follow_branch(0, Course([hopf], (0.0, stop), (EndReason.range_end,) * 2, accuracy, 500))
+
+
+def test_branch_from_the_first_hopf_point_of_fig_2c_arrives_at_its_restabilization():
+    found = solved(FIG_2C)
+    assert (found.status, found.message) == (BranchStatus.ok, "")
+    (curve,) = found.curves
+    assert kinds(curve) == ["hopf", "fold", "hopf"]
+    first, fold, last = curve.special
+    assert first.at == pytest.approx(49.7580049161915, abs=1e-11)
+    assert last.at == pytest.approx(155.600159298791, abs=1e-10)
+    assert last.period == pytest.approx(2 * np.pi / 3367.28095760, rel=1e-11)
+    assert 199.16 < fold.at < 199.1602
+    assert fold.error < 1e-9 * fold.at
+    unstable = [point.unstable for point in curve.points]
+    turn = fold.after + 1
+    assert unstable == [0] * turn + [1] * (len(unstable) - turn)
+    assert all(point.errors.largest <= 1e-7 for point in curve.points)
+
+
+def test_forward_and_backward_give_the_same_cycle():
+    """At F = 100 from the first Hopf point, and from the other one through the fold."""
+    forward = solved(FIG_2C, 0.0, 100.0, 1e-9).curves[0]
+    backward = solved(FIG_2C, 100.0, 200.0, 1e-9).curves[0]
+    assert kinds(forward) == ["hopf", "end"]
+    assert kinds(backward) == ["hopf", "fold", "end"]
+    for curve in (forward, backward):
+        assert curve.special[-1].reason == EndReason.range_end
+        assert curve.points[-1].at == pytest.approx(100.0, rel=1e-14)
+    one, other = forward.points[-1], backward.points[-1]
+    for name in ("period", "tip_y_max", "tip_x_min", "tip_x_max"):
+        assert getattr(one.measures, name) == pytest.approx(getattr(other.measures, name), rel=1e-8)
+    assert one.multiplier == pytest.approx(other.multiplier, abs=1e-6)
+
+
+@pytest.mark.parametrize("rod", [FIG_2C, SHORT])
+def test_fold_moves_no_further_than_its_error_on_finer_meshes(rod):
+    rough, fine = (only(solved(rod, 0.0, 200.0, a).curves[0], SpecialKind.fold) for a in (1e-5, 1e-8))
+    assert abs(rough.at - fine.at) <= rough.error + fine.error
+    assert max(rough.error, fine.error) <= 1e-9 * fine.at
+    assert rough.period == pytest.approx(fine.period, rel=1e-6)
+
+
+def test_branch_without_a_fold():
+    """The filament: no stretch, no shear, no rotational drag."""
+    found = solved(BranchRod(k1=np.inf, k2=np.inf, gamma3=0.0), 0.0, 60.0)
+    (curve,) = found.curves
+    assert found.status == BranchStatus.ok
+    assert kinds(curve) == ["hopf", "end"]
+    assert np.all(np.diff([point.at for point in curve.points]) > 0)
+    assert {point.unstable for point in curve.points} == {0}
+
+
+def test_branch_that_leaves_the_model_ends_where_h1_is_0():
+    found = solved(BranchRod(k1=100.0, k2=1e4, gamma3=0.1), 60.0, 120.0)
+    (curve,) = found.curves
+    end = curve.special[-1]
+    assert end.kind == SpecialKind.left_the_model
+    assert end.at == pytest.approx(99.14065359, abs=1e-6)
+    assert 0 < curve.points[-1].measures.least_stretch < 0.05
+    finer = solved(BranchRod(k1=100.0, k2=1e4, gamma3=0.1), 60.0, 120.0, 1e-9).curves[0].special[-1]
+    assert abs(end.at - finer.at) <= end.error + finer.error
+
+
+def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
+    rod = BranchRod(k1=1e4, k2=1e2, gamma3=1e-2)
+    curve = first_branch(rod, 207.0)
+    assert kinds(curve) == ["hopf", "torus", "end"]
+    torus = only(curve, SpecialKind.torus)
+    assert torus.error < 1e-9 * torus.at
+    after = torus.after + 1
+    assert [point.unstable for point in curve.points[after - 1 : after + 1]] == [0, 2]
+    request = CycleRequest(1e-6, 0.01, 8, 0, 0, 0, 400, "hopf")
+    for side, status in ((-1, CycleStatus.cycle), (1, CycleStatus.unstable)):
+        F = torus.at * (1 + side * 2e-4)
+        cycle = solve_cycle(CyclePoint(F, rod.k1, rod.k2, rod.gamma3, rod.gamma1), request)
+        assert cycle.status == status
+        assert abs(cycle.multipliers[0].imag) > 0.5
+        assert 1e-4 < side * (cycle.multiplier - 1) < 2e-3
+        assert cycle.measures.tip_y_max == pytest.approx(torus.tip_y_max, rel=2e-3)
+
+
+def test_fold_along_the_stretch_stiffness_is_the_fold_along_the_force():
+    along_k1 = solved(BranchRod(F=100.0, k2=1e4, gamma3=1e-4), 120.0, 170.0, along="k1")
+    fold = only(along_k1.curves[0], SpecialKind.fold)
+    along_F = solved(BranchRod(k1=fold.at, k2=1e4, gamma3=1e-4), 50.0, 150.0)
+    same = only(along_F.curves[0], SpecialKind.fold)
+    assert same.at == pytest.approx(100.0, abs=1e-6)
+    assert same.period == pytest.approx(fold.period, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("along", "start", "stop", "values"),
+    [
+        ("k2", 20.0, 400.0, {"F": 22.0, "k1": 1e4, "gamma3": 1e-2}),
+        ("gamma3", 1e-3, 2e-2, {"F": 45.0, "k1": 200.0, "k2": 1e4}),
+    ],
+)
+def test_branch_along_another_parameter_has_the_cycle_that_the_force_has(along, start, stop, values):
+    """At its end, where the rod is one of the task limit_cycle."""
+    found = solve_branches(BranchRod(**values), BranchRequest(along, start, stop, 1e-7, True, 500, 50))
+    assert found.status == BranchStatus.ok
+    curve = found.curves[0]
+    end, point = curve.special[-1], curve.points[-1]
+    assert end.reason == EndReason.range_end
+    request = CycleRequest(1e-7, 0.01, 8, 0, 0, 0, 400, "hopf")
+    cycle = solve_cycle(CyclePoint(gamma1=1.0, **values | {along: end.at}), request)
+    assert cycle.status == CycleStatus.cycle
+    assert cycle.measures.period == pytest.approx(point.measures.period, rel=3e-7)
+    assert cycle.measures.tip_y_max == pytest.approx(point.measures.tip_y_max, rel=3e-7)
+    assert cycle.multiplier == pytest.approx(point.multiplier, abs=1e-5)
+
+
+def test_rod_without_a_hopf_point_has_no_branch():
+    found = solved(BranchRod(k1=100.0, k2=1e4, gamma3=1e-4))
+    assert (found.status, found.curves, found.crossings) == (BranchStatus.ok, (), ())
+
+
+def test_branch_that_cannot_be_followed_says_where_and_why(monkeypatch):
+    made = following.next_point
+
+    def lost(here, accuracy):
+        if here.at > 75:
+            raise Unsolvable("there is no cycle near on the branch")
+        return made(here, accuracy)
+
+    monkeypatch.setattr(following, "next_point", lost)
+    solved.cache_clear()
+    found = solved(SHORT)
+    solved.cache_clear()
+    first, second = found.curves
+    assert found.status == BranchStatus.stopped
+    assert first.special[-1].kind == SpecialKind.end
+    assert first.special[-1].reason == EndReason.no_cycle_found
+    said = "no cycle is found beyond: there is no cycle near on the branch at F = "
+    assert f"branch 1: {said}{first.points[-1].at:.9g}; branch 2: {said}" in found.message
+    assert first.points[-1].at > 75
+    assert second.hopf == 1  # the other end is tried by itself
+
+
+def test_list_that_is_full_says_so():
+    found = solved(SHORT, points=8)
+    assert found.status == BranchStatus.list_full
+    assert sum(len(curve.points) for curve in found.curves) == 8
+    assert found.curves[0].special[-1].reason == EndReason.list_full
+
+
+def test_search_that_fails_is_a_status(monkeypatch):
+    def failing(*_):
+        raise Unsolvable("no a-priori bound on the eigenvalues applies")
+
+    monkeypatch.setattr(branches, "pair_crossings", failing)
+    found = solve_branches(SHORT, BranchRequest("F", 0.0, 200.0, 1e-7, True, 500, 50))
+    assert found.status == BranchStatus.failed
+    assert found.message == "no a-priori bound on the eigenvalues applies"

@@ -1,0 +1,99 @@
+"""AUTO-07p on the same semi-discrete rod, with its own bifurcation detection, beside branches of cycles."""
+
+import re
+from math import inf
+from pathlib import Path as Place
+
+import numpy as np
+import pytest
+
+from rodsweep.bench.auto import auto_program, run_auto, table_lines
+from rodsweep.bench.limit_cycle.auto_cycles import rod_file, start_file
+from rodsweep.bench.limit_cycle.auto_equations import EQUATIONS
+from rodsweep.determinant.parameter_path import Path
+from rodsweep.discretization.mesh import mesh
+from rodsweep.discretization.stress_form import StressForm
+from rodsweep.model.rod import Rod
+from rodsweep.solve.branch.arc import next_point
+from rodsweep.solve.branch.beginning import beginning, hopf_point
+from rodsweep.solve.branch.following import Course, _on_the_edge
+from rodsweep.solve.branch.special_points import EndReason, SpecialKind, special_points
+from rodsweep.solve.changes.along_path import pair_crossings
+from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
+from rodsweep.solve.cycle.newton import newton
+from rodsweep.solve.cycle.refinement import refined_cycle
+
+CONSTANTS = """NDIM={unknowns}, IPS=2, IRS=0, ILP=1, ISP=2, ISW=1, MXBF=0, JAC=1, IID=2
+ICP=[1, 11], SP=['BP0', 'PD0'], NTST={intervals}, NCOL=4, IAD=3
+NMX={most}, NPR={most}, ITMX=30, ITNW=20, NWTN=3, EPSL=1e-8, EPSU=1e-8, EPSS=1e-7
+DS={step!r}, DSMIN=1e-6, DSMAX={longest!r}, IADS=1
+"""
+"""Pseudo-arclength in all unknowns, folds and torus points located by AUTO's own test functions."""
+FOLD, TORUS = "5", "8"
+"""Third word of a line of fort.7."""
+ACCURACY = 1e-7
+
+
+@pytest.fixture(scope="module")
+def auto(tmp_path_factory):
+    program = auto_program(tmp_path_factory.mktemp("auto"), EQUATIONS)
+    if program is None:
+        pytest.skip("AUTO-07p or gfortran is not installed")
+    return program
+
+
+def branch_of_auto(program, rod, setting, place):
+    """Lines of fort.7 as (kind, F), and the multipliers of the last cycle; by order, intervals, ..."""
+    order, intervals, step, most = setting
+    form = StressForm(rod, 1.0, mesh(1, 16))
+    near = refined_cycle(orbit_from_hopf(form, hopf_point_below(rod)), 1e-6).orbit
+    first = newton(near.on(mesh(1, order), 40, 5), 1e-10).orbit
+    (place / "rod").write_bytes(rod_file(first.form))
+    (place / "start").write_bytes(start_file(first, 4 * intervals))
+    unknowns = first.form.unknowns
+    constants = CONSTANTS.format(
+        unknowns=unknowns, intervals=intervals, most=most, step=step, longest=4 * step
+    )
+    run_auto(program, place, constants)
+    lines = [(words[2], float(words[4])) for words in table_lines(place)]
+    pairs = re.findall(r"Multiplier +\d+ +(\S+) +(\S+) ", Place(place / "fort.9").read_text())
+    return lines, np.array([complex(*map(float, pair)) for pair in pairs[-unknowns:]])
+
+
+def branch_of_this(rod, kind, F):
+    """The special point of a kind on the branch from the first Hopf point, and the cycle at F beyond it."""
+    straight = Rod(0.0, rod.k1, rod.k2, rod.gamma3)
+    crossing = pair_crossings(Path(straight, "F"), 0.0, rod.F).crossings[0]
+    here, special = beginning(hopf_point(straight, 1.0, "F", crossing), ACCURACY), None
+    while True:
+        there = next_point(here, ACCURACY)
+        for point in special_points(here, there, None, ACCURACY)[0]:
+            if point.kind == kind:
+                special = point
+        if special is not None and (there.at - F) * (here.at - F) <= 0:
+            course = Course([], (F, inf), (EndReason.range_end,) * 2, ACCURACY, 500)
+            return special, _on_the_edge(here, there, course, 0)
+        here = there
+
+
+def test_auto_has_the_same_fold_and_the_same_unstable_cycle_beyond(auto, tmp_path):
+    rod = Rod(85.5, 150.0, 1e4, 1e-4)
+    lines, multipliers = branch_of_auto(auto, rod, (14, 15, 0.05, 16), tmp_path)
+    (place,) = [F for kind, F in lines if kind == FOLD]
+    fold, cycle = branch_of_this(rod, SpecialKind.fold, lines[-1][1])
+    assert fold.at == pytest.approx(place, rel=1e-8)
+    largest = multipliers[np.argmax(np.abs(multipliers))]
+    assert largest.real > 1.0004
+    assert cycle.cycle.multipliers[0] == pytest.approx(largest, abs=2e-5)
+
+
+def test_auto_has_the_same_torus_point_and_the_same_pair_beyond(auto, tmp_path):
+    rod = Rod(205.2, 1e4, 1e2, 1e-2)
+    lines, multipliers = branch_of_auto(auto, rod, (24, 34, 0.1, 4), tmp_path)
+    (place,) = [F for kind, F in lines if kind == TORUS]
+    torus, cycle = branch_of_this(rod, SpecialKind.torus, lines[-1][1])
+    assert torus.at == pytest.approx(place, rel=1e-6)
+    pair = multipliers[np.argmax(np.abs(multipliers))]
+    assert abs(pair) > 1.005
+    ours = cycle.cycle.multipliers[0]
+    assert abs(complex(ours.real, abs(ours.imag)) - complex(pair.real, abs(pair.imag))) < 3e-5

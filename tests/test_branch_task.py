@@ -1,0 +1,182 @@
+"""The task branch as a user sees it: the file, `show`, the figure, Python."""
+
+import re
+
+import numpy as np
+import pytest
+from test_paper import run, stated
+from test_show import shown
+
+import rodsweep as rs
+from rodsweep.cli.job import make_job
+from rodsweep.cli.tasks.branch import record
+from rodsweep.post.branch_curves import both, curves_of, straight_ranges, union
+from rodsweep.post.summary.branch import coexistence
+from rodsweep.results.file.view import read_view
+from rodsweep.results.layouts.branch import END_REASONS, SPECIAL_KINDS
+from rodsweep.solve.branch.branches import BranchRequest, BranchRod, solve_branches
+from rodsweep.solve.branch.special_points import EndReason, SpecialKind
+
+CONFIG = (
+    "task: branch\nparameters: {{k1: {k1}, k2: 1.0e4, gamma3: 1.0e-4}}\n"
+    "branch: {{stop: {stop}}}\naccuracy: 1.0e-5\n"
+)
+FOLD = 85.60557673489
+"""At k1 = 150, by a run at the accuracy 1e-8."""
+
+
+def test_show_tells_branches_special_points_and_where_two_states_coexist(command):
+    told = shown(command, CONFIG.format(k1=150, stop=200))
+    ends = r"from the Hopf point at F = 67\.38698428\d+ \(\+- \S+\) to that at F = 85\.5693169\d+"
+    assert re.search(rf"branch 1, {ends}", told)
+    assert re.search(r"fold at F = 85\.605576\d* \(\+- \de-\d+\), period 0\.0063845", told)
+    assert re.search(r"stable cycles at F = 67\.3869843 to 85\.605576", told)
+    assert re.search(r"stable cycles beside a stable straight rod: F = 85\.5693169 to 85\.605576", told)
+    assert "no Hopf point is missing is proved at 1 of 1 rods" in told
+
+
+def test_show_of_many_rods_names_those_with_two_stable_states(command):
+    told = shown(command, CONFIG.format(k1="[100, 150]", stop=100))
+    assert "1 branches at 1 of 2 rods" in told
+    assert re.search(r"1 of kind fold: F = 85\.6056", told)
+    assert "stable cycles beside a stable straight rod at 1 of 2 rods" in told
+    assert re.search(
+        r"k1 = 150, k2 = 10000, gamma3 = 0.0001, gamma1 = 1: F = 85\.5693169 to 85\.605576", told
+    )
+
+
+def test_file_has_the_branches_in_order_and_nothing_behind_them(command):
+    shown(command, CONFIG.format(k1="[100, 150]", stop=200))
+    view = read_view(command.directory / "c.h5")
+    v = {name: view.variables[name] for name in view.variables}
+    assert v["hopf_count"].ravel().tolist() == [0, 2]
+    assert v["branch_count"].ravel().tolist() == [0, 1]
+    count = int(v["point_count"].ravel()[1])
+    F, y, unstable = (v[name].reshape(2, -1)[1] for name in ("branch_F", "tip_y_max", "unstable_multipliers"))
+    assert np.isfinite(F[:count]).all()
+    assert np.isnan(F[count:]).all()
+    assert np.isnan(v["branch_F"][0]).all()
+    assert (v["branch"].reshape(2, -1)[1, :count] == 1).all()
+    assert (y[:count] > 0).all()
+    kinds = [SPECIAL_KINDS[i] for i in v["special_kind"].reshape(2, -1)[1] if i]
+    assert kinds == ["hopf", "fold", "hopf"]
+    fold = int(v["special_point"].reshape(2, -1)[1, 1])
+    assert (unstable[: fold + 1] == 0).all()
+    assert set(unstable[fold + 1 : count]) <= {1, -1}
+    assert F[: fold + 1].max() < v["special_at"].reshape(2, -1)[1, 1] == pytest.approx(FOLD, rel=1e-8)
+    assert v["period_error"].reshape(2, -1)[1, :count].max() <= 1e-5
+
+
+def test_curves_of_a_file_go_through_cycles_and_special_points(command):
+    shown(command, CONFIG.format(k1=150, stop=200))
+    view = read_view(command.directory / "c.h5")
+    (curve,) = curves_of(view, 0)
+    assert (curve.y[0], curve.y[-1]) == (0, 0)
+    assert int(np.argmax(curve.at)) == np.flatnonzero(~curve.cycles)[1]
+    assert curve.at.max() == pytest.approx(FOLD, rel=1e-8)
+    stable, unstable = straight_ranges(view, 0, (0.0, 200.0))
+    assert stable == [
+        (0.0, pytest.approx(67.3869842879)),
+        (pytest.approx(85.569316943), 150 * (1 - 1e-4)),
+    ] or (stable[1][1] == 200.0)
+    assert unstable == [(pytest.approx(67.3869842879), pytest.approx(85.569316943))]
+    assert coexistence(view, 0) == [(pytest.approx(85.569316943), pytest.approx(FOLD))]
+
+
+def test_ranges_are_joined_and_intersected():
+    assert union([(3, 4), (0, 1), (1, 2)]) == [(0, 2), (3, 4)]
+    assert both([(0, 2), (3, 4)], [(1, 3.5)]) == [(1, 2), (3, 3.5)]
+    assert both([(0, 1)], [(1, 2)]) == []
+
+
+@pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])
+def test_figure_is_drawn(command, suffix):
+    shown(command, CONFIG.format(k1=150, stop=200))
+    drawn = command("plot", "c.h5", "-o", f"c.{suffix}")
+    assert drawn.returncode == 0, drawn.stderr
+    assert "1 branches of cycles over F" in drawn.stdout
+    assert (command.directory / f"c.{suffix}").stat().st_size > 5000
+
+
+@pytest.mark.parametrize(
+    ("k1", "said"),
+    [("[100, 150]", "c.h5 holds 2 rods; a bifurcation diagram is of one"), (100, "c.h5 holds no branch")],
+)
+def test_figure_that_shows_nothing_is_refused(command, k1, said):
+    shown(command, CONFIG.format(k1=k1, stop=90))
+    refused = command("plot", "c.h5", "-o", "c.png")
+    assert refused.returncode == 2
+    assert said in " ".join(refused.stderr.split())
+
+
+def test_longer_lists_are_computed_anew_only_where_they_were_full(command):
+    command.write("c.yaml", CONFIG.format(k1=150, stop=200).replace("{stop", "{cycles: 5, stop"))
+    full = command("run", "c.yaml")
+    assert full.returncode == 1
+    assert "1 list_full" in full.stdout
+    again = command("run", "c.yaml", "--extend", "--set", "branch.cycles=400")
+    assert again.returncode == 0, again.stderr
+    assert read_view(command.directory / "c.h5").variables["point_count"].ravel()[0] > 5
+    assert "ok" in again.stdout
+
+
+def test_words_have_the_numbers_of_the_solver():
+    assert {kind.name: int(kind) for kind in SpecialKind} == {
+        name: number for number, name in enumerate(SPECIAL_KINDS) if number
+    }
+    assert {reason.name: int(reason) for reason in EndReason} == {
+        name: number for number, name in enumerate(END_REASONS) if number
+    }
+
+
+@pytest.mark.parametrize("along", ["F", "k1"])
+def test_record_has_all_variables_of_the_layout_and_no_other(tmp_path, along):
+    config = tmp_path / "c.yaml"
+    others = "k1: 150" if along == "F" else "F: 100"
+    config.write_text(
+        f"task: branch\nparameters: {{{others}, k2: 1.0e4, gamma3: 1.0e-4}}\n"
+        f"branch: {{along: {along}, start: 50, stop: 160}}\n"
+    )
+    names = {variable.name for variable in make_job(config, ()).layout.variables}
+    rod = (
+        BranchRod(k1=150.0, k2=1e4, gamma3=1e-4) if along == "F" else BranchRod(F=100.0, k2=1e4, gamma3=1e-4)
+    )
+    found = solve_branches(rod, BranchRequest(along, 50.0, 160.0, 1e-4, True, 500, 64))
+    assert set(record(found, along, 500, 64)) == names
+
+
+def test_other_parameters_are_followed_from_the_command_line(command):
+    told = shown(
+        command,
+        "task: branch\nparameters: {F: 100, k2: 1.0e4, gamma3: 1.0e-4}\n"
+        "branch: {along: k1, start: 120, stop: 170}\naccuracy: 1.0e-5\n",
+    )
+    assert re.search(r"fold at k1 = 155\.37066\d* \(", told)
+    assert "to the end of the range, k1 = 170" in told
+    drawn = command("plot", "c.h5", "-o", "c.png")
+    assert "1 branches of cycles over k1" in drawn.stdout
+
+
+def test_list_of_rods_needs_no_column_of_what_is_followed(command):
+    command.write("rods.csv", "F,k2,gamma3,gamma1\n100,1e4,1e-4,1\n20,1e4,1e-4,1\n")
+    told = shown(
+        command,
+        "task: branch\nparameters: {points: rods.csv}\nbranch: {along: k1, start: 120, stop: 170}\n"
+        "accuracy: 1.0e-4\n",
+    )
+    assert "1 branches at 1 of 2 rods" in told
+
+
+def test_rod_answers_in_python():
+    answer = rs.Rod(k1=150, k2=1e4, gamma3=1e-4).branch(stop=200, accuracy=1e-5)
+    assert answer.status == "ok"
+    assert answer.special_at[1] == pytest.approx(FOLD, rel=1e-8)
+    assert np.nanmax(answer.branch_F) < FOLD
+
+
+def test_config_shows_the_numbers_of_its_head(command):
+    with run(command, "branches") as file:
+        F_hopf, F_again, fold = stated("branches")
+        found = file["special_at"][0, 0, 0, 0, :3]
+        assert found[[0, 2]] == pytest.approx([F_hopf, F_again], rel=1e-12)
+        assert found[1] == pytest.approx(fold, rel=1e-10)
