@@ -70,8 +70,8 @@ test-peers: private NO_APT := this system has no apt-get; Slurm, AUTO-07p and gf
 test-peers: .venv/installed  ## install what the tests use where it is there: Slurm, AUTO-07p, gfortran (Debian)
 	@$(APT_INSTALL)
 	apt_install slurm-wlm munge libpmix-dev auto-07p gfortran iproute2
-survey: .venv/installed  ## limit cycles of RODS (300) random rods: errors, chains, two starts; VERDICTS (50) marched in time (some minutes)
-	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(RODS),300) $(BIN)/python -m pytest -n auto tests/hard/test_minimal_periods.py tests/hard/test_cycle_errors.py tests/hard/test_chain_errors.py
+survey: .venv/installed  ## spectra along lines and limit cycles of RODS (300) random rods: errors, chains, two starts; VERDICTS (50) marched in time (some minutes)
+	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(RODS),300) $(BIN)/python -m pytest -n auto tests/hard/test_minimal_periods.py tests/hard/test_cycle_errors.py tests/hard/test_chain_errors.py tests/hard/test_followed_spectra.py
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(VERDICTS),50) $(BIN)/python -m pytest -n auto tests/hard/test_time_marched_verdicts.py
 stress: .venv/installed  ## kill runs at random 120 times and more, and compare what comes of them (half an hour)
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_KILLS=$${RODSWEEP_KILLS:-40} $(BIN)/python -m pytest tests/test_stress.py

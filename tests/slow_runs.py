@@ -11,27 +11,34 @@ FOR_EVER = 1e9
 
 
 def slowly(pause: float, points: int = 1) -> str:
-    """What every rank executes first: from so many points on it waits after each, until asked to stop."""
+    """What every rank executes first: from so many records on it waits after each, until asked to stop.
+
+    A record is a point's, or those of the points that were solved together.
+    """
     return f"""
 import time
 from rodsweep.results.run.journal import Journal
 from rodsweep.sweep.stop import StopRequest
 
-append, note = Journal.append, StopRequest._note
+note = StopRequest._note
 kept, heard = [], []
 
-def append_and_wait(self, index, values):
-    append(self, index, values)
-    kept.append(index)
-    until = time.monotonic() + {pause!r}
-    while len(kept) >= {points} and not heard and time.monotonic() < until:
-        time.sleep(0.01)
+def then_wait(append):
+    def append_and_wait(self, index, values):
+        append(self, index, values)
+        kept.append(index)
+        until = time.monotonic() + {pause!r}
+        while len(kept) >= {points} and not heard and time.monotonic() < until:
+            time.sleep(0.01)
+
+    return append_and_wait
 
 def note_and_go_on(self, number, frame):
     heard.append(number)
     note(self, number, frame)
 
-Journal.append, StopRequest._note = append_and_wait, note_and_go_on
+Journal.append, Journal.append_all = then_wait(Journal.append), then_wait(Journal.append_all)
+StopRequest._note = note_and_go_on
 """
 
 

@@ -16,9 +16,11 @@ from ruamel.yaml import YAML
 import rodsweep as rs
 from rodsweep.api import options
 from rodsweep.api.asking import job_from, tree_of, yaml_of
+from rodsweep.cli import commands
 from rodsweep.config.schema import Config
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import PARAMETERS
+from rodsweep.post.figures.request import KINDS, ROOTS, WIDTHS
 
 NAMES = [
     "Answer",
@@ -327,6 +329,33 @@ def test_no_variable_hides_behind_an_attribute_of_answers():
         tree = tree_of(task, {name: ROD[name] for name in CONFIGS[task].taken_of_a_rod({}) if name in ROD})
         names = {variable.name for variable in job_from(tree).layout.variables}
         assert names & set(dir(rs.Answer)) == {"status"}
+
+
+@pytest.mark.parametrize(
+    ("choice", "sentence"),
+    [
+        ({"what": "heat"}, "what = 'heat' is not allowed; choose cycle, amplitude, maps"),
+        ({"width": "tiny"}, "width = 'tiny' is not allowed; choose single, double"),
+        ({"roots": "left"}, "roots = 'left' is not allowed; choose rightmost, smallest"),
+        ({"points": 3}, "--point is for results of limit_cycle"),
+    ],
+)
+def test_choices_of_a_figure_that_there_are_not_are_refused(choice, sentence):
+    data = rs.sweep("spectrum", F=[1, 2], k1=200, k2=1e4, gamma3=1e-4, modes=2)
+    with pytest.raises(rs.InputError) as refusal:
+        rs.plot(data, **choice)
+    assert sentence in str(refusal.value)
+    with pytest.raises(rs.InputError, match="nothing to draw; give a Dataset"):
+        rs.plot(rs.Rod(F=1, k1=200, k2=1e4, gamma3=1e-4))
+
+
+def test_choices_of_a_figure_are_those_of_the_command():
+    choices = {o.name: o.type.choices for o in commands.commands["plot"].params if hasattr(o.type, "choices")}
+    assert {name: tuple(words) for name, words in choices.items()} == {
+        "roots": ROOTS,
+        "what": KINDS,
+        "width": tuple(WIDTHS),
+    }
 
 
 def test_other_attributes_of_a_rod_are_refused():

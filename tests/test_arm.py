@@ -160,6 +160,11 @@ def test_thresholds_inside_the_range_of_drag_lie_in_that_of_forces():
         ("2.5 kPa", "2.5 kPa is 13 to 20 % above flutter"),
         ("20 kPa", "20 kPa is 9.07 to 9.58 times flutter"),
         ("-1 kPa", "Flutter is at 2.09 to 2.21 kPa; -1 kPa does not push"),
+        (
+            "70 kPa",
+            "Flutter is at 2.09 to 2.21 kPa; whether the arm beats at 70 kPa is not known: changes were "
+            "sought up to 62.5 kPa.",
+        ),
     ],
 )
 def test_verdict_says_where_the_load_lies(pressure, words):

@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 import xarray as xr
 from contents import content, same
+from matplotlib.figure import Figure
 
 import rodsweep as rs
 from rodsweep.api.asking import job_from, tree_of
 from rodsweep.model.arm import SlenderArm
+from rodsweep.post.figures import draw
+from rodsweep.results.file.view import read_view
 
 SILICONE = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "1.4 Pa s"}
 LOADED = SILICONE | {"pressure": "2 kPa"}
@@ -47,6 +50,15 @@ def test_load_becomes_an_axis_of_F():
     assert columns["F"] == pytest.approx(16 * np.arange(6), rel=1e-12)
     assert [columns[name][0] for name in ("k1", "k2")] == pytest.approx([1600, 480], rel=1e-12)
     assert columns["gamma3"][0] == SlenderArm(**LOADED).gamma3
+
+
+def test_longer_range_of_a_load_has_the_same_forces():
+    """Scaled ends would move some by their last digit, and `--extend` would compute all anew."""
+    first, longer = (
+        job("spectrum", arm=SILICONE | {"pressure": {"start": "0 kPa", "stop": stop, "num": num}})
+        for stop, num in (("5 kPa", 51), ("6 kPa", 61))
+    )
+    assert np.array_equal(longer.points.by_name["F"][:51], first.points.by_name["F"])
 
 
 def test_ratio_of_poisson_becomes_an_axis_of_k2_which_falls_as_it_rises():
@@ -199,6 +211,35 @@ def test_figures_of_an_arm_are_drawn(command):
     command.write("a.yaml", yaml("phase_diagram"))
     assert command("run", "a.yaml").returncode == 0
     assert command("plot", "a.h5").returncode == 0
+
+
+def test_axes_of_a_force_have_its_si_unit_opposite(command, monkeypatch):
+    """4 (L/a)^2 p/E: F = 80 is a pressure of 5 kPa; pi a^2 p a force of 0.39 N."""
+    loads = {
+        "pressure": ("5 kPa", 5.0, "pressure on the tip (kPa)"),
+        "force": ("0.39269908169872414 N", 392.69908169872414, "force at the tip (mN)"),
+    }
+    drawn = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
+    for name, (largest, number, label) in loads.items():
+        load = {name: {"start": 0, "stop": largest, "num": 9}}
+        command.write(f"{name}.yaml", job("spectrum", arm=SILICONE | load, modes=2).text)
+        assert command("run", f"{name}.yaml").returncode == 0
+        draw(read_view(command.directory / f"{name}.h5"), command.directory / "f.png")
+        drawn[-1].draw_without_rendering()
+        (scale,) = drawn[-1].axes[0].child_axes
+        assert scale.get_xlabel() == label
+        assert drawn[-1].axes[0].get_xlim()[1] == pytest.approx(80)
+        assert scale.get_xlim()[1] == pytest.approx(number)
+
+
+def test_neighbours_follow_each_other_along_a_quantity_of_the_arm():
+    arm = SILICONE | {"force": ["0.19 N", "0.2 N"]}
+    made = [job("limit_cycle", arm=arm, start="neighbour", along=along) for along in ("force", "F")]
+    assert made[0].config.meaning == made[1].config.meaning
+    assert made[0].task.chains == made[1].task.chains
+    with pytest.raises(rs.InputError, match=r"along is pressure but parameters\.arm\.pressure is not given"):
+        job("limit_cycle", arm=arm, start="neighbour", along="pressure")
 
 
 def test_configs_without_an_arm_have_no_trace_of_it():

@@ -61,6 +61,8 @@ def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch):
     assert "| no solver | 1 rank | 200 | 400 |" in study.text
     assert "| resumed | 1 rank | 200 | 400 |" in study.text
     assert "| limit cycles | 2 | 1 |" in study.text
+    assert "| 64 of F | 512 |" in study.text
+    assert "| 12 of F | 144 |" in study.text
     assert ("| no solver | 400 | 2 |" in study.text) == bool(launcher(2))
     assert not study.drawable
     table = study.table()
@@ -118,6 +120,7 @@ def test_two_ranks_are_skipped_without_a_launcher(monkeypatch):
         )
 
     monkeypatch.setattr(sweep, "solved_sweeps", sweeps(solved, ["spectra"]))
+    monkeypatch.setattr(sweep, "followed_sweeps", lambda *words: [])
     monkeypatch.setattr(sweep, "instant_sweeps", sweeps(instant, ["no solver", KILLED, "resumed"]))
     assert "Two ranks are skipped" in sweep_study(quick=True, command=()).text
     assert {m.method for m in solved + instant} == {"1 rank"}

@@ -110,7 +110,7 @@ def test_bad_parameters_are_refused_naming_key_and_value(tmp_path, monkeypatch, 
 
 
 BROKEN = {
-    "": "mapping",
+    "": "is empty",
     "- 1\n- 2": "mapping",
     "a: [1, 2": "line",
     "a: 1\na: 2": "a",

@@ -133,7 +133,8 @@ REFUSED = [
     (config("transient: -1"), "limit_cycle.transient = -1 is not allowed; it should be a whole number from"),
     (
         config(f"{NEIGHBOUR}, along: k3"),
-        "along = 'k3' is not allowed; it should be F, k1, k2, gamma3, gamma1 or longest",
+        "along = 'k3' is not allowed; it should be F, k1, k2, gamma3, gamma1, pressure, force, poisson or "
+        "longest",
     ),
     (config(f"{NEIGHBOUR}, direction: left"), "direction = 'left' is not allowed; it should be up or down"),
     (config("direction: down"), "limit_cycle.direction is given but not used; set limit_cycle.start"),
@@ -202,7 +203,7 @@ def test_check_says_what_is_stored_and_in_which_chains(tmp_path, capsys):
     for words in (
         "8 points (2 x 1 x 2 x 1 x 2) in 4 chains of 2, down in F: each started from its neighbour's cycle",
         "tip deflection 0.01 L",
-        "at most 4 ranks share the work",
+        "at most 4 ranks can share the work",
         "axial drag yes gamma1 = 0.5, 1",
         "nonlinear motion yes",
         "energy budget yes",

@@ -15,7 +15,7 @@ from rodsweep.post.figures import FIGURES, draw
 from rodsweep.post.figures.class_bars import CLASS_COLOURS
 from rodsweep.post.figures.phase_diagram import _without_stairs
 from rodsweep.post.figures.request import Look
-from rodsweep.post.figures.spectra.line import broken, followed_roots, mark_flutter
+from rodsweep.post.figures.spectra.line import broken, followed_roots, mark_thresholds
 from rodsweep.post.figures.style import INVERSE_DRAG, LABELS, number, scale
 from rodsweep.post.figures.thresholds import _alike
 from rodsweep.post.summary import SUMMARIES
@@ -70,6 +70,34 @@ def test_map_is_drawn_and_other_shapes_are_refused(command):
     assert "one or two" in refused.stderr
     with pytest.raises(InputError, match="must end in"):
         draw(read_view(command.directory / "map.h5"), command.directory / "f.frob", "smallest")
+
+
+def test_colours_of_a_map_change_sign_on_its_line_of_zero_growth(command, monkeypatch):
+    command.write("c.yaml", LINE)
+    command("run", "c.yaml", "--set", "parameters.k2=[50, 100, 200]")
+    drawn = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
+    draw(read_view(command.directory / "c.h5"), command.directory / "f.png")
+    filled, zero = drawn[0].axes[0].collections
+    assert 0.0 in filled.levels
+    assert zero.levels.tolist() == [0.0]
+    (line,) = (path.vertices for path in zero.get_paths())
+    at = int(np.flatnonzero(filled.levels == 0.0)[0])
+    edges = np.concatenate([filled.get_paths()[side].vertices for side in (at - 1, at)])
+    assert all(np.abs(edges - vertex).sum(axis=1).min() < 1e-9 for vertex in line)
+
+
+def test_rows_that_make_no_plane_are_bars(command, monkeypatch):
+    rod = "{F: {start: 0, stop: 190, num: 20}, k1: [200, .inf], k2: 1.0e4, gamma3: 1.0e-4}"
+    command.write("c.yaml", f"task: phase_diagram\nparameters: {rod}\n")
+    command("run", "c.yaml")
+    drawn = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
+    assert "for each k1" in draw(read_view(command.directory / "c.h5"), command.directory / "f.png")
+    labels = [label.get_text() for label in drawn[0].axes[0].get_yticklabels()]
+    assert [label.split("= ")[1] for label in labels] == ["200$", r"\infty$"]
+    named = [text.get_text() for text in drawn[0].legends[0].get_texts()]
+    assert named == ["monotone", "oscillatory", "flutter"]
 
 
 def test_infinite_axis_values_and_odd_titles_are_drawn_or_refused_in_a_sentence(command):
@@ -146,8 +174,9 @@ def test_flutter_is_marked_at_its_threshold_however_coarse_the_forces_are(comman
     command.write("c.yaml", LINE)
     command("run", "c.yaml")
     axes = Figure().subplots()
-    mark_flutter(axes, read_view(command.directory / "c.h5"), "F")
-    (mark,) = axes.lines
+    mark_thresholds(axes, read_view(command.directory / "c.h5"), "F")
+    onset, mark = axes.lines
+    assert onset.get_xdata()[0] == pytest.approx(14.7993326711956, rel=1e-12)
     assert mark.get_xdata()[0] == pytest.approx(27.4271941267593, rel=1e-12)
     (shade,) = axes.patches
     assert shade.get_x() == pytest.approx(27.4271941267593, rel=1e-12)
@@ -156,9 +185,9 @@ def test_flutter_is_marked_at_its_threshold_however_coarse_the_forces_are(comman
 
 def test_the_legend_names_no_flutter_where_there_is_none(command):
     command.write("c.yaml", LINE)
-    command("run", "c.yaml", "--set", "parameters.F={start: 0, stop: 20, num: 11}")
+    command("run", "c.yaml", "--set", "parameters.F={start: 0, stop: 14, num: 11}")
     axes = Figure().subplots()
-    mark_flutter(axes, read_view(command.directory / "c.h5"), "F")
+    mark_thresholds(axes, read_view(command.directory / "c.h5"), "F")
     assert axes.get_legend_handles_labels() == ([], [])
 
 

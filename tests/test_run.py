@@ -22,7 +22,7 @@ parameters:
   k1: [100, 1.0e4, inf]
   k2: [50, 1.0e4]
   gamma3: [0, 1.0e-4]
-spectrum: {modes: 4}
+spectrum: {modes: 4, follow: false}
 """
 
 

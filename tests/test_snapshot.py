@@ -22,7 +22,7 @@ parameters:
   k1: [100, .inf]
   k2: 50
   gamma3: 1.0e-4
-spectrum: {modes: 2}
+spectrum: {modes: 2, follow: false}
 """
 
 

@@ -20,6 +20,7 @@ class OfSpectrum(OfEveryTask, total=False):
     certify: bool
     vectors: bool
     nodes: int
+    follow: bool
     longitudinal: bool
 
 
@@ -51,7 +52,7 @@ class OfCriticality(OfEveryTask, total=False):
 class OfBranch(OfEveryTask, total=False):
     """Keys of the section `branch`."""
 
-    along: Literal["F", "k1", "k2", "gamma3"]
+    along: str
     start: float
     stop: float
     cycles: int

@@ -1,6 +1,6 @@
 """`rs.plot`: the figures of `rodsweep plot`, shown in a notebook or written into a file."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -10,7 +10,7 @@ import xarray as xr
 
 from ..errors import InputError
 from ..post.figures import draw
-from ..post.figures.request import Look
+from ..post.figures.request import KINDS, ROOTS, WIDTHS, Look
 from ..results.file.view import View, read_view
 from .answer import Answer
 from .dataset import view_of
@@ -24,6 +24,13 @@ class Looks(TypedDict, total=False):
     title: bool
     width: Literal["single", "double"] | None
     style: str | None
+
+
+def _refuse_other_than(**choices: tuple[str | None, Iterable[str]]) -> None:
+    """InputError for the first choice, by name, that is given and none of those that there are."""
+    for name, (given, known) in choices.items():
+        if given is not None and given not in known:
+            raise InputError(f"{name} = {given!r} is not allowed; choose {', '.join(known)}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,17 +57,20 @@ def plot(
     data: Drawable | Sequence[Drawable],
     output: str | Path | None = None,
     *,
-    roots: Literal["rightmost", "smallest"] = "smallest",
+    roots: Literal["rightmost", "smallest"] | None = None,
     what: str | None = None,
-    points: Sequence[int] = (),
+    points: Sequence[int] | int = (),
     **look: Unpack[Looks],
 ) -> Picture:
-    """The figure that suits the task of `data`: a Dataset, an Answer, a file, or several of limit cycles.
+    """The figure that suits the task of `data`: a Dataset, an Answer, a file, or several of limit cycles
+    or of lines of spectra.
 
     output: a file to write too. The choices are the options of `rodsweep plot`. Raises InputError where there
     is nothing that a figure could show.
     """
-    several = [data] if isinstance(data, Drawable) else list(data)
+    _refuse_other_than(roots=(roots, ROOTS), what=(what, KINDS), width=(look.get("width"), WIDTHS))
+    points = [points] if isinstance(points, int) else points
+    several = [data] if isinstance(data, Drawable) else list(data) if isinstance(data, Sequence) else []
     if not several:
         raise InputError("there is nothing to draw; give a Dataset, an answer or a file")
     views = [_view(one) for one in several]

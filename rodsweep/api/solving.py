@@ -25,7 +25,7 @@ _warm: set[str] = set()
 
 
 def solve_here(job: Job) -> tuple[xr.Dataset, list[str]]:
-    """(the Dataset of all points, what each point's outcome has to say).
+    """(the Dataset of all points, what each outcome has to say of points that are solved alone).
 
     Raises EnvironmentLacks where PETSc is not to be found.
     """
@@ -45,15 +45,22 @@ def solve_here(job: Job) -> tuple[xr.Dataset, list[str]]:
 
 
 def _solved(job: Job, solver: Solver, plan: Plan) -> tuple[dict[str, np.ndarray], list[str]]:
-    """(the variables of the layout, each of the points' shape and its own; the messages of all points)."""
+    """(the variables of the layout, each of the points' shape and its own; what points alone had to say)."""
     count, layout = job.points.count, plan.layout
     flat = {v.name: np.full((count, *layout.inner(v)), v.fill, v.dtype) for v in layout.variables}
     messages = [""] * count
-    for index, outcome in _outcomes(count, solver):
-        record = solver.record(index, outcome)
-        for name, array in flat.items():
-            array[index] = record[name]
-        messages[index] = outcome.message
+    if solver.stretched is not None:
+        stretches, solve_together = solver.stretched
+        for indices in map(stretches.indices, range(stretches.count)):
+            found = solve_together(indices).values
+            for name, array in flat.items():
+                array[indices] = found[name]
+    else:
+        for index, outcome in _outcomes(count, solver):
+            record = solver.record(index, outcome)
+            for name, array in flat.items():
+                array[index] = record[name]
+            messages[index] = outcome.message
     shape = job.points.shape
     return {name: array.reshape(*shape, *array.shape[1:]) for name, array in flat.items()}, messages
 

@@ -141,9 +141,8 @@ def show(file: Path, statuses: bool) -> None:
 @click.option(
     "--roots",
     type=click.Choice(["rightmost", "smallest"]),
-    default="smallest",
-    show_default=True,
-    help="Which two roots to follow: the rightmost, or the smallest in magnitude as the paper does.",
+    help="Which two roots to follow: the smallest in magnitude, as the paper does, or the rightmost; by "
+    "default those that change places with others less often.",
 )
 @click.option(
     "--what",
@@ -168,7 +167,7 @@ def show(file: Path, statuses: bool) -> None:
 def plot(
     files: tuple[Path, ...],
     output: Path | None,
-    roots: str,
+    roots: str | None,
     what: str | None,
     points: tuple[int, ...],
     **look: Any,

@@ -5,6 +5,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..config import Config, load_config
 from ..config.reading import canonical
 from ..errors import InputError
@@ -12,6 +15,7 @@ from ..results.layouts import LAYOUTS, layout_of
 from ..results.layouts.arm import in_si, quantities_of
 from ..results.layouts.variables import Filled, Layout
 from ..sweep.grid import Points, grid_size, points_of
+from ..sweep.stretches import Together
 from .tasks import TASKS
 from .tasks.protocol import Solver, Task
 
@@ -55,7 +59,15 @@ class Job:
             values = solver.record(index, outcome)
             return values | in_si(values, index, layout, quantities)
 
-        return replace(solver, record=record)
+        if solver.stretched is None:
+            return replace(solver, record=record)
+        stretches, solve_together = solver.stretched
+
+        def together(indices: NDArray[np.int64]) -> Together:
+            found = solve_together(indices)
+            return replace(found, values=found.values | in_si(found.values, indices, layout, quantities))
+
+        return replace(solver, record=record, stretched=(stretches, together))
 
     @property
     def layout(self) -> Layout:

@@ -61,7 +61,7 @@ class InstantSpectra(SpectrumTask):
                 os.kill(os.getpid(), signal.SIGKILL)
             return outcomes[index % OUTCOMES]
 
-        return replace(SpectrumTask.solver(self), warm_up=lambda: None, solve=solve)
+        return replace(SpectrumTask.solver(self), warm_up=lambda: None, solve=solve, stretched=None)
 
 
 def note_memory(directory: Path) -> None:

@@ -26,6 +26,7 @@ def plan_without_solver(config: Config, points: Points) -> Plan:
         attributes={},
         flags=(),
         chains=task.chains,
+        stretches=task.stretches,
     )
 
 

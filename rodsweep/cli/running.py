@@ -20,14 +20,16 @@ from ..results.run.checkpoints import Checkpoints
 from ..results.run.journal import Journal, journal_directory
 from ..solve.backend.availability import require_petsc
 from ..sweep.chains import ChainSolver
-from ..sweep.loop import Share, sweep
+from ..sweep.loop import Indices, Share, sweep
 from ..sweep.progress import Teller
 from ..sweep.ranges import IndexRange, IndexSet, total
 from ..sweep.shards import Shard
 from ..sweep.stop import StopRequest
+from ..sweep.stretches import StretchSolver, Together
 from ..sweep.team import Team
 from .job import Job, make_job
 from .tasks.protocol import Solver
+from .wording import counted
 
 FAILURES_TOLD = 3
 """Failed points that are named at the end of a run; the file has the status of all."""
@@ -84,7 +86,7 @@ class _Run:
         if self.team.first:
             points, shard = self.job.points.count, f"; shard {self.shard}" if self.shard.of > 1 else ""
             kept = f", {points - total(missing)} kept" if points > total(missing) else ""
-            self._say(f"{self.output}: {count} of {points} points to do{kept}{shard}")
+            self._say(f"{self.output}: {count} of {counted(points, 'point')} to do{kept}{shard}")
         contributions: list[Contribution] = []
         if count:
             self.team.on_first(self._note_kernels)
@@ -106,6 +108,10 @@ class _Run:
 
     def _units(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
         """(the units of this shard that miss a point, the points that they miss)."""
+        if self.solver.stretched is not None:
+            stretches = self.solver.stretched[0]
+            units = self.shard.part(stretches.todo(missing), stretches.count)
+            return units, stretches.missing_in(units, missing)
         if self.solver.chained is None:
             units = self.shard.part(missing, self.job.points.count)
             return units, total(units)
@@ -130,12 +136,13 @@ class _Run:
         failures: list[str] = []
         solver, plan = self.solver, self.plan
 
-        def keep(index: int, result: Any) -> None:
-            journal.append(index, solver.record(index, result))
-            if not result.status.succeeded and len(failures) < FAILURES_TOLD:
-                values = self.job.points.values(index)
-                where = ", ".join(f"{name}={value!r}" for name, value in values.items())
-                failures.append(f"{where}: {result.status.name} {result.message}".rstrip())
+        def keep(index: Indices, result: Any) -> None:
+            if isinstance(result, Together):
+                journal.append_all(np.asarray(index), result.values)
+            else:
+                journal.append(int(index), solver.record(int(index), result))
+            if len(failures) < FAILURES_TOLD:
+                failures.extend(self._failures(index, result))
 
         solver.warm_up()
         tell = Teller(count, self.job.name) if self.team.first and not self.options.quiet else None
@@ -143,11 +150,7 @@ class _Run:
             directory = journal_directory(self.output)
             journal = Journal(directory, self.team.rank, plan.layout, plan.fingerprint)
             checkpoints = Checkpoints(directory, plan.fingerprint)
-            solve: Callable[[int], Iterable[tuple[int, Any]]] = (
-                ChainSolver(*solver.chained, IndexSet(missing), checkpoints, self.stop)
-                if solver.chained
-                else lambda index: ((index, solver.solve(index)),)
-            )
+            solve = self._solve_unit(IndexSet(missing), checkpoints)
             share = sweep(self.team, units, solve, keep, tell or (lambda done: None), self.stop)
             journal.close()
         except OSError as error:
@@ -159,6 +162,30 @@ class _Run:
             if tell:
                 tell.close()
         return failures, share
+
+    def _solve_unit(
+        self, missing: IndexSet, checkpoints: Checkpoints
+    ) -> Callable[[int], Iterable[tuple[Indices, Any]]]:
+        """How a unit is solved: a point, a chain or a stretch."""
+        solver = self.solver
+        if solver.stretched:
+            return StretchSolver(*solver.stretched, missing)
+        if solver.chained:
+            return ChainSolver(*solver.chained, missing, checkpoints, self.stop)
+        return lambda index: ((index, solver.solve(index)),)
+
+    def _failures(self, index: Indices, result: Any) -> list[str]:
+        """What to tell of the points that did not succeed."""
+        if isinstance(result, Together):
+            failed = np.flatnonzero(~result.succeeded)[:FAILURES_TOLD]
+            told = [(int(np.asarray(index)[i]), result.told(int(i))) for i in failed]
+        else:
+            told = [] if result.status.succeeded else [(int(index), f"{result.status.name} {result.message}")]
+        return [f"{self._where(at)}: {outcome}".rstrip() for at, outcome in told]
+
+    def _where(self, index: int) -> str:
+        values = self.job.points.values(index)
+        return ", ".join(f"{name}={value!r}" for name, value in values.items())
 
     def _finish(self, count: int, contributions: list[Contribution]) -> int:
         """Folds everything into the file, says how the run ended, and with which status it exits."""
@@ -176,7 +203,8 @@ class _Run:
             seconds, points = time.monotonic() - self.began, count - left
             each = 1e3 * seconds * self.team.size / max(points, 1)
             pace = f" ({each:.3g} ms a point and rank)" if points else ""
-            self._say(f"{points} points in {seconds:.2f} s on {self.team.size} ranks{pace}")
+            ranks = counted(self.team.size, "rank")
+            self._say(f"{counted(points, 'point')} in {seconds:.2f} s on {ranks}{pace}")
         else:
             self._say(f"{part} is complete, nothing to do")
         expected = {status.name for status in self.solver.statuses if status.succeeded} | {"missing"}
@@ -187,7 +215,9 @@ class _Run:
             click.echo(f"  {failure}")
         if left:
             kept = self.job.points.count - total(missing)
-            click.echo(f"stopped by {self.stop.name}; {kept} points kept, the same command continues")
+            click.echo(
+                f"stopped by {self.stop.name}; {counted(kept, 'point')} kept, the same command continues"
+            )
             return CONTINUE
         if not amiss:
             return 0
@@ -239,4 +269,5 @@ def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
         attributes=attributes | job.config.parameters.numbers | versions | provenance.provenance(),
         flags=tuple((int(s), s.name) for s in solver.statuses),
         chains=job.task.chains,
+        stretches=job.task.stretches,
     )

@@ -232,7 +232,8 @@ def _scaled(axis: Axis, scale: float) -> Axis:
     """An axis with all values multiplied."""
     if axis.values is not None:
         return Axis(values=tuple(scale * value for value in axis.values))
-    return Axis(start=scale * axis.start, stop=scale * axis.stop, num=axis.num, spacing=axis.spacing)
+    factor = scale * axis.factor  # kept apart, so that a longer range has the same values
+    return axis.model_copy(update={"factor": factor})
 
 
 def _crossed(columns: Mapping[str, Array]) -> dict[str, Array]:

@@ -6,12 +6,12 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from ..model.parameters import NONLINEAR_PARAMETERS, PARAMETERS
+from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, PARAMETERS
 from .axes import NonlinearParameters
 from .schema import Config
 from .values import Number, Strict
 
-FOLLOWED = ("F", "k1", "k2", "gamma3")
+FOLLOWED = LINEAR_PARAMETERS
 """Parameters along which branches are followed: Hopf points do not feel gamma1."""
 
 

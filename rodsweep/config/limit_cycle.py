@@ -5,7 +5,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from ..model.parameters import NONLINEAR_PARAMETERS
-from .axes import NonlinearParameters
+from .arm import AXIS_OF
+from .axes import NonlinearParameters, words
 from .schema import Config, Nodes
 from .values import Number, Strict
 
@@ -13,7 +14,7 @@ FORMER_STARTS = {"none": "mode", "previous": "neighbour"}
 """Values of the former key `continue_from`."""
 
 LONGEST = "longest"
-Along = Literal[(*NONLINEAR_PARAMETERS, LONGEST)]  # type: ignore[valid-type]  # pydantic reads it at run time, from the table
+Along = Literal[(*NONLINEAR_PARAMETERS, *AXIS_OF, LONGEST)]  # type: ignore[valid-type]  # pydantic reads it at run time, from the table
 
 
 class LimitCycleOptions(Strict):
@@ -26,7 +27,8 @@ class LimitCycleOptions(Strict):
     continue_from: Annotated[Literal[tuple(FORMER_STARTS)], Field(exclude=True)] = "none"  # type: ignore[valid-type]
     """What `start` was called, which stays understood: none is mode, previous is neighbour."""
     along: Along = LONGEST
-    """The parameter along which neighbours follow each other; longest is that with most points."""
+    """The parameter along which neighbours follow each other, or the arm's quantity that moves it; longest is
+    the one with most points."""
     direction: Literal["up", "down"] = "up"
     """Whether that parameter grows or falls from a point to the next."""
     harmonics: Annotated[int, Field(ge=1, le=100)] = 8
@@ -76,7 +78,7 @@ class LimitCycleConfig(Config):
         """The parameter along which neighbours follow each other: the first of those with most points."""
         axes = self.parameters.axes
         given = self.limit_cycle.along
-        return max(axes, key=lambda name: axes[name].size) if given == LONGEST else given
+        return max(axes, key=lambda name: axes[name].size) if given == LONGEST else AXIS_OF.get(given, given)
 
     @property
     def unused(self) -> dict[str, str]:
@@ -98,6 +100,12 @@ class LimitCycleConfig(Config):
     def _only_what_is_used(self) -> "LimitCycleConfig":
         self.parameters.require(self.names)
         self.refuse_unused()
+        arm, along = self.parameters.arm, self.limit_cycle.along
+        if along in AXIS_OF and (arm is None or getattr(arm, along) is None):
+            raise ValueError(
+                f"limit_cycle.along is {along} but parameters.arm.{along} is not given; give it, or one of "
+                f"{words(NONLINEAR_PARAMETERS, 'or')}"
+            )
         if self.limit_cycle.start == "neighbour" and self.parameters.is_list:
             remedy = "give axes instead of parameters.points"
             if self.parameters.arm is not None:

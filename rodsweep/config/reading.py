@@ -14,7 +14,7 @@ from .parsing import DEEPEST, parse, read_text
 from .refusals import KEY_SHOWN, dotted, nearest, sentence_of
 from .schema import Config
 from .tasks import CONFIGS
-from .values import axis_of, named, short
+from .values import Axis, axis_of, named, short
 
 
 def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, str]:
@@ -22,7 +22,8 @@ def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, st
     text, where = read_text(path), named(path)
     tree = parse(text, where)
     if not isinstance(tree, dict):
-        raise InputError(f"{where}: the config is {short(tree)}, not a mapping of keys to values")
+        told = "is empty" if tree is None else f"is {short(tree)}, not a mapping of keys to values"
+        raise InputError(f"{where}: the config {told}; give task and parameters")
     for override in overrides:
         _override(tree, override)
         text += f"\n# --set {override}"
@@ -51,7 +52,7 @@ def canonical(config: Config) -> dict[str, Any]:
     tree = config.model_dump(mode="json", exclude_none=True)
     if config.parameters.arm is not None:
         axes = config.parameters.axes
-        tree["parameters"] |= {k: v.model_dump(mode="json", exclude_none=True) for k, v in axes.items()}
+        tree["parameters"] |= {name: axis.resolved for name, axis in axes.items()}
     return tree
 
 
@@ -87,7 +88,11 @@ def _without_those_of_the_arm(parameters: dict[str, Any]) -> dict[str, Any]:
     """The parameters without the axes that `canonical` made of the arm."""
     arm = ArmSection.model_validate(parameters["arm"])
     made = arm.grid_axes() if arm.is_grid else {}
-    return {name: value for name, value in parameters.items() if name not in made or value != made[name]}
+    return {
+        name: value
+        for name, value in parameters.items()
+        if not (name in made and isinstance(value, Axis) and value.agrees(made[name]))
+    }
 
 
 def yaml_of(tree: dict[str, Any]) -> str:

@@ -21,6 +21,8 @@ class SpectrumOptions(Strict):
     """Store (Y, Theta), scaled to Y(1) = 1, to about `accuracy`."""
     nodes: Nodes = 33
     """Lobatto nodes on which (Y, Theta) are given, where `vectors` asks for them."""
+    follow: bool = True
+    """Follow eigenvalues along the longest axis of a grid, where `certify` is true and `vectors` false."""
     longitudinal: bool = False
     """Add the longitudinal modes, -(k1/gamma1) (pi (n - 1/2))^2, in closed form."""
 
@@ -40,6 +42,22 @@ class SpectrumConfig(LinearConfig):
     @property
     def unused(self) -> dict[str, str]:
         return {} if self.spectrum.vectors else {"nodes": "vectors: true"}
+
+    @property
+    def follows(self) -> bool:
+        """Whether eigenvalues are followed; vectors are the mesh's, and it takes a count to miss none."""
+        return self.spectrum.follow and self._could_follow
+
+    @property
+    def _could_follow(self) -> bool:
+        return self.spectrum.certify and not (self.spectrum.vectors or self.parameters.is_list)
+
+    @property
+    def meaning(self) -> dict[str, Any]:
+        meant = super().meaning
+        if not self._could_follow:  # then it makes no difference
+            meant["spectrum"]["follow"] = True
+        return meant
 
     @model_validator(mode="after")
     def _only_what_is_used(self) -> "SpectrumConfig":

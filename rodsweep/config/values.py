@@ -4,7 +4,7 @@ from math import inf, isinf, isnan
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainSerializer
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer
 
 from ..arrays import Array
 
@@ -110,6 +110,8 @@ class Axis(Strict):
     stop: float = 0.0
     num: int = 0
     spacing: Literal["linear", "log"] = "linear"
+    factor: Annotated[float, Field(exclude=True)] = 1.0
+    """What the values of a range are multiplied by: of a quantity in SI, what it makes of a parameter."""
 
     @property
     def size(self) -> int:
@@ -123,13 +125,24 @@ class Axis(Strict):
         finite = [value for value in self.values if value < inf]
         return bool(finite) and 0 < 10 * finite[0] < finite[-1]
 
+    @property
+    def resolved(self) -> dict[str, Any]:
+        """Its keys and values, JSON-compatible, with the ends of a range as they are."""
+        tree = self.model_dump(mode="json", exclude_none=True)
+        ends = {} if self.values is not None else {"start": self.start, "stop": self.stop}
+        return tree | {name: self.factor * value for name, value in ends.items()}
+
+    def agrees(self, other: "Axis") -> bool:
+        """Whether the two have the same values, but for rounding."""
+        return self.size == other.size and np.allclose(self.array(), other.array(), rtol=1e-12, atol=0)
+
     def array(self) -> Array:
         """The values, increasing, shape (size,)."""
         if self.values is not None:
             return np.array(self.values)
         if self.spacing == "log":
-            return np.geomspace(self.start, self.stop, self.num, dtype=np.float64)
-        return np.linspace(self.start, self.stop, self.num, dtype=np.float64)
+            return self.factor * np.geomspace(self.start, self.stop, self.num, dtype=np.float64)
+        return self.factor * np.linspace(self.start, self.stop, self.num, dtype=np.float64)
 
 
 def as_axis(value: Any) -> Axis:

@@ -60,20 +60,31 @@ def squared_amplification(rod: Rod) -> float:
 
 
 def squared_amplification_over(path: Path, start: float, stop: float) -> float:
-    """An upper bound of `squared_amplification` over all rods of a path from p = start to stop; inf if none.
+    """An upper bound of `squared_amplification` over all rods of a path between two p; inf if none."""
+    ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
+    return squared_amplification_between(ends[0], ends[1])
+
+
+@compiled
+def squared_amplification_between(first: Coefficients, last: Coefficients) -> float:
+    """An upper bound of `squared_amplification` over all rods between two on a path; inf if none.
 
     Every factor is monotone along a path but for nu g, which is not used: ends are extremes.
     """
-    ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
-    load = max(abs(F) for F, *_ in ends)
-    least_load = 0.0 if start < 0 < stop and path.name == "F" else min(abs(F) for F, *_ in ends)
-    weak = inf if any(c2 > 0 and gamma3 == 0 for *_, c2, gamma3 in ends) else 1.0
-    if weak < inf:
-        weak = max(1.0, *(c2 / gamma3 if c2 else 1.0 for *_, c2, gamma3 in ends))
-    g = [nu + F * c2 for F, nu, c2, _ in ends]
-    denominator = min(nu for _, nu, _, _ in ends) + least_load * min(sqrt(c2 * g3) for *_, c2, g3 in ends)
-    strong = max(g) / denominator if min(g) >= 0 and denominator > 0 else inf
-    return load**2 * min(weak, strong)
+    load = max(abs(first.F), abs(last.F))
+    least_load = 0.0 if first.F * last.F < 0 else min(abs(first.F), abs(last.F))
+    weak = 1.0
+    for rod in (first, last):
+        if rod.c2 > 0:
+            weak = max(weak, rod.c2 / rod.gamma3 if rod.gamma3 > 0 else inf)
+    g_first, g_last = first.nu + first.F * first.c2, last.nu + last.F * last.c2
+    root_of_drag = min(sqrt(first.c2 * first.gamma3), sqrt(last.c2 * last.gamma3))
+    denominator = min(first.nu, last.nu) + least_load * root_of_drag
+    strong = inf
+    if min(g_first, g_last) >= 0 and denominator > 0:
+        strong = max(g_first, g_last) / denominator
+    least = min(weak, strong)
+    return load**2 * least if least < inf else inf
 
 
 def quiet_radius(path: Path, start: float, stop: float, largest: float) -> float:

@@ -107,7 +107,14 @@ def _separate(w: Complex, error: Array, coefficients: Coefficients) -> NDArray:
 def _descending(w: Complex) -> NDArray:
     """Indices that sort by descending real part, then descending frequency."""
     order = np.arange(len(w))
-    for m in range(1, len(w)):
+    sort_descending(w, order)
+    return order
+
+
+@compiled
+def sort_descending(w: Complex, order: NDArray) -> None:
+    """Sorts indices, shape (n,), by descending real part, then frequency; sorted ones cost least."""
+    for m in range(1, len(order)):
         i, at = order[m], m
         while at > 0:
             j = order[at - 1]
@@ -116,7 +123,6 @@ def _descending(w: Complex) -> NDArray:
             order[at] = j
             at -= 1
         order[at] = i
-    return order
 
 
 @compiled

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
+from ..model.parameters import LINEAR_PARAMETERS
 from ..results.file.view import View
 from ..results.layouts.branch import END_REASONS, SPECIAL_KINDS
 
@@ -58,7 +59,7 @@ class CurveOfCycles:
 def followed_parameter(view: View) -> str:
     """The parameter along which branches are followed."""
     names = {str(name) for name in view.variables}
-    return next(name for name in ("F", "k1", "k2", "gamma3") if f"branch_{name}" in names)
+    return next(name for name in LINEAR_PARAMETERS if f"branch_{name}" in names)
 
 
 def curves_of(view: View, rod: int) -> list[CurveOfCycles]:

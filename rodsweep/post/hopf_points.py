@@ -22,25 +22,48 @@ MOST_DIGITS = 9
 
 
 @dataclass(frozen=True, slots=True)
-class HopfPoint:
-    """A zero of the leading growth rate along a parameter, with an estimate of its error, in its unit."""
+class Located:
+    """A place along a parameter with an estimate of its error, in its unit."""
 
     position: float
     error: float
-    destabilises: bool
-    """Whether the rod is unstable above it; below it otherwise, and above it stable again."""
-    frequency: float = nan
-    """Of the modes that cross, in 1/tau2; nan where it is not known."""
 
-    def agrees(self, other: "HopfPoint") -> bool:
+    @property
+    def kind(self) -> str:
+        """What is there."""
+        raise NotImplementedError
+
+    def agrees(self, other: "Located") -> bool:
         """Whether the two may be one: of a kind, and within their errors."""
-        apart = abs(self.position - other.position)
-        return self.destabilises == other.destabilises and apart <= self.error + other.error
+        return self.kind == other.kind and abs(self.position - other.position) <= self.error + other.error
 
     @property
     def text(self) -> str:
         """The position to the last decimal that is larger than the error."""
         return f"{self.position:.{max(0, floor(-log10(self.error)))}f}"
+
+
+@dataclass(frozen=True, slots=True)
+class OscillationOnset(Located):
+    """Where the two leading real eigenvalues become a pair: above it the rod oscillates, and decays yet."""
+
+    @property
+    def kind(self) -> str:
+        return "onset"
+
+
+@dataclass(frozen=True, slots=True)
+class HopfPoint(Located):
+    """A zero of the leading growth rate."""
+
+    destabilises: bool
+    """Whether the rod is unstable above it; below it otherwise, and above it stable again."""
+    frequency: float = nan
+    """Of the modes that cross, in 1/tau2; nan where it is not known."""
+
+    @property
+    def kind(self) -> str:
+        return "hopf" if self.destabilises else "restabilization"
 
 
 def hopf_points(x: Array, growth: Array, frequency: Array) -> list[HopfPoint]:

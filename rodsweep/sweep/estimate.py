@@ -1,5 +1,6 @@
 """What a sweep will cost, before it starts: for spectra, unknowns and time a point from a sample."""
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -7,12 +8,15 @@ import numpy as np
 from ..discretization.resolution import MOST_UNKNOWNS, expected_wave_number, resolution_for
 from ..model.dispersion import most_amplified_wave
 from .grid import Points
+from .stretches import Stretches
 
 SAMPLE = 200
 FIXED_MS, LINEAR_MS, CUBIC_MS = 0.03, 2.2e-3, 1.5e-7
 """Time of a solve with n unknowns: overhead, orthogonalisation and dense factorisation, measured."""
 SPARSE_FROM, SPARSE_MS = 300, 8e-3
 CERTIFICATE_MS = 0.15
+FIRST_POINTS, FOLLOWED_MS = 2.0, 0.006
+"""Points alone that the first point of a stretch costs as much as, and time of each point of it."""
 LINE_MS, LINE_CERTIFICATE_MS = 24.0, 16.0
 """Time of a search for crossings along one parameter, a mean over 72 rods: some take four times as long."""
 HOPF_SEARCH_MS, HOPF_CERTIFICATE_MS, HOPF_POINTS_MS = 25.0, 3.0, 18.0
@@ -63,6 +67,13 @@ def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> E
     """The cost of modes at `count` points, `modes` each, from that of their eigenvalues alone."""
     more = count * 1e-3 * (MODES_MS * modes**2 + (GROWTH_MS if growth else 0))
     return replace(spectra, seconds=spectra.seconds + more, unknowns=None)
+
+
+def estimate_followed(alone: Estimate, stretches: Stretches) -> Estimate:
+    """The cost of spectra along stretches, from that of each point alone: of few points in full."""
+    points = math.prod(stretches.shape)
+    share = FIRST_POINTS * stretches.count / points
+    return replace(alone, seconds=alone.seconds * min(1.0, share) + points * 1e-3 * FOLLOWED_MS)
 
 
 def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool) -> Estimate:

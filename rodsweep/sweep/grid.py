@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TextIO
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..config.arm import ArmSection
@@ -17,7 +18,7 @@ from ..config.axes import words
 from ..config.schema import Config
 from ..config.values import as_number, overflows
 from ..errors import InputError
-from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS, Range
+from ..model.parameters import CRUSHING, LINEAR_PARAMETERS, PARAMETERS, Range
 from ..model.rod import Rod
 
 LONGEST_LINE = 10_000
@@ -58,6 +59,13 @@ class Points:
                 index, place = divmod(index, len(column))
             values[name] = float(column[place])
         return {name: values[name] for name in self.names}
+
+    def values_of(self, indices: NDArray[np.int64]) -> dict[str, Array]:
+        """The parameters at flat indices, (n,), by name, each (n,)."""
+        places = np.unravel_index(indices, self.shape) if self.is_grid else [indices] * len(self.names)
+        return {
+            name: column[place] for name, column, place in zip(self.names, self.columns, places, strict=True)
+        }
 
     def rod(self, index: int) -> Rod:
         """The rod at a flat index, where the columns are all four parameters."""
@@ -118,7 +126,7 @@ def refuse_axes(axes: dict[str, Array], into_crushed: bool = False) -> None:
     """
     for name, column in axes.items():
         refuse_outside(PARAMETERS[name].allowed, name, column)
-    if {"F", "k1"} <= axes.keys():
+    if set(CRUSHING) <= axes.keys():
         _refuse_crushed(axes["F"], axes["k1"], into_crushed)
 
 

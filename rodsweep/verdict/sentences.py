@@ -61,7 +61,11 @@ def place_of(arm: SlenderArm, found: FlutterRange, flutter: Span, load: Load) ->
     if flutter.low > F:
         percent = rounded_percent(1 - F / flutter.low, 1 - F / flutter.high)
         return f"{load.given} is {percent} % below flutter, at {where}: the arm stays straight."
-    unstable = found.unstable_at(min(F, found.end))
+    if found.end < F:
+        end = load.of(Span(found.end, found.end))
+        unknown = f"whether the arm beats at {load.given} is not known"
+        return f"Flutter is at {where}; {unknown}: changes were sought up to {end}."
+    unstable = found.unstable_at(F)
     if flutter.high < F and not any(unstable):
         return f"{load.given} is beyond flutter, at {where}: the straight arm has returned."
     if not all(unstable):

@@ -21,7 +21,7 @@ parameters:
   k1: [100, 1.0e4, .inf]
   k2: [50, 1.0e4]
   gamma3: [0, 1.0e-4]
-spectrum: {modes: 4}
+spectrum: {modes: 4, follow: false}
 """
 
 SLOWLY = """
@@ -42,7 +42,7 @@ with open(f"threads-{os.getpid()}", "w") as note:
 """A sitecustomize.py that makes every point take PAUSE seconds longer until the job has been requeued, and
 notes where a rank may run."""
 
-STOPPED = "points kept, the same command continues"
+STOPPED = "kept, the same command continues"
 
 
 @pytest.fixture(scope="module")

@@ -156,7 +156,7 @@ def _start(words: Sequence[str], kind: str, directory: Path, fresh: bool) -> sub
 def _inside(process: subprocess.Popen[str], kind: str) -> float:
     """The seconds that a command states in the end; nan where it was killed as it should be."""
     output, errors = process.communicate()
-    said = re.search(r"points in ([\d.]+) s on", output)
+    said = re.search(r"points? in ([\d.]+) s on", output)
     stopped = said is None or "stopped by" in output
     if kind != KILLED and (stopped or process.returncode not in (0, 1)):
         raise EnvironmentLacks(f"a run of the benchmark failed: {' '.join(errors.split())[-500:]}")

@@ -13,6 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from ..study import Measurement, Study, grouped, in_turn, middle, plural, table
+from .followed import followed_sweeps, followed_table
 from .launch import (
     INSTANT,
     KILLED,
@@ -51,18 +52,20 @@ RunCase = Callable[..., CommandRun]
 
 
 def sweep_study(quick: bool, command: Sequence[str]) -> Study:
-    """Runs the benchmark: the gain of a second rank, then what a point costs without a solver.
+    """Runs the benchmark: a second rank, following along axes, then what a point costs without a solver.
 
     command: the words that start the command that is measured, see `rodsweep.bench.sweep.launch`.
     """
     run, ranks = partial(run_case, command), (1, 2) if launcher(2) else (1,)
     with TemporaryDirectory(prefix="rodsweep-bench-") as place:
         solved = solved_sweeps(Path(place), run, quick, ranks)
+        followed = followed_sweeps(Path(place), run, quick)
         instant = instant_sweeps(Path(place), run, quick, ranks)
-    blocks = [INTRODUCTION.strip(), solved_table(solved), instant_table(instant), growth_table(instant)]
+    blocks = [INTRODUCTION.strip(), solved_table(solved), followed_table(followed)]
+    blocks += [instant_table(instant), growth_table(instant)]
     if len(ranks) == 1:
         blocks.append("Two ranks are skipped: there is no mpiexec beside this Python or on PATH.")
-    return Study("sweep", "\n\n".join(blocks), [*solved, *instant])
+    return Study("sweep", "\n\n".join(blocks), [*solved, *followed, *instant])
 
 
 def solved_sweeps(place: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:

@@ -22,6 +22,7 @@ from ...results.layouts.variables import Variable
 from ...sweep.chains import Chains, State
 from ...sweep.estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, Estimate
 from ...sweep.grid import refuse_outside
+from ..wording import counted
 from .parts import count_of, rod_parts
 from .protocol import Part, Solver, Task
 
@@ -71,10 +72,11 @@ class LimitCycleTask(Task):
             start = "the Hopf point below its force"
         if chains is None:
             return f"{count_of(self.points)}, each started from {start}"
+        chained = f"{counted(chains.count, 'chain')} of {chains.length}"
         return (
-            f"{count_of(self.points)} in {chains.count} chains of {chains.length}, {options.direction} in "
-            f"{self.config.along}: each started from its neighbour's cycle, the first, and any after none, "
-            f"from {start}; at most {chains.count} ranks share the work"
+            f"{count_of(self.points)} in {chained}, {options.direction} in {self.config.along}: each started "
+            f"from its neighbour's cycle, the first, and any after none, from {start}; at most "
+            f"{counted(chains.count, 'rank')} can share the work"
         )
 
     def parts(self) -> list[Part]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...model.parameters import PARAMETERS, Parameter
 from ...sweep.grid import Points
+from ..wording import counted
 from .protocol import Part, Task
 
 
@@ -38,7 +39,7 @@ class LinearTask(Task):
 def count_of(points: Points) -> str:
     """The number of points and the shape of their grid."""
     shape = " x ".join(str(n) for n in points.shape) if points.is_grid else "a list"
-    return f"{points.count} points ({shape})"
+    return f"{counted(points.count, 'point')} ({shape})"
 
 
 def rod_parts(columns: Mapping[str, np.ndarray]) -> list[Part]:

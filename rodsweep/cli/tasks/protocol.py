@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...results.file.view import View
 from ...results.layouts.variables import Filled
@@ -13,6 +14,7 @@ from ...solve.status import PointStatus
 from ...sweep.chains import Chains, ChainStep
 from ...sweep.estimate import Estimate
 from ...sweep.grid import Points
+from ...sweep.stretches import Stretches, Together
 
 Part = tuple[str, bool, str]
 """(what, whether it is modelled, why): a row of what `check` prints."""
@@ -32,6 +34,8 @@ class Solver:
     """Variables that only all points together give, on the first rank, from the file with all points."""
     chained: tuple[Chains, ChainStep] | None = None
     """Where points start one from the other: how they are solved, instead of by `solve`."""
+    stretched: tuple[Stretches, Callable[[NDArray[np.int64]], Together]] | None = None
+    """Where neighbours are solved together: how, from their flat indices, instead of by `solve`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +49,11 @@ class Task(ABC):
     @property
     def chains(self) -> Chains | None:
         """The chains in which points start one from the other, where they do."""
+        return None
+
+    @property
+    def stretches(self) -> Stretches | None:
+        """The stretches of neighbours that are solved together, where they are."""
         return None
 
     def coordinates(self) -> dict[str, np.ndarray]:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...config.spectrum import SpectrumConfig
 from ...discretization.quadrature import lobatto_points
@@ -11,12 +12,14 @@ from ...discretization.resolution import mesh_accuracy
 from ...errors import InputError
 from ...model.longitudinal import longitudinal_rates
 from ...results.layouts.variables import Filled, Variable
-from ...sweep.estimate import Estimate, estimate_spectra
+from ...sweep.estimate import Estimate, estimate_followed, estimate_spectra
+from ...sweep.stretches import Stretches, Together, along_the_longest
 from .parts import LinearTask, count_of
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
-    from ...solve.spectrum.search import Spectrum
+    from ...solve.spectrum.search import Spectrum, SpectrumRequest
+    from ...solve.spectrum.stretch import Spectra
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +37,11 @@ class SpectrumTask(LinearTask):
     @property
     def _vector_nodes(self) -> int:
         return self.config.spectrum.nodes if self.config.spectrum.vectors else 0
+
+    @property
+    def stretches(self) -> Stretches | None:
+        """The stretches along which eigenvalues are followed, where they are."""
+        return along_the_longest(self.points.shape) if self.config.follows else None
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """The material coordinate of the vectors' nodes, shape (nodes,), where there are vectors."""
@@ -69,20 +77,34 @@ class SpectrumTask(LinearTask):
     def cost(self) -> Estimate:
         options = self.config.spectrum
         accuracy = mesh_accuracy(self.config.accuracy, options.vectors)
-        return estimate_spectra(self.points, options.modes, accuracy, options.certify)
+        alone = estimate_spectra(self.points, options.modes, accuracy, options.certify)
+        return estimate_followed(alone, self.stretches) if self.stretches else alone
 
     def solver(self) -> Solver:
         from ...solve.spectrum.search import SpectrumRequest, solve_spectrum, warm_up
         from ...solve.spectrum.status import SpectrumStatus
+        from ...solve.spectrum.stretch import warm_up as warm_up_following
 
         options = self.config.spectrum
         request = SpectrumRequest(options.modes, self.config.accuracy, options.certify, self._vector_nodes)
+        stretches = self.stretches
         return Solver(
             statuses=tuple(SpectrumStatus),
-            warm_up=warm_up,
+            warm_up=warm_up_following if stretches else warm_up,
             solve=lambda index: solve_spectrum(self.points.rod(index), request),
             record=lambda index, result: record(result),
+            stretched=(stretches, lambda indices: self._together(indices, request)) if stretches else None,
         )
+
+    def _together(self, indices: NDArray[np.int64], request: "SpectrumRequest") -> Together:
+        """What comes of the points of a stretch."""
+        from ...solve.spectrum.stretch import Stretch, solve_stretch
+
+        stretches = self.stretches
+        assert stretches is not None
+        varied = self.points.names[stretches.axis]
+        found = solve_stretch(Stretch(varied, self.points.values_of(indices)), request)
+        return Together(record_all(found), found.succeeded, found.told)
 
 
 def record(result: "Spectrum") -> dict[str, Any]:
@@ -102,3 +124,18 @@ def record(result: "Spectrum") -> dict[str, Any]:
         for field, vector in zip(("Y", "Theta"), result.vectors, strict=True):
             values[f"{field}_real"], values[f"{field}_imag"] = vector.real, vector.imag
     return values
+
+
+def record_all(found: "Spectra") -> dict[str, NDArray]:
+    """Spectra of points that were solved together as the variables of the file, each (n, ...)."""
+    return {
+        "growth_rate": found.eigenvalues.real,
+        "frequency": found.eigenvalues.imag,
+        "error_estimate": found.error_estimate,
+        "unstable_count": found.unstable_count,
+        "certified": found.certified,
+        "elements": found.elements,
+        "order": found.order,
+        "seconds": found.seconds,
+        "status": found.status,
+    }

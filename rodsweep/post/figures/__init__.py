@@ -55,7 +55,7 @@ def _styled(look: Look) -> AbstractContextManager[None]:
 def draw(
     views: View | Sequence[View],
     output: Path,
-    roots: str = "smallest",
+    roots: str | None = None,
     what: str | None = None,
     points: Sequence[int] = (),
     look: Look = PLAIN,

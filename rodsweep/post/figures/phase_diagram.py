@@ -1,5 +1,7 @@
 """Phase diagrams, as the paper's Fig. 4: what the rod does over two parameters, with the boundaries."""
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
@@ -8,14 +10,22 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...arrays import Array
-from ...errors import InputError
 from ...model.parameters import CRUSHING, LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.phase_diagram import CLASSES
 from .class_bars import CLASS_COLOURS
 from .request import FigureRequest
 from .style import LABELS, SYMBOLS, fixed_text, heading, legend_below, need, scale
+from .style import number as number_text
 
+_NUMBERS = [number for number, _ in CLASSES]
+CLASS_MAP: dict[str, Any] = {
+    "cmap": ListedColormap([CLASS_COLOURS[word] for _, word in CLASSES]),
+    "norm": BoundaryNorm([*(n - 0.5 for n in _NUMBERS), _NUMBERS[-1] + 0.5], len(_NUMBERS)),
+    "shading": "nearest",
+    "rasterized": True,
+}
+"""How the classes of points are drawn."""
 CRUSHED = next(number for number, word in CLASSES if word == "crushed")
 CURVE_LOOKS = {1: ("Hopf points", 1.4, "-"), 0: ("double eigenvalue", 1.0, "--")}
 """Legend, width and style of a curve, by its kind in the file."""
@@ -40,18 +50,15 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     need(view, (values >= 0).any(), "computed row")
     x, y = view.variables[line], view.axes[row]
     keep = np.isfinite(y)
+    if keep.sum() < 2:
+        return request.write(_draw_rows(view, line, row), f"what the rod does over {line}, for each {row}")
     table = values.reshape(len(y), len(x))[keep]
     y = y[keep]
-    if len(y) < 2:
-        raise InputError(f"{view.path} has fewer than two rows with a finite {row}, which make no diagram")
     figure = Figure(figsize=(5.8, 4.6), layout="constrained")
     axes = figure.subplots()
-    numbers = [number for number, _ in CLASSES]
-    colours = ListedColormap([CLASS_COLOURS[word] for _, word in CLASSES])
-    norm = BoundaryNorm([*(n - 0.5 for n in numbers), numbers[-1] + 0.5], len(numbers))
     crushing = (line, row) == CRUSHING
     drawn = _without_stairs(table) if crushing else table
-    axes.pcolormesh(x, y, drawn, cmap=colours, norm=norm, shading="nearest", rasterized=True)
+    axes.pcolormesh(x, y, drawn, **CLASS_MAP)
     scale(axes, "x", x)
     scale(axes, "y", y)
     edge: list[Line2D] = []
@@ -61,17 +68,37 @@ def draw_phase_diagram(request: FigureRequest) -> str:
         word = f"${SYMBOLS[row]} = {SYMBOLS[line]}$"
         edge = axes.plot(ends, ends, color="0.4", lw=1.2, label=word)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=LABELS[line], ylabel=LABELS[row])
-    handles: list = [
-        Patch(facecolor=CLASS_COLOURS[word], edgecolor="0.5", lw=0.5, label=word)
-        for number, word in CLASSES
-        if (table == number).any()
-    ]
+    handles: list = _class_patches(table)
     if "curve_number" in view.variables:
         handles += _curves(axes, view, line, row)
     handles += edge if (table == CRUSHED).any() else []
     legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
     axes.set_title(heading(view, fixed_text(view, line, row)), fontsize=9)
     return request.write(figure, f"what the rod does over {line} and {row}")
+
+
+def _draw_rows(view: View, line: str, row: str) -> Figure:
+    """A bar for each row, where they are too few, or at infinity, to make a plane."""
+    x, y = view.variables[line], view.axes[row]
+    table = view.variables["class"].reshape(len(y), len(x))
+    figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")
+    axes = figure.subplots()
+    axes.pcolormesh(x, np.arange(len(y)), table, **CLASS_MAP)
+    for between in np.arange(len(y) - 1) + 0.5:
+        axes.axhline(between, color="white", lw=4)
+    scale(axes, "x", x)
+    axes.set_yticks(np.arange(len(y)), [f"${SYMBOLS[row]} = {number_text(value)}$" for value in y])
+    axes.tick_params("y", length=0)
+    axes.set(xlim=(x[0], x[-1]), xlabel=LABELS[line])
+    legend_below(figure, _class_patches(table), columns=3)
+    axes.set_title(heading(view, fixed_text(view, line, row)), fontsize=9)
+    return figure
+
+
+def _class_patches(table: Array) -> list[Patch]:
+    """What the legend says of the classes that are there."""
+    there = (word for number, word in CLASSES if (table == number).any())
+    return [Patch(facecolor=CLASS_COLOURS[word], edgecolor="0.5", lw=0.5, label=word) for word in there]
 
 
 def _name_longest(axes: Axes, paths: list[Array], name: str, share: float) -> None:

@@ -11,9 +11,13 @@ from matplotlib.text import Text
 
 from ...errors import InputError
 from ...results.file.view import View
+from .arm_axes import add_si_scales
 
 WIDTHS = {"single": 3.375, "double": 7.0}
 """Of a journal's columns, in inches."""
+ROOTS = ("rightmost", "smallest")
+KINDS = ("cycle", "amplitude", "maps", "energy", "transient", "animation")
+"""Which two roots a figure of spectra may follow, and which figures of limit cycles there are."""
 HEIGHT_POWER = 0.5
 """Of the ratio of the widths, by which a figure gets lower: panels get narrower, their text does not."""
 POINTS_OF_TYPE = 8.0
@@ -77,7 +81,7 @@ class FigureRequest:
 
     views: Sequence[View]
     output: Path
-    roots: str = "smallest"
+    roots: str | None = None
     what: str | None = None
     points: Sequence[int] = ()
     taken: bool = False
@@ -113,7 +117,8 @@ class FigureRequest:
             raise InputError(f"--output {self.output} is not a name for a figure; choose another")
 
     def write(self, figure: Figure, shown: str) -> str:
-        """Writes the figure; returns what it shows."""
+        """Writes the figure, with SI units where the rod is an arm; returns what it shows."""
+        add_si_scales(figure, self.views)
         self.look.fit(figure)
         figure.savefig(self.output)
         return shown

@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 
-import matplotlib
+import matplotlib.cm
+import matplotlib.colors
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -11,9 +12,15 @@ from ...results.file.view import View
 from .eigenvalues import draw_eigenvalues, draw_list_of_spectra
 from .lists import as_grid
 from .request import FigureRequest
-from .spectra.line import FOLLOWED_ROOTS, draw_line
+from .spectra.line import FOLLOWED_ROOTS, draw_line, roots_to_follow
 from .spectra.panels import MOST_PANELS, draw_panels
 from .style import LABELS, fixed_text, heading, long_axes, need, scale
+
+MAP_COLOURS = "PuOr_r"
+SHADES_A_SIDE = 40
+"""Colours of a map on each side of zero growth."""
+SMALLEST_SHADE = 1e-4
+"""Growth rate in units of the largest below which colours are linear in it."""
 
 
 def draw_spectrum(request: FigureRequest) -> str:
@@ -23,7 +30,7 @@ def draw_spectrum(request: FigureRequest) -> str:
     """
     if len(request.views) > 1:
         return _several(request)
-    view, roots = as_grid(request.only_view()), request.roots
+    view = as_grid(request.only_view())
     need(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
     if view.variables["status"].size == 1:
         return request.write(draw_eigenvalues(view), "the stored eigenvalues in the complex plane")
@@ -32,6 +39,7 @@ def draw_spectrum(request: FigureRequest) -> str:
     view = without_infinite(view)
     long = long_axes(view)
     if len(long) == 1:
+        roots = roots_to_follow([view], request.roots)
         return request.write(draw_line(view, long[0], roots), FOLLOWED_ROOTS[roots])
     return request.write(_map(view, long), "the leading growth rate")
 
@@ -42,10 +50,10 @@ def _several(request: FigureRequest) -> str:
     request.check_output()
     if len(request.views) > MOST_PANELS:
         raise InputError(f"{len(request.views)} files are given, and one figure has room for {MOST_PANELS}")
-    figure = draw_panels(
-        [_line_of(view, request) for view in request.views], request.roots, request.look.narrow
-    )
-    shown = f"{FOLLOWED_ROOTS[request.roots]}, in a panel for each of {len(request.views)} files"
+    views = [_line_of(view, request) for view in request.views]
+    roots = roots_to_follow(views, request.roots)
+    figure = draw_panels(views, roots, request.look.narrow)
+    shown = f"{FOLLOWED_ROOTS[roots]}, in a panel for each of {len(request.views)} files"
     return request.write(figure, shown)
 
 
@@ -84,14 +92,21 @@ def _map(view: View, names: list[str]) -> Figure:
     x, y = view.axes[horizontal], view.axes[vertical]
     figure = Figure(figsize=(5.6, 4.4), layout="constrained")
     axes = figure.subplots()
-    reach = np.nanmax(np.abs(growth))
-    norm = matplotlib.colors.SymLogNorm(max(1.0, reach * 1e-4), vmin=-reach, vmax=reach)
-    mesh = axes.pcolormesh(x, y, growth.T, norm=norm, cmap="PuOr_r", shading="nearest", rasterized=True)
+    reach = float(np.nanmax(np.abs(growth)))
+    linear = max(1.0, reach * SMALLEST_SHADE)
+    norm = matplotlib.colors.SymLogNorm(linear, vmin=-reach, vmax=reach)
+    # Filled contours, of which zero is one: the line of zero growth and the colours cannot disagree.
+    shades = norm.inverse(np.linspace(0.0, 1.0, 2 * SHADES_A_SIDE + 1))
+    shades[[0, SHADES_A_SIDE, -1]] = np.nextafter(-reach, -np.inf), 0.0, np.nextafter(reach, np.inf)
+    drawn = np.ma.masked_invalid(growth.T)
+    axes.contourf(x, y, drawn, shades, norm=norm, cmap=MAP_COLOURS, zorder=-1)
+    axes.set_rasterization_zorder(0)
     if np.nanmin(growth) < 0 < np.nanmax(growth):
-        axes.contour(x, y, growth.T, levels=[0.0], colors="k", linewidths=1.2)
+        axes.contour(x, y, drawn, levels=[0.0], colors="k", linewidths=1.2)
     scale(axes, "x", x)
     scale(axes, "y", y)
     axes.set(xlabel=LABELS[horizontal], ylabel=LABELS[vertical])
-    figure.colorbar(mesh, label=r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$")
+    colours = matplotlib.cm.ScalarMappable(norm, MAP_COLOURS)
+    figure.colorbar(colours, ax=axes, label=r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$")
     axes.set_title(heading(view, fixed_text(view, *names), "black: zero growth"), fontsize=9)
     return figure

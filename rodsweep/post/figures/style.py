@@ -18,6 +18,7 @@ from ...results.file.view import View
 SYMBOLS = {name: parameter.symbol for name, parameter in PARAMETERS.items()}
 LABELS = {name: f"{p.meaning} ${p.symbol}$" for name, p in PARAMETERS.items()}
 """What is along an axis. The tilde makes a symbol dimensionless: it has no unit."""
+CRITICAL_FORCE = f"critical force ${SYMBOLS['F']}$"
 INVERSE_DRAG = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$"
 FIRST, SECOND, THIRD = "#0072B2", "#D55E00", "#009E73"
 """Blue, vermilion and green of Okabe and Ito: told apart by the colour-blind."""

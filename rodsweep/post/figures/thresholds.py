@@ -38,7 +38,7 @@ def draw_thresholds(request: FigureRequest) -> str:
     for panel, name in zip(panels, long, strict=True):
         _panel(panel, view, name, [other for other in long if other != name])
         if columns == 1 or panel is panels[0]:
-            panel.set_ylabel(f"critical force ${style.SYMBOLS['F']}$")
+            panel.set_ylabel(style.CRITICAL_FORCE)
     there = [
         Line2D([], [], color=colour, marker=marker, ms=2.5, lw=1.2, label=word)
         for variable, word, colour, marker in CRITICAL_FORCES

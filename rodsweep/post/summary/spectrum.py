@@ -3,13 +3,13 @@
 import numpy as np
 
 from ...results.file.view import View
-from ..stability_changes import stability_changes
+from ..stability_changes import thresholds_on
 from .ranges import span, to_error
 from .stability import stability_lines
 
 HOW_FOUND = (
-    "zeros of the characteristic determinant D(i eta; F) where the leading growth rate changes sign between "
-    "two forces of the file; `task: thresholds` proves that none is missing"
+    "zeros of the characteristic determinant D(i eta; F), and double ones for F*, where the leading "
+    "eigenvalue changes so between two forces of the file; `task: thresholds` proves that none is missing"
 )
 """What the forces are that `threshold_lines` tells."""
 PROOFS = {True: "proved by a winding number", False: "not proved"}
@@ -42,8 +42,8 @@ def leading_line(view: View, done: np.ndarray) -> str:
 
 
 def threshold_lines(view: View) -> list[str]:
-    """The forces at which the rod becomes unstable or stable, and what they are; none where F is no axis."""
-    lines = stability_lines(view, stability_changes)
+    """The forces from which the rod oscillates, is unstable or stable; none where F is no axis."""
+    lines = stability_lines(view, thresholds_on)
     return [*lines, f"  ({HOW_FOUND})"] if lines else []
 
 
@@ -72,7 +72,11 @@ def accuracy_lines(view: View, done: np.ndarray) -> list[str]:
             f"error estimate, relative: worst {np.nanmax(relative):.1e}, median {np.nanmedian(relative):.1e}"
         )
     unknowns = 3 * v["elements"][done].astype(int) * v["order"][done]
-    return [*lines, f"unknowns a point: {unknowns.min()} to {unknowns.max()}"]
+    if (followed := int((unknowns == 0).sum())) == unknowns.size:
+        return [*lines, "unknowns a point: none, all followed from neighbours or failed"]
+    meshes = unknowns[unknowns > 0]
+    without = f"; none at {followed} that were followed or failed" if followed else ""
+    return [*lines, f"unknowns a point: {meshes.min()} to {meshes.max()}{without}"]
 
 
 def stability_line(view: View, done: np.ndarray) -> str:

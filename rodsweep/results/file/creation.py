@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...sweep.chains import Chains
 from ...sweep.grid import Points
+from ...sweep.stretches import Stretches
 from ..layouts.variables import DIMENSIONS, MISSING, Filled, Layout, Variable
 from .identity import fingerprint_of
 from .validation import FORMAT, PROGRAM
@@ -37,6 +38,8 @@ class Plan:
     """Those of an arm, which are coordinates of the points beside the parameters."""
     chains: Chains | None = None
     """The chains in which points start one from the other, where they do."""
+    stretches: Stretches | None = None
+    """The stretches of points that are solved together, where they are."""
 
     @property
     def dimensions(self) -> tuple[str, ...]:

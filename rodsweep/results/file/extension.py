@@ -1,7 +1,8 @@
 """A larger config over a stored file: whether it contains the file's, and which stored points stay.
 
 A point stays only if a run of the whole larger config would give it to the last bit: its parameters are the
-same bits, it has everything that is asked for, and in a chain all points before it are the same too.
+same bits, it has everything that is asked for, and so are all points before it in a chain, or all points of
+its stretch.
 """
 
 from collections.abc import Iterator
@@ -17,6 +18,7 @@ from ...config.axes import words
 from ...config.reading import config_of
 from ...errors import InputError
 from ...sweep.grid import Points
+from ...sweep.stretches import LONGEST, along_the_longest
 from ..layouts import INCREASES
 from ..layouts.variables import Increase, Layout
 from .creation import Plan
@@ -140,6 +142,10 @@ def _places(header: Header, old: Points, plan: Plan) -> Places:
     if plan.chains:
         axis = plan.chains.axis
         places[axis] = _same_from_the_start(places[axis], len(new.columns[axis]), plan.chains.upward)
+    if plan.stretches:
+        axis, before = plan.stretches.axis, along_the_longest(old.shape)
+        same = _same_stretches(places[axis], new.shape[axis])
+        places[axis] = np.where(same & (before is not None and before.axis == axis), places[axis], -1)
     return Places(old.shape, new.shape, tuple(places))
 
 
@@ -161,6 +167,15 @@ def _same_from_the_start(places: Indices, count: int, upward: bool) -> Indices:
     ahead = places if upward else np.where(places < 0, -1, count - 1 - places)[::-1]
     stays = np.logical_and.accumulate(ahead == np.arange(len(ahead)))
     return np.where(stays if upward else stays[::-1], places, -1)
+
+
+def _same_stretches(places: Indices, count: int) -> NDArray[np.bool_]:
+    """Whether each old point of a line, (n,), is in a stretch of the same points on an axis of that size."""
+    at = np.arange(len(places))
+    first = at // LONGEST * LONGEST
+    whole = np.minimum(first + LONGEST, len(places)) == np.minimum(first + LONGEST, count)
+    moved = np.logical_or.reduceat(places != at, np.arange(0, len(places), LONGEST))
+    return whole & ~moved[at // LONGEST]
 
 
 def _places_in_list(header: Header, old: Points, new: Points) -> Indices:

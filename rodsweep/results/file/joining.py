@@ -29,7 +29,7 @@ from .validation import Header
 OF_ONE_FILE = ("program", "format", "fingerprint", "config_resolved", "coordinates", "finished", "snapshot")
 """Attributes that a joined file does not take over."""
 ROUNDING_FACTOR = 1e3
-"""In units of the accuracy asked for: how far numbers of two BLAS kernels may lie apart."""
+"""In units of the accuracy asked for: how far numbers that differ by rounding may lie apart."""
 
 Planner = Callable[[Config, Points], Plan]
 """Makes the plan of a config on given points, without attributes and flags."""
@@ -76,9 +76,9 @@ class Joint:
                     raise InputError(f"{both} disagree about the point {where}: their {name} differ")
 
     def _is_rounding(self, name: str, first: Any, second: Any, sources: tuple[Header, Header]) -> bool:
-        """Whether two values differ as those of two BLAS kernels may."""
+        """Whether two values differ as those of two BLAS kernels may, or of points with other neighbours."""
         kernels = {kernel for source in sources for kernel in kernels_of(source.attributes)}
-        if len(kernels) < 2 or name == "status":
+        if (len(kernels) < 2 and not self.plan.stretches) or name == "status":
             return False
         if np.asarray(first).dtype.kind != "f" or name.endswith(("error", "error_estimate")):
             return True

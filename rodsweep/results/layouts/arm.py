@@ -4,7 +4,7 @@ A variable such as `period`, in tau2, has `period_si`, in s. The quantities of t
 force_scale and pressure_scale that they make, are coordinates: numbers, or along a parameter or `point`.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -78,7 +78,8 @@ def _unit_of(variable: Variable, as_force: bool) -> tuple[str, tuple[str, ...], 
         return "", (), ()
     if variable.units == PARAMETERS["F"].unit and ("F_" in variable.name or variable.name in OF_BRANCHES):
         return FORCES["force" if as_force else "pressure"]
-    return OF_TIME_AND_LENGTH.get(variable.units, ("", (), ()))
+    unit, factors, divisors = OF_TIME_AND_LENGTH.get(variable.units, ("", (), ()))
+    return ("rad/s" if unit == "1/s" and "frequency" in variable.name else unit), factors, divisors
 
 
 def quantities_of(parameters: Axes, is_grid: bool) -> tuple[Filled, ...]:
@@ -95,24 +96,34 @@ def quantities_of(parameters: Axes, is_grid: bool) -> tuple[Filled, ...]:
 
 
 def in_si(
-    record: Mapping[str, Any], index: int, layout: Layout, quantities: Mapping[str, NDArray[Any]]
+    record: Mapping[str, Any],
+    index: int | NDArray[np.int64],
+    layout: Layout,
+    quantities: Mapping[str, NDArray[Any]],
 ) -> dict[str, Any]:
-    """The variables of a point that are told in SI units too.
+    """The variables of a point, or of several, that are told in SI units too.
 
-    quantities: those of the arm, each of shape () or (points,).
+    index: of the point, or (n,), with the variables (n, ...) then; quantities: those of the arm, each of
+    shape () or (points,).
     """
     values = {}
     for variable in layout.variables:
         told = variable.name + SUFFIX
         unit, factors, divisors = _unit_of(variable, "force" in quantities)
         if unit:
-            scale = [
-                np.prod([_at(quantities[name], index) for name in names]) for names in (factors, divisors)
-            ]
-            values[told] = np.asarray(record[variable.name]) * (scale[0] / scale[1])
+            value = np.asarray(record[variable.name])
+            up, down = (_product(quantities, names, index) for names in (factors, divisors))
+            scale = up / down
+            values[told] = value * scale.reshape(scale.shape + (1,) * (value.ndim - scale.ndim))
     return values
 
 
-def _at(values: NDArray[Any], index: int) -> float:
-    """A quantity at a point."""
-    return float(values[index] if np.ndim(values) else values)
+def _product(
+    quantities: Mapping[str, NDArray[Any]], names: Iterable[str], index: int | NDArray[np.int64]
+) -> NDArray[Any]:
+    """The product of quantities at a point, shape (), or at several, (n,), or () where they share it."""
+    product = np.array(1.0)
+    for name in names:
+        values = np.asarray(quantities[name])
+        product = product * np.asarray(values[index] if values.ndim else values)
+    return product

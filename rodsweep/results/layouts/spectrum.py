@@ -1,5 +1,6 @@
 """What the file of the task spectrum holds: leading eigenvalues and their modes, as that of modes does."""
 
+from math import nan
 from typing import Any
 
 from .variables import ANEW, BESIDE, MESH, SECONDS, STATUS, Layout, Variable, real, whole
@@ -24,21 +25,32 @@ EACH_MODE = (
         "mode",
     ),
 )
-EACH_POINT = (
+CERTIFIED = Variable(
+    "certified", "|i1", 0, "1", "1 where the winding number of D proves that no leading mode is missing"
+)
+EACH_POINT = (UNSTABLE_COUNT, CERTIFIED, *MESH, SECONDS, STATUS)
+EACH_FOLLOWED_POINT = (
     UNSTABLE_COUNT,
-    Variable(
-        "certified", "|i1", 0, "1", "1 where the winding number of D proves that no leading mode is missing"
-    ),
-    *MESH,
-    SECONDS,
+    CERTIFIED,
+    Variable("elements", "<i2", 0, "1", "spectral elements used; 0: followed"),
+    Variable("order", "<i2", 0, "1", "polynomial order used; 0: followed"),
+    Variable("seconds", "<f4", nan, "s", "time spent on the point, or its share of that of neighbours"),
     STATUS,
 )
+"""Of the task spectrum, whose points may be followed along a grid."""
 VECTORS = (
     *complex_pair("Y", "1", "the eigenmode's deflection, scaled to Y(1) = 1"),
     *complex_pair("Theta", "1", "the eigenmode's angle, scaled as Y"),
 )
 
-INCREASES = {"modes": ANEW, "certify": ANEW, "vectors": ANEW, "nodes": ANEW, "longitudinal": BESIDE}
+INCREASES = {
+    "modes": ANEW,
+    "certify": ANEW,
+    "vectors": ANEW,
+    "nodes": ANEW,
+    "follow": ANEW,
+    "longitudinal": BESIDE,
+}
 
 
 def layout(config: dict[str, Any]) -> Layout:
@@ -46,5 +58,5 @@ def layout(config: dict[str, Any]) -> Layout:
     options = config["spectrum"]
     extents = {"mode": options["modes"]}
     if not options["vectors"]:
-        return Layout(EACH_MODE + EACH_POINT, extents)
-    return Layout(EACH_MODE + VECTORS + EACH_POINT, extents | {"u": options["nodes"]})
+        return Layout(EACH_MODE + EACH_FOLLOWED_POINT, extents)
+    return Layout(EACH_MODE + VECTORS + EACH_FOLLOWED_POINT, extents | {"u": options["nodes"]})

@@ -1,8 +1,8 @@
 """Finished points on disk at once: one append-only file per rank beside the result file.
 
-A record is written by a single call when its point is done, so that killing a rank, or all of them,
-at any instant loses only the points in flight. Every record carries a checksum; a torn tail is
-recognised and dropped.
+The records of what is solved together, a point or a stretch of them, are written by a single call when it
+is done, so that killing a rank, or all of them, at any instant loses only the points in flight. Every record
+carries a checksum; a torn tail is recognised and dropped.
 """
 
 import os
@@ -40,6 +40,16 @@ class Journal:
         self.page[()] = (index, *(values[name] for name in self.names))
         data = self.page.tobytes()
         self._write(data + zlib.crc32(data).to_bytes(4, "little"))
+
+    def append_all(self, index: np.ndarray, values: dict[str, np.ndarray]) -> None:
+        """Writes the records of finished points: index, (n,), and of every variable `values`, (n, ...)."""
+        records = np.zeros(len(index), self.page.dtype)
+        records["index"] = index
+        for name in self.names:
+            records[name] = values[name]
+        data, size = records.tobytes(), records.itemsize
+        parts = (data[at : at + size] for at in range(0, len(data), size))
+        self._write(b"".join(part + zlib.crc32(part).to_bytes(4, "little") for part in parts))
 
     def close(self) -> None:
         """Puts everything on the disk proper."""

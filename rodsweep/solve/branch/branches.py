@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from math import nan
 
 from ...determinant.parameter_path import Path
+from ...model.parameters import LINEAR_PARAMETERS
 from ...model.rod import Rod
 from ..changes.along_path import Transitions, pair_crossings
 from ..changes.unstable_modes import Crossing
@@ -111,7 +112,7 @@ def _solve(rod: BranchRod, request: BranchRequest) -> BranchesOfRod:
     if not low < high:
         why = "F is not below k1 anywhere in the range"
         return BranchesOfRod(status=BranchStatus.ok, message=why, proved=True)
-    values = {name: getattr(rod, name) for name in ("F", "k1", "k2", "gamma3")}
+    values = {name: getattr(rod, name) for name in LINEAR_PARAMETERS}
     path = Path(Rod(**values | {request.along: low}), request.along)
     found = pair_crossings(path, low, high, request.certify)
     hopfs, failures = [], []

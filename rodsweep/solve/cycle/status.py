@@ -9,7 +9,7 @@ class CycleStatus(PointStatus):
     cycle = (
         0,
         "the rod beats: the cycle closes, and no sooner, all its Floquet multipliers lie inside the circle, "
-        "and its period and extrema are as accurate as asked for",
+        "and its period and largest y are as accurate as asked for",
         True,
     )
     straight = 1, "the rod is straight again, and stays so: nothing beats from this start", True

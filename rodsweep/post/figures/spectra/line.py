@@ -1,16 +1,18 @@
 """Spectra along one parameter: two roots and their paths in the complex plane, as the paper's Fig. 2."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator, SymmetricalLogLocator
 
 from ....arrays import Complex
 from ....errors import InputError
 from ....results.file.view import View
-from ...hopf_points import HopfPoint, lines_over
-from ...stability_changes import stability_changes
+from ...hopf_points import HopfPoint, Located, lines_over
+from ...stability_changes import thresholds_on
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, fixed_text, heading, legend_below, scale
 
 FOLLOWED_ROOTS = {
@@ -21,6 +23,13 @@ LARGE = 10.0
 """Largest root in units of the median one from which on the axis of the roots is logarithmic but near 0."""
 THRESHOLD_DIGITS = 6
 """To which thresholds are written beside their marks."""
+THRESHOLD_LOOKS = {
+    "onset": (rf"${SYMBOLS['F']}_*$", ":"),
+    "hopf": (rf"${SYMBOLS['F']}_{{**}}$", "--"),
+    "restabilization": ("restabilization", "--"),
+}
+"""What a threshold is called, and the style of its line."""
+THRESHOLD_LINE: dict[str, Any] = {"color": "0.3", "lw": 0.9}
 SHADE: dict[str, Any] = {"color": "0.92", "lw": 0, "zorder": 0}
 """Where the rod is unstable."""
 
@@ -46,12 +55,38 @@ def broken(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.insert(x, jump, np.nan), np.insert(w, jump, np.nan, axis=0)
 
 
+def roots_to_follow(views: Sequence[View], asked: str | None) -> str:
+    """Which roots are followed along lines of spectra, if none are asked for: those that break less often.
+
+    The smallest, as the paper does, where both break alike.
+    """
+    if asked:
+        return asked
+
+    def breaks(roots: str) -> int:
+        lines = (_followed(view, roots) for view in views)
+        return sum(len(broken(np.arange(len(w), dtype=float), w)[0]) - len(w) for w in lines)
+
+    return min(("smallest", "rightmost"), key=breaks)
+
+
+def _followed(view: View, roots: str) -> Complex:
+    """The two roots that are followed of every point of a line, (points, 2); InputError for one mode."""
+    modes = len(view.variables["mode"])
+    if modes < 2:
+        raise InputError(
+            f"{view.path} holds one mode; the figure follows two, so run with spectrum.modes >= 2"
+        )
+    growth = view.variables["growth_rate"].reshape(-1, modes)
+    return followed_roots(growth, view.variables["frequency"].reshape(-1, modes), roots)
+
+
 def draw_line(view: View, name: str, roots: str) -> Figure:
     """Two roots over a parameter, and below their paths in the complex plane."""
     figure = Figure(figsize=(5.2, 6.6), layout="constrained")
     top, bottom = figure.subplots(2, 1)
     w = draw_roots(top, view, name, roots)
-    mark_flutter(top, view, name)
+    mark_thresholds(top, view, name)
     for i, colour in enumerate((FIRST, SECOND)):
         bottom.plot(w[:, i].real, w[:, i].imag, ".-", color=colour, lw=0.8, ms=3)
         _point_along(bottom, w[:, i], colour)
@@ -65,14 +100,7 @@ def draw_line(view: View, name: str, roots: str) -> Figure:
 def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
     """Draws the two roots that are followed over a parameter; returns them, (n, 2), NaN where they break."""
     x = view.axes[name]
-    modes = len(view.variables["mode"])
-    if modes < 2:
-        raise InputError(
-            f"{view.path} holds one mode; the figure follows two, so run with spectrum.modes >= 2"
-        )
-    growth = view.variables["growth_rate"].reshape(-1, modes)
-    w = followed_roots(growth, view.variables["frequency"].reshape(-1, modes), roots)
-    x_broken, w = broken(x, w)
+    x_broken, w = broken(x, _followed(view, roots))
     for i, (colour, width) in enumerate(((FIRST, 3.0), (SECOND, 1.2))):  # the thin one on the thick
         look: dict[str, Any] = {"color": colour, "lw": width}
         axes.plot(x_broken, w[:, i].real, label=rf"$\mathrm{{Re}}\,\omega_{i + 1}$", **look)
@@ -82,13 +110,17 @@ def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
     axes.set(xlabel=LABELS[name], ylabel=r"$\omega\,\tau_2$", xlim=(x[0], x[-1]))
     sizes = np.abs(w[np.isfinite(w)])
     if sizes.max(initial=0.0) > LARGE * np.median(sizes):
-        axes.set_yscale("symlog", linthresh=10 ** np.floor(np.log10(np.median(sizes) / 10)))
+        least_tick = 10 ** np.floor(np.log10(np.median(sizes) / 10))
+        axes.set_yscale("asinh", linear_width=least_tick / 3)  # smooth where it turns linear, unlike symlog
+        axes.yaxis.set_major_locator(SymmetricalLogLocator(base=10, linthresh=least_tick))
+        axes.yaxis.set_minor_locator(NullLocator())
     return w
 
 
 def _point_along(axes: Axes, w: Complex, colour: str) -> None:
-    """An arrow half way along a root's path, (n,), the way that it goes along the axis."""
-    path = w[np.isfinite(w)]
+    """An arrow half way along the longest piece of a root's path, (n,), the way that it goes."""
+    pieces = np.split(w, np.flatnonzero(~np.isfinite(w)))
+    path = max((piece[np.isfinite(piece)] for piece in pieces), key=len)
     ranges = max(np.ptp(path.real), 1e-300), max(np.ptp(path.imag), 1e-300)
     lengths = np.hypot(np.diff(path.real) / ranges[0], np.diff(path.imag) / ranges[1])
     if not lengths.sum() > 0:
@@ -99,14 +131,17 @@ def _point_along(axes: Axes, w: Complex, colour: str) -> None:
     axes.annotate("", xy=end, xytext=start, arrowprops=arrow)
 
 
-def change_text(change: HopfPoint) -> str:
-    """What a change of stability is called, and its force."""
-    word = rf"${SYMBOLS['F']}_{{**}}$" if change.destabilises else "restabilization"
-    return f"{word} = {change.position:#.{THRESHOLD_DIGITS}g}"
+def threshold_text(threshold: Located) -> str:
+    """What a threshold is called, and its force."""
+    word, _ = THRESHOLD_LOOKS[threshold.kind]
+    return f"{word} = {threshold.position:#.{THRESHOLD_DIGITS}g}"
 
 
-def mark_flutter(axes: Axes, view: View, name: str) -> list[HopfPoint]:
-    """Shades where the rod is unstable, over F up to the thresholds, which get a line; returns these."""
+def mark_thresholds(axes: Axes, view: View, name: str) -> list[Located]:
+    """Shades where the rod is unstable, over F up to the thresholds, which get a line; returns these.
+
+    Thresholds are the first force from which the rod oscillates, and those where its stability changes.
+    """
     x, unstable = view.axes[name], view.variables["unstable_count"].reshape(-1) > 0
     if name != "F":
         if unstable.any():
@@ -114,9 +149,11 @@ def mark_flutter(axes: Axes, view: View, name: str) -> list[HopfPoint]:
             axes.fill_between(x, 0, 1, where=unstable, transform=across, label="flutter", **SHADE)
         return []
     (line,) = lines_over(view, name)
-    changes = stability_changes(line, view)
-    for change in changes:
-        axes.axvline(change.position, color="0.3", ls="--", lw=0.9, label=change_text(change))
+    thresholds = thresholds_on(line, view)
+    for threshold in thresholds:
+        _, style = THRESHOLD_LOOKS[threshold.kind]
+        axes.axvline(threshold.position, ls=style, label=threshold_text(threshold), **THRESHOLD_LINE)
+    changes = [threshold for threshold in thresholds if isinstance(threshold, HopfPoint)]
     starts = [change.position for change in changes if change.destabilises]
     ends = [change.position for change in changes if not change.destabilises]
     if ends and (not starts or ends[0] < starts[0]):
@@ -125,4 +162,4 @@ def mark_flutter(axes: Axes, view: View, name: str) -> list[HopfPoint]:
         ends.append(float(x[-1]))
     for number, (start, end) in enumerate(zip(starts, ends, strict=True)):
         axes.axvspan(start, end, label=None if number else "flutter", **SHADE)
-    return changes
+    return thresholds

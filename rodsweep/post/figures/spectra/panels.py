@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 
 from ....results.file.view import View
 from ..style import fixed_text, heading, legend_below, long_axes
-from .line import FOLLOWED_ROOTS, change_text, draw_roots, mark_flutter
+from .line import FOLLOWED_ROOTS, THRESHOLD_LINE, THRESHOLD_LOOKS, draw_roots, mark_thresholds, threshold_text
 
 MOST_PANELS = 12
 """Files for which a page has room."""
@@ -17,6 +17,13 @@ PANEL_HEIGHT = {1: 2.1, 2: 2.6}
 """Inches, by the number of columns."""
 FIGURE_WIDTH = {1: 3.375, 2: 7.0}
 """Inches, by the number of columns."""
+
+THRESHOLD_WORDS = {
+    "onset": "onset of oscillation",
+    "hopf": "change of stability",
+    "restabilization": "change of stability",
+}
+"""What the common legend calls the lines at thresholds; the headings have their names and forces."""
 
 
 def draw_panels(views: Sequence[View], roots: str, narrow: bool) -> Figure:
@@ -30,16 +37,14 @@ def draw_panels(views: Sequence[View], roots: str, narrow: bool) -> Figure:
     for letter, panel, view in zip(ascii_lowercase, panels, views, strict=False):
         (name,) = long_axes(view)
         draw_roots(panel, view, name, roots)
-        changes = mark_flutter(panel, view, name)
+        thresholds = mark_thresholds(panel, view, name)
         for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
             handles.setdefault(label, handle)
-        for change in changes:
-            handles.pop(change_text(change), None)
-        if changes:
-            word = "change of stability"
-            handles[word] = Line2D([], [], color="0.3", ls="--", lw=0.9, label=word)
-        thresholds = ", ".join(map(change_text, changes))
-        text = heading(view, fixed_text(view, name), thresholds)
+        for threshold in thresholds:
+            handles.pop(threshold_text(threshold), None)
+            word, (_, style) = THRESHOLD_WORDS[threshold.kind], THRESHOLD_LOOKS[threshold.kind]
+            handles[word] = Line2D([], [], ls=style, label=word, **THRESHOLD_LINE)
+        text = heading(view, fixed_text(view, name), ", ".join(map(threshold_text, thresholds)))
         panel.set_title(f"({letter})  {text}", fontsize=8, loc="left")
     for panel in panels[len(views) :]:
         panel.remove()

@@ -1,0 +1,95 @@
+"""What following eigenvalues along an axis of a grid gains over solving every point alone, and its limits."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import nan, prod
+from pathlib import Path
+
+from ...results.file.view import read_view
+from ..study import Measurement, table
+from .launch import CONFIG, RESULT, SOLVED, CommandRun, SweepCase
+
+FOLLOWED_CONFIG = """
+task: spectrum
+parameters:
+  F: {{start: 0, stop: 60, num: {0}}}
+  k1: {{start: 100, stop: 1.0e4, num: {1}, spacing: log}}
+  k2: {{start: 100, stop: 1.0e4, num: {2}, spacing: log}}
+  gamma3: {{start: 1.0e-4, stop: 1.0e-2, num: {3}, spacing: log}}
+spectrum: {{modes: 4, follow: {4}}}
+"""
+FOLLOWED, ALONE = "followed", "alone"
+
+
+@dataclass(frozen=True, slots=True)
+class LongAxis:
+    """A grid (F, k1, k2, gamma3) that is named after its longest axis, and a smaller one for points alone."""
+
+    name: str
+    shape: tuple[int, int, int, int]
+    smaller: tuple[int, int, int, int]
+
+
+AXES = (
+    LongAxis("512 of F", (512, 2, 98, 2), (512, 2, 5, 2)),
+    LongAxis("2000 of k2", (25, 2, 2000, 2), (2, 2, 2000, 2)),
+    LongAxis("50 of F", (50, 40, 50, 2), (50, 4, 50, 2)),
+    LongAxis("12 of F", (12, 12, 12, 12), (12, 12, 12, 6)),
+)
+QUICK_AXES = (
+    LongAxis("64 of F", (64, 2, 2, 2), (8, 2, 2, 2)),
+    LongAxis("12 of F", (12, 2, 3, 2), (2, 2, 2, 2)),
+)
+
+
+def followed_sweeps(place: Path, run: Callable[..., CommandRun], quick: bool) -> list[Measurement]:
+    """Certified spectra with four modes on one rank, followed and alone, on axes of many values and few."""
+    found = []
+    for axis in QUICK_AXES if quick else AXES:
+        for method, shape in ((FOLLOWED, axis.shape), (ALONE, axis.smaller)):
+            directory = place / f"{method} {axis.name}".replace(" ", "_")
+            directory.mkdir()
+            text = FOLLOWED_CONFIG.format(*shape, str(method == FOLLOWED).lower())
+            (directory / CONFIG).write_text(text)
+            case = SweepCase(axis.name, prod(shape), (directory,), SOLVED)
+            found.append(followed_measurement(case, method, run(case, 1)))
+    return found
+
+
+def followed_measurement(case: SweepCase, method: str, run: CommandRun) -> Measurement:
+    """The times of a run, and how many points had a mesh of their own."""
+    variables = read_view(case.directories[0] / RESULT).variables
+    extra = {
+        "points": float(case.points),
+        "microseconds": 1e6 * run.inside / case.points,
+        "microseconds_solving": 1e6 * run.solving / case.points,
+        "meshes": float((variables["elements"] > 0).sum()),
+        "uncertified": float((variables["certified"] == 0).sum()),
+        "rss_megabytes": max(run.memory) / 1e6,
+    }
+    return Measurement(f"axis, {case.name}", method, f"{case.points} points", run.inside, nan, extra=extra)
+
+
+def followed_table(measurements: Sequence[Measurement]) -> str:
+    """Followed beside alone, axis by axis."""
+    rows = []
+    for one, other in zip(measurements[::2], measurements[1::2], strict=True):
+        gain = other.extra["microseconds_solving"] / one.extra["microseconds_solving"]
+        rows.append(
+            {"axis": one.case.removeprefix("axis, "), "seconds": one.seconds, "gain": gain}
+            | one.extra
+            | {f"{name}_alone": value for name, value in other.extra.items()}
+        )
+    return (
+        "Certified spectra, `modes: 4`, along the longest axis of grids of F, k1, k2, gamma3, on one rank; "
+        "alone is `follow: false` on a part of the same grid. Seconds are those that the run states, with "
+        "loading what is compiled, handing out and storing; µs of the solver are from `seconds` in the file. "
+        "With a mesh are points that could not be followed, or not proved:\n\n"
+    ) + table(
+        "axis | points | s | µs a point | µs of the solver | alone | times | with a mesh | not certified "
+        "| MB a rank",
+        "{axis} | {points:.0f} | {seconds:.2f} | {microseconds:.1f} | {microseconds_solving:.1f} "
+        "| {microseconds_solving_alone:.0f} | {gain:.1f} | {meshes:.0f} | {uncertified:.0f} "
+        "| {rss_megabytes:.0f}",
+        rows,
+    )

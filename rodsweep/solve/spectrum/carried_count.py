@@ -1,0 +1,138 @@
+"""A count of eigenvalues carried along a path: from one point to all that a proof on a moving line reaches.
+
+At a point the first so many of the eigenvalues that are followed are `known` to be all there are right of
+some line between two of them. Where a line in a gap that stays open is crossed by none from there to another
+point (`rodsweep.determinant.moving_line`), those right of it are all there are at every point on the way.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array, Complex
+from ...determinant.moving_line import End, none_crosses
+from ...determinant.roots import BLURRED, ON_THE_AXIS
+from ...model.compilation import compiled
+from ...model.rod import Coefficients
+from .prediction import Track
+
+RECTANGLES, RECTANGLES_A_POINT = 60, 20
+"""Rectangles examined before a proof is given up; a count at a point costs as much as some twenty."""
+WIDE = 0.2
+"""Half the width of a gap, in units of its distance, that is as good as any: of such the last is taken."""
+NARROWEST = 1e-6
+"""Width below which nothing is counted in a gap."""
+
+
+@compiled
+def line_in(track: Track, i: int, gap: int) -> tuple[float, float]:
+    """(the middle of the gap behind the first `gap` eigenvalues of point i, half its relative width)."""
+    right, left = track.w[i, track.order[i, gap - 1]].real, track.w[i, track.order[i, gap]].real
+    line = (right + left) / 2
+    if not line < 0:
+        return line, 0.0
+    return line, min((right - line) / -line, WIDE)
+
+
+@compiled
+def best_gap(track: Track, i: int, modes: int) -> int:
+    """The gap to count in at point i, behind `modes` or more and left of the axis; 0 where there is none."""
+    best, widest = 0, NARROWEST
+    for gap in range(modes, track.w.shape[1]):
+        width = line_in(track, i, gap)[1]
+        if width >= widest:
+            best, widest = gap, width
+    return best
+
+
+@compiled
+def _stays_open(track: Track, ends: tuple[int, int], gap: int, lines: tuple[float, float], p: Array) -> bool:
+    """Whether at all points from one end to the other just the first `gap` lie right of the line, clearly."""
+    i, j = ends
+    for s in range(i, j + 1):
+        share = (p[s] - p[i]) / (p[j] - p[i])
+        line = (1 - share) * lines[0] + share * lines[1]
+        for rank in range(track.w.shape[1]):
+            k = track.order[s, rank]
+            away = track.w[s, k].real - line
+            if not (away if rank < gap else -away) > 2 * track.error[s, k]:
+                return False
+    return True
+
+
+@compiled
+def _gap_between(track: Track, ends: tuple[int, int], modes: int, known: int, p: Array) -> int:
+    """The gap among the first `known` that stays open best from one point to another; 0 where none does."""
+    best, widest = 0, NARROWEST
+    for gap in range(modes, min(known, track.w.shape[1] - 1) + 1):
+        (here, wide), (there, also) = line_in(track, ends[0], gap), line_in(track, ends[1], gap)
+        if min(wide, also) >= widest and _stays_open(track, ends, gap, (here, there), p):
+            best, widest = gap, min(wide, also)
+    return best
+
+
+@compiled
+def _end(track: Track, i: int, gap: int, p: Array, coefficients: Array) -> End:
+    F, nu, c2, gamma3 = coefficients[i]
+    return End(p[i], Coefficients(F, nu, c2, gamma3), line_in(track, i, gap)[0])
+
+
+@compiled
+def carry(
+    track: Track, coefficients: Array, p: Array, direction: Coefficients, modes: int, known: NDArray
+) -> int:
+    """The last point that the count of the first can be carried to; at least the first.
+
+    coefficients: shape (points, 4); p: (points,); known: (points,), how many of the leading eigenvalues are
+    all there are right of a line, given at the first point.
+    """
+    i, last = 0, len(p) - 1
+    ahead = last
+    while i < last:
+        j = min(i + ahead, last)
+        gap = _gap_between(track, (i, j), modes, known[i], p)
+        proved = False
+        if gap > 0:
+            first, end = _end(track, i, gap, p, coefficients), _end(track, j, gap, p, coefficients)
+            most = RECTANGLES + RECTANGLES_A_POINT * (j - i)
+            proved, _ = none_crosses(first, end, direction, most)
+        if proved:
+            known[i + 1 : j + 1] = gap
+            i, ahead = j, 2 * ahead
+        elif j == i + 1:
+            return i
+        else:
+            ahead = (j - i) // 2
+    return last
+
+
+@compiled
+def judge_points(track: Track, known: NDArray, modes: int, accuracy: float) -> tuple[NDArray, NDArray]:
+    """(whether each point is certified and its leading modes accurate, its unstable modes), shape (points,).
+
+    Not where one may lie on the imaginary axis, nor where the last digits are lost, as next to a double one.
+    """
+    n = len(known)
+    good, unstable = np.empty(n, np.bool_), np.zeros(n, np.int64)
+    for s in range(n):
+        good[s] = known[s] >= modes
+        for rank in range(known[s]):
+            k = track.order[s, rank]
+            w, error = track.w[s, k], track.error[s, k]
+            if abs(w.real) <= max(4 * error, ON_THE_AXIS * abs(w)):
+                good[s] = False
+            if rank < modes and not error <= min(BLURRED, accuracy / 2) * abs(w):
+                good[s] = False
+            unstable[s] += w.real > 0
+    return good, unstable
+
+
+@compiled
+def leading(track: Track, modes: int) -> tuple[Complex, Array]:
+    """The leading `modes` eigenvalues and their errors, shape (points, modes)."""
+    n = track.w.shape[0]
+    w, error = np.empty((n, modes), np.complex128), np.empty((n, modes))
+    for s in range(n):
+        for rank in range(modes):
+            k = track.order[s, rank]
+            w[s, rank], error[s, rank] = track.w[s, k], track.error[s, k]
+    return w, error

@@ -1,0 +1,137 @@
+"""Where eigenvalues will be at the next point of a path, from their values and slopes at the last two.
+
+Cubic Hermite polynomials extrapolate single real eigenvalues. Two that meet, or have just met, are no smooth
+functions of the rod, but half their sum and the square of half their difference are, as those of a pair:
+these are extrapolated, and close to where they meet the quadratic that D is about their middle decides what
+they have become.
+"""
+
+import cmath
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array, Complex
+from ...determinant.roots import two_roots
+from ...model.compilation import compiled
+from ...model.rod import Coefficients
+
+CLOSING = 4.0
+"""Steps after or before which two real eigenvalues meet, at their pace, that are extrapolated together."""
+MEETING = 0.25
+"""Share of its last value that is left of a squared difference where D has to decide."""
+
+
+class Track(NamedTuple):
+    """Eigenvalues that are followed, dw/dp and how far each may be off: w, slope, error, shape (points, m).
+
+    order: shape (points, m), which of them is the first, second, ... by descending real part, then frequency.
+    """
+
+    w: Complex
+    slope: Complex
+    error: Array
+    order: NDArray[np.int64]
+
+
+def part(track: Track, start: int, stop: int) -> Track:
+    """The track of the points from start to stop."""
+    here = slice(start, stop)
+    return Track(track.w[here], track.slope[here], track.error[here], track.order[here])
+
+
+@compiled
+def mates_of(w: Complex, mate: NDArray) -> None:
+    """Which is the complex conjugate of each, into `mate`, shape (m,); -1 for the real ones."""
+    for k in range(len(w)):
+        mate[k] = -1
+        if w[k].imag != 0:
+            for j in range(len(w)):
+                if w[j] == w[k].conjugate():
+                    mate[k] = j
+
+
+@compiled
+def _pair_up(w: Complex, slope: Complex, step: float, mate: NDArray) -> None:
+    """Makes mates of real eigenvalues, too, that meet within some steps, the nearest first."""
+    while True:
+        soonest, a, b = CLOSING, -1, -1
+        for k in range(len(w)):
+            for j in range(k + 1, len(w)):
+                if mate[k] < 0 and mate[j] < 0 and w[k].imag == 0 and w[j].imag == 0:
+                    closing = abs((slope[k] - slope[j]).real * step)
+                    gap = abs(w[k] - w[j])
+                    if gap < soonest * closing:
+                        soonest, a, b = gap / closing, k, j
+        if a < 0:
+            return
+        mate[a], mate[b] = b, a
+
+
+@compiled
+def extrapolated(
+    values: tuple[float, float], slopes: tuple[float, float], steps: tuple[float, float]
+) -> float:
+    """The cubic with these values and slopes at two points, at a third: `steps` between them, and to it."""
+    h, ahead = steps
+    t = ahead / h
+    difference = values[1] - values[0]
+    cube = (slopes[0] + slopes[1]) * h - 2 * difference
+    square = (slopes[0] + 2 * slopes[1]) * h - 3 * difference
+    return values[1] + t * (slopes[1] * h + t * (square + t * cube))
+
+
+@compiled
+def _sum_and_square(w: Complex, slope: Complex, k: int, j: int) -> tuple[float, float, float, float]:
+    """(half the sum of two, squared half of their difference, the slopes of both)."""
+    half = (w[k] - w[j]) / 2
+    slope_of_half = (slope[k] - slope[j]) / 2
+    middle, slope_of_middle = (w[k] + w[j]).real / 2, (slope[k] + slope[j]).real / 2
+    return middle, (half * half).real, slope_of_middle, (2 * half * slope_of_half).real
+
+
+@compiled
+def _two_ahead(
+    track: Track, i: int, two: tuple[int, int], steps: tuple[float, float], coefficients: Coefficients
+) -> tuple[complex, complex]:
+    """The guesses for two that are extrapolated together, the larger real part or frequency first."""
+    k, j = two
+    middle, square, m1, s1 = _sum_and_square(track.w[i - 1], track.slope[i - 1], k, j)
+    before = square
+    if i >= 2:
+        middle_0, square_0, m0, s0 = _sum_and_square(track.w[i - 2], track.slope[i - 2], k, j)
+        middle = extrapolated((middle_0, middle), (m0, m1), steps)
+        square = extrapolated((square_0, square), (s0, s1), steps)
+    else:
+        middle, square = middle + m1 * steps[1], square + s1 * steps[1]
+    if square * before <= 0 or abs(square) < MEETING * abs(before):
+        one, other = two_roots(complex(middle, 0.0), coefficients)
+        if (one - other).real < 0 or (one - other).imag < 0:
+            return other, one
+        return one, other
+    root = cmath.sqrt(complex(square, 0.0))
+    return middle + root, middle - root
+
+
+@compiled
+def guess_at(track: Track, i: int, p: Array, coefficients: Coefficients, guess: Complex) -> None:
+    """Guesses for point i >= 1, whose rod has the coefficients, into `guess`, shape (m,); p: (points,)."""
+    w, slope = track.w[i - 1], track.slope[i - 1]
+    mate = np.empty(len(w), np.int64)
+    mates_of(w, mate)
+    ahead = p[i] - p[i - 1]
+    _pair_up(w, slope, ahead, mate)
+    steps = (p[i - 1] - p[i - 2] if i >= 2 else ahead, ahead)
+    for k in range(len(w)):
+        j = mate[k]
+        if j < 0 and i >= 2:
+            values = (track.w[i - 2, k].real, w[k].real)
+            slopes = (track.slope[i - 2, k].real, slope[k].real)
+            guess[k] = complex(extrapolated(values, slopes, steps), 0.0)
+        elif j < 0:
+            guess[k] = complex(w[k].real + slope[k].real * ahead, 0.0)
+        elif j > k:
+            larger, smaller = _two_ahead(track, i, (k, j), steps, coefficients)
+            first = (w[k] - w[j]).real > 0 or (w[k] - w[j]).imag > 0
+            guess[k], guess[j] = (larger, smaller) if first else (smaller, larger)

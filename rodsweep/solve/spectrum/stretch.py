@@ -1,0 +1,207 @@
+"""Spectra of neighbouring points along one parameter: eigenvalues are followed, one count serves them all.
+
+Krylov-Schur solves the first point for some modes more than wanted. Where following stops, or a count does
+not agree, it solves again from there on; what stays unproved or blurred is left to the solver of single
+points. The outcome depends on the points of the stretch alone.
+"""
+
+import time
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array, Complex
+from ...determinant.parameter_path import direction_of
+from ...determinant.winding_number import count_right_of
+from ...model.parameters import LINEAR_PARAMETERS
+from ...model.rod import Coefficients, Rod
+from ..point import FAILURES
+from .carried_count import best_gap, carry, judge_points, leading, line_in
+from .following import follow
+from .krylov_schur import forget_solvers
+from .prediction import Track, part
+from .search import Search, Spectrum, SpectrumRequest, solve_spectrum
+from .search import warm_up as warm_up_search
+from .status import SpectrumStatus
+
+FURTHER_MODES = 2
+"""Modes that are followed beyond those wanted: between them the count finds its gaps."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """Rods that differ in the parameter `name` only: F, k1, k2, gamma3 by name, each of shape (n,)."""
+
+    name: str
+    values: dict[str, Array]
+
+    def __len__(self) -> int:
+        return len(self.values[self.name])
+
+    def rod(self, i: int) -> Rod:
+        """The i-th rod."""
+        return Rod(**{name: float(column[i]) for name, column in self.values.items()})
+
+    @property
+    def coefficients(self) -> Array:
+        """(F, nu, c2, gamma3) of every rod, shape (n, 4), bit by bit as `Rod.coefficients`."""
+        F, k1, k2, gamma3 = (self.values[name] for name in LINEAR_PARAMETERS)
+        with np.errstate(invalid="ignore"):  # inf/inf where k1 = inf
+            nu = np.where(np.isinf(k1), 1.0, (k1 - F) / k1)
+        return np.stack([F, nu, 1 / k2, gamma3], axis=1)
+
+    @property
+    def path_variable(self) -> Array:
+        """F, 1/k1, 1/k2 or gamma3, as the name says, shape (n,)."""
+        varied = self.values[self.name]
+        return 1 / varied if self.name in ("k1", "k2") else varied.copy()
+
+
+@dataclass(frozen=True, slots=True)
+class Spectra:
+    """The spectra of n points, with the fields of `rodsweep.solve.spectrum.search.Spectrum` as arrays.
+
+    eigenvalues: complex, shape (n, modes), in 1/tau2; error_estimate: (n, modes), what Newton's method leaves
+    or rounding; all others (n,). elements, order: 0 where no mesh was needed; seconds: the even share of each
+    point in the time of all; message: of those points that have one.
+    """
+
+    eigenvalues: Complex
+    error_estimate: Array
+    unstable_count: NDArray[np.int64]
+    certified: NDArray[np.bool_]
+    elements: NDArray[np.int64]
+    order: NDArray[np.int64]
+    seconds: Array
+    status: NDArray[np.int64]
+    message: dict[int, str]
+
+    @property
+    def succeeded(self) -> NDArray[np.bool_]:
+        """Whether each point ended as it should, shape (n,)."""
+        return self.status == SpectrumStatus.ok
+
+    def told(self, i: int) -> str:
+        """The name of a point's status, and what the solver adds."""
+        status = next(status for status in SpectrumStatus if status == self.status[i])
+        return f"{status.name} {self.message.get(i, '')}".rstrip()
+
+    def put(self, i: int, spectrum: Spectrum) -> None:
+        """Makes a spectrum that of point i."""
+        self.eigenvalues[i], self.error_estimate[i] = spectrum.eigenvalues, spectrum.error_estimate
+        self.unstable_count[i], self.certified[i] = spectrum.unstable_count, spectrum.certified
+        self.elements[i], self.order[i] = spectrum.resolution.elements, spectrum.resolution.order
+        self.status[i] = spectrum.status
+        if not spectrum.status.succeeded:
+            self.message[i] = spectrum.message
+
+
+@dataclass(frozen=True, slots=True)
+class Reached:
+    """The first n points of what is left of a stretch: eigenvalues and errors, shape (n, modes).
+
+    unstable: how many are unstable, good: whether certified and accurate, both of shape (n,).
+    """
+
+    w: Complex
+    error: Array
+    unstable: NDArray[np.int64]
+    good: NDArray[np.bool_]
+
+
+def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectra:
+    """The leading `request.modes` eigenvalues of every rod, all certified; failures are statuses."""
+    began = time.perf_counter()
+    n, modes = len(stretch), request.modes
+    whole = np.zeros(n, np.int64)
+    spectra = Spectra(
+        eigenvalues=np.full((n, modes), np.nan + 0j),
+        error_estimate=np.full((n, modes), np.nan),
+        unstable_count=whole - 1,
+        certified=np.zeros(n, np.bool_),
+        elements=whole.copy(),
+        order=whole.copy(),
+        seconds=np.zeros(n),
+        status=whole + SpectrumStatus.ok,
+        message={},
+    )
+    place, patience = 0, 1
+    while place < n:
+        found = _followed(stretch, place, request)
+        end = place + (len(found.good) if found else min(patience, n - place))
+        # Where nothing can be proved, as without a bound, a first point is tried ever more seldom.
+        patience = 1 if found else 2 * patience
+        if found:
+            here = slice(place, end)
+            spectra.eigenvalues[here], spectra.error_estimate[here] = found.w, found.error
+            spectra.unstable_count[here], spectra.certified[here] = found.unstable, True
+        for i in range(place, end):
+            if not (found and found.good[i - place]):
+                spectra.put(i, solve_spectrum(stretch.rod(i), request))
+        place = end
+    spectra.seconds[:] = (time.perf_counter() - began) / n
+    return spectra
+
+
+def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Reached | None:
+    """The points from `start` on as far as they can be followed and counted; None where none can be."""
+    seed = _first_point(stretch.rod(start), request)
+    if seed is None:
+        return None
+    (first, complete), modes, n = seed, request.modes, len(stretch) - start
+    shape = (n, len(first))
+    order = np.zeros(shape, np.int64)
+    order[0] = np.arange(len(first))
+    track = Track(np.empty(shape, complex), np.empty(shape, complex), np.empty(shape), order)
+    track.w[0] = first
+    coefficients, p = stretch.coefficients[start:], stretch.path_variable[start:]
+    direction = Coefficients(*map(float, direction_of(stretch.rod(start), stretch.name)))
+    n = follow(track, coefficients, p, direction, modes)
+    if n == 0:
+        return None
+    known = np.zeros(n, np.int64)
+    known[0], at = complete, 0
+    while True:
+        at += carry(part(track, at, n), coefficients[at:n], p[at:n], direction, modes, known[at:])
+        if at == n - 1:
+            break
+        gap = best_gap(track, at + 1, modes)
+        line = float(line_in(track, at + 1, gap)[0]) if gap else 0.0
+        if not gap or count_right_of(line, stretch.rod(start + at + 1)).number != gap:
+            break
+        at += 1
+        known[at] = gap
+    reached = part(track, 0, at + 1)
+    good, unstable = judge_points(reached, known[: at + 1], modes, request.accuracy)
+    return Reached(*leading(reached, modes), unstable, good)
+
+
+def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
+    """(eigenvalues to follow, how many of the first of them are proved to be all), pairs whole; or None."""
+    try:
+        search = Search(rod, replace(request, modes=request.modes + FURTHER_MODES - 1, certify=True))
+        search.wanted = request.modes + FURTHER_MODES
+        with np.errstate(all="ignore"):
+            outcome = search.outcome()
+    except FAILURES:
+        forget_solvers()
+        return None
+    if search.best is None or search.best.verdict is None or not outcome.certified:
+        return None
+    w = search.best.found.roots.w.copy()
+    complete = search.best.verdict.here
+    w = w[: complete + 1 + (complete < len(w) and w[complete].imag > 0)]
+    for k in np.flatnonzero(w.imag > 0):
+        if k + 1 == len(w):
+            return w[:k], min(complete, int(k))
+        w[k + 1] = w[k].conjugate()
+    return w, complete
+
+
+def warm_up() -> None:
+    """Loads what is compiled and created at first use, so that no point pays for it."""
+    warm_up_search()
+    forces = np.linspace(15.0, 45.0, 12)
+    values = {"F": forces, "k1": forces * 0 + 1e4, "k2": forces * 0 + 1e4, "gamma3": forces * 0 + 1e-4}
+    solve_stretch(Stretch("F", values), SpectrumRequest(2, 1e-4, certify=True))

@@ -1,0 +1,120 @@
+"""Lines through the space of rods, and how followed spectra are compared with those of single points."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import scipy.linalg
+
+from rodsweep.bench.lapack import whole_matrices
+from rodsweep.determinant.box import eigenvalue_box
+from rodsweep.discretization.resolution import expected_wave_number, resolution_for
+from rodsweep.model.dispersion import most_amplified_wave
+from rodsweep.model.rod import Rod
+from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
+from rodsweep.solve.spectrum.status import SpectrumStatus
+from rodsweep.solve.spectrum.stretch import Stretch, solve_stretch
+
+LONGEST = 64
+LARGEST = 400
+"""Unknowns up to which whole matrices are solved."""
+CLEAR = 1e-6
+"""Distance from the imaginary axis, in units of the box, in which a dense solver cannot count."""
+
+
+def line(name: str, values, **others: float) -> Stretch:
+    """Rods that differ in one parameter."""
+    values = np.asarray(values, float)
+    return Stretch(name, {name: values} | {k: np.full(len(values), float(v)) for k, v in others.items()})
+
+
+def parts(whole: Stretch) -> list[Stretch]:
+    """A line cut as a sweep cuts it."""
+    return [
+        Stretch(whole.name, {name: column[at : at + LONGEST] for name, column in whole.values.items()})
+        for at in range(0, len(whole), LONGEST)
+    ]
+
+
+def random_line(rng: np.random.Generator) -> Stretch:
+    """A line of 8 to 64 rods along any parameter: soft, rigid, pulled, nearly crushed, without drag."""
+    k1, k2 = (10 ** rng.uniform(0, 6) if rng.random() < 0.8 else np.inf for _ in range(2))
+    gamma3 = 10 ** rng.uniform(-8, 1) if rng.random() < 0.7 else 0.0
+    F = min(0.999 * k1, 10 ** rng.uniform(0, 3)) * (1 if rng.random() < 0.9 else -1)
+    name, n = str(rng.choice(["F", "k1", "k2", "gamma3"])), int(rng.integers(8, LONGEST + 1))
+    if name == "F":
+        values = np.linspace(F * rng.uniform(-0.1, 0.9), F, n)
+    else:
+        low = {
+            "k1": max(1.0001 * F, 1.0),
+            "k2": 10 ** rng.uniform(0.5, 4),
+            "gamma3": 10 ** rng.uniform(-8, -1),
+        }
+        values = np.geomspace(low[name], low[name] * 10 ** rng.uniform(0.05, 3), n)
+        if rng.random() < 0.2:
+            values[0 if name == "gamma3" else -1] = 0.0 if name == "gamma3" else np.inf
+    rod = {"F": F, "k1": k1, "k2": k2, "gamma3": gamma3} | {name: np.unique(values)}
+    return line(name, rod.pop(name), **rod)
+
+
+def dense_count(rod: Rod) -> int | None:
+    """Unstable modes by LAPACK on the whole matrices, right of the axis by more than it can err; or None."""
+    _, wave = most_amplified_wave(rod)
+    mesh = resolution_for(1.3 * expected_wave_number(8, wave), 1e-10)
+    if mesh.unknowns > LARGEST:
+        return None
+    A, B = whole_matrices(rod, mesh)
+    w = scipy.linalg.eigvals(A, np.diag(B), homogeneous_eigvals=True, check_finite=False)
+    finite = np.abs(w[1]) > 1e-11 * np.abs(w[1]).max()
+    w = w[0][finite] / w[1][finite]
+    real, imag = eigenvalue_box(rod)
+    inside = (np.abs(w.imag) <= imag) & (w.real <= real)
+    near = np.abs(w.real) < CLEAR * real
+    if not np.isfinite(real) or (inside & near).any():
+        return None
+    return int((inside & (w.real > 0)).sum())
+
+
+@dataclass
+class Comparison:
+    """How many points were compared, and what differs, in words."""
+
+    points: int = 0
+    followed: int = 0
+    counted: int = 0
+    unstable: int = 0
+    """The most unstable modes met."""
+    differences: list[str] = field(default_factory=list)
+
+    def add(self, whole: Stretch, modes: int = 4, dense: bool = True) -> None:
+        """Compares the points of a line with what the solver of single points and LAPACK find."""
+        request = SpectrumRequest(modes, 1e-10, certify=True)
+        for part in parts(whole):
+            found = solve_stretch(part, request)
+            for i in range(len(part)):
+                self._add_point(part.rod(i), found, i, request)
+                count = dense_count(part.rod(i)) if dense and found.certified[i] else None
+                if count is not None:
+                    self.counted += 1
+                    if count != found.unstable_count[i]:
+                        self.differences.append(f"{part.rod(i)}: LAPACK counts {count}")
+
+    def _add_point(self, rod: Rod, found, i: int, request: SpectrumRequest) -> None:
+        self.points += 1
+        alone = solve_spectrum(rod, request)
+        if found.elements[i] or found.status[i] != SpectrumStatus.ok:  # this is what that solver said
+            same = alone.status == found.status[i]
+            same = same and np.array_equal(alone.eigenvalues, found.eigenvalues[i], equal_nan=True)
+            self.differences += [] if same else [f"{rod}: {found.status[i]} instead of {alone.status}"]
+            return
+        self.followed += 1
+        self.unstable = max(self.unstable, int(found.unstable_count[i]))
+        if not alone.certified:  # better than before
+            return
+        if alone.unstable_count not in (-1, found.unstable_count[i]):
+            self.differences.append(f"{rod}: {found.unstable_count[i]}, not {alone.unstable_count} unstable")
+        away = np.abs(alone.eigenvalues - found.eigenvalues[i])
+        allowed = np.maximum(
+            1e-13 * np.abs(alone.eigenvalues), alone.error_estimate + found.error_estimate[i]
+        )
+        if not (away <= allowed).all():
+            self.differences.append(f"{rod}: off by {away / allowed} of what is allowed")

@@ -1,0 +1,236 @@
+"""Neighbours that are solved together: which, how they are kept, and that runs end in the same file."""
+
+import math
+import re
+
+import h5py
+import numpy as np
+import pytest
+from contents import content, same, same_spectra
+from ranks import PATIENCE, kill, ranks_in, wait_for_end
+from slow_runs import FOR_EVER, pause_until_journalled, slowly
+
+import rodsweep as rs
+from rodsweep.results.file.view import read_view
+from rodsweep.sweep.ranges import IndexSet, total
+from rodsweep.sweep.stretches import (
+    LONGEST,
+    SHORTEST_AXIS,
+    Stretches,
+    StretchSolver,
+    Together,
+    along_the_longest,
+)
+
+SPECTRA = """
+task: spectrum
+parameters:
+  F: {start: 0, stop: 60, num: 100}
+  k1: [100, 1.0e4, .inf]
+  k2: [50, 1.0e4]
+  gamma3: [0, 1.0e-4]
+"""
+SHAPES = [(100, 3, 2, 2), (3, 130, 2, 1), (2, 2, 64, 5), (1, 1, 1, 9)]
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_every_point_is_in_one_stretch_of_neighbours(shape):
+    stretches = along_the_longest(shape)
+    parts = [stretches.indices(n) for n in range(stretches.count)]
+    assert sorted(np.concatenate(parts).tolist()) == list(range(math.prod(shape)))
+    for part in parts:
+        places = np.array(np.unravel_index(part, shape))
+        others = np.delete(places, stretches.axis, axis=0)
+        assert len(part) <= LONGEST
+        assert (others == others[:, :1]).all()
+        assert (np.diff(places[stretches.axis]) == 1).all()
+
+
+def test_the_axis_with_most_values_is_followed_and_a_short_one_is_not():
+    assert along_the_longest((5, 9, 9, 2)).axis == 1
+    assert along_the_longest((1, 1, 1, SHORTEST_AXIS)).axis == 3
+    assert along_the_longest((1, SHORTEST_AXIS - 1, 1, 1)) is None
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_stretches_to_do_are_those_that_miss_a_point(shape):
+    stretches = along_the_longest(shape)
+    count = math.prod(shape)
+    assert stretches.todo([(0, count)]) == [(0, stretches.count)]
+    assert stretches.missing_in([(0, stretches.count)], [(0, count)]) == count
+    missing = [(0, 2), (5, 6), (count - 1, count)] if count > 9 else [(3, 4)]
+    lacks = IndexSet(missing)
+    expected = [n for n in range(stretches.count) if lacks[stretches.indices(n)].any()]
+    todo = stretches.todo(missing)
+    assert [n for ends in todo for n in range(*ends)] == expected
+    assert stretches.missing_in(todo, missing) == total(missing)
+
+
+def test_of_a_stretch_only_missing_points_are_kept():
+    """All are solved, as what is missing starts from the others; what the file has is not written again."""
+    asked = []
+
+    def solve(indices):
+        asked.append(indices.tolist())
+        values = {"growth_rate": 10.0 * indices}
+        return Together(values, indices % 2 == 0, lambda i: f"told {indices[i]}")
+
+    solver = StretchSolver(Stretches((10, 2), 0), solve, IndexSet([(4, 7)]))
+    ((index, kept),) = solver(0)
+    assert asked == [list(range(0, 20, 2))]
+    assert index.tolist() == [4, 6]
+    assert kept.values["growth_rate"].tolist() == [40.0, 60.0]
+    assert kept.told(1) == "told 6"
+
+
+@pytest.mark.parametrize("ranks", [2, 3])
+def test_any_number_of_ranks_gives_the_same_spectra(command, ranks):
+    command.write("c.yaml", SPECTRA)
+    assert command("run", "c.yaml", "-o", "alone.h5").returncode == 0
+    many = command("run", "c.yaml", "-o", "many.h5", ranks=ranks)
+    assert many.returncode == 0, many.stderr
+    alone = content(command.directory / "alone.h5")
+    assert same(alone, content(command.directory / "many.h5"))
+    assert (alone["elements"] == 0).mean() > 0.95
+
+
+def test_followed_spectra_are_as_accurate_as_those_of_points_alone(command):
+    command.write("c.yaml", SPECTRA)
+    assert command("run", "c.yaml").returncode == 0
+    assert command("run", "c.yaml", "--set", "spectrum.follow=false", "-o", "alone.h5").returncode == 0
+    followed, alone = content(command.directory / "c.h5"), content(command.directory / "alone.h5")
+    assert (alone["elements"] > 0).all()
+    assert same_spectra(followed, alone)
+    refused = command("run", "c.yaml", "--set", "spectrum.follow=false")
+    assert refused.returncode == 2
+    assert "spectrum.follow is true in the file and false in the config" in refused.stderr
+
+
+@pytest.mark.parametrize("whole_job", [True, False], ids=["all ranks", "one rank"])
+def test_resume_after_a_kill_gives_the_same_spectra(command, whole_job):
+    """Killed while each rank waits behind its third stretch: what is journalled stays as it is."""
+    command.write("c.yaml", SPECTRA)
+    path = command.directory / "c.h5"
+    process = command.started("run", "c.yaml", ranks=2, patch=slowly(FOR_EVER, 3))
+    pause_until_journalled(process, path, 6 * 64)
+    ranks = ranks_in(command.directory)
+    kill(*([process.pid, *ranks.values()] if whole_job else [ranks[1]]))
+    process.communicate(timeout=PATIENCE)
+    wait_for_end(command.directory)
+    kept = read_view(path).journalled
+    again = command("run", "c.yaml", ranks=3)
+    assert again.returncode == 0, again.stderr
+    assert f"{1200 - kept} of 1200 points to do, {kept} kept" in again.stdout
+    assert command("run", "c.yaml", "-o", "whole.h5").returncode == 0
+    assert same(content(path), content(command.directory / "whole.h5"))
+
+
+def test_a_stretch_of_which_a_part_was_written_is_redone_and_its_rest_kept(command):
+    """A record is torn in the middle of a stretch: the points before it are kept, none is written twice."""
+    command.write("c.yaml", SPECTRA)
+    path = command.directory / "c.h5"
+    process = command.started("run", "c.yaml", patch=slowly(FOR_EVER, 2))
+    pause_until_journalled(process, path, 128)
+    process.kill()
+    process.communicate(timeout=PATIENCE)
+    (journal,) = (command.directory / "c.h5.journal").glob("rank-*")
+    record = (journal.stat().st_size - 100) // 128
+    with journal.open("r+b") as file:
+        file.truncate(journal.stat().st_size - 20 * record - 7)
+    kept = read_view(path).journalled
+    assert 100 < kept < 110
+    again = command("run", "c.yaml")
+    assert again.returncode == 0, again.stderr
+    assert f"{1200 - kept} of 1200 points to do, {kept} kept" in again.stdout
+    assert re.search(rf"^{1200 - kept} points in", again.stdout, re.M)
+    assert command("run", "c.yaml", "-o", "whole.h5").returncode == 0
+    assert same(content(path), content(command.directory / "whole.h5"))
+
+
+def test_stopped_run_ends_with_whole_stretches_and_goes_on(command):
+    command.write("c.yaml", SPECTRA)
+    process = command.started("run", "c.yaml", patch=slowly(0.2))
+    pause_until_journalled(process, command.directory / "c.h5", 1)
+    process.terminate()
+    out, err = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 75, err
+    done = int(re.search(r"stopped by SIGTERM; (\d+) points? kept", out)[1])
+    with h5py.File(command.directory / "c.h5") as file:
+        kept = (file["status"][...] == 0).reshape(100, -1)
+    assert kept.sum() == done
+    assert set(kept[:64].sum(axis=0)) <= {0, 64}
+    assert set(kept[64:].sum(axis=0)) <= {0, 36}
+    assert command("run", "c.yaml").returncode == 0
+    assert command("run", "c.yaml", "-o", "whole.h5").returncode == 0
+    assert same(content(command.directory / "c.h5"), content(command.directory / "whole.h5"))
+
+
+def test_shards_of_a_followed_grid_join_to_the_same_file(command):
+    command.write("c.yaml", SPECTRA)
+    for i in (1, 2, 3):
+        assert command("run", "c.yaml", "--shard", f"{i}/3", "-o", f"{i}.h5").returncode == 0
+    assert command("merge", "joined.h5", "1.h5", "2.h5", "3.h5").returncode == 0
+    assert command("run", "c.yaml", "-o", "whole.h5").returncode == 0
+    assert same(content(command.directory / "joined.h5"), content(command.directory / "whole.h5"))
+
+
+def test_failed_points_of_a_stretch_are_told(command):
+    """The onset cannot be had to 1e-12: its status says so, with the values of its parameters."""
+    forces = "[10, 12, 14, 16, 18, 20, 20.0080206921031, 30]"
+    command.write(
+        "c.yaml",
+        f"task: spectrum\nparameters: {{F: {forces}, k1: 1e4, k2: 1e4, gamma3: 1e-4}}\naccuracy: 1e-12\n",
+    )
+    run = command("run", "c.yaml")
+    assert run.returncode == 1
+    assert "7 ok, 1 accuracy_not_reached" in run.stdout
+    assert "F=20.0080206921031, k1=10000.0, k2=10000.0, gamma3=0.0001: accuracy_not_reached" in run.stdout
+
+
+@pytest.mark.parametrize(
+    "options", [{"certify": False}, {"vectors": True, "nodes": 5}], ids=["uncertified", "vectors"]
+)
+def test_without_a_count_or_with_vectors_every_point_has_its_mesh(options):
+    rod = {"F": rs.linspace(10, 40, 10), "k1": 1e4, "k2": 1e4, "gamma3": 1e-4}
+    assert (rs.sweep("spectrum", **rod, **options).elements > 0).all()
+    assert (rs.sweep("spectrum", **rod).elements == 0).all()
+
+
+def test_python_gives_the_numbers_of_the_command(command):
+    command.write("c.yaml", SPECTRA)
+    assert command("run", "c.yaml").returncode == 0
+    with rs.open(command.directory / "c.h5") as file:
+        here = rs.sweep(
+            "spectrum", F=rs.linspace(0, 60, 100), k1=[100, 1e4, math.inf], k2=[50, 1e4], gamma3=[0, 1e-4]
+        )
+        for name in here.data_vars:
+            assert name == "seconds" or np.array_equal(here[name], file[name], equal_nan=True), name
+
+
+@pytest.mark.parametrize(
+    ("larger", "kept"),
+    [
+        ("F: {start: 0, stop: 66, num: 133}", 64),
+        ("F: {start: 0, stop: 49.5, num: 100}\n  k1: [100, 200, 1.0e4, .inf]", 100),
+        ("F: {start: 0, stop: 49.5, num: 100}\n  k2: {start: 50, stop: 1050, num: 201}", 0),
+        ("F: {start: -0.5, stop: 49.5, num: 101}", 0),
+    ],
+    ids=["longer", "another line", "along another axis", "shifted"],
+)
+def test_extended_grid_keeps_what_a_run_of_the_whole_gives_to_the_last_bit(command, larger, kept):
+    """Of each of the three lines as many points as are in stretches of the same points."""
+    parameters = {"F": "{start: 0, stop: 49.5, num: 100}", "k1": "[100, 1.0e4, .inf]"}
+    parameters |= {"k2": "50", "gamma3": "1.0e-4"}
+    texts = []
+    for more in ("", larger):
+        given = parameters | dict(line.strip().split(": ", 1) for line in more.split("\n") if line)
+        lines = "".join(f"  {name}: {value}\n" for name, value in given.items())
+        texts.append(f"task: spectrum\nparameters:\n{lines}spectrum: {{modes: 2}}\n")
+    command.write("c.yaml", texts[0])
+    assert command("run", "c.yaml").returncode == 0
+    command.write("larger.yaml", texts[1])
+    run = command("run", "larger.yaml", "-o", "c.h5", "--extend")
+    assert run.returncode == 0, run.stderr
+    assert (f", {3 * kept} kept" in run.stdout) == (kept > 0), run.stdout
+    assert command("run", "larger.yaml", "-o", "whole.h5").returncode == 0
+    assert same(content(command.directory / "c.h5"), content(command.directory / "whole.h5"))
