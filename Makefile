@@ -45,7 +45,7 @@ figures: .venv/installed  ## compute every config on two ranks and draw its figu
 	  $(BIN)/mpiexec -n 2 $(BIN)/rodsweep run $$config -o results/$$name.h5
 	done
 	draw="$(BIN)/rodsweep plot"
-	for name in fig2a fig2b fig2c fig2d fig3 fig4 fig5 fig6 fig7 fig8 fig9 beating_map criticality generalised_hopf branches; do
+	for name in fig2a fig2b fig2c fig2d fig3 fig4 fig5 fig6 fig7 fig8 fig9 beating_map criticality generalised_hopf branches bistability; do
 	  $$draw results/$$name.h5 -o results/$$name.pdf
 	  $$draw results/$$name.h5 -o docs/$$name.png
 	done
@@ -57,7 +57,7 @@ figures: .venv/installed  ## compute every config on two ranks and draw its figu
 	$$draw results/fig5.h5 -o docs/fig5.gif
 
 test: .venv/installed  ## run the tests
-	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n auto --dist loadgroup
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
 test-kernels: .venv/installed  ## run what depends on the BLAS under other OpenBLAS kernels, or those in KERNELS
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tests/kernels.py $(KERNELS)
 lint: .venv/installed  ## check style, types and who may import whom
@@ -70,8 +70,8 @@ test-peers: private NO_APT := this system has no apt-get; Slurm, AUTO-07p and gf
 test-peers: .venv/installed  ## install what the tests use where it is there: Slurm, AUTO-07p, gfortran (Debian)
 	@$(APT_INSTALL)
 	apt_install slurm-wlm munge libpmix-dev auto-07p gfortran iproute2
-survey: .venv/installed  ## spectra along lines and limit cycles of RODS (300) random rods: errors, chains, two starts; VERDICTS (50) marched in time (some minutes)
-	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(RODS),300) $(BIN)/python -m pytest -n auto tests/hard/test_minimal_periods.py tests/hard/test_cycle_errors.py tests/hard/test_chain_errors.py tests/hard/test_followed_spectra.py
+survey: .venv/installed  ## spectra along lines and limit cycles of RODS (300) random rods: errors, chains, two starts; VERDICTS (50) marched in time; further Hopf points and branches (some minutes)
+	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(RODS),300) $(BIN)/python -m pytest -n auto tests/test_criticality.py tests/test_branch.py tests/test_branch_auto.py tests/test_coexistence.py tests/test_torus.py tests/hard/test_minimal_periods.py tests/hard/test_cycle_errors.py tests/hard/test_chain_errors.py tests/hard/test_followed_spectra.py
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(VERDICTS),50) $(BIN)/python -m pytest -n auto tests/hard/test_time_marched_verdicts.py
 stress: .venv/installed  ## kill runs at random 120 times and more, and compare what comes of them (half an hour)
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_KILLS=$${RODSWEEP_KILLS:-40} $(BIN)/python -m pytest tests/test_stress.py
@@ -169,7 +169,10 @@ endef
 	esac
 	{ echo "$$WRAPPER"; echo "exec '$$mpiexec' \"\$$@\""; } | sed "$$names" > $(BIN)/mpiexec
 	chmod +x $(BIN)/mpiexec
-	# Compile the formulas now, not in the first run.
-	for formulas in spectrum.search cycle.limit_cycle; do $(BIN)/python -c "from rodsweep.solve.$$formulas import warm_up; warm_up()"; done
+	# Compile the formulas now, not in the first run, on two cores.
+	warm_up() { $(BIN)/python -c "from rodsweep.solve.$$1 import warm_up; warm_up()"; }
+	warm_up spectrum.stretch & spectra=$$!
+	warm_up cycle.limit_cycle
+	wait $$spectra
 	touch $@
 	echo 'Installed. Next: . .venv/bin/activate'

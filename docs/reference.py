@@ -24,7 +24,15 @@ from rodsweep.config.refusals import what_is_allowed
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.results.layouts.arm import MEANINGS, QUANTITY_UNITS
-from rodsweep.results.layouts.phase_diagram import CLASSES, criticality_variables, curve_variables
+from rodsweep.results.layouts.phase_diagram import (
+    CLASSES,
+    CYCLE_CURVE_ENDS,
+    STABLE_STATES,
+    bautin_curve_variables,
+    criticality_variables,
+    curve_variables,
+    cycle_curve_variables,
+)
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from rodsweep.results.layouts.variables import DIMENSIONS, MISSING, Variable
 
@@ -37,7 +45,7 @@ WHOLE = {
     "thresholds": "parameters: {k1: 200, k2: 1.0e+4, gamma3: 1.0e-4}",
     "phase_diagram": """
         parameters: {F: [0, 100], k1: [200, 300], k2: 1.0e+4, gamma3: 1.0e-4, gamma1: 1}
-        phase_diagram: {criticality: true}""",
+        phase_diagram: {criticality: true, cycles: true, bautin_along: {k2: [5.0e+3, 2.0e+4]}}""",
     "modes": "parameters: {F: 30, k1: 200, k2: 1.0e+4, gamma3: 1.0e-4}",
     "criticality": "parameters: {k1: 200, k2: 1.0e+4, gamma3: 1.0e-4, gamma1: 1}",
     "branch": "parameters: {k1: 200, k2: 1.0e+4, gamma3: 1.0e-4, gamma1: 1}",
@@ -47,6 +55,7 @@ WHOLE = {
 }
 """A config of every task with all its parameters and everything that may be asked for."""
 WITHOUT = {
+    "phase_diagram.cycles: true": ("phase_diagram.cycles=false",),
     "spectrum.vectors: true": ("spectrum.vectors=false",),
     "spectrum.longitudinal: true": ("spectrum.longitudinal=false", "parameters.gamma1=null"),
     "modes.growth: true": ("modes.growth=false",),
@@ -64,6 +73,9 @@ LENGTHS = {
     "curve_point": "as found",
     "fold": "as found",
     "bautin": "as found",
+    "cycle_special": "64",
+    "cycle_curve_point": "as found",
+    "bautin_step": "as found",
     "branch_point": "`branch.cycles`",
     "special": "`branch.special`",
     "harmonic": "`limit_cycle.harmonics`",
@@ -82,6 +94,16 @@ MOTIONS = {
     "crushed": "F >= k1: there is no rod",
 }
 """What the rod does at a point of a phase diagram."""
+STATES = {
+    "missing": "not computed",
+    "neither_known": "the straight rod is unstable, and no stable cycle lies on a branch that was followed",
+    "straight": "the straight rod alone, of what is known",
+    "cycle": "a cycle alone",
+    "both": "the straight rod and a cycle: which comes depends on the start",
+    "undecided": "on a boundary within its error, or a branch could not be followed so far",
+    "crushed": "F >= k1: there is no rod",
+}
+"""What is stable at a point of a phase diagram with cycles."""
 ATTRIBUTES = {
     "program": "`rodsweep`: what a result file is recognised by",
     "Conventions": "`CF-1.8`",
@@ -89,7 +111,7 @@ ATTRIBUTES = {
     "config": "the text of the config, with what `--set` changed at its end",
     "config_resolved": "the config with all defaults, as JSON",
     "snapshot": "when `rodsweep snapshot` wrote the file; empty once a run has continued it",
-    "format": "2; see [which version reads what](#which-version-reads-what)",
+    "format": "3; see [which version reads what](#which-version-reads-what)",
     "fingerprint": "of what the config means, and of all points: what a continued file shares",
     "time_unit": "`tau2 = gamma2 L^4/k3`",
     "gamma1": "where a spectrum or a phase diagram is given it",
@@ -137,8 +159,9 @@ An axis is
 
 F must be below every k1; only a phase diagram may reach into the crushed rods, F >= k1. A phase diagram needs
 exactly two parameters with more than one value. A spectrum takes gamma1 with `spectrum.longitudinal: true`
-only, and as one number; a phase diagram with `phase_diagram.criticality: true` only, as one number,
-by default 1 or that of the arm. The header of a CSV file names the parameters of the task, in any order.
+only, and as one number; a phase diagram with `phase_diagram.criticality: true` or
+`cycles: true` only, as one number, by default 1 or that of the arm. The header of a
+CSV file names the parameters of the task, in any order.
 """
 FILE = """
 ## The result file
@@ -151,7 +174,7 @@ stored as numbers, with the attributes `flag_values` and `flag_meanings`.
 VERSIONS = """
 ### Which version reads what
 
-The attribute `format` is a whole number, now 2, that grows when a variable is added or changes its meaning.
+The attribute `format` is a whole number, now 3, that grows when a variable is added or changes its meaning.
 
 - A file of a higher format is refused in one sentence that names the version which wrote it.
 - A file of a lower format, or without the attribute, is read, continued and merged like others where it has
@@ -176,6 +199,9 @@ def text() -> str:
         words("Kinds of a crossing", CROSSING_MEANINGS, kinds()),
     ]
     parts += [words("Classes of a phase diagram", MOTIONS, CLASSES)]
+    parts += [words("Stable states of a phase diagram with cycles", STATES, STABLE_STATES)]
+    ends = tuple(enumerate(CYCLE_CURVE_ENDS))
+    parts += [words("Ends of curves of folds and torus points", CYCLE_CURVE_ENDS, ends)]
     parts += [task_variables(task) for task in CONFIGS]
     parts += [ARM, quantities()]
     parts += [
@@ -263,8 +289,8 @@ k2 (Poisson's ratio) in a grid, along `point` in a list. What has the units tau2
 k3/(L tau2), and forces whose name contains `F_` or along which branches are followed, stands in SI units
 beside, by the name with `_si` at its end: `period_si` in s, `growth_rate_si` in 1/s, `F_hopf_si` in Pa, or in
 N where the arm has a force. Tables over more than modes, crossings and branches are not stored twice, nor are
-the curves and crossings of a phase diagram: times `pressure_scale` or `force_scale` a force is in SI, times
-`tau2` a time.
+the curves, crossings and cycles of a phase diagram: times `pressure_scale` or `force_scale` a force is in SI,
+times `tau2` a time.
 
 """
 
@@ -323,6 +349,12 @@ def curve_rows(job: Job) -> Iterator[list[str]]:
         yield variable_row(variable, list(variable.extra), "diagrams over F and k1" if beam else "")
     for variable in criticality_variables(line, row).values():
         yield variable_row(variable, list(variable.extra), "phase_diagram.criticality: true")
+    for variable in cycle_curve_variables(line, row).values():
+        yield variable_row(variable, list(variable.extra), "phase_diagram.cycles: true")
+    third = job.config.phase_diagram.third
+    assert third is not None
+    for variable in bautin_curve_variables(line, row, third[0]).values():
+        yield variable_row(variable, list(variable.extra), "phase_diagram.bautin_along")
 
 
 def variables_of(job: Job) -> dict[str, tuple[Variable, list[str]]]:

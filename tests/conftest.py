@@ -16,10 +16,31 @@ from ranks import kill, ranks_in
 ROOT = Path(__file__).parents[1]
 BIN = Path(sys.executable).parent
 
-TOGETHER = {"test_bad_files", "test_bench_limit_cycle", "test_cycles", "test_slurm"}
-"""Modules whose tests share what one of them makes: they stay on one worker of pytest-xdist."""
-LONGEST = ("test_stress", "test_bench_sweep")
-"""Modules whose tests are begun first, so that no worker is left alone with one of them."""
+LONGEST = (
+    "test_bad_files",
+    "test_slurm",
+    "test_stress",
+    "test_bench_sweep",
+    "test_paper",
+    "test_run",
+    "test_stop",
+    "test_branch",
+    "test_criticality",
+    "test_extend",
+    "test_start",
+    "test_branch_task",
+    "test_coexistence",
+    "test_bad_input",
+    "test_modes",
+    "test_cycle_figures",
+    "test_stretches",
+    "test_bench_limit_cycle",
+    "test_cycles_task",
+    "test_figures",
+    "test_arm_sweeps",
+)
+"""Modules that take longest, begun first, so that no worker is left alone with one of them. Each stays on one
+worker of pytest-xdist (`--dist loadfile`), which makes what its tests share once."""
 
 
 def pytest_configure(config):
@@ -39,13 +60,10 @@ def pytest_xdist_auto_num_workers(config):
     return min(len(os.sched_getaffinity(0)) + 1, 4)
 
 
-def pytest_collection_modifyitems(config, items):
-    """Tells pytest-xdist, where it is used, which tests belong together, and what takes longest."""
-    items.sort(key=lambda item: item.path.stem not in LONGEST)
-    if config.pluginmanager.hasplugin("xdist"):
-        for item in items:
-            if item.path.stem in TOGETHER:
-                item.add_marker(pytest.mark.xdist_group(item.path.stem))
+def pytest_collection_modifyitems(items):
+    """Puts first what takes longest."""
+    places = {name: place for place, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: places.get(item.path.stem, len(LONGEST)))
 
 
 class Command:

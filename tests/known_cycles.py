@@ -51,6 +51,7 @@ def make_view(axes, statuses, *, stored=("shapes", "samples"), name="fake.h5", a
         v["point"] = np.arange(shape[0])
     size = np.sqrt(table[0]) / 8 / (1 + table[4])
     v |= {"linear_growth_rate": np.ones(shape), "linear_frequency": np.full(shape, 110.0)}
+    v |= {"second_state": np.zeros(shape, "i1"), "subcritical_F": np.full(shape, np.nan)}
     if hopf:
         threshold = np.minimum(hopf(*table), 1e3)
         v["linear_growth_rate"] = growth_rate(table[0] - threshold)

@@ -47,6 +47,8 @@ METHODS = {
     "branch",
 }
 ROD = {"F": 50, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
+SILICONE = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "1.4 Pa s"}
+LOADED = SILICONE | {"pressure": "2 kPa"}
 OF_A_RUN = {"seconds", "started", "finished", "config"}
 """What differs between two runs of one config, and its text, which a file has as it was written."""
 OF_RANKS = {
@@ -267,7 +269,27 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
         ),
         (lambda: rs.Rod(**ROD).spectrum(mods=3), "unknown key spectrum.mods; did you mean modes?"),
         (lambda: rs.Rod(**ROD).spectrum(F=3), "F belongs to the rod: rod.replace(F=...) is another one"),
-        (lambda: rs.Rod(**ROD).phase_diagram(), "parameters has 0 axes with more than one value"),
+        (lambda: rs.Rod(**ROD).phase_diagram(), "phase_diagram is of several rods; ask rs.sweep('phase_diag"),
+        (lambda: rs.Rod(30, 1e4), "30 has no name; write it as in rs.Rod(F=30, k1="),
+        (lambda: rs.Rod(**ROD).spectrum(4), "4 has no name; write it as in rod.spectrum(modes=4)"),
+        (lambda: rs.Rod(**ROD).replace(3), "3 has no name; write it as in rod.replace(F=40)"),
+        (lambda: rs.Arm("10 cm"), "'10 cm' has no name; write it as in rs.Arm(length="),
+        (lambda: rs.Arm(**LOADED, presure="1 kPa"), "unknown key presure; did you mean pressure?"),
+        (rs.Arm, "length is missing; write it as in rs.Arm("),
+        (lambda: rs.Arm(**LOADED | {"length": ["10 cm"]}), "length = ['10 cm'] is not one quantity; write a"),
+        (lambda: rs.Arm(**LOADED | {"length": 10**400}), "length = 1000"),
+        (lambda: rs.Arm(**LOADED | {"length": "1e300 km"}), "length = '1e300 km' makes numbers too large"),
+        (lambda: rs.Arm(**LOADED | {"radius": "1e-300 m"}), "length = '10 cm' makes numbers too large or"),
+        (lambda: rs.Arm(**LOADED | {"poisson": "0.5"}), "poisson = '0.5' is not a number above -1"),
+        (lambda: rs.Arm(**SILICONE | {"radius": "-5 mm"}), "radius = '-5 mm' is not above 0"),
+        (lambda: rs.Arm(**SILICONE), "pressure: give either a pressure"),
+        (lambda: rs.linspace(0, 10), "num is missing; write it as in rs.linspace(0, 10, num=11)"),
+        (lambda: rs.linspace(0, 10, 5, 6), "6 has no name; write it as in rs.linspace("),
+        (lambda: rs.linspace(0, 10, n=5), "unknown key n; did you mean num?"),
+        (lambda: rs.logspace(1, 10, 3, stop=4), "stop is given twice"),
+        (rs.open, 'path is missing; write it as in rs.open("RESULT.h5")'),
+        (lambda: rs.plot(3, colour="red"), "unknown key colour; known keys are output, roots"),
+        (lambda: rs.sweep("spectrum", 30), "30 has no name; write it as in rs.sweep("),
         (lambda: rs.open("none.h5"), "none.h5 does not exist"),
         (lambda: rs.sweep(["spectrum"]), "task = ['spectrum'] is not allowed; it should be spectrum, "),
         (lambda: rs.plot([]), "there is nothing to draw"),
@@ -292,7 +314,14 @@ def test_an_answer_prints_its_numbers_with_their_units():
     ):
         assert part in text
         assert part in html
-    told = set(answer.data.data_vars) - {"status", "seconds"}
+    absent = {
+        "F_restabilization",
+        "restabilization_frequency",
+        "open_from",
+        "open_to",
+    }  # NaN, as the list is full
+    assert np.isnan([answer.data[name] for name in absent]).all()
+    told = set(answer.data.data_vars) - {"status", "seconds"} - absent
     assert html.count("<tr>") == 1 + len(told)
     assert [line.split()[0] for line in text.splitlines()[3:]] == [
         name for name in answer.data if name in told
@@ -300,6 +329,18 @@ def test_an_answer_prints_its_numbers_with_their_units():
     assert "F_hopf" in dir(answer)
     with pytest.raises(AttributeError, match="no 'F_hop'"):
         _ = answer.F_hop
+
+
+def test_a_rod_at_rest_has_no_empty_rows():
+    answer = rs.Rod(**ROD).replace(F=5).cycle(accuracy=1e-3)
+    text, html = repr(answer), answer._repr_html_()
+    assert answer.status == "straight"
+    assert np.isnan(answer.period)
+    for told in (text, html):
+        assert "nan" not in told
+        assert answer.sentence in told
+        assert "linear_growth_rate" in told
+        assert "tip_y_max" not in told
 
 
 def test_a_sweep_is_written_read_and_drawn(tmp_path):
@@ -359,8 +400,10 @@ def test_choices_of_a_figure_are_those_of_the_command():
 
 
 def test_other_attributes_of_a_rod_are_refused():
-    with pytest.raises(AttributeError, match="its tasks are spectrum, "):
+    with pytest.raises(AttributeError, match="its tasks are spectrum, ") as refusal:
         _ = rs.Rod(**ROD).spectrm
+    assert "phase_diagram" not in str(refusal.value)
+    assert "phase_diagram" not in dir(rs.Rod(**ROD))
 
 
 def test_what_is_no_result_is_not_opened(tmp_path):

@@ -191,6 +191,8 @@ def test_command_prints_verdict_numbers_and_checks(command):
     assert end.stdout.startswith("2 kPa is 4 to 9 % below flutter")
     for words in ("Cowper 1966", "Lighthill 1976", "warning: Inertia", "k1 ", "1600", "480"):
         assert words in end.stdout
+    assert max(map(len, end.stdout.splitlines())) <= 80
+    assert end.stdout == f"{arm().report()}\n"
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """`parameters: {arm: ...}`: axes in SI units, what they become, what files have in SI."""
 
 import csv
+import re
 from itertools import pairwise
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 import xarray as xr
 from contents import content, same
 from matplotlib.figure import Figure
+from pint import UnitRegistry
 
 import rodsweep as rs
 from rodsweep.api.asking import job_from, tree_of
@@ -123,6 +125,9 @@ def test_other_units_ask_for_the_same():
         ("spectrum", {"viscosity": ["1 Pa s", "2 Pa s"]}, {}, "every time is proportional to it"),
         ("spectrum", {"pressure": "100 kPa"}, {}, "pressure = 100000 Pa compresses the arm to nothing"),
         ("spectrum", {"force": "1 N"}, {}, "give either a pressure"),
+        ("spectrum", {"radius": "-5 mm", "pressure": None}, {}, "arm.radius = -0.005 m is not above 0"),
+        ("thresholds", {"young": 0}, {}, "parameters.arm.young = 0 Pa is not above 0"),
+        ("spectrum", {"radius": 1e-300}, {}, "makes numbers too large or too small"),
         ("spectrum", {}, {"F": 3}, "parameters.F and parameters.arm.pressure are both given"),
         ("spectrum", {}, {"points": "a.csv"}, "parameters.points and parameters.arm are both given"),
         ("spectrum", {"length": ["9 cm", "10 cm"]}, {"k1": [-1, 5]}, "parameters.k1 = -1 is not allowed"),
@@ -247,3 +252,66 @@ def test_configs_without_an_arm_have_no_trace_of_it():
     assert "arm" not in made.resolved["parameters"]
     assert made.quantities == ()
     assert not any(variable.name.endswith("_si") for variable in made.layout.variables)
+
+
+SILICONE_YAML = "length: 10 cm, radius: 5 mm, young: 100 kPa, viscosity: 1.4 Pa s"
+
+
+@pytest.mark.parametrize(
+    ("task", "load", "unit", "scale"),
+    [
+        ("spectrum", "pressure: {start: 1 kPa, stop: 2.5 kPa, num: 4}", "kPa", 1 / 16),
+        ("spectrum", "force: {start: 80 mN, stop: 200 mN, num: 4}", "mN", 4.908738521234052),
+        ("thresholds", "", "kPa", 1 / 16),
+    ],
+)
+def test_show_tells_thresholds_as_the_load_is_given_and_frequencies_in_hertz(
+    command, task, load, unit, scale
+):
+    """F = 1 is 1/16 kPa and 4.9 mN; 1/tau2 is rad/s, of which a Hz has 2 pi."""
+    command.write("a.yaml", f"task: {task}\nparameters: {{arm: {{{SILICONE_YAML}, {load}}}}}\n")
+    assert command("run", "a.yaml").returncode == 0
+    lines = command("show", "a.h5").stdout.splitlines()
+    (at,) = (i for i, line in enumerate(lines) if line.startswith(("F**", "hopf at")) and "166.0" in line)
+    found = re.fullmatch(r"  in SI units: ([\d.]+) (\w+), frequency ([\d.]+) Hz", lines[at + 1])
+    assert found[2] == unit
+    assert float(found[1]) == pytest.approx(34.809000317504 * scale, rel=1e-5)
+    tau2 = SlenderArm(**LOADED).tau2
+    assert float(found[3]) == pytest.approx(166.085 / (2 * np.pi * tau2), rel=1e-5)
+    told = [line for line in lines if line.startswith("  ") and "determinant" not in line]
+    assert max(map(len, told)) <= 80
+    assert (task == "thresholds") == ("  F_onset = 1.14792 kPa; onset_growth_rate" in "\n".join(told))
+
+
+@pytest.mark.parametrize(("task", "more"), [("thresholds", {}), ("branch", {"stop": 40}), ("spectrum", {})])
+def test_an_arm_of_python_is_taken_by_sweeps(task, more):
+    """Its load is left out where the task finds the load."""
+    loaded = job("spectrum", arm=LOADED).points.by_name
+    made = job(task, arm=rs.Arm(**LOADED, density_difference="1 kg/m^3"), **more).points.by_name
+    assert ("F" in made) == (task == "spectrum")
+    for name in loaded.keys() & made.keys():
+        assert made[name] == pytest.approx(loaded[name], rel=1e-14)
+
+
+def test_quantities_of_pint_keep_their_units():
+    units = UnitRegistry()
+    lengths, viscosity = units.Quantity([10, 11], "cm"), units.Quantity(1.4, "Pa*s")
+    made = job("spectrum", arm=LOADED | {"length": lengths, "viscosity": viscosity}).points.by_name
+    told = job("spectrum", arm=LOADED | {"length": ["10 cm", "11 cm"]}).points.by_name
+    assert all(np.array_equal(made[name], told[name]) for name in told)
+    assert rs.Arm(**LOADED | {"length": units.Quantity(10, "cm")}).k1 == pytest.approx(1600, rel=1e-12)
+    with pytest.raises(rs.InputError, match="length = '10 kilogram' is not measured in m"):
+        rs.Arm(**LOADED | {"length": units.Quantity(10, "kg")})
+
+
+def test_a_list_of_arms_tells_what_varies_in_si(command, monkeypatch):
+    arm = SILICONE | {"length": ["10 cm", "12 cm", "14 cm"], "radius": ["4 mm", "5 mm"]}
+    command.write("l.yaml", job("thresholds", arm=arm, crossings=4).text)
+    assert command("run", "l.yaml").returncode == 0
+    drawn = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
+    draw(read_view(command.directory / "l.h5"), command.directory / "f.png")
+    axis = drawn[0].axes[0].xaxis
+    assert axis.get_label_text() == "length (mm)\nradius (mm)"
+    places = [label.get_text() for label in axis.get_ticklabels()]
+    assert places == [f"{length}\n{radius}" for length in (100, 120, 140) for radius in (4, 5)]

@@ -248,7 +248,7 @@ def test_interrupted_result_to_which_another_program_added_is_continued(results,
     complaints = []
     plain = results.copied(name, "whole", tmp_path / "plain")
     drawn = results.run(plain.parent, *PLOT, seconds=LONG).status
-    for addition, add in shared(ADDITIONS.items(), name, 2):
+    for addition, add in shared(ADDITIONS.items(), name, 1):
         path = changed(results, name, "half", add, tmp_path / "a")
         lines = [(SHOW, {0}), (RUN, {0}), (SHOW, {0}), (PLOT, {drawn}), (MERGE, {0})]
         complaints += tried(results, path, addition, lines)

@@ -4,6 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
+from surveyed import survey_only
 
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
@@ -75,7 +76,7 @@ def test_forward_and_backward_give_the_same_cycle():
     assert one.multiplier == pytest.approx(other.multiplier, abs=1e-6)
 
 
-@pytest.mark.parametrize("rod", [FIG_2C, SHORT])
+@pytest.mark.parametrize("rod", [pytest.param(FIG_2C, marks=survey_only), SHORT])
 def test_fold_moves_no_further_than_its_error_on_finer_meshes(rod):
     rough, fine = (only(solved(rod, 0.0, 200.0, a).curves[0], SpecialKind.fold) for a in (1e-5, 1e-8))
     assert abs(rough.at - fine.at) <= rough.error + fine.error

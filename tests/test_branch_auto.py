@@ -6,6 +6,7 @@ from pathlib import Path as Place
 
 import numpy as np
 import pytest
+from surveyed import survey_only
 
 from rodsweep.bench.auto import auto_program, run_auto, table_lines
 from rodsweep.bench.limit_cycle.auto_cycles import rod_file, start_file
@@ -87,6 +88,7 @@ def test_auto_has_the_same_fold_and_the_same_unstable_cycle_beyond(auto, tmp_pat
     assert cycle.cycle.multipliers[0] == pytest.approx(largest, abs=2e-5)
 
 
+@survey_only
 def test_auto_has_the_same_torus_point_and_the_same_pair_beyond(auto, tmp_path):
     rod = Rod(205.2, 1e4, 1e2, 1e-2)
     lines, multipliers = branch_of_auto(auto, rod, (24, 34, 0.1, 4), tmp_path)

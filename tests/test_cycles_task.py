@@ -249,6 +249,8 @@ def cycle(index, harmonics=3, samples=4, shapes=2, nodes=5, transient=6):
             harmonic_amplitude=np.arange(1.0, harmonics + 1),
         ),
         periods=12 + index,
+        second_state=0,
+        subcritical_F=np.nan,
         elements=2,
         order=18,
         seconds=0.25,
@@ -593,6 +595,7 @@ def solve_cycle(point, request, start=None, along=None):
     return SimpleNamespace(
         linear_growth_rate=memory, linear_frequency=memory, multiplier=memory, multipliers=None,
         trivial_multiplier_error=memory, status=status, measures=measures, errors=errors, periods=3,
+        second_state=0, subcritical_F=float("nan"),
         elements=1, order=18, seconds=0.01, message="a message", tip=None, energy=None, shape=None,
         neighbour=np.array([memory, F, k2]),
     )

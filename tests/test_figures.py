@@ -355,7 +355,7 @@ def test_phase_diagram_has_its_edge_as_a_line_marks_apart_and_a_legend_inside(co
 def test_crushed_cells_take_the_class_above_the_edge():
     crushed = next(number for number, word in CLASSES if word == "crushed")
     table = np.array([[0, crushed, crushed], [0, 1, crushed], [0, 1, 2]])
-    assert _without_stairs(table).tolist() == [[0, 1, 2], [0, 1, 2], [0, 1, 2]]
+    assert _without_stairs(table, crushed).tolist() == [[0, 1, 2], [0, 1, 2], [0, 1, 2]]
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,8 @@ from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
 from rodsweep.post.figures.phase_diagram import parts_of_one_side
 from rodsweep.results.file.view import read_view
-from rodsweep.solve.hopf import generalised
+from rodsweep.solve.hopf import bautin_curves, generalised
+from rodsweep.solve.hopf.bautin_curves import BautinCurvePoint, BautinEnd, BautinSpace, bautin_curve, lies_on
 from rodsweep.solve.hopf.generalised import curve_criticality
 from rodsweep.solve.point import Unsolvable
 
@@ -233,6 +234,111 @@ def test_python_gives_the_same_with_the_axial_drag_that_is_asked_for():
     assert one.bautin_k1.values == pytest.approx([149.616891612], rel=1e-11)
     assert np.array_equal(one.curve_F.values, half.curve_F.values)
     assert abs(half.bautin_F.values[0] - one.bautin_F.values[0]) > 1e-3
+
+
+@pytest.fixture(scope="module")
+def over_shear():
+    """A diagram whose generalised Hopf point is followed from k2 = 1e4 to 5e3 and 2e4."""
+    axes = {"F": [60, 85, 110], "k1": [148, 150, 152], "gamma3": 1e-4, "criticality": True}
+    along = {"bautin_along": {"k2": [5e3, 2e4]}}
+    return axes, rs.sweep("phase_diagram", **axes, k2=1e4, **along)
+
+
+def test_curve_over_a_third_parameter_has_the_points_of_other_diagrams(over_shear):
+    axes, along = over_shear
+    k2 = along.bautin_along_k2.values
+    assert (np.diff(k2) > 0).all()
+    for value in (1e4, 2e4):
+        other = rs.sweep("phase_diagram", **axes, k2=value)
+        (at,) = np.flatnonzero(np.abs(k2 / value - 1) < 1e-12)
+        for name in ("F", "k1", "frequency"):
+            found = along[f"bautin_along_{name}"].values[at]
+            assert found == pytest.approx(other[f"bautin_{name}"].values[0], rel=1e-9)
+
+
+def test_points_of_the_curve_are_those_of_other_equations(over_shear):
+    """By the second normal form, between the values asked for, beyond both."""
+    along = over_shear[1]
+    for i in (0, 3, -1):
+        values = [float(along[f"bautin_along_{name}"].values[i]) for name in ("F", "k1", "k2")]
+        c = coefficients((*values, GAMMA3, 1.0), 1j * float(along.bautin_along_frequency.values[i]), 24)[0]
+        assert abs(c.real) < 1e-7 * abs(c)
+        errors = [float(along[f"bautin_along_{name}_error"].values[i]) for name in ("F", "k1", "k2")]
+        assert all(error <= 1e-9 * value for error, value in zip(errors, values, strict=True))
+
+
+def test_curve_ends_at_the_ends_of_the_range_or_of_the_plane(over_shear):
+    """From k1 = 147.1, below the plane, to 150.9, which k2 reaches within the range."""
+    ends = over_shear[1].bautin_along_end.values
+    assert (ends[0], ends[-1]) == (BautinEnd.plane_edge, BautinEnd.range_end)
+    assert not ends[1:-1].any()
+    assert over_shear[1].bautin_along_k1.values[0] == pytest.approx(148, rel=1e-12)
+
+
+def test_curve_that_turns_back_in_the_third_parameter_is_followed_through_it(monkeypatch):
+    """Instead of rods a parabola, z = 0.8 - 2 (x - 1/2)^2 at y = 1/2: at z = 1 nothing is found."""
+
+    def on_parabola(space, guess, held):
+        x, _, z, h = guess
+        if held == 2:
+            if z > 0.8:
+                raise Unsolvable("beyond the turn")
+            x = 0.5 + np.copysign(np.sqrt((0.8 - z) / 2), x - 0.5)
+        v = np.array([x, 0.5, 0.8 - 2 * (x - 0.5) ** 2, h])
+        point = BautinCurvePoint(values=v[:3], errors=np.zeros(3), frequency=1.0, landau_imag=0.0)
+        return bautin_curves._Place(v, point)
+
+    monkeypatch.setattr(BautinSpace, "solved", on_parabola)
+    unit = tuple(PlaneAxis(name, 0.0, 1.0) for name in ("F", "k1", "gamma3"))
+    space = BautinSpace(Rod(0.0, 2.0, 1.0, 1.0), unit, np.array([0.5, 0.6]), 1.0, 1e-10)
+    start = on_parabola(space, np.array([0.3, 0.5, 0.6, 0.0]), 2)
+    curve = bautin_curve(space, start.point)
+    assert curve.ends == (BautinEnd.plane_edge, BautinEnd.plane_edge) or curve.ends[1] == BautinEnd.range_end
+    x, _, z = np.array([point.values for point in curve.points]).T
+    assert (np.diff(x) > 0).all()
+    assert x[-1] > 0.9
+    assert z.max() == pytest.approx(0.8, abs=0.02)
+    assert sum(abs(z - 0.6) < 1e-9) == 2
+    beyond = on_parabola(space, np.array([0.7, 0.5, 0.6, 0.0]), 2)
+    assert lies_on(space, beyond.point, curve)
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        ("bautin_along: {k2: [1, 20]}", "bautin_along is given but criticality is false"),
+        ("criticality: true, bautin_along: {k2: [10, 20]}", "bautin_along.k2 is from 10 to 20"),
+        ("criticality: true, bautin_along: {k1: [8, 20]}", "bautin_along.k1 is from 8 to 20"),
+        ("criticality: true, bautin_along: {k2: 9}", "needs at least two values"),
+        ("criticality: true, bautin_along: {k2: [1, inf]}", "none of them inf"),
+        ("criticality: true, bautin_along: {}", "has 0 parameters; give one"),
+        ("criticality: true, bautin_along: {gamma1: [1, 2]}", "bautin_along.gamma1"),
+    ],
+)
+def test_a_third_parameter_that_cannot_be_is_refused(tmp_path, options, sentence):
+    path = tmp_path / "c.yaml"
+    path.write_text(
+        "task: phase_diagram\nparameters: {F: [1, 2], k1: [9, 10], k2: 9, gamma3: 1}\n"
+        f"phase_diagram: {{{options}}}\n"
+    )
+    with pytest.raises(InputError, match=sentence):
+        make_job(path, ())
+
+
+def test_curves_over_a_third_parameter_are_shown_drawn_and_the_same_on_two_ranks(command):
+    command.write(
+        "c.yaml",
+        DIAGRAM.replace("criticality: true", "criticality: true, bautin_along: {k2: [8.0e3, 1.2e4]}"),
+    )
+    for words, ranks in ((("c.yaml",), 0), (("c.yaml", "-o", "two.h5"), 2)):
+        assert command("run", *words, ranks=ranks).returncode == 0
+    one, two = (content(command.directory / name) for name in ("c.h5", "two.h5"))
+    assert len(one["bautin_along_k2"]) > 3
+    assert same(one, two)
+    told = command("show", "c.h5").stdout.replace("\n", " ")
+    assert "curve 1 of generalised Hopf points: " in told
+    assert "k2 = 8000 to 12000; ends: range_end and range_end" in told
+    assert command("plot", "c.h5", "-o", "c.png").returncode == 0
 
 
 @pytest.mark.parametrize(

@@ -2,11 +2,14 @@
 
 import json
 import math
+import re
+from functools import cache
 
 import pytest
 from conftest import ROOT
 from faults import small
 
+from rodsweep.cli.job import job_of
 from rodsweep.config import load_config
 from rodsweep.config.json_schema import json_schema
 from rodsweep.config.parsing import parse
@@ -26,6 +29,9 @@ KEYWORDS = {
     "minItems": (list, lambda value, bound, _: len(value) >= bound),
     "maxLength": (str, lambda value, bound, _: len(value) <= bound),
     "required": (dict, lambda value, keys, _: all(key in value for key in keys)),
+    "allOf": (object, lambda value, kinds, whole: all(fits(value, kind, whole) for kind in kinds)),
+    "not": (object, lambda value, kind, whole: not fits(value, kind, whole)),
+    "pattern": (str, lambda value, pattern, _: re.search(pattern, value) is not None),
     "anyOf": (object, lambda value, kinds, whole: any(fits(value, kind, whole) for kind in kinds)),
     "oneOf": (object, lambda value, kinds, whole: sum(fits(value, kind, whole) for kind in kinds) == 1),
     "items": (list, lambda value, kind, whole: all(fits(item, kind, whole) for item in value)),
@@ -55,9 +61,73 @@ def fits(value, schema, whole):
     return all(good(value, says, whole) for kind, good, says in rules if isinstance(value, kind))
 
 
+@cache
+def whole_schema():
+    return json_schema()
+
+
 def fits_schema(text):
-    whole = json_schema()
+    whole = whole_schema()
     return fits(parse(text, "here"), whole, whole)
+
+
+ARM = "length: 10 cm, young: 100 kPa, viscosity: 1.4 Pa s"
+ROUND = f"{ARM}, radius: 5 mm"
+TOGETHER = [
+    ("spectrum", f"arm: {{{ROUND}, pressure: 2 kPa}}", True),
+    ("spectrum", f"arm: {{{ROUND}, pressure: -2 kPa}}", True),
+    ("spectrum", f"arm: {{{ROUND}, force: [0.1, 0.2 N]}}", True),
+    ("spectrum", f"arm: {{{ROUND}, pressure: {{start: 0, stop: 2 kPa, num: 3}}, force: null}}", True),
+    ("spectrum", f"arm: {{{ARM}, width: 8 mm, height: .9cm, poisson: [0.3, 0.5], force: 0}}", True),
+    ("spectrum", f"arm: {{{ROUND}}}, F: [1, 2]", True),
+    ("spectrum", "F: 3, k1: .inf, k2: +inf, gamma3: 0, points: null", True),
+    ("spectrum", "F: -3, k1: [10, inf], k2: {start: 1, stop: 10, num: 3, spacing: log}, gamma3: 0.0", True),
+    ("thresholds", f"arm: {{{ROUND}}}", True),
+    ("limit_cycle", f"arm: {{{ROUND}, pressure: 3 kPa}}, gamma1: [1, 2]", True),
+    ("limit_cycle", "F: 3, k1: 200, k2: 100, gamma3: 0", True),
+    ("branch", "k1: 200, k2: 100, gamma3: 0", True),
+    ("phase_diagram", "F: [1, 2], k1: [200, 300], k2: 100, gamma3: 0", True),
+    ("spectrum", f"arm: {{{ROUND}}}", False),
+    ("spectrum", f"arm: {{{ROUND}, pressure: null}}", False),
+    ("spectrum", f"arm: {{{ROUND}, pressure: 2 kPa, force: 1 N}}", False),
+    ("spectrum", f"arm: {{{ROUND}, pressure: 2 kPa}}, F: 3", False),
+    ("spectrum", f"arm: {{{ARM}, pressure: 2 kPa}}", False),
+    ("spectrum", f"arm: {{{ARM}, width: 5 mm, pressure: 2 kPa}}", False),
+    ("spectrum", f"arm: {{{ROUND}, width: 5 mm, height: 5 mm, pressure: 2 kPa}}", False),
+    ("spectrum", f"arm: {{{ROUND.replace('5 mm', '-5 mm')}, pressure: 2 kPa}}", False),
+    ("spectrum", f"arm: {{{ROUND.replace('5 mm', '0')}, pressure: 2 kPa}}", False),
+    ("spectrum", f"arm: {{{ROUND}, pressure: '2'}}", False),
+    ("spectrum", f"arm: {{{ROUND}, pressure: [[2 kPa]]}}", False),
+    ("spectrum", f"arm: {{{ROUND}, pressure: 2 kPa, poisson: 0.6}}", False),
+    ("spectrum", f"arm: {{{ROUND}, presure: 2 kPa}}", False),
+    ("spectrum", f"arm: {{{ROUND}, pressure: 2 kPa}}, points: a.csv", False),
+    ("spectrum", "points: a.csv, F: 3", False),
+    ("spectrum", "F: 3, k1: 200, k2: 100", False),
+    ("spectrum", "F: 3, k1: -200, k2: 100, gamma3: 0", False),
+    ("spectrum", "F: 3, k1: [0, 200], k2: 100, gamma3: 0", False),
+    ("spectrum", "F: 3, k1: -inf, k2: 100, gamma3: 0", False),
+    ("spectrum", "F: inf, k1: 200, k2: 100, gamma3: 0", False),
+    ("spectrum", "F: 3, k1: 200, k2: {start: 0, stop: 9, num: 3}, gamma3: 0", False),
+    ("spectrum", "F: 3, k1: 200, k2: 100, gamma3: -1", False),
+    ("limit_cycle", "F: 3, k1: 200, k2: 100, gamma3: 0, gamma1: 0", False),
+    ("thresholds", f"arm: {{{ROUND}, pressure: 2 kPa}}", False),
+    ("thresholds", "F: 3, k1: 200, k2: 100, gamma3: 0", False),
+    ("phase_diagram", "points: a.csv", False),
+]
+"""(task, parameters, whether they are allowed), of keys that depend on each other and of bounds."""
+
+
+@pytest.mark.parametrize(("task", "parameters", "good"), TOGETHER)
+def test_schema_and_check_agree_on_keys_together_and_on_bounds(tmp_path, task, parameters, good):
+    more = "branch: {start: 0, stop: 9}" if task == "branch" else ""
+    text = f"task: {task}\nparameters: {{{parameters}}}\n{more}"
+    (tmp_path / "c.yaml").write_text(text)
+    assert fits_schema(text) == good
+    if good:
+        job_of(tmp_path / "c.yaml", *load_config(tmp_path / "c.yaml"))
+    else:
+        with pytest.raises(InputError):
+            job_of(tmp_path / "c.yaml", *load_config(tmp_path / "c.yaml"))
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "configs").glob("*.yaml")), ids=lambda path: path.stem)

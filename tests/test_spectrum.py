@@ -12,7 +12,7 @@ from rodsweep.model.dispersion import most_amplified_wave
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.spectrum import candidates as candidates_module
-from rodsweep.solve.spectrum.krylov_schur import eigen_solver
+from rodsweep.solve.spectrum.krylov_schur import MOST_KEPT, eigen_solver
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 
@@ -374,3 +374,13 @@ def test_resting_modes_a_hundred_deep_are_those_of_the_cantilever():
     assert result.status == SpectrumStatus.ok
     n = np.arange(8, 101)
     assert np.allclose(result.eigenvalues[7:].real, -(((n - 0.5) * np.pi) ** 4), rtol=1e-7)
+
+
+def test_a_solver_that_is_no_longer_kept_gives_its_memory_back():
+    """petsc4py would set it aside until the end of the process, some megabyte a resolution."""
+    solvers = [eigen_solver(Resolution(1, nodes)) for nodes in range(6, 6 + MOST_KEPT)]
+    assert eigen_solver(Resolution(1, 6)) is solvers[0]
+    eigen_solver(Resolution(2, 6))
+    first, longest_unused, *others = solvers
+    assert not any((longest_unused.eps, longest_unused.A, longest_unused.B, longest_unused.start))
+    assert all(solver.eps and solver.A for solver in (first, *others))

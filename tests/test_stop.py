@@ -37,9 +37,15 @@ def started(command, ranks, pause):
     return process
 
 
-@pytest.mark.parametrize("number", [signal.SIGUSR1, signal.SIGTERM, signal.SIGINT])
 @pytest.mark.parametrize(
-    ("ranks", "rank"), [(0, None), (2, 0), (3, 2)], ids=["alone", "first rank", "last rank"]
+    ("number", "ranks", "rank"),
+    [
+        (signal.SIGINT, 0, None),
+        (signal.SIGTERM, 0, None),
+        (signal.SIGUSR1, 2, 0),
+        (signal.SIGTERM, 3, 2),
+    ],
+    ids=["Ctrl-C", "alone", "first rank", "last rank"],
 )
 def test_stopped_run_ends_with_its_points_in_the_file_and_goes_on(command, number, ranks, rank):
     command.write("c.yaml", SPECTRA)

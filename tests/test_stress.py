@@ -36,6 +36,12 @@ parameters: {F: [20, 35, 45, 60], k1: 1.0e4, k2: [90, 100], gamma3: 1.0e-2}
 limit_cycle: {samples: 8}
 """
 CHAINS = CYCLES.replace("samples: 8", "samples: 8, start: neighbour")
+BRANCHES = """
+task: branch
+parameters: {k1: [100, 150], k2: 1.0e4, gamma3: [1.0e-5, 1.0e-4, 1.0e-3]}
+branch: {stop: 120, cycles: 100, special: 8}
+accuracy: 1.0e-4
+"""
 FAULTS = ("kill a rank", "kill all", "kill the launcher", "SIGTERM to a rank", "SIGUSR1 to the launcher")
 
 
@@ -90,7 +96,9 @@ def points_on_disk(path):
     return int((view.variables["status"] != MISSING).sum())
 
 
-@pytest.mark.parametrize("config", [SPECTRA, CYCLES, CHAINS], ids=["spectra", "cycles", "chains"])
+@pytest.mark.parametrize(
+    "config", [SPECTRA, CYCLES, CHAINS, BRANCHES], ids=["spectra", "cycles", "chains", "branches"]
+)
 def test_run_killed_at_random_ends_in_the_file_of_an_undisturbed_one(command, config):
     random.seed(config)
     command.write("c.yaml", config)

@@ -108,11 +108,11 @@ def test_followed_spectra_are_as_accurate_as_those_of_points_alone(command):
 
 @pytest.mark.parametrize("whole_job", [True, False], ids=["all ranks", "one rank"])
 def test_resume_after_a_kill_gives_the_same_spectra(command, whole_job):
-    """Killed while each rank waits behind its third stretch: what is journalled stays as it is."""
+    """Killed while ranks wait behind their third stretch, of 64 or 36 points: what is journalled stays."""
     command.write("c.yaml", SPECTRA)
     path = command.directory / "c.h5"
     process = command.started("run", "c.yaml", ranks=2, patch=slowly(FOR_EVER, 3))
-    pause_until_journalled(process, path, 6 * 64)
+    pause_until_journalled(process, path, 6 * 36)
     ranks = ranks_in(command.directory)
     kill(*([process.pid, *ranks.values()] if whole_job else [ranks[1]]))
     process.communicate(timeout=PATIENCE)

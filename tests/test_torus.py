@@ -5,6 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 from scipy.integrate import LSODA
+from surveyed import survey_only
 
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.mesh import mesh
@@ -63,6 +64,7 @@ def test_a_motion_that_spirals_into_a_stable_cycle_is_no_torus(monkeypatch):
     assert rod.__wrapped__(203.0, 120).status == CycleStatus.not_settled
 
 
+@survey_only
 def test_another_integrator_on_another_mesh_is_on_the_same_torus():
     """SciPy's LSODA; the states where theta of the tip rises through 0, by its dense output."""
     beam = Beam(Rod(207.0, *SOFT[:3]), SOFT[3], mesh(1, 21))

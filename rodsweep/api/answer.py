@@ -84,8 +84,11 @@ class Answer:
         return "; ".join(filter(None, (self.sentence, self.message)))
 
     def _rows(self) -> Iterator[Row]:
+        # Where the answer is another than the one hoped for, as a rod at rest, most numbers do not exist.
+        other = int(self.data["status"]) != 0
         for name, array in self.data.data_vars.items():
-            if name not in UNTOLD:
+            absent = other and array.dtype.kind == "f" and not array.notnull().any()
+            if name not in UNTOLD and not absent:
                 units = str(array.attrs["units"])
                 yield str(name), _shown(array), "" if units == "1" else units, str(array.attrs["long_name"])
 

@@ -5,10 +5,12 @@ from pathlib import Path
 from typing import Any
 
 from ..cli.job import Job, job_of
+from ..config.arm import LOADS, ArmSection
 from ..config.reading import validated, yaml_of
 from ..config.refusals import nearest
 from ..config.schema import Config
 from ..config.tasks import CONFIGS
+from ..model.arm import SlenderArm
 from .axes import plain
 
 Tree = dict[str, Any]
@@ -31,7 +33,19 @@ def tree_of(task: str, keywords: Mapping[str, Any]) -> Tree:
         section = _section_of(name, sections) or _section_of(_meant(name, sections), sections)
         place = tree.setdefault(section, {}) if section else tree
         place[name] = plain(value)
+    _write_out_arm(task, tree)
     return tree
+
+
+def _write_out_arm(task: str, tree: Tree) -> None:
+    """Puts the quantities of an `rs.Arm` in its place, its load where the task takes one."""
+    parameters = tree.get("parameters", {})
+    arm = parameters.get("arm")
+    if isinstance(arm, SlenderArm):
+        loaded = "F" in CONFIGS[task].taken_of_a_rod(tree.get(task, {}))
+        names = [name for name in ArmSection.model_fields if loaded or name not in LOADS]
+        given = {name: getattr(arm, name) for name in names}
+        parameters["arm"] = {name: plain(value) for name, value in given.items() if value is not None}
 
 
 def job_from(tree: Tree) -> Job:

@@ -5,6 +5,8 @@ from typing import Any, TypedDict
 
 import numpy as np
 
+from ..config.arguments import in_sentences
+
 
 class AxisRange(TypedDict):
     """A range of values as a config has it."""
@@ -15,11 +17,13 @@ class AxisRange(TypedDict):
     spacing: str
 
 
+@in_sentences("rs.linspace(0, 10, num=11)")
 def linspace(start: float | str, stop: float | str, num: int) -> AxisRange:
     """`num` values from start to stop, equally spaced: an axis of a sweep; of an arm also "2 kPa"."""
     return {"start": start, "stop": stop, "num": num, "spacing": "linear"}
 
 
+@in_sentences("rs.logspace(10, 1e6, num=31)")
 def logspace(start: float | str, stop: float | str, num: int) -> AxisRange:
     """`num` values from start to stop, in equal ratios: an axis of a sweep.
 
@@ -29,13 +33,25 @@ def logspace(start: float | str, stop: float | str, num: int) -> AxisRange:
 
 
 def plain(value: Any) -> Any:
-    """A value without NumPy in it: arrays and tuples as lists, scalars as numbers, paths as text."""
+    """A value without NumPy in it: arrays and tuples as lists, scalars as numbers, paths as text.
+
+    Quantities of pint's, and arrays of them, become text with their unit.
+    """
     if isinstance(value, dict):
         return {key: plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple | range):
         return [plain(item) for item in value]
     if isinstance(value, os.PathLike):
         return os.fspath(value)
+    if hasattr(value, "to_base_units"):  # pint's, which NumPy would take the unit from
+        return _with_unit(plain(value.magnitude), f"{value.units:~C}")
     if hasattr(value, "__array__"):
         return np.asarray(value).tolist()
     return value
+
+
+def _with_unit(value: Any, unit: str) -> Any:
+    """A number or a list of numbers, each as text with a unit; as it is where there is none."""
+    if isinstance(value, list):
+        return [_with_unit(item, unit) for item in value]
+    return f"{value!r} {unit}" if unit else value

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..config.arguments import in_sentences
 from ..errors import InputError
 from ..results.file.creation import Plan
 from ..results.file.recent import journalled_points, put_in, unfolded
@@ -21,6 +22,7 @@ from ..results.run.journal import journal_directory
 ENGINE = "h5netcdf"
 
 
+@in_sentences('rs.open("RESULT.h5")')
 def open_result(path: str | Path) -> xr.Dataset:
     """The Dataset of a result file, whole in memory; of a sweep that still runs, as far as it has come.
 

@@ -8,6 +8,7 @@ from typing import Any, Literal, TypedDict, Unpack
 
 import xarray as xr
 
+from ..config.arguments import in_sentences, unknown
 from ..errors import InputError
 from ..post.figures import draw
 from ..post.figures.request import KINDS, ROOTS, WIDTHS, Look
@@ -53,6 +54,7 @@ class Picture:
         return {f"image/{kind}": self.image, "text/plain": self.shown}
 
 
+@in_sentences('rs.plot(data, "figure.pdf", width="single")')
 def plot(
     data: Drawable | Sequence[Drawable],
     output: str | Path | None = None,
@@ -68,6 +70,9 @@ def plot(
     output: a file to write too. The choices are the options of `rodsweep plot`. Raises InputError where there
     is nothing that a figure could show.
     """
+    for name in look:
+        if name not in Looks.__annotations__:
+            raise unknown(name, ["output", "roots", "what", "points", *Looks.__annotations__])
     _refuse_other_than(roots=(roots, ROOTS), what=(what, KINDS), width=(look.get("width"), WIDTHS))
     points = [points] if isinstance(points, int) else points
     several = [data] if isinstance(data, Drawable) else list(data) if isinstance(data, Sequence) else []

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
+from ..config.arguments import in_sentences
 from ..config.axes import words
 from ..config.refusals import nearest
 from ..config.tasks import CONFIGS
@@ -36,6 +37,7 @@ class SoftRod:
 
     __slots__ = ("_values",)
 
+    @in_sentences("rs.Rod(F=30, k1=1e4, k2=100, gamma3=0.01)")
     def __init__(
         self,
         *,
@@ -64,33 +66,40 @@ class SoftRod:
         """The values by name."""
         return dict(self._values)
 
+    @in_sentences("rod.replace(F=40)")
     def replace(self, **changed: float) -> "SoftRod":
         """The same rod with other values of some parameters."""
         values: dict[str, Any] = self._values | changed
         return SoftRod(**values)
 
+    @in_sentences("rod.spectrum(modes=4)")
     def spectrum(self, **options: Unpack[OfSpectrum]) -> Answer:
         """The leading eigenvalues, growth_rate + i frequency in 1/tau2: `modes` of them, by default 4."""
         return self._answer("spectrum", options)
 
+    @in_sentences("rod.thresholds(F_max=100)")
     def thresholds(self, **options: Unpack[OfThresholds]) -> Answer:
         """The forces at which the rod starts to oscillate, flutters and is stable again, up to `F_max`."""
         return self._answer("thresholds", options)
 
+    @in_sentences("rod.modes(nodes=65)")
     def modes(self, **options: Unpack[OfModes]) -> Answer:
         """The leading modes with their adjoints, and the transient growth that they allow."""
         return self._answer("modes", options)
 
+    @in_sentences("rod.cycle(harmonics=8)")
     def limit_cycle(self, **options: Unpack[OfLimitCycle]) -> Answer:
         """How the rod beats: period, amplitude, energy and Floquet multipliers of its limit cycle."""
         return self._answer("limit_cycle", options)
 
     cycle = limit_cycle
 
+    @in_sentences("rod.criticality(F_max=100)")
     def criticality(self, **options: Unpack[OfCriticality]) -> Answer:
         """On which side of every Hopf point up to `F_max` its cycles are, and how they grow from there."""
         return self._answer("criticality", options)
 
+    @in_sentences('rod.branch(along="F")')
     def branch(self, **options: Unpack[OfBranch]) -> Answer:
         """Its cycles, stable or not, followed in the parameter `along` from every Hopf point to the end."""
         return self._answer("branch", options)
@@ -100,10 +109,13 @@ class SoftRod:
         def __getattr__(self, name: str) -> Callable[..., Answer]:
             """Any other task, which needs no words of its own."""
             if name not in CONFIGS:
-                raise AttributeError(f"a rod has no {name!r}; its tasks are {', '.join(CONFIGS)}")
+                known = [task for task, config in CONFIGS.items() if not config.of_several_rods]
+                raise AttributeError(f"a rod has no {name!r}; its tasks are {', '.join(known)}")
             return lambda **options: self._answer(name, options)
 
     def _answer(self, task: str, options: Mapping[str, Any]) -> Answer:
+        if CONFIGS[task].of_several_rods:
+            raise InputError(f"{task} is of several rods; ask rs.sweep({task!r}, ...) with two axes")
         for name in options:
             if name in PARAMETERS:
                 raise InputError(f"{name} belongs to the rod: rod.replace({name}=...) is another one")

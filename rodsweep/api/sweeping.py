@@ -10,6 +10,7 @@ from typing import Any
 
 import xarray as xr
 
+from ..config.arguments import in_sentences
 from ..config.reading import yaml_of
 from ..errors import EnvironmentLacks, InputError
 from .asking import Tree, job_from, tree_of
@@ -23,11 +24,13 @@ REFUSED: dict[int, type[Exception]] = {2: InputError, 3: EnvironmentLacks}
 """What the other exit statuses mean."""
 
 
+@in_sentences('rs.sweep("spectrum", F=[20, 30], k1=1e4, k2=100, gamma3=0.01)')
 def sweep(task: str, *, ranks: int | None = None, **keywords: Any) -> xr.Dataset:
     """The Dataset of a task over its points: the same as from the file of `rodsweep run`.
 
     keywords: the keys of a config without their sections. Parameters are a number, a list or array of
-    increasing values, `linspace(...)` or `logspace(...)`; `points` is the name of a CSV file instead.
+    increasing values, `linspace(...)` or `logspace(...)`; `points` is the name of a CSV file instead, `arm`
+    an `Arm` or a mapping of its quantities, whose load is left out where the task finds it.
     `accuracy`, `title` and the options of the task follow; what is not given has the config's default.
 
     ranks: by default the points are solved in this process; otherwise by the command on so many ranks.

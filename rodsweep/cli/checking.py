@@ -12,7 +12,7 @@ from .job import Job
 def describe_job(job: Job) -> None:
     """Prints the description of a valid config."""
     console = Console(highlight=False)
-    console.print(f"{job.path}: valid. {job.config.title}", markup=False)
+    console.print(f"{job.path}: valid. {job.config.title}".rstrip(), markup=False)
     console.print(job.task.headline())
     if job.quantities:
         console.print(_arm_line(job), markup=False)

@@ -120,6 +120,14 @@ class ArmSection(Strict):
         names = (*SECTION, *LOADS)
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
+    def refuse_unfit(self) -> None:
+        """ValueError where a quantity is not allowed, or the first of the arms is not slender or crushed."""
+        for name, axis in self._given.items():
+            low = float(axis.array()[0])
+            if name in SECTION and name != "poisson" and not low > 0:
+                raise ValueError(f"parameters.arm.{name} = {low:.6g} {UNITS[name][0]} is not above 0")
+        next(self._arms())
+
     def refuse_misuse(self, forced: bool, F_given: bool) -> None:
         """ValueError unless there is one load where the task needs one, and no axis that changes nothing.
 

@@ -77,6 +77,7 @@ class Axes(LinearAxes):
 
     def _require_arm(self, arm: ArmSection, forced: bool) -> None:
         """ValueError unless the arm, with what is given beside it, makes points."""
+        arm.refuse_unfit()
         arm.refuse_misuse(forced, "F" in self.given_axes)
         beside = {name: axis for name, axis in self.given_axes.items() if axis.size > 1}
         count = arm.count(math.prod(axis.size for axis in beside.values()))

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from math import inf, isfinite
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
@@ -59,6 +59,8 @@ class BranchConfig(Config):
     """Relative error of each cycle's period and largest y. Special points are located to it or to 1e-9,
     whichever is less; the file holds estimates of all."""
     branch: BranchOptions = BranchOptions()
+
+    others_may_be_needed: ClassVar[bool] = True
 
     @property
     def names(self) -> tuple[str, ...]:

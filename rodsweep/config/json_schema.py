@@ -1,7 +1,8 @@
 """The config as a JSON schema, from which editors complete keys and mark mistakes while one writes.
 
-Made of the models of the tasks, with the sentences that stand below their keys. What only a whole config
-tells (which axes are missing, F < k1) is not in it; `rodsweep check` says that.
+Made of the models of the tasks, with the sentences that stand below their keys, and of what `json_conditions`
+says of keys together. What only a whole config tells (F < k1, sorted lists) is not in it; `rodsweep check`
+says that.
 """
 
 import ast
@@ -14,6 +15,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from ..model.parameters import PARAMETERS
+from .json_conditions import nodes_of, points_of, restrict_arm, with_bounds
 from .refusals import model_of
 from .tasks import CONFIGS
 from .values import Axis, Strict
@@ -34,9 +36,15 @@ def json_schema() -> dict[str, Any]:
         _describe_keys(schema, config)
         for section in sections_of(config):
             _describe_keys(definitions[section.__name__], section)
+        if not config.others_may_be_needed:
+            condition = points_of(config.taken_of_a_rod({}), lists=not config.of_several_rods)
+            schema["properties"]["parameters"] = {"allOf": [schema["properties"]["parameters"], condition]}
         tasks.append(schema)
+    for section in definitions.values():
+        with_bounds(section.get("properties", {}), definitions["Axis"])
+    restrict_arm(definitions["ArmSection"], definitions["Axis"])
     whole = {"oneOf": tasks, "definitions": definitions}
-    for node in _nodes(whole):
+    for node in nodes_of(whole):
         for ours, theirs in BOUNDS.items():
             if ours in node:
                 bound = node.pop(ours)
@@ -82,12 +90,3 @@ def _describe_keys(schema: dict[str, Any], section: type[BaseModel]) -> None:
         key.pop("title", None)
         if name in meanings:
             key["description"] = meanings[name]
-
-
-def _nodes(schema: Any) -> Iterator[dict[str, Any]]:
-    """All mappings of a schema."""
-    if isinstance(schema, dict):
-        yield schema
-    if isinstance(schema, dict | list):
-        for inner in list(schema.values() if isinstance(schema, dict) else schema):
-            yield from _nodes(inner)

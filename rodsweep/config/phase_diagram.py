@@ -1,15 +1,19 @@
 """The keys of the task phase_diagram."""
 
 from math import inf
-from typing import Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS, all_but
 from .arm import AXIS_OF
-from .axes import DEFAULTS, words
+from .axes import DEFAULTS, LinearAxes, words
 from .schema import Crossings, LinearConfig
-from .values import Strict
+from .values import Axis, Strict
+
+
+class BautinAlong(LinearAxes):
+    """One parameter with values, over which generalised Hopf points are followed."""
 
 
 class PhaseDiagramOptions(Strict):
@@ -23,6 +27,36 @@ class PhaseDiagramOptions(Strict):
     """Whether the boundaries between the rows are followed as curves."""
     criticality: bool = False
     """Whether Hopf curves tell on which side cycles are born, and where that changes; needs `curves`."""
+    cycles: bool = False
+    """Whether the cycles of each row are followed, for the stable states and, with `curves`, their folds."""
+    bautin_along: Annotated[BautinAlong | None, Field(description="a mapping of one parameter to values")] = (
+        None
+    )
+    """A third parameter with values, over which generalised Hopf points are followed as curves; needs
+    `criticality`."""
+
+    @property
+    def third(self) -> tuple[str, Axis] | None:
+        """The third parameter and its values, if one is given."""
+        given = [(name, getattr(self.bautin_along, name, None)) for name in LINEAR_PARAMETERS]
+        return next(((name, axis) for name, axis in given if axis is not None), None)
+
+    @model_validator(mode="after")
+    def _one_third_parameter(self) -> "PhaseDiagramOptions":
+        if self.bautin_along is None:
+            return self
+        given = [name for name in LINEAR_PARAMETERS if getattr(self.bautin_along, name) is not None]
+        if len(given) != 1:
+            raise ValueError(f"bautin_along has {len(given)} parameters; give one, with at least two values")
+        name, axis = given[0], getattr(self.bautin_along, given[0])
+        allowed, values = PARAMETERS[name].allowed, axis.array()
+        if axis.size < 2 or not (values < inf).all() or not all(map(allowed.contains, values)):
+            raise ValueError(
+                f"bautin_along.{name} needs at least two values, all {allowed.phrase} and none of them inf"
+            )
+        if not self.criticality:
+            raise ValueError("bautin_along is given but criticality is false; set criticality: true")
+        return self
 
 
 class PhaseDiagramConfig(LinearConfig):
@@ -32,6 +66,7 @@ class PhaseDiagramConfig(LinearConfig):
     phase_diagram: PhaseDiagramOptions = PhaseDiagramOptions()
 
     into_crushed: ClassVar[bool] = True
+    of_several_rods: ClassVar[bool] = True
     beyond: ClassVar[tuple[str, ...]] = ("gamma1",)
 
     @property
@@ -45,7 +80,7 @@ class PhaseDiagramConfig(LinearConfig):
 
     @property
     def gamma1(self) -> float:
-        """The axial drag, which only the criticality feels: as given, the arm's, or the default."""
+        """The axial drag, which only the criticality and cycles feel: as given, the arm's, or the default."""
         if "gamma1" in self.parameters.numbers:
             return self.parameters.numbers["gamma1"]
         if self.parameters.arm is not None:
@@ -58,13 +93,19 @@ class PhaseDiagramConfig(LinearConfig):
         meant, axes, line = super().meaning, self.parameters.axes, self.plane[0]
         asked: dict[str, Any] = {line: {"values": axes[line].array().tolist()}}
         meant |= {"parameters": meant["parameters"] | asked}
-        # Rows do not feel the criticality, which belongs to the curves; nor gamma1, which belongs to it.
+        # Rows do not feel the criticality, which belongs to the curves; gamma1 they feel by their cycles.
         asked_of_curves = meant["phase_diagram"].pop("criticality")
+        meant["phase_diagram"].pop("bautin_along", None)
         meant["parameters"].pop("gamma1", None)
+        if self.phase_diagram.cycles:
+            meant["phase_diagram"]["gamma1"] = self.gamma1
         if self.phase_diagram.curves:
             meant |= {"together": {"logarithmic": [name for name in self.plane if axes[name].logarithmic]}}
         if asked_of_curves:
             meant["together"]["criticality"] = {"gamma1": self.gamma1}
+        if self.phase_diagram.third is not None:
+            name, axis = self.phase_diagram.third
+            meant["together"]["bautin_along"] = {name: axis.array().tolist(), "log": axis.logarithmic}
         return meant
 
     @model_validator(mode="after")
@@ -75,10 +116,10 @@ class PhaseDiagramConfig(LinearConfig):
                 "phase_diagram.criticality is true but phase_diagram.curves is false; it is told along the "
                 "curves: set phase_diagram.curves: true or remove phase_diagram.criticality"
             )
-        if "gamma1" in self.parameters.numbers and not options.criticality:
+        if "gamma1" in self.parameters.numbers and not (options.criticality or options.cycles):
             raise ValueError(
                 "parameters.gamma1 is given but the task phase_diagram does not use it without "
-                "phase_diagram.criticality: true; remove it or set that"
+                "phase_diagram.criticality: true or phase_diagram.cycles: true; remove it or set that"
             )
         return self
 
@@ -109,5 +150,20 @@ class PhaseDiagramConfig(LinearConfig):
             raise ValueError(
                 f"parameters.{long[0]} contains inf, which is not allowed on the axis along which a phase "
                 f"diagram is searched; remove it (on the other axis, {long[1]}, {stiff} may be inf)"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _third_beside_the_plane(self) -> "PhaseDiagramConfig":
+        if self.phase_diagram.third is None:
+            return self
+        name, axis = self.phase_diagram.third
+        low, high = axis.array()[[0, -1]]
+        value = self.parameters.axes[name].array()
+        if name in self.plane or not low <= value[0] <= high:
+            raise ValueError(
+                f"phase_diagram.bautin_along.{name} is from {low:g} to {high:g}; it must be a parameter with "
+                f"one value that lies in this range, and parameters.{name} has "
+                f"{len(value)} from {value[0]:g}"
             )
         return self

@@ -67,7 +67,7 @@ def config_of(resolved: dict[str, Any]) -> Config:
             parameters = _without_those_of_the_arm(parameters | {"arm": _axes_of(parameters["arm"])})
         # An option that is not used must not be given, but every resolved config has its default.
         options = {
-            name: value
+            name: _axes_of(value) if isinstance(value, dict) else value
             for name, value in resolved[task].items()
             if name not in fields or value != fields[name].default
         }
@@ -107,7 +107,12 @@ def text_of(config: Config) -> str:
     """A config as the text of a file: what is not a default, axes as a user writes them."""
     given = config.model_dump(mode="json", exclude_defaults=True, exclude_none=True)
     axes = {name: _written(value) for name, value in given["parameters"].items()}
-    return yaml_of({"task": config.task} | given | {"parameters": axes})
+    options = {
+        name: {key: _written(axis) for key, axis in value.items()} if isinstance(value, dict) else value
+        for name, value in given.get(config.task, {}).items()
+    }
+    asked = {config.task: options} if options else {}
+    return yaml_of({"task": config.task} | given | {"parameters": axes} | asked)
 
 
 def _written(axis: Any) -> Any:

@@ -32,6 +32,11 @@ class Config(Strict, ABC):
     into_crushed: ClassVar[bool] = False
     """Whether a grid may reach into the crushed rods, because they are one of the task's answers."""
 
+    others_may_be_needed: ClassVar[bool] = False
+    """Whether its options decide which parameters it needs."""
+    of_several_rods: ClassVar[bool] = False
+    """Whether a single rod makes nothing of the task."""
+
     @property
     @abstractmethod
     def names(self) -> tuple[str, ...]:

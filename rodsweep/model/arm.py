@@ -6,6 +6,9 @@ Knows no mesh and no solver. Quantities are given as text with a unit, or as num
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from math import inf
+from numbers import Real
+from typing import Any
 
 from ..errors import InputError
 from .drag import LEAST_SLENDERNESS, Drag, range_of_drag
@@ -68,15 +71,26 @@ class SlenderArm:
 
     def __post_init__(self) -> None:
         """Reads the units, and refuses what is no slender arm."""
-        self._refuse_other_sets()
         object.__setattr__(self, "si", InSI(**{name: self._read(name) for name in UNITS}))
-        if not -1 < self.poisson <= 0.5:
-            raise InputError(f"poisson = {self.poisson} is not a number above -1 and up to 0.5")
+        ratio: Any = self.poisson
+        if isinstance(ratio, bool) or not isinstance(ratio, Real) or not -1 < float(ratio) <= 0.5:
+            told = repr(ratio) if isinstance(ratio, str) else str(ratio)
+            raise InputError(f"poisson = {told:.60} is not a number above -1 and up to 0.5")
+        self._refuse_other_sets()
         if self.si.density_difference <= -self.si.fluid_density:
             least = -self.si.fluid_density
             given = self._told("density_difference")
             raise InputError(f"{given} leaves the arm no mass; it must be above {least:.4g} kg/m^3")
-        slenderness = self.si.length / self.section.drag_radius
+        try:
+            slenderness = self.si.length / self.section.drag_radius
+            fine = all(0 < number < inf for number in (self.k1, self.k2, self.force_scale))
+        except ArithmeticError:
+            fine = False
+        if not fine:
+            raise InputError(
+                f"{self._told('length')} makes numbers too large or too small with its section and Young's "
+                "modulus; check their units"
+            )
         if slenderness < LEAST_SLENDERNESS:
             raise InputError(
                 f"{self._told('length')} is {slenderness:.3g} radii; the drag of a slender arm needs at "
@@ -96,7 +110,10 @@ class SlenderArm:
         )
 
     def _refuse_other_sets(self) -> None:
-        """InputError unless one section and one load are given."""
+        """InputError unless length, material, fluid, one section and one load are given."""
+        for name in ("length", "young", "viscosity"):
+            if getattr(self, name) is None:
+                raise InputError(f"{name} is missing; write it as in '{UNITS[name][1]}'")
         sides = (self.width, self.height)
         if (self.radius is None) == (sides == (None, None)) or (self.radius is None and None in sides):
             raise InputError("radius: give either a radius, or width and height")
@@ -116,7 +133,10 @@ class SlenderArm:
     def _told(self, name: str) -> str:
         """A quantity as it was given, for a sentence."""
         given = getattr(self, name)
-        return f"{name} = '{given}'" if isinstance(given, str) else f"{name} = {given:.6g} {UNITS[name][0]}"
+        if isinstance(given, str):
+            return f"{name} = '{given}'"
+        value = in_si(name, given, *UNITS[name])
+        return f"{name} = {value:.6g} {UNITS[name][0]}"
 
     @property
     def section(self) -> Section:

@@ -4,8 +4,8 @@ Axes of a config, headers of point lists, ranges and refusals, dimensions and un
 figures are made of this table. `rodsweep.config` reads it too, and nothing else of the model.
 """
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
 from math import inf, isfinite
 
 
@@ -15,6 +15,8 @@ class Range:
 
     contains: Callable[[float], bool]
     phrase: str
+    bound: Mapping[str, float] = field(default_factory=dict)
+    """The least value, in the words of JSON schemas; none where every finite number may be."""
 
     def first_outside(self, values: Iterable[float]) -> float | None:
         """The first of the values that may not be; None where all may."""
@@ -68,7 +70,9 @@ def stiffness(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
         meaning=meaning,
         remark=f"; inf is {rigid}",
         allowed=Range(
-            lambda value: value > 0 and 1 / value < inf, f"a number above 0, or inf for an {rigid} rod"
+            lambda value: value > 0 and 1 / value < inf,
+            f"a number above 0, or inf for an {rigid} rod",
+            {"exclusiveMinimum": 0},
         ),
         rigid=rigid,
     )
@@ -92,14 +96,14 @@ PARAMETERS = {
             symbol=r"\tilde\gamma_3",
             unit="gamma2 L^2",
             meaning="rotational drag",
-            allowed=Range(lambda value: 0 <= value < inf, "a finite number, 0 or above"),
+            allowed=Range(lambda value: 0 <= value < inf, "a finite number, 0 or above", {"minimum": 0}),
         ),
         Parameter(
             name="gamma1",
             symbol=r"\tilde\gamma_1",
             unit="gamma2",
             meaning="axial drag",
-            allowed=Range(lambda value: 0 < value < inf, "a finite number above 0"),
+            allowed=Range(lambda value: 0 < value < inf, "a finite number above 0", {"exclusiveMinimum": 0}),
             linear=False,
             default=1.0,
         ),

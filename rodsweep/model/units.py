@@ -3,7 +3,7 @@
 import math
 import re
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..errors import EnvironmentLacks, InputError
 
@@ -40,11 +40,11 @@ def split(given: str) -> tuple[float, str]:
 
 def in_si(name: str, given: Given, unit: str, example: str) -> float:
     """The quantity `name` in the SI unit `unit`; InputError, beginning with the name, where it is none."""
+    allowed = f"a number with a unit, as in '{example}'"
     if not isinstance(given, str):
-        value = float(given)
+        value = _number(name, given, unit, allowed)
     else:
         number, written = split(given)
-        allowed = f"a number with a unit, as in '{example}'"
         if math.isnan(number):
             raise InputError(f"{name} = '{given}' is not {allowed}")
         if not written:
@@ -53,6 +53,22 @@ def in_si(name: str, given: Given, unit: str, example: str) -> float:
     if not math.isfinite(value):
         raise InputError(f"{name} = '{given}' is not a finite number")
     return value
+
+
+def _number(name: str, given: Any, unit: str, allowed: str) -> float:
+    """A number in SI, or a quantity of pint's, as the number in `unit`; InputError where it is neither."""
+    if hasattr(given, "to_base_units"):
+        return _number(name, given.magnitude, unit, allowed) * factor(
+            f"{name} = '{given!s:.60}'", f"{given.units:C}", unit, allowed
+        )
+    try:
+        if isinstance(given, bool | complex):
+            raise TypeError
+        return float(given)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(
+            f"{name} = {given!s:.60} is not one quantity; write {allowed}, or one number in {unit}"
+        ) from None
 
 
 def factor(subject: str, written: str, unit: str, allowed: str) -> float:
@@ -84,3 +100,11 @@ def unit_of(given: Given, default: str) -> str:
 def written_in(value: float, unit: str, si: str) -> float:
     """A value in the SI unit `si`, in another unit."""
     return value / factor("", unit, si, "")
+
+
+def compact(value: float, unit: str) -> tuple[float, str]:
+    """(factor, unit): an SI unit with the prefix in which `value` of it is well read, and how many it is."""
+    if not value or not math.isfinite(value):
+        return 1.0, unit
+    told = registry().Quantity(value, unit).to_compact()
+    return float(told.magnitude) / value, f"{told.units:~}"

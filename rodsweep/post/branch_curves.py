@@ -33,6 +33,7 @@ class SpecialOfBranch:
     tip_y_max: float
     reason: str
     unstable_after: int
+    meets: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +118,7 @@ def _specials(v: dict[str, Array], places: Iterable[int]) -> tuple[SpecialOfBran
             float(v["special_tip_y_max"][i]),
             END_REASONS[int(v["special_reason"][i])],
             int(v["special_unstable_after"][i]),
+            int(v["special_meets"][i]) if "special_meets" in v else 0,
         )
         for i in places
     )

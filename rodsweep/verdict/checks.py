@@ -27,6 +27,11 @@ class Check:
     fine: bool
     sentence: str
 
+    @property
+    def told(self) -> str:
+        """The sentence, which begins with the word warning where it is one."""
+        return self.sentence if self.fine else f"warning: {self.sentence}"
+
 
 def checks_of(arm: SlenderArm, found: FlutterRange) -> list[Check]:
     """All of them."""

@@ -115,10 +115,18 @@ class Verdict:
 def march(rod, amplitude, periods, tolerance=TOLERANCE):
     """The verdict on the motion from the leading mode, with a deflection of the tip, in so many periods."""
     w, mode = rod.leading_mode()
-    start, tip = amplitude * mode.real, 2 * rod.order - 1
     end = periods * 2 * np.pi / w.imag if w.imag else periods / abs(w.real)
+    return march_from(rod, amplitude * mode.real, end, tolerance, tolerance * amplitude)
+
+
+def march_from(rod, start, end, tolerance=TOLERANCE, least=TOLERANCE):
+    """The verdict on the motion from a start, (3 order,) beyond rest, until a time.
+
+    tolerance: relative, least: absolute.
+    """
+    tip = 2 * rod.order - 1
     run = BDF(
-        lambda _, q: rod.rate(q), 0.0, rod.straight + start, end, rtol=tolerance, atol=tolerance * amplitude,
+        lambda _, q: rod.rate(q), 0.0, rod.straight + start, end, rtol=tolerance, atol=least,
         jac=lambda _, q: rod.jacobian(q),
     )  # fmt: skip
     size, maxima, rising = np.abs(start[2 * rod.order :]).max(), [], []

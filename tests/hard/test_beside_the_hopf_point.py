@@ -27,10 +27,10 @@ def hopf(rod):
 
 
 @cache
-def beside(rod, distance):
+def beside(rod, distance, start="mode"):
     """What a rod does at a relative distance from its Hopf point."""
     point = CyclePoint(hopf(rod) * (1 + distance), *rod)
-    return solve_cycle(point, CycleRequest(ACCURACY, 0.01, 1, 0, 0, 0, most_periods=400))
+    return solve_cycle(point, CycleRequest(ACCURACY, 0.01, 1, 0, 0, 0, most_periods=400, start=start))
 
 
 @pytest.mark.parametrize("rod", RODS)
@@ -49,6 +49,15 @@ def test_amplitude_is_as_the_square_root_of_the_distance(rod):
 def test_a_cycle_recovers_twice_as_fast_as_the_straight_rod_is_left(rod):
     c = beside(rod, 1e-5)
     assert -np.log(c.multiplier) / (c.linear_growth_rate * c.measures.period) == pytest.approx(2.0, abs=0.02)
+
+
+@pytest.mark.parametrize("rod", RODS)
+def test_the_hopf_point_leads_to_the_same_cycle_however_near(rod):
+    for distance in (1e-7, 1e-5):
+        mode, start = beside(rod, distance), beside(rod, distance, "hopf")
+        assert start.status == CycleStatus.cycle
+        assert start.measures.tip_y_max == pytest.approx(mode.measures.tip_y_max, rel=2 * ACCURACY)
+        assert start.measures.period == pytest.approx(mode.measures.period, rel=2 * ACCURACY)
 
 
 @pytest.mark.parametrize("distance", [-1e-8, -1e-7, -1e-5])

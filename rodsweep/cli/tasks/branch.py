@@ -1,5 +1,6 @@
 """The task branch: the cycles of every rod, followed in one parameter from its Hopf points."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ from .protocol import Part, Solver, Task
 
 if TYPE_CHECKING:
     from ...solve.branch.branches import BranchesOfRod
-    from ...solve.branch.following import BranchPoint
+    from ...solve.branch.following import BranchCurve, BranchPoint
     from ...solve.branch.special_points import SpecialPoint
     from ...solve.changes.unstable_modes import Crossing
 
@@ -39,11 +40,8 @@ class BranchTask(Task):
             ("axial drag", True, "parameters.gamma1; it moves no Hopf point, and every cycle"),
             ("branches born at Hopf points", True, kept),
             ("unstable cycles", True, "with all their Floquet multipliers"),
-            (
-                "branches without mirror symmetry",
-                False,
-                "where they are born is found; they are not followed",
-            ),
+            ("branches without mirror symmetry", True, "from where the symmetry of those breaks"),
+            ("branches of twice the period, tori", False, "where they are born is found"),
             ("cycles on no such branch", False, "task: limit_cycle finds stable ones from a motion"),
             ("certificate", options.certify, why),
             ("gravity, inertia, motion out of the plane", False, "not part of the overdamped problem"),
@@ -82,10 +80,12 @@ def record(result: "BranchesOfRod", along: str, points: int, special: int) -> di
     for curve in result.curves:
         starts.append(starts[-1] + len(curve.points))
     after = {crossing.at: crossing for crossing in result.crossings}
+    others = meetings(result.curves)
     specials = [
-        _special(one, starts[number - 1], after.get(one.at)) | {"special_branch": number}
+        _special(one, starts[number - 1], after.get(one.at))
+        | {"special_branch": number, "special_meets": others.get((number, place), 0)}
         for number, curve in enumerate(result.curves, 1)
-        for one in curve.special
+        for place, one in enumerate(curve.special)
     ]
     known = result.status.name != "failed"
     counts = {"hopf": len(result.crossings), "branch": len(result.curves), "point": len(cycles)}
@@ -99,6 +99,18 @@ def record(result: "BranchesOfRod", along: str, points: int, special: int) -> di
         empty = [{v.name: v.fill for v in variables}] * (most - len(rows))
         values |= {v.name: [row[v.name] for row in [*rows[:most], *empty]] for v in variables}
     return values | {"seconds": result.seconds, "status": result.status}
+
+
+def meetings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, int], int]:
+    """The number of the branch that meets another at a symmetry breaking, by branch and place on it."""
+    numbers = {}
+    for number, curve in enumerate(curves, 1):
+        ends = ((curve.breaking, 0), (curve.meets, len(curve.special) - 1))
+        for breaking, place in ends:
+            if breaking is not None:
+                numbers[number, place] = breaking.branch
+                numbers[breaking.branch, breaking.place] = number
+    return numbers
 
 
 def _cycle(point: "BranchPoint", along: str) -> dict[str, Any]:

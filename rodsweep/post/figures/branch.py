@@ -19,6 +19,7 @@ MARKS = {
     "fold": ("s", "fold"),
     "torus": ("D", "torus point"),
     "symmetry_breaking": ("^", "symmetry breaking"),
+    "period_doubling": ("v", "period doubling"),
     "left_the_model": ("X", "the model ends ($h_1 = 0$)"),
     "no_cycle_found": ("x", "no further cycle found"),
     "list_full": ("|", "last cycle stored"),

@@ -64,7 +64,7 @@ def draw_class_bars(view: View) -> Figure:
         axes.spines["left"].set_visible(False)
     else:
         axes.set(ylim=(0, end), ylabel=LABELS["F"])
-        number_points(axes, count)
+        number_points(axes, view, count)
     legend_below(figure, handles, columns=2)
     figure.suptitle(heading(view, parameter_text(shared_parameters(view))), fontsize=9)
     return figure

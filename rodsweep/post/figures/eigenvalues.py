@@ -52,7 +52,7 @@ def draw_list_of_spectra(view: View) -> Figure:
         _spread(axes, None, values)
         axes.axhline(0, color="0.5", lw=0.6, zorder=0)
         axes.set_ylabel(rf"$\mathrm{{{part}}}\,\omega\,\tau_2$")
-    number_points(panels[1], len(growth))
+    number_points(panels[1], view, len(growth))
     legend_below(figure, handles, columns=2)
     figure.suptitle(heading(view, parameter_text(shared_parameters(view))), fontsize=9)
     return figure

@@ -6,10 +6,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
+from ...model.units import compact
 from ...results.file.view import View
+from ...results.layouts.arm import QUANTITY_UNITS
 
 BESIDE_POINTS = ("mode", "u", "crossing")
 """Coordinates of other dimensions, which may be as long as the list."""
+MADE = ("tau2", "force_scale", "pressure_scale")
+"""Units that follow from the quantities of an arm."""
 FEW_POINTS = 12
 """Points of a list whose places along an axis are all labelled."""
 
@@ -46,8 +50,30 @@ def shared_parameters(view: View) -> dict[str, float]:
     return {name: float(column[0]) for name, column in columns.items() if len(np.unique(column)) == 1}
 
 
-def number_points(axes: Axes, count: int) -> None:
-    """Makes an axis that of the points of a list, from 1, half a place free at both ends."""
+def number_points(axes: Axes, view: View, count: int) -> None:
+    """Makes an axis that of the points of a list, from 1, half a place free at both ends.
+
+    Of an arm it tells the quantities that vary, in SI units: of each point, where they are few.
+    """
     axes.set_xlim(0.5, count + 0.5)
     axes.xaxis.set_major_locator(MaxNLocator(min(count, FEW_POINTS), integer=True, min_n_ticks=1))
-    axes.set_xlabel("point of the list")
+    varied = _varied_quantities(view)
+    if varied and count <= FEW_POINTS:
+        columns = zip(*(numbers for _, numbers in varied), strict=True)
+        axes.set_xticks(np.arange(1, count + 1), ["\n".join(numbers) for numbers in columns])
+        axes.set_xlabel("\n".join(name for name, _ in varied))
+    else:
+        spans = (f"{name}: {numbers[0]} to {numbers[-1]}" for name, numbers in varied)
+        axes.set_xlabel("\n".join(["point of the list", *spans]))
+
+
+def _varied_quantities(view: View) -> list[tuple[str, list[str]]]:
+    """(name with unit, value at each point) of an arm's quantities with several values, the slowest first."""
+    told = []
+    for name, values in view.quantities.items():
+        if name not in MADE and np.ndim(values) and len(np.unique(values)) > 1:
+            unit = QUANTITY_UNITS[name].replace("1", "")
+            factor, unit = compact(float(np.abs(values).max()), unit) if unit else (1.0, "")
+            heading = f"{name} ({unit})" if unit else f"{name}'s ratio"
+            told.append((heading, [f"{factor * value:.4g}" for value in values]))
+    return told

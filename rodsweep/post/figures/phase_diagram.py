@@ -1,5 +1,6 @@
 """Phase diagrams, as the paper's Fig. 4: what the rod does over two parameters, with the boundaries."""
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,21 +13,66 @@ from matplotlib.patches import Patch
 from ...arrays import Array
 from ...model.parameters import CRUSHING, LINEAR_PARAMETERS
 from ...results.file.view import View
-from ...results.layouts.phase_diagram import CLASSES
+from ...results.layouts.branch import SPECIAL_KINDS
+from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from .class_bars import CLASS_COLOURS
 from .request import FigureRequest
-from .style import LABELS, SYMBOLS, fixed_text, heading, legend_below, need, scale
+from .style import LABELS, SYMBOLS, THIRD, fixed_text, heading, legend_below, need, scale
 from .style import number as number_text
 
-_NUMBERS = [number for number, _ in CLASSES]
-CLASS_MAP: dict[str, Any] = {
-    "cmap": ListedColormap([CLASS_COLOURS[word] for _, word in CLASSES]),
-    "norm": BoundaryNorm([*(n - 0.5 for n in _NUMBERS), _NUMBERS[-1] + 0.5], len(_NUMBERS)),
-    "shading": "nearest",
-    "rasterized": True,
+STATE_COLOURS = {
+    "missing": "white",
+    "neither_known": "#F6E3A1",
+    "straight": CLASS_COLOURS["oscillatory"],
+    "cycle": CLASS_COLOURS["flutter"],
+    "both": "#8E6BB0",
+    "undecided": CLASS_COLOURS["undecided"],
+    "crushed": CLASS_COLOURS["crushed"],
 }
-"""How the classes of points are drawn."""
-CRUSHED = next(number for number, word in CLASSES if word == "crushed")
+"""Of the stable states: where both are, the colour lies between those of the two."""
+
+
+@dataclass(frozen=True, slots=True)
+class Palette:
+    """What a map shows: a variable of words, its words with their numbers, and their colours."""
+
+    variable: str
+    words: tuple[tuple[int, str], ...]
+    colours: dict[str, str]
+
+    @property
+    def looks(self) -> dict[str, Any]:
+        """How it is drawn."""
+        numbers = [number for number, _ in self.words]
+        return {
+            "cmap": ListedColormap([self.colours[word] for _, word in self.words]),
+            "norm": BoundaryNorm([*(n - 0.5 for n in numbers), numbers[-1] + 0.5], len(numbers)),
+            "shading": "nearest",
+            "rasterized": True,
+        }
+
+    @property
+    def crushed(self) -> int:
+        return next(number for number, word in self.words if word == "crushed")
+
+    def patches(self, table: Array) -> list[Patch]:
+        """What the legend says of the words that are in a table, (rows, columns)."""
+        there = (word for number, word in self.words if (table == number).any())
+        return [
+            Patch(facecolor=self.colours[word], edgecolor="0.5", lw=0.5, label=LEGEND.get(word, word))
+            for word in there
+        ]
+
+
+LEGEND = {
+    "straight": "straight rod stable",
+    "cycle": "cycle stable",
+    "both": "both stable",
+    "neither_known": "no stable state known",
+}
+"""Words of the stable states; the others speak for themselves."""
+MOTIONS = Palette("class", CLASSES, CLASS_COLOURS)
+STATES = Palette("stable_states", STABLE_STATES, STATE_COLOURS)
 CURVE_LOOKS = {1: ("Hopf points", 1.4, "-"), 0: ("double eigenvalue", 1.0, "--")}
 """Legend, width and style of a curve, by its kind in the file."""
 CURVE_NAMES = {1: (r"$\tilde F_{**}$", 0.85), 0: (r"$\tilde F_*$", 0.12)}
@@ -37,6 +83,8 @@ SIDE_LOOKS = {
     0: ("Hopf points, side undecided", 0.6, "-"),
 }
 """Of the parts of Hopf curves, where the file tells on which side cycles are born; by Re c's sign."""
+CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", THIRD)}
+"""Legend and colour of the curves of special points of cycles, by kind."""
 BESIDE_SIDES = "double eigenvalue", 1.0, ":"
 """Of double eigenvalues beside them, because dashed then means subcritical."""
 
@@ -46,19 +94,22 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     view = request.only_view()
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
     row = next(name for name in view.parameters if len(view.axes[name]) > 1)
-    values = view.variables["class"]
+    palette = STATES if STATES.variable in view.variables else MOTIONS
+    values = view.variables[palette.variable]
     need(view, (values >= 0).any(), "computed row")
     x, y = view.variables[line], view.axes[row]
     keep = np.isfinite(y)
     if keep.sum() < 2:
-        return request.write(_draw_rows(view, line, row), f"what the rod does over {line}, for each {row}")
+        return request.write(
+            _draw_rows(view, palette, line, row), f"what the rod does over {line}, for each {row}"
+        )
     table = values.reshape(len(y), len(x))[keep]
     y = y[keep]
     figure = Figure(figsize=(5.8, 4.6), layout="constrained")
     axes = figure.subplots()
     crushing = (line, row) == CRUSHING
-    drawn = _without_stairs(table) if crushing else table
-    axes.pcolormesh(x, y, drawn, **CLASS_MAP)
+    drawn = _without_stairs(table, palette.crushed) if crushing else table
+    axes.pcolormesh(x, y, drawn, **palette.looks)
     scale(axes, "x", x)
     scale(axes, "y", y)
     edge: list[Line2D] = []
@@ -68,37 +119,33 @@ def draw_phase_diagram(request: FigureRequest) -> str:
         word = f"${SYMBOLS[row]} = {SYMBOLS[line]}$"
         edge = axes.plot(ends, ends, color="0.4", lw=1.2, label=word)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=LABELS[line], ylabel=LABELS[row])
-    handles: list = _class_patches(table)
+    handles: list = palette.patches(table)
     if "curve_number" in view.variables:
         handles += _curves(axes, view, line, row)
-    handles += edge if (table == CRUSHED).any() else []
+    if "cycle_curve_number" in view.variables:
+        handles += _cycle_curves(axes, view, line, row)
+    handles += edge if (table == palette.crushed).any() else []
     legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
     axes.set_title(heading(view, fixed_text(view, line, row)), fontsize=9)
     return request.write(figure, f"what the rod does over {line} and {row}")
 
 
-def _draw_rows(view: View, line: str, row: str) -> Figure:
+def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
     """A bar for each row, where they are too few, or at infinity, to make a plane."""
     x, y = view.variables[line], view.axes[row]
-    table = view.variables["class"].reshape(len(y), len(x))
+    table = view.variables[palette.variable].reshape(len(y), len(x))
     figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")
     axes = figure.subplots()
-    axes.pcolormesh(x, np.arange(len(y)), table, **CLASS_MAP)
+    axes.pcolormesh(x, np.arange(len(y)), table, **palette.looks)
     for between in np.arange(len(y) - 1) + 0.5:
         axes.axhline(between, color="white", lw=4)
     scale(axes, "x", x)
     axes.set_yticks(np.arange(len(y)), [f"${SYMBOLS[row]} = {number_text(value)}$" for value in y])
     axes.tick_params("y", length=0)
     axes.set(xlim=(x[0], x[-1]), xlabel=LABELS[line])
-    legend_below(figure, _class_patches(table), columns=3)
+    legend_below(figure, palette.patches(table), columns=3)
     axes.set_title(heading(view, fixed_text(view, line, row)), fontsize=9)
     return figure
-
-
-def _class_patches(table: Array) -> list[Patch]:
-    """What the legend says of the classes that are there."""
-    there = (word for number, word in CLASSES if (table == number).any())
-    return [Patch(facecolor=CLASS_COLOURS[word], edgecolor="0.5", lw=0.5, label=word) for word in there]
 
 
 def _name_longest(axes: Axes, paths: list[Array], name: str, share: float) -> None:
@@ -118,22 +165,28 @@ def _name_longest(axes: Axes, paths: list[Array], name: str, share: float) -> No
         )
 
 
-def _without_stairs(table: Array) -> Array:
+def _without_stairs(table: Array, crushed_rod: int) -> Array:
     """Classes, (rows, columns), with those of crushed rods replaced by the next above: the edge is drawn."""
     filled = table.copy()
     for row in range(len(table) - 2, -1, -1):
-        crushed = filled[row] == CRUSHED
+        crushed = filled[row] == crushed_rod
         filled[row, crushed] = filled[row + 1, crushed]
     return filled
 
 
 def _curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
-    """Draws the boundaries and folds; returns what the legend says of them."""
+    """Draws the boundaries and folds; returns what the legend says of them.
+
+    Where the file tells stable states only Hopf points bound them.
+    """
     v = view.variables
-    sides = "curve_criticality" in v
+    sides, states = "curve_criticality" in v, STATES.variable in v
     handles = _sides(axes, view, line, row) if sides else []
-    for number, (word, width, style) in ({0: BESIDE_SIDES} if sides else CURVE_LOOKS).items():
+    looks = {0: BESIDE_SIDES} if sides else CURVE_LOOKS
+    for number, (word, width, style) in looks.items():
         there = v["curve_kind"] == number
+        if states and number == 0:
+            continue
         curves = [v["curve_number"] == curve for curve in np.unique(v["curve_number"][there])]
         for one in curves:
             axes.plot(v[f"curve_{line}"][one], v[f"curve_{row}"][one], style, color="k", lw=width)
@@ -142,6 +195,13 @@ def _curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
         if there.any() and not sides:
             paths = [np.column_stack([v[f"curve_{line}"][one], v[f"curve_{row}"][one]]) for one in curves]
             _name_longest(axes, paths, *CURVE_NAMES[number])
+    return handles if states else handles + _points(axes, view, line, row)
+
+
+def _points(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
+    """Marks the folds of Hopf curves and the partial beam's; returns what the legend says of them."""
+    v = view.variables
+    handles = []
     for i in range(len(v["fold"])):
         if v["fold_kind"][i] == 1 and v["fold_of"][i] == 1:  # where a window of flutter closes
             F, k = v[f"fold_{line}"][i], v[f"fold_{row}"][i]
@@ -154,6 +214,20 @@ def _curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
         label = rf"partial beam $2F_c = {F:.6g}$, $4F_c = {k:.6g}$"
         (cross,) = axes.plot(x, y, "+", color="k", ls="", ms=10, mew=1.2, label=label)
         handles.append(cross)
+    return handles
+
+
+def _cycle_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
+    """Draws the curves of folds and torus points of cycles; returns what the legend says of them."""
+    v, handles = view.variables, []
+    for kind, (word, colour) in CYCLE_CURVES.items():
+        there = v["cycle_curve_kind"] == SPECIAL_KINDS.index(kind)
+        for curve in np.unique(v["cycle_curve_number"][there]):
+            one = v["cycle_curve_number"] == curve
+            points = v[f"cycle_curve_{line}"][one], v[f"cycle_curve_{row}"][one]
+            axes.plot(*points, color=colour, lw=1.8, zorder=1.9)  # below marks and Hopf curves
+        if there.any():
+            handles.append(Line2D([], [], color=colour, lw=1.8, label=word))
     return handles
 
 
@@ -175,7 +249,20 @@ def _sides(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
         x, y = v[f"bautin_{line}"][i], v[f"bautin_{row}"][i]
         label = rf"Re $c$ = 0: ${SYMBOLS[line]}$ = {x:.6g}, ${SYMBOLS[row]}$ = {y:.6g}"
         handles += axes.plot(x, y, "kD", mfc="white", ls="", ms=5, label=label)
-    return handles
+    return handles + (_bautin_curves(axes, view, line, row) if "bautin_along_curve" in v else [])
+
+
+def _bautin_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
+    """Draws the ways of the generalised Hopf points over a third parameter; returns the legend."""
+    v, drawn = view.variables, []
+    third = next(n for n in LINEAR_PARAMETERS if f"bautin_along_{n}" in v and n not in (line, row))
+    for number in np.unique(v["bautin_along_curve"]):
+        on = v["bautin_along_curve"] == number
+        reach = v[f"bautin_along_{third}"][on]
+        label = rf"Re $c$ = 0, ${SYMBOLS[third]}$ = {reach.min():.3g} to {reach.max():.3g}"
+        x, y = (v[f"bautin_along_{name}"][on] for name in (line, row))
+        drawn += axes.plot(x, y, "-.", color="tab:red", lw=1.2, label=label)
+    return drawn
 
 
 def parts_of_one_side(view: View, curve: int, line: str, row: str) -> list[tuple[int, np.ndarray]]:

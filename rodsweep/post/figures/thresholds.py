@@ -45,10 +45,17 @@ def draw_thresholds(request: FigureRequest) -> str:
         if np.isfinite(view.variables[variable]).any()
     ]
     style.legend_below(figure, there, columns=3)
-    figure.suptitle(style.heading(view, style.fixed_text(view, *long)), fontsize=9)
+    figure.suptitle(style.heading(view, style.fixed_text(view, *long), _searched(view)), fontsize=9)
     left_out = [name for name in long if not np.isfinite(view.axes[name]).all()]
     without = f"; {' and '.join(left_out)} = inf has no place on an axis and is left out" if left_out else ""
     return request.write(figure, "critical forces against " + " and ".join(long) + without)
+
+
+def _searched(view: View) -> str:
+    """Up to which force thresholds were sought: a curve that is missing may lie beyond."""
+    ends = view.variables["F_end"]
+    low, high = (style.number(float(end(ends))) for end in (np.nanmin, np.nanmax))
+    return rf"searched up to $\tilde F = {low}$" + (f" to ${high}$" if low != high else "")
 
 
 def _panel(panel: Axes, view: View, name: str, others: list[str]) -> None:

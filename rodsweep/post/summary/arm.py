@@ -1,13 +1,28 @@
-"""What `rodsweep show` says of an arm: the numbers of every task that are told in SI units."""
+"""What `rodsweep show` says of an arm: the numbers of every task that are told in SI units, and thresholds.
+
+Forces are told as the load of the arm is given, as a pressure or a force, and frequencies in Hz.
+"""
 
 import json
+import textwrap
+from collections.abc import Sequence
 
 import numpy as np
 
+from ...model.units import compact
 from ...results.file.view import View
 from ...results.layouts import LAYOUTS
-from ...results.layouts.arm import twins_of
+from ...results.layouts.arm import FORCES, twins_of
+from ..hopf_points import Located
 from .ranges import span
+
+WIDTH = 80
+"""Columns of a line in SI units."""
+ITEMS_FEW = 4
+"""Values of a table of one rod that are told one by one."""
+ANGULAR, CYCLIC = "rad/s", "Hz"
+PREFIXED = ("Pa", "N", "s", "m", "J", "W", CYCLIC)
+"""Units that are told with a prefix, as kPa."""
 
 
 def arm_lines(view: View, done: np.ndarray) -> list[str]:
@@ -15,9 +30,74 @@ def arm_lines(view: View, done: np.ndarray) -> list[str]:
     if not view.quantities:
         return []
     config = json.loads(view.attributes["config_resolved"])
-    lines = []
+    told = []
     for variable in twins_of(LAYOUTS[view.task](config), config):
         values = view.variables[variable.name][done]
-        if not variable.extra and np.isfinite(values).any():
-            lines.append(f"{variable.name} = {span(values)} {variable.units}")
-    return [f"in SI units: {'; '.join(lines)}"] if lines else []
+        name = variable.name.removesuffix("_si")
+        told_here = variable.extra != ("crossing",) if done.size == 1 else not variable.extra
+        if told_here and np.isfinite(values).any():
+            told.append(f"{name} = {in_unit(values, variable.units)}")
+    return ["in SI units:", *wrapped("; ".join(item.replace(" ", "\xa0") for item in told))] if told else []
+
+
+def wrapped(text: str) -> list[str]:
+    """A text in lines of at most WIDTH columns, indented, that do not break at its hard spaces."""
+    lines = textwrap.wrap(
+        text,
+        WIDTH,
+        initial_indent="  ",
+        subsequent_indent="  ",
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+    return [line.replace("\xa0", " ") for line in lines]
+
+
+def in_unit(values: np.ndarray, unit: str) -> str:
+    """Values in an SI unit, of any shape, as words: one by one where they are few, else their range."""
+    finite = values[np.isfinite(values)]
+    if unit == ANGULAR:
+        finite, unit = finite / (2 * np.pi), CYCLIC
+    if unit in PREFIXED and finite.size:
+        factor, unit = compact(float(np.abs(finite).max()), unit)
+        finite = finite * factor
+    few = values.ndim > 1 and 1 < finite.size <= ITEMS_FEW
+    return f"{', '.join(f'{value:.6g}' for value in finite) if few else span(finite)} {unit}"
+
+
+def loads_at(view: View, F: np.ndarray, points: np.ndarray) -> str:
+    """Follower forces F, (n,), at points of a file with an arm, (n,) indices, as its load in SI units."""
+    quantities = view.quantities
+    unit, (scale,), _ = FORCES["force" if "force" in quantities else "pressure"]
+    return in_unit(F * _at(quantities[scale], points), unit)
+
+
+def crossing_line_in_si(view: View, i: int) -> list[str]:
+    """The i-th crossing of the one rod of a file as load and frequency; none without arm."""
+    if not view.quantities:
+        return []
+    F, frequency = (view.variables[f"crossing_{name}"].ravel()[i] for name in ("F", "frequency"))
+    rod = np.zeros(1, int)
+    text = loads_at(view, np.array([F]), rod)
+    if frequency:
+        rate = np.atleast_1d(frequency / _at(view.quantities["tau2"], rod))
+        text += f", frequency {in_unit(rate, ANGULAR)}"
+    return [f"  in SI units: {text}"]
+
+
+def threshold_lines_in_si(view: View, found: Sequence[tuple[Located, np.ndarray]]) -> list[str]:
+    """Thresholds with the points of their lines, (points,), as load and frequency; none without arm."""
+    if not view.quantities or not found:
+        return []
+    points = np.concatenate([points for _, points in found])
+    each = [len(points) for _, points in found]
+    text = loads_at(view, np.repeat([place.position for place, _ in found], each), points)
+    frequency = np.repeat([getattr(place, "frequency", np.nan) for place, _ in found], each)
+    if np.isfinite(frequency).any():
+        text += f", frequency {in_unit(frequency / _at(view.quantities['tau2'], points), ANGULAR)}"
+    return [f"  in SI units: {text}"]
+
+
+def _at(values: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """A quantity at points of a file, shape () where all share it."""
+    return values[points] if values.ndim else values

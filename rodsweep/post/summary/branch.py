@@ -45,7 +45,10 @@ def _one_rod(view: View, rod: int) -> Iterator[str]:
         for special in curve.special:
             if special.kind in ("hopf", "end"):
                 continue
+            if special in (curve.special[0], curve.special[-1]) and special.kind == "symmetry_breaking":
+                continue
             at, kind = to_error(special.at, special.error), special.kind.replace("_", " ")
+            kind += f", where branch {special.meets} meets it," * (special.meets > 0)
             size = f"period {special.period:.9g} tau2, largest tip y {special.tip_y_max:.9g} L"
             yield f"  {kind} at {along} = {at}, {size}"
         yield f"  stable cycles at {_words(along, curve.stable_ranges)}"
@@ -58,9 +61,14 @@ def _ends(curve: CurveOfCycles, along: str) -> str:
     """From where to where a branch leads."""
     first, last = curve.special[0], curve.special[-1]
     start = f"from the Hopf point at {along} = {to_error(first.at, first.error)}"
+    if first.kind == "symmetry_breaking":
+        where = f"{along} = {to_error(first.at, first.error)}"
+        start = f"without mirror symmetry, from branch {first.meets} at {where}"
     there = f"{along} = {to_error(last.at, last.error)}"
     if last.kind == "hopf":
         return f"{start} to that at {there}"
+    if last.kind == "symmetry_breaking":
+        return f"{start} to branch {last.meets} at {there}"
     if last.kind == "left_the_model":
         return f"{start} to where h1 = 0, {there}"
     return f"{start} to {ENDS[last.reason]}, {along} = {last.at:.9g}"

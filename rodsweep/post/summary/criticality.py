@@ -6,6 +6,7 @@ import numpy as np
 
 from ...results.file.view import View
 from ...results.layouts.thresholds import CROSSING_KINDS
+from .arm import crossing_line_in_si
 from .ranges import span, to_error
 
 SIDES = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
@@ -50,6 +51,7 @@ def _hopf_lines(view: View) -> Iterator[str]:
             f"{kind} at F = {F}, frequency {frequency} 1/tau2; unstable modes above: "
             f"{after if after >= 0 else 'not known'}"
         )
+        yield from crossing_line_in_si(view, int(i))
         if not np.isfinite(v["landau_error"][i]):
             yield "  its normal form is not known"
             continue

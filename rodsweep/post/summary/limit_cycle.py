@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ...results.file.view import View
+from ...results.layouts.limit_cycle import SECOND_STATES
 from ..hopf_points import ParameterLine
 from .ranges import span, to_error
 from .stability import stability_lines
@@ -29,6 +30,7 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> list[str]:
     orbit = done & np.isin(v["status"], [values[word] for word in ("cycle", "unstable") if word in values])
     if done.size == 1 and orbit.any():
         lines += orbit_lines(v, stable=bool(beats.any()))
+    lines += _second_state_lines(v, done)
     return [*lines, *_cycle_lines(v, beats)] if beats.any() else lines
 
 
@@ -45,6 +47,28 @@ def orbit_lines(v: Mapping[str, np.ndarray], stable: bool) -> list[str]:
         f"largest y of the tip: {to_error(y, y * v['amplitude_error'].max())} L",
         f"largest Floquet multiplier but the one that is 1: {multiplier}; the cycle is {verdict}",
     ]
+
+
+def _second_state_lines(v: Mapping[str, np.ndarray], done: np.ndarray) -> list[str]:
+    """How many of the points that are `done` have another stable state, or may have one, and where."""
+    numbers, lines = {word: number for number, word in SECOND_STATES}, []
+    straight, cycle = (done & (v["second_state"] == numbers[word]) for word in ("straight", "cycle_possible"))
+    if straight.any():
+        lines.append(f"two states{_at(straight, done)}: the straight rod is stable too")
+    if cycle.any():
+        F = v["subcritical_F"][cycle]
+        place = f"{F[0]:.9g}" if F.min() == F.max() else span(F)
+        lines.append(
+            f"a second state is possible{_at(cycle, done)}: the rod is straight, and its Hopf point at "
+            f"F = {place} is subcritical, so that a larger start may lead to a cycle; the task branch "
+            "follows it"
+        )
+    return lines
+
+
+def _at(some: np.ndarray, done: np.ndarray) -> str:
+    """At how many of the points that are `done`, masks of one shape; nothing where that is one."""
+    return "" if done.sum() == 1 else f" at {int(some.sum())} of {int(done.sum())} points"
 
 
 def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:

@@ -4,12 +4,32 @@ import numpy as np
 
 from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
-from ...results.layouts.phase_diagram import CLASSES
+from ...results.layouts.branch import SPECIAL_KINDS
+from ...results.layouts.phase_diagram import BAUTIN_ENDS, CLASSES, CYCLE_CURVE_ENDS, STABLE_STATES
 from ...results.layouts.thresholds import CROSSING_KINDS
+from .arm import loads_at
 from .ranges import span
 from .thresholds import search_lines
 
 FLUTTER = next(value for value, word in CLASSES if word == "flutter")
+BOTH = next(value for value, word in STABLE_STATES if word == "both")
+CHANGES_OF_CYCLES = {
+    "fold": "folds of cycles",
+    "torus": "torus points of cycles",
+    "symmetry_breaking": "cycles lose their symmetry",
+    "left_the_model": "cycles leave the model (h1 = 0)",
+}
+"""What is told of the special points of rows, by their kind."""
+CURVE_END_WORDS = {
+    "none": "goes on",
+    "edge": "edge of the diagram",
+    "crushed": "F close to k1",
+    "hopf": "Hopf point, where the cycles vanish",
+    "left_the_model": "h1 = 0",
+    "resonance": "resonance",
+    "closed": "closed curve",
+    "not_followed": "no further point found",
+}
 SHARP = 1e-8
 """Resolution of a boundary, in units of the parameter, for which the uniform grid is counted."""
 
@@ -26,6 +46,8 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> list[str]:
         *share_lines(found),
         *row_lines(view, done, line, row),
     ]
+    if "stable_states" in v:
+        lines += state_lines(view, done, line, row)
     lines += search_lines(view, done, int(done.sum()))
     solves, boxes = int(v["solves"][done].sum()), int(v["boxes"][done].sum())
     uniform = float(np.ptp(v[line])) / SHARP * int(done.sum())
@@ -35,6 +57,57 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> list[str]:
         "times as many"
     )
     return lines + (curve_lines(view, line, row) if "curve_number" in v else [])
+
+
+def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
+    """Over which part of the grid each state is stable, on which rows both are, and where cycles change.
+
+    done: a mask of the rows' shape.
+    """
+    v, of_row = view.variables, view.point_columns[row].reshape(done.shape)
+    states, kinds, at = v["stable_states"], v["cycle_special_kind"], v[f"cycle_special_{line}"]
+    found = states[done]
+    shares = ((100 * float((found == value).mean()), word) for value, word in STABLE_STATES)
+    told = ", ".join(f"{share:.1f} % {word.replace('_', ' ')}" for share, word in shares if share)
+    lines = [f"stable states, of the grid: {told}"]
+    both = (states == BOTH) & done[..., np.newaxis]
+    places = np.broadcast_to(v[line], both.shape)[both]
+    found_on = {"straight rod and cycle both stable": (both.any(axis=-1), places)}
+    for kind, words in CHANGES_OF_CYCLES.items():
+        there = (kinds == SPECIAL_KINDS.index(kind)) & done[..., np.newaxis]
+        found_on[words] = there.any(axis=-1), at[there]
+    for words, (rows, where) in found_on.items():
+        if rows.any():
+            lines.append(
+                f"{words}: on {int(rows.sum())} of {int(done.sum())} rows, {line} = {span(where)}, "
+                f"{row} = {span(of_row[rows])}"
+            )
+    return lines
+
+
+def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
+    """The curves of folds and torus points of cycles, where they end, and how they agree with the rows."""
+    v = view.variables
+    numbers = np.unique(v["cycle_curve_number"])
+    lines = []
+    if len(numbers) or v["cycle_curves_untraced"]:
+        lines.append(
+            f"curves of cycles: {len(numbers)}; folds and torus points of rows lie within "
+            f"{float(v['cycle_curve_agreement']):.1e} of them, over {line}; "
+            f"{int(v['cycle_curves_untraced'])} lie on none"
+        )
+    for number in numbers:
+        on = np.flatnonzero(v["cycle_curve_number"] == number)
+        kind = SPECIAL_KINDS[int(v["cycle_curve_kind"][on[0]])]
+        ends = " to ".join(
+            f"{row} = {v[f'cycle_curve_{row}'][i]:.9g}, {line} = {v[f'cycle_curve_{line}'][i]:.9g} "
+            f"({CURVE_END_WORDS[tuple(CYCLE_CURVE_ENDS)[int(v['cycle_curve_end'][i])]]})"
+            for i in on[[0, -1]]
+        )
+        what = "folds" if kind == "fold" else "torus points"
+        error = float(v["cycle_curve_error"][on].max())
+        lines.append(f"curve of {what}: from {ends}; {len(on)} points, largest error of {line} {error:.0e}")
+    return lines
 
 
 def share_lines(found: np.ndarray) -> list[str]:
@@ -55,6 +128,9 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
             lines.append(
                 f"{word}: on {int(on_row.sum())} of {int(done.sum())} rows, {line} = {at}, {row} = {rows}"
             )
+            if line == "F" and view.quantities:
+                forces = v["crossing_at"][there]
+                lines.append(f"  in SI units: {loads_at(view, forces, np.zeros(len(forces), int))}")
     flutters = (v["class"] == FLUTTER).any(axis=-1)
     if (done & ~flutters).any() and (done & flutters).any():
         with_it, without = (span(of_row[done & mask]) for mask in (flutters, ~flutters))
@@ -83,7 +159,8 @@ def curve_lines(view: View, line: str, row: str) -> list[str]:
             f"partial beam limit: the Hopf curve folds at k1 = 4 Fc = {float(v['partial_beam_k1']):.13g}, "
             f"F = 2 Fc = {float(v['partial_beam_F']):.13g}"
         )
-    return lines + (criticality_lines(view, line, row) if "curve_criticality" in v else [])
+    lines += criticality_lines(view, line, row) if "curve_criticality" in v else []
+    return lines + (cycle_curve_lines(view, line, row) if "cycle_curve_number" in v else [])
 
 
 def criticality_lines(view: View, line: str, row: str) -> list[str]:
@@ -110,5 +187,20 @@ def criticality_lines(view: View, line: str, row: str) -> list[str]:
     if v["bautin_unlocated"]:
         lines.append(
             f"{int(v['bautin_unlocated'])} changes of criticality were seen whose place could not be found"
+        )
+    return lines + (bautin_curve_lines(view) if "bautin_along_curve" in v else [])
+
+
+def bautin_curve_lines(view: View) -> list[str]:
+    """Where the curves of generalised Hopf points over a third parameter lead, and why they end."""
+    v, lines = view.variables, []
+    names = [name for name in LINEAR_PARAMETERS if f"bautin_along_{name}" in v]
+    for number in np.unique(v["bautin_along_curve"]):
+        on = v["bautin_along_curve"] == number
+        where = ", ".join(f"{name} = {span(v[f'bautin_along_{name}'][on])}" for name in names)
+        ends = [BAUTIN_ENDS[int(end)] for end in v["bautin_along_end"][on][[0, -1]]]
+        lines.append(
+            f"curve {int(number)} of generalised Hopf points: {int(on.sum())} points, {where}; "
+            f"ends: {ends[0]} and {ends[1]}"
         )
     return lines

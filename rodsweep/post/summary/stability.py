@@ -6,6 +6,7 @@ import numpy as np
 
 from ...results.file.view import View
 from ..hopf_points import HopfPoint, Located, ParameterLine, lines_over
+from .arm import threshold_lines_in_si
 
 FEW_LINES = 3
 """Lines over F whose thresholds are named one by one."""
@@ -20,6 +21,8 @@ THRESHOLDS = {
 def stability_lines(view: View, found_on: Callable[[ParameterLine, View], Sequence[Located]]) -> list[str]:
     """Where the straight rod changes along F, one line for each kind of threshold; none where F is no axis.
 
+    Of an arm a second line follows, in SI units.
+
     found_on: gives the thresholds on a line over F.
     """
     if len(np.unique(view.point_columns["F"])) < 2:
@@ -33,6 +36,8 @@ def stability_lines(view: View, found_on: Callable[[ParameterLine, View], Sequen
         of_kind = [[point for point in points if point.kind == kind] for points in along]
         if found := {i: points for i, points in enumerate(of_kind) if points}:
             texts.append(f"{words}: {_positions(found, names)}")
+            in_load = [(point, lines[i].at) for i, points in found.items() for point in points]
+            texts += threshold_lines_in_si(view, in_load)
     return texts
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from ...results.file.view import View
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
+from .arm import crossing_line_in_si
 from .ranges import span, to_error
 
 FORCES_AND_RATES = {
@@ -43,7 +44,8 @@ def crossing_lines(view: View) -> list[str]:
         after = int(v["unstable_after"][i])
         above = f"; unstable modes above: {after if after >= 0 else 'not known'}"
         lines.append(f"{kind} at F = {F}: {CROSSING_MEANINGS[kind]}; {rates}{above}")
-    found, stored = int(v["crossing_count"][0]), len(lines)
+        lines += crossing_line_in_si(view, int(i))
+    found, stored = int(v["crossing_count"][0]), int((v["crossing_kind"] > 0).sum())
     more = f"; {found - stored} more are not stored, raise the option crossings" * (found > stored)
     proof = "proved" if v["certified"].all() else "not proved"
     lines.append(f"searched up to F = {v['F_end'][0]:.15g}; that no crossing is missing is {proof}{more}")

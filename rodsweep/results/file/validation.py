@@ -19,7 +19,7 @@ from .seal import HDF5_SIGNATURE, check_seal
 
 PROGRAM = "rodsweep"
 """The attribute `program` of our files."""
-FORMAT = 2
+FORMAT = 3
 """The attribute `format` of our files: grows when a variable is added or changes its meaning. What was
 written before there was one has none, which counts as 0."""
 LONGEST_REASON = 150

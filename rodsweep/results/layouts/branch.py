@@ -12,9 +12,10 @@ SPECIAL_MEANINGS = {
     "hopf": "a Hopf point, where cycles are born: here a branch begins or ends",
     "fold": "the branch turns back in the parameter; a multiplier is 1",
     "torus": "a complex pair of multipliers crosses the circle: a motion with two frequencies is born",
-    "symmetry_breaking": "a multiplier is 1, and cycles without the mirror symmetry are born",
+    "symmetry_breaking": "a multiplier is 1; a branch of cycles without the mirror symmetry begins or ends",
     "left_the_model": "h1 reaches 0 somewhere on the cycle, where the model ends",
     "end": "the branch ends here for the reason that special_reason says",
+    "period_doubling": "a multiplier of a cycle without the symmetry is -1; cycles of twice the period begin",
 }
 """What happens at a special point; the place in this list is what the file stores."""
 SPECIAL_KINDS = tuple(SPECIAL_MEANINGS)
@@ -30,6 +31,7 @@ def followed_variables(along: str) -> tuple[Variable, ...]:
         real(f"branch_{along}", unit, f"{along} of the cycle", ALONG),
         real("period", "tau2", "period of the cycle", ALONG),
         real("tip_y_max", "L", "largest y of the tip", ALONG),
+        real("tip_y_min", "L", "smallest y of the tip; -tip_y_max where the cycle has the symmetry", ALONG),
         real("tip_x_min", "L", "smallest x of the tip", ALONG),
         real("tip_x_max", "L", "largest x of the tip", ALONG),
         real("tip_theta_max", "1", "largest angle of the tip", ALONG),
@@ -67,6 +69,11 @@ def special_variables(along: str) -> tuple[Variable, ...]:
         ),
         Variable("special_reason", "|i1", 0, "1", "why the branch ends there", (SPECIAL,), reasons),
         whole(
+            "special_meets",
+            "at a symmetry breaking, number of the other branch that begins or ends there; 0: none",
+            SPECIAL,
+        ),
+        whole(
             "special_unstable_after",
             "at a Hopf point, unstable modes of the straight rod beyond it in the parameter",
             SPECIAL,
@@ -88,7 +95,7 @@ def layout(config: dict[str, Any]) -> Layout:
     along = options["along"]
     variables = (
         whole("hopf_count", f"Hopf points found between start and stop of {along}"),
-        whole("branch_count", "branches that begin at them, each once"),
+        whole("branch_count", "branches that begin at them, or where the symmetry of one breaks, each once"),
         whole("point_count", "cycles of all branches"),
         whole("special_count", "special points of all branches, stored or not"),
         whole("unstable_at_start", "unstable modes of the straight rod at start; -1: not known"),

@@ -10,11 +10,25 @@ from .variables import ANEW, MESH, SECONDS, STATUS, Increase, Layout, Variable, 
 POWER = "k3/(L tau2)"
 STORED_MULTIPLIERS = 6
 """Floquet multipliers, without the trivial one, whose modulus is above 1e-6; NaN where there are fewer."""
+SECOND_STATES = ((-1, "not_told"), (0, "none_known"), (1, "straight"), (2, "cycle_possible"))
+"""What is known of a stable state beside the one in which a point ended."""
 CYCLE = (
     real("period", "tau2", "period of the limit cycle"),
     real("frequency", "1/tau2", "angular frequency of the limit cycle, 2 pi/period"),
     real("linear_growth_rate", "1/tau2", "real part of the leading eigenvalue of the straight rod"),
     real("linear_frequency", "1/tau2", "imaginary part of the leading eigenvalue of the straight rod"),
+    Variable(
+        "second_state",
+        "|i1",
+        -1,
+        "1",
+        "a stable state beside the one in which the point ended: straight, the straight rod is stable too; "
+        "cycle_possible, the straight rod is stable and the Hopf point at subcritical_F is subcritical",
+        flags=SECOND_STATES,
+    ),
+    real(
+        "subcritical_F", "k3/L^2", "force of the subcritical Hopf point whose unstable cycles lie at this F"
+    ),
     real("tip_x_min", "L", "smallest x of the tip over a period"),
     real("tip_x_max", "L", "largest x of the tip over a period"),
     real("tip_y_max", "L", "largest deflection y of the tip over a period"),

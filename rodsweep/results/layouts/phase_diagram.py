@@ -3,6 +3,7 @@
 from typing import Any
 
 from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS, all_but
+from .branch import SPECIAL_KINDS
 from .criticality import LANDAU, SLOPE
 from .spectrum import UNSTABLE_COUNT
 from .thresholds import CROSSINGS, search_variables
@@ -17,10 +18,38 @@ CLASSES = (
     (4, "crushed"),
 )
 """What the rod does at a point of a phase diagram."""
+BAUTIN_ENDS = ("none", "range_end", "plane_edge", "not_found", "list_full")
+"""Why a curve of generalised Hopf points ends; the place in this list is what the file stores."""
 CURVE_KINDS = ((0, "double"), (1, "hopf"))
 """What lies on a curve: double real eigenvalues, where oscillations set in or end, or Hopf points."""
 
-INCREASES = {"crossings": CROSSINGS, "certify": ANEW, "curves": BESIDE}
+STABLE_STATES = (
+    (-1, "missing"),
+    (0, "neither_known"),
+    (1, "straight"),
+    (2, "cycle"),
+    (3, "both"),
+    (4, "undecided"),
+    (5, "crushed"),
+)
+"""Which states of the rod are stable at a point of a phase diagram with cycles."""
+CYCLE_SPECIAL, MOST_SPECIAL = "cycle_special", 64
+"""Dimension of the special points of a row's branches, and how many are kept."""
+
+CYCLE_CURVE_ENDS = {
+    "none": "the curve goes on",
+    "edge": "it leaves the diagram",
+    "crushed": "F comes within 1e-3 of k1, relative",
+    "hopf": "the cycles vanish: of folds at a generalised Hopf point, Re c = 0, of torus points where two "
+    "Hopf points meet",
+    "left_the_model": "h1 reaches 0 somewhere on the cycle",
+    "resonance": "the two multipliers meet on the real axis",
+    "closed": "it comes back to its first point",
+    "not_followed": "no further point was found",
+}
+"""Where a curve of folds of cycles or torus points ends; the place in this list is what the file stores."""
+
+INCREASES = {"crossings": CROSSINGS, "certify": ANEW, "curves": BESIDE, "cycles": ANEW}
 
 
 def layout(config: dict[str, Any]) -> Layout:
@@ -28,13 +57,54 @@ def layout(config: dict[str, Any]) -> Layout:
     axes, options = config["parameters"], config["phase_diagram"]
     sizes = {name: len(axes[name].get("values", ())) or axes[name]["num"] for name in LINEAR_PARAMETERS}
     line = next(name for name, size in sizes.items() if size > 1)
-    variables = (
+    variables: tuple[Variable, ...] = (
         Variable("class", "|i1", MISSING, "1", "what the rod does", (line,), CLASSES),
         whole("unstable_count", UNSTABLE_COUNT.long_name, line),
         *search_variables(line, "crossing_at"),
     )
     extents = {line: sizes[line], "crossing": options["crossings"]}
+    if options["cycles"]:
+        variables += cycle_variables(line)
+        extents[CYCLE_SPECIAL] = MOST_SPECIAL
     return Layout(variables, extents, all_but(line), needs_all_points=options["curves"])
+
+
+def cycle_variables(line: str) -> tuple[Variable, ...]:
+    """What `phase_diagram.cycles` adds to every row: its stable states and special points of its cycles."""
+    unit, kinds = PARAMETERS[line].unit, tuple(enumerate(SPECIAL_KINDS))
+    what, along = "what happens on a branch of cycles there", (CYCLE_SPECIAL,)
+    at, error = f"{line} at the special point", f"estimate of the absolute error of cycle_special_{line}"
+    return (
+        Variable("stable_states", "|i1", MISSING, "1", "which states are stable", (line,), STABLE_STATES),
+        whole("cycle_special_count", "special points of the branches of the row, stored or not"),
+        Variable("cycle_special_kind", "|i1", 0, "1", what, along, kinds),
+        real(f"cycle_special_{line}", unit, at, CYCLE_SPECIAL),
+        real("cycle_special_error", unit, error, CYCLE_SPECIAL),
+        real("cycle_special_period", "tau2", "period of the cycle there", CYCLE_SPECIAL),
+        real("cycle_special_tip_y_max", "L", "largest y of the tip there; 0 at a Hopf point", CYCLE_SPECIAL),
+    )
+
+
+def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
+    """What `phase_diagram.cycles` adds when all rows are done, by name: curves of folds and torus points."""
+    along, kinds = "cycle_curve_point", tuple(enumerate(SPECIAL_KINDS))
+    force = PARAMETERS[line].unit
+    what, end = "what happens to the cycles on the curve: fold or torus", "why the curve ends at the point"
+    error = f"estimate of the absolute error of cycle_curve_{line} on the curve"
+    variables = (
+        whole("cycle_curve_number", "number of the curve of special points of cycles, from 1", along),
+        Variable("cycle_curve_kind", "|i1", 0, "1", what, (along,), kinds),
+        real(f"cycle_curve_{line}", force, f"{line} on the curve", along),
+        real(f"cycle_curve_{row}", PARAMETERS[row].unit, f"{row} on the curve", along),
+        real("cycle_curve_error", force, error, along),
+        real("cycle_curve_period", "tau2", "period of the cycle on the curve", along),
+        real("cycle_curve_tip_y_max", "L", "largest y of the tip; 0 where the cycles vanish", along),
+        Variable("cycle_curve_end", "|i1", 0, "1", end, (along,), tuple(enumerate(CYCLE_CURVE_ENDS))),
+        real("cycle_curve_agreement", "1", f"largest distance of a fold or torus point of a row from its "
+             f"curve, in units of the axis of {line}"),
+        whole("cycle_curves_untraced", "folds and torus points of rows through which no curve was followed"),
+    )  # fmt: skip
+    return {variable.name: variable for variable in variables}
 
 
 def curve_variables(line: str, row: str) -> dict[str, Variable]:
@@ -91,5 +161,22 @@ def criticality_variables(line: str, row: str) -> dict[str, Variable]:
         real("bautin_growth_slope_imag", SLOPE, "d(frequency)/dF of the pair there", "bautin"),
         real("bautin_landau_imag", LANDAU, "imaginary part of the Landau coefficient c there", "bautin"),
         whole("bautin_unlocated", "changes of sign along Hopf curves whose place could not be found"),
+    )
+    return {variable.name: variable for variable in variables}
+
+
+def bautin_curve_variables(line: str, row: str, third: str) -> dict[str, Variable]:
+    """What `phase_diagram.bautin_along` adds, by name: generalised Hopf points as curves over a third one."""
+    names, at = (line, row, third), "bautin_step"
+    unit = {name: PARAMETERS[name].unit for name in names}
+    error = "estimate of the error of bautin_along_"
+    why = "at the first and last point of a curve why it ends there"
+    variables = (
+        whole("bautin_along_curve", "number of the curve of generalised Hopf points, from 1", at),
+        *(real(f"bautin_along_{name}", unit[name], f"{name} where Re c = 0", at) for name in names),
+        *(real(f"bautin_along_{name}_error", unit[name], f"{error}{name}", at) for name in names),
+        real("bautin_along_frequency", "1/tau2", "frequency of the pair there", at),
+        real("bautin_along_landau_imag", LANDAU, "imaginary part of the Landau coefficient c there", at),
+        Variable("bautin_along_end", "|i1", 0, "1", why, (at,), tuple(enumerate(BAUTIN_ENDS))),
     )
     return {variable.name: variable for variable in variables}

@@ -14,13 +14,9 @@ from ...determinant.parameter_path import Path
 from ...discretization.stress_form import StressForm
 from ...model.rod import Rod
 from ..changes.unstable_modes import Crossing
-from ..cycle.hopf_start import (
-    INTERVALS,
-    NORMAL_FORM_ACCURACY,
-    STAGES,
-)
+from ..cycle.hopf_start import NORMAL_FORM_ACCURACY, orbit_with
 from ..cycle.neighbour import with_coordinate
-from ..cycle.orbit import Orbit, node_times
+from ..cycle.orbit import Orbit
 from ..cycle.orbit_mesh import stages_for, wanted_mesh
 from ..cycle.refinement import FIRST_ACCURACY, NEAR, matrix_distance
 from ..hopf.normal_form import NormalForm, accurate_normal_form
@@ -120,7 +116,4 @@ def predicted_cycle(hopf: HopfBirth, amplitude: float) -> Orbit:
         form = with_coordinate(form, hopf.name, hopf.coordinate + change)
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the branch leaves the rods: {error}") from error
-    X = hopf.normal.motion(amplitude, np.pi * node_times(INTERVALS, STAGES))
-    S, V = hopf.normal.form.fields(X)
-    parts = [*S[..., :-1]] + ([V[2]] if form.omega_unknown else [])
-    return Orbit.of(form, True, 2 * np.pi / frequency, np.concatenate(parts, axis=1), STAGES)
+    return orbit_with(hopf.normal, form, amplitude, frequency)

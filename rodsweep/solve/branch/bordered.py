@@ -109,13 +109,26 @@ class BorderedMatrix:
         values = self.returns**2 if self.orbit.symmetric else self.returns
         return values[np.argsort(-np.abs(values), kind="stable")]
 
+    def other_way(self) -> Array:
+        """The change at a fixed parameter that the matrix all but ignores, (N + 1,), of any length and sign.
+
+        Where branches cross it leads along the one that the tangent does not.
+        """
+        matrix = self._matrix.copy()
+        matrix[-1, -1] = 1.0
+        return self._spread(np.linalg.svd(matrix)[2][-1], 0.0)
+
     def _solved(self, border: Array, right: Array, share: float) -> Array:
         """The change for right sides of the ends and a share of those of the stages."""
         n = len(self.orbit.start)
         matrix = self._matrix.copy()
         matrix[-1, 2 * self.orbit.form.mesh.nodes] = border[0] / self.scale.moment
         matrix[-1, n:] = border[1] / self.orbit.period, border[2] / self.scale.coordinate
-        found = np.linalg.solve(matrix, right)
+        return self._spread(np.linalg.solve(matrix, right), share)
+
+    def _spread(self, found: Array, share: float) -> Array:
+        """The change of all, (N + 1,), from that of the ends, (n + 2,), and a share of the right sides."""
+        n = len(self.orbit.start)
         weights = np.array([found[n], found[n + 1], share])
         stages = np.ascontiguousarray((weights @ self._columns)[:, :, None])
         out = np.empty_like(stages)

@@ -1,7 +1,8 @@
 """The task branch for one rod: the cycles born at its Hopf points along a parameter, followed to their ends.
 
 The Hopf points are those of `task: thresholds`, found by the same covering. A branch that arrives at another
-Hopf point of the rod is that one's too. Cycles that no such branch contains are not found.
+Hopf point of the rod is that one's too. Where the symmetry of cycles breaks on one of them, the branch of
+cycles without it is followed as well. Cycles that no such branch contains are not found.
 """
 
 from dataclasses import dataclass, field, replace
@@ -15,8 +16,9 @@ from ..changes.unstable_modes import Crossing
 from ..point import FAILURES, cause_of, solved
 from ..status import PointStatus
 from .beginning import hopf_point
-from .following import BranchCurve, Course, follow_branch
+from .following import BranchCurve, Course, follow_branch, follow_without_symmetry
 from .special_points import EndReason
+from .symmetry import Breaking, breakings_of
 
 SHORT_OF_CRUSHED = 1e-4
 """How far below k1 a branch along F ends, relatively: beyond, the rod is all but crushed at rest."""
@@ -27,8 +29,8 @@ class BranchStatus(PointStatus):
 
     ok = (
         0,
-        "every branch that is born at a Hopf point within the range is followed to its end, as accurately as "
-        "asked for, and what changes on it is located",
+        "every branch that is born at a Hopf point within the range, or where the symmetry of one breaks, is "
+        "followed to its end, as accurately as asked for, and what changes on it is located",
         True,
     )
     stopped = (
@@ -126,7 +128,7 @@ def _solve(rod: BranchRod, request: BranchRequest) -> BranchesOfRod:
     if path.inverse:
         ends, reasons = ends[::-1], reasons[::-1]
     course = Course(hopfs, ends, (reasons[0], reasons[1]), request.accuracy, request.cycles)
-    curves = _followed(course)
+    curves = _followed(course, request.along)
     status, message = _judged(found, curves, failures, request)
     return BranchesOfRod(
         status=status,
@@ -148,8 +150,8 @@ def _range(rod: BranchRod, request: BranchRequest) -> tuple[float, float, int]:
     return low, high, -1
 
 
-def _followed(course: Course) -> list[BranchCurve]:
-    """The branches from all Hopf points, those that end at one another only once."""
+def _followed(course: Course, name: str) -> list[BranchCurve]:
+    """The branches from all Hopf points, then those without symmetry; what ends at one another only once."""
     curves: list[BranchCurve] = []
     arrived: set[int] = set()
     left = course.most
@@ -159,6 +161,15 @@ def _followed(course: Course) -> list[BranchCurve]:
         here = replace(course, most=left)
         curve = follow_branch(number, here)
         arrived.add(curve.arrives)
+        left -= len(curve.points)
+        curves.append(curve)
+    breakings = breakings_of([curve.special for curve in curves])
+    met: list[Breaking] = []
+    for which, breaking in enumerate(breakings):
+        if breaking in met:
+            continue
+        curve = follow_without_symmetry(which, name, replace(course, most=left, breakings=breakings))
+        met += [curve.meets] if curve.meets else []
         left -= len(curve.points)
         curves.append(curve)
     return curves

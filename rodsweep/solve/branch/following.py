@@ -1,6 +1,6 @@
-"""One branch of cycles, from the Hopf point where it is born to where it ends."""
+"""One branch of cycles, from the Hopf point or the symmetry breaking where it is born to where it ends."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -25,6 +25,7 @@ from .special_points import (
     special_points,
     stretch_at,
 )
+from .symmetry import Breaking, beginning_without_symmetry, mirrored, symmetric_end
 
 PARAMETER = np.array([0.0, 0.0, 1.0])
 SMALL = 0.06
@@ -78,9 +79,10 @@ def _margin(point: ArcPoint) -> float:
 
 @dataclass(kw_only=True, slots=True)
 class BranchCurve:
-    """A branch: its cycles and its special points, both in order, from the Hopf point of a number.
+    """A branch: its cycles and its special points, both in order, from the Hopf point of a number, or -1.
 
-    arrives: the number of the Hopf point at which it ends, -1 for none. complete: whether it was followed to
+    arrives: the number of the Hopf point at which it ends, -1 for none. breaking: the symmetry breaking where
+    a branch without symmetry is born; meets: that at which it ends. complete: whether it was followed to
     an end that is one. explained: whether the special points explain all multipliers that cross the circle.
     """
 
@@ -88,6 +90,8 @@ class BranchCurve:
     points: list[BranchPoint] = field(default_factory=list)
     special: list[SpecialPoint] = field(default_factory=list)
     arrives: int = -1
+    breaking: Breaking | None = None
+    meets: Breaking | None = None
     complete: bool = False
     full: bool = False
     explained: bool = True
@@ -105,13 +109,17 @@ class BranchCurve:
 @dataclass(frozen=True, slots=True)
 class Course:
     """What a branch is followed through: all Hopf points of the rod, the parameter's coordinates between
-    which it lies with why it ends there, an accuracy, and how many cycles are kept."""
+    which it lies with why it ends there, an accuracy, and how many cycles are kept.
+
+    breakings: known symmetry breakings of the rod.
+    """
 
     hopfs: Sequence[HopfBirth]
     ends: tuple[float, float]
     reasons: tuple[EndReason, EndReason]
     accuracy: float
     most: int
+    breakings: Sequence[Breaking] = ()
 
 
 def follow_branch(number: int, course: Course) -> BranchCurve:
@@ -119,18 +127,31 @@ def follow_branch(number: int, course: Course) -> BranchCurve:
     hopf = course.hopfs[number]
     curve = BranchCurve(hopf=number)
     curve.add(special_hopf(hopf))
+    return _followed(curve, course, lambda: beginning(hopf, course.accuracy))
+
+
+def follow_without_symmetry(which: int, name: str, course: Course) -> BranchCurve:
+    """The branch from a symmetry breaking, of a number among the known ones, along a parameter."""
+    breaking = course.breakings[which]
+    curve = BranchCurve(hopf=-1, breaking=breaking)
+    curve.add(replace(breaking.point, message="", orbit=None))
+    return _followed(curve, course, lambda: beginning_without_symmetry(breaking, name, course.accuracy))
+
+
+def _followed(curve: BranchCurve, course: Course, first: Callable[[], ArcPoint]) -> BranchCurve:
+    """A branch that begins at a special point, and what gives its first cycle or raises Unsolvable."""
     if course.most < 1:
         curve.full = True
-        curve.end(_end_beside(hopf, EndReason.list_full), False)
+        curve.end(_end_beside(curve, EndReason.list_full), False)
         return curve
     try:
-        here = beginning(hopf, course.accuracy)
+        here = first()
     except Unsolvable as why:
-        curve.end(_end_beside(hopf, EndReason.no_cycle_found, str(why)), False)
+        curve.end(_end_beside(curve, EndReason.no_cycle_found, str(why)), False)
         return curve
     outside = _beyond(here, course)
     if outside >= 0:
-        curve.end(_end_beside(hopf, course.reasons[outside]), True)
+        curve.end(_end_beside(curve, course.reasons[outside]), True)
         return curve
     curve.points.append(BranchPoint.of(here))
     going: ArcPoint | None = here
@@ -150,9 +171,9 @@ def special_hopf(hopf: HopfBirth) -> SpecialPoint:
     )
 
 
-def _end_beside(hopf: HopfBirth, reason: EndReason, message: str = "") -> SpecialPoint:
-    """The end of a branch that has no cycles."""
-    return replace(special_hopf(hopf), kind=SpecialKind.end, reason=reason, message=message)
+def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> SpecialPoint:
+    """The end of a branch that has no cycles, where it begins."""
+    return replace(curve.special[0], kind=SpecialKind.end, reason=reason, message=message)
 
 
 def _beyond(point: ArcPoint, course: Course) -> int:
@@ -183,8 +204,8 @@ def _next(curve: BranchCurve, here: ArcPoint, course: Course) -> ArcPoint | None
         return None
     try:
         there = next_point(here, course.accuracy)
-        if turned_round(here, there):
-            return _arrived(curve, here, there, course)
+        if _back(here, there, course):
+            return (_arrived if here.orbit.symmetric else _symmetric_again)(curve, here, there, course)
         outside = _beyond(there, course)
         if outside >= 0:
             there = _on_the_edge(here, there, course, outside)
@@ -208,6 +229,13 @@ def _next(curve: BranchCurve, here: ArcPoint, course: Course) -> ArcPoint | None
     edge = replace(_end_at(there, course.reasons[outside]), error=EXACT * abs(BranchPoint.of(there).at))
     curve.end(edge, True)
     return None
+
+
+def _back(here: ArcPoint, there: ArcPoint, course: Course) -> bool:
+    """Whether a branch comes to its own mirror image between two cycles."""
+    if here.orbit.symmetric:
+        return turned_round(here, there)
+    return mirrored(here, there, course.breakings, course.accuracy)
 
 
 def turned_round(here: ArcPoint, there: ArcPoint) -> bool:
@@ -240,6 +268,20 @@ def _arrived(curve: BranchCurve, here: ArcPoint, there: ArcPoint, course: Course
             curve.end(special_hopf(hopf), True)
             return None
     why = "cycles shrink to nothing where no Hopf point is known"
+    curve.end(_end_at(here, EndReason.no_cycle_found, why), False)
+    return None
+
+
+def _symmetric_again(curve: BranchCurve, here: ArcPoint, there: ArcPoint, course: Course) -> ArcPoint | None:
+    """The symmetry breaking where a branch ends between two; or the first of them, for a shorter step."""
+    which = symmetric_end(here, there, course.breakings, course.accuracy)
+    if which is None:
+        return replace(here, length=arc_between(here, there) / 2)
+    if which >= 0:
+        curve.meets = course.breakings[which]
+        curve.end(replace(curve.meets.point, message="", orbit=None), True)
+        return None
+    why = "the cycles become symmetric at one that lies on no branch that was followed"
     curve.end(_end_at(here, EndReason.no_cycle_found, why), False)
     return None
 

@@ -1,14 +1,15 @@
-"""Where a branch changes: folds, torus points, broken symmetry, the end of the model; located, with errors.
+"""Where a branch changes: folds, torus points, broken symmetry, doubled periods, the end of the model.
 
 Between two cycles of a branch a number changes its sign: at a fold how fast the parameter grows along the
 branch; at a torus point the modulus of a complex pair of multipliers less 1; where the symmetry breaks the
-multiplier of half a period and the reflection plus 1; where the model ends the least stretch h1. The zero is
+multiplier of half a period and the reflection plus 1, and the same of a whole period where a cycle without
+symmetry doubles its period; where the model ends the least stretch h1. The zero is
 found by the secant method with a cycle solved at each place, on two fine meshes: what they differ by is the
 error.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from math import ceil, nan
 
@@ -44,7 +45,7 @@ which one that is no shorter than half of the one before is rounding."""
 MOST_ENCLOSINGS, ROUGHLY, FIRST_SECANT = 30, 1e-3, 1e-3
 """Steps by which a zero is enclosed, the value that ends them in units of those at the ends, and the first
 step of the secant method in units of the step of the branch."""
-MOST_PAIRS, MORE_ORDERS, MORE_INTERVALS, SAFETY = 4, 2, 1.4, 3.0
+MOST_PAIRS, MORE_ORDERS, MORE_INTERVALS, SAFETY = 4, 4, 1.3, 3.0
 ROUNDING = 1e-13
 PLACES = 8
 """Places in a node's neighbourhood at which the least stretch is looked for."""
@@ -65,6 +66,7 @@ class SpecialKind(IntEnum):
     symmetry_breaking = 4
     left_the_model = 5
     end = 6
+    period_doubling = 7
 
 
 class EndReason(IntEnum):
@@ -81,7 +83,8 @@ class SpecialPoint:
     """A special point: the parameter's value there, the cycle's period in tau2 and largest tip y in L.
 
     error: absolute, of the parameter's value. after: the place on its branch of the last cycle before it, -1
-    for none. reason: of an end. message: why no cycle was found, or why the error is large.
+    for none. reason: of an end. message: why no cycle was found, or why the error is large. orbit: of a point
+    that was located, the cycle.
     """
 
     kind: SpecialKind
@@ -92,6 +95,7 @@ class SpecialPoint:
     after: int = -1
     reason: EndReason | None = None
     message: str = ""
+    orbit: Orbit | None = field(default=None, repr=False, compare=False)
 
 
 def unstable_returns(point: ArcPoint) -> int:
@@ -104,13 +108,18 @@ def changes_between(here: ArcPoint, there: ArcPoint) -> tuple[list[SpecialKind],
     found = []
     if here.rises * there.rises < 0:
         found.append(SpecialKind.fold)
-    if here.orbit.symmetric and (_beyond_minus_one(here) - _beyond_minus_one(there)) % 2:
-        found.append(SpecialKind.symmetry_breaking)
+    if (_beyond_minus_one(here) - _beyond_minus_one(there)) % 2:
+        found.append(through_minus_one(here.orbit))
     change = abs(unstable_returns(there) - unstable_returns(here))
     slack = 1 if _near_one(here) or _near_one(there) else 0
     if not found and change - slack > 1:
         return [SpecialKind.torus], change == 2 and all(map(_has_pair, (here, there)))
     return found, len(found) <= 1 and abs(change - len(found)) <= slack
+
+
+def through_minus_one(orbit: Orbit) -> SpecialKind:
+    """What a multiplier of the map over what is solved means that passes -1."""
+    return SpecialKind.symmetry_breaking if orbit.symmetric else SpecialKind.period_doubling
 
 
 def _beyond_minus_one(point: ArcPoint) -> int:
@@ -204,8 +213,9 @@ def test_function(kind: SpecialKind, segment: Segment, found: Converged) -> floa
         return least_stretch(CyclePath(found.orbit))
     h = BorderedMatrix(found.orbit, segment.here.scale).returns
     real = np.abs(h.imag) <= REAL * np.abs(h)
-    if kind == SpecialKind.symmetry_breaking and real.any():
-        return float((h[real].real + 1)[np.argmin(np.abs(h[real] + 1))])
+    if kind == through_minus_one(found.orbit):
+        # Its sign is that of det(h + 1): it tells the one that crosses from others that are nearer elsewhere.
+        return float((-1) ** (h[real].real < -1).sum() * np.abs(h + 1).min())
     if kind == SpecialKind.torus and not real.all():
         beyond = np.abs(h[~real]) - 1
         return float(beyond[np.argmin(np.abs(beyond))])
@@ -251,6 +261,7 @@ def _point_at(kind: SpecialKind, found: Converged) -> SpecialPoint:
         period=found.orbit.period,
         tip_y_max=path.extrema["tip_y_max"],
         error=nan,
+        orbit=found.orbit,
     )
 
 

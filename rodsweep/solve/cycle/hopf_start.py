@@ -1,7 +1,9 @@
 """From the Hopf point to the cycle at a force: the branch that is born there, without following a motion.
 
 The Hopf point is the nearest below the force at which the straight rod starts to oscillate. Its normal form
-gives amplitude, frequency and shape of the cycles near it; the branch is then followed on a coarse mesh.
+gives amplitude, frequency and shape of the cycles near it. Very near that is the start of Newton's method on
+the mesh that the accuracy asks for; farther away the branch is followed on a coarse mesh, which has a Hopf
+point of its own, perhaps on the other side of a force that is very near.
 """
 
 from dataclasses import dataclass, replace
@@ -10,11 +12,13 @@ import numpy as np
 
 from ...determinant.newton import crossing_newton
 from ...determinant.parameter_path import Path
+from ...determinant.winding_number import count_right_of
 from ...discretization.mesh import mesh
 from ...discretization.stress_form import StressForm
 from ...model.rod import Rod
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..point import Unsolvable
+from ..spectrum.candidates import BEHIND
 from ..spectrum.followed_leader import followed_leader
 from ..spectrum.search import SpectrumRequest, solve_spectrum
 from .neighbour import followed_from, in_steps
@@ -32,6 +36,9 @@ NORMAL_FORM_ACCURACY = 1e-3
 STARTS = (0.12, 0.03, 0.006)
 """Relative distances from the Hopf point at which the normal form starts Newton's method, one after the
 other: in most rods its amplitude is off by 2 percent at the first, where k2 is small by more."""
+NEAREST = 1e-2
+"""Relative distance from the Hopf point within which the normal form's cycle is near enough to the one of
+the rod: its amplitude is then off by 1 percent in most rods."""
 ORDER_PER_WAVE, LEAST_ORDER = 0.55, 12
 INTERVALS, STAGES = 8, 3
 """In time, over half a period, of the mesh on which the branch is followed."""
@@ -102,9 +109,11 @@ def orbit_from_hopf(form: StressForm, hopf: Onset) -> Orbit:
     """
     rod = form.rod
     at = replace(rod, F=hopf.F)
-    normal = accurate_normal_form(at, form.gamma1, 1j * hopf.frequency, NORMAL_FORM_ACCURACY)
+    normal = _normal_form(replace(form, rod=at), 1j * hopf.frequency)
     if not normal.amplitude > 0:
         raise Unsolvable(f"the cycles from the Hopf point at F = {hopf.F:g} go to smaller forces")
+    if rod.F <= hopf.F * (1 + NEAREST):
+        return orbit_of(normal, replace(form, mesh=normal.form.mesh))
     order = max(LEAST_ORDER, int(ORDER_PER_WAVE * 2.5 * abs(rod.F) ** 0.5))
     coarse = replace(form, mesh=mesh(1, order))
     for part in STARTS:
@@ -113,6 +122,31 @@ def orbit_from_hopf(form: StressForm, hopf: Onset) -> Orbit:
         except Unsolvable as error:
             why = error
     raise why
+
+
+def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
+    """The orbit to which a rod settles from a small tip deflection in its leading mode, by its normal form.
+
+    w: the leading eigenvalue of the straight rod. Raises Unsolvable where the normal form does not tell: the
+    rod is far from a Hopf point, the start too large, another mode grows, or the growth does not saturate.
+    """
+    if not (w.real > 0 and w.imag > 0):
+        raise Unsolvable("the leading mode is no growing pair")
+    normal = _normal_form(form, w)
+    rate = form.rod.F * normal.slope.real
+    if not (w.real <= NEAREST * rate and normal.supercritical):
+        raise Unsolvable("no supercritical Hopf point is near")
+    if not amplitude**2 <= NEAREST * rate / -normal.c.real:
+        raise Unsolvable("the start is too large for the normal form")
+    if count_right_of(-BEHIND * abs(w), form.rod).number != 2:
+        raise Unsolvable("another mode may grow")
+    return orbit_of(normal, replace(form, mesh=normal.form.mesh))
+
+
+def _normal_form(form: StressForm, w: complex) -> NormalForm:
+    """Of an eigenvalue that is exact, which the mesh has only nearly."""
+    normal = accurate_normal_form(form.rod, form.gamma1, w, NORMAL_FORM_ACCURACY)
+    return replace(normal, w=w)
 
 
 def _followed_from(normal: NormalForm, F: float, form: StressForm) -> Orbit:
@@ -130,7 +164,12 @@ def _followed_from(normal: NormalForm, F: float, form: StressForm) -> Orbit:
 def orbit_of(normal: NormalForm, form: StressForm) -> Orbit:
     """The cycle that the normal form predicts for a rod at a force near its own."""
     squared, frequency = normal.cycle(form.rod.F)
-    X = normal.motion(squared**0.5, np.pi * node_times(INTERVALS, STAGES))
+    return orbit_with(normal, form, squared**0.5, frequency)
+
+
+def orbit_with(normal: NormalForm, form: StressForm, amplitude: float, frequency: float) -> Orbit:
+    """A motion of a normal form as an orbit of a rod; the largest tip y in L, frequency in 1/tau2."""
+    X = normal.motion(amplitude, np.pi * node_times(INTERVALS, STAGES))
     S, V = normal.form.fields(X)
     E = normal.form.mesh.evaluation(form.mesh.positions)
     parts = [*(S @ E.T)[..., :-1]] + ([V[2] @ E.T] if form.omega_unknown else [])

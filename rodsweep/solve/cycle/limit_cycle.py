@@ -1,7 +1,8 @@
 """The limit cycle of one rod, from a start to its numbers (paper, Sec. VII).
 
 The rod starts from its leading eigenmode, or from a neighbour's cycle. From the mode its motion is followed
-until it comes near a cycle (`transient`); a neighbour predicts the cycle (`neighbour`). Newton's method then
+until it comes near a cycle (`transient`), just above a Hopf point the normal form predicts it (`hopf_start`);
+a neighbour predicts the cycle (`neighbour`). Newton's method then
 solves for the periodic orbit (`orbit`, `condensation`) on meshes of its own choice (`refinement`), and it is
 measured (`measures`). It is called a cycle only if it is proved stable by its multipliers; that two peaks are
 close proves nothing near the Hopf point, where motions decay slowly.
@@ -29,13 +30,14 @@ from ..point import Unsolvable, solved
 from ..spectrum.followed_leader import followed_leader
 from ..spectrum.search import SpectrumRequest, solve_spectrum
 from .cycle_errors import UNKNOWN_ERRORS, CycleErrors
-from .hopf_start import hopf_point_below, orbit_from_hopf
+from .hopf_start import hopf_point_below, orbit_from_hopf, small_orbit
 from .measures import Measures
 from .neighbour import Neighbour, followed_cycle
 from .refinement import RefinedCycle, refined_cycle
+from .second_state import SecondState, second_state
 from .status import CycleStatus
 from .torus import torus_or
-from .transient import Transient, TransientOutcome
+from .transient import NEUTRAL, Transient, TransientOutcome
 
 __all__ = ["Cycle", "CyclePoint", "CycleRequest", "CycleStatus", "solve_cycle", "warm_up"]
 
@@ -98,7 +100,8 @@ class Cycle:
     """What became of one rod, and the numbers of its cycle: NaN or None where there is none.
 
     linear_growth_rate and linear_frequency of the leading mode about the straight rod, 1/tau2; periods:
-    returns waited for. multiplier: the largest nontrivial Floquet multiplier's modulus; multipliers: the
+    returns waited for. second_state: a SecondState, subcritical_F: the force of the Hopf point that makes a
+    cycle possible. multiplier: the largest nontrivial Floquet multiplier's modulus; multipliers: the
     largest ones, complex, (STORED_MULTIPLIERS,); trivial_multiplier_error: distance of the trivial one from
     1. On a torus these are all that is known, and those of the unstable cycle that it surrounds.
 
@@ -115,6 +118,8 @@ class Cycle:
     linear_growth_rate: float = nan
     linear_frequency: float = nan
     periods: int = 0
+    second_state: int = SecondState.not_told
+    subcritical_F: float = nan
     elements: int = 0
     order: int = 0
     measures: Measures = Measures()
@@ -145,7 +150,10 @@ def solve_cycle(
         forget_integrators()  # a PETSc object is not usable after an error inside it
         return Cycle(status=CycleStatus.failed, message=cause)
 
-    return solved(lambda: _solve(point, request, start, along), failed)
+    def solve() -> Cycle:
+        return _with_second_state(point, _solve(point, request, start, along))
+
+    return solved(solve, failed)
 
 
 def warm_up() -> None:
@@ -183,10 +191,11 @@ def _solve(point: CyclePoint, request: CycleRequest, start: Array | None, along:
     if neighbour is not None and along is not None:
         with suppress(Unsolvable):
             found = followed_cycle(neighbour, form, along, request.accuracy)
-        if found is not None and found.verdict(request.accuracy)[0] == CycleStatus.cycle:
-            cycle = _measured(replace(straight, status=CycleStatus.cycle), found, request)
-            there = Neighbour.of(found, neighbour, along, request.accuracy, leading)
-            return replace(cycle, neighbour=there.pack())
+    elif neighbour is None and not request.transient:
+        found = _small_cycle(form, leading, request, along)
+    if found is not None and found.verdict(request.accuracy)[0] == CycleStatus.cycle:
+        cycle = _measured(replace(straight, status=CycleStatus.cycle), found, request)
+        return _handed_on(cycle, found, neighbour, along, request.accuracy)
     faded = _fades(rod, point.gamma1, leading, request.amplitude) if neighbour is None else ""
     if faded and not request.transient:
         return replace(straight, message=faded)
@@ -205,10 +214,40 @@ def _solve(point: CyclePoint, request: CycleRequest, start: Array | None, along:
     )
     if faded or end.found is None:
         return cycle if faded or end.around is None else _with_multipliers(cycle, end.around)
-    cycle = _measured(cycle, end.found, request)
+    return _handed_on(_measured(cycle, end.found, request), end.found, None, along, request.accuracy)
+
+
+def _handed_on(
+    cycle: Cycle, found: RefinedCycle, before: Neighbour | None, along: str | None, accuracy: float
+) -> Cycle:
+    """The cycle with what the next point starts from, where points follow each other."""
     if along is None:
         return cycle
-    return replace(cycle, neighbour=Neighbour.of(end.found, None, along, request.accuracy, leading).pack())
+    leading = complex(cycle.linear_growth_rate, cycle.linear_frequency)
+    return replace(cycle, neighbour=Neighbour.of(found, before, along, accuracy, leading).pack())
+
+
+def _small_cycle(
+    form: StressForm, w: complex, request: CycleRequest, along: str | None
+) -> RefinedCycle | None:
+    """The stable cycle just above a Hopf point to which the start grows or decays; None where it is not one.
+
+    w: the leading eigenvalue of the straight rod.
+    """
+    try:
+        found = refined_cycle(small_orbit(form, w, request.amplitude), request.accuracy, along)
+    except Unsolvable:
+        return None
+    settled = found.verdict(request.accuracy)[0] == CycleStatus.cycle
+    return found if settled and 1 - found.largest_multiplier >= NEUTRAL else None
+
+
+def _with_second_state(point: CyclePoint, cycle: Cycle) -> Cycle:
+    """The same, and whether the rod has another stable state."""
+    rod = Rod(point.F, point.k1, point.k2, point.gamma3)
+    state, F, why = second_state(rod, point.gamma1, cycle.status, cycle.linear_growth_rate)
+    message = "; ".join(filter(None, (cycle.message, why)))
+    return replace(cycle, second_state=int(state), subcritical_F=F, message=message)
 
 
 def _leading_eigenvalue(rod: Rod, neighbour: Neighbour | None) -> complex:

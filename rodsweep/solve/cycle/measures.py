@@ -45,6 +45,7 @@ class Measures:
     tip_x_min: float = nan
     tip_x_max: float = nan
     tip_y_max: float = nan
+    tip_y_min: float = nan
     tip_theta_max: float = nan
     harmonic_amplitude: Array = field(default_factory=lambda: np.array(nan))
     injection_mean: float = nan
@@ -106,6 +107,13 @@ class CyclePath:
         return {"tip_x_min": x_min, "tip_x_max": x_max, "tip_y_max": y_max, "tip_theta_max": theta_max}
 
     @cached_property
+    def tip_y_min(self) -> float:
+        """The smallest y of the tip: the largest with the other sign where the orbit is symmetric."""
+        if self.orbit.symmetric:
+            return -self.extrema["tip_y_max"]
+        return -float(maxima(-self.tip_coefficients[:, 1:2], -self.tip_samples[:, 1:2])[0])
+
+    @cached_property
     def beginning(self) -> float:
         """When the tip's y rises through its mean, in periods."""
         return rise_through_mean(self.tip_samples[:, 1])
@@ -156,6 +164,7 @@ def measures_of(path: CyclePath) -> Measures:
         period=orbit.period,
         frequency=2 * np.pi / orbit.period,
         **path.extrema,
+        tip_y_min=path.tip_y_min,
         harmonic_amplitude=np.abs(y[1:]),
         energy_imbalance=mean.injection_mean / mean.dissipation_mean - 1,
         **mean._asdict(),

@@ -81,7 +81,7 @@ def curve_criticality(plane: Plane, curve: BoundaryCurve, gamma1: float, accurac
     gamma1 in gamma2. accuracy: of c, relative; at least FINEST is asked for. Points where the normal form
     fails have none, and cost no other its own.
     """
-    hopf = _HopfCurve(Boundary(plane, curve.sign), curve.scaled, gamma1, min(accuracy, FINEST))
+    hopf = HopfCurve(Boundary(plane, curve.sign), curve.scaled, gamma1, min(accuracy, FINEST))
     signs = np.array([hopf.sign(i) for i in range(len(curve.scaled))])
     points, unlocated = [], 0
     decided = np.flatnonzero(signs != 0)  # a change may lie within the error of a point
@@ -94,7 +94,7 @@ def curve_criticality(plane: Plane, curve: BoundaryCurve, gamma1: float, accurac
 
 
 @dataclass(frozen=True, slots=True)
-class _HopfCurve:
+class HopfCurve:
     """The points (x, y, h) of a Hopf curve, shape (points, 3), and what computes normal forms on it."""
 
     boundary: Boundary
@@ -144,9 +144,9 @@ class _HopfCurve:
             return None
         passed = (self.scaled[first + 1 : last] - start) @ chord <= s * (chord @ chord)
         along = here.coefficients.landau_error / abs(slope) + PLACE
-        return self._as_point(here, first + int(passed.sum()), chord * along)
+        return self.as_point(here, first + int(passed.sum()), chord * along)
 
-    def _as_point(self, here: _At, after: int, moved: Array) -> GeneralisedHopfPoint:
+    def as_point(self, here: _At, after: int, moved: Array) -> GeneralisedHopfPoint:
         """The point of its normal form; moved: by how much it may be off along the chord, (3,)."""
         there, axes = here.there, self.boundary.plane.axes
         tangent = there.tangent

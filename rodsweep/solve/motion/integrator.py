@@ -6,7 +6,6 @@ tolerance; one Jacobian a step, that of the state expected half-way (at its star
 iterations).
 """
 
-from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
@@ -17,6 +16,7 @@ from ...arrays import Array
 from ...discretization.beam import Beam
 from ...discretization.mesh import Mesh
 from ..backend.c_functions import call
+from ..backend.kept import Kept
 from ..backend.petsc import PETSc
 from .callbacks import Workspace
 from .step_record import end_step, take_steps
@@ -161,26 +161,20 @@ class Integrator:
             held.destroy()
 
 
-_kept: OrderedDict[tuple[int, int, TimeScheme], Integrator] = OrderedDict()
+_kept: Kept[tuple[Mesh, TimeScheme], Integrator] = Kept(lambda key: Integrator(*key), MOST_KEPT)
 
 
 def integrator(mesh: Mesh, scheme: TimeScheme) -> Integrator:
     """The integrator for a mesh and a scheme, kept for the next point."""
-    key = mesh.elements, mesh.order, scheme
-    if key in _kept and _kept[key].broken:
-        _kept.pop(key).destroy()
-    if key not in _kept:
-        if len(_kept) >= MOST_KEPT:
-            _kept.popitem(last=False)[1].destroy()
-        _kept[key] = Integrator(mesh, scheme)
-    _kept.move_to_end(key)
-    return _kept[key]
+    key = mesh, scheme
+    if _kept.get(key).broken:
+        _kept.drop(key)
+    return _kept.get(key)
 
 
 def forget_integrators() -> None:
     """Drops every kept integrator, after an error, or so that the next one hears of new options."""
-    while _kept:
-        _kept.popitem()[1].destroy()
+    _kept.clear()
 
 
 def relaxed(beam: Beam, z: Array, period: float) -> Array:

@@ -23,8 +23,11 @@ from .krylov_schur import eigen_solver, forget_solvers
 
 WAVES_A_NODE = 2.0
 """Largest |q| of an eigenvalue, in units of the nodes, that a mesh can stand for."""
-WIDE_GAP = 0.05
-"""Relative gap between two real parts that is wide enough to draw a line through."""
+WIDE_GAP, WIDE_GAP_OF_FLUTTER = 0.2, 0.05
+"""Relative gap between two real parts that is wide enough to draw a line through: in a wider one a count is
+cheaper, but where modes grow those far to the left are found last, and to ask for them costs a finer mesh."""
+BEHIND = 0.05
+"""How far behind the last eigenvalue found the unknown is counted in, in units of its modulus."""
 NO_GAP = 1e-6
 """Relative gap below which two real parts count as equal."""
 LINES_TRIED = 3
@@ -105,14 +108,15 @@ def lines(w: list[complex], modes: int) -> list[float]:
 
     Behind the last of them it is drawn through the unknown, where the count may ask for more.
     """
+    wide = WIDE_GAP_OF_FLUTTER if w[0].real > 0 else WIDE_GAP
     target = min(w[modes - 1].real, 0.0)
     below = [target] + [value.real for value in w if value.real < target]
     gaps = []
     for right, left in zip(below[:-1], below[1:], strict=True):
         width = (right - left) / abs(left)
         if width > NO_GAP:
-            gaps.append((min(width, WIDE_GAP), (left + right) / 2))
+            gaps.append((min(width, wide), (left + right) / 2))
     gaps.sort(key=lambda gap: -gap[0])  # stable: of the wide ones the first stays foremost
     last = below[-1]
-    behind = last - WIDE_GAP * (abs(w[-1]) if last < 0 else abs(w[0].real) + 1.0)
+    behind = last - BEHIND * (abs(w[-1]) if last < 0 else abs(w[0].real) + 1.0)
     return [*(middle for _, middle in gaps[: LINES_TRIED - 1]), behind]

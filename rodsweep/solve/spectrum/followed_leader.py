@@ -7,7 +7,7 @@ from ...determinant.newton import refined
 from ...determinant.roots import root_error
 from ...determinant.winding_number import count_right_of
 from ...model.rod import Rod
-from .candidates import WIDE_GAP
+from .candidates import BEHIND
 
 
 def followed_leader(rod: Rod, near: complex, accuracy: float) -> complex | None:
@@ -19,5 +19,5 @@ def followed_leader(rod: Rod, near: complex, accuracy: float) -> complex | None:
     error, _, _ = root_error(w, rod.coefficients)
     if not error <= accuracy * abs(w) or w.imag < 0 or (w.imag == 0) != (near.imag == 0):
         return None
-    line = w.real - WIDE_GAP * abs(w)
+    line = w.real - BEHIND * abs(w)
     return w if count_right_of(line, rod).number == (2 if w.imag else 1) else None

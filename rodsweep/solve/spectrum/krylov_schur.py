@@ -8,7 +8,6 @@ nothing else, otherwise a sparse one.
 """
 
 import math
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +17,7 @@ from ...discretization.pencil import Pencil, assemble
 from ...discretization.resolution import Resolution
 from ...model.compilation import compiled
 from ...model.rod import Rod
+from ..backend.kept import Kept
 from ..backend.petsc import PETSc, SLEPc, sparse_package
 
 DENSE_UP_TO = 300
@@ -33,6 +33,8 @@ All that a Krylov space has beyond these and the finite ones is rounding, in whi
 START_WIDTH = 3.3
 """Width of the first Krylov vector in units of the distance of nodes: a displacement next to the tip, which
 every mode moves, as smooth as the wanted modes are. It saves two steps of eleven."""
+MOST_KEPT = 24
+"""Solvers kept for the next point of an equal resolution: a sweep uses few, and one has some megabytes."""
 SPECTRUM_PREFIX = "spectrum_"
 """Prefix of the PETSc options that override this solver, as in -spectrum_eps_ncv 32."""
 
@@ -144,6 +146,11 @@ class EigenSolver:
         imag.destroy()
         return X
 
+    def destroy(self) -> None:
+        """Gives the objects of PETSc and SLEPc back."""
+        for held in (self.eps, self.A, self.B, self.start):
+            held.destroy()
+
 
 def _as_filament(rod: Rod) -> tuple[Rod, float]:
     """(rod, pace): the rod whose eigenvalues in units of 1/pace^2 are those of `rod`, y in units of pace.
@@ -156,12 +163,14 @@ def _as_filament(rod: Rod) -> tuple[Rod, float]:
     return rod, 1.0
 
 
-@lru_cache(maxsize=64)
+_kept = Kept(EigenSolver, MOST_KEPT)
+
+
 def eigen_solver(resolution: Resolution) -> EigenSolver:
     """The solver for a resolution, kept for the next point."""
-    return EigenSolver(resolution)
+    return _kept.get(resolution)
 
 
 def forget_solvers() -> None:
     """Drops every kept solver: a PETSc object is not usable after an error inside it."""
-    eigen_solver.cache_clear()
+    _kept.clear()

@@ -1,0 +1,104 @@
+"""What `phase_diagram.cycles` adds to the task phase_diagram: rows with their cycles, and curves of these."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...determinant.parameter_plane import Plane
+from ...results.file.view import View
+from ...results.layouts.phase_diagram import MOST_SPECIAL
+
+if TYPE_CHECKING:
+    from ...solve.branch.coexistence import CoexistenceRow
+    from ...solve.branch.special_boundaries import CycleCurves
+    from ...solve.branch.special_points import SpecialPoint
+    from ...solve.hopf.generalised import CurveCriticality
+
+
+def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
+    """The cycles of a row along a parameter as the variables of the file, with time and status of the row."""
+    kept = result.special[:MOST_SPECIAL]
+    columns: dict[str, tuple[str, float]] = {
+        "kind": ("kind", 0),
+        line: ("at", np.nan),
+        "error": ("error", np.nan),
+        "period": ("period", np.nan),
+        "tip_y_max": ("tip_y_max", np.nan),
+    }
+    values: dict[str, Any] = {
+        f"cycle_special_{name}": [getattr(point, field) for point in kept]
+        + [fill] * (MOST_SPECIAL - len(kept))
+        for name, (field, fill) in columns.items()
+    }
+    values |= {"cycle_special_count": len(result.special), "stable_states": result.stable_states}
+    return values | {"seconds": result.seconds, "status": int(result.status)}
+
+
+def curves_of_cycles(
+    plane: Plane,
+    view: View,
+    rows: np.ndarray,
+    told: "Sequence[CurveCriticality]",
+    located: "Callable[[int], Iterable[SpecialPoint]]",
+) -> dict[str, Any]:
+    """The curves through the folds and torus points of all finite rows, as variables of the file.
+
+    rows: their values, (rows,). told: of the Hopf curves, for the points where curves of folds end. located:
+    the special points of a row of a number, solved anew.
+    """
+    from ...solve.branch.special_boundaries import CURVE_KINDS, RowSpecial, cycle_curves
+    from ...solve.branch.special_curves import ending_at
+    from ...solve.branch.special_points import SpecialKind
+
+    line, row = (axis.name for axis in plane.axes)
+    kinds = view.variables["cycle_special_kind"].reshape(len(rows), -1)
+    at, period, height = (
+        view.variables[f"cycle_special_{name}"].reshape(len(rows), -1)
+        for name in (line, "period", "tip_y_max")
+    )
+    special = [
+        RowSpecial(
+            number=int(i),
+            row=float(rows[i]),
+            kind=SpecialKind(int(kinds[i, j])),
+            at=float(at[i, j]),
+            period=float(period[i, j]),
+            tip_y_max=float(height[i, j]),
+        )
+        for i in np.flatnonzero(np.isfinite(rows))
+        for j in np.flatnonzero(np.isin(kinds[i], CURVE_KINDS))
+    ]
+    found = cycle_curves(*plane.axes, special, located)
+    # Where a list is full its last points are not stored, and no curve starts from them.
+    cut = view.variables["cycle_special_count"].ravel() - np.count_nonzero(kinds, axis=1)
+    untraced = found.untraced + int(cut[np.isfinite(rows)].clip(min=0).sum())
+    known = [point for curve in told for point in curve.points]
+    curves = tuple(ending_at(curve, plane, known) for curve in found.curves)
+    return cycle_curve_record(replace(found, curves=curves, untraced=untraced), line, row)
+
+
+def cycle_curve_record(found: "CycleCurves", line: str, row: str) -> dict[str, Any]:
+    """Curves of folds and torus points as the variables of the file, with the Hopf points where they end."""
+    names = (line, row, "error", "period", "tip_y_max")
+    points, numbers, kinds, ends = [], [], [], []
+    for number, curve in enumerate(found.curves, 1):
+        own = [(p.at, p.row, p.error, p.orbit.period, p.tip_y_max) for p in curve.points]
+        first, last = ([(p.at, p.row, p.error, p.period, 0.0)] if p else [] for p in curve.vanishing)
+        own = [*first, *own, *last]
+        points += own
+        numbers += [number] * len(own)
+        kinds += [int(curve.kind)] * len(own)
+        why = np.zeros(len(own), dtype=int)
+        why[0], why[-1] = curve.ends  # of a single point the last says it
+        ends += why.tolist()
+    table = np.array(points, dtype=float).reshape(-1, len(names))
+    values: dict[str, Any] = {f"cycle_curve_{name}": table[:, i] for i, name in enumerate(names)}
+    return values | {
+        "cycle_curve_number": numbers,
+        "cycle_curve_kind": kinds,
+        "cycle_curve_end": ends,
+        "cycle_curve_agreement": found.agreement,
+        "cycle_curves_untraced": found.untraced,
+    }

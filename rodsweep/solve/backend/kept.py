@@ -1,0 +1,48 @@
+"""Objects of PETSc and SLEPc that are kept from point to point, and destroyed when others take their place.
+
+Left to Python they are not: petsc4py only sets aside what the garbage collector finds.
+"""
+
+from collections import OrderedDict
+from collections.abc import Callable, Hashable
+from typing import Generic, Protocol, TypeVar
+
+
+class Destroyable(Protocol):
+    """What gives its memory back when told to."""
+
+    def destroy(self) -> None: ...
+
+
+Key = TypeVar("Key", bound=Hashable)
+Object = TypeVar("Object", bound=Destroyable)
+
+
+class Kept(Generic[Key, Object]):
+    """At most so many objects, made by `create` of their keys; the one not asked for longest goes first."""
+
+    def __init__(self, create: Callable[[Key], Object], most: int) -> None:
+        self._create, self._most = create, most
+        self._objects: OrderedDict[Key, Object] = OrderedDict()
+
+    def __len__(self) -> int:
+        return len(self._objects)
+
+    def get(self, key: Key) -> Object:
+        """The object of a key, kept or new; it may be destroyed at the next call with another key."""
+        if key not in self._objects:
+            while len(self._objects) >= self._most:
+                self._objects.popitem(last=False)[1].destroy()
+            self._objects[key] = self._create(key)
+        self._objects.move_to_end(key)
+        return self._objects[key]
+
+    def drop(self, key: Key) -> None:
+        """Destroys the object of a key, if it is kept."""
+        if key in self._objects:
+            self._objects.pop(key).destroy()
+
+    def clear(self) -> None:
+        """Destroys all."""
+        while self._objects:
+            self._objects.popitem()[1].destroy()

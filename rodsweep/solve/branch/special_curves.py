@@ -1,0 +1,302 @@
+"""Curves of folds and torus points of cycles, from where they were located on rows to where they end."""
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from enum import IntEnum
+
+import numpy as np
+from scipy.optimize import brentq
+
+from ...arrays import Array
+from ...determinant.parameter_plane import Plane, PlaneAxis
+from ..cycle.measures import CyclePath
+from ..cycle.newton import relative_change
+from ..cycle.orbit import Orbit
+from ..cycle.orbit_mesh import OrbitMesh, mesh_of
+from ..hopf.generalised import GeneralisedHopfPoint
+from ..point import FAILURES, Unsolvable
+from .bordered import BorderedMatrix
+from .special_family import CycleFamily, OnCurve, crossing_pair, first_point, with_parameters
+from .special_points import SpecialKind, SpecialPoint, least_stretch
+
+FIRST, LONGEST, SHORTEST = 0.01, 0.1, 1e-4
+"""Steps along a curve: the axis of the rows has length 1, a branch the length of `Scale.place`."""
+GOOD_PREDICTION, FAR, LONGER, SHORTER = 3e-3, 0.1, 2.0, 0.5
+"""Relative distance of a cycle from its prediction that the next step is chosen for, beyond which it may be
+another one, and by how much a step may differ from the one before."""
+STRAIGHT = 0.85
+"""Least cosine of the angle between steps."""
+PREDICTED_BY = 4
+"""Points of a curve through which the prediction goes, at most."""
+MOST_POINTS, MOST_LANDINGS, LEAST_LOOP = 400, 15, 5
+LANDED = 1e-8
+"""Distance from an edge, scaled, that is none."""
+SHORT_OF_CRUSHED = 1e-3
+"""How far below k1 a curve ends, relatively."""
+VANISHING = 0.01
+"""Largest tip y, in L, of cycles from which a curve is extrapolated to the Hopf point where they vanish."""
+ALMOST_REAL = 0.2
+"""Angle in radians from the real axis of multipliers that are about to meet on it."""
+SAFETY = 10.0
+"""Of the extrapolation: on a mesh the Hopf point moves along the curve, which no point's error tells."""
+AT_HOPF = 0.01
+"""Scaled distance of an extrapolated Hopf point from a generalised one that is located on a Hopf curve."""
+ALONG_BRANCH = np.array([1.0, 0.0])
+
+
+class CurveEnd(IntEnum):
+    """Where a curve of special points ends; none is within a curve."""
+
+    none = 0
+    edge = 1
+    crushed = 2
+    hopf = 3
+    left_the_model = 4
+    resonance = 5
+    closed = 6
+    not_followed = 7
+
+
+@dataclass(frozen=True, slots=True)
+class VanishingPoint:
+    """A Hopf point at which a curve ends: both parameters, the error of the line's, the period in tau2."""
+
+    at: float
+    row: float
+    error: float
+    period: float
+
+
+@dataclass(frozen=True, slots=True)
+class CycleCurve:
+    """A curve of folds or torus points: its points in order, and why it ends before and behind them.
+
+    vanishing: the Hopf points where the cycles vanish, if it ends at such.
+    """
+
+    kind: SpecialKind
+    points: tuple[OnCurve, ...]
+    ends: tuple[CurveEnd, CurveEnd]
+    vanishing: tuple[VanishingPoint | None, VanishingPoint | None]
+
+
+@dataclass(frozen=True, slots=True)
+class CurveCourse:
+    """A kind of special points, over the line's parameter between two values and the rows' axis."""
+
+    kind: SpecialKind
+    line: PlaneAxis
+    rows: PlaneAxis
+
+    def trace(self, special: SpecialPoint, row: float) -> CycleCurve:
+        """The curve through a special point of a row, followed both ways to its ends; raises Unsolvable."""
+        first = first_point(special, self.line.name, self.rows, row)
+        ahead, end = self._followed([first], 1.0)
+        behind, start = ([first], end) if end is CurveEnd.closed else self._followed([first], -1.0)
+        points = (*behind[:0:-1], *ahead)
+        ends = (start, end)
+        vanishing = [
+            vanishing_point(side) if at is CurveEnd.hopf else None
+            for at, side in zip(ends, (points[::-1], points), strict=True)
+        ]
+        return CycleCurve(self.kind, points, ends, (vanishing[0], vanishing[1]))
+
+    def _followed(self, points: list[OnCurve], side: float) -> tuple[list[OnCurve], CurveEnd]:
+        """(a curve from its first point on, to one side of the rows' axis first, why it ends)."""
+        step = FIRST
+        while len(points) < MOST_POINTS:
+            try:
+                there, off = self._next(points, step, side)
+            except FAILURES:
+                step /= 2
+                if step < SHORTEST:
+                    return points, self._why_lost(points[-1])
+                continue
+            end = self._beyond(there)
+            if end is not CurveEnd.none:
+                return points + self._landed(points[-1], there, end), end
+            if comes_back(points, there):
+                return [*points, points[0]], CurveEnd.closed
+            points.append(there)
+            if there.tip_y_max < VANISHING and there.tip_y_max < points[-2].tip_y_max:
+                return points, CurveEnd.hopf
+            order = min(len(points), PREDICTED_BY)
+            factor = (GOOD_PREDICTION / max(off, 1e-9)) ** (1 / order)
+            step = min(LONGEST, step * float(np.clip(factor, SHORTER, LONGER)))
+        return points, CurveEnd.not_followed
+
+    def _next(self, points: Sequence[OnCurve], step: float, side: float) -> tuple[OnCurve, float]:
+        """(the point a step ahead, relative distance of its cycle from the prediction); raises Unsolvable."""
+        last = points[-1]
+        if len(points) == 1:
+            start, place = last.orbit, last.place + side * step
+            across, slope = ALONG_BRANCH, 0.0
+        else:
+            start, place = self._predicted(points, self._alive(points, step))
+            way = np.append(last.scale.place(start) - last.scale.place(last.orbit), place - last.place)
+            across, slope = last.across(way), slope_of(*points[-2:])
+        there = self._family(last).point(start, place, across, slope)
+        mesh = mesh_of(there.orbit)
+        predicted = start if mesh == mesh_of(start) else mesh.carry(start)
+        off = relative_change(predicted, there.orbit.values - predicted.values)
+        if len(points) > 1:
+            one, other = last.step_from(points[-2]), there.step_from(last)
+            if off > FAR or one @ other < STRAIGHT * np.linalg.norm(one) * np.linalg.norm(other):
+                raise Unsolvable("the point is far from its prediction")
+        return there, off
+
+    def _family(self, point: OnCurve) -> CycleFamily:
+        return CycleFamily.about(self.kind, self.rows, point)
+
+    def _predicted(self, points: Sequence[OnCurve], step: float) -> tuple[Orbit, float]:
+        """(orbit, place) a step beyond the last of some points; raises Unsolvable."""
+        known = points[-PREDICTED_BY:]
+        return self._mixed(known, polynomial_weights(lengths_of(known), step), mesh_of(known[-1].orbit))
+
+    def _alive(self, points: Sequence[OnCurve], step: float) -> float:
+        """A step, or the longest one whose prediction is a rod that is all but crushed."""
+        known = points[-PREDICTED_BY:]
+        lengths = lengths_of(known)
+
+        def distance(longest: float) -> float:
+            weights, rod = polynomial_weights(lengths, longest), known[-1].orbit.form.rod
+            at, place = (float(np.dot(weights, [getattr(p, n) for p in known])) for n in ("at", "place"))
+            values = {"F": rod.F, "k1": rod.k1, self.line.name: at, self.rows.name: self.rows.value(place)}
+            return 1 - SHORT_OF_CRUSHED / 2 - values["F"] / values["k1"]
+
+        if distance(step) >= 0 or distance(0.0) <= 0:
+            return step
+        return float(brentq(distance, 0.0, step, rtol=1e-6))
+
+    def _mixed(
+        self, points: Sequence[OnCurve], weights: Sequence[float], mesh: OrbitMesh
+    ) -> tuple[Orbit, float]:
+        """(orbit, place) by weights of some points; raises Unsolvable."""
+        values = np.dot(weights, [mesh.carry(point.orbit).values for point in points])
+        at, place = (float(np.dot(weights, [getattr(p, n) for p in points])) for n in ("at", "place"))
+        changed = {self.line.name: at, self.rows.name: self.rows.value(place)}
+        return with_parameters(replace(mesh.carry(points[-1].orbit), values=values), changed), place
+
+    def _beyond(self, point: OnCurve) -> CurveEnd:
+        """Why a curve ends before a point."""
+        rod = point.orbit.form.rod
+        if rod.F / rod.k1 > 1 - SHORT_OF_CRUSHED:
+            return CurveEnd.crushed
+        if not (-LANDED <= point.place <= 1 + LANDED and -LANDED <= self.line.scaled(point.at) <= 1 + LANDED):
+            return CurveEnd.edge
+        return CurveEnd.left_the_model if least_stretch(CyclePath(point.orbit)) <= 0 else CurveEnd.none
+
+    def _margins(self, point: OnCurve, end: CurveEnd) -> Array:
+        """What is negative beyond an end: distances from the edges scaled, from crushing, or h1."""
+        if end is CurveEnd.edge:
+            x, y = self.line.scaled(point.at), point.place
+            return np.array([x, 1 - x, y, 1 - y])
+        if end is CurveEnd.crushed:
+            rod = point.orbit.form.rod
+            return np.array([1 - SHORT_OF_CRUSHED - rod.F / rod.k1])
+        return np.array([least_stretch(CyclePath(point.orbit))])
+
+    def _landed(self, inner: OnCurve, outer: OnCurve, end: CurveEnd) -> list[OnCurve]:
+        """The point between two at which the curve ends, or none where it is not found."""
+        one, other = self._margins(inner, end), self._margins(outer, end)
+        # Of what is passed between the two the first.
+        which = int(np.argmin(np.where(other < 0, one / np.maximum(one - other, LANDED), np.inf)))
+        low, high, f_low, f_high = 0.0, 1.0, float(one[which]), float(other[which])
+        if f_low <= LANDED:
+            return []
+        if end is CurveEnd.edge and which >= 2:
+            with suppress(Unsolvable):
+                there = self.on_row(inner, outer, float(which - 2))
+                return [self._family(outer).point(there.orbit, there.place, ALONG_BRANCH)]
+        for _ in range(MOST_LANDINGS):
+            share = low + f_low / (f_low - f_high) * (high - low)
+            try:
+                there = self.between(inner, outer, share)
+            except Unsolvable:
+                return []
+            f = float(self._margins(there, end)[which])
+            if abs(f) <= LANDED:
+                return [there]
+            if f > 0:
+                low, f_low, f_high = share, f, f_high / 2
+            else:
+                high, f_high, f_low = share, f, f_low / 2
+        return []
+
+    def between(self, one: OnCurve, other: OnCurve, share: float) -> OnCurve:
+        """The point at a share of the way between two; raises Unsolvable."""
+        start, place = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
+        across = other.across(other.step_from(one))
+        return self._family(other).point(start, place, across, slope_of(one, other))
+
+    def on_row(self, one: OnCurve, other: OnCurve, place: float) -> OnCurve:
+        """The point at a place of the rows' axis, scaled, between two, without error; raises Unsolvable."""
+        share = (place - one.place) / (other.place - one.place) if other.place != one.place else 0.0
+        start, _ = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
+        return self._family(other).nearest(start, place, ALONG_BRANCH)
+
+    def _why_lost(self, last: OnCurve) -> CurveEnd:
+        """Why a curve cannot be followed beyond a point."""
+        if self.kind == SpecialKind.torus:
+            pair = crossing_pair(BorderedMatrix(last.orbit, last.scale))
+            if pair is None or abs(pair.imag) < ALMOST_REAL * abs(pair):
+                return CurveEnd.resonance
+        return CurveEnd.not_followed
+
+
+def ending_at(curve: CycleCurve, plane: Plane, known: Sequence[GeneralisedHopfPoint]) -> CycleCurve:
+    """A curve of folds with the Hopf points at its ends as they are located on Hopf curves."""
+
+    def located(end: VanishingPoint | None) -> VanishingPoint | None:
+        if end is None or curve.kind != SpecialKind.fold:
+            return end
+        for point in known:
+            pairs = zip(plane.axes, point.values, (end.at, end.row), strict=True)
+            if all(abs(axis.scaled(a) - axis.scaled(b)) <= AT_HOPF for axis, a, b in pairs):
+                return VanishingPoint(*point.values, point.errors[0], 2 * np.pi / point.frequency)
+        return end
+
+    first, last = map(located, curve.vanishing)
+    return replace(curve, vanishing=(first, last))
+
+
+def comes_back(points: Sequence[OnCurve], there: OnCurve) -> bool:
+    """Whether the first point of a curve lies between the last one and the next."""
+    first, last = points[0], points[-1]
+    step, back = there.step_from(last), there.step_from(first)
+    passed = float(back @ step) / float(step @ step)
+    near = float(np.linalg.norm(back)) <= float(np.linalg.norm(step))
+    return len(points) > LEAST_LOOP and 0 <= passed <= 1 and near
+
+
+def polynomial_weights(places: Array, at: float) -> list[float]:
+    """Of the values at some places, (n,), in the polynomial through them at another place."""
+    return [
+        float(np.prod([(at - other) / (own - other) for other in places if other != own])) for own in places
+    ]
+
+
+def lengths_of(points: Sequence[OnCurve]) -> Array:
+    """Lengths from the last of some points to each, not positive, (points,)."""
+    steps = [float(np.linalg.norm(b.step_from(a))) for a, b in zip(points[:-1], points[1:], strict=True)]
+    lengths: Array = np.cumsum([0.0, *steps]) - sum(steps)
+    return lengths
+
+
+def slope_of(one: OnCurve, other: OnCurve) -> float:
+    """d(line's value)/d(place) between two points, 0 where they do not tell."""
+    apart = other.place - one.place
+    return (other.at - one.at) / apart if apart else 0.0
+
+
+def vanishing_point(points: Sequence[OnCurve]) -> VanishingPoint | None:
+    """Where the largest y is 0 behind the last point, by polynomials in its square."""
+    known = points[-PREDICTED_BY:]
+    if len(known) < PREDICTED_BY:
+        return None
+    squares = np.array([point.tip_y_max**2 for point in known])
+    table = np.array([[point.at, point.row, point.orbit.period] for point in known])
+    best, other = (np.dot(polynomial_weights(squares[i:], 0.0), table[i:]) for i in (0, 1))
+    error = SAFETY * (abs(best[0] - other[0]) + max(point.error for point in known))
+    return VanishingPoint(float(best[0]), float(best[1]), float(error), float(best[2]))

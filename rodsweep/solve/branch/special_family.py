@@ -1,0 +1,208 @@
+"""Folds and torus points of cycles as curves over two parameters, continued from one that was located.
+
+The cycles near a special point are a family of two numbers: a length along the branch on which it lies, as
+`bordered` has it, and the place on the axis of the rows. In these two the special points are the zeros of one
+function on a smooth curve, also where both parameters turn back, at a cusp. It is followed by its length: a
+polynomial through the points before predicts cycle and place; the secant method across the curve corrects,
+a cycle solved by the bordered Newton method at each step, on two meshes whose difference is the error.
+"""
+
+from dataclasses import dataclass, replace
+from math import ceil, nan
+
+import numpy as np
+
+from ...arrays import Array
+from ...determinant.parameter_plane import PlaneAxis
+from ..cycle.neighbour import value_of
+from ..cycle.newton import Converged
+from ..cycle.orbit import Orbit
+from ..cycle.orbit_mesh import mesh_of, stages_for
+from ..point import Unsolvable
+from .arc import tangent_at
+from .beginning import LEAST_UNIT, MOMENT
+from .bordered import BorderedMatrix, Condition, Scale, bordered, moment_of
+from .special_points import REAL, SpecialKind, SpecialPoint
+
+ACCURACY = 1e-7
+"""Relative, of the line's parameter on a curve; that of the special points of rows is 1e-9."""
+ORDER_SHARE, INTERVAL_SHARE = 0.6, 0.5
+"""Of the mesh of a special point's 1e-9, with which a curve starts."""
+TOLERANCE = 1e-8
+"""Relative, of the distance of a cycle's matrix from it: the square of it is left."""
+SMALL = 0.05
+"""Largest tip y, in L, of cycles whose folds are told from their Hopf point by a division by the moment."""
+ZERO, FIRST_SECANT, MOST_SECANTS = 1e-6, 1e-3, 12
+"""Last step of the secant method across a curve, after which its error is far less, and the first one."""
+FARTHEST = 0.1
+"""Longest step of it."""
+SAFETY, ROUNDING = 3.0, 1e-12
+MORE_ORDERS, MORE_INTERVALS, MOST_FINER_MESHES = 2, 1.2, 5
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class OnCurve:
+    """A point of a curve: a cycle with its values of the line's and the rows' parameter.
+
+    place: on the rows' axis, scaled. ahead: direction of its branch in `Scale.place`, (3,). error: absolute,
+    of the line's value on the curve. period in tau2, tip_y_max in L.
+    """
+
+    orbit: Orbit
+    scale: Scale
+    ahead: Array
+    place: float
+    at: float
+    row: float
+    error: float = nan
+
+    @property
+    def tip_y_max(self) -> float:
+        return abs(float(self.orbit.form.tip(self.orbit.start)[1]))
+
+    def step_from(self, other: "OnCurve") -> Array:
+        """From another point to this one: in `Scale.place`, and along the rows, (4,)."""
+        moved = self.scale.place(self.orbit) - self.scale.place(other.orbit)
+        return np.append(moved, self.place - other.place)
+
+    def across(self, step: Array) -> Array:
+        """Square to a step, (4,), along the branch and along the rows, (2,)."""
+        way = np.array([float(self.ahead @ step[:3]), step[3]])
+        return np.array([-way[1], way[0]]) / np.linalg.norm(way)
+
+
+@dataclass(frozen=True, slots=True)
+class CycleFamily:
+    """The cycles about a point of a curve of a kind: border, (3,), is the direction of its branch in a scale.
+
+    small: whether cycles are so small that Hopf points count as folds unless these are divided out.
+    """
+
+    kind: SpecialKind
+    rows: PlaneAxis
+    scale: Scale
+    border: Array
+    small: bool
+
+    @classmethod
+    def about(cls, kind: SpecialKind, rows: PlaneAxis, point: OnCurve) -> "CycleFamily":
+        """The cycles about a point."""
+        small = kind == SpecialKind.fold and point.tip_y_max < SMALL
+        return cls(kind, rows, point.scale, point.ahead, small)
+
+    def placed(self, orbit: Orbit, place: float) -> Orbit:
+        """The values of an orbit for the rod at a place on the rows' axis; raises Unsolvable."""
+        return with_parameters(orbit, {self.rows.name: self.rows.value(place)})
+
+    def nearest(self, start: Orbit, place: float, across: Array) -> OnCurve:
+        """The point of the curve near an orbit at a place, across the curve in a direction, (2,).
+
+        Raises Unsolvable.
+        """
+        length, orbit = float(self.border @ self.scale.place(start)), start
+
+        def solved(t: float) -> Converged:
+            there = self.placed(orbit, place + t * float(across[1]))
+            return Condition(self.scale, self.border, length + t * float(across[0])).solved(there, TOLERANCE)
+
+        a, b, last = 0.0, FIRST_SECANT, FARTHEST
+        found = solved(a)
+        f_a, orbit = self.test(found), found.orbit
+        for _ in range(MOST_SECANTS):
+            found = solved(b)
+            f_b, orbit = self.test(found), found.orbit
+            if abs(last) <= ZERO or f_b == f_a:
+                return self._point(found, place + b * float(across[1]))
+            last = -f_b * (b - a) / (f_b - f_a)
+            if not abs(last) <= FARTHEST:
+                raise Unsolvable("the secant method leaves the curve")
+            a, f_a, b = b, f_b, b + last
+        raise Unsolvable("the secant method does not settle")
+
+    def test(self, found: Converged) -> float:
+        """What is zero at a special point of the kind, at a cycle that was just found; raises Unsolvable."""
+        orbit, matrix = found.orbit, bordered(found)
+        if self.kind == SpecialKind.fold:
+            tangent = tangent_at(orbit, self.scale, self.border, matrix)
+            moved = self.scale.moved(orbit, tangent)
+            rises = float(moved[2] / (moved @ self.border))
+            return rises * self.scale.moment / moment_of(orbit) if self.small else rises
+        pair = crossing_pair(matrix)
+        if pair is None:
+            raise Unsolvable("the multipliers that cross the circle have become real")
+        return abs(pair) - 1
+
+    def _point(self, found: Converged, place: float) -> OnCurve:
+        """A cycle that was just found as a point of the curve."""
+        orbit = found.orbit
+        tangent = tangent_at(orbit, self.scale, self.border, bordered(found))
+        scale = Scale.of(orbit, self.scale.name, self.scale.least)
+        ahead = scale.moved(orbit, tangent)
+        return OnCurve(
+            orbit=orbit,
+            scale=scale,
+            ahead=ahead / np.linalg.norm(ahead),
+            place=place,
+            at=value_of(orbit.form, scale.name),
+            row=value_of(orbit.form, self.rows.name),
+        )
+
+    def point(self, start: Orbit, place: float, across: Array, slope: float = 0.0) -> OnCurve:
+        """The same with its error, on a finer mesh if need be; raises Unsolvable.
+
+        slope: d(line's value)/d(place) of the curve, so that what moves along it is no error.
+        """
+        last = self.nearest(start, place, across)
+        for _ in range(MOST_FINER_MESHES):
+            mesh = mesh_of(last.orbit)
+            longer = ceil(MORE_INTERVALS * mesh.intervals)
+            finer = replace(mesh, order=mesh.order + MORE_ORDERS, intervals=longer)
+            if not finer.allowed:
+                break
+            here = self.nearest(finer.carry(last.orbit), last.place, across)
+            off = abs(here.at - last.at - slope * (here.place - last.place))
+            error = SAFETY * off + ROUNDING * abs(here.at)
+            if error <= ACCURACY * abs(here.at):
+                return replace(last, error=error)
+            last = here
+        raise Unsolvable("no mesh is fine enough")
+
+
+def crossing_pair(matrix: BorderedMatrix) -> complex | None:
+    """Of complex multipliers, over half a period and the reflection, the one nearest to the circle."""
+    h = matrix.returns
+    pairs = h[np.abs(h.imag) > REAL * np.abs(h)]
+    return complex(pairs[np.argmin(np.abs(np.abs(pairs) - 1))]) if len(pairs) else None
+
+
+def with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
+    """The values of an orbit for the rod with other values of some parameters; raises Unsolvable."""
+    try:
+        form = replace(orbit.form, rod=replace(orbit.form.rod, **changed))
+    except (ValueError, ZeroDivisionError) as error:
+        raise Unsolvable(f"the curve leaves the rods: {error}") from error
+    if form.omega_unknown != orbit.form.omega_unknown:
+        raise Unsolvable(f"gamma3 = {form.rod.gamma3:.3g} needs other unknowns")
+    return replace(orbit, form=form)
+
+
+def first_point(special: SpecialPoint, line: str, rows: PlaneAxis, row: float) -> OnCurve:
+    """A special point that was located on a row as the first point of a curve; raises Unsolvable."""
+    orbit = special.orbit
+    if orbit is None:
+        raise Unsolvable(special.message or "the special point has no cycle")
+    mesh = mesh_of(orbit)
+    rough = replace(
+        mesh,
+        order=ceil(ORDER_SHARE * mesh.order),
+        intervals=ceil(INTERVAL_SHARE * mesh.intervals),
+        stages=stages_for(ACCURACY),
+    )
+    orbit = rough.carry(orbit)
+    scale = Scale.of(orbit, line, abs(moment_of(orbit)) * LEAST_UNIT / special.tip_y_max)
+    ahead = scale.moved(orbit, tangent_at(orbit, scale, MOMENT, BorderedMatrix(orbit, scale)))
+    place = rows.scaled(row)
+    start = OnCurve(
+        orbit=orbit, scale=scale, ahead=ahead / np.linalg.norm(ahead), place=place, at=special.at, row=row
+    )
+    return CycleFamily.about(special.kind, rows, start).point(orbit, place, np.array([1.0, 0.0]))

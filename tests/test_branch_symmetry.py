@@ -1,0 +1,174 @@
+"""Where cycles lose their mirror symmetry, and the branch of cycles without it that is born there."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from rodsweep.cli.tasks.branch import record
+from rodsweep.determinant.parameter_path import Path
+from rodsweep.model.rod import Rod
+from rodsweep.post.branch_curves import CurveOfCycles, SpecialOfBranch
+from rodsweep.post.summary.branch import _ends
+from rodsweep.solve.branch import following, special_points
+from rodsweep.solve.branch.arc import arc_point, next_point
+from rodsweep.solve.branch.beginning import hopf_point
+from rodsweep.solve.branch.branches import BranchesOfRod, BranchStatus
+from rodsweep.solve.branch.following import BranchCurve, Course, follow_branch, follow_without_symmetry
+from rodsweep.solve.branch.special_points import EndReason, SpecialKind, changes_between
+from rodsweep.solve.branch.symmetry import (
+    asymmetry,
+    beginning_without_symmetry,
+    breakings_of,
+    over_whole_period,
+)
+from rodsweep.solve.changes.along_path import pair_crossings
+from rodsweep.solve.cycle.condensation import equations
+
+ROUGH, STOP = 1e-3, 20.5
+"""Accuracy of the branches; special points are located to 1e-5 here, which takes a tenth of the time."""
+
+
+@pytest.fixture(scope="module")
+def course():
+    """The first Hopf point of a rod that is soft in shear, whose stable cycles lose their symmetry."""
+    straight = Rod(0.0, 30.0, 0.5, 0.1)
+    hopf = hopf_point(straight, 1.0, "F", pair_crossings(Path(straight, "F"), 0.0, 5.0).crossings[0])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(special_points, "ACCURACY", 1e-5)
+        yield Course([hopf], (0.0, STOP), (EndReason.range_end,) * 2, ROUGH, 500)
+
+
+@pytest.fixture(scope="module")
+def symmetric(course):
+    return follow_branch(0, course)
+
+
+@pytest.fixture(scope="module")
+def known(course, symmetric):
+    """The course with the one symmetry breaking."""
+    (breaking,) = breakings_of([symmetric.special])
+    return following.replace(course, breakings=[breaking])
+
+
+@pytest.fixture(scope="module")
+def asymmetric(known):
+    return follow_without_symmetry(0, "F", known)
+
+
+def kinds(curve):
+    return [point.kind.name for point in curve.special]
+
+
+def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(symmetric, asymmetric):
+    assert kinds(symmetric) == ["hopf", "symmetry_breaking", "end"]
+    assert kinds(asymmetric) == ["symmetry_breaking", "fold", "end"]
+    born, fold, end = asymmetric.special
+    assert born == following.replace(symmetric.special[1], after=-1)
+    # The references are located to 1e-9 on finer meshes.
+    assert abs(born.at / 19.9028051316 - 1) < 1e-5
+    assert abs(fold.at / 19.7130205892 - 1) < 1e-5
+    assert max(born.error, fold.error) < 1e-3
+    assert (end.at, end.reason) == (STOP, EndReason.range_end)
+    turn = symmetric.special[1].after + 1
+    assert {point.unstable for point in symmetric.points[: turn - 1]} <= {0, -1}
+    assert {point.unstable for point in symmetric.points[turn + 1 :]} == {1}
+    turn = fold.after + 1
+    assert {point.unstable for point in asymmetric.points[1 : turn - 1]} <= {1, -1}
+    assert {point.unstable for point in asymmetric.points[turn + 1 :]} == {0}
+
+
+def test_asymmetry_grows_with_the_square_root_of_the_distance(symmetric, asymmetric):
+    """So do largest and smallest y; symmetric cycles have none."""
+    assert all(point.measures.tip_y_min == -point.measures.tip_y_max for point in symmetric.points)
+    born = asymmetric.special[0]
+    (near, F), (far, beyond) = (
+        ((point.measures.tip_y_max + point.measures.tip_y_min) ** 2, point.at)
+        for point in asymmetric.points[:2]
+    )
+    # Without the square the two would lead 5e-4 beside it.
+    assert (F + (F - beyond) * near / (far - near)) / born.at == pytest.approx(1, abs=2e-4)
+
+
+def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(known):
+    """SciPy's LSODA, over a period, from a cycle on the unstable part."""
+    here = beginning_without_symmetry(known.breakings[0], "F", ROUGH)
+    orbit = next_point(here, ROUGH).orbit
+    p, nodes = orbit.semidiscrete, orbit.form.mesh.nodes
+    V, G, F = np.empty((3, nodes + 1)), np.empty((3, nodes + 1)), np.empty(orbit.form.unknowns)
+
+    def rate(_, x):
+        equations(x, F, V, G, p)
+        return F / p.mass
+
+    times = orbit.period * np.array([0.5, 1.0])
+    size = np.abs(orbit.points).max()
+    found = solve_ivp(rate, (0, times[1]), orbit.start, "LSODA", times, rtol=1e-6, atol=1e-6 * size)
+    half, whole = found.y.T
+    assert np.abs(whole - orbit.start).max() < 0.01 * size
+    assert np.abs(half - orbit.at(np.array([0.5]))[0]).max() < 0.01 * size
+    moments = slice(2 * nodes, 3 * nodes)
+    assert np.abs(half + orbit.start)[moments].max() > 0.05 * np.abs(orbit.start[moments]).max()
+
+
+def test_followed_back_the_branch_ends_where_it_was_born(known):
+    here = beginning_without_symmetry(known.breakings[0], "F", ROUGH)
+    for _ in range(2):
+        here = next_point(here, ROUGH)
+    here = arc_point(here.cycle, here.scale, -here.tangent, here.length)
+    curve = BranchCurve(hopf=-1)
+    while here is not None:
+        here = following._next(curve, here, known)
+    assert curve.complete
+    assert curve.meets is known.breakings[0]
+    assert kinds(curve) == ["symmetry_breaking"]
+
+
+def test_a_symmetric_orbit_over_its_whole_period_is_the_same_motion(known):
+    orbit = known.breakings[0].point.orbit
+    whole = over_whole_period(orbit)
+    assert not whole.symmetric
+    times = np.linspace(0, 1, 21)
+    assert np.abs(whole.at(times / 2) - orbit.at(times)).max() < 1e-4 * np.abs(orbit.points).max()
+    assert np.abs(asymmetry(whole)).max() < 1e-6 * np.abs(orbit.start).max()
+
+
+def test_a_known_breaking_that_lies_elsewhere_is_not_taken_for_the_end(known):
+    here = beginning_without_symmetry(known.breakings[0], "F", ROUGH)
+    here = arc_point(here.cycle, here.scale, -here.tangent, here.length)
+    curve = BranchCurve(hopf=-1)
+    while here is not None:
+        here = following._next(curve, here, following.replace(known, breakings=[]))
+    assert not curve.complete
+    assert curve.special[-1].reason == EndReason.no_cycle_found
+    assert "lies on no branch that was followed" in curve.special[-1].message
+
+
+@pytest.mark.parametrize(("has", "kind"), [(True, "symmetry_breaking"), (False, "period_doubling")])
+def test_a_multiplier_that_passes_minus_one_is_told_by_the_symmetry(has, kind):
+    here, there = (
+        SimpleNamespace(
+            rises=1.0, returns=np.array([h, 0.1, 0.2j, -0.2j]), orbit=SimpleNamespace(symmetric=has)
+        )
+        for h in (-0.9, -1.1)
+    )
+    assert changes_between(here, there) == ([SpecialKind[kind]], True)
+
+
+def test_the_file_says_which_branches_meet(symmetric, asymmetric):
+    found = BranchesOfRod(status=BranchStatus.ok, curves=(symmetric, asymmetric))
+    values = record(found, "F", 200, 8)
+    assert values["branch_count"] == 2
+    assert values["special_meets"][:7] == [0, 2, 0, 1, 0, 0, -1]
+    assert values["special_branch"][:6] == [1, 1, 1, 2, 2, 2]
+    first = values["branch"].index(2)
+    assert values["tip_y_max"][first] > -values["tip_y_min"][first]
+
+
+def test_show_says_from_which_branch_one_is_born():
+    ends = (SpecialOfBranch("symmetry_breaking", at, 1e-9, 0.1, 1.0, "none", -1, 1) for at in (19.9, 25.5))
+    none = np.empty(0)
+    told = _ends(CurveOfCycles(none, none, none, none, none, tuple(ends)), "F")
+    assert told.startswith("without mirror symmetry, from branch 1 at F = 19.9")
+    assert " to branch 1 at F = 25.5" in told

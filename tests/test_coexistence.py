@@ -1,0 +1,197 @@
+"""Phase diagrams with cycles: where straight and beating rods are both stable, and the curves of folds."""
+
+from dataclasses import replace
+
+import h5py
+import numpy as np
+import pytest
+from conftest import Command
+from contents import content, same
+from surveyed import survey_only
+from test_paper import stated
+
+from rodsweep.cli.job import make_job
+from rodsweep.determinant.parameter_plane import PlaneAxis
+from rodsweep.errors import InputError
+from rodsweep.results.layouts.phase_diagram import CYCLE_CURVE_ENDS
+from rodsweep.solve.branch import coexistence
+from rodsweep.solve.branch.branches import BranchStatus
+from rodsweep.solve.branch.coexistence import CoexistenceStatus, Stable, solve_coexistence
+from rodsweep.solve.branch.special_curves import CurveCourse, CurveEnd, comes_back
+from rodsweep.solve.branch.special_points import SpecialKind
+from rodsweep.solve.changes.rows import RowRequest
+
+FOLD, RESTABILIZATION = 199.160114343, 155.600159298791
+"""Of Fig. 2c's rod: the one of `configs/branches.yaml`, the other of 40-digit arithmetic."""
+BAUTIN_F, BAUTIN_K1 = stated("generalised_hopf")[1], stated("generalised_hopf")[0]
+FIG_2C = {"k1": 200.0, "k2": 1e4, "gamma3": 1e-4}
+DIAGRAM = """
+task: phase_diagram
+parameters:
+  F: [60, 70, 80, 88, 90, 90.5, 91, 92, 110]
+  k1: [149.5, 152]
+  k2: 1.0e4
+  gamma3: 1.0e-4
+phase_diagram: {cycles: true}
+"""
+FOLD_AT_150 = 85.6055767349
+"""The fold on the row k1 = 150, which AUTO-07p has to 2e-9 (tests/test_branch_auto.py)."""
+
+
+def request(values, certify=True):
+    return RowRequest("F", np.array(values, dtype=float), 1e-10, certify, 16)
+
+
+@pytest.fixture(scope="module")
+def fig_2c():
+    values = [40, 100, 150, 155.6, 155.6002, 180, 199.16, 199.1602, 199.9, 205]
+    return solve_coexistence(FIG_2C, 1.0, request(values), 64)
+
+
+def test_fig_2c_has_two_stable_states_from_the_restabilization_to_the_fold(fig_2c):
+    assert fig_2c.status == CoexistenceStatus.ok
+    assert fig_2c.stable_states.tolist() == [1, 2, 2, 2, 3, 3, 3, 1, 1, 5]
+    kinds = [point.kind for point in fig_2c.special]
+    assert kinds == [SpecialKind.hopf, SpecialKind.fold, SpecialKind.hopf]
+    assert fig_2c.special[1].at == pytest.approx(FOLD, abs=2e-9)
+    assert fig_2c.special[2].at == pytest.approx(RESTABILIZATION, abs=1e-10)
+    assert fig_2c.special[1].error <= 1e-9 * FOLD
+
+
+def test_a_cycle_on_the_last_value_of_a_row_counts():
+    row = solve_coexistence(FIG_2C, 1.0, request([40, 60, 70]), 64)
+    assert row.stable_states.tolist() == [Stable.straight, Stable.cycle, Stable.cycle]
+
+
+def test_what_a_branch_that_stopped_leaves_open_is_undecided(monkeypatch):
+    real = coexistence.solve_branches
+
+    def stopped(rod, asked):
+        return replace(real(rod, asked), status=BranchStatus.stopped, message="no further cycle")
+
+    monkeypatch.setattr(coexistence, "solve_branches", stopped)
+    row = solve_coexistence(FIG_2C, 1.0, request([40, 60, 70]), 64)
+    assert row.status == CoexistenceStatus.branches_stopped
+    assert "no further cycle" in row.message
+    assert row.stable_states.tolist() == [Stable.undecided, Stable.cycle, Stable.cycle]
+
+
+def test_a_list_of_special_points_that_is_full_is_told():
+    row = solve_coexistence(FIG_2C, 1.0, request([40, 60, 70]), 1)
+    assert row.status == CoexistenceStatus.special_full
+
+
+def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
+    """From the row k1 = 149.9 down, and up to the edge of the plane, where AUTO-07p has the fold."""
+    row = solve_coexistence(FIG_2C | {"k1": 149.9}, 1.0, request([60, 110]), 64)
+    (fold,) = [point for point in row.special if point.kind == SpecialKind.fold]
+    course = CurveCourse(SpecialKind.fold, PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 149.5, 150.0))
+    curve = course.trace(fold, 149.9)
+    assert curve.ends == (CurveEnd.hopf, CurveEnd.edge)
+    last = curve.points[-1]
+    assert last.row == 150.0
+    assert last.at == pytest.approx(FOLD_AT_150, abs=last.error + 1e-9)
+    assert last.error <= 1e-7 * last.at
+    end = curve.vanishing[0]
+    assert abs(end.at - BAUTIN_F) <= end.error
+    assert end.row == pytest.approx(BAUTIN_K1, rel=1e-5)
+    assert curve.vanishing[1] is None
+    heights = [point.tip_y_max for point in curve.points]
+    assert heights == sorted(heights)
+
+
+class Place:
+    """A point of a curve in a plane, as far as `comes_back` looks at it."""
+
+    def __init__(self, x, y):
+        self.at = np.array([x, y], dtype=float)
+
+    def step_from(self, other):
+        return self.at - other.at
+
+
+def test_a_closed_curve_is_followed_once():
+    circle = [Place(np.cos(angle), np.sin(angle)) for angle in np.arange(0, 7, 0.5)]
+    closed = [i for i in range(1, len(circle)) if comes_back(circle[:i], circle[i])]
+    assert closed == [13]  # from the angle 6 to 6.5, past a whole turn
+
+
+@pytest.fixture(scope="module")
+def diagram(tmp_path_factory):
+    """The command in a directory with a diagram, `c.h5`, put together from two shards."""
+    command = Command(tmp_path_factory.mktemp("coexistence"))
+    command.write("c.yaml", DIAGRAM)
+    for number in (1, 2):
+        assert command("run", "c.yaml", "--shard", f"{number}/2").returncode == 0
+    assert command("merge", "c.h5", "c-1-of-2.h5", "c-2-of-2.h5").returncode == 0
+    ended = command("run", "c.yaml")
+    assert ended.returncode == 0, ended.stderr
+    yield command
+    command.clear()
+
+
+def test_a_diagram_classes_the_plane_and_continues_the_folds(diagram):
+    with h5py.File(diagram.directory / "c.h5") as file:
+        states = file["stable_states"][...].reshape(2, -1)
+        curve = {name[12:]: file[name][...] for name in file if name.startswith("cycle_curve_")}
+        untraced = int(file["cycle_curves_untraced"][()])
+    assert states.tolist() == [[1, 2, 2, 1, 1, 1, 1, 1, 1], [1, 2, 2, 2, 2, 3, 3, 1, 1]]
+    assert set(curve["number"]) == {1}
+    assert set(curve["kind"]) == {SpecialKind.fold}
+    words = tuple(CYCLE_CURVE_ENDS)
+    assert [words[i] for i in curve["end"] if i] == ["hopf", "edge"]
+    assert (curve["F"][0], curve["k1"][0]) == pytest.approx((BAUTIN_F, BAUTIN_K1), rel=1e-8)
+    assert curve["tip_y_max"][0] == 0
+    assert curve["k1"][-1] == pytest.approx(152, rel=1e-12)
+    assert untraced == 0
+    assert float(curve["agreement"]) < 1e-7
+    assert np.interp(150.0, curve["k1"], curve["F"]) == pytest.approx(FOLD_AT_150, rel=1e-3)
+
+
+def test_it_is_told_and_drawn(diagram):
+    told = " ".join(diagram("show", "c.h5").stdout.split())
+    assert "straight rod and cycle both stable: on 1 of 2 rows, F = 90.5 to 91, k1 = 152" in told
+    assert "folds of cycles: on 1 of 2 rows" in told
+    assert (
+        "curve of folds: from k1 = 149.616892, F = 84.4786266 (Hopf point, where the cycles vanish)" in told
+    )
+    assert diagram("plot", "c.h5", "-o", "c.png").returncode == 0
+
+
+@survey_only
+def test_a_file_without_cycles_is_extended_on_two_ranks_to_the_same(diagram):
+    diagram.write("plain.yaml", DIAGRAM.replace("cycles: true", "cycles: false"))
+    assert diagram("run", "plain.yaml").returncode == 0
+    whole, plain = (content(diagram.directory / name) for name in ("c.h5", "plain.h5"))
+    assert same({name: whole[name] for name in plain}, plain)
+    refused = diagram("run", "c.yaml", "-o", "plain.h5")
+    assert refused.returncode == 2
+    assert "cycles" in refused.stderr
+    extended = diagram("run", "c.yaml", "-o", "plain.h5", "--extend", ranks=2)
+    assert extended.returncode == 0, extended.stderr
+    assert same(whole, content(diagram.directory / "plain.h5"))
+
+
+def test_another_axial_drag_is_another_config(tmp_path):
+    path = tmp_path / "c.yaml"
+    marks = []
+    for more in ("", ", gamma1: 1", ", gamma1: 2"):
+        path.write_text(DIAGRAM.replace("k2: 1.0e4", "k2: 1.0e4" + more.replace(", ", "\n  ")))
+        marks.append(make_job(path, ()).config.meaning)
+    assert marks[0] == marks[1] != marks[2]
+
+
+def test_check_says_that_cycles_are_nonlinear(command):
+    command.write("c.yaml", DIAGRAM)
+    told = " ".join(command("check", "c.yaml").stdout.split())
+    assert "nonlinear motion yes of the cycles" in told
+    assert "gravity, inertia no" in told
+
+
+def test_axial_drag_without_cycles_is_refused(tmp_path):
+    path = tmp_path / "c.yaml"
+    path.write_text(
+        DIAGRAM.replace("gamma3:", "gamma1: 2\n  gamma3:").replace("cycles: true", "cycles: false")
+    )
+    with pytest.raises(InputError, match=r"phase_diagram\.cycles: true"):
+        make_job(path, ())

@@ -1,0 +1,85 @@
+"""Where a rod has two stable states, a point of the task limit_cycle says so."""
+
+import numpy as np
+import pytest
+from test_show import shown
+
+from rodsweep.model.rod import Rod
+from rodsweep.results.file.view import read_view
+from rodsweep.results.layouts.limit_cycle import SECOND_STATES
+from rodsweep.solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.cycle.second_state import SecondState, second_state
+from rodsweep.solve.hopf.hopf_beside import subcritical_hopf_beside
+
+FIG_2C = (200.0, 1e4, 1e-4)
+SUBCRITICAL = (100.0, 1e4, 0.1)
+"""A rod whose first Hopf point, at 43.0249569, is subcritical: a = -1.4889."""
+HOPF, A = 43.0249569, 1.4889
+
+
+def test_words_have_the_numbers_of_the_solver():
+    assert dict((word, number) for number, word in SECOND_STATES) == {s.name: int(s) for s in SecondState}
+
+
+@pytest.mark.parametrize(
+    ("rod", "F"),
+    [(FIG_2C, 45.0), (SUBCRITICAL, 20.0), (FIG_2C, 0.0), (FIG_2C, -5.0), ((1e4, 1e4, 1e-4), 37.0)],
+)
+def test_rod_below_a_supercritical_hopf_point_or_far_from_any_has_no_second_state(rod, F):
+    assert subcritical_hopf_beside(Rod(F, *rod), 1.0) is None
+    state, at, message = second_state(Rod(F, *rod), 1.0, CycleStatus.straight, -1.0)
+    assert (state, message) == (SecondState.none_known, "")
+    assert np.isnan(at)
+
+
+def test_rod_below_a_subcritical_hopf_point_has_its_unstable_cycle():
+    beside = subcritical_hopf_beside(Rod(HOPF * (1 - 1e-4), *SUBCRITICAL), 1.0)
+    assert pytest.approx(HOPF, rel=1e-8) == beside.F
+    assert beside.unstable_y == pytest.approx(A * 1e-2, rel=1e-3)
+
+
+def test_rod_above_a_subcritical_restabilization_has_its_unstable_cycle():
+    assert pytest.approx(155.600159298791, rel=1e-10) == subcritical_hopf_beside(Rod(180.0, *FIG_2C), 1.0).F
+
+
+def test_the_nearer_of_two_subcritical_hopf_points_is_named():
+    """At k1 = 100 the rod flutters from 43.02 to 68.44; its second Hopf point is subcritical too."""
+    assert pytest.approx(68.4391325, rel=1e-8) == subcritical_hopf_beside(Rod(69.0, *SUBCRITICAL), 1.0).F
+
+
+@pytest.mark.parametrize(
+    ("status", "rate", "state"),
+    [
+        (CycleStatus.cycle, 1.0, SecondState.none_known),
+        (CycleStatus.cycle, -1.0, SecondState.straight),
+        (CycleStatus.unstable, -1.0, SecondState.straight),
+        (CycleStatus.cycle, np.nan, SecondState.not_told),
+        (CycleStatus.failed, -1.0, SecondState.not_told),
+    ],
+)
+def test_state_is_told_from_the_straight_rod(status, rate, state):
+    assert second_state(Rod(180.0, *FIG_2C), 1.0, status, rate)[0] == state
+
+
+def test_small_start_below_a_subcritical_hopf_point_ends_straight_with_a_cycle_possible():
+    request = CycleRequest(1e-5, 1e-3, 1, 0, 0, 0, 400)
+    cycle = solve_cycle(CyclePoint(42.5, *SUBCRITICAL, 1.0), request)
+    assert (cycle.status, cycle.second_state) == (CycleStatus.straight, SecondState.cycle_possible)
+    assert cycle.subcritical_F == pytest.approx(HOPF, rel=1e-8)
+    assert "the Hopf point at F = 43.0249569 is subcritical" in cycle.message
+
+
+CHAIN = """
+task: limit_cycle
+parameters: {F: [150, 160], k1: 200, k2: 1.0e4, gamma3: 1.0e-4}
+limit_cycle: {start: neighbour, along: F}
+accuracy: 1.0e-5
+"""
+
+
+def test_cycle_beside_a_stable_straight_rod_says_that_there_are_two_states(command):
+    told = shown(command, CHAIN)
+    assert "two states at 1 of 2 points: the straight rod is stable too" in told
+    assert "a second state is possible" not in told
+    v = read_view(command.directory / "c.h5").variables
+    assert v["second_state"].ravel().tolist() == [SecondState.none_known, SecondState.straight]
