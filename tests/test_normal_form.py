@@ -111,7 +111,7 @@ def test_coefficient_converges_to_ten_digits_whatever_the_mesh(rod, w):
     orders = {order: abs(normal_of(rod, w, order=order).c / exact.c - 1) for order in (10, 12, 14, 18)}
     assert orders[18] <= 1e-10
     assert orders[14] <= 1e-2 * orders[10]
-    assert normal_of(rod, w, elements=3, order=12).c == pytest.approx(exact.c, rel=1e-10)
+    assert normal_of(rod, w, elements=3, order=13).c == pytest.approx(exact.c, rel=1e-10)
 
 
 @pytest.mark.parametrize("accuracy", [1e-6, 1e-10])
@@ -120,7 +120,7 @@ def test_accuracy_asked_for_is_reached(accuracy):
     seen = 0
     for rod, w in hopf_points():
         normal = accurate_normal_form(rod, 1.0, w, accuracy)
-        exact = accurate_normal_form(rod, 1.0, w, accuracy**1.2)
+        exact = accurate_normal_form(rod, 1.0, w, accuracy**1.5)
         assert exact.form.unknowns > normal.form.unknowns
         assert abs(normal.c / exact.c - 1) <= accuracy
         seen += 1

@@ -89,11 +89,12 @@ class MixedForm:
         A[velocities, velocities] -= np.diag(np.kron(self.material.drag, self.mesh.quadrature))
         return A
 
-    @cached_property
-    def A_F(self) -> Array:
-        """dA/dF, shape (unknowns, unknowns), the same for every F: E and Sigma at rest are affine."""
-        along = self.material.straight
-        return self._coupling(-self.rod.c1 * along, -along, np.zeros(COMPONENTS))
+    def times_A_F(self, X: Values) -> Values:
+        """dA/dF X, shape (..., unknowns), the same for every F: E and Sigma at rest are affine."""
+        (S, V), W = self.fields(X), self.mesh.quadrature
+        Sigma = -self._along(self.material.straight, S)
+        E = self.rod.c1 * Sigma
+        return self.unknown(W * ad(E, V), W * (coad(E, S) + coad(self._strain(S), Sigma)))
 
     @cached_property
     def tip_y(self) -> Array:

@@ -58,14 +58,14 @@ def required_order(wave_number: float, accuracy: float) -> float:
     return ORDER_INTERCEPT + ORDER_SLOPE * wave_number + (digits - BASE_DIGITS) * per_digit
 
 
-def resolution_for(wave_number: float, accuracy: float) -> Resolution:
-    """The smallest resolution: one element up to LARGEST_ORDER, then equal elements that share q."""
-    most = MOST_UNKNOWNS // (3 * LARGEST_ORDER) + 2  # more is given up anyway
+def resolution_for(wave_number: float, accuracy: float, largest_order: int = LARGEST_ORDER) -> Resolution:
+    """The smallest resolution: one element up to the largest order, then equal elements that share q."""
+    most = MOST_UNKNOWNS // (3 * largest_order) + 2  # more is given up anyway
     elements = 1
-    while elements < most and required_order(wave_number / elements, accuracy) > LARGEST_ORDER:
+    while elements < most and required_order(wave_number / elements, accuracy) > largest_order:
         elements += 1
     if elements == most:
-        return Resolution(elements, LARGEST_ORDER)
+        return Resolution(elements, largest_order)
     order = max(SMALLEST_ORDER, ceil(required_order(wave_number / elements, accuracy)))
     return Resolution(elements, order + (1 if elements > 1 else 0))
 

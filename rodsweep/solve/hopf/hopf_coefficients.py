@@ -9,18 +9,17 @@ and the finer mesh has it too: what they differ by is the estimate.
 import math
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from ...determinant.newton import eigenvalue_newton
 from ...determinant.parameter_path import Path
 from ...discretization.resolution import Resolution
 from ...discretization.resolution import finer as a_third_finer
+from ...discretization.straight_elements import TRANSVERSE, StraightElements
 from ...model.rod import Rod
 from ..changes.unstable_modes import Crossing
-from .normal_form import SAFETY, NormalForm, normal_form_on, resolution_of
+from .normal_form import SAFETY, NormalForm, normal_form_on, of_odd_order, resolution_of
 
-MORE_ORDERS = 3
-"""By which the second mesh is finer than the first: its c is better by one to three decades."""
+MORE_ORDERS = 4
+"""By which the second mesh is finer than the first: its c is better by one to four decades."""
 MOST_REFINED = 4
 """Meshes beyond the first."""
 COARSEST = 1e-2
@@ -87,7 +86,7 @@ def hopf_coefficients(rod: Rod, gamma1: float, hopf: Crossing, accuracy: float) 
     fine, change, rounding = normal_form_on(start, rod, gamma1, w, COARSEST), math.inf, 0.0
     for number in range(MOST_REFINED):
         here = Resolution(fine.form.mesh.elements, fine.form.mesh.order)
-        more = a_third_finer(here) if number else replace(here, order=here.order + MORE_ORDERS)
+        more = of_odd_order(a_third_finer(here)) if number else replace(here, order=here.order + MORE_ORDERS)
         coarse, fine = fine, normal_form_on(more, rod, gamma1, w, accuracy)
         change, rounding = abs(fine.c - coarse.c) / abs(fine.c), _rounding(fine)
         if change <= max(accuracy, rounding):
@@ -135,5 +134,5 @@ def _slope(rod: Rod, w: complex) -> tuple[complex, float]:
 
 def _rounding(normal: NormalForm) -> float:
     """The relative error of c that rounding leaves, by the condition of the eigenvalue."""
-    sizes = np.abs(normal.p) @ (np.abs(normal.form.A) @ np.abs(normal.q))
-    return ROUNDING * float(sizes) / abs(normal.w)
+    sizes = StraightElements(normal.form, TRANSVERSE).size_of_product(normal.p, normal.q)
+    return ROUNDING * sizes / abs(normal.w)

@@ -18,19 +18,18 @@ real part, away from a Hopf point, h20 and h11 are those of a cycle, on which |z
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.linalg import lu_factor, lu_solve
 
 from ...arrays import Array, Complex
 from ...determinant.value import newton_correction
 from ...discretization.mixed_form import MixedForm, mixed_form
 from ...discretization.resolution import Resolution, resolution_for
+from ...discretization.straight_elements import LONGITUDINAL, TRANSVERSE, StraightElements
 from ...model.rod import Rod
 from ..point import Unsolvable
 
 OFFSET = 1e-10
 """Relative distance of a shift from the eigenvalue that it is: the matrix must not be singular."""
-ITERATIONS = 3
+ITERATIONS = 2
 """Inverse iterations with one shift."""
 FOUND = 1e-8
 """Relative distance of a shift from its eigenvalue from which the iterations leave nothing but rounding."""
@@ -39,8 +38,10 @@ HARMONIC = 2
 """Wave number of h20 and h11, and so of what c is made of, in units of that of q."""
 SAFETY = 0.1
 """By the rule for eigenvalues alone c is off by five times the accuracy asked for, at worst."""
-MOST_NODES = 500
-"""Nodes beyond which a rod is given up: some seconds with dense matrices."""
+LARGEST_ORDER = 20
+"""Order beyond which another element costs less: all elements are eliminated at once."""
+MOST_NODES = 2000
+"""Nodes beyond which a rod is given up."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -107,16 +108,12 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
 
     Raises Unsolvable where it is real, or none is found.
     """
-    axial = form.parity > 0
-    w, right, left = _modes(form, ~axial, guess)
-    q, p = np.zeros(form.unknowns, complex), np.zeros(form.unknowns, complex)
-    q[~axial], p[~axial] = right, left
-    A, M = form.A[np.ix_(axial, axial)], form.M[axial]
-    h20, h11 = np.zeros_like(q), np.zeros(form.unknowns)
-    h20[axial] = np.linalg.solve(np.diag(2j * w.imag * M) - A, form.bilinear(q, q)[axial])
-    h11[axial] = np.linalg.solve(-A, form.bilinear(q, q.conj())[axial].real)
+    transverse, longitudinal = (StraightElements(form, part) for part in (TRANSVERSE, LONGITUDINAL))
+    w, q, p = _modes(transverse, guess)
+    h20 = -longitudinal.factors(2j * w.imag).solve(form.bilinear(q, q))
+    h11 = -longitudinal.factors(0).solve(form.bilinear(q, q.conj())).real
     c = np.vdot(p, form.bilinear(q.conj(), h20) / 2 + form.bilinear(q, h11))
-    slope = np.vdot(p, form.A_F @ q)
+    slope = np.vdot(p, form.times_A_F(q))
     return NormalForm(form=form, w=w, slope=complex(slope), c=complex(c), q=q, p=p, h20=h20, h11=h11)
 
 
@@ -129,9 +126,14 @@ def accurate_normal_form(rod: Rod, gamma1: float, w: complex, accuracy: float) -
 
 
 def resolution_of(rod: Rod, w: complex, accuracy: float) -> Resolution:
-    """A mesh that gives c of the eigenvalue w to a relative accuracy, by the rule for eigenvalues."""
+    """A mesh of odd order that gives c of the eigenvalue w to a relative accuracy, as for eigenvalues."""
     wave_number = newton_correction(w, rod.coefficients)[2]
-    return resolution_for(HARMONIC * wave_number, SAFETY * accuracy)
+    return of_odd_order(resolution_for(HARMONIC * wave_number, SAFETY * accuracy, LARGEST_ORDER))
+
+
+def of_odd_order(resolution: Resolution) -> Resolution:
+    """A mesh at least as fine, whose elements may be eliminated one by one."""
+    return Resolution(resolution.elements, resolution.order | 1)
 
 
 def normal_form_on(
@@ -150,29 +152,26 @@ def normal_form_on(
     return normal
 
 
-def _modes(
-    form: MixedForm, transverse: NDArray[np.bool_], guess: complex
-) -> tuple[complex, Complex, Complex]:
+def _modes(elements: StraightElements, guess: complex) -> tuple[complex, Complex, Complex]:
     """(w, q, p) of the eigenvalue nearest to a guess, of the transverse unknowns alone, scaled.
 
     By inverse iteration from both sides; the two-sided Rayleigh quotient is the next shift.
     """
-    A, M, y = form.A[np.ix_(transverse, transverse)], form.M[transverse], form.tip_y[transverse]
     w = complex(guess)
     for _ in range(MOST_SHIFTS):
         shift = w * (1 + OFFSET)
-        factors = lu_factor(A - np.diag(shift * M), overwrite_a=True, check_finite=False)
-        q, p = np.ones(len(M), complex), np.ones(len(M), complex)
+        factors = elements.factors(shift)
+        q = p = np.where(elements.form.parity < 0, 1 + 0j, 0)
         for _ in range(ITERATIONS):
-            q = lu_solve(factors, M * q, check_finite=False)
-            p = lu_solve(factors, M * p, trans=2, check_finite=False)
+            q, p = factors.solve(elements.times_M(q)), factors.solve(elements.times_M(p), adjoint=True)
             q, p = q / np.abs(q).max(), p / np.abs(p).max()
-        w = complex(np.vdot(p, A @ q) / np.vdot(p, M * q))
+        Mq = elements.times_M(q)
+        w = complex(np.vdot(p, elements.times_A(q)) / np.vdot(p, Mq))
         if abs(w - shift) <= FOUND * abs(w):
             break
     else:
         raise Unsolvable(f"no eigenvalue is found near {guess:.6g}")
     if not w.imag > 0:
         raise Unsolvable(f"the eigenvalue near {guess:.6g} is real: nothing oscillates")
-    q = q / (2 * (y @ q))
-    return w, q, p / np.vdot(p, M * q).conj()
+    scale = 2 * (elements.form.tip_y @ q)
+    return w, q / scale, p * scale.conj() / np.vdot(p, Mq).conj()

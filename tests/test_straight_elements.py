@@ -1,0 +1,62 @@
+"""The straight rod's matrices element by element, against those of the whole rod."""
+
+import numpy as np
+import pytest
+
+from rodsweep.discretization.mixed_form import mixed_form
+from rodsweep.discretization.straight_elements import LONGITUDINAL, TRANSVERSE, StraightElements
+from rodsweep.model.rod import Rod
+
+INF = np.inf
+RODS = pytest.mark.parametrize(
+    "rod",
+    [
+        Rod(40.0, 200.0, 1e4, 1e-4),
+        Rod(75.0, 100.0, 5.0, 1.0),
+        Rod(37.7, INF, INF, 0.0),
+        Rod(-20.0, 1.5, 3.0, 1e-6),
+    ],
+)
+MESHES = pytest.mark.parametrize("elements, order", [(1, 12), (1, 17), (2, 9), (5, 13), (9, 25)])
+PARTS = pytest.mark.parametrize("components, parity", [(LONGITUDINAL, 1), (TRANSVERSE, -1)])
+
+
+def vectors(form, parity, seed=0):
+    """Two complex random vectors of the components of a parity."""
+    real, imag = np.random.default_rng(seed).normal(size=(2, 2, form.unknowns))
+    return np.where(form.parity == parity, real + 1j * imag, 0)
+
+
+@RODS
+@MESHES
+@PARTS
+def test_products_are_those_of_the_whole_rod(rod, elements, order, components, parity):
+    form = mixed_form(rod, 0.7, elements, order)
+    by_elements = StraightElements(form, components)
+    p, q = vectors(form, parity)
+    A, M = form.A, form.M
+    for found, exact in ((by_elements.times_A(q), A @ q), (by_elements.times_M(q), M * q)):
+        assert np.abs(found - exact).max() <= 1e-14 * np.abs(exact).max()
+    size = np.abs(p) @ (np.abs(A) @ np.abs(q))
+    assert size <= by_elements.size_of_product(p, q) * (1 + 1e-12) <= 2 * size
+
+
+@pytest.mark.kernel
+@RODS
+@MESHES
+@PARTS
+@pytest.mark.parametrize("shift", [0.0, 190j, 3 + 2500j])
+def test_solutions_are_those_of_the_whole_rod(rod, elements, order, components, parity, shift):
+    form = mixed_form(rod, 0.7, elements, order)
+    factors = StraightElements(form, components).factors(shift)
+    b, _ = vectors(form, parity)
+    K = form.A - shift * np.diag(form.M)
+    for matrix, x in ((K, factors.solve(b)), (K.conj().T, factors.solve(b, adjoint=True))):
+        residual = np.abs(matrix @ x - b)[form.parity == parity]
+        assert residual.max() <= 1e-13 * (np.abs(matrix) @ np.abs(x)).max()
+        assert np.all(x[form.parity != parity] == 0)
+
+
+def test_several_elements_of_even_order_are_refused():
+    with pytest.raises(ValueError, match="odd order, not 8"):
+        StraightElements(mixed_form(Rod(30.0, 1e4, 1e4, 1e-4), 1.0, 2, 8), LONGITUDINAL).factors(0.0)
