@@ -111,7 +111,7 @@ ATTRIBUTES = {
     "config": "the text of the config, with what `--set` changed at its end",
     "config_resolved": "the config with all defaults, as JSON",
     "snapshot": "when `rodsweep snapshot` wrote the file; empty once a run has continued it",
-    "format": "3; see [which version reads what](#which-version-reads-what)",
+    "format": "4; see [which version reads what](#which-version-reads-what)",
     "fingerprint": "of what the config means, and of all points: what a continued file shares",
     "time_unit": "`tau2 = gamma2 L^4/k3`",
     "gamma1": "where a spectrum or a phase diagram is given it",
@@ -174,11 +174,12 @@ stored as numbers, with the attributes `flag_values` and `flag_meanings`.
 VERSIONS = """
 ### Which version reads what
 
-The attribute `format` is a whole number, now 3, that grows when a variable is added or changes its meaning.
+The attribute `format` is a whole number, now 4, that grows when a variable is added or changes its meaning.
 
 - A file of a higher format is refused in one sentence that names the version which wrote it.
 - A file of a lower format, or without the attribute, is read, continued and merged like others where it has
-  the variables of today; else one sentence names the version and the commit that wrote it.
+  the variables of today; else one sentence names the version and the commit that wrote it. `show`, `plot`,
+  `export` and Python read a file of format 3 without `special_amplitude_coefficient`, too.
 
 HDF5, netCDF and xarray read files of every format.
 """

@@ -84,6 +84,27 @@ def test_fold_moves_no_further_than_its_error_on_finer_meshes(rod):
     assert rough.period == pytest.approx(fine.period, rel=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("along", "rod", "ends"),
+    [("F", FIG_2C, (0.0, 200.0)), ("k1", BranchRod(F=100.0, k2=1e4, gamma3=1e-4), (100.0, 400.0))],
+)
+def test_first_cycles_have_the_amplitude_that_the_hopf_point_tells(along, rod, ends):
+    """To the third order of the normal form, on the side that its sign says."""
+    found = (
+        solved(rod, *ends)
+        if along == "F"
+        else solve_branches(rod, BranchRequest(along, *ends, 1e-6, False, 200, 32))
+    )
+    for curve in found.curves:
+        hopf, first = curve.special[0], curve.points[0]
+        a, away = hopf.amplitude_coefficient, first.at / hopf.at - 1
+        assert np.sign(away) == np.sign(a)
+        assert first.measures.tip_y_max == pytest.approx(abs(a) * abs(away) ** 0.5, rel=0.02)
+    if along == "F":
+        told = [s.amplitude_coefficient for s in found.curves[0].special if s.kind == SpecialKind.hopf]
+        assert told == pytest.approx([0.581140652, 0.236415530], rel=1e-3)  # tests/second_normal_form.py
+
+
 def test_branch_without_a_fold():
     """The filament: no stretch, no shear, no rotational drag."""
     found = solved(BranchRod(k1=np.inf, k2=np.inf, gamma3=0.0), 0.0, 60.0)

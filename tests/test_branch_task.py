@@ -2,6 +2,7 @@
 
 import re
 
+import h5py
 import numpy as np
 import pytest
 from test_paper import run, stated
@@ -96,6 +97,38 @@ def test_figure_is_drawn(command, suffix):
     assert drawn.returncode == 0, drawn.stderr
     assert "1 branches of cycles over F" in drawn.stdout
     assert (command.directory / f"c.{suffix}").stat().st_size > 5000
+
+
+def test_figure_holds_the_amplitude_against_the_normal_form_from_both_hopf_points(command):
+    """Both ends of the branch tend to the law, the subcritical one from above: its cycles lead to a fold."""
+    shown(command, CONFIG.format(k1=150, stop=200))
+    (curve,) = curves_of(read_view(command.directory / "c.h5"), 0)
+    (first, y_first, stable), (last, y_last, unstable) = curve.beside_hopf_points()
+    assert first[:2] == pytest.approx(y_first[:2] ** 2, rel=0.02)
+    assert last[0] == pytest.approx(y_last[0] ** 2, rel=0.02)
+    assert (np.diff(first) > 0).all()
+    assert (np.diff(last) > 0).all()
+    assert y_last[-1] > 1.2 * last[-1] ** 0.5
+    assert last[-1] == pytest.approx(FOLD / 85.569316943 - 1, rel=1e-6)
+    assert stable[0] == 1
+    assert 0 in unstable
+    assert 1 not in unstable
+    assert len(first) == len(stable) + 1
+
+
+def test_file_of_format_3_is_shown_and_drawn_without_its_prediction_but_not_continued(command):
+    shown(command, CONFIG.format(k1=150, stop=200))
+    with h5py.File(command.directory / "c.h5", "r+") as file:
+        del file["special_amplitude_coefficient"]
+        file.attrs["format"] = 3
+    for words in (("show", "c.h5"), ("plot", "c.h5", "-o", "c.png"), ("export", "c.h5")):
+        done = command(*words)
+        assert done.returncode == 0, done.stderr
+    (curve,) = curves_of(read_view(command.directory / "c.h5"), 0)
+    assert curve.beside_hopf_points() == []
+    refused = command("run", "c.yaml")
+    assert refused.returncode == 2
+    assert "was written by an earlier rodsweep" in " ".join(refused.stderr.split())
 
 
 @pytest.mark.parametrize(

@@ -81,6 +81,7 @@ def view_of(data: xr.Dataset, path: Path) -> View:
     """A Dataset as `show` and `plot` see a file; InputError if it is not a whole result."""
     try:
         layout = layout_of(json.loads(data.attrs["config_resolved"]))
+        layout = layout.known_in(int(data.attrs.get("format", 0)))
         status = data["status"]
         words = str(status.attrs["flag_meanings"]).split()
         flags = dict(zip(map(int, np.atleast_1d(status.attrs["flag_values"])), words, strict=True))

@@ -6,6 +6,7 @@ these is as stable as the cycle at one of its ends.
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from math import nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +32,7 @@ class SpecialOfBranch:
     error: float
     period: float
     tip_y_max: float
+    amplitude_coefficient: float
     reason: str
     unstable_after: int
     meets: int
@@ -55,6 +57,23 @@ class CurveOfCycles:
         """The values of the parameter that have a stable cycle of the branch."""
         pieces = np.flatnonzero(self.stable == 1)
         return union((min(self.at[i : i + 2]), max(self.at[i : i + 2])) for i in pieces)
+
+    def beside_hopf_points(self) -> list[tuple[Array, Array, NDArray[np.integer]]]:
+        """From each Hopf point of known a to where the branch first turns back: |at/at_H - 1|, y/|a|, stable.
+
+        Of the shapes (n,), (n,) and (n - 1,), n > 1; the Hopf point itself, at 0, is left out.
+        """
+        found = []
+        for special, order in ((self.special[0], slice(None)), (self.special[-1], slice(None, None, -1))):
+            a, y = special.amplitude_coefficient, self.y[order]
+            if special.kind != "hopf" or y[0] != 0 or not np.isfinite(a) or a == 0:
+                continue
+            away = np.sign(a) * (self.at[order] / special.at - 1)
+            turns = np.flatnonzero(np.diff(away) <= 0)
+            end = int(turns[0]) + 1 if len(turns) else len(away)
+            if end > 2:
+                found.append((away[1:end], y[1:end] / abs(a), self.stable[order][1 : end - 1]))
+        return found
 
 
 def followed_parameter(view: View) -> str:
@@ -116,6 +135,7 @@ def _specials(v: dict[str, Array], places: Iterable[int]) -> tuple[SpecialOfBran
             float(v["special_error"][i]),
             float(v["special_period"][i]),
             float(v["special_tip_y_max"][i]),
+            float(v["special_amplitude_coefficient"][i]) if "special_amplitude_coefficient" in v else nan,
             END_REASONS[int(v["special_reason"][i])],
             int(v["special_unstable_after"][i]),
             int(v["special_meets"][i]) if "special_meets" in v else 0,

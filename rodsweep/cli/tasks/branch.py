@@ -134,6 +134,7 @@ def _special(point: "SpecialPoint", start: int, hopf: "Crossing | None") -> dict
         "special_error": point.error,
         "special_period": point.period,
         "special_tip_y_max": point.tip_y_max,
+        "special_amplitude_coefficient": point.amplitude_coefficient,
         "special_point": start + point.after if point.after >= 0 else -1,
         "special_reason": int(point.reason or 0),
         "special_unstable_after": hopf.unstable_after if hopf else -1,

@@ -1,9 +1,13 @@
-"""The bifurcation diagram of a rod: its cycles over the parameter that is followed, stable and unstable."""
+"""The bifurcation diagram of a rod: its cycles over the parameter that is followed, stable and unstable.
+
+Below, how their amplitude grows from the Hopf points beside what the normal form predicts.
+"""
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import NullFormatter
 
 from ...errors import InputError
 from ...results.file.view import View
@@ -25,6 +29,8 @@ MARKS = {
     "list_full": ("|", "last cycle stored"),
 }
 """Marker and words of a special point, by its kind or, of an end, the reason; other ends are not marked."""
+PREDICTED, PREDICTED_WORD = (0, (4, 1, 1, 1)), "by the normal form"
+"""Line and word of the amplitude that it predicts next to every Hopf point."""
 COLOURS = (style.FIRST, style.SECOND, "#6A3D9A", "#2E7D32", "#8D6E63", "#00838F")
 """Of the branches, one after another."""
 
@@ -40,19 +46,24 @@ def draw_branch(request: FigureRequest) -> str:
     curves = curves_of(view, 0)
     style.need(view, any(curve.cycles.any() for curve in curves), "branch with cycles")
     along = followed_parameter(view)
-    figure = Figure(figsize=(5.6, 5.6), layout="constrained")
-    upper, lower = figure.subplots(2, 1, sharex=True)
+    beside = any(curve.beside_hopf_points() for curve in curves)
+    figure = Figure(figsize=(5.6, 7.6 if beside else 5.6), layout="constrained")
+    upper, lower, *third = figure.subplots(2 + beside, 1)
+    lower.sharex(upper)
+    upper.tick_params(labelbottom=False)
     marked: dict[str, Line2D] = {}
     for number, curve in enumerate(curves):
         colour = COLOURS[number % len(COLOURS)]
-        _pieces(upper, curve.at, curve.y, curve, colour)
-        _pieces(lower, curve.at, curve.period, curve, colour)
+        _pieces(upper, curve.at, curve.y, curve.stable, colour)
+        _pieces(lower, curve.at, curve.period, curve.stable, colour)
         _mark(upper, lower, curve, marked)
     for stable, ranges in zip((1, 0), straight_ranges(view, 0, _shown(view, curves)), strict=True):
         for low, high in ranges:
             upper.plot([low, high], [0, 0], LINES[stable][0], color="k", lw=1.4)
     upper.set_ylabel("largest $y/L$ of the tip")
     lower.set(ylabel=r"period$/\tau_2$", xlabel=style.LABELS[along], yscale="log")
+    for axes in third:
+        marked["predicted"] = _beside_prediction(axes, curves, along)
     there = {int(s) for curve in curves for s in curve.stable} | {1, 0}
     handles = [Line2D([], [], color="k", ls=LINES[s][0], label=LINES[s][1]) for s in sorted(there)[::-1]]
     style.legend_below(figure, [*handles, *marked.values()], columns=3)
@@ -67,14 +78,16 @@ def _shown(view: View, curves: list[CurveOfCycles]) -> Range:
     return low, min(high, 1.1 * reach)
 
 
-def _pieces(axes: Axes, x: np.ndarray, y: np.ndarray, curve: CurveOfCycles, colour: str) -> None:
-    """A curve, x and y of the shape (n,), each run of pieces of one stability with its line."""
-    changes = np.flatnonzero(np.diff(curve.stable)) + 1
-    for run in np.split(np.arange(len(curve.stable)), changes):
+def _pieces(
+    axes: Axes, x: np.ndarray, y: np.ndarray, stable: np.ndarray, colour: str, marker: str = ""
+) -> None:
+    """A curve, x and y of the shape (n,), each run of pieces of one stability, (n - 1,), with its line."""
+    changes = np.flatnonzero(np.diff(stable)) + 1
+    for run in np.split(np.arange(len(stable)), changes):
         if len(run):
             vertices = slice(run[0], run[-1] + 2)
-            line = LINES[int(curve.stable[run[0]])][0]
-            axes.plot(x[vertices], y[vertices], line, color=colour, lw=1.4)
+            line = LINES[int(stable[run[0]])][0]
+            axes.plot(x[vertices], y[vertices], ls=line, marker=marker, color=colour, lw=1.4)
 
 
 def _mark(upper: Axes, lower: Axes, curve: CurveOfCycles, marked: dict[str, Line2D]) -> None:
@@ -87,3 +100,26 @@ def _mark(upper: Axes, lower: Axes, curve: CurveOfCycles, marked: dict[str, Line
         (drawn,) = upper.plot(special.at, special.tip_y_max, marker, color="k", ms=5, ls="", label=word)
         lower.plot(special.at, special.period, marker, color="k", ms=5, ls="")
         marked.setdefault(kind, drawn)
+
+
+def _beside_prediction(axes: Axes, curves: list[CurveOfCycles], along: str) -> Line2D:
+    """The cycles next to the Hopf points in units of a, and what the normal form says: one line for all.
+
+    Up to where a branch turns back: beyond, its cycles are no longer those that the law speaks of.
+    """
+    nearest, farthest = [], []
+    for number, curve in enumerate(curves):
+        for at, y, stable in curve.beside_hopf_points():
+            _pieces(axes, at, y, stable, COLOURS[number % len(COLOURS)], marker=".")
+            nearest.append(float(at[0]))
+            farthest.append(float(at[-1]))
+    ends = np.array([min(nearest), max(farthest)])
+    (law,) = axes.plot(ends, ends**0.5, ls=PREDICTED, color="0.4", lw=1.4, zorder=0, label=PREDICTED_WORD)
+    symbol = style.SYMBOLS[along]
+    axes.set(xscale="log", yscale="log", ylabel="largest $y/|a|$")
+    axes.set_xlabel(rf"$|{symbol}/{symbol}^\mathrm{{H}} - 1|$, distance from the Hopf point")
+    style.label_few_decades(axes.xaxis, *axes.get_xlim())
+    style.label_few_decades(axes.yaxis, *axes.get_ylim())
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_minor_formatter(NullFormatter())
+    return law

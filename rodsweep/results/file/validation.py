@@ -19,7 +19,7 @@ from .seal import HDF5_SIGNATURE, check_seal
 
 PROGRAM = "rodsweep"
 """The attribute `program` of our files."""
-FORMAT = 3
+FORMAT = 4
 """The attribute `format` of our files: grows when a variable is added or changes its meaning. What was
 written before there was one has none, which counts as 0."""
 LONGEST_REASON = 150
@@ -74,9 +74,10 @@ def refuse_absent(path: Path) -> None:
         raise InputError(f"{path} is not a file" if path.exists() else f"{path} does not exist")
 
 
-def header_of(path: Path, file: h5py.File) -> Header:
+def header_of(path: Path, file: h5py.File, shown: bool = False) -> Header:
     """The header of an open file; one of DAMAGES unless its variables are those of its config.
 
+    shown: whether the file is only shown, and need not have variables that came with a later format.
     InputError where another version of rodsweep wrote the file in a format that this one does not read.
     """
     attributes = dict(file.attrs)
@@ -85,6 +86,8 @@ def header_of(path: Path, file: h5py.File) -> Header:
     config = json.loads(attributes["config_resolved"])
     try:
         layout = layout_of(config)
+        if shown:
+            layout = layout.known_in(found)
         refuse_misfit(file, layout)
         asked = fingerprint_of(config, [file[name][...] for name in layout.parameters])
     except (LookupError, ValueError, TypeError) as error:

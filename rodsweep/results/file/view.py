@@ -98,7 +98,7 @@ def _view(path: Path) -> View:
     with reading(path):
         check_seal(path, values=path.stat().st_size <= CHECKED_WHOLE)
         file = h5py.File(path, "r")  # once: a run may exchange the file at any instant
-        header = header_of(path, file)
+        header = header_of(path, file, shown=True)
         task, layout = header.config["task"], header.layout
         if str(header.attributes.setdefault("task", task)) != task:
             raise ValueError("its task is not that of its config")

@@ -54,6 +54,16 @@ class HopfBirth:
         """Of the cycles as they are born, in tau2."""
         return 2 * np.pi / self.crossing.frequency
 
+    @property
+    def amplitude_coefficient(self) -> float:
+        """a, in L: at p' next to the Hopf point at p the largest tip y is |a| sqrt(|p' - p|/p).
+
+        p is the parameter; a < 0 where the cycles are at p' < p. As accurate as NORMAL_FORM_ACCURACY.
+        """
+        turned = -1.0 if Path(self.rod, self.name).inverse else 1.0
+        squared = -turned * self.slope.real * self.coordinate / self.normal.c.real
+        return float(np.copysign(abs(squared) ** 0.5, squared))
+
     def moved_by(self, amplitude: float) -> tuple[float, float]:
         """(change of the coordinate, frequency) of the cycle whose largest tip y is given."""
         c = self.normal.c
@@ -83,7 +93,7 @@ def hopf_point(rod: Rod, gamma1: float, name: str, crossing: Crossing) -> HopfBi
 
 def beginning(hopf: HopfBirth, accuracy: float) -> ArcPoint:
     """The first cycle of the branch from a Hopf point; raises Unsolvable."""
-    a = abs(hopf.normal.c.real / (hopf.slope.real * hopf.coordinate)) ** -0.5
+    a = abs(hopf.amplitude_coefficient)
     for amplitude in AMPLITUDES:
         try:
             return _cycle_of(hopf, min(amplitude, SHARE * a), accuracy)

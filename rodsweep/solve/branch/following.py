@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from math import nan
 
 import numpy as np
 from scipy.optimize import brentq
@@ -168,12 +169,14 @@ def special_hopf(hopf: HopfBirth) -> SpecialPoint:
         period=hopf.period,
         tip_y_max=0.0,
         error=hopf.crossing.error,
+        amplitude_coefficient=hopf.amplitude_coefficient,
     )
 
 
 def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> SpecialPoint:
     """The end of a branch that has no cycles, where it begins."""
-    return replace(curve.special[0], kind=SpecialKind.end, reason=reason, message=message)
+    born = curve.special[0]
+    return replace(born, kind=SpecialKind.end, reason=reason, message=message, amplitude_coefficient=nan)
 
 
 def _beyond(point: ArcPoint, course: Course) -> int:

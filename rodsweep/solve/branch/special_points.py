@@ -96,6 +96,8 @@ class SpecialPoint:
     reason: EndReason | None = None
     message: str = ""
     orbit: Orbit | None = field(default=None, repr=False, compare=False)
+    amplitude_coefficient: float = nan
+    """At a Hopf point how fast the amplitude grows from there."""
 
 
 def unstable_returns(point: ArcPoint) -> int:
