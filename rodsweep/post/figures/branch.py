@@ -31,7 +31,7 @@ MARKS = {
 """Marker and words of a special point, by its kind or, of an end, the reason; other ends are not marked."""
 PREDICTED, PREDICTED_WORD = (0, (4, 1, 1, 1)), "by the normal form"
 """Line and word of the amplitude that it predicts next to every Hopf point."""
-COLOURS = (style.FIRST, style.SECOND, "#6A3D9A", "#2E7D32", "#8D6E63", "#00838F")
+COLOURS = (style.FIRST, style.SECOND, "#6A3D9A", "#2E7D32", "#8D6E63", "#00838F", "#C2185B", "#9E9D24")
 """Of the branches, one after another."""
 
 

@@ -259,7 +259,8 @@ def _bautin_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
     for number in np.unique(v["bautin_along_curve"]):
         on = v["bautin_along_curve"] == number
         reach = v[f"bautin_along_{third}"][on]
-        label = rf"Re $c$ = 0, ${SYMBOLS[third]}$ = {reach.min():.3g} to {reach.max():.3g}"
+        low, high = (number_text(float(end), 3) for end in (reach.min(), reach.max()))
+        label = rf"Re $c$ = 0, ${SYMBOLS[third]}$ = ${low}$ to ${high}$"
         x, y = (v[f"bautin_along_{name}"][on] for name in (line, row))
         drawn += axes.plot(x, y, "-.", color="tab:red", lw=1.2, label=label)
     return drawn
