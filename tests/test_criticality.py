@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.interpolate import BarycentricInterpolator
 from second_normal_form import coefficients
 from surveyed import survey_only
 from test_paper import run, stated
@@ -106,6 +107,24 @@ def test_cycles_at_the_hopf_point_are_those_of_the_coefficients(rod):
         squared, slope = (10 * near - far) / 9
         assert abs(squared * at.F) ** 0.5 == pytest.approx(abs(known.amplitude_coefficient), rel=1e-8)
         assert slope == pytest.approx(known.frequency_slope, rel=1e-8)
+
+
+FORCES = np.array([1e-4, 5e-5, 2e-5, 1e-5])
+"""Relative distances from the Hopf point, where a fold is so near that two are not enough."""
+
+
+@survey_only
+@pytest.mark.parametrize("rod", [SUBCRITICAL, RodInFluid(50.0, 100.0, 1.0)])
+def test_cycles_of_rods_whose_fold_is_near_are_those_of_the_coefficients_too(rod):
+    """The force and the frequency are smooth in y squared through the fold, hence extrapolated in that."""
+    at, hopf, known = next(iter(hopf_points(rod)))
+    assert known.criticality == 1
+    cycles = np.array([cycle_near(at, hopf, known, rod.gamma1, part) for part in FORCES])
+    squared = np.abs(cycles[:, 0]) * at.F * FORCES
+    force = float(BarycentricInterpolator(squared, 1 / cycles[:, 0])(0))
+    frequency = float(BarycentricInterpolator(squared, cycles[:, 1] / cycles[:, 0])(0))
+    assert abs(at.F / force) ** 0.5 == pytest.approx(abs(known.amplitude_coefficient), rel=1e-8)
+    assert frequency / force == pytest.approx(known.frequency_slope, rel=1e-8)
 
 
 def test_both_signs_are_among_the_rods_above():
