@@ -4,12 +4,13 @@ On each of the intervals, from the state x_0 at its start, the stages x_1 ... x_
 
     sum_j d_ij M x_j = h F(x_i),        j = 0 ... s,
 
-with the method's differentiation matrix d (s is at least 2), the diagonal mass matrix M (0 where an unknown
+with the method's differentiation matrix d (s is at least 3), the diagonal mass matrix M (0 where an unknown
 has no time derivative) and the balance F. The blocks of Newton's matrix off its diagonal are d_ij M: diagonal
-matrices. So the first stage is eliminated at the price of an inverse, the others by products of blocks, and
-the interval becomes a map of its start to its end. The maps' product P is the derivative of the flow over all
-intervals. A block's pivots are its own; the blocks on the diagonal, d_ii M - h F', are regular while h is
-short against what grows.
+matrices. So the first stage is eliminated at the price of an inverse X, the second at that of an inverse Y
+and three products, for all that both leave of the other blocks is a combination of Z = M X, W = M Y, Z W, W Z
+and Z W Z. The others are eliminated by products of blocks, and the interval becomes a map of its start to its
+end. The maps' product P is the derivative of the flow over all intervals. A block's pivots are its own; the
+blocks on the diagonal, d_ii M - h F', are regular while h is short against what grows.
 """
 
 from typing import Any, NamedTuple
@@ -53,7 +54,7 @@ class Factors(NamedTuple):
     """Newton's matrix of all K intervals, eliminated.
 
     blocks: (K, s, s, n, n), inverses of the pivots on the diagonal, multipliers below, what is left above;
-    its first row and column but the pivot are diagonal matrices and not stored. propagator: P, (n, n).
+    but for the pivots nothing is stored of the first two rows and columns. propagator: P, (n, n).
     inverse: of the matrix that is left for start and period, (n + 1, n + 1).
     """
 
@@ -163,7 +164,7 @@ def eliminate(points: Array, duration: float, p: Semidiscrete, factors: Factors,
     K, s, n = columns.shape[0], columns.shape[1], columns.shape[3]
     size = len(p.matrices.weights)
     V, G, tip, F = np.empty((3, size)), np.empty((3, size)), np.empty((3, n)), np.empty(n)
-    right, end = np.empty((s, n, n)), np.empty((n, n))
+    right, parts, end = np.empty((s, n, n)), np.empty((5, n, n)), np.empty((n, n))
     so_far, ends = np.diag(p.mass), np.zeros(columns.shape[2:])
     for k in range(K):
         B, h = factors.blocks[k], duration * p.lengths[k]
@@ -175,7 +176,7 @@ def eliminate(points: Array, duration: float, p: Semidiscrete, factors: Factors,
                 for q in range(n):
                     B[i, i, r, q] *= -h
                 B[i, i, r, r] += p.differentiation[i, i + 1] * p.mass[r]
-        _eliminate_interval(B, right, p)
+        _eliminate_interval(B, right, parts, p)
         forward(B, columns[k], p, ends)
         square_product(B[s - 1, s - 1], right[s - 1], end, 1.0, 0.0)
         square_product(end, so_far, factors.propagator, 1.0, 0.0)
@@ -186,14 +187,23 @@ def eliminate(points: Array, duration: float, p: Semidiscrete, factors: Factors,
 
 
 @compiled_for_vectors
-def _eliminate_interval(B: Array, right: Array, p: Semidiscrete) -> None:
-    """The blocks of one interval, (s, s, n, n), of which the diagonal is given; right side for x_0 = M^-1."""
+def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -> None:
+    """The blocks of one interval, (s, s, n, n), of which the diagonal is given; right side for x_0 = M^-1.
+
+    parts: work array, (5, n, n).
+    """
     s, n = B.shape[0], B.shape[2]
     pivots, column, rows = np.empty(n, np.int64), np.empty(n), np.empty((n, PANEL))
-    end = np.empty((n, n))
+    end, d, mass, Z = np.empty((n, n)), p.differentiation, p.mass, parts[0]
     invert(B[0, 0], pivots, column, rows)
-    _eliminate_first(B, right, p)
-    for a in range(1, s):
+    factor = d[1, 1] * d[0, 2]
+    for r in range(n):
+        for q in range(n):
+            Z[r, q] = mass[r] * B[0, 0, r, q]
+            B[1, 1, r, q] -= factor * Z[r, q] * mass[q]
+    invert(B[1, 1], pivots, column, rows)
+    _eliminate_two(B, right, parts, p)
+    for a in range(2, s):
         invert(B[a, a], pivots, column, rows)
         for i in range(a + 1, s):
             square_product(B[i, a], B[a, a], end, 1.0, 0.0)
@@ -204,45 +214,84 @@ def _eliminate_interval(B: Array, right: Array, p: Semidiscrete) -> None:
 
 
 @compiled_for_vectors
-def _eliminate_first(B: Array, right: Array, p: Semidiscrete) -> None:
-    """The first stage out of one interval's others: their blocks, and their right side for x_0 = M^-1."""
+def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> None:
+    """The first two stages out of one interval's others: their blocks, and their right side for x_0 = M^-1.
+
+    parts: (5, n, n), of which the first is M X; the others are made.
+    """
     s, n = B.shape[0], B.shape[2]
-    d, mass, X = p.differentiation, p.mass, B[0, 0]
-    for i in range(1, s):
-        for j in range(1, s):
-            factor = d[i, 1] * d[0, j + 1]
-            for r in range(n):
-                f = factor * mass[r]
-                if i == j:
-                    for q in range(n):
-                        B[i, j, r, q] -= f * X[r, q] * mass[q]
-                else:
-                    for q in range(n):
-                        B[i, j, r, q] = -f * X[r, q] * mass[q]
-                    B[i, j, r, r] += d[i, j + 1] * mass[r]
-        factor = d[i, 1] * d[0, 0]
+    d, mass, minus = p.differentiation, p.mass, -np.ones(n)
+    Z, W, ZW = parts[0], parts[1], parts[2]
+    for r in range(n):
+        for q in range(n):
+            W[r, q] = mass[r] * B[1, 1, r, q]
+    square_product(Z, W, ZW, 1.0, 0.0)
+    square_product(W, Z, parts[3], 1.0, 0.0)
+    square_product(ZW, Z, parts[4], 1.0, 0.0)
+    for i in range(2, s):
+        right[i] = 0.0
+        _subtract_parts(right[i], parts, i, 0, d, minus)
+        for j in range(2, s):
+            if i != j:
+                B[i, j] = 0.0
+            _subtract_parts(B[i, j], parts, i, j + 1, d, mass)
         for r in range(n):
-            f = factor * mass[r]
-            for q in range(n):
-                right[i, r, q] = f * X[r, q]
             right[i, r, r] -= d[i, 0]
+            for j in range(2, s):
+                B[i, j, r, r] += d[i, j + 1] * mass[r] if i != j else 0.0
+
+
+@compiled_for_vectors
+def _subtract_parts(out: Array, parts: Array, i: int, c: int, d: Array, scale: Array) -> None:
+    """What the first two stages leave in the equations of stage i, of column c of d, out of a block, (n, n).
+
+    parts: Z, W, Z W, W Z and Z W Z, (5, n, n); d: (s, s + 1); scale: of the block's columns, (n,).
+    """
+    n, first, second = len(out), d[0, c], d[1, c]
+    z, w = d[i, 1] * first, d[i, 2] * second
+    zw, wz = -d[i, 1] * d[0, 2] * second, -d[i, 2] * d[1, 1] * first
+    zwz = d[i, 1] * d[0, 2] * d[1, 1] * first
+    for r in range(n):
+        Z, W, ZW, WZ, ZWZ = parts[0, r], parts[1, r], parts[2, r], parts[3, r], parts[4, r]
+        for q in range(n):
+            left = z * Z[q] + w * W[q] + zw * ZW[q] + wz * WZ[q] + zwz * ZWZ[q]
+            out[r, q] -= left * scale[q]
 
 
 @compiled_for_vectors
 def forward(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> None:
     """From what right sides, (s, columns, n), make of the start of one interval to its end; in place."""
-    s = B.shape[0]
-    d, mass = p.differentiation, p.mass
-    y, t = np.empty(columns.shape), np.zeros(ends.shape)
-    for i in range(s):
-        y[i] = columns[i] - d[i, 0] * mass * ends
-    _add_products(B[0, 0], y[0], t, 1.0)
-    for i in range(1, s):
-        y[i] -= d[i, 1] * mass * t
-        for a in range(1, i):
-            _add_products(B[i, a], y[a], y[i], -1.0)
+    s, y = B.shape[0], np.empty(columns.shape)
+    _downwards(B, columns, p, ends, y)
     ends[:] = 0.0
     _add_products(B[s - 1, s - 1], y[s - 1], ends, 1.0)
+
+
+@compiled_for_vectors
+def _downwards(B: Array, columns: Array, p: Semidiscrete, start: Array, y: Array) -> None:
+    """The right sides of one interval, eliminated, into y; both (s, columns, n).
+
+    start: changes at the interval's start, (columns, n). Those of the first two stages stay as they are.
+    """
+    d, mass = p.differentiation, p.mass
+    t, u = np.empty(start.shape), np.empty(start.shape)
+    for i in range(len(B)):
+        y[i] = columns[i] - d[i, 0] * mass * start
+    _first_two(B, y, p, t, u)
+    for i in range(2, len(B)):
+        y[i] -= mass * (d[i, 1] * t + d[i, 2] * u)
+        for a in range(2, i):
+            _add_products(B[i, a], y[a], y[i], -1.0)
+
+
+@compiled_for_vectors
+def _first_two(B: Array, y: Array, p: Semidiscrete, t: Array, u: Array) -> None:
+    """The first two stages, t and u, (columns, n), for right sides y, (s, columns, n), where others are 0."""
+    d, mass = p.differentiation, p.mass
+    t[:], u[:] = 0.0, 0.0
+    _add_products(B[0, 0], y[0], t, 1.0)
+    _add_products(B[1, 1], y[1] - d[1, 1] * mass * t, u, 1.0)
+    _add_products(B[0, 0], d[0, 2] * mass * u, t, -1.0)
 
 
 @compiled_for_vectors
@@ -264,26 +313,19 @@ def substitute(start: Array, right: Array, p: Semidiscrete, factors: Factors, ou
     start: (columns, n), right and out: (K, s, columns, n).
     """
     K, s, columns, n = right.shape
-    y, t, first = np.empty((s, columns, n)), np.empty((columns, n)), start.copy()
+    y, first = np.empty((s, columns, n)), start.copy()
     d, mass = p.differentiation, p.mass
     for k in range(K):
         B = factors.blocks[k]
-        for i in range(s):
-            y[i] = right[k, i] - d[i, 0] * mass * first
-        t[:] = 0.0
-        _add_products(B[0, 0], y[0], t, 1.0)
-        for i in range(1, s):
-            y[i] -= d[i, 1] * mass * t
-            for a in range(1, i):
-                _add_products(B[i, a], y[a], y[i], -1.0)
-        for a in range(s - 1, 0, -1):
+        _downwards(B, right[k], p, first, y)
+        for a in range(s - 1, 1, -1):
             for j in range(a + 1, s):
                 _add_products(B[a, j], out[k, j], y[a], -1.0)
             out[k, a] = 0.0
             _add_products(B[a, a], y[a], out[k, a], 1.0)
             y[0] -= d[0, a + 1] * mass * out[k, a]
-        out[k, 0] = 0.0
-        _add_products(B[0, 0], y[0], out[k, 0], 1.0)
+            y[1] -= d[1, a + 1] * mass * out[k, a]
+        _first_two(B, y, p, out[k, 0], out[k, 1])
         first[:] = out[k, s - 1]
 
 
