@@ -15,7 +15,7 @@ from ...arrays import Array
 
 CHECKPOINTS = "chain-*"
 """All checkpoints of a directory, also those that a kill left half written."""
-CHECKPOINT_HEAD = b"rodsweep checkpoint 2\n"
+CHECKPOINT_HEAD = b"rodsweep checkpoint 3\n"
 """Its number grows when a state holds other numbers than before: older checkpoints then count as none."""
 INDEX_BYTES, CHECKSUM_BYTES = 8, 4
 

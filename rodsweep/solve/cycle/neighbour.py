@@ -1,13 +1,14 @@
 """From a neighbour's cycle to that of the next point of a sweep: the tangent predicts, Newton corrects.
 
-A neighbour hands on its cycle with its tangent along the axis; the cubic through two of them is mostly so
-near to the next that one elimination gives the cycle and its multipliers. Where the step is too long for
-Newton's method it is divided, on a coarser mesh. The mesh goes on too, and what is known of its errors. All
-of it follows from the neighbour alone, so that a chain of points has the same content however often it was
-interrupted.
+A neighbour hands on its cycle with its tangent along the axis; the polynomial through it and those before it
+is mostly so near to the next that one elimination gives the cycle and its multipliers. Where the step is too
+long for Newton's method it is divided, on a coarser mesh. The mesh goes on too, and what is known of its
+errors. All of it follows from the neighbour alone, so that a chain of points has the same content however
+often it was interrupted.
 """
 
 from dataclasses import astuple, dataclass, replace
+from functools import cached_property
 from math import inf, nan
 
 import numpy as np
@@ -34,47 +35,109 @@ FARTHEST = 0.3
 """Relative distance of a cycle from its prediction beyond which it may be another one."""
 MOST_HALVINGS, MOST_STEPS = 6, 100
 """Of a step along the axis, and steps in all."""
-LONGER_STEP = 1.5
-"""By how much a step that succeeded is followed by a longer one."""
-TANGENT_DISTANCE = 1e-4
+AIMED_DISTANCE, SHORTER_STEP, LONGER_STEP = 0.1, 0.5, 3.0
+"""How far off a prediction should be for Newton's method to take two matrices; bounds of a step in units of
+the one before, whose error is taken to grow as its cube."""
+TANGENT_DISTANCE = 1e-2
 """Relative distance from its orbit of a matrix whose tangent is good enough for a step of many."""
 ENOUGH, WORTHWHILE = 0.9, 0.8
 """Share of the accuracy that a cycle's error may have for its neighbour to take over the mesh; share of its
 cost that another mesh may have to be taken instead."""
+MOST_BEHIND, SLOPELESS = 4, 3
+"""Orbits before the last one that the prediction goes through, and how many of them it takes to be better
+without the slope at one of them."""
 UNKNOWN = complex(nan, nan)
 HEAD = 9
-"""Numbers at the head of a packed neighbour: rod, symmetry, Taylor terms, leading eigenvalue."""
+"""Numbers at the head of a packed neighbour: rod, symmetry, places, leading eigenvalue."""
 
 
 @dataclass(frozen=True, eq=False)
 class Followed:
-    """An orbit and the coefficients of its Taylor polynomial in the coordinate of a parameter, (terms, N),
-    from the first.
+    """An orbit, and what a polynomial through it has at places on the branch, to predict others.
 
-    One coefficient is the tangent alone; three make the cubic through two orbits and their tangents.
+    places: differences of the coordinate of a parameter from the orbit's, (m,); the first is the orbit's own.
+    orders: 0 where the polynomial has the value of an orbit, 1 where its slope, (m,); data: these, of
+    `normalised` values, (m, N + 1).
     """
 
     orbit: Orbit
-    taylor: Array
+    places: Array
+    orders: Array
+    data: Array
 
-    def ahead(self, step: float) -> Array:
-        """What is added to the orbit's values at a distance in the coordinate, (N,)."""
-        change: Array = step ** np.arange(1, len(self.taylor) + 1) @ self.taylor
-        return change
+    @property
+    def tangent(self) -> Array:
+        """The slope of the normalised values here, (N + 1,)."""
+        return self.data[0]
+
+    @cached_property
+    def values(self) -> Array:
+        """The orbit's normalised values, (N + 1,)."""
+        return normalised(self.orbit)
+
+    def weights(self, step: float) -> Array:
+        """Of slopes, and of values less those here, in what is added at a distance on the branch, (m,)."""
+        unit = np.abs(self.places).max() or 1.0
+        powers, at = np.arange(1, len(self.places) + 1), self.places[:, None] / unit
+        slopes = self.orders[:, None] == 1
+        rows = np.where(slopes, powers * at ** (powers - 1) / unit, at**powers)
+        weights: Array = np.linalg.solve(rows.T, (step / unit) ** powers)
+        return weights
 
     def at(self, form: StressForm, name: str) -> Orbit:
         """The prediction at another value of the parameter, for the rod `form`, whatever its mesh."""
         step = coordinate_of(form, name) - coordinate_of(self.orbit.form, name)
-        here = replace(form, mesh=self.orbit.form.mesh)
-        return replace(self.orbit, form=here, values=self.orbit.values + self.ahead(step))
+        here, weights = replace(form, mesh=self.orbit.form.mesh), self.weights(step)
+        values = weights @ self.data + (1 - weights[self.orders == 0].sum()) * self.values
+        if not values[-1] > 0:
+            raise Unsolvable("the branch is predicted to end")
+        return replace(self.orbit, form=here, values=scaled(self.orbit, values[:-1], values[-1] ** 0.5))
 
     def on(self, target: OrbitMesh) -> "Followed":
         """The same on another mesh."""
         if target == mesh_of(self.orbit):
             return self
-        return Followed(
-            target.carry(self.orbit), np.array([carried(self.orbit, term, target) for term in self.taylor])
-        )
+        data = [np.append(carried(self.orbit, row[:-1], target), row[-1]) for row in self.data]
+        return replace(self, orbit=target.carry(self.orbit), data=np.array(data))
+
+
+def scaled(orbit: Orbit, values: Array, factor: float) -> Array:
+    """Values of an orbit, or a change of them, (N,), with what the reflection reverses times a factor."""
+    form = orbit.form
+    out = values.copy()
+    out[:-1].reshape(-1, form.unknowns)[:, form.mesh.nodes :] *= factor  # all but n1
+    return out
+
+
+def squared_size(orbit: Orbit) -> tuple[float, Array]:
+    """Of the moment at t = 0, the integral of m3^2, and its derivative by the state there, (n,).
+
+    No parameter enters, so that it depends on one by way of the state alone.
+    """
+    n = orbit.form.mesh.nodes
+    moment = orbit.start[2 * n : 3 * n]
+    by_start = np.zeros(len(orbit.start))
+    by_start[2 * n : 3 * n] = 2 * orbit.form.mesh.quadrature[:-1] * moment
+    return float(by_start[2 * n : 3 * n] @ moment) / 2, by_start
+
+
+def normalised(orbit: Orbit) -> Array:
+    """The orbit's values, of which those that the reflection reverses are in units of the moment's size at
+    t = 0, and the square of that, (N + 1,).
+
+    They are smooth in a parameter up to a Hopf point and through it, where the values themselves go as the
+    root of the distance from it.
+    """
+    squared = squared_size(orbit)[0]
+    return np.append(scaled(orbit, orbit.values, squared**-0.5), squared)
+
+
+def normalised_tangent(orbit: Orbit, tangent: Array) -> Array:
+    """The derivative of the normalised values where that of the values is (N,), (N + 1,)."""
+    squared, by_start = squared_size(orbit)
+    change = by_start @ tangent[: len(by_start)]
+    by_size = orbit.values - scaled(orbit, orbit.values, 0.0)
+    return np.append(scaled(orbit, tangent - 0.5 * change / squared * by_size, squared**-0.5), change)
 
 
 def carried(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
@@ -83,18 +146,28 @@ def carried(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
 
 
 def followed_from(found: Converged, before: Followed | None, name: str) -> Followed:
-    """An orbit that was solved with its tangent; before: the one before it on the branch."""
-    orbit, tangent = found.orbit, found.matrix.tangent
-    if tangent is None:
+    """An orbit that was solved with its tangent; before: the one before it on the branch.
+
+    A tangent is as wrong as its orbit was predicted, a value far less: where SLOPELESS values are known,
+    errors grow the less without another slope. From mesh to mesh states differ by far more than period and
+    largest y, their slopes do so less.
+    """
+    orbit = found.orbit
+    if found.matrix.tangent is None:
         raise ValueError("the orbit was solved without its tangent")
-    last = before.on(mesh_of(orbit)) if before else None
-    step = coordinate_of(orbit.form, name) - coordinate_of(last.orbit.form, name) if last else 0.0
-    if last is None or step == 0:
-        return Followed(orbit, tangent[None])
-    # With s = 0 here and -step there: A = q - r step, B = q - 3/2 r step for x + t s + q s^2 + r s^3.
-    A = (last.orbit.values - orbit.values + step * tangent) * step**-2
-    B = (tangent - last.taylor[0]) * (0.5 / step)
-    return Followed(orbit, np.array([tangent, 3 * A - 2 * B, (A - B) * (2 / step)]))
+    tangent = normalised_tangent(orbit, found.matrix.tangent)
+    step = coordinate_of(orbit.form, name) - coordinate_of(before.orbit.form, name) if before else 0.0
+    if before is None or step == 0:
+        return Followed(orbit, np.zeros(1), np.ones(1), tangent[None])
+    last = before.on(mesh_of(orbit))
+    if last is not before:
+        return Followed(orbit, np.array([0.0, -step]), np.ones(2), np.array([tangent, last.tangent]))
+    older = np.flatnonzero(before.orders == 0)[: MOST_BEHIND - 1]
+    places, data = [0.0, -step, *(before.places[older] - step)], [tangent, before.values, *before.data[older]]
+    orders = [1.0] + [0.0] * (1 + len(older))
+    if 1 + len(older) < SLOPELESS:
+        places, orders, data = [*places, -step], [*orders, 1.0], [*data, before.tangent]
+    return Followed(orbit, np.array(places), np.array(orders), np.array(data))
 
 
 def coordinate_of(form: StressForm, name: str) -> float:
@@ -142,23 +215,27 @@ class Neighbour:
     def pack(self) -> Array:
         """All of it as one flat array, shape (length,)."""
         orbit, form = self.branch.orbit, self.branch.orbit.form
-        rod, terms = form.rod, len(self.branch.taylor)
-        head = [rod.F, rod.k1, rod.k2, rod.gamma3, form.gamma1, orbit.symmetric, terms]
-        head += [self.leading.real, self.leading.imag]
+        rod = form.rod
+        head = [rod.F, rod.k1, rod.k2, rod.gamma3, form.gamma1, orbit.symmetric]
+        head += [len(self.branch.places), self.leading.real, self.leading.imag]
         meshes = (mesh_of(orbit), self.next_mesh)
         known = self.calibration.pack()
-        return np.concatenate([head, *map(astuple, meshes), known, orbit.values, self.branch.taylor.ravel()])
+        branch = (self.branch.places, self.branch.orders, orbit.values, self.branch.data.ravel())
+        return np.concatenate([head, *map(astuple, meshes), known, *branch])
 
     @classmethod
     def unpack(cls, flat: Array) -> "Neighbour":
         """The reverse of `pack`, from its array, shape (length,)."""
-        parts = np.split(flat.copy(), np.cumsum([HEAD, 4, 4, LENGTH]))
-        F, k1, k2, gamma3, gamma1, symmetric, terms, real, imag = map(float, parts[0])
+        F, k1, k2, gamma3, gamma1, symmetric, count, real, imag = map(float, flat[:HEAD])
+        m = int(count)
+        parts = np.split(flat.copy(), np.cumsum([HEAD, 4, 4, LENGTH, m, m]))
         here, there = (OrbitMesh(*map(int, part)) for part in parts[1:3])
         form = StressForm(Rod(F, k1, k2, gamma3), gamma1, here.grid)
-        values = parts[4].reshape(1 + int(terms), -1)
-        orbit = Orbit(form, bool(symmetric), here.intervals, here.stages, values[0])
-        return cls(Followed(orbit, values[1:]), there, Calibration.unpack(parts[3]), complex(real, imag))
+        # The values are one number fewer than each row of the data.
+        values, data = np.split(parts[6], [len(parts[6]) // (1 + m)])
+        orbit = Orbit(form, bool(symmetric), here.intervals, here.stages, values)
+        branch = Followed(orbit, parts[4], parts[5], data.reshape(m, -1))
+        return cls(branch, there, Calibration.unpack(parts[3]), complex(real, imag))
 
 
 def _next_mesh(found: RefinedCycle, accuracy: float) -> tuple[OrbitMesh, Calibration]:
@@ -204,9 +281,14 @@ def _converged(neighbour: Neighbour, form: StressForm, name: str, accuracy: floa
 def _near(predicted: Orbit, tolerance: float, name: str | None = None) -> Converged:
     """The orbit at a prediction; Unsolvable where it is not near."""
     found = newton(predicted, tolerance, name)
-    if relative_change(predicted, found.orbit.values - predicted.values) > FARTHEST:
+    if _distance(predicted, found) > FARTHEST:
         raise Unsolvable("the cycle is far from its prediction")
     return found
+
+
+def _distance(predicted: Orbit, found: Converged) -> float:
+    """Of an orbit from its prediction, relative."""
+    return relative_change(predicted, found.orbit.values - predicted.values)
 
 
 def in_steps(start: Followed, form: StressForm, name: str, tolerance: float) -> Converged:
@@ -221,15 +303,21 @@ def in_steps(start: Followed, form: StressForm, name: str, tolerance: float) -> 
         end = share + step >= 1.0
         between = form if end else with_coordinate(form, name, here + (share + step) * (there - here))
         try:
-            found = _near(followed.at(between, name), tolerance, name)
+            predicted = followed.at(between, name)
+            found = _near(predicted, tolerance, name)
         except Unsolvable:
             step /= 2
             continue
         if end:
             return found
         followed = followed_from(at_orbit(found, TANGENT_DISTANCE, name), followed, name)
-        share, step = share + step, LONGER_STEP * step
+        share, step = share + step, step * _step_factor(_distance(predicted, found))
     raise Unsolvable("the branch of cycles cannot be followed in so many steps")
+
+
+def _step_factor(distance: float) -> float:
+    """By how much the next step is longer than one whose prediction was this far off."""
+    return float(np.clip((AIMED_DISTANCE / max(distance, 1e-300)) ** (1 / 3), SHORTER_STEP, LONGER_STEP))
 
 
 def with_coordinate(form: StressForm, name: str, at: float) -> StressForm:

@@ -1,0 +1,69 @@
+"""How the cycles before it predict the next one of a chain."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rodsweep.solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.cycle.neighbour import MOST_BEHIND, Followed, Neighbour
+from rodsweep.solve.cycle.newton import newton, relative_change
+from rodsweep.solve.cycle.orbit_mesh import mesh_of
+
+ROD = CyclePoint(34.0, 1e4, 1e2, 1e-2, 1.0)
+HOPF = 27.4271941267593
+REQUEST = CycleRequest(1e-7, 0.1, 1, 0, 0, 0, 100)
+STEP = 0.99
+
+
+@pytest.fixture(scope="module")
+def chain():
+    """What the points of a chain hand on, down towards the Hopf point."""
+    handed, F = [None], ROD.F
+    while F > 1.09 * HOPF:
+        cycle = solve_cycle(replace(ROD, F=F), REQUEST, handed[-1], "F")
+        assert cycle.status == CycleStatus.cycle
+        handed.append(cycle.neighbour)
+        F *= STEP
+    return [Neighbour.unpack(flat) for flat in handed[1:]]
+
+
+@pytest.mark.parametrize(
+    "places, orders",
+    [
+        ([0.0], [1]),
+        ([0.0, -0.3], [1, 1]),
+        ([0.0, -0.3, -0.3], [1, 0, 1]),
+        ([0.0, 20.0, 35.0, 20.0], [1, 0, 0, 1]),
+        ([0.0, -1e-3, -2.5e-3, -3e-3, -5e-3], [1, 0, 0, 0, 0]),
+    ],
+)
+def test_polynomials_with_as_many_terms_are_predicted_exactly(places, orders):
+    places, orders = np.array(places), np.array(orders)
+    size = np.abs(places).max() or 1.0
+    p = np.polynomial.Polynomial(np.random.default_rng(2).normal(size=len(places) + 1), [0, size], [0, 1])
+    here = Followed(None, places, orders, np.empty(0))
+    data = np.where(orders == 1, p.deriv()(places), p(places) - p(0))
+    for step in (size, -0.4 * size):
+        assert here.weights(step) @ data == pytest.approx(p(step) - p(0), rel=1e-10, abs=1e-10)
+
+
+def test_a_chain_goes_on_by_the_cycles_behind(chain):
+    last = chain[-1].branch
+    assert np.count_nonzero(last.orders == 0) == MOST_BEHIND
+    assert last.places[0] == 0 and np.all(last.places[1:] > 0)  # it went downwards
+    again = Neighbour.unpack(chain[-1].pack()).branch
+    for name in ("places", "orders", "data"):
+        assert np.array_equal(getattr(again, name), getattr(last, name))
+    assert mesh_of(again.orbit) == mesh_of(last.orbit)
+
+
+def test_next_to_a_hopf_point_cycles_are_predicted_though_they_go_as_a_root(chain):
+    """The amplitude's slope is infinite at the Hopf point; in the square of the size it is smooth there."""
+    last = chain[-1].branch
+    form = last.orbit.form
+    for F, most in ((STEP * form.rod.F, 3e-7), (1.05 * HOPF, 1e-4), (1.01 * HOPF, 1e-2)):
+        predicted = last.at(replace(form, rod=replace(form.rod, F=F)), "F")
+        found = newton(predicted, 1e-10).orbit
+        assert found.size < last.orbit.size
+        assert relative_change(predicted, found.values - predicted.values) < most
