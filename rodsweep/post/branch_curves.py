@@ -32,10 +32,10 @@ class SpecialOfBranch:
     error: float
     period: float
     tip_y_max: float
-    amplitude_coefficient: float
     reason: str
     unstable_after: int
     meets: int
+    amplitude_coefficient: float = nan
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,10 +135,10 @@ def _specials(v: dict[str, Array], places: Iterable[int]) -> tuple[SpecialOfBran
             float(v["special_error"][i]),
             float(v["special_period"][i]),
             float(v["special_tip_y_max"][i]),
-            float(v["special_amplitude_coefficient"][i]) if "special_amplitude_coefficient" in v else nan,
             END_REASONS[int(v["special_reason"][i])],
             int(v["special_unstable_after"][i]),
             int(v["special_meets"][i]) if "special_meets" in v else 0,
+            float(v["special_amplitude_coefficient"][i]) if "special_amplitude_coefficient" in v else nan,
         )
         for i in places
     )
