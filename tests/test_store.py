@@ -230,9 +230,9 @@ def test_a_view_is_of_one_file_though_a_run_exchanges_it_meanwhile(tmp_path, mon
         Store(place, plan(is_grid)).close()
     real = view.header_of
 
-    def exchanged_before(place, file):
+    def exchanged_before(place, file, **asked):
         os.replace(other, path)
-        return real(place, file)
+        return real(place, file, **asked)
 
     monkeypatch.setattr(view, "header_of", exchanged_before)
     shown = read_view(path)
