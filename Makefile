@@ -58,7 +58,7 @@ figures: .venv/installed  ## compute every config on two ranks and draw its figu
 
 test: .venv/installed  ## run the tests
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
-test-kernels: .venv/installed  ## run what depends on the BLAS under other OpenBLAS kernels, or those in KERNELS
+test-kernels: .venv/installed  ## run what depends on the BLAS under other OpenBLAS kernels, those in KERNELS, or with KERNELS=another under one of them
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tests/kernels.py $(KERNELS)
 lint: .venv/installed  ## check style, types and who may import whom
 	$(BIN)/ruff check
