@@ -16,6 +16,8 @@ from rodsweep.solve.spectrum.stretch import Stretch, solve_stretch
 LONGEST = 64
 LARGEST = 400
 """Unknowns up to which whole matrices are solved."""
+FEWEST_MODES = 8
+"""For which a mesh is chosen at first."""
 CLEAR = 1e-6
 """Distance from the imaginary axis, in units of the box, in which a dense solver cannot count."""
 
@@ -58,20 +60,24 @@ def random_line(rng: np.random.Generator) -> Stretch:
 def dense_count(rod: Rod) -> int | None:
     """Unstable modes by LAPACK on the whole matrices, right of the axis by more than it can err; or None.
 
-    By LU and geev: where F is several times k2, QZ's finite eigenvalues are wrong on every mesh.
+    By LU and geev: where F is several times k2, QZ's finite eigenvalues are wrong on every mesh. The mesh is
+    one for at least as many modes as are counted.
     """
-    _, wave = most_amplified_wave(rod)
-    mesh = resolution_for(1.3 * expected_wave_number(8, wave), 1e-10)
-    if mesh.unknowns > LARGEST:
-        return None
-    A, B = whole_matrices(rod, mesh)
-    w = inverse_spectrum(A, B)
     real, imag = eigenvalue_box(rod)
-    inside = (np.abs(w.imag) <= imag) & (w.real <= real)
-    near = np.abs(w.real) < CLEAR * real
-    if not np.isfinite(real) or (inside & near).any():
-        return None
-    return int((inside & (w.real > 0)).sum())
+    _, wave = most_amplified_wave(rod)
+    count, modes = FEWEST_MODES, 0
+    while count > modes:
+        modes = count
+        mesh = resolution_for(1.3 * expected_wave_number(modes, wave), 1e-10)
+        if mesh.unknowns > LARGEST or not np.isfinite(real):
+            return None
+        A, B = whole_matrices(rod, mesh)
+        w = inverse_spectrum(A, B)
+        inside = (np.abs(w.imag) <= imag) & (w.real <= real)
+        if (inside & (np.abs(w.real) < CLEAR * real)).any():
+            return None
+        count = int((inside & (w.real > 0)).sum())
+    return count
 
 
 @dataclass
