@@ -1,14 +1,18 @@
 """Newton's matrix of an orbit, condensed interval by interval, beside dense systems of all stages at once."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from rodsweep.discretization.mesh import mesh
 from rodsweep.discretization.stress_balance import jacobian
 from rodsweep.discretization.stress_form import StressForm
+from rodsweep.model.parameters import NONLINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
-from rodsweep.solve.cycle.condensation import eliminate, equations, substitute
-from rodsweep.solve.cycle.linearisation import workspace
+from rodsweep.solve.cycle.condensation import PANEL, eliminate, equations, invert, residuals, substitute
+from rodsweep.solve.cycle.linearisation import parameter_derivative, phase, workspace
+from rodsweep.solve.cycle.neighbour import coordinate_of, with_coordinate
 from rodsweep.solve.cycle.orbit import Orbit
 
 INTERVALS, PERIOD, COLUMNS = 4, 0.02, 2
@@ -66,3 +70,36 @@ def test_elimination_is_the_solution_of_the_dense_systems(rod, stages):
         flow = -np.linalg.solve(A, by_start @ flow)[-n:]
     assert np.abs(ends - still).max() < 1e-9 * np.abs(still).max()
     assert np.abs(factors.propagator - flow).max() < 1e-9 * np.abs(flow).max()
+
+
+@pytest.mark.kernel
+@pytest.mark.parametrize("n", [5, PANEL, 54])
+@pytest.mark.parametrize("unit", [1e-8, 1.0, 1e8])
+def test_an_inverse_is_as_accurate_in_any_unit(n, unit):
+    random = np.random.default_rng(n)
+    A = unit * (random.normal(size=(n, n)) + np.diag(random.uniform(5, 50, n)))
+    inverse = A.copy()
+    invert(inverse, np.empty(n, np.int64), np.empty((n, PANEL)))
+    assert np.abs(inverse @ A - np.eye(n)).max() < 1e-13
+
+
+def balances(orbit, name, change):
+    """Residuals of all stages, and the right side of the phase, with a parameter's coordinate changed."""
+    form = orbit.form
+    moved = replace(orbit, form=with_coordinate(form, name, coordinate_of(form, name) + change))
+    p, out = moved.semidiscrete, np.empty_like(orbit.states)
+    residuals(orbit.points, orbit.duration, p, np.empty_like(out), out)
+    return np.append(out, -phase(orbit.start, p.parameters, p.matrices))
+
+
+@pytest.mark.parametrize("name", NONLINEAR_PARAMETERS)
+@pytest.mark.parametrize("rod", RODS.values(), ids=RODS.keys())
+def test_derivative_by_a_parameter_is_the_limit_of_differences(rod, name):
+    orbit = orbit_with(rod, 4)
+    right, shift = parameter_derivative(orbit, name)
+    step = 1e-4 * coordinate_of(orbit.form, name) or 1e-6  # to one side: a limit has no other
+    there = np.array([balances(orbit, name, k * step) for k in range(3)])
+    limit, rounding = [-1.5, 2, -0.5] @ there / step, 4e-15 * np.abs(there).max() / step
+    assert np.abs(right.ravel() - limit[:-1]).max() < 1e-6 * np.abs(right).max() + rounding
+    assert abs(shift - limit[-1]) < 1e-6 * abs(shift) + rounding
+    assert np.abs(right).max() > 0

@@ -102,6 +102,50 @@ def torque_balance(x: Array, out: Array, c: BeamParameters, m: NodeMatrices) -> 
 
 
 @compiled_for_vectors
+def balance_change(
+    x: Array, V: Array, out: Array, change: BeamParameters, c: BeamParameters, m: NodeMatrices
+) -> None:
+    """The derivatives of V and G along a change of the parameters into out, (2, 3, nodes + 1).
+
+    V at the state x, (3, nodes + 1), is known. Omega does not change where it is an unknown.
+    """
+    dV, dG = out[0], out[1]
+    size = len(m.weights)
+    n = size - 1
+    known = len(x) > 3 * n
+    dG[:, :] = 0.0
+    for i in range(size):
+        s1, s2, Pi = (x[i], x[n + i], x[2 * n + i]) if i < n else (0.0, 0.0, 0.0)
+        h1, h2, n1 = c.nu + c.c1 * s1, c.c2 * s2, s1 - c.F
+        dh1, dh2 = change.nu + change.c1 * s1, change.c2 * s2
+        dV[0, i] = -V[0, i] * change.gamma1 / c.gamma1
+        dV[1, i] = -Pi * change.F
+        turned = dh1 * s2 - dh2 * n1 + h2 * change.F
+        dV[2, i] = 0.0 if known else (turned - V[2, i] * change.gamma3) / c.gamma3
+        w = m.weights[i]
+        dG[0, i] = w * (dh2 * V[2, i] + h2 * dV[2, i] - Pi * dV[1, i])
+        dG[1, i] = w * (Pi * dV[0, i] - dh1 * V[2, i] - h1 * dV[2, i])
+    for j in range(size):
+        w = m.weights[j]
+        v1, v2, v3 = w * dV[0, j], w * dV[1, j], w * dV[2, j]
+        for i in range(size):
+            slope = m.D[j, i]
+            dG[0, i] -= slope * v1
+            dG[1, i] -= slope * v2
+            dG[2, i] -= slope * v3
+
+
+@compiled_for_vectors
+def torque_change(x: Array, out: Array, change: BeamParameters, c: BeamParameters, m: NodeMatrices) -> None:
+    """The derivative of `torque_balance` along a change of the parameters into out, (nodes + 1,)."""
+    n = len(m.weights) - 1
+    for i in range(n + 1):
+        s1, s2 = (x[i], x[n + i]) if i < n else (0.0, 0.0)
+        bent = c.c2 * change.F - change.c2 * (s1 - c.F) + change.nu + change.c1 * s1
+        out[i] = m.weights[i] * (bent * s2 - change.gamma3 * x[3 * n + i])
+
+
+@compiled_for_vectors
 def jacobian(x: Array, V: Array, J: Array, tip: Array, c: BeamParameters, m: NodeMatrices) -> None:
     """The derivative of the equations at x, of which V is known, into J, (unknowns, unknowns).
 

@@ -15,8 +15,8 @@ from .mesh import Mesh, configuration
 from .stress_balance import BeamParameters
 
 LEAST_ELIMINATED_DRAG = 1e-5
-"""gamma3 from which Omega is eliminated: below, the division by gamma3 costs multipliers their digits, 1e-8
-at 1e-6 and 1e-6 at 1e-8; as an unknown Omega costs 2.4 times the time."""
+"""gamma3 from which Omega is eliminated: below, the division by gamma3 costs multipliers their digits, 2e-9
+at 1e-6 and 2e-7 at 1e-8, and soft rods their cycles; as an unknown Omega costs 2.4 times the time."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,14 +1,13 @@
 """The errors of a mesh, calibrated by finer ones, for a cycle and those that follow on the same mesh.
 
 Two meshes of which one is coarser tell the fine one's error only by what it should be in units of the coarse
-one's, which must be pessimistic. Two finer meshes, one in space and one in time, measure it. Two coarser
-meshes tell how fast both parts fall, hence which mesh costs least; so do two that were measured. Where many
-cycles follow on one mesh, its errors are measured at the first of them; at the others both parts are larger
-by as much as the orbit's tails make them.
+one's, which must be pessimistic. Two finer meshes, one in space and one in time, measure it. How fast both
+parts fall, hence which mesh costs least, the decay of the orbit's coefficients tells, and better two meshes
+that were measured. Where many cycles follow on one mesh, its errors are measured at the first of them; at
+the others both parts are larger by as much as the orbit's tails make them.
 """
 
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import astuple, dataclass, field, replace
 from math import ceil, inf
 
@@ -16,7 +15,6 @@ import numpy as np
 
 from ...arrays import Array
 from ...discretization.resolution import LARGEST_ORDER
-from ..point import Unsolvable
 from .cycle_errors import LEAST_CLAIM, ROUNDING, CycleErrors, largest_error
 from .measures import CyclePath
 from .newton import Converged, at_orbit, multiplier_change, multipliers_of, newton
@@ -28,6 +26,7 @@ from .orbit_mesh import (
     OrbitMesh,
     lasting_tails,
     mesh_of,
+    tails_of,
 )
 from .path_differences import APART, HEIGHT, OTHERS, PERIOD, path_differences
 
@@ -42,10 +41,12 @@ HEIGHT_SHARE, PERIOD_SHARE, SHARE_IN_TIME = 0.08, 0.16, 0.005
 and no more do so at the next cycle. In time they differ most in theta, which is stiff and matters least."""
 AIM = 0.5
 """Share of the accuracy that a mesh is chosen for."""
-LEAST_FALL, LARGEST_FALL = 0.5, 2.2
-"""Bounds of the fall of errors in space per order, natural logarithm."""
-STEEPEST = 2.0
-"""Largest order in time, in units of the least, which is one more than the stages."""
+FALL_BY_DECAY, LEAST_FALL, LARGEST_FALL = 1.6, 0.5, 2.2
+"""The fall of errors in space per order, natural logarithm: in units of the decay of the coefficients, whose
+squares they follow (1.4 to 2 were seen), and its bounds."""
+POWER_BY_STAGES, STEEPEST = 1.5, 2.0
+"""Order in time: in units of the stages where it was not measured, and the largest in units of the least,
+which is one more than the stages."""
 FEWER_ORDERS, FEWER_INTERVALS, MOST_ORDERS, MOST_GROWTH = 3, 0.6, 12, 4
 """By how many orders, and times how many intervals, a mesh that is planned may differ."""
 FARTHEST, LARGEST_GROWTH = 0.2, 4.0
@@ -180,8 +181,8 @@ def calibrated(
 ) -> Calibration:
     """The calibration of the mesh of an orbit; raises Unsolvable.
 
-    before: of an orbit near by, on this mesh or another, which tells how fast errors fall; without it coarser
-    meshes do. on: the same cycle on another mesh, to a tolerance, whatever is held fixed.
+    before: of an orbit near by, on this mesh or another, which tells how fast errors fall; without it the
+    orbit does. on: the same cycle on another mesh, to a tolerance, whatever is held fixed.
     """
     here, least = mesh_of(found.orbit), found.orbit.stages + 1
     difference, longer = _differences(found, accuracy, on), ceil(MORE_INTERVALS * here.intervals)
@@ -191,10 +192,9 @@ def calibrated(
     time = time / (1 - ((here.intervals - 1) / (longer - 1)) ** least)
     tails = _tails(found.orbit)
     if before is None:
-        rough, fall, power = here.coarser, np.full(PARTS, LEAST_FALL), np.full(PARTS, float(least))
-        with suppress(Unsolvable):  # next to a Hopf point coarser meshes may have no cycle
-            fall = _fall(difference(replace(here, order=rough.order)), space, here.order - rough.order)
-            power = _power(difference(replace(here, intervals=rough.intervals)), time, rough, here)
+        decay = FALL_BY_DECAY * tails_of(found.orbit).decay
+        fall = np.full(PARTS, min(max(decay, LEAST_FALL), LARGEST_FALL))
+        power = np.full(PARTS, POWER_BY_STAGES * found.orbit.stages)
         return Calibration(here, space, time, fall, power, tails, 0.0)
     there, fall, power = before.mesh, before.fall, before.power
     if there.order != here.order and there.elements == here.elements:

@@ -96,17 +96,17 @@ def residuals(points: Array, duration: float, p: Semidiscrete, slopes: Array, ou
 
 
 @compiled_for_vectors
-def invert(A: Array, pivots: Any, column: Array, rows: Array) -> None:
+def invert(A: Array, pivots: Any, rows: Array) -> None:
     """A^-1 in place, by Gauss and Jordan with partial pivoting, PANEL columns at a time.
 
-    A: (n, n); work arrays: pivots (n,) of integers, column (n,), rows (n, PANEL). A row of A is read as a
-    column of its transpose, whose inverse is the transpose of the inverse.
+    A: (n, n); work arrays: pivots (n,) of integers, rows (n, PANEL). A row of A is read as a column of its
+    transpose, whose inverse is the transpose of the inverse.
     """
     n = len(A)
     ones, extents = np.ones(2), np.empty(6, np.int32)
     for first in range(0, n, PANEL):
         last = min(n, first + PANEL)
-        _sweep_panel(A, first, last, pivots, column)
+        _sweep_panel(A, first, last, pivots)
         for j in range(n):
             if j < first or j >= last:
                 for i in range(last - first):
@@ -125,7 +125,7 @@ def invert(A: Array, pivots: Any, column: Array, rows: Array) -> None:
 
 
 @compiled_for_vectors
-def _sweep_panel(A: Array, first: int, last: int, pivots: Any, column: Array) -> None:
+def _sweep_panel(A: Array, first: int, last: int, pivots: Any) -> None:
     """The steps of Gauss and Jordan for the columns from first to last, within these."""
     n = len(A)
     for k in range(first, last):
@@ -142,15 +142,13 @@ def _sweep_panel(A: Array, first: int, last: int, pivots: Any, column: Array) ->
                 A[j, k], A[j, p] = A[j, p], A[j, k]
         inverse = 1.0 / row[k]
         for i in range(n):
-            column[i] = -row[i] * inverse
-        column[k] = inverse - 1.0
+            row[i] *= -inverse
         for j in range(first, last):
             if j != k:
                 factor = A[j, k]
                 for i in range(n):
-                    A[j, i] += factor * column[i]
-        for i in range(n):
-            row[i] = column[i]
+                    A[j, i] += factor * row[i]
+                A[j, k] = factor * inverse
         row[k] = inverse
 
 
@@ -193,18 +191,18 @@ def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -
     parts: work array, (5, n, n).
     """
     s, n = B.shape[0], B.shape[2]
-    pivots, column, rows = np.empty(n, np.int64), np.empty(n), np.empty((n, PANEL))
+    pivots, rows = np.empty(n, np.int64), np.empty((n, PANEL))
     end, d, mass, Z = np.empty((n, n)), p.differentiation, p.mass, parts[0]
-    invert(B[0, 0], pivots, column, rows)
+    invert(B[0, 0], pivots, rows)
     factor = d[1, 1] * d[0, 2]
     for r in range(n):
         for q in range(n):
             Z[r, q] = mass[r] * B[0, 0, r, q]
             B[1, 1, r, q] -= factor * Z[r, q] * mass[q]
-    invert(B[1, 1], pivots, column, rows)
+    invert(B[1, 1], pivots, rows)
     _eliminate_two(B, right, parts, p)
     for a in range(2, s):
-        invert(B[a, a], pivots, column, rows)
+        invert(B[a, a], pivots, rows)
         for i in range(a + 1, s):
             square_product(B[i, a], B[a, a], end, 1.0, 0.0)
             B[i, a] = end

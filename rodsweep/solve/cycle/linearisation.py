@@ -9,17 +9,31 @@ from math import prod
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...discretization.stress_balance import BeamParameters, NodeMatrices, balance, jacobian
+from ...discretization.stress_balance import (
+    BeamParameters,
+    NodeMatrices,
+    balance,
+    balance_change,
+    jacobian,
+    torque_change,
+)
 from ...model.compilation import compiled_for_vectors
 from ...model.parameters import PARAMETERS
-from .condensation import PANEL, Factors, Semidiscrete, eliminate, forward, invert, residuals, substitute
+from .condensation import (
+    PANEL,
+    Factors,
+    Semidiscrete,
+    eliminate,
+    equations,
+    forward,
+    invert,
+    residuals,
+    substitute,
+)
 from .multipliers import nonzero_eigenvalues
 from .orbit import Orbit
 
-DIFFERENCE = 1e-5
 _memory: list[Array] = [np.empty(0)]
-LEAST_COORDINATE = {"F": 1.0, "c1": 1e-4, "c2": 1e-4, "gamma1": 0.1, "gamma3": 1e-4}
-"""Relative step of a difference by a parameter, and the least size of the parameter for it."""
 
 
 class Linearisation:
@@ -73,42 +87,59 @@ def coordinate(name: str, value: float) -> float:
 
 
 def parameter_derivative(orbit: Orbit, name: str) -> tuple[Array, float]:
-    """Right sides of the stages, (K, s, n), and of the phase for the derivative by a `coordinate`.
-
-    A central difference: a tangent needs few digits, and the equations are cubic in most coordinates.
-    """
+    """Right sides of the stages, (K, s, n), and of the phase for the derivative by a `coordinate`."""
     form, p = orbit.form, orbit.semidiscrete
     c = form.parameters
     field = {"k1": "c1", "k2": "c2"}.get(name, name)
-    here = getattr(c, field)
-    step = DIFFERENCE * max(abs(here), LEAST_COORDINATE[field])
-    sides = []
-    for there in (here + step, here - step):
-        moved = c._replace(**{field: there})
-        moved = moved._replace(nu=1 - moved.F * moved.c1)
-        sides.append(p._replace(parameters=moved, mass=form.mass_of(moved.c1, moved.c2)))
-    return difference(orbit.values, sides[0], sides[1], 2 * step, orbit.stages)
+    change = BeamParameters(*(float(field == other) for other in c._fields))
+    change = change._replace(nu=-change.F * c.c1 - c.F * change.c1)
+    by_mass = form.mass_of(change.c1, change.c2)
+    by_mass[2 * form.mesh.nodes :] = 0.0
+    return change_along(orbit.values, change, by_mass, p, orbit.stages)
 
 
 @compiled_for_vectors
-def difference(
-    values: Array, above: Semidiscrete, below: Semidiscrete, step: float, stages: int
+def change_along(
+    values: Array, change: BeamParameters, by_mass: Array, p: Semidiscrete, stages: int
 ) -> tuple[Array, float]:
-    """What residuals, (K, s, n), and phase of an orbit, (N,), differ by on both sides, by a step of it all.
+    """The derivatives of residuals, (K, s, n), and phase of an orbit, (N,), along a change of the parameters.
 
-    The phase's is a right side and has the sign of one.
+    by_mass: of the mass, (n,). The phase's is a right side and has the sign of one.
     """
-    K, n = len(above.lengths), len(above.mass)
-    points, duration = values[:-1].reshape(1 + K * stages, n), values[-1] / above.parts
-    slopes, right, other = np.empty((K, stages, n)), np.empty((K, stages, n)), np.empty((K, stages, n))
-    residuals(points, duration, above, slopes, right)
-    residuals(points, duration, below, slopes, other)
+    K, n, size = len(p.lengths), len(p.mass), len(p.matrices.weights)
+    points, duration = values[:-1].reshape(1 + K * stages, n), values[-1] / p.parts
+    V, G, F, changes = np.empty((3, size)), np.empty((3, size)), np.empty(n), np.empty((2, 3, size))
+    right, d = np.empty((K, stages, n)), p.differentiation
     for k in range(K):
+        here, h = points[k * stages : (k + 1) * stages + 1], duration * p.lengths[k]
         for i in range(stages):
+            equations(here[i + 1], F, V, G, p)
+            equations_change(here[i + 1], F, V, changes, change, p)
             for r in range(n):
-                right[k, i, r] = (right[k, i, r] - other[k, i, r]) / step
-    after = phase(points[0], above.parameters, above.matrices)
-    return right, (phase(points[0], below.parameters, below.matrices) - after) / step
+                slope = 0.0
+                for j in range(stages + 1):
+                    slope += d[i, j] * here[j, r]
+                right[k, i, r] = h * F[r] - by_mass[r] * slope
+    balance(points[0], V, G, p.parameters, p.matrices)
+    balance_change(points[0], V, changes, change, p.parameters, p.matrices)
+    return right, -lateral_velocity(changes[1], tip_angle(points[0], p.matrices))
+
+
+@compiled_for_vectors
+def equations_change(
+    x: Array, F: Array, V: Array, out: Array, change: BeamParameters, p: Semidiscrete
+) -> None:
+    """The derivative of `condensation.equations` along a change of the parameters into F, (n,).
+
+    V at the state x is known; out, (2, 3, nodes + 1), is made on the way.
+    """
+    nodes = V.shape[1] - 1
+    balance_change(x, V, out, change, p.parameters, p.matrices)
+    for a in range(3):
+        for i in range(nodes):
+            F[a * nodes + i] = out[1, a, i]
+    if len(x) > 3 * nodes:
+        torque_change(x, F[3 * nodes :], change, p.parameters, p.matrices)
 
 
 @compiled_for_vectors
@@ -117,8 +148,13 @@ def phase(start: Array, c: BeamParameters, m: NodeMatrices) -> float:
     size = len(m.weights)
     V, G = np.empty((3, size)), np.empty((3, size))
     balance(start, V, G, c, m)
-    theta = tip_angle(start, m)
-    return float(-(np.sin(theta) * G[0, size - 1] + np.cos(theta) * G[1, size - 1]))
+    return float(lateral_velocity(G, tip_angle(start, m)))
+
+
+@compiled_for_vectors
+def lateral_velocity(G: Array, theta: float) -> float:
+    """dy/dt of the tip at an angle, by G at all nodes, (3, nodes + 1)."""
+    return -(np.sin(theta) * G[0, -1] + np.cos(theta) * G[1, -1])
 
 
 @compiled_for_vectors
@@ -169,7 +205,7 @@ def linearise(values: Array, columns: Array, shifts: Array, p: Semidiscrete, fac
         inverse[i, i] -= p.signs[i]
         inverse[i, n] = ends[0, i]
     phase_row(points[0], p.parameters, p.matrices, inverse[n, :n])
-    invert(inverse, np.empty(n + 1, np.int64), np.empty(n + 1), np.empty((n + 1, PANEL)))
+    invert(inverse, np.empty(n + 1, np.int64), np.empty((n + 1, PANEL)))
     rights = np.zeros((count - 1, n + 1))
     for m in range(1, count):
         for i in range(n):

@@ -1,7 +1,7 @@
 """The cycle to an accuracy that is asked for, on meshes of its own choice.
 
-A cycle is first solved on a mesh that is good for a few digits. How its errors fall (`calibration`) says
-which mesh reaches the accuracy at least cost.
+The tails of an orbit near by say which mesh reaches the accuracy (`orbit_mesh`). Where its errors, which are
+measured (`calibration`), are too large after all, they say which one does at least cost.
 """
 
 from dataclasses import dataclass, replace
@@ -26,9 +26,9 @@ accuracy, and its bounds."""
 MULTIPLIER_FACTOR = 10.0
 """Errors of multipliers in units of that distance, the trivial one's error, and what two meshes tell."""
 LEAST_ACCURACY = 1e-12
-FIRST_ACCURACY, NEAR, AIM_LOWERED = 1e-4, 1e-3, 1e-3
-"""What the first mesh is chosen for, by the tails of an orbit near by; tolerance of that orbit; factor of the
-accuracy where a mesh is too coarse."""
+FIRST_ACCURACY, NEAR, AIM_LOWERED = 1e-7, 1e-3, 1e-3
+"""What the first mesh is chosen for at most, by the tails of an orbit near by, which do not tell more;
+tolerance of that orbit; factor of the accuracy where a mesh is too coarse."""
 LEAST_SIZE, LARGEST_SIZE = 0.2, 5.0
 """Size of what Newton's method may find, in units of what it started from: it must be the same motion."""
 LUCK = 10.0
