@@ -75,11 +75,11 @@ def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(s
     assert end.at == pytest.approx(STOP, rel=1e-14)
     assert end.reason == EndReason.range_end
     turn = symmetric.special[1].after + 1
-    assert {point.unstable for point in symmetric.points[: turn - 1]} <= {0, -1}
-    assert {point.unstable for point in symmetric.points[turn + 1 :]} == {1}
+    assert {point.unstable for point in symmetric.points[:turn]} - {-1} == {0}
+    assert {point.unstable for point in symmetric.points[turn:]} - {-1} == {1}
     turn = fold.after + 1
-    assert {point.unstable for point in asymmetric.points[1 : turn - 1]} <= {1, -1}
-    assert {point.unstable for point in asymmetric.points[turn + 1 :]} == {0}
+    assert {point.unstable for point in asymmetric.points[:turn]} <= {1, -1}
+    assert {point.unstable for point in asymmetric.points[turn:]} - {-1} == {0}
 
 
 def test_asymmetry_grows_with_the_square_root_of_the_distance(symmetric, asymmetric):
@@ -134,7 +134,7 @@ def test_a_symmetric_orbit_over_its_whole_period_is_the_same_motion(known):
     assert not whole.symmetric
     times = np.linspace(0, 1, 21)
     assert np.abs(whole.at(times / 2) - orbit.at(times)).max() < 1e-4 * np.abs(orbit.points).max()
-    assert np.abs(asymmetry(whole)).max() < 1e-6 * np.abs(orbit.start).max()
+    assert np.abs(asymmetry(whole)).max() < 1e-5 * np.abs(orbit.start).max()
 
 
 def test_a_known_breaking_that_lies_elsewhere_is_not_taken_for_the_end(known):

@@ -11,7 +11,7 @@ from test_show import shown
 import rodsweep as rs
 from rodsweep.cli.job import make_job
 from rodsweep.cli.tasks.branch import record
-from rodsweep.post.branch_curves import both, curves_of, straight_ranges, union
+from rodsweep.post.branch_curves import both, curves_of, stability_of_pieces, straight_ranges, union
 from rodsweep.post.summary.branch import coexistence
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.branch import END_REASONS, SPECIAL_KINDS
@@ -62,7 +62,8 @@ def test_file_has_the_branches_in_order_and_nothing_behind_them(command):
     kinds = [SPECIAL_KINDS[i] for i in v["special_kind"].reshape(2, -1)[1] if i]
     assert kinds == ["hopf", "fold", "hopf"]
     fold = int(v["special_point"].reshape(2, -1)[1, 1])
-    assert (unstable[: fold + 1] == 0).all()
+    assert set(unstable[: fold + 1]) <= {0, -1}
+    assert (unstable[1 : fold // 2] == 0).all()
     assert set(unstable[fold + 1 : count]) <= {1, -1}
     assert F[: fold + 1].max() < v["special_at"].reshape(2, -1)[1, 1] == pytest.approx(FOLD, rel=1e-8)
     assert v["period_error"].reshape(2, -1)[1, :count].max() <= 1e-5
@@ -82,6 +83,17 @@ def test_curves_of_a_file_go_through_cycles_and_special_points(command):
     ] or (stable[1][1] == 200.0)
     assert unstable == [(pytest.approx(67.3869842879), pytest.approx(85.569316943))]
     assert coexistence(view, 0) == [(pytest.approx(85.569316943), pytest.approx(FOLD))]
+
+
+def test_undecided_cycles_are_as_stable_as_others_between_the_same_special_points():
+    pieces = {
+        (None, 0, -1, None, -1, 1, None): [1, 1, 1, 0, 0, 0],
+        (None, -1, None, 0): [-1, -1, 1],
+        (None, 0, 2, -1, None): [1, -1, 0, -1],  # a change that no special point explains
+        (-1, 0, 0): [1, 1],
+        (None,): [],
+    }
+    assert {counts: stability_of_pieces(list(counts)).tolist() for counts in pieces} == pieces
 
 
 def test_ranges_are_joined_and_intersected():

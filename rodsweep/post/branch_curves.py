@@ -1,11 +1,13 @@
 """Branches of cycles from a file of the task branch: curves and their stability, and ranges of the parameter.
 
-A branch is a curve through its cycles and its special points in their order; a piece of it between two of
-these is as stable as the cycle at one of its ends.
+A branch is a curve through its cycles and its special points in their order. Where multipliers cross the
+circle there is a special point: a cycle with one on the circle within its error is as stable as those between
+the same special points that have none, if these are of one kind.
 """
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import pairwise
 from math import nan
 
 import numpy as np
@@ -103,7 +105,8 @@ def curves_of(view: View, rod: int) -> list[CurveOfCycles]:
         at, y, period = np.array(values, dtype=float).reshape(-1, 3).T
         counts = [int(v["unstable_multipliers"][i]) if is_cycle else None for is_cycle, i in order]
         is_cycle = np.array([cycle for cycle, _ in order], dtype=bool)
-        curves.append(CurveOfCycles(at, y, period, _stability(counts), is_cycle, _specials(v, special)))
+        stable, specials = stability_of_pieces(counts), _specials(v, special)
+        curves.append(CurveOfCycles(at, y, period, stable, is_cycle, specials))
     return curves
 
 
@@ -118,12 +121,17 @@ def _of_rod(view: View, rod: int) -> dict[str, Array]:
     return values
 
 
-def _stability(counts: list[int | None]) -> NDArray[np.integer]:
-    """Of the pieces between vertices of which some have counts of unstable multipliers."""
-    stable = []
-    for before, after in zip(counts[:-1], counts[1:], strict=True):
-        known = [count for count in (before, after) if count is not None and count >= 0]
-        stable.append(-1 if not known else int(known[0] == 0))
+def stability_of_pieces(counts: list[int | None]) -> NDArray[np.integer]:
+    """Of the pieces between vertices, by their counts of unstable multipliers: -1 where undecided, None at
+    special points."""
+    stable = [-1] * (len(counts) - 1)
+    special = [i for i, count in enumerate(counts) if count is None]
+    for start, end in pairwise([0, *special, len(counts) - 1]):
+        known = [count for count in counts[start : end + 1] if count is not None and count >= 0]
+        for i in range(start, end):
+            beside = [count for count in counts[i : i + 2] if count in known] or known
+            if len({count == 0 for count in beside}) == 1:
+                stable[i] = int(beside[0] == 0)
     return np.array(stable, dtype=int)
 
 
