@@ -21,6 +21,7 @@ from ..point import Unsolvable
 from .calibration import LENGTH, Calibration
 from .linearisation import coordinate
 from .newton import Converged, at_orbit, newton, relative_change
+from .normalised import layout, normalised, normalised_tangent, values_of
 from .orbit import Orbit
 from .orbit_mesh import OrbitMesh, mesh_of
 from .refinement import (
@@ -91,7 +92,7 @@ class Followed:
         values = weights @ self.data + (1 - weights[self.orders == 0].sum()) * self.values
         if not values[-1] > 0:
             raise Unsolvable("the branch is predicted to end")
-        return replace(self.orbit, form=here, values=scaled(self.orbit, values[:-1], values[-1] ** 0.5))
+        return replace(self.orbit, form=here, values=values_of(values, layout(self.orbit)))
 
     def on(self, target: OrbitMesh) -> "Followed":
         """The same on another mesh."""
@@ -99,45 +100,6 @@ class Followed:
             return self
         data = [np.append(carried(self.orbit, row[:-1], target), row[-1]) for row in self.data]
         return replace(self, orbit=target.carry(self.orbit), data=np.array(data))
-
-
-def scaled(orbit: Orbit, values: Array, factor: float) -> Array:
-    """Values of an orbit, or a change of them, (N,), with what the reflection reverses times a factor."""
-    form = orbit.form
-    out = values.copy()
-    out[:-1].reshape(-1, form.unknowns)[:, form.mesh.nodes :] *= factor  # all but n1
-    return out
-
-
-def squared_size(orbit: Orbit) -> tuple[float, Array]:
-    """Of the moment at t = 0, the integral of m3^2, and its derivative by the state there, (n,).
-
-    No parameter enters, so that it depends on one by way of the state alone.
-    """
-    n = orbit.form.mesh.nodes
-    moment = orbit.start[2 * n : 3 * n]
-    by_start = np.zeros(len(orbit.start))
-    by_start[2 * n : 3 * n] = 2 * orbit.form.mesh.quadrature[:-1] * moment
-    return float(by_start[2 * n : 3 * n] @ moment) / 2, by_start
-
-
-def normalised(orbit: Orbit) -> Array:
-    """The orbit's values, of which those that the reflection reverses are in units of the moment's size at
-    t = 0, and the square of that, (N + 1,).
-
-    They are smooth in a parameter up to a Hopf point and through it, where the values themselves go as the
-    root of the distance from it.
-    """
-    squared = squared_size(orbit)[0]
-    return np.append(scaled(orbit, orbit.values, squared**-0.5), squared)
-
-
-def normalised_tangent(orbit: Orbit, tangent: Array) -> Array:
-    """The derivative of the normalised values where that of the values is (N,), (N + 1,)."""
-    squared, by_start = squared_size(orbit)
-    change = by_start @ tangent[: len(by_start)]
-    by_size = orbit.values - scaled(orbit, orbit.values, 0.0)
-    return np.append(scaled(orbit, tangent - 0.5 * change / squared * by_size, squared**-0.5), change)
 
 
 def carried(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:

@@ -7,7 +7,7 @@ vanishes there, so that the largest y is as accurate as the period.
 """
 
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 
 import numpy as np
 
@@ -82,16 +82,10 @@ class Orbit:
     def semidiscrete(self) -> Semidiscrete:
         return _semidiscrete(self.form, self.symmetric, self.intervals, self.stages)
 
-    @cached_property
-    def node_states(self) -> Array:
-        """The states at the regular nodes of the whole period, equal in time, shape (m, n)."""
-        ends = self.regular_states
-        return np.concatenate([ends, ends * self.form.reflection]) if self.symmetric else ends
-
     @property
     def size(self) -> float:
         """The largest amplitude of the motion, in units of sqrt(energy)."""
-        return float(self.form.size(self.node_states).max())
+        return float(self.form.size(self.regular_states).max())  # a reflection has the same
 
     def moved(self, change: Array, share: float = 1.0) -> "Orbit":
         """The orbit with a share of a change, (N,), added."""

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from ...arrays import Array
+from ...discretization.collocation import radau
 from ...discretization.mesh import Mesh, mesh
 from ...discretization.resolution import LARGEST_ORDER
 from ...model.compilation import compiled_for_vectors
@@ -127,7 +128,7 @@ def _space_coefficients(orbit: Orbit) -> Array:
 @lru_cache(maxsize=64)
 def _analysis_on_element(order: int) -> Array:
     """Matrix, applied from the right, from an element's nodes to Legendre coefficients, (p + 1, p + 1)."""
-    return np.ascontiguousarray(legendre_analysis(tuple(2 * mesh(1, order).positions - 1)).T)
+    return np.ascontiguousarray(legendre_analysis(2 * mesh(1, order).positions - 1).T)
 
 
 @compiled_for_vectors
@@ -157,8 +158,14 @@ def lasting_tails(orbit: Orbit) -> Array:
     A last coefficient alone comes and goes: in space the last LASTING of all points stand for their envelope.
     """
     grid = orbit.form.mesh
-    last = np.ascontiguousarray(_analysis_on_element(grid.order)[:, -LASTING:])
-    return np.array([largest_end(orbit.points, grid.elements, last), _tail_in_time(orbit)])
+    end = largest_end(orbit.points, grid.elements, _lasting_on_element(grid.order))
+    return np.array([end, _tail_in_time(orbit)])
+
+
+@lru_cache(maxsize=64)
+def _lasting_on_element(order: int) -> Array:
+    """The last LASTING columns of `_analysis_on_element`, (p + 1, LASTING)."""
+    return np.ascontiguousarray(_analysis_on_element(order)[:, -LASTING:])
 
 
 @compiled_for_vectors
@@ -188,8 +195,15 @@ def largest_end(points: Array, elements: int, analysis: Array) -> float:
 
 def _tail_in_time(orbit: Orbit) -> float:
     """Of n1, n2 and m3 the worst."""
-    row = legendre_analysis(tuple(2 * np.append(0.0, orbit.method.nodes) - 1))[-1]
-    return largest_tail(orbit.points, row, orbit.form.mesh.nodes)
+    return largest_tail(orbit.points, _last_in_interval(orbit.stages), orbit.form.mesh.nodes)
+
+
+@lru_cache(maxsize=16)
+def _last_in_interval(stages: int) -> Array:
+    """Row from the values at an interval's start and stages to the last Legendre coefficient, (s + 1,)."""
+    nodes: Array = np.append(0.0, radau(stages).nodes)
+    row: Array = legendre_analysis(2 * nodes - 1)[-1]
+    return row
 
 
 @compiled_for_vectors
@@ -220,14 +234,9 @@ def largest_tail(points: Array, row: Array, nodes: int) -> float:
     return float(worst)
 
 
-_analyses: dict[tuple[float, ...], Array] = {}
-
-
-def legendre_analysis(nodes: tuple[float, ...]) -> Array:
-    """Matrix from values at n nodes in [-1, 1] to Legendre coefficients, shape (n, n)."""
-    if nodes not in _analyses:
-        _analyses[nodes] = np.linalg.inv(legendre.legvander(np.array(nodes), len(nodes) - 1))
-    return _analyses[nodes]
+def legendre_analysis(nodes: Array) -> Array:
+    """Matrix from values at nodes in [-1, 1], (n,), to Legendre coefficients, (n, n)."""
+    return np.linalg.inv(legendre.legvander(nodes, len(nodes) - 1))
 
 
 def wanted_mesh(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:

@@ -1,0 +1,90 @@
+"""An orbit's values in units of its size: what is smooth in a parameter up to a Hopf point and through it.
+
+The values that the reflection reverses go as the root of the distance from a Hopf point. In units of the
+moment's size at t = 0 they do not, and the square of this size goes as the distance itself. No parameter
+enters that size, so that it depends on one by way of the state alone.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...arrays import Array
+from ...model.compilation import compiled_for_vectors
+from .orbit import Orbit
+
+
+class StateLayout(NamedTuple):
+    """Which values of a state, of so many unknowns, are n1 and m3, and the weights of the nodes, (nodes,)."""
+
+    unknowns: int
+    nodes: int
+    weights: Array
+
+
+def layout(orbit: Orbit) -> StateLayout:
+    """That of an orbit's states."""
+    mesh = orbit.form.mesh
+    return StateLayout(orbit.form.unknowns, mesh.nodes, mesh.quadrature[:-1])
+
+
+def normalised(orbit: Orbit) -> Array:
+    """Its values, those that the reflection reverses in units of the size, and the size squared, (N + 1,)."""
+    values: Array = normalised_values(orbit.values, layout(orbit))
+    return values
+
+
+def normalised_tangent(orbit: Orbit, tangent: Array) -> Array:
+    """The derivative of the normalised values where that of the values is (N,), (N + 1,)."""
+    slopes: Array = normalised_slopes(orbit.values, tangent, layout(orbit))
+    return slopes
+
+
+@compiled_for_vectors
+def normalised_values(values: Array, form: StateLayout) -> Array:
+    """`normalised` of values, (N,)."""
+    squared = squared_size(values, values, form)
+    out = np.empty(len(values) + 1)
+    out[:-1], out[-1] = values, squared
+    _scale_reversed(out, squared**-0.5, form)
+    return out
+
+
+@compiled_for_vectors
+def values_of(normalised: Array, form: StateLayout) -> Array:
+    """The reverse of `normalised_values`, from (N + 1,), whose last one is positive, to (N,)."""
+    out = normalised[:-1].copy()
+    _scale_reversed(out, normalised[-1] ** 0.5, form)
+    return out
+
+
+@compiled_for_vectors
+def normalised_slopes(values: Array, tangent: Array, form: StateLayout) -> Array:
+    """`normalised_tangent` of values and their tangent, (N,)."""
+    squared, change = squared_size(values, values, form), 2 * squared_size(values, tangent, form)
+    out, share = np.empty(len(values) + 1), change / (2 * squared)
+    for i in range(len(values)):
+        out[i] = tangent[i]
+    for first in range(0, len(values) - 1, form.unknowns):
+        for i in range(first + form.nodes, first + form.unknowns):
+            out[i] -= share * values[i]
+    out[-1] = change
+    _scale_reversed(out, squared**-0.5, form)
+    return out
+
+
+@compiled_for_vectors
+def squared_size(values: Array, others: Array, form: StateLayout) -> float:
+    """Of the moment at t = 0, the integral of m3^2, or of its product with that of other values; all (N,)."""
+    total = 0.0
+    for i in range(form.nodes):
+        total += form.weights[i] * values[2 * form.nodes + i] * others[2 * form.nodes + i]
+    return total
+
+
+@compiled_for_vectors
+def _scale_reversed(values: Array, factor: float, form: StateLayout) -> None:
+    """All but n1 of the states at the front of values times a factor, in place."""
+    for first in range(0, len(values) - form.unknowns + 1, form.unknowns):
+        for i in range(first + form.nodes, first + form.unknowns):
+            values[i] *= factor
