@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.periodic import (
-    MOST_BY_MATRIX,
     coefficients,
     derivative,
     hermite_coefficients,
+    hermite_columns,
     maxima,
+    minima,
     resampled,
     rise_through_mean,
     sampled_at,
@@ -56,7 +57,7 @@ def test_the_highest_harmonic_of_an_even_number_of_samples_is_a_cosine():
     assert derivative(alternating) == pytest.approx(np.zeros(4), abs=1e-14)
 
 
-@pytest.mark.parametrize("m", [9, MOST_BY_MATRIX, MOST_BY_MATRIX + 1])
+@pytest.mark.parametrize("m", [9, 64, 65])
 def test_values_and_slopes_tell_twice_as_many_harmonics_as_values(m):
     k, rng = np.arange(m + 1), np.random.default_rng(3)
     exact = rng.standard_normal((m + 1, 2)) + 1j * rng.standard_normal((m + 1, 2))
@@ -65,19 +66,29 @@ def test_values_and_slopes_tell_twice_as_many_harmonics_as_values(m):
     values, slopes = (waves @ exact).real, (waves @ (2j * np.pi * k[:, None] * exact)).real
     found = hermite_coefficients(values, slopes)
     assert np.abs(found - exact).max() < 1e-13 * np.abs(exact).max()
-    for count in (8, 4 * m):
+    for count in (7, 8, 4 * m, 4 * m + 1):
         t = np.arange(count) / count
         assert samples_of(found, count) == pytest.approx(sampled_at(exact, t), abs=1e-11)
 
 
-def test_maxima_are_those_of_dense_samples():
+@pytest.mark.parametrize("nodes", [5, 8])
+def test_half_a_period_tells_what_the_whole_does_where_the_other_half_repeats_or_reverses_it(nodes):
+    signs, rng = np.array([1.0, -1.0, -1.0]), np.random.default_rng(nodes)
+    half = rng.standard_normal((2, nodes, 3))
+    whole = np.concatenate([half, signs * half], axis=1)
+    exact = hermite_coefficients(whole[0], whole[1])
+    assert np.abs(hermite_columns(half[0], half[1], signs) - exact).max() < 1e-14
+    assert np.all(hermite_columns(half[0], half[1], signs)[::2, 1:] == 0)
+
+
+def test_extrema_are_those_of_dense_samples():
     """Of several columns, from four samples for each harmonic; the largest dense one is hardly below."""
     rng = np.random.default_rng(7)
     decay = 0.6 ** np.arange(12)[:, None]
     c = decay * (rng.standard_normal((12, 5)) + 1j * rng.standard_normal((12, 5)))
-    dense = samples_of(c, 40000).max(axis=0)
-    beyond = maxima(c, samples_of(c, 48)) - dense
-    assert np.all(beyond >= -1e-13) and np.all(beyond < 1e-6)
+    dense, samples = samples_of(c, 40000), samples_of(c, 48)
+    for beyond in (maxima(c, samples) - dense.max(axis=0), dense.min(axis=0) - minima(c, samples)):
+        assert np.all(beyond >= -1e-13) and np.all(beyond < 1e-6)
 
 
 def test_a_constant_is_its_own_maximum():

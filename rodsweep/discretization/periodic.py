@@ -4,17 +4,11 @@ Samples are at the times k/N, k = 0 ... N - 1, in periods: what follows the last
 exact to the spectral accuracy of the samples. Where N is even, the highest harmonic is a cosine.
 """
 
-from functools import lru_cache
-
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array, Complex
 from ..model.compilation import compiled_for_vectors
-
-MOST_BY_MATRIX, MOST_SAMPLES_BY_MATRIX = 64, 1024
-"""Harmonics and samples up to which one follows from the other by a matrix, which is kept, and beyond by FFT:
-below it is the calls that cost."""
 
 EXTREMUM_STEPS = 8
 """Newton steps from the largest sample to the maximum."""
@@ -37,55 +31,91 @@ def hermite_coefficients(values: Array, slopes: Array) -> Complex:
     slopes: by the time in periods. The slopes tell harmonic k from harmonic m - k, which look alike in the
     values: twice as many harmonics are resolved as by values alone.
     """
-    m = len(values)
-    if m > MOST_BY_MATRIX:
-        return _hermite_by_fft(values, slopes)
-    parts = hermite_matrix(m) @ np.concatenate([values, slopes]).reshape(2 * m, -1)
-    c = np.empty((m + 1, parts.shape[1]), complex)
-    c.real, c.imag = parts[: m + 1], parts[m + 1 :]
-    return c.reshape(m + 1, *values.shape[1:])
+    flat, rates = (np.ascontiguousarray(f).reshape(len(f), -1) for f in (values, slopes))
+    c: Complex = hermite_columns(flat, rates, np.zeros(flat.shape[1]))
+    return c.reshape(len(c), *values.shape[1:])
 
 
-@lru_cache(maxsize=64)
-def hermite_matrix(m: int) -> Array:
-    """Matrix from m values, then m slopes, to the real, then the imaginary parts, (2 m + 2, 2 m)."""
-    unit, none = np.eye(m), np.zeros((m, m))
-    c = np.concatenate([_hermite_by_fft(unit, none), _hermite_by_fft(none, unit)], axis=1)
-    return np.concatenate([c.real, c.imag])
+@compiled_for_vectors
+def hermite_columns(values: Array, slopes: Array, signs: Array) -> Complex:
+    """`hermite_coefficients` of columns, (m + 1, columns), given over half a period or the whole.
 
-
-def _hermite_by_fft(values: Array, slopes: Array) -> Complex:
-    """`hermite_coefficients` of any number of nodes."""
-    m = len(values)
-    k = np.arange(m).reshape(-1, *(1,) * (values.ndim - 1))
-    sums = np.fft.fft(values, axis=0) / m  # c_k + c_(k - m), of the series over k = -m ... m - 1
-    rates = np.fft.fft(slopes, axis=0) / (2j * np.pi * m)  # k c_k + (k - m) c_(k - m)
-    below = (k * sums - rates) / m
-    c: Complex = np.zeros((m + 1, *values.shape[1:]), complex)
-    c[:m] = sums - below
-    c[1:] += np.conj(below[::-1])
-    c[0] = sums[0]  # the harmonic m shows in the slopes only: it is a sine
+    values, slopes: (nodes, columns); signs: what a column is multiplied with half a period later, or 0 where
+    the nodes are those of the whole period, (columns,). With the sums S_k of values and D_k of slopes over
+    the nodes, times exp(-2 pi i k j/m), c_k = 2/m ((1 - k/m) S_k + D_k/(2 pi i m)).
+    """
+    nodes, columns = values.shape
+    m = 2 * nodes if signs[0] != 0 else nodes
+    turns, cos, sin = _waves(m), np.empty(nodes), np.empty(nodes)
+    f, df, c = values.T.copy(), slopes.T.copy(), np.zeros((m + 1, columns), np.complex128)
+    for k in range(m + 1):
+        at = 0
+        for j in range(nodes):
+            cos[j], sin[j] = turns[0, at], turns[1, at]
+            at += k if at + k < m else k - m
+        for a in range(columns):
+            # The other half of the period doubles a harmonic or cancels it.
+            factor = 2 * (1 + signs[a] * (1 - 2 * (k % 2))) / m
+            if factor == 0:
+                continue
+            S, iS, D, iD = 0.0, 0.0, 0.0, 0.0
+            for j in range(nodes):
+                S += cos[j] * f[a, j]
+                iS -= sin[j] * f[a, j]
+                D += cos[j] * df[a, j]
+                iD -= sin[j] * df[a, j]
+            share, by_slope = 1 - k / m, 1 / (2 * np.pi * m)
+            c[k, a] = complex(factor * (share * S + by_slope * iD), factor * (share * iS - by_slope * D))
+    for a in range(columns):  # the mean and the last, which shows in the slopes only, as a sine
+        c[0, a], c[m, a] = c[0, a].real / 2, c[m, a] / 2
     return c
+
+
+@compiled_for_vectors
+def _waves(count: int) -> Array:
+    """Cosine and sine at `count` equidistant times of a period, (2, count)."""
+    waves = np.empty((2, count))
+    for i in range(count):
+        turn = 2 * np.pi * i / count
+        waves[0, i], waves[1, i] = np.cos(turn), np.sin(turn)
+    return waves
 
 
 def samples_of(c: Complex, count: int) -> Array:
     """Re sum_k c_k exp(2 pi i k t) at `count` equidistant times from 0, shape (count, ...)."""
-    few = len(c) <= MOST_BY_MATRIX + 1 and count <= MOST_SAMPLES_BY_MATRIX
-    if few or count <= 2 * len(c):  # where an FFT would leave out the last harmonics
-        flat = c.reshape(len(c), -1)
-        samples: Array = sampling_matrix(len(c), count) @ np.concatenate([flat.real, flat.imag])
-        return samples.reshape(count, *c.shape[1:])
-    half = c * (count / 2)
-    half[0] *= 2
-    return np.ascontiguousarray(np.fft.irfft(half, count, axis=0))
+    samples: Array = sampled_columns(np.ascontiguousarray(c).reshape(len(c), -1), count)
+    return samples.reshape(count, *c.shape[1:])
 
 
-@lru_cache(maxsize=64)
-def sampling_matrix(harmonics: int, count: int) -> Array:
-    """Matrix from real, then imaginary parts of coefficients to samples, shape (count, 2 harmonics)."""
-    turns = np.outer(np.arange(count), np.arange(harmonics)) % count
-    waves = np.exp(2j * np.pi / count * turns)
-    return np.concatenate([waves.real, -waves.imag], axis=1)
+@compiled_for_vectors
+def sampled_columns(c: Complex, count: int) -> Array:
+    """`samples_of` columns, (count, columns), of coefficients (harmonics, columns).
+
+    Half a period later the even harmonics are the same and the odd ones reversed.
+    """
+    harmonics, columns = c.shape
+    order = np.append(np.arange(0, harmonics, 2), np.arange(1, harmonics, 2))
+    odd, steps, at = (harmonics + 1) // 2, order % count, np.zeros(harmonics, np.int64)
+    turns, cos, sin = _waves(count), np.empty(harmonics), np.empty(harmonics)
+    real, imaginary = np.empty((columns, harmonics)), np.empty((columns, harmonics))
+    for a in range(columns):
+        for k in range(harmonics):
+            real[a, k], imaginary[a, k] = c[order[k], a].real, c[order[k], a].imag
+    samples, later = np.empty((count, columns)), count // 2 if count % 2 == 0 else count
+    for i in range(later):
+        for k in range(harmonics):
+            cos[k], sin[k] = turns[0, at[k]], turns[1, at[k]]
+            at[k] += steps[k] if at[k] + steps[k] < count else steps[k] - count
+        for a in range(columns):
+            same, other = 0.0, 0.0
+            for k in range(odd):
+                same += cos[k] * real[a, k] - sin[k] * imaginary[a, k]
+            for k in range(odd, harmonics):
+                other += cos[k] * real[a, k] - sin[k] * imaginary[a, k]
+            samples[i, a] = same + other
+            if later < count:
+                samples[i + later, a] = same - other
+    return samples
 
 
 def resampled(samples: Array, at: NDArray[np.floating]) -> Array:
@@ -125,6 +155,12 @@ def maxima(c: Complex, samples: Array) -> Array:
                 break
         highest[column] = _expansion(c[:, column], t)[0]
     return highest
+
+
+@compiled_for_vectors
+def minima(c: Complex, samples: Array) -> Array:
+    """The minima, as `maxima`, (m,)."""
+    return -maxima(-c, -samples)
 
 
 @compiled_for_vectors

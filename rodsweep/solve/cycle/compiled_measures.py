@@ -4,10 +4,32 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Complex
+from ...discretization.periodic import hermite_columns, maxima, minima, sampled_columns
 from ...discretization.tip_motion import TipMatrices, tip_motion
 from ...model.compilation import compiled_for_vectors
 from .condensation import Semidiscrete, powers, strain_rates
+
+REFLECTION = np.array([1.0, -1.0, -1.0])
+"""Signs of (x, y, theta) and (h1, h2, Pi) half a period later where the orbit is symmetric."""
+OVERSAMPLING = 4
+"""Samples for each node in time, of which extrema are sought."""
+
+
+class TipPath(NamedTuple):
+    """What the states at the nodes in time tell of the path.
+
+    nodes: (h1, h2, Pi) at all nodes of the rod and their derivatives by the time in periods, for the states
+    that are solved for, (2, 3, K, nodes + 1). Of the tip's (x, y, theta) over the period the coefficients,
+    (count, 3), samples at equidistant times, (OVERSAMPLING (count - 1), 3), the smallest and largest values,
+    (3,).
+    """
+
+    nodes: Array
+    coefficients: Complex
+    samples: Array
+    least: Array
+    largest: Array
 
 
 class Means(NamedTuple):
@@ -21,19 +43,42 @@ class Means(NamedTuple):
 
 
 @compiled_for_vectors
-def node_motion(states: Array, p: Semidiscrete, m: TipMatrices, nodes: Array, tip: Array) -> None:
-    """Strains and their rates into nodes, (2, 3, K, nodes + 1), the tip and its rate into tip, (2, K, 3).
-
-    states: (K, n). Strains are (h1, h2, Pi), the tip is (x, y, theta), both as in `tip_motion`.
-    """
-    strains, c, size = nodes[0], p.parameters, len(p.matrices.weights)
+def tip_path(states: Array, period: float, p: Semidiscrete, m: TipMatrices) -> TipPath:
+    """The path of states equal in time, (K, n), over half the period where the orbit is symmetric."""
+    nodes = np.empty((2, 3, len(states), len(p.matrices.weights)))
+    tip, velocity = np.empty((len(states), 3)), np.empty((len(states), 3))
+    node_strains(states, p, nodes[0])
     strain_rates(states, nodes[1], p)
+    nodes[1] *= period
+    tip_motion(nodes[0], nodes[1], m, tip, velocity)
+    c = hermite_columns(tip, velocity, REFLECTION * (p.parts - 1))
+    samples = sampled_columns(c, OVERSAMPLING * (len(c) - 1))
+    return TipPath(nodes, c, samples, minima(c, samples), maxima(c, samples))
+
+
+@compiled_for_vectors
+def node_strains(states: Array, p: Semidiscrete, out: Array) -> None:
+    """(h1, h2, Pi) at all nodes of states (K, n) into out, (3, K, nodes + 1)."""
+    c, size = p.parameters, len(p.matrices.weights)
     for a, base, compliance in ((0, c.nu, c.c1), (1, 0.0, c.c2), (2, 0.0, 1.0)):
         for k in range(len(states)):
             for i in range(size - 1):
-                strains[a, k, i] = base + compliance * states[k, a * (size - 1) + i]
-            strains[a, k, size - 1] = base
-    tip_motion(strains, nodes[1], m, tip[0], tip[1])
+                out[a, k, i] = base + compliance * states[k, a * (size - 1) + i]
+            out[a, k, size - 1] = base
+
+
+@compiled_for_vectors
+def harmonic_sizes(values: Array, slopes: Array, sign: float) -> Array:
+    """The sizes of the harmonics from the first, root sums of squares over all columns, (count - 1,).
+
+    values, slopes and sign, which all columns share, as in `hermite_columns`.
+    """
+    c = hermite_columns(values, slopes, np.full(values.shape[1], sign))
+    sizes = np.zeros(len(c) - 1)
+    for k in range(1, len(c)):
+        for a in range(c.shape[1]):
+            sizes[k - 1] += c[k, a].real ** 2 + c[k, a].imag ** 2
+    return np.sqrt(sizes)
 
 
 @compiled_for_vectors

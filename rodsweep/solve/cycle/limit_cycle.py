@@ -11,6 +11,7 @@ close proves nothing near the Hopf point, where motions decay slowly.
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import nan
+from typing import Any
 
 import numpy as np
 
@@ -55,6 +56,8 @@ STIFFEST, LEAST_DRAG = 1e8, 1e-6
 """Largest stiffness and least gamma3 in a motion: what is beyond moves like these, to 1e-6 at least."""
 STORED_MULTIPLIERS, LEAST_MULTIPLIER = 6, 1e-6
 """Floquet multipliers that are stored, and the least modulus of one."""
+UNTOLD = complex(nan, nan)
+"""What is stored instead of one that is less."""
 FADING = 0.02
 """Cubic part of the growth rate, relative, below which a small motion decays as the linear one does."""
 SPECTRUM = SpectrumRequest(1, 1e-9, True)
@@ -312,14 +315,15 @@ def _from_motion(
 def _measured(cycle: Cycle, found: RefinedCycle, request: CycleRequest) -> Cycle:
     """The cycle with its numbers, and what is stored of it where it is asked for."""
     orbit, path = found.orbit, found.path
-    amplitudes = found.measures.harmonic_amplitude[: request.harmonics]
-    unresolved = request.harmonics - len(amplitudes)  # they are below the error of the cycle
+    # Harmonics that are not resolved are below the error of the cycle.
+    amplitudes = _first_of(found.measures.harmonic_amplitude, request.harmonics, 0.0)
     wanted = request.shapes and request.nodes
     return replace(
-        _with_multipliers(cycle, found),
+        cycle,
+        **_stability(found),
         elements=orbit.form.mesh.elements,
         order=orbit.form.mesh.order,
-        measures=replace(found.measures, harmonic_amplitude=np.pad(amplitudes, (0, unresolved))),
+        measures=replace(found.measures, harmonic_amplitude=amplitudes),
         errors=found.errors,
         tip=path.tip(request.samples) if request.samples else None,
         energy=path.energy(request.samples) if request.samples else None,
@@ -329,12 +333,23 @@ def _measured(cycle: Cycle, found: RefinedCycle, request: CycleRequest) -> Cycle
 
 def _with_multipliers(cycle: Cycle, found: RefinedCycle) -> Cycle:
     """The cycle with its multipliers and their error."""
-    mu = found.multipliers[:STORED_MULTIPLIERS]
-    mu = np.where(np.abs(mu) >= LEAST_MULTIPLIER, mu, complex(nan, nan))
-    return replace(
-        cycle,
-        errors=replace(cycle.errors, multiplier_error=found.errors.multiplier_error),
-        multiplier=found.largest_multiplier,
-        multipliers=np.pad(mu, (0, STORED_MULTIPLIERS - len(mu)), constant_values=complex(nan, nan)),
-        trivial_multiplier_error=found.trivial_error,
-    )
+    errors = replace(cycle.errors, multiplier_error=found.errors.multiplier_error)
+    return replace(cycle, **_stability(found), errors=errors)
+
+
+def _stability(found: RefinedCycle) -> dict[str, Any]:
+    """What the multipliers tell, as `Cycle` names it."""
+    mu = _first_of(found.multipliers, STORED_MULTIPLIERS, UNTOLD)
+    mu[np.abs(mu) < LEAST_MULTIPLIER] = UNTOLD
+    return {
+        "multiplier": found.largest_multiplier,
+        "multipliers": mu,
+        "trivial_multiplier_error": found.trivial_error,
+    }
+
+
+def _first_of(values: Array | Complex, count: int, other: complex) -> Any:
+    """So many of the values, (m,), and another one where there are none, (count,)."""
+    first = np.full(count, other, values.dtype)
+    first[: len(values)] = values[:count]
+    return first

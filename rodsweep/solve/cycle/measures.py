@@ -15,20 +15,15 @@ from ...arrays import Array, Complex
 from ...discretization.mesh import Mesh, configuration
 from ...discretization.periodic import (
     hermite_coefficients,
-    maxima,
+    hermite_columns,
     rise_through_mean,
     samples_of,
 )
 from ...discretization.quadrature import lobatto_points
 from ...discretization.tip_motion import tip_matrices
-from .compiled_measures import means, node_motion
+from .compiled_measures import REFLECTION, harmonic_sizes, means, tip_path
 from .condensation import powers
 from .orbit import Orbit
-
-OVERSAMPLING = 4
-"""Samples for each node in time, of which extrema are sought."""
-REFLECTION = np.array([1.0, -1.0, -1.0])
-"""Signs of (x, y, theta) and (h1, h2, Pi) half a period later where the orbit is symmetric."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -62,37 +57,25 @@ class CyclePath:
     def __init__(self, orbit: Orbit) -> None:
         self.orbit, grid = orbit, orbit.form.mesh
         self._ends = np.ascontiguousarray(orbit.regular_states)
-        K = len(self._ends)
-        self._nodes = np.empty((2, 3, K, grid.nodes + 1))
-        tip = np.empty((2, K, 3))
-        node_motion(self._ends, orbit.semidiscrete, tip_matrices(grid.elements, grid.order), self._nodes, tip)
-        if orbit.symmetric:
-            tip = np.concatenate([tip, tip * REFLECTION], axis=1)
-        self.tip_coefficients = hermite_coefficients(tip[0], tip[1] * orbit.period)
-
-    def _series(self, strains: slice) -> Complex:
-        """Coefficients over the period, (count, strains, nodes + 1), of some of (h1, h2, Pi)."""
-        values, rates = self._nodes[:, strains].swapaxes(1, 2)
-        if self.orbit.symmetric:
-            signs = REFLECTION[strains, None]
-            values, rates = (np.concatenate([f, signs * f]) for f in (values, rates))
-        return hermite_coefficients(values, rates * self.orbit.period)
+        matrices = tip_matrices(grid.elements, grid.order)
+        self._path = tip_path(self._ends, orbit.period, orbit.semidiscrete, matrices)
+        self.tip_coefficients, self.tip_samples = self._path.coefficients, self._path.samples
 
     @cached_property
     def strain_coefficients(self) -> Complex:
         """Of (h1, h2, Pi) at all nodes, shape (count, 3, nodes + 1)."""
-        return self._series(slice(0, 3))
+        K, size = self._path.nodes.shape[2:]
+        values, slopes = self._path.nodes.swapaxes(1, 2).reshape(2, K, 3 * size)
+        signs = np.repeat(REFLECTION if self.orbit.symmetric else np.zeros(3), size)
+        c: Complex = hermite_columns(values, slopes, signs)
+        return c.reshape(len(c), 3, size)
 
     @cached_property
     def bending_harmonics(self) -> Array:
         """The size of Pi's harmonics from the first, sums of squares over all nodes, shape (count - 1,)."""
-        parts = self._series(slice(2, 3))[1:, 0].view(float)
-        return np.sqrt(np.einsum("ki,ki->k", parts, parts))
-
-    @cached_property
-    def tip_samples(self) -> Array:
-        """(x, y, theta) of the tip at equidistant times, shape (count, 3)."""
-        return samples_of(self.tip_coefficients, OVERSAMPLING * (len(self.tip_coefficients) - 1))
+        values, slopes = self._path.nodes[:, 2]
+        sizes: Array = harmonic_sizes(values, slopes, REFLECTION[2] * self.orbit.symmetric)
+        return sizes
 
     def resampled_tip(self, count: int) -> Array:
         """`tip_samples` at another number of times, shape (count, 3)."""
@@ -101,17 +84,14 @@ class CyclePath:
     @cached_property
     def extrema(self) -> dict[str, float]:
         """The tip's extrema as `Measures` names them."""
-        c, samples = self.tip_coefficients, self.tip_samples
-        x_max, y_max, theta_max = maxima(c, samples).tolist()
-        x_min = -float(maxima(-c[:, :1], -samples[:, :1])[0])
+        x_min, x_max = float(self._path.least[0]), float(self._path.largest[0])
+        y_max, theta_max = float(self._path.largest[1]), float(self._path.largest[2])
         return {"tip_x_min": x_min, "tip_x_max": x_max, "tip_y_max": y_max, "tip_theta_max": theta_max}
 
-    @cached_property
+    @property
     def tip_y_min(self) -> float:
         """The smallest y of the tip: the largest with the other sign where the orbit is symmetric."""
-        if self.orbit.symmetric:
-            return -self.extrema["tip_y_max"]
-        return -float(maxima(-self.tip_coefficients[:, 1:2], -self.tip_samples[:, 1:2])[0])
+        return -self.extrema["tip_y_max"] if self.orbit.symmetric else float(self._path.least[1])
 
     @cached_property
     def beginning(self) -> float:

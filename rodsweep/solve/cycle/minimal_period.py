@@ -11,6 +11,8 @@ from math import gcd
 
 import numpy as np
 
+from ...arrays import Array
+from ...model.compilation import compiled
 from .measures import CyclePath
 from .orbit import Orbit, node_times
 
@@ -24,8 +26,17 @@ LEAST_PRESENT = 1e-6
 
 def common_divisor(path: CyclePath, present: float) -> int:
     """g of the harmonics larger than `present` times the largest; 1 proves that the period is minimal."""
-    sizes = path.bending_harmonics
-    return gcd(*(np.nonzero(sizes > present * sizes.max())[0] + 1).tolist())
+    return int(_divisor_of(path.bending_harmonics, present))
+
+
+@compiled
+def _divisor_of(sizes: Array, present: float) -> int:
+    """`common_divisor` of the harmonics of these sizes, from the first; 0 of none."""
+    divisor, least = 0, present * sizes.max()
+    for k in range(len(sizes)):
+        if sizes[k] > least:
+            divisor = gcd(divisor, k + 1)
+    return divisor
 
 
 def undecided_divisor(path: CyclePath, error: float) -> int:

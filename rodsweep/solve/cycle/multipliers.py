@@ -20,9 +20,19 @@ def nonzero_eigenvalues(A: Array) -> Complex:
 
     Raises LinAlgError where A has entries that are not finite.
     """
-    small = compressed(np.ascontiguousarray(A), NEGLIGIBLE)
-    if not np.isfinite(small).all():
+    values: Complex = _eigenvalues_by_rank(np.ascontiguousarray(A), NEGLIGIBLE)
+    if not len(values):
         raise np.linalg.LinAlgError("the derivative of the flow is not finite")
+    return values
+
+
+@compiled_for_vectors
+def _eigenvalues_by_rank(A: Array, negligible: float) -> Complex:
+    """Those of A after `compressed`, (rank,); none, (0,), where A has entries that are not finite."""
+    small = compressed(A, negligible)
+    for value in small.flat:
+        if not np.isfinite(value):
+            return np.empty(0, np.complex128)
     return eigenvalues(small)
 
 
@@ -36,7 +46,7 @@ def compressed(A: Array, negligible: float) -> Array:
     columns, norms = A.T.copy(), np.empty(n)
     Q, R = np.empty((n, n)), np.zeros((n, n))  # as rows q and r of A = sum q r^T
     for j in range(n):
-        norms[j] = np.linalg.norm(columns[j])
+        norms[j] = np.sqrt((columns[j] ** 2).sum())
     least, rank = negligible * norms.max(), 0
     while rank < n:
         p = np.argmax(norms)

@@ -87,7 +87,7 @@ def multipliers_of(found: Converged) -> tuple[Complex, float]:
     """The multipliers, (rank - 1,), by descending modulus, and how far the trivial one is from 1."""
     values = found.matrix.multipliers()
     one = int(np.argmin(np.abs(values - 1)))
-    return np.delete(values, one), float(abs(values[one] - 1))
+    return np.concatenate([values[:one], values[one + 1 :]]), float(abs(values[one] - 1))
 
 
 def multiplier_change(multipliers: Complex, others: Complex) -> float:
