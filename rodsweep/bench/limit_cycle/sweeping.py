@@ -36,7 +36,7 @@ QUICK_RODS = (RODS[2],)
 SWEPT = NONLINEAR_PARAMETERS[:2]
 STEP = 1.01
 """Of the axis from one point to the next, a factor."""
-BEFORE, STRETCH = 6, 12
+BEFORE, STRETCH = 6, 22
 """Points of the sweep before those that are timed: its mesh is chosen by then; and those that are timed, as
 many as one calibration of the mesh's errors is for, it included."""
 ACCURACY, REFERENCE_ACCURACY = 1e-7, 1e-11
