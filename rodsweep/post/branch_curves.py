@@ -122,8 +122,8 @@ def _of_rod(view: View, rod: int) -> dict[str, Array]:
 
 
 def stability_of_pieces(counts: list[int | None]) -> NDArray[np.integer]:
-    """Of the pieces between vertices, (n - 1,), by their counts of unstable multipliers, n: -1 where undecided,
-    None at special points."""
+    """Of the pieces between n vertices, (n - 1,), by the counts of unstable multipliers at these: -1 where
+    undecided, None at special points."""
     stable = [-1] * (len(counts) - 1)
     special = [i for i, count in enumerate(counts) if count is None]
     for start, end in pairwise([0, *special, len(counts) - 1]):
