@@ -26,9 +26,9 @@ def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: flo
     spline = CubicSpline(run.times, run.states)
     begin = float(run.times[-1]) - period
     times = begin + period * np.arange(PHASES) / PHASES
-    y = beam.tip(spline(times))[1]
-    top = float(times[int(np.argmax(y))])
-    symmetric = asymmetry(beam, spline(times)) < SYMMETRIC
+    turn = spline(times)
+    top = float(times[int(np.argmax(beam.tip(turn)[1]))])
+    symmetric = asymmetry(beam, turn) < SYMMETRIC
     intervals = INTERVALS * turns // (2 if symmetric else 1)
     duration = period / 2 if symmetric else period
     at = top + duration * node_times(intervals, STAGES)

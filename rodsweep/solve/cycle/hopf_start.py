@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...determinant.newton import crossing_newton
-from ...determinant.parameter_path import Path
+from ...determinant.newton import crossing_newton, eigenvalue_newton
+from ...determinant.parameter_path import Path, direction_of
 from ...determinant.winding_number import count_right_of
 from ...discretization.mesh import mesh
 from ...discretization.stress_form import StressForm
@@ -132,10 +132,13 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
     """
     if not (w.real > 0 and w.imag > 0):
         raise Unsolvable("the leading mode is no growing pair")
+    slope = eigenvalue_newton(w, form.rod.coefficients, direction_of(form.rod, "F"))[1]
+    rate = form.rod.F * slope.real
+    if not w.real <= NEAREST * rate:
+        raise Unsolvable("no Hopf point is near")
     normal = _normal_form(form, w)
-    rate = form.rod.F * normal.slope.real
-    if not (w.real <= NEAREST * rate and normal.supercritical):
-        raise Unsolvable("no supercritical Hopf point is near")
+    if not normal.supercritical:
+        raise Unsolvable("the Hopf point that is near is subcritical")
     if not amplitude**2 <= NEAREST * rate / -normal.c.real:
         raise Unsolvable("the start is too large for the normal form")
     if count_right_of(-BEHIND * abs(w), form.rod).number != 2:

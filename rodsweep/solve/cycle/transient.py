@@ -11,6 +11,7 @@ larger it is (c < 0), is scaled up. A motion whose path is stored is never scale
 from collections import deque
 from dataclasses import dataclass
 from math import isnan, nan
+from operator import mul
 
 import numpy as np
 
@@ -87,11 +88,10 @@ def angle_weights(beam: Beam) -> Array:
     return row
 
 
-def hermite(ends: Array, slopes: Array, at: Array | float) -> Array:
-    """The cubic with values and slopes (per unit of `at`) at 0 and 1, shapes (2, n), at `at`: (..., n)."""
-    x = np.asarray(at)[..., None]
-    value: Array = ends[0] + x * x * (3 - 2 * x) * (ends[1] - ends[0])
-    return value + x * (1 - x) * ((1 - x) * slopes[0] - x * slopes[1])
+def hermite_weights(x: float) -> tuple[float, float, float, float]:
+    """Of values and slopes at 0 and 1, (4,), in the value of their cubic at x."""
+    rest = 1 - x
+    return rest * rest * (1 + 2 * x), x * x * (3 - 2 * x), x * rest * rest, -x * x * rest
 
 
 def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
@@ -102,13 +102,15 @@ def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
     states: list[Array] = []
     for k in np.nonzero((angle[:-1] < 0) & (angle[1:] >= 0))[0]:
         h, ends = run.times[k + 1] - run.times[k], run.states[k : k + 2]
-        slopes = h * beam.rate(ends)
+        cubic = np.concatenate((ends, h * beam.rate(ends)))
+        angles = (cubic @ row).tolist()
         low, high = 0.0, 1.0
         for _ in range(CROSSING_BISECTIONS):
             middle = (low + high) / 2
-            low, high = (middle, high) if row @ hermite(ends, slopes, middle) < 0 else (low, middle)
+            below = sum(map(mul, hermite_weights(middle), angles)) < 0
+            low, high = (middle, high) if below else (low, middle)
         times.append(run.times[k] + h * low)
-        states.append(hermite(ends, slopes, low))
+        states.append(np.array(hermite_weights(low)) @ cubic)
     return np.array(times), np.array(states).reshape(len(times), beam.mesh.unknowns)
 
 
