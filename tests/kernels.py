@@ -66,7 +66,7 @@ def main(*wanted: str) -> int:
             print(f"{name} is no other kernel that runs here")
     if not others:
         print("no other kernel to choose: this BLAS is not OpenBLAS, or was built with one kernel only")
-        return bool(names)
+        return bool(wanted)
     worst = 0
     for name, said in islice(others.items(), most):
         print(f"under OPENBLAS_CORETYPE={name}: {said}", flush=True)

@@ -1,5 +1,6 @@
 """Which BLAS kernels computed a file: recorded, kept over runs and merges, told where they are several."""
 
+import kernels
 import pytest
 from contents import content, same_spectra
 from kernels import other_kernels
@@ -101,3 +102,9 @@ def test_other_kernel_is_told_on_resume_and_merge_and_gives_the_same_numbers(com
         assert same_spectra(content(command.directory / name), plain)
     # Later runs that compute nothing, or nothing else, change nothing of it.
     assert "BLAS" not in command("run", "c.yaml", "-o", "merged.h5").stdout
+
+
+@pytest.mark.parametrize(("words", "fails"), [((), False), (("another",), True), (("Haswell",), True)])
+def test_where_no_other_kernel_runs_those_who_want_one_fail(monkeypatch, words, fails):
+    monkeypatch.setattr(kernels, "blas_under", lambda _, **variables: "" if variables else "reference BLAS")
+    assert bool(kernels.main(*words)) is fails

@@ -140,7 +140,9 @@ def test_file_of_format_3_is_shown_and_drawn_without_its_prediction_but_not_cont
     assert curve.beside_hopf_points() == []
     refused = command("run", "c.yaml")
     assert refused.returncode == 2
-    assert "was written by an earlier rodsweep" in " ".join(refused.stderr.split())
+    said = " ".join(refused.stderr.split())
+    assert "was written by an earlier rodsweep" in said
+    assert "it is shown and drawn, and neither continued nor merged" in said
 
 
 @pytest.mark.parametrize(
@@ -152,6 +154,24 @@ def test_figure_that_shows_nothing_is_refused(command, k1, said):
     refused = command("plot", "c.h5", "-o", "c.png")
     assert refused.returncode == 2
     assert said in " ".join(refused.stderr.split())
+
+
+def test_branches_without_room_for_their_special_points_are_told_of_and_not_drawn(command):
+    command.write("c.yaml", CONFIG.format(k1="[100, 150]", stop=200).replace("stop:", "special: 2, stop:"))
+    assert "1 list_full" in command("run", "c.yaml").stdout
+    done = command("show", "c.h5")
+    assert done.returncode == 0, done.stderr
+    told = " ".join(done.stdout.split())
+    assert "not told of 1 rods: they have more special points than the list holds" in told
+    assert "stable cycles beside a stable straight rod at 0 of 1 rods" in told
+    view = read_view(command.directory / "c.h5")
+    assert [len(curves_of(view, rod)) for rod in (0, 1)] == [0, 0]
+    assert straight_ranges(view, 0, (0.0, 200.0))[0] == [(0.0, 200.0)]
+    assert straight_ranges(view, 1, (0.0, 200.0)) == ([], [])
+    command.write("d.yaml", CONFIG.format(k1=150, stop=200).replace("stop:", "special: 2, stop:"))
+    command("run", "d.yaml")
+    assert "1 of 1 branches are not told" in " ".join(command("show", "d.h5").stdout.split())
+    assert "holds no branch with cycles" in " ".join(command("plot", "d.h5").stderr.split())
 
 
 def test_longer_lists_are_computed_anew_only_where_they_were_full(command):

@@ -84,11 +84,25 @@ def followed_parameter(view: View) -> str:
     return next(name for name in LINEAR_PARAMETERS if f"branch_{name}" in names)
 
 
+def branches_not_told(view: View, rod: int) -> int:
+    """How many branches of a rod have special points for which the list has no room."""
+    v = _of_rod(view, rod)
+    return max(int(v["branch_count"]), 0) - _told(v)
+
+
+def _told(v: dict[str, Array]) -> int:
+    """The number of branches of a rod, the first ones, whose special points are all in the list."""
+    listed = v["special_branch"][v["special_kind"] > 0]
+    if len(listed) >= v["special_count"]:
+        return max(int(v["branch_count"]), 0)
+    return int(listed.max(initial=1)) - 1
+
+
 def curves_of(view: View, rod: int) -> list[CurveOfCycles]:
-    """The branches of a rod, by its place among all points."""
+    """The branches of a rod, by its place among all points, whose special points are all in the list."""
     along, v = followed_parameter(view), _of_rod(view, rod)
     curves = []
-    for number in range(1, int(v["branch_count"]) + 1):
+    for number in range(1, _told(v) + 1):
         cycles = np.flatnonzero(v["branch"] == number)
         special = np.flatnonzero(v["special_branch"] == number)
         before = special[v["special_point"][special] < 0]
@@ -153,8 +167,10 @@ def _specials(v: dict[str, Array], places: Iterable[int]) -> tuple[SpecialOfBran
 
 
 def straight_ranges(view: View, rod: int, ends: Range) -> tuple[list[Range], list[Range]]:
-    """(where the straight rod is stable, where it is not) between the ends of a range."""
+    """(where the straight rod is stable, where it is not) between the ends of a range, if all is told."""
     v = _of_rod(view, rod)
+    if branches_not_told(view, rod):
+        return [], []
     hopf = v["special_kind"] == HOPF
     at, first = np.unique(v["special_at"][hopf], return_index=True)
     after = v["special_unstable_after"][hopf][first]

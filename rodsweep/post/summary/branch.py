@@ -6,11 +6,21 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...results.file.view import View
-from ..branch_curves import CurveOfCycles, Range, both, curves_of, followed_parameter, straight_ranges, union
+from ..branch_curves import (
+    CurveOfCycles,
+    Range,
+    both,
+    branches_not_told,
+    curves_of,
+    followed_parameter,
+    straight_ranges,
+    union,
+)
 from .ranges import span, to_error
 
 NAMED_RODS = 8
 """Rods whose coexistence is named."""
+FULL = "they have more special points than the list holds; raise branch.special"
 ENDS = {
     "range_end": "the end of the range",
     "crushed": "where F all but reaches k1",
@@ -36,7 +46,10 @@ def branch_summary(view: View, done: np.ndarray) -> list[str]:
 def _one_rod(view: View, rod: int) -> Iterator[str]:
     """Every branch of the one rod of a file, with its special points to their errors."""
     along, curves = followed_parameter(view), curves_of(view, rod)
-    if not curves:
+    hidden = branches_not_told(view, rod)
+    if hidden:
+        yield f"{hidden} of {hidden + len(curves)} branches are not told: {FULL}"
+    elif not curves:
         yield f"no Hopf point in the range of {along}: no branch is born there"
     for number, curve in enumerate(curves, 1):
         cycles = curve.cycles
@@ -52,8 +65,8 @@ def _one_rod(view: View, rod: int) -> Iterator[str]:
             size = f"period {special.period:.9g} tau2, largest tip y {special.tip_y_max:.9g} L"
             yield f"  {kind} at {along} = {at}, {size}"
         yield f"  stable cycles at {_words(along, curve.stable_ranges)}"
-    common = coexistence(view, rod)
-    if curves:
+    if curves and not hidden:
+        common = coexistence(view, rod)
         yield f"stable cycles beside a stable straight rod: {_words(along, common)}"
 
 
@@ -102,8 +115,11 @@ def _specials(view: View, rods: np.ndarray) -> Iterator[str]:
 def _coexistence(view: View, rods: np.ndarray) -> Iterator[str]:
     """The rods that have two stable states somewhere, some by name."""
     along, columns = followed_parameter(view), view.point_columns
-    having = [(int(rod), ranges) for rod in rods if (ranges := coexistence(view, int(rod)))]
-    yield f"stable cycles beside a stable straight rod at {len(having)} of {len(rods)} rods"
+    told = [int(rod) for rod in rods if not branches_not_told(view, int(rod))]
+    having = [(rod, ranges) for rod in told if (ranges := coexistence(view, rod))]
+    if len(told) < len(rods):
+        yield f"not told of {len(rods) - len(told)} rods: {FULL}"
+    yield f"stable cycles beside a stable straight rod at {len(having)} of {len(told)} rods"
     for rod, ranges in having[:NAMED_RODS]:
         name = ", ".join(f"{key} = {column[rod]:.6g}" for key, column in columns.items())
         yield f"  {name}: {_words(along, ranges)}"

@@ -93,12 +93,27 @@ def header_of(path: Path, file: h5py.File, shown: bool = False) -> Header:
     except (LookupError, ValueError, TypeError) as error:
         if found == FORMAT or "rodsweep_version" not in attributes:
             raise
+        if not shown and _is_shown(file, config, found):
+            raise InputError(
+                f"{path} was written by an earlier rodsweep ({_writer(attributes)}), with less in it "
+                f"({reason_of(error)}): it is shown and drawn, and neither continued nor merged; compute it "
+                "again, with --fresh or into another file"
+            ) from None
         raise InputError(
             f"{path} was written by an earlier rodsweep ({_writer(attributes)}) and is read by that only "
             f"({reason_of(error)}); compute it again, with --fresh or into another file"
         ) from None
     points = file["status"].size
     return Header(path, attributes, config, str(attributes["fingerprint"]), layout, points, asked)
+
+
+def _is_shown(file: h5py.File, config: dict[str, Any], found: int) -> bool:
+    """Whether a file of an earlier format, with its resolved config, has what files of that format have."""
+    try:
+        refuse_misfit(file, layout_of(config).known_in(found))
+    except (LookupError, ValueError, TypeError):
+        return False
+    return True
 
 
 def refuse_newer(path: Path, attributes: Mapping[str, Any]) -> None:

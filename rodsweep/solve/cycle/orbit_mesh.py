@@ -24,7 +24,7 @@ predict these: with them the mesh is fine enough for five rods in six, and costs
 EXPECTED_SHARE = 1 / 3
 """Share of the accuracy that a mesh is chosen for, in space and in time each."""
 COARSER_ORDER, COARSER_SHARE = 2, 0.6
-"""The coarser mesh has so much less order in each element, or this share of the intervals: its errors are
+"""The coarser mesh has so much less order in each element and this share of the intervals: its errors are
 then some ten times as large."""
 LEAST_ORDER, LEAST_INTERVALS, MOST_INTERVALS = 8, 4, 256
 LEAST_DECAY, LARGEST_DECAY = 0.2, 1.2
@@ -50,7 +50,7 @@ class OrbitMesh:
 
     @property
     def coarser(self) -> "OrbitMesh":
-        """A mesh whose errors, beside those of this one, tell how fast they fall."""
+        """A mesh on which a branch is followed in steps to a place where this one is wanted."""
         order = max(LEAST_ORDER - COARSER_ORDER, self.order - COARSER_ORDER)
         intervals = max(LEAST_INTERVALS - 1, round(COARSER_SHARE * self.intervals))
         return replace(self, order=order, intervals=intervals)
