@@ -174,6 +174,18 @@ def test_branches_without_room_for_their_special_points_are_told_of_and_not_draw
     assert "holds no branch with cycles" in " ".join(command("plot", "d.h5").stderr.split())
 
 
+def test_those_whose_special_points_are_stored_are_told_and_drawn_before_others(command):
+    config = "task: branch\nparameters: {k1: 1.0e4, k2: 100, gamma3: 0.01}\naccuracy: 1.0e-4\n"
+    command.write("c.yaml", config + "branch: {special: 3, stop: 90}\n")
+    assert "1 list_full" in command("run", "c.yaml").stdout
+    told = " ".join(command("show", "c.h5").stdout.split())
+    assert "1 of 2 branches are not told" in told
+    assert "branch 1, from the Hopf point at F = 27.427194126" in told
+    assert "beside a stable straight rod" not in told
+    drawn = " ".join(command("plot", "c.h5", "-o", "c.png").stdout.split())
+    assert "1 branches of cycles over F; 1 more have special points that are not stored" in drawn
+
+
 def test_longer_lists_are_computed_anew_only_where_they_were_full(command):
     command.write("c.yaml", CONFIG.format(k1=150, stop=200).replace("{stop", "{cycles: 5, stop"))
     full = command("run", "c.yaml")

@@ -11,7 +11,14 @@ from matplotlib.ticker import NullFormatter
 
 from ...errors import InputError
 from ...results.file.view import View
-from ..branch_curves import CurveOfCycles, Range, curves_of, followed_parameter, straight_ranges
+from ..branch_curves import (
+    CurveOfCycles,
+    Range,
+    branches_not_told,
+    curves_of,
+    followed_parameter,
+    straight_ranges,
+)
 from ..summary.branch import ends_of
 from . import style
 from .request import FigureRequest
@@ -68,7 +75,9 @@ def draw_branch(request: FigureRequest) -> str:
     handles = [Line2D([], [], color="k", ls=LINES[s][0], label=LINES[s][1]) for s in sorted(there)[::-1]]
     style.legend_below(figure, [*handles, *marked.values()], columns=3)
     figure.suptitle(style.heading(view, style.fixed_text(view)), fontsize=9)
-    return request.write(figure, f"{len(curves)} branches of cycles over {along}")
+    hidden = branches_not_told(view, 0)
+    more = f"; {hidden} more have special points that are not stored" if hidden else ""
+    return request.write(figure, f"{len(curves)} branches of cycles over {along}{more}")
 
 
 def _shown(view: View, curves: list[CurveOfCycles]) -> Range:
