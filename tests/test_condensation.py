@@ -10,10 +10,11 @@ from rodsweep.discretization.stress_balance import jacobian
 from rodsweep.discretization.stress_form import StressForm
 from rodsweep.model.parameters import NONLINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
-from rodsweep.solve.cycle.condensation import PANEL, eliminate, equations, invert, residuals, substitute
-from rodsweep.solve.cycle.linearisation import parameter_derivative, phase, workspace
+from rodsweep.solve.cycle.condensation import PANEL, eliminate, invert, substitute
+from rodsweep.solve.cycle.linearisation import change_along, phase, phase_change, workspace
 from rodsweep.solve.cycle.neighbour import coordinate_of, with_coordinate
 from rodsweep.solve.cycle.orbit import Orbit
+from rodsweep.solve.cycle.right_sides import equations, residuals, right_sides
 
 INTERVALS, PERIOD, COLUMNS = 4, 0.02, 2
 RODS = {
@@ -28,6 +29,14 @@ def orbit_with(rod, stages):
     form = StressForm(rod, 0.7, mesh(1, 8))
     states = np.random.default_rng(stages).normal(size=(1 + INTERVALS * stages, form.unknowns))
     return Orbit.of(form, True, PERIOD, states, stages)
+
+
+def velocities(orbit):
+    """V of all stages, (K, s, 3, 9)."""
+    V, (n, G) = np.empty((*orbit.states.shape[:2], 3, 9)), (orbit.form.unknowns, np.empty((3, 9)))
+    for place in np.ndindex(V.shape[:2]):
+        equations(orbit.states[place], np.empty(n), V[place], G, orbit.semidiscrete)
+    return V
 
 
 def dense_matrix(orbit, k):
@@ -53,9 +62,9 @@ def test_elimination_is_the_solution_of_the_dense_systems(rod, stages):
     random = np.random.default_rng(0)
     columns = random.normal(size=(INTERVALS, stages, COLUMNS, n)) * (p.mass + 1e-3)
     start = random.normal(size=(COLUMNS, n))
-    ends = eliminate(orbit.points, orbit.duration, p, factors, columns)
-    out = np.empty_like(columns)
-    substitute(start, columns, p, factors, out)
+    reduced, out = columns.copy(), np.empty_like(columns)
+    ends = eliminate(orbit.points, velocities(orbit), orbit.duration, p, factors, reduced)
+    substitute(start, reduced, p, factors, out)
 
     flow, first, still = np.eye(n), start, np.zeros_like(start)
     for k in range(INTERVALS):
@@ -88,7 +97,7 @@ def balances(orbit, name, change):
     form = orbit.form
     moved = replace(orbit, form=with_coordinate(form, name, coordinate_of(form, name) + change))
     p, out = moved.semidiscrete, np.empty_like(orbit.states)
-    residuals(orbit.points, orbit.duration, p, np.empty_like(out), out)
+    residuals(orbit.points, orbit.duration, p, out)
     return np.append(out, -phase(orbit.start, p.parameters, p.matrices))
 
 
@@ -96,7 +105,11 @@ def balances(orbit, name, change):
 @pytest.mark.parametrize("rod", RODS.values(), ids=RODS.keys())
 def test_derivative_by_a_parameter_is_the_limit_of_differences(rod, name):
     orbit = orbit_with(rod, 4)
-    right, shift = parameter_derivative(orbit, name)
+    along, columns = change_along(orbit.form, name), np.empty((INTERVALS, 4, 3, orbit.form.unknowns))
+    p, V = orbit.semidiscrete, np.empty((INTERVALS, 4, 3, 9))
+    right_sides(orbit.points, orbit.duration, p, along, V, columns)
+    right = columns[:, :, 2]
+    shift = phase_change(orbit.start, along.change, p.parameters, p.matrices)
     step = 1e-4 * coordinate_of(orbit.form, name) or 1e-6  # to one side: a limit has no other
     there = np.array([balances(orbit, name, k * step) for k in range(3)])
     limit, rounding = [-1.5, 2, -0.5] @ there / step, 4e-15 * np.abs(there).max() / step

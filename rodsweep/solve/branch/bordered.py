@@ -13,13 +13,14 @@ from functools import cached_property
 import numpy as np
 
 from ...arrays import Array, Complex
-from ..cycle.condensation import eliminate, residuals, substitute
-from ..cycle.linearisation import parameter_derivative, phase, phase_row, workspace
+from ..cycle.condensation import eliminate, substitute
+from ..cycle.linearisation import change_along, phase, phase_change, phase_row, workspace
 from ..cycle.multipliers import nonzero_eigenvalues
 from ..cycle.neighbour import coordinate_of, with_coordinate
 from ..cycle.newton import Converged, relative_change
 from ..cycle.orbit import Orbit
 from ..cycle.orbit_mesh import OrbitMesh
+from ..cycle.right_sides import right_sides
 from ..point import Unsolvable
 
 LONGEST_STEP = 0.5
@@ -73,21 +74,18 @@ class BorderedMatrix:
         self.orbit, self.scale = orbit, scale
         self.tangent: Array | None = None  # by which parameter is for the branch to say
         p, (K, s, n) = orbit.semidiscrete, orbit.states.shape
-        self._columns, slopes = np.empty((K, s, 3, n)), np.empty((K, s, n))
-        right = np.empty((K, s, n))
-        residuals(orbit.points, orbit.duration, p, slopes, right)
-        by_parameter, shift = parameter_derivative(orbit, scale.name)
-        self._columns[:, :, 0] = slopes * (p.lengths[:, None, None] / p.parts)
-        self._columns[:, :, 1], self._columns[:, :, 2] = by_parameter, right
-        self._factors = workspace(K, s, n)
-        ends = eliminate(orbit.points, orbit.duration, p, self._factors, self._columns)
+        along, V = change_along(orbit.form, scale.name), np.empty((K, s, 3, len(p.matrices.weights)))
+        self._columns, self._factors = np.empty((K, s, 3, n)), workspace(K, s, n)
+        right_sides(orbit.points, orbit.duration, p, along, V, self._columns)
+        ends = eliminate(orbit.points, V, orbit.duration, p, self._factors, self._columns)
+        shift = phase_change(orbit.start, along.change, p.parameters, p.matrices)
         self._matrix = np.zeros((n + 2, n + 2))
         self._matrix[:n, :n] = self._factors.propagator - np.diag(p.signs)
-        self._matrix[:n, n], self._matrix[:n, n + 1] = ends[0], ends[1]
+        self._matrix[:n, n], self._matrix[:n, n + 1] = ends[0], ends[2]
         row = np.empty(n)
         phase_row(orbit.start, p.parameters, p.matrices, row)
         self._matrix[n, :n], self._matrix[n, n + 1] = row, -shift
-        jump = p.signs * orbit.start - orbit.points[-1] - ends[2]
+        jump = p.signs * orbit.start - orbit.points[-1] - ends[1]
         self._right = np.append(jump, -phase(orbit.start, p.parameters, p.matrices))
 
     def step(self, border: Array, length: float) -> Array:
@@ -129,7 +127,7 @@ class BorderedMatrix:
     def _spread(self, found: Array, share: float) -> Array:
         """The change of all, (N + 1,), from that of the ends, (n + 2,), and a share of the right sides."""
         n = len(self.orbit.start)
-        weights = np.array([found[n], found[n + 1], share])
+        weights = np.array([found[n], share, found[n + 1]])
         stages = np.ascontiguousarray((weights @ self._columns)[:, :, None])
         out = np.empty_like(stages)
         substitute(found[None, :n].copy(), stages, self.orbit.semidiscrete, self._factors, out)

@@ -8,7 +8,7 @@ the others both parts are larger by as much as the orbit's tails make them.
 """
 
 from collections.abc import Callable
-from dataclasses import astuple, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from math import ceil, inf
 
 import numpy as np
@@ -78,7 +78,7 @@ class Calibration:
 
     def pack(self) -> Array:
         """All of it as a flat array, (LENGTH,)."""
-        parts = (astuple(self.mesh), self.space, self.time, self.fall, self.power, self.tails, [self.reach])
+        parts = (self.mesh.numbers, self.space, self.time, self.fall, self.power, self.tails, [self.reach])
         return np.concatenate(parts)
 
     @classmethod

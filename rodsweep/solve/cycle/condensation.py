@@ -18,13 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...arrays import Array
-from ...discretization.stress_balance import (
-    BeamParameters,
-    NodeMatrices,
-    balance,
-    jacobian,
-    torque_balance,
-)
+from ...discretization.stress_balance import BeamParameters, NodeMatrices, balance, jacobian
 from ...model.compilation import compiled_for_vectors
 from ..backend.products import product, square_product
 
@@ -32,6 +26,8 @@ PANEL = 12
 """Columns that `invert` treats one by one before it updates the others by a product."""
 LEAST_PIVOT = 0.1
 """Pivots smaller than this share of the largest in their column are exchanged for it."""
+ROWS = 8
+"""Rows of several blocks that stay in the fastest memory together."""
 
 
 class Semidiscrete(NamedTuple):
@@ -54,45 +50,14 @@ class Factors(NamedTuple):
     """Newton's matrix of all K intervals, eliminated.
 
     blocks: (K, s, s, n, n), inverses of the pivots on the diagonal, multipliers below, what is left above;
-    but for the pivots nothing is stored of the first two rows and columns. propagator: P, (n, n).
-    inverse: of the matrix that is left for start and period, (n + 1, n + 1).
+    of the first two rows and columns nothing is left, and the first row has what x_0 = M^-1 makes of the end,
+    at column 1, and of the right sides of the stages from the third to the last but one, at their columns.
+    propagator: P, (n, n). inverse: of the matrix that is left for start and period, (n + 1, n + 1).
     """
 
     blocks: Array
     propagator: Array
     inverse: Array
-
-
-@compiled_for_vectors
-def equations(x: Array, F: Array, V: Array, G: Array, p: Semidiscrete) -> None:
-    """F(x), shape (n,), with V and G, (3, nodes + 1), on the way."""
-    nodes = G.shape[1] - 1
-    balance(x, V, G, p.parameters, p.matrices)
-    for a in range(3):
-        for i in range(nodes):
-            F[a * nodes + i] = G[a, i]
-    if len(x) > 3 * nodes:
-        torque_balance(x, F[3 * nodes :], p.parameters, p.matrices)
-
-
-@compiled_for_vectors
-def residuals(points: Array, duration: float, p: Semidiscrete, slopes: Array, out: Array) -> None:
-    """h F(x_i) - sum_j d_ij M x_j into out, and F(x_i) into slopes; both as stages, (K, s, n).
-
-    points: the start and the stages one after the other, (1 + K s, n).
-    """
-    K, s, n = out.shape
-    V, G = np.empty((3, len(p.matrices.weights))), np.empty((3, len(p.matrices.weights)))
-    d = p.differentiation
-    for k in range(K):
-        here, h = points[k * s : (k + 1) * s + 1], duration * p.lengths[k]
-        for i in range(s):
-            equations(here[i + 1], slopes[k, i], V, G, p)
-            for r in range(n):
-                change = 0.0
-                for j in range(s + 1):
-                    change += d[i, j] * here[j, r]
-                out[k, i, r] = h * slopes[k, i, r] - p.mass[r] * change
 
 
 @compiled_for_vectors
@@ -153,31 +118,32 @@ def _sweep_panel(A: Array, first: int, last: int, pivots: Any) -> None:
 
 
 @compiled_for_vectors
-def eliminate(points: Array, duration: float, p: Semidiscrete, factors: Factors, columns: Array) -> Array:
-    """Newton's matrix at the points, (1 + K s, n), into the factors.
+def eliminate(
+    points: Array, V: Array, duration: float, p: Semidiscrete, factors: Factors, columns: Array
+) -> Array:
+    """Newton's matrix at the points, (1 + K s, n), into the factors; raises nothing.
 
-    columns: right sides, (K, s, columns, n). Returns what they make of the last end where the start stays,
-    (columns, n).
+    V: of the stages, (K, s, 3, nodes + 1). columns: right sides, (K, s, columns, n), which become `reduced`.
+    Returns what they make of the last end where the start stays, (columns, n).
     """
     K, s, n = columns.shape[0], columns.shape[1], columns.shape[3]
-    size = len(p.matrices.weights)
-    V, G, tip, F = np.empty((3, size)), np.empty((3, size)), np.empty((3, n)), np.empty(n)
-    right, parts, end = np.empty((s, n, n)), np.empty((5, n, n)), np.empty((n, n))
+    tip, right, parts = np.empty((3, n)), np.empty((s, n, n)), np.empty((5, n, n))
     so_far, ends = np.diag(p.mass), np.zeros(columns.shape[2:])
     for k in range(K):
         B, h = factors.blocks[k], duration * p.lengths[k]
         for i in range(s):
-            x = points[1 + k * s + i]
-            equations(x, F, V, G, p)
-            jacobian(x, V, B[i, i], tip, p.parameters, p.matrices)
+            jacobian(points[1 + k * s + i], V[k, i], B[i, i], tip, p.parameters, p.matrices)
             for r in range(n):
                 for q in range(n):
                     B[i, i, r, q] *= -h
                 B[i, i, r, r] += p.differentiation[i, i + 1] * p.mass[r]
         _eliminate_interval(B, right, parts, p)
-        forward(B, columns[k], p, ends)
-        square_product(B[s - 1, s - 1], right[s - 1], end, 1.0, 0.0)
-        square_product(end, so_far, factors.propagator, 1.0, 0.0)
+        square_product(B[s - 1, s - 1], right[s - 1], B[0, 1], 1.0, 0.0)
+        for a in range(2, s - 1):
+            B[0, a] = right[a]
+        reduce(B, columns[k], p)
+        to_end(B, columns[k], p, ends)
+        square_product(B[0, 1], so_far, factors.propagator, 1.0, 0.0)
         for r in range(n):
             for q in range(n):
                 so_far[r, q] = p.mass[r] * factors.propagator[r, q]
@@ -228,11 +194,16 @@ def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> Non
     square_product(ZW, Z, parts[4], 1.0, 0.0)
     for i in range(2, s):
         right[i] = 0.0
-        _subtract_parts(right[i], parts, i, 0, d, minus)
         for j in range(2, s):
             if i != j:
                 B[i, j] = 0.0
-            _subtract_parts(B[i, j], parts, i, j + 1, d, mass)
+    for first in range(0, n, ROWS):
+        rows = (first, min(n, first + ROWS))
+        for i in range(2, s):
+            _subtract_parts(right[i], parts, i, 0, rows, d, minus)
+            for j in range(2, s):
+                _subtract_parts(B[i, j], parts, i, j + 1, rows, d, mass)
+    for i in range(2, s):
         for r in range(n):
             right[i, r, r] -= d[i, 0]
             for j in range(2, s):
@@ -240,91 +211,134 @@ def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> Non
 
 
 @compiled_for_vectors
-def _subtract_parts(out: Array, parts: Array, i: int, c: int, d: Array, scale: Array) -> None:
+def _subtract_parts(
+    out: Array, parts: Array, i: int, c: int, rows: tuple[int, int], d: Array, scale: Array
+) -> None:
     """What the first two stages leave in the equations of stage i, of column c of d, out of a block, (n, n).
 
-    parts: Z, W, Z W, W Z and Z W Z, (5, n, n); d: (s, s + 1); scale: of the block's columns, (n,).
+    parts: Z, W, Z W, W Z and Z W Z, (5, n, n); rows: from one to another; d: (s, s + 1); scale: of the
+    block's columns, (n,).
     """
-    n, first, second = len(out), d[0, c], d[1, c]
+    first, second = d[0, c], d[1, c]
     z, w = d[i, 1] * first, d[i, 2] * second
     zw, wz = -d[i, 1] * d[0, 2] * second, -d[i, 2] * d[1, 1] * first
     zwz = d[i, 1] * d[0, 2] * d[1, 1] * first
-    for r in range(n):
+    for r in range(rows[0], rows[1]):
         Z, W, ZW, WZ, ZWZ = parts[0, r], parts[1, r], parts[2, r], parts[3, r], parts[4, r]
-        for q in range(n):
+        for q in range(len(scale)):
             left = z * Z[q] + w * W[q] + zw * ZW[q] + wz * WZ[q] + zwz * ZWZ[q]
             out[r, q] -= left * scale[q]
 
 
 @compiled_for_vectors
-def forward(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> None:
-    """From what right sides, (s, columns, n), make of the start of one interval to its end; in place."""
-    s, y = B.shape[0], np.empty(columns.shape)
-    _downwards(B, columns, p, ends, y)
-    ends[:] = 0.0
-    _add_products(B[s - 1, s - 1], y[s - 1], ends, 1.0)
+def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
+    """Right sides of one interval, (s, columns, n), in place: those of the first two stages stay.
+
+    The others are what elimination leaves, but the last ones what all make of its end where its start stays.
+    """
+    s, count, n = columns.shape
+    d, mass = p.differentiation, p.mass
+    t, u = np.empty((count, n)), np.empty((count, n))
+    _first_two(B, columns, p, t, u)
+    for i in range(2, s):
+        for m in range(count):
+            for r in range(n):
+                columns[i, m, r] -= mass[r] * (d[i, 1] * t[m, r] + d[i, 2] * u[m, r])
+        for a in range(2, i):
+            _add_products(B[i, a], columns[a], columns[i], -1.0)
+    t[:] = columns[s - 1]
+    columns[s - 1] = 0.0
+    _add_products(B[s - 1, s - 1], t, columns[s - 1], 1.0)
 
 
 @compiled_for_vectors
-def _downwards(B: Array, columns: Array, p: Semidiscrete, start: Array, y: Array) -> None:
-    """The right sides of one interval, eliminated, into y; both (s, columns, n).
-
-    start: changes at the interval's start, (columns, n). Those of the first two stages stay as they are.
-    """
-    d, mass = p.differentiation, p.mass
-    t, u = np.empty(start.shape), np.empty(start.shape)
-    for i in range(len(B)):
-        y[i] = columns[i] - d[i, 0] * mass * start
-    _first_two(B, y, p, t, u)
-    for i in range(2, len(B)):
-        y[i] -= mass * (d[i, 1] * t + d[i, 2] * u)
-        for a in range(2, i):
-            _add_products(B[i, a], y[a], y[i], -1.0)
+def to_end(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> None:
+    """From changes of the start of one interval to its end, in place, (columns, n), for reduced columns."""
+    scaled = ends * p.mass
+    ends[:] = columns[-1]
+    _add_products(B[0, 1], scaled, ends, 1.0)
 
 
 @compiled_for_vectors
 def _first_two(B: Array, y: Array, p: Semidiscrete, t: Array, u: Array) -> None:
     """The first two stages, t and u, (columns, n), for right sides y, (s, columns, n), where others are 0."""
-    d, mass = p.differentiation, p.mass
+    d, mass, (count, n) = p.differentiation, p.mass, t.shape
+    side = np.empty((count, n))
     t[:], u[:] = 0.0, 0.0
     _add_products(B[0, 0], y[0], t, 1.0)
-    _add_products(B[1, 1], y[1] - d[1, 1] * mass * t, u, 1.0)
-    _add_products(B[0, 0], d[0, 2] * mass * u, t, -1.0)
+    for m in range(count):
+        for r in range(n):
+            side[m, r] = y[1, m, r] - d[1, 1] * mass[r] * t[m, r]
+    _add_products(B[1, 1], side, u, 1.0)
+    for m in range(count):
+        for r in range(n):
+            side[m, r] = d[0, 2] * mass[r] * u[m, r]
+    _add_products(B[0, 0], side, t, -1.0)
 
 
 @compiled_for_vectors
 def _add_products(A: Array, x: Array, y: Array, factor: float) -> None:
-    """y += factor A x for each of the columns x, y, both of shape (columns, n)."""
-    n = x.shape[1]
-    for i in range(n):
-        for m in range(len(x)):
+    """y += factor A x for each of the columns x, y, both of shape (columns, n); two columns at a time."""
+    count, n = x.shape
+    for m in range(0, count - 1, 2):
+        for i in range(n):
+            first, second = 0.0, 0.0
+            for j in range(n):
+                first += A[i, j] * x[m, j]
+                second += A[i, j] * x[m + 1, j]
+            y[m, i] += factor * first
+            y[m + 1, i] += factor * second
+    if count % 2:
+        for i in range(n):
             total = 0.0
             for j in range(n):
-                total += A[i, j] * x[m, j]
-            y[m, i] += factor * total
+                total += A[i, j] * x[count - 1, j]
+            y[count - 1, i] += factor * total
 
 
 @compiled_for_vectors
-def substitute(start: Array, right: Array, p: Semidiscrete, factors: Factors, out: Array) -> None:
-    """The changes of all stages, out, for changes of the start and right sides; several at once.
+def substitute(start: Array, columns: Array, p: Semidiscrete, factors: Factors, out: Array) -> None:
+    """The changes of all stages, out, for changes of the start and reduced columns; several at once.
 
-    start: (columns, n), right and out: (K, s, columns, n).
+    start: (columns, n), columns and out: (K, s, columns, n).
     """
-    K, s, columns, n = right.shape
-    y, first = np.empty((s, columns, n)), start.copy()
+    K, s, count, n = columns.shape
+    y, first, scaled = np.empty((2, count, n)), start.copy(), np.empty((count, n))
     d, mass = p.differentiation, p.mass
     for k in range(K):
         B = factors.blocks[k]
-        _downwards(B, right[k], p, first, y)
+        for m in range(count):
+            for r in range(n):
+                scaled[m, r] = mass[r] * first[m, r]
+                for i in range(2):
+                    y[i, m, r] = columns[k, i, m, r] - d[i, 0] * scaled[m, r]
         for a in range(s - 1, 1, -1):
-            for j in range(a + 1, s):
-                _add_products(B[a, j], out[k, j], y[a], -1.0)
-            out[k, a] = 0.0
-            _add_products(B[a, a], y[a], out[k, a], 1.0)
-            y[0] -= d[0, a + 1] * mass * out[k, a]
-            y[1] -= d[1, a + 1] * mass * out[k, a]
+            _back_to(B, a, columns[k], scaled, out[k])
+            for m in range(count):
+                for r in range(n):
+                    for i in range(2):
+                        y[i, m, r] -= d[i, a + 1] * mass[r] * out[k, a, m, r]
         _first_two(B, y, p, out[k, 0], out[k, 1])
         first[:] = out[k, s - 1]
+
+
+@compiled_for_vectors
+def _back_to(B: Array, a: int, columns: Array, scaled: Array, out: Array) -> None:
+    """Stage a, the third or a later one, into out, for reduced columns, both (s, columns, n).
+
+    scaled: M times the changes of the start, (columns, n).
+    """
+    s = len(B)
+    out[a] = 0.0
+    if a == s - 1:
+        out[a] = columns[a]
+        _add_products(B[0, 1], scaled, out[a], 1.0)
+        return
+    side = columns[a].copy()
+    _add_products(B[0, a], scaled, side, 1.0)
+    for j in range(a + 1, s):
+        _add_products(B[a, j], out[j], side, -1.0)
+    _add_products(B[a, a], side, out[a], 1.0)
 
 
 @compiled_for_vectors

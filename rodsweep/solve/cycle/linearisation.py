@@ -15,8 +15,8 @@ from ...discretization.stress_balance import (
     balance,
     balance_change,
     jacobian,
-    torque_change,
 )
+from ...discretization.stress_form import StressForm
 from ...model.compilation import compiled_for_vectors
 from ...model.parameters import PARAMETERS
 from .condensation import (
@@ -24,14 +24,14 @@ from .condensation import (
     Factors,
     Semidiscrete,
     eliminate,
-    equations,
-    forward,
     invert,
-    residuals,
+    reduce,
     substitute,
+    to_end,
 )
 from .multipliers import nonzero_eigenvalues
 from .orbit import Orbit
+from .right_sides import Along, residuals, right_sides
 
 _memory: list[Array] = [np.empty(0)]
 
@@ -47,12 +47,10 @@ class Linearisation:
         self.orbit = orbit
         K, s, n = orbit.intervals, orbit.stages, orbit.form.unknowns
         self._factors = workspace(K, s, n)
-        columns = np.empty((K, s, 2 if parameter is None else 3, n))
-        shifts = np.zeros(columns.shape[2] - 2)
-        if parameter is not None:
-            columns[:, :, 2], shifts[0] = parameter_derivative(orbit, parameter)
-        steps = linearise(orbit.values, columns, shifts, orbit.semidiscrete, self._factors)
-        self._by_period = np.ascontiguousarray(columns[:, :, 0])
+        along = None if parameter is None else change_along(orbit.form, parameter)
+        steps, self._by_period = linearise(
+            orbit.values, 2 if along is None else 3, along or STILL, orbit.semidiscrete, self._factors
+        )
         self.step, self.tangent = steps[0], None if parameter is None else steps[1]
 
     def correction(self, orbit: Orbit) -> Array:
@@ -86,60 +84,28 @@ def coordinate(name: str, value: float) -> float:
     return 1 / value if PARAMETERS[name].by_compliance else value
 
 
-def parameter_derivative(orbit: Orbit, name: str) -> tuple[Array, float]:
-    """Right sides of the stages, (K, s, n), and of the phase for the derivative by a `coordinate`."""
-    form, p = orbit.form, orbit.semidiscrete
-    c = form.parameters
-    field = {"k1": "c1", "k2": "c2"}.get(name, name)
+STILL = Along(BeamParameters(*(0.0 for _ in BeamParameters._fields)), np.zeros(0))
+"""No change of the rod."""
+
+
+def change_along(form: StressForm, name: str) -> Along:
+    """How a rod changes with a `coordinate`."""
+    c, field = form.parameters, {"k1": "c1", "k2": "c2"}.get(name, name)
     change = BeamParameters(*(float(field == other) for other in c._fields))
     change = change._replace(nu=-change.F * c.c1 - c.F * change.c1)
-    by_mass = form.mass_of(change.c1, change.c2)
-    by_mass[2 * form.mesh.nodes :] = 0.0
-    return change_along(orbit.values, change, by_mass, p, orbit.stages)
+    mass = form.mass_of(change.c1, change.c2)
+    mass[2 * form.mesh.nodes :] = 0.0
+    return Along(change, mass)
 
 
 @compiled_for_vectors
-def change_along(
-    values: Array, change: BeamParameters, by_mass: Array, p: Semidiscrete, stages: int
-) -> tuple[Array, float]:
-    """The derivatives of residuals, (K, s, n), and phase of an orbit, (N,), along a change of the parameters.
-
-    by_mass: of the mass, (n,). The phase's is a right side and has the sign of one.
-    """
-    K, n, size = len(p.lengths), len(p.mass), len(p.matrices.weights)
-    points, duration = values[:-1].reshape(1 + K * stages, n), values[-1] / p.parts
-    V, G, F, changes = np.empty((3, size)), np.empty((3, size)), np.empty(n), np.empty((2, 3, size))
-    right, d = np.empty((K, stages, n)), p.differentiation
-    for k in range(K):
-        here, h = points[k * stages : (k + 1) * stages + 1], duration * p.lengths[k]
-        for i in range(stages):
-            equations(here[i + 1], F, V, G, p)
-            equations_change(here[i + 1], F, V, changes, change, p)
-            for r in range(n):
-                slope = 0.0
-                for j in range(stages + 1):
-                    slope += d[i, j] * here[j, r]
-                right[k, i, r] = h * F[r] - by_mass[r] * slope
-    balance(points[0], V, G, p.parameters, p.matrices)
-    balance_change(points[0], V, changes, change, p.parameters, p.matrices)
-    return right, -lateral_velocity(changes[1], tip_angle(points[0], p.matrices))
-
-
-@compiled_for_vectors
-def equations_change(
-    x: Array, F: Array, V: Array, out: Array, change: BeamParameters, p: Semidiscrete
-) -> None:
-    """The derivative of `condensation.equations` along a change of the parameters into F, (n,).
-
-    V at the state x is known; out, (2, 3, nodes + 1), is made on the way.
-    """
-    nodes = V.shape[1] - 1
-    balance_change(x, V, out, change, p.parameters, p.matrices)
-    for a in range(3):
-        for i in range(nodes):
-            F[a * nodes + i] = out[1, a, i]
-    if len(x) > 3 * nodes:
-        torque_change(x, F[3 * nodes :], change, p.parameters, p.matrices)
+def phase_change(start: Array, change: BeamParameters, c: BeamParameters, m: NodeMatrices) -> float:
+    """The derivative of `phase` along a change of the parameters, with the sign of a right side."""
+    size = len(m.weights)
+    V, G, changes = np.empty((3, size)), np.empty((3, size)), np.empty((2, 3, size))
+    balance(start, V, G, c, m)
+    balance_change(start, V, changes, change, c, m)
+    return -lateral_velocity(changes[1], tip_angle(start, m))
 
 
 @compiled_for_vectors
@@ -182,22 +148,19 @@ def phase_row(start: Array, c: BeamParameters, m: NodeMatrices, row: Array) -> N
 
 
 @compiled_for_vectors
-def linearise(values: Array, columns: Array, shifts: Array, p: Semidiscrete, factors: Factors) -> Array:
-    """Newton's matrix at an orbit, and what it makes of right sides: steps of the orbit, (columns - 1, N).
+def linearise(
+    values: Array, count: int, along: Along, p: Semidiscrete, factors: Factors
+) -> tuple[Array, Array]:
+    """Newton's matrix at an orbit, values (N,), into the factors: steps, and reduced derivatives by the period.
 
-    values: (N,), the points, (1 + K s, n), one after the other, and the period. columns: (K, s, columns, n);
-    the first becomes the derivative by the period, the second Newton's own right side, others are given, with
-    the right sides of the phase condition in shifts, (columns - 2,).
+    count: 2 for Newton's step alone, 3 for the derivative of the orbit along a parameter behind it. The steps
+    are (count - 1, N), the others (K, s, n).
     """
-    K, s, count, n = columns.shape
+    K, s, n = factors.blocks.shape[0], factors.blocks.shape[1], len(p.mass)
     points, duration = values[:-1].reshape(1 + K * s, n), values[-1] / p.parts
-    slopes, right = np.empty((K, s, n)), np.empty((K, s, n))
-    residuals(points, duration, p, slopes, right)
-    for k in range(K):
-        for i in range(s):
-            columns[k, i, 0] = slopes[k, i] * (p.lengths[k] / p.parts)
-            columns[k, i, 1] = right[k, i]
-    ends = eliminate(points, duration, p, factors, columns)
+    V, columns = np.empty((K, s, 3, len(p.matrices.weights))), np.empty((K, s, count, n))
+    right_sides(points, duration, p, along, V, columns)
+    ends = eliminate(points, V, duration, p, factors, columns)
     inverse = factors.inverse
     inverse[:, :] = 0.0
     inverse[:n, :n] = factors.propagator
@@ -211,41 +174,42 @@ def linearise(values: Array, columns: Array, shifts: Array, p: Semidiscrete, fac
         for i in range(n):
             jump = p.signs[i] * points[0, i] - points[K * s, i] if m == 1 else 0.0
             rights[m - 1, i] = jump - ends[m, i]
-        rights[m - 1, n] = shifts[m - 2] if m > 1 else -phase(points[0], p.parameters, p.matrices)
-    by_period = np.ascontiguousarray(columns[:, :, 0])
-    return steps_of(rights, by_period, np.ascontiguousarray(columns[:, :, 1:]), p, factors)
+    rights[0, n] = -phase(points[0], p.parameters, p.matrices)
+    if count > 2:
+        rights[1, n] = phase_change(points[0], along.change, p.parameters, p.matrices)
+    by_period = columns[:, :, 0].copy()
+    return steps_of(rights, by_period, columns[:, :, 1:], p, factors), by_period
 
 
 @compiled_for_vectors
 def steps_of(rights: Array, by_period: Array, columns: Array, p: Semidiscrete, factors: Factors) -> Array:
-    """The steps, (columns, N), for right sides at the ends, (columns, n + 1), and of the stages.
+    """The steps, (columns, N), for right sides at the ends, (columns, n + 1), and reduced ones of the stages.
 
     by_period: (K, s, n), columns: (K, s, columns, n).
     """
     K, s, count, n = columns.shape
-    starts, periods = np.zeros((count, n)), np.zeros(count)
+    found = np.zeros((count, n + 1))
     for m in range(count):
         for i in range(n + 1):
             total = 0.0
             for j in range(n + 1):
                 total += factors.inverse[i, j] * rights[m, j]
-            if i < n:
-                starts[m, i] = total
-            else:
-                periods[m] = total
+            found[m, i] = total
     whole, out = np.empty((K, s, count, n)), np.empty((K, s, count, n))
     for k in range(K):
         for i in range(s):
             for m in range(count):
-                whole[k, i, m] = columns[k, i, m] + periods[m] * by_period[k, i]
-    substitute(starts, whole, p, factors, out)
+                for r in range(n):
+                    whole[k, i, m, r] = columns[k, i, m, r] + found[m, n] * by_period[k, i, r]
+    substitute(found[:, :n].copy(), whole, p, factors, out)
     steps = np.empty((count, (1 + K * s) * n + 1))
     for m in range(count):
-        steps[m, :n], steps[m, -1] = starts[m], periods[m]
+        steps[m, :n], steps[m, -1] = found[m, :n], found[m, n]
         for k in range(K):
             for i in range(s):
                 first = (1 + k * s + i) * n
-                steps[m, first : first + n] = out[k, i, m]
+                for r in range(n):
+                    steps[m, first + r] = out[k, i, m, r]
     return steps
 
 
@@ -254,13 +218,11 @@ def correct(values: Array, by_period: Array, p: Semidiscrete, factors: Factors) 
     """Newton's step at an orbit, values and result (N,), by the matrix of another one near by."""
     K, s, n = by_period.shape
     points, duration = values[:-1].reshape(1 + K * s, n), values[-1] / p.parts
-    slopes, columns, ends = np.empty((K, s, n)), np.empty((K, s, 1, n)), np.zeros((1, n))
-    right = np.empty((K, s, n))
-    residuals(points, duration, p, slopes, right)
+    columns, ends = np.empty((K, s, 1, n)), np.zeros((1, n))
+    residuals(points, duration, p, columns[:, :, 0])
     for k in range(K):
-        for i in range(s):
-            columns[k, i, 0] = right[k, i]
-        forward(factors.blocks[k], columns[k], p, ends)
+        reduce(factors.blocks[k], columns[k], p)
+        to_end(factors.blocks[k], columns[k], p, ends)
     rights = np.empty((1, n + 1))
     for i in range(n):
         rights[0, i] = p.signs[i] * points[0, i] - points[K * s, i] - ends[0, i]

@@ -7,7 +7,7 @@ errors. All of it follows from the neighbour alone, so that a chain of points ha
 often it was interrupted.
 """
 
-from dataclasses import astuple, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf, nan
 
@@ -21,7 +21,7 @@ from ..point import Unsolvable
 from .calibration import LENGTH, Calibration
 from .linearisation import coordinate
 from .newton import Converged, at_orbit, newton, relative_change
-from .normalised import layout, normalised, normalised_tangent, values_of
+from .normalised import combined, layout, normalised, normalised_tangent, polynomial_weights, values_of
 from .orbit import Orbit
 from .orbit_mesh import OrbitMesh, mesh_of
 from .refinement import (
@@ -78,20 +78,16 @@ class Followed:
 
     def weights(self, step: float) -> Array:
         """Of slopes, and of values less those here, in what is added at a distance on the branch, (m,)."""
-        unit = np.abs(self.places).max() or 1.0
-        powers, at = np.arange(1, len(self.places) + 1), self.places[:, None] / unit
-        slopes = self.orders[:, None] == 1
-        rows = np.where(slopes, powers * at ** (powers - 1) / unit, at**powers)
-        weights: Array = np.linalg.solve(rows.T, (step / unit) ** powers)
+        weights: Array = polynomial_weights(self.places, self.orders, step)
         return weights
 
     def at(self, form: StressForm, name: str) -> Orbit:
         """The prediction at another value of the parameter, for the rod `form`, whatever its mesh."""
         step = coordinate_of(form, name) - coordinate_of(self.orbit.form, name)
-        here, weights = replace(form, mesh=self.orbit.form.mesh), self.weights(step)
-        values = weights @ self.data + (1 - weights[self.orders == 0].sum()) * self.values
+        values = combined(self.values, self.data, self.orders, self.weights(step))
         if not values[-1] > 0:
             raise Unsolvable("the branch is predicted to end")
+        here = replace(form, mesh=self.orbit.form.mesh)
         return replace(self.orbit, form=here, values=values_of(values, layout(self.orbit)))
 
     def on(self, target: OrbitMesh) -> "Followed":
@@ -180,10 +176,10 @@ class Neighbour:
         rod = form.rod
         head = [rod.F, rod.k1, rod.k2, rod.gamma3, form.gamma1, orbit.symmetric]
         head += [len(self.branch.places), self.leading.real, self.leading.imag]
-        meshes = (mesh_of(orbit), self.next_mesh)
+        meshes = (*mesh_of(orbit).numbers, *self.next_mesh.numbers)
         known = self.calibration.pack()
         branch = (self.branch.places, self.branch.orders, orbit.values, self.branch.data.ravel())
-        return np.concatenate([head, *map(astuple, meshes), known, *branch])
+        return np.concatenate([head, meshes, known, *branch])
 
     @classmethod
     def unpack(cls, flat: Array) -> "Neighbour":

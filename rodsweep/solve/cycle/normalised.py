@@ -59,6 +59,37 @@ def values_of(normalised: Array, form: StateLayout) -> Array:
 
 
 @compiled_for_vectors
+def polynomial_weights(places: Array, orders: Array, step: float) -> Array:
+    """Of data at places, (m,), in what a polynomial through them adds from 0 to a step, (m,).
+
+    orders: 1 where a datum is a slope, 0 where it is a value less the one at 0.
+    """
+    m, unit = len(places), np.abs(places).max()
+    unit = unit if unit > 0 else 1.0
+    columns, right = np.empty((m, m)), np.empty(m)
+    for power in range(1, m + 1):
+        right[power - 1] = (step / unit) ** power
+        for i in range(m):
+            at = places[i] / unit
+            slope = power * at ** (power - 1) / unit
+            columns[power - 1, i] = slope if orders[i] == 1 else at**power
+    return np.linalg.solve(columns, right)
+
+
+@compiled_for_vectors
+def combined(values: Array, data: Array, orders: Array, weights: Array) -> Array:
+    """Values, (N + 1,), after what the weights, (m,), add: of slopes and of other values in data, (m, N + 1)."""
+    out, rest = np.zeros(len(values)), 1.0
+    for k in range(len(weights)):
+        rest -= weights[k] if orders[k] == 0 else 0.0
+        for i in range(len(values)):
+            out[i] += weights[k] * data[k, i]
+    for i in range(len(values)):
+        out[i] += rest * values[i]
+    return out
+
+
+@compiled_for_vectors
 def normalised_slopes(values: Array, tangent: Array, form: StateLayout) -> Array:
     """`normalised_tangent` of values and their tangent, (N,)."""
     squared, change = squared_size(values, values, form), 2 * squared_size(values, tangent, form)

@@ -49,6 +49,11 @@ class OrbitMesh:
         return mesh(self.elements, self.order)
 
     @property
+    def numbers(self) -> tuple[int, int, int, int]:
+        """By which it is stored and made anew."""
+        return self.elements, self.order, self.intervals, self.stages
+
+    @property
     def coarser(self) -> "OrbitMesh":
         """A mesh on which a branch is followed in steps to a place where this one is wanted."""
         order = max(LEAST_ORDER - COARSER_ORDER, self.order - COARSER_ORDER)

@@ -1,0 +1,105 @@
+"""The right sides of Newton's systems of a periodic orbit: its residuals, and their derivatives, compiled."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...arrays import Array
+from ...discretization.stress_balance import (
+    BeamParameters,
+    balance,
+    balance_change,
+    torque_balance,
+    torque_change,
+)
+from ...model.compilation import compiled_for_vectors
+from .condensation import Semidiscrete
+
+
+class Along(NamedTuple):
+    """How the rod changes along a parameter: its parameters, and the mass, (n,), per unit of it."""
+
+    change: BeamParameters
+    mass: Array
+
+
+@compiled_for_vectors
+def equations(x: Array, F: Array, V: Array, G: Array, p: Semidiscrete) -> None:
+    """F(x), shape (n,), with V and G, (3, nodes + 1), on the way."""
+    nodes = G.shape[1] - 1
+    balance(x, V, G, p.parameters, p.matrices)
+    for a in range(3):
+        for i in range(nodes):
+            F[a * nodes + i] = G[a, i]
+    if len(x) > 3 * nodes:
+        torque_balance(x, F[3 * nodes :], p.parameters, p.matrices)
+
+
+@compiled_for_vectors
+def equations_change(
+    x: Array, F: Array, V: Array, out: Array, change: BeamParameters, p: Semidiscrete
+) -> None:
+    """The derivative of `equations` along a change of the parameters into F, (n,).
+
+    V at the state x is known; out, (2, 3, nodes + 1), is made on the way.
+    """
+    nodes = V.shape[1] - 1
+    balance_change(x, V, out, change, p.parameters, p.matrices)
+    for a in range(3):
+        for i in range(nodes):
+            F[a * nodes + i] = out[1, a, i]
+    if len(x) > 3 * nodes:
+        torque_change(x, F[3 * nodes :], change, p.parameters, p.matrices)
+
+
+@compiled_for_vectors
+def residuals(points: Array, duration: float, p: Semidiscrete, out: Array) -> None:
+    """h F(x_i) - sum_j d_ij M x_j of all stages into out, (K, s, n).
+
+    points: the start and the stages one after the other, (1 + K s, n).
+    """
+    K, s, n = out.shape
+    size = len(p.matrices.weights)
+    V, G, F = np.empty((3, size)), np.empty((3, size)), np.empty(n)
+    for k in range(K):
+        h = duration * p.lengths[k]
+        for i in range(s):
+            equations(points[1 + k * s + i], F, V, G, p)
+            _slopes(points[k * s : (k + 1) * s + 1], i, p.differentiation, out[k, i])
+            for r in range(n):
+                out[k, i, r] = h * F[r] - p.mass[r] * out[k, i, r]
+
+
+@compiled_for_vectors
+def right_sides(
+    points: Array, duration: float, p: Semidiscrete, along: Along, V: Array, columns: Array
+) -> None:
+    """What Newton's method needs of the stages, into columns, (K, s, columns, n), and V, (K, s, 3, nodes + 1).
+
+    The columns: the derivative by the period, the `residuals`, and, if there is a third, their derivative
+    along the change of a parameter.
+    """
+    K, s, count, n = columns.shape
+    G, changes, slopes = np.empty(V.shape[2:]), np.empty((2, *V.shape[2:])), np.empty(n)
+    for k in range(K):
+        length = p.lengths[k]
+        for i in range(s):
+            x, sides = points[1 + k * s + i], columns[k, i]
+            equations(x, sides[0], V[k, i], G, p)
+            _slopes(points[k * s : (k + 1) * s + 1], i, p.differentiation, slopes)
+            for r in range(n):
+                sides[1, r] = duration * length * sides[0, r] - p.mass[r] * slopes[r]
+                sides[0, r] *= length / p.parts
+            if count > 2:
+                equations_change(x, sides[2], V[k, i], changes, along.change, p)
+                for r in range(n):
+                    sides[2, r] = duration * length * sides[2, r] - along.mass[r] * slopes[r]
+
+
+@compiled_for_vectors
+def _slopes(points: Array, i: int, d: Array, out: Array) -> None:
+    """sum_j d_ij x_j of one interval's start and stages, (s + 1, n), into out, (n,)."""
+    out[:] = 0.0
+    for j in range(len(points)):
+        for r in range(len(out)):
+            out[r] += d[i, j] * points[j, r]
