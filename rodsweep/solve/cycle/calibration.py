@@ -36,7 +36,7 @@ TOLERANCE, DISTANCE = 0.1, 1e-3
 """What Newton's method leaves on the other meshes, in units of the accuracy, and how far from the orbit the
 matrix may be that their multipliers are of."""
 SAFETY = 3.0
-HEIGHT_SHARE, PERIOD_SHARE, SHARE_IN_TIME = 0.08, 0.16, 0.005
+HEIGHT_SHARE, PERIOD_SHARE, OTHERS_SHARE, SHARE_IN_TIME = 0.08, 0.16, 0.5, 0.003
 """Shares of the distance between the tip's paths that count at least as an error: a number may agree by luck,
 and no more do so at the next cycle. In time they differ most in theta, which is stiff and matters least."""
 AIM = 0.5
@@ -51,6 +51,9 @@ FEWER_ORDERS, FEWER_INTERVALS, MOST_ORDERS, MOST_GROWTH = 3, 0.6, 12, 4
 """By how many orders, and times how many intervals, a mesh that is planned may differ."""
 FARTHEST, LARGEST_GROWTH = 0.2, 4.0
 """Relative change of the parameter, and growth of the errors, beyond which it is made anew."""
+SHRUNK = 0.75
+"""Share of the orbit's size below which it is, too: near the Hopf point at which cycles die the error of the
+largest y grows fast from where it happened to change its sign."""
 LEAST_TAIL = 1e-15
 MULTIPLIER = 4
 """Place of the largest multiplier's error, behind those of `path_differences`."""
@@ -90,7 +93,9 @@ class Calibration:
 
     def at(self, orbit: Orbit, change: float) -> "Calibration":
         """The same for an orbit of the next point, after a relative change of the parameter."""
-        return replace(self, growth=_growth(self.tails, _tails(orbit)), reach=self.reach + change)
+        tails = _tails(orbit)
+        dies = tails[-1] < SHRUNK * self.tails[-1]
+        return replace(self, growth=_growth(self.tails, tails), reach=inf if dies else self.reach + change)
 
     def on_branch(self, orbit: Orbit, change: float) -> "Calibration":
         """The same where cycles are told apart by the moment at the clamp: then none dies before another."""
@@ -145,7 +150,7 @@ def _stated(space: Array, time: Array, accuracy: float) -> Array:
     stated = [
         np.maximum(whole[PERIOD], PERIOD_SHARE * space[APART] + in_time),
         np.maximum(whole[HEIGHT], HEIGHT_SHARE * space[APART] + in_time),
-        np.maximum(whole[OTHERS], apart),
+        np.maximum(whole[OTHERS], OTHERS_SHARE * apart),
         whole[MULTIPLIER],
     ]
     least: Array = np.maximum(np.array(stated), max(LEAST_CLAIM * accuracy, ROUNDING))

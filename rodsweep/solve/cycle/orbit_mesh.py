@@ -18,7 +18,7 @@ from ...discretization.resolution import LARGEST_ORDER
 from ...model.compilation import compiled_for_vectors
 from .orbit import Orbit
 
-SPACE_FACTOR, TIME_FACTOR = 6.0, 2.5
+SPACE_FACTOR, TIME_FACTOR = 5.0, 1.5
 """Largest errors of period and extrema that are stated, in units of the squared tails, as a coarse mesh's
 predict these: with them the mesh is fine enough for five rods in six, and costs a fifth more than need be."""
 EXPECTED_SHARE = 1 / 3
