@@ -112,6 +112,10 @@ class Calibration:
         """Whether it tells the errors of the orbit."""
         return self.reach <= FARTHEST and float(self.growth.max()) <= LARGEST_GROWTH
 
+    def lasts(self, change: float) -> bool:
+        """Whether it may tell the errors after a further relative change of the parameter."""
+        return self.reach + change <= FARTHEST
+
     def errors(self, accuracy: float) -> CycleErrors:
         """Of the orbit."""
         in_space, in_time = self.growth

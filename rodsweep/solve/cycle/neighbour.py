@@ -41,9 +41,11 @@ AIMED_DISTANCE, SHORTER_STEP, LONGER_STEP = 0.1, 0.5, 3.0
 the one before, whose error is taken to grow as its cube."""
 TANGENT_DISTANCE = 1e-2
 """Relative distance from its orbit of a matrix whose tangent is good enough for a step of many."""
-ENOUGH, WORTHWHILE = 0.9, 0.8
-"""Share of the accuracy that a cycle's error may have for its neighbour to take over the mesh; share of its
-cost that another mesh may have to be taken instead."""
+ENOUGH = 0.9
+"""Share of the accuracy that a cycle's error may have for its neighbour to take over the mesh."""
+WORTHWHILE, WELL_WORTHWHILE = 0.8, 0.5
+"""Share of its cost that another mesh may have to be taken instead: where nothing else is lost, and where a
+calibration is, which costs as much as three cycles."""
 MOST_BEHIND, SLOPELESS = 4, 3
 """Orbits before the last one that the prediction goes through, and how many of them it takes to be better
 without the slope at one of them."""
@@ -168,7 +170,7 @@ class Neighbour:
     ) -> "Neighbour":
         """From a cycle that was solved with its tangent; before: its own neighbour."""
         branch = followed_from(found.fine, before.branch if before else None, name)
-        return cls(branch, *_next_mesh(found, accuracy), leading)
+        return cls(branch, *_next_mesh(found, before, name, accuracy), leading)
 
     def pack(self) -> Array:
         """All of it as one flat array, shape (length,)."""
@@ -196,17 +198,27 @@ class Neighbour:
         return cls(branch, there, Calibration.unpack(parts[3]), complex(real, imag))
 
 
-def _next_mesh(found: RefinedCycle, accuracy: float) -> tuple[OrbitMesh, Calibration]:
+def _next_mesh(
+    found: RefinedCycle, before: "Neighbour | None", name: str, accuracy: float
+) -> tuple[OrbitMesh, Calibration]:
     """The mesh for the cycle after this one, and its calibration, or an outdated one."""
-    here, known, errors = mesh_of(found.orbit), found.calibration, found.errors
-    fits = errors.largest <= ENOUGH * accuracy
+    here, known = mesh_of(found.orbit), found.calibration
+    fits = found.errors.largest <= ENOUGH * accuracy
     if known.reach and not fits:
         return here, known.outdated
-    if not fits or not known.reach:
-        planned = known.planned(accuracy)
-        if not fits or planned.cost <= WORTHWHILE * here.cost:
-            return planned, known.outdated
-    return here, known
+    share = inf if not fits else _share_of_cost(found, before, name)
+    planned = known.planned(accuracy) if share else here
+    return (planned, known.outdated) if share and planned.cost <= share * here.cost else (here, known)
+
+
+def _share_of_cost(found: RefinedCycle, before: "Neighbour | None", name: str) -> float:
+    """Share of its mesh's cost with which another one is taken for the cycle after this one; 0 for none."""
+    if before is None:
+        return WORTHWHILE  # the first mesh of a chain is no more than a guess
+    if not found.calibration.reach:
+        return WELL_WORTHWHILE
+    step = relative_distance(before.branch.orbit.form, found.orbit.form, name)
+    return 0.0 if found.calibration.lasts(step) else WORTHWHILE
 
 
 def followed_cycle(neighbour: Neighbour, form: StressForm, name: str, accuracy: float) -> RefinedCycle:

@@ -88,7 +88,7 @@ def mesh_of(orbit: Orbit) -> OrbitMesh:
 
 def stages_for(accuracy: float) -> int:
     """Stages of the method in time with which an accuracy costs least."""
-    return 3 if accuracy > 3e-6 else 4 if accuracy > 3e-9 else 5 if accuracy > 3e-11 else 6
+    return 3 if accuracy > 2e-5 else 4 if accuracy > 3e-9 else 5 if accuracy > 3e-11 else 6
 
 
 @dataclass(frozen=True, slots=True)
