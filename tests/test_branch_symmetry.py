@@ -25,7 +25,7 @@ from rodsweep.solve.branch.symmetry import (
     over_whole_period,
 )
 from rodsweep.solve.changes.along_path import pair_crossings
-from rodsweep.solve.cycle.condensation import equations
+from rodsweep.solve.cycle.right_sides import equations
 
 ROUGH, STOP = 1e-3, 20.5
 """Accuracy of the branches; special points are located to 1e-5 here, which takes a tenth of the time."""

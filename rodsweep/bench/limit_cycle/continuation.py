@@ -39,7 +39,7 @@ LARGE = 0.5
 """Modulus of a multiplier from which it is counted: next to 1 one is looked at."""
 OWN = "rodsweep"
 TARGETS = (1e-6, 1e-7)
-ASKED = (1e-5, 3e-6, 1e-6, 3e-7, 1e-7)
+ASKED = (2e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7)
 """Accuracies that rodsweep is asked for: what it reaches is better, for its estimates are careful."""
 SETTINGS = (
     AutoSetting(13, 19, 3, 3),

@@ -198,11 +198,11 @@ def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> Non
             if i != j:
                 B[i, j] = 0.0
     for first in range(0, n, ROWS):
-        rows = (first, min(n, first + ROWS))
+        last = min(n, first + ROWS)
         for i in range(2, s):
-            _subtract_parts(right[i], parts, i, 0, rows, d, minus)
+            _subtract_parts(right[i], parts, (i, 0), (first, last), d, minus)
             for j in range(2, s):
-                _subtract_parts(B[i, j], parts, i, j + 1, rows, d, mass)
+                _subtract_parts(B[i, j], parts, (i, j + 1), (first, last), d, mass)
     for i in range(2, s):
         for r in range(n):
             right[i, r, r] -= d[i, 0]
@@ -212,13 +212,14 @@ def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> Non
 
 @compiled_for_vectors
 def _subtract_parts(
-    out: Array, parts: Array, i: int, c: int, rows: tuple[int, int], d: Array, scale: Array
+    out: Array, parts: Array, place: tuple[int, int], rows: tuple[int, int], d: Array, scale: Array
 ) -> None:
-    """What the first two stages leave in the equations of stage i, of column c of d, out of a block, (n, n).
+    """What the first two stages leave in the equations of another one out of rows of a block, (n, n).
 
-    parts: Z, W, Z W, W Z and Z W Z, (5, n, n); rows: from one to another; d: (s, s + 1); scale: of the
-    block's columns, (n,).
+    parts: Z, W, Z W, W Z and Z W Z, (5, n, n); place: the stage, and the column of d, (s, s + 1), that the
+    block is of; rows: from one to another; scale: of the block's columns, (n,).
     """
+    i, c = place
     first, second = d[0, c], d[1, c]
     z, w = d[i, 1] * first, d[i, 2] * second
     zw, wz = -d[i, 1] * d[0, 2] * second, -d[i, 2] * d[1, 1] * first

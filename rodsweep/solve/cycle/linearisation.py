@@ -89,7 +89,7 @@ STILL = Along(BeamParameters(*(0.0 for _ in BeamParameters._fields)), np.zeros(0
 
 
 def change_along(form: StressForm, name: str) -> Along:
-    """How a rod changes with a `coordinate`."""
+    """How a rod changes with a `coordinate`, the mass, (n,), among it."""
     c, field = form.parameters, {"k1": "c1", "k2": "c2"}.get(name, name)
     change = BeamParameters(*(float(field == other) for other in c._fields))
     change = change._replace(nu=-change.F * c.c1 - c.F * change.c1)
@@ -100,7 +100,7 @@ def change_along(form: StressForm, name: str) -> Along:
 
 @compiled_for_vectors
 def phase_change(start: Array, change: BeamParameters, c: BeamParameters, m: NodeMatrices) -> float:
-    """The derivative of `phase` along a change of the parameters, with the sign of a right side."""
+    """The derivative of `phase` at a start, (n,), by a change of the parameters, as a right side."""
     size = len(m.weights)
     V, G, changes = np.empty((3, size)), np.empty((3, size)), np.empty((2, 3, size))
     balance(start, V, G, c, m)
@@ -151,7 +151,7 @@ def phase_row(start: Array, c: BeamParameters, m: NodeMatrices, row: Array) -> N
 def linearise(
     values: Array, count: int, along: Along, p: Semidiscrete, factors: Factors
 ) -> tuple[Array, Array]:
-    """Newton's matrix at an orbit, values (N,), into the factors: steps, and reduced derivatives by the period.
+    """Newton's matrix at an orbit, values (N,), into the factors: steps, and reduced slopes by the period.
 
     count: 2 for Newton's step alone, 3 for the derivative of the orbit along a parameter behind it. The steps
     are (count - 1, N), the others (K, s, n).

@@ -78,7 +78,7 @@ def polynomial_weights(places: Array, orders: Array, step: float) -> Array:
 
 @compiled_for_vectors
 def combined(values: Array, data: Array, orders: Array, weights: Array) -> Array:
-    """Values, (N + 1,), after what the weights, (m,), add: of slopes and of other values in data, (m, N + 1)."""
+    """Values, (N + 1,), and what weights, (m,), add of the slopes and other values in data, (m, N + 1)."""
     out, rest = np.zeros(len(values)), 1.0
     for k in range(len(weights)):
         rest -= weights[k] if orders[k] == 0 else 0.0

@@ -15,7 +15,7 @@ from .calibration import Calibration, calibrated
 from .cycle_errors import CycleErrors
 from .measures import CyclePath, Measures, measures_of
 from .minimal_period import PRESENT, common_divisor, shortened, undecided_divisor
-from .newton import Converged, linearised, multipliers_of, newton
+from .newton import QUADRATIC, Converged, linearised, multipliers_of, newton
 from .orbit import Orbit
 from .orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
 from .status import CycleStatus
@@ -148,7 +148,8 @@ def calibrated_cycle(
 
 def _on(mesh: OrbitMesh, orbit: Orbit, accuracy: float, parameter: str | None) -> Converged:
     """The orbit on another mesh, with the matrix at itself, whose multipliers are right to rounding."""
-    found = newton(mesh.carry(orbit), newton_tolerance(accuracy))
+    last = (newton_tolerance(accuracy) / QUADRATIC) ** 0.5  # the matrix at the orbit makes one step more
+    found = newton(mesh.carry(orbit), last)
     return linearised(same_motion(found, orbit.size).orbit, parameter)
 
 

@@ -74,7 +74,7 @@ def residuals(points: Array, duration: float, p: Semidiscrete, out: Array) -> No
 def right_sides(
     points: Array, duration: float, p: Semidiscrete, along: Along, V: Array, columns: Array
 ) -> None:
-    """What Newton's method needs of the stages, into columns, (K, s, columns, n), and V, (K, s, 3, nodes + 1).
+    """What Newton's method needs of the stages into columns, (K, s, columns, n), and V, (K, s, 3, nodes + 1).
 
     The columns: the derivative by the period, the `residuals`, and, if there is a third, their derivative
     along the change of a parameter.

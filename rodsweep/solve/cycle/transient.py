@@ -32,8 +32,9 @@ TRANSIENT = TimeScheme("arkimex", "4", tolerance=1e-5)
 CAREFUL = TimeScheme("arkimex", "5", tolerance=1e-9)
 """Where the growth per period is small its sign has to be right, and a path that is stored has to be."""
 
-CHUNK = 5
-"""Returns to the section per run; then the sequence is judged."""
+CHUNK, FIRST_CHUNK = 5, 3
+"""Returns to the section per run; then the sequence is judged. After the first run only whether the motion
+has closed already, as one does that grows fast."""
 NEWTON_DISTANCE = 0.1
 """Relative distance of two returns from which Newton's method starts; a tenth after each failure."""
 SHOWN_DISTANCE = 1e-3
@@ -152,9 +153,9 @@ class Transient:
 
     def follow(self, z: Array) -> TransientOutcome:
         """Where the rod goes from z, shape (unknowns,)."""
-        z = self._relaxed(z)
+        z, first = self._relaxed(z), True
         while self.waited < self.most_periods:
-            run = self._chunk(z)
+            run = self._chunk(z, FIRST_CHUNK if first else CHUNK)
             if self.trace:
                 self.trace.add(run, self.clock)
             if run.ending not in (Ending.reached, Ending.stopped):
@@ -166,11 +167,12 @@ class Transient:
             self.clock += run.times[-1]
             if self.mode.w.real < 0 and np.linalg.norm(z) < STRAIGHT_SIZE:
                 return self._ended(CycleStatus.straight, "decayed to rounding")
-            if len(times) < 3:
+            early, first = first, False
+            if len(times) < 3 or (early and self._slow(times, *self._growth(times, states))):
                 continue
-            if self._decays(times, states):
+            if not early and self._decays(times, states):
                 return self._ended(CycleStatus.straight, "decays at the rate of the leading mode")
-            factor = self._jump(times, states)
+            factor = None if early else self._jump(times, states)
             if factor is not None and self.trace:
                 continue  # a path that is stored has no jumps
             if factor is not None:
@@ -203,20 +205,20 @@ class Transient:
         why = run.message or ("too many steps" if run.ending == Ending.too_many_steps else "no step succeeds")
         return self._ended(CycleStatus.failed, why)
 
-    def _chunk(self, z: Array) -> Trajectory:
-        """A run of CHUNK returns, or of three times the time they should take."""
+    def _chunk(self, z: Array, returns: int) -> Trajectory:
+        """A run of so many returns, or of three times the time they should take."""
         count, last = 0, float(self.row @ z)
 
         def enough(state: Array) -> bool:
             nonlocal count, last
             here = float(self.row @ state)
             count, last = count + int(last < 0 <= here), here
-            return count >= CHUNK
+            return count >= returns
 
         period = self.mode.period
         stepper = integrator(self.beam.mesh, self.scheme)
         limit = RunLimit(enough, STEPS_PER_CHUNK)
-        run = stepper.run(self.beam, z, 3 * CHUNK * period, self.step, limit)
+        run = stepper.run(self.beam, z, 3 * returns * period, self.step, limit)
         if len(run.times) > 2:
             self.step = run.times[-1] - run.times[-2]
         self.last_run = run
