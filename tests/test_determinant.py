@@ -1,6 +1,5 @@
 """The closed form of D against independent evaluations in multiple precision, and exact limits."""
 
-import shutil
 
 import mpmath as mp
 import numpy as np
@@ -10,7 +9,6 @@ from reference import determinant as reference
 
 from rodsweep.determinant.parameter_path import determinant_along, direction_of
 from rodsweep.determinant.value import TYPICAL_NOISE, newton_correction, scaled_determinant
-from rodsweep.model import compilation
 from rodsweep.model.rod import Rod
 
 
@@ -145,23 +143,3 @@ def test_newton_correction_is_the_distance_to_the_root():
     for distance in (1e-3, 1e-6j, 1e-9 - 1e-9j):
         found = newton_correction(root + distance, rod.coefficients)[0]
         assert found == pytest.approx(abs(distance), rel=1e-2)
-
-
-def test_compiled_code_is_kept_for_one_content_of_the_sources(tmp_path, monkeypatch):
-    """A change in a module whose formulas are inlined elsewhere must not meet old compiled code."""
-    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
-    copy = tmp_path / "rodsweep"
-    for name in compilation.COMPILED_IN:
-        shutil.copytree(compilation.PACKAGE / name, copy / name, ignore=shutil.ignore_patterns("__pycache__"))
-    monkeypatch.setattr(compilation, "PACKAGE", copy)
-    before = compilation.cache_directory()
-    assert before == compilation.cache_directory()
-    assert copy in before.parents
-    digests = {before}
-    for formula in [path for name in compilation.COMPILED_IN for path in (copy / name).rglob("*.py")]:
-        formula.write_text(formula.read_text() + "# changed\n")
-        digests.add(compilation.cache_directory())
-    assert len(digests) == 1 + sum(1 for name in compilation.COMPILED_IN for _ in (copy / name).rglob("*.py"))
-    assert any("compiled" in path.read_text() for path in copy.glob("*/*/*.py")), "rooms have formulas too"
-    monkeypatch.setenv("NUMBA_CACHE_DIR", "/elsewhere")
-    assert str(compilation.cache_directory()).startswith("/elsewhere/compiled-")

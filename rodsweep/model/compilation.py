@@ -49,9 +49,10 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
 def compiled_for_vectors(function: Callable[P, R]) -> Callable[P, R]:
     """As `compiled`, with sums that may be added in any order, as a BLAS does: five times as fast.
 
-    Infinities and nan are kept.
+    Infinities and nan are kept. Each function that calls it has its own copy inside: of copies beside it,
+    which add in other orders, a process would take the one that it happened to load first.
     """
-    return _compiled(function, fastmath={"reassoc", "contract", "nsz"})
+    return _compiled(function, fastmath={"reassoc", "contract", "nsz"}, forceinline=True)
 
 
 def _compiled(function: Callable[P, R], **options: Any) -> Callable[P, R]:
