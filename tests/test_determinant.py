@@ -1,6 +1,5 @@
 """The closed form of D against independent evaluations in multiple precision, and exact limits."""
 
-
 import mpmath as mp
 import numpy as np
 import pytest
