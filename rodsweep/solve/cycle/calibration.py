@@ -194,16 +194,26 @@ def calibrated(
     orbit does. on: the same cycle on another mesh, to a tolerance, whatever is held fixed.
     """
     here, least = mesh_of(found.orbit), found.orbit.stages + 1
-    difference, longer = _differences(found, accuracy, on), ceil(MORE_INTERVALS * here.intervals)
-    space = difference(replace(here, order=here.order + MORE_ORDERS))
-    time = difference(replace(here, intervals=longer))
+    seen, longer = Seen(found), ceil(MORE_INTERVALS * here.intervals)
+    meshes = (replace(here, order=here.order + MORE_ORDERS), replace(here, intervals=longer))
+    space, time = (seen.difference(Seen(on(mesh, found.orbit, TOLERANCE * accuracy))) for mesh in meshes)
     # The finer mesh has an error in time itself.
     time = time / (1 - ((here.intervals - 1) / (longer - 1)) ** least)
-    tails = _tails(found.orbit)
+    return calibration_of(here, space, time, found.orbit, before)
+
+
+def calibration_of(
+    here: OrbitMesh, space: Array, time: Array, orbit: Orbit, before: Calibration | None
+) -> Calibration:
+    """The calibration of a mesh with both parts of its error, (5,) each, and how fast they fall.
+
+    orbit: on it, or near by. before: as in `calibrated`.
+    """
+    tails = _tails(orbit)
     if before is None:
-        decay = FALL_BY_DECAY * tails_of(found.orbit).decay
+        decay = FALL_BY_DECAY * tails_of(orbit).decay
         fall = np.full(PARTS, min(max(decay, LEAST_FALL), LARGEST_FALL))
-        power = np.full(PARTS, POWER_BY_STAGES * found.orbit.stages)
+        power = np.full(PARTS, POWER_BY_STAGES * orbit.stages)
         return Calibration(here, space, time, fall, power, tails, 0.0)
     there, fall, power = before.mesh, before.fall, before.power
     if there.order != here.order and there.elements == here.elements:
@@ -213,18 +223,17 @@ def calibrated(
     return Calibration(here, space, time, fall, power, tails, 0.0)
 
 
-def _differences(
-    found: Converged, accuracy: float, on: Callable[[OrbitMesh, Orbit, float], Converged]
-) -> Callable[[OrbitMesh], Array]:
-    """What another mesh's cycle differs by from one that was found, as `Calibration.space` says, (5,)."""
-    path, multipliers = CyclePath(found.orbit), multipliers_of(found)[0]
+class Seen:
+    """What of a cycle that was solved is compared with that on another mesh."""
 
-    def difference(mesh: OrbitMesh) -> Array:
-        other = on(mesh, found.orbit, TOLERANCE * accuracy)
-        change = multiplier_change(multipliers, multipliers_of(at_orbit(other, DISTANCE))[0])
-        return np.append(path_differences(path, CyclePath(other.orbit)), change)
+    def __init__(self, found: Converged) -> None:
+        self.path = CyclePath(found.orbit)
+        self.multipliers = multipliers_of(at_orbit(found, DISTANCE))[0]
 
-    return difference
+    def difference(self, fine: "Seen") -> Array:
+        """By what the one on a finer mesh differs, as `Calibration.space` says, (5,)."""
+        change = multiplier_change(self.multipliers, fine.multipliers)
+        return np.append(path_differences(self.path, fine.path), change)
 
 
 def _fall(before: Array, after: Array, orders: int) -> Array:

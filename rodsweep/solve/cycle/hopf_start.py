@@ -33,7 +33,7 @@ LEAST_FORCE = 1e-2
 FOUND = 1e-6
 """Growth rate of the leading mode at the Hopf point, in units of its frequency."""
 NORMAL_FORM_ACCURACY = 1e-3
-STARTS = (0.12, 0.03, 0.006)
+STARTS = (0.3, 0.12, 0.03, 0.006)
 """Relative distances from the Hopf point at which the normal form starts Newton's method, one after the
 other: in most rods its amplitude is off by 2 percent at the first, where k2 is small by more."""
 NEAREST = 1e-2
@@ -42,7 +42,7 @@ the rod: its amplitude is then off by 1 percent in most rods."""
 ORDER_PER_WAVE, LEAST_ORDER = 0.55, 12
 INTERVALS, STAGES = 8, 3
 """In time, over half a period, of the mesh on which the branch is followed."""
-TOLERANCE = 1e-4
+TOLERANCE = 3e-3
 """To which the orbits on the way are solved."""
 
 

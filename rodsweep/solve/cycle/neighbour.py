@@ -36,7 +36,7 @@ FARTHEST = 0.3
 """Relative distance of a cycle from its prediction beyond which it may be another one."""
 MOST_HALVINGS, MOST_STEPS = 6, 100
 """Of a step along the axis, and steps in all."""
-AIMED_DISTANCE, SHORTER_STEP, LONGER_STEP = 0.1, 0.5, 3.0
+AIMED_DISTANCE, SHORTER_STEP, LONGER_STEP = 0.15, 0.5, 3.0
 """How far off a prediction should be for Newton's method to take two matrices; bounds of a step in units of
 the one before, whose error is taken to grow as its cube."""
 TANGENT_DISTANCE = 1e-2

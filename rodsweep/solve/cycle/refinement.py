@@ -12,10 +12,11 @@ import numpy as np
 from ...arrays import Complex
 from ..point import Unsolvable
 from .calibration import Calibration, calibrated
+from .coarser_meshes import CoarserMeshes
 from .cycle_errors import CycleErrors
 from .measures import CyclePath, Measures, measures_of
 from .minimal_period import PRESENT, common_divisor, shortened, undecided_divisor
-from .newton import QUADRATIC, Converged, linearised, multipliers_of, newton
+from .newton import QUADRATIC, Converged, at_orbit, linearised, multipliers_of, newton
 from .orbit import Orbit
 from .orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
 from .status import CycleStatus
@@ -113,13 +114,38 @@ def refine(orbit: Orbit, accuracy: float, parameter: str | None = None) -> Refin
     while True:
         try:
             near = same_motion(newton(start, NEAR), orbit.size).orbit
-            first = _on(wanted_mesh(near, aim, stages_for(accuracy)), near, aim, parameter)
-            return calibrated_cycle(first, None, accuracy, parameter)
+            first = wanted_mesh(near, aim, stages_for(accuracy))
+            if parameter is None:
+                return _predicted_cycle(first, near, accuracy)
+            return calibrated_cycle(_on(first, near, aim, parameter), None, accuracy, parameter)
         except Unsolvable:
             if aim <= LEAST_ACCURACY or not orbit.symmetric:  # those born at Hopf points are
                 raise
             aim = max(AIM_LOWERED * aim, LEAST_ACCURACY)
             start = wanted_mesh(orbit, aim, orbit.stages).carry(orbit)
+
+
+def _predicted_cycle(mesh: OrbitMesh, near: Orbit, accuracy: float) -> RefinedCycle:
+    """A cycle that stands alone, on the first mesh or a finer one, as coarser meshes predict it.
+
+    The best is returned where limits do not allow the accuracy; raises Unsolvable.
+    """
+    coarser, largest, last = CoarserMeshes(mesh, near, accuracy), inf, inf
+    for _ in range(MOST_ROUNDS):
+        orbit, known = coarser.predicted(mesh)
+        error = known.errors(accuracy).largest
+        if error < largest:
+            best, largest = (orbit, known), error
+        if error <= accuracy or error > last:
+            break
+        mesh, last = finer_mesh(mesh, known.planned(accuracy)), LUCK * error
+        if not mesh.allowed:
+            break
+        if not coarser.serve(mesh):
+            coarser = CoarserMeshes(mesh, orbit, accuracy)
+    orbit, known = best
+    found = same_motion(newton(orbit, newton_tolerance(accuracy)), near.size)
+    return judged_by(known, at_orbit(found, matrix_distance(accuracy)), accuracy)
 
 
 def calibrated_cycle(

@@ -1,0 +1,87 @@
+"""A cycle by way of three coarser meshes, which say where it lies and how large its errors will be.
+
+One is coarser in space, one in time, one in both. The orbits of the first two less that of the third are the
+orbit of the fine mesh but for a product of two small errors (the combination technique: Griebel, Schneider,
+Zenger 1992), so that one elimination there gives cycle and multipliers. By what they differ the errors of the
+coarse meshes are known, and those of the fine one by how fast errors fall at least.
+"""
+
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+
+from ...arrays import Array, Complex
+from .calibration import DISTANCE, LARGEST_FALL, LEAST_FALL, TOLERANCE, Calibration, calibration_of
+from .measures import CyclePath
+from .newton import Converged, at_orbit, multiplier_change, multipliers_of, newton
+from .orbit import Orbit
+from .orbit_mesh import OrbitMesh, tails_of
+from .path_differences import path_differences
+
+FEWER_ORDERS, FEWER_INTERVALS = 2, 1.4
+"""What the coarse mesh has less of than the fine one that it is made for."""
+MOST_ORDERS, MOST_INTERVALS = 4, 2.0
+"""What a fine mesh may have more of than the coarse one."""
+SLOWEST_FALL = 1.2
+"""Of errors in space per order, natural logarithm: the least, in units of the decay of the coefficients."""
+
+
+class CoarserMeshes:
+    """The cycle on a coarse mesh, and on those that are finer in space or in time alone."""
+
+    def __init__(self, mesh: OrbitMesh, near: Orbit, accuracy: float) -> None:
+        """mesh: the fine one; near: an orbit near by, on any mesh. Raises Unsolvable."""
+        order, intervals = mesh.order - FEWER_ORDERS, round((mesh.intervals - 1) / FEWER_INTERVALS) + 1
+        self.mesh, self._tolerance = replace(mesh, order=order, intervals=intervals), TOLERANCE * accuracy
+        self._both = _Solved(self.mesh, near, self._tolerance)
+        self._finer: dict[OrbitMesh, _Solved] = {}
+
+    def serve(self, mesh: OrbitMesh) -> bool:
+        """Whether they predict the cycle on a fine mesh."""
+        few = mesh.order - self.mesh.order <= MOST_ORDERS and self._refined_in_time(mesh) <= MOST_INTERVALS
+        return few and (mesh.elements, mesh.stages) == (self.mesh.elements, self.mesh.stages)
+
+    def predicted(self, mesh: OrbitMesh) -> tuple[Orbit, Calibration]:
+        """The orbit on a fine mesh, and the errors that it will have there; raises Unsolvable."""
+        space, time = self._on(order=mesh.order), self._on(intervals=mesh.intervals)
+        at = [mesh.carry(each.orbit) for each in (space, time, self._both)]
+        orbit = replace(at[0], values=at[0].values + at[1].values - at[2].values)
+        fall = min(max(SLOWEST_FALL * tails_of(space.orbit).decay, LEAST_FALL), LARGEST_FALL)
+        by_orders = np.exp(fall * (mesh.order - self.mesh.order))
+        by_intervals = self._refined_in_time(mesh) ** (mesh.stages + 1)
+        # Multipliers are not said to be more right than those of the two meshes are, of which each has one error.
+        apart = multiplier_change(space.multipliers, time.multipliers)
+        in_space = np.append(self._errors(space, by_orders), 0.0)
+        in_time = np.append(self._errors(time, by_intervals), apart)
+        return orbit, calibration_of(mesh, in_space, in_time, orbit, None)
+
+    def _on(self, **finer: int) -> "_Solved":
+        mesh = replace(self.mesh, **finer)
+        if mesh not in self._finer:
+            self._finer[mesh] = _Solved(mesh, self._both.orbit, self._tolerance)
+        return self._finer[mesh]
+
+    def _errors(self, finer: "_Solved", factor: float) -> Array:
+        """One part of the errors on a mesh on which it is smaller than on the coarse one by a factor, (4,)."""
+        errors: Array = path_differences(self._both.path, finer.path) / (factor - 1)
+        return errors
+
+    def _refined_in_time(self, mesh: OrbitMesh) -> float:
+        return (mesh.intervals - 1) / (self.mesh.intervals - 1)
+
+
+class _Solved:
+    """The cycle on a mesh; raises Unsolvable."""
+
+    def __init__(self, mesh: OrbitMesh, near: Orbit, tolerance: float) -> None:
+        self._found: Converged = newton(mesh.carry(near), tolerance)
+        self.orbit = self._found.orbit
+
+    @cached_property
+    def path(self) -> CyclePath:
+        return CyclePath(self.orbit)
+
+    @cached_property
+    def multipliers(self) -> Complex:
+        return multipliers_of(at_orbit(self._found, DISTANCE))[0]
