@@ -116,7 +116,7 @@ def from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
 
 def from_cold(start: str, accuracy: float, rod: SweptRod) -> Cycle:
     """The point without a neighbour."""
-    return settled(solve_cycle(rod.point, replace(asked(accuracy), start=start), along=SWEPT[0]))
+    return settled(solve_cycle(rod.point, replace(asked(accuracy), start=start)))
 
 
 def settled(cycle: Cycle) -> Cycle:

@@ -1,9 +1,9 @@
 """A cycle by way of three coarser meshes, which say where it lies and how large its errors will be.
 
-One is coarser in space, one in time, one in both. The orbits of the first two less that of the third are the
-orbit of the fine mesh but for a product of two small errors (the combination technique: Griebel, Schneider,
-Zenger 1992), so that one elimination there gives cycle and multipliers. By what they differ the errors of the
-coarse meshes are known, and those of the fine one by how fast errors fall at least.
+One is coarser in space, one in time, one in both. The orbits of the first two less that of the third are that
+of the fine mesh but for a product of two small errors (the combination technique: Griebel, Schneider, Zenger
+1992), so that one elimination there gives the cycle and its multipliers. By what they differ the errors of
+the coarse meshes are known, and those of the fine one by how fast errors fall at least.
 """
 
 from dataclasses import replace
@@ -50,7 +50,7 @@ class CoarserMeshes:
         fall = min(max(SLOWEST_FALL * tails_of(space.orbit).decay, LEAST_FALL), LARGEST_FALL)
         by_orders = np.exp(fall * (mesh.order - self.mesh.order))
         by_intervals = self._refined_in_time(mesh) ** (mesh.stages + 1)
-        # Multipliers are not said to be more right than those of the two meshes are, of which each has one error.
+        # Each of these two has one of the two errors; those of the fine mesh are not said to be smaller.
         apart = multiplier_change(space.multipliers, time.multipliers)
         in_space = np.append(self._errors(space, by_orders), 0.0)
         in_time = np.append(self._errors(time, by_intervals), apart)
@@ -63,7 +63,7 @@ class CoarserMeshes:
         return self._finer[mesh]
 
     def _errors(self, finer: "_Solved", factor: float) -> Array:
-        """One part of the errors on a mesh on which it is smaller than on the coarse one by a factor, (4,)."""
+        """One part of the errors on a mesh where it is smaller than on the coarse one by a factor, (4,)."""
         errors: Array = path_differences(self._both.path, finer.path) / (factor - 1)
         return errors
 

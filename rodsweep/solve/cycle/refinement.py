@@ -30,6 +30,8 @@ LEAST_ACCURACY = 1e-12
 FIRST_ACCURACY, NEAR, AIM_LOWERED = 1e-7, 1e-3, 1e-3
 """What the first mesh is chosen for at most, by the tails of an orbit near by, which do not tell more;
 tolerance of that orbit; factor of the accuracy where a mesh is too coarse."""
+FIRST_SHARE = 0.5
+"""Of what the first mesh of a cycle alone is chosen for: another round costs more than a finer mesh."""
 LEAST_SIZE, LARGEST_SIZE = 0.2, 5.0
 """Size of what Newton's method may find, in units of what it started from: it must be the same motion."""
 LUCK = 10.0
@@ -114,10 +116,11 @@ def refine(orbit: Orbit, accuracy: float, parameter: str | None = None) -> Refin
     while True:
         try:
             near = same_motion(newton(start, NEAR), orbit.size).orbit
-            first = wanted_mesh(near, aim, stages_for(accuracy))
+            stages = stages_for(accuracy)
             if parameter is None:
-                return _predicted_cycle(first, near, accuracy)
-            return calibrated_cycle(_on(first, near, aim, parameter), None, accuracy, parameter)
+                return _predicted_cycle(wanted_mesh(near, FIRST_SHARE * aim, stages), near, accuracy)
+            found = _on(wanted_mesh(near, aim, stages), near, aim, parameter)
+            return calibrated_cycle(found, None, accuracy, parameter)
         except Unsolvable:
             if aim <= LEAST_ACCURACY or not orbit.symmetric:  # those born at Hopf points are
                 raise
@@ -145,7 +148,7 @@ def _predicted_cycle(mesh: OrbitMesh, near: Orbit, accuracy: float) -> RefinedCy
             coarser = CoarserMeshes(mesh, orbit, accuracy)
     orbit, known = best
     found = same_motion(newton(orbit, newton_tolerance(accuracy)), near.size)
-    return judged_by(known, at_orbit(found, matrix_distance(accuracy)), accuracy)
+    return judged_by(known, at_orbit(found, min(accuracy, LARGEST_DISTANCE)), accuracy)
 
 
 def calibrated_cycle(
