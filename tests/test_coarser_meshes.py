@@ -1,0 +1,70 @@
+"""A cycle on a fine mesh as three coarser ones predict it."""
+
+from dataclasses import replace
+
+import pytest
+
+from rodsweep.discretization.mesh import mesh
+from rodsweep.discretization.stress_form import StressForm
+from rodsweep.model.rod import Rod
+from rodsweep.solve.cycle.coarser_meshes import CoarserMeshes
+from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
+from rodsweep.solve.cycle.measures import CyclePath
+from rodsweep.solve.cycle.newton import newton, relative_change
+from rodsweep.solve.cycle.orbit_mesh import OrbitMesh
+from rodsweep.solve.cycle.path_differences import APART, PERIOD, path_differences
+from rodsweep.solve.cycle.refinement import refine
+
+ACCURACY = 1e-7
+FINE = OrbitMesh(1, 19, 16, 4)
+RODS = {
+    "soft": (Rod(50.0, 1e4, 1e2, 1e-2), 1.0),
+    "sheared": (Rod(30.0, 1e4, 1e2, 1e-2), 0.5),
+    "filament": (Rod(60.0, float("inf"), float("inf"), 0.0), 1.0),
+}
+
+
+@pytest.fixture(scope="module", params=RODS.values(), ids=RODS.keys())
+def near(request):
+    """An orbit near the rod's cycle."""
+    rod, gamma1 = request.param
+    return orbit_from_hopf(StressForm(rod, gamma1, mesh(1, 16)), hopf_point_below(rod))
+
+
+def off(orbit, exact):
+    return relative_change(exact, orbit.values - exact.values)
+
+
+def test_it_is_nearer_to_the_orbit_than_two_meshes_in_between_are(near):
+    coarser = CoarserMeshes(FINE, near, 1e-6 * ACCURACY)
+    orbit, _ = coarser.predicted(FINE)
+    exact = newton(orbit, 1e-13).orbit
+    between = [replace(coarser.mesh, order=FINE.order), replace(coarser.mesh, intervals=FINE.intervals)]
+    errors = [off(FINE.carry(newton(m.carry(exact), 1e-13).orbit), exact) for m in between]
+    assert off(orbit, exact) < 0.1 * min(errors)
+
+
+def test_the_parts_of_the_error_are_no_smaller_than_finer_meshes_show(near):
+    orbit, known = CoarserMeshes(FINE, near, ACCURACY).predicted(FINE)
+    found = newton(orbit, 1e-12).orbit
+    for field, parts in (("order", known.space), ("intervals", known.time)):
+        finer = replace(FINE, **{field: 2 * getattr(FINE, field)})
+        true = path_differences(CyclePath(found), CyclePath(newton(finer.carry(found), 1e-12).orbit))
+        for which in (PERIOD, APART):
+            assert true[which] <= 3 * parts[which] + 1e-12
+
+
+def test_coarser_meshes_serve_those_that_are_a_little_finer(near):
+    coarser = CoarserMeshes(FINE, near, ACCURACY)
+    assert coarser.serve(FINE) and coarser.serve(replace(FINE, order=FINE.order + 2, intervals=20))
+    for other in ({"order": FINE.order + 3}, {"intervals": 30}, {"elements": 2}, {"stages": 5}):
+        assert not coarser.serve(replace(FINE, **other))
+
+
+def test_a_cycle_alone_and_one_that_starts_a_chain_are_the_same(near):
+    alone, first = refine(near, ACCURACY), refine(near, ACCURACY, "F")
+    assert alone.orbit.period == pytest.approx(first.orbit.period, rel=2 * ACCURACY)
+    assert alone.fine.matrix.tangent is None and first.fine.matrix.tangent is not None
+    apart = alone.errors.multiplier_error + first.errors.multiplier_error
+    assert abs(alone.largest_multiplier - first.largest_multiplier) <= apart
+    assert alone.errors.largest <= ACCURACY and alone.fine.distance <= ACCURACY
