@@ -35,7 +35,7 @@ FOUND = 1e-6
 NORMAL_FORM_ACCURACY = 1e-3
 STARTS = (0.3, 0.12, 0.03, 0.006)
 """Relative distances from the Hopf point at which the normal form starts Newton's method, one after the
-other: in most rods its amplitude is off by 2 percent at the first, where k2 is small by more."""
+other: in most rods its orbit's size is off by a quarter at the first, by a tenth at the second."""
 NEAREST = 1e-2
 """Relative distance from the Hopf point within which the normal form's cycle is near enough to the one of
 the rod: its amplitude is then off by 1 percent in most rods."""
