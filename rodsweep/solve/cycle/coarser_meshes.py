@@ -84,4 +84,5 @@ class _Solved:
 
     @cached_property
     def multipliers(self) -> Complex:
+        """All but the trivial one, (rank - 1,), by descending modulus."""
         return multipliers_of(at_orbit(self._found, DISTANCE))[0]

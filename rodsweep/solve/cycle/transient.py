@@ -29,6 +29,8 @@ from .trace import TipTrace
 
 TRANSIENT = TimeScheme("arkimex", "4", tolerance=1e-5)
 """The way to a cycle needs no accuracy: Newton's method supplies it."""
+QUICK = TimeScheme("arkimex", "4", tolerance=1e-4)
+"""The first returns of what grows fast: nothing is judged by its growth, and it has mostly closed then."""
 CAREFUL = TimeScheme("arkimex", "5", tolerance=1e-9)
 """Where the growth per period is small its sign has to be right, and a path that is stored has to be."""
 
@@ -155,7 +157,8 @@ class Transient:
         """Where the rod goes from z, shape (unknowns,)."""
         z, first = self._relaxed(z), True
         while self.waited < self.most_periods:
-            run = self._chunk(z, FIRST_CHUNK if first else CHUNK)
+            returns, scheme = (FIRST_CHUNK, self._first_scheme) if first else (CHUNK, self.scheme)
+            run = self._chunk(z, returns, scheme)
             if self.trace:
                 self.trace.add(run, self.clock)
             if run.ending not in (Ending.reached, Ending.stopped):
@@ -205,7 +208,12 @@ class Transient:
         why = run.message or ("too many steps" if run.ending == Ending.too_many_steps else "no step succeeds")
         return self._ended(CycleStatus.failed, why)
 
-    def _chunk(self, z: Array, returns: int) -> Trajectory:
+    @property
+    def _first_scheme(self) -> TimeScheme:
+        grows_fast = self.mode.w.real * self.mode.period > SLOW_GROWTH
+        return QUICK if grows_fast and self.scheme is TRANSIENT else self.scheme
+
+    def _chunk(self, z: Array, returns: int, scheme: TimeScheme) -> Trajectory:
         """A run of so many returns, or of three times the time they should take."""
         count, last = 0, float(self.row @ z)
 
@@ -216,7 +224,7 @@ class Transient:
             return count >= returns
 
         period = self.mode.period
-        stepper = integrator(self.beam.mesh, self.scheme)
+        stepper = integrator(self.beam.mesh, scheme)
         limit = RunLimit(enough, STEPS_PER_CHUNK)
         run = stepper.run(self.beam, z, 3 * returns * period, self.step, limit)
         if len(run.times) > 2:
