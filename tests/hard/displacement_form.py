@@ -96,10 +96,12 @@ class Displaced:
         return self.rate(q + 1j * TINY * np.eye(len(q))).imag.T / TINY
 
     def leading_mode(self):
-        """(eigenvalue with Im >= 0, q beyond rest with tip y = 1) of the mode that leads."""
+        """(eigenvalue with Im >= 0, q beyond rest with tip y = 1) of the lateral mode that leads."""
         values, vectors = np.linalg.eig(self.jacobian(self.straight))
-        lead = int(np.argmax(values.real + 1e-9 * values.imag))
-        return values[lead], vectors[:, lead] / vectors[2 * self.order - 1, lead]
+        tip = vectors[2 * self.order - 1]
+        lateral = np.abs(tip) > 1e-9 * np.abs(vectors).max(axis=0)
+        lead = int(np.argmax(np.where(lateral, values.real + 1e-9 * values.imag, -np.inf)))
+        return values[lead], vectors[:, lead] / tip[lead]
 
 
 @dataclass(frozen=True)
