@@ -12,7 +12,7 @@ from .orbit import Orbit, node_times
 
 STAGES, INTERVALS = 3, 20
 """Of the first orbit, over its period."""
-PHASES = 256
+PHASES = 128
 """Times at which the largest y is sought."""
 SYMMETRIC = 0.2
 """Largest relative distance of a motion from its reflection, half a period on, if it is symmetric."""
