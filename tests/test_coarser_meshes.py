@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from rodsweep.discretization.mesh import mesh
@@ -14,6 +15,7 @@ from rodsweep.solve.cycle.newton import newton, relative_change
 from rodsweep.solve.cycle.orbit_mesh import OrbitMesh
 from rodsweep.solve.cycle.path_differences import APART, PERIOD, path_differences
 from rodsweep.solve.cycle.refinement import refine
+from rodsweep.solve.point import Unsolvable
 
 ACCURACY = 1e-7
 FINE = OrbitMesh(1, 19, 16, 4)
@@ -59,6 +61,22 @@ def test_coarser_meshes_serve_those_that_are_a_little_finer(near):
     assert coarser.serve(FINE) and coarser.serve(replace(FINE, order=FINE.order + 2, intervals=20))
     for other in ({"order": FINE.order + 3}, {"intervals": 30}, {"elements": 2}, {"stages": 5}):
         assert not coarser.serve(replace(FINE, **other))
+
+
+@pytest.mark.parametrize("why", ["no coarse cycle", "far off"])
+def test_what_coarser_meshes_do_not_predict_is_measured_by_finer_ones(near, why, monkeypatch):
+    predicted = CoarserMeshes.predicted
+
+    def spoilt(self, mesh):
+        orbit, known = predicted(self, mesh)
+        if why == "far off":
+            return replace(orbit, values=orbit.values * (1 + 1e-4)), known
+        raise Unsolvable(why)
+
+    monkeypatch.setattr(CoarserMeshes, "predicted", spoilt)
+    alone, first = refine(near, ACCURACY), refine(near, ACCURACY, "F")
+    assert np.array_equal(alone.orbit.values, first.orbit.values)
+    assert alone.errors == first.errors
 
 
 def test_a_cycle_alone_and_one_that_starts_a_chain_are_the_same(near):

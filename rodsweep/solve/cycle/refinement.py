@@ -4,6 +4,7 @@ The tails of an orbit near by say which mesh reaches the accuracy (`orbit_mesh`)
 measured (`calibration`), are too large after all, they say which one does at least cost.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import inf
 
@@ -32,6 +33,9 @@ FIRST_ACCURACY, NEAR, AIM_LOWERED = 1e-7, 1e-3, 1e-3
 tolerance of that orbit; factor of the accuracy where a mesh is too coarse."""
 FIRST_SHARE = 0.5
 """Of what the first mesh of a cycle alone is chosen for: another round costs more than a finer mesh."""
+PREDICTED_WITHIN, LEAST_WITHIN = 30.0, 1e-9
+"""Distance of a cycle from what coarser meshes predict beyond which their errors are no measure of its own,
+in units of the accuracy, of which up to 4.4 were seen; and its least bound, for rounding."""
 LEAST_SIZE, LARGEST_SIZE = 0.2, 5.0
 """Size of what Newton's method may find, in units of what it started from: it must be the same motion."""
 LUCK = 10.0
@@ -107,7 +111,8 @@ def judged_by(calibration: Calibration, found: Converged, accuracy: float) -> Re
 def refine(orbit: Orbit, accuracy: float, parameter: str | None = None) -> RefinedCycle:
     """The cycle near an orbit that is no more than near one, as accurate as asked for or as the limits allow.
 
-    Raises Unsolvable where there is none. parameter: along which the matrices have tangents.
+    Raises Unsolvable where there is none. parameter: along which the matrices have tangents; a cycle without
+    it stands alone, and finer meshes measure its errors only where coarser ones do not.
 
     Next to a Hopf point a coarse mesh has no cycle at all, for its own Hopf point is beyond: finer ones are
     tried then.
@@ -118,7 +123,8 @@ def refine(orbit: Orbit, accuracy: float, parameter: str | None = None) -> Refin
             near = same_motion(newton(start, NEAR), orbit.size).orbit
             stages = stages_for(accuracy)
             if parameter is None:
-                return _predicted_cycle(wanted_mesh(near, FIRST_SHARE * aim, stages), near, accuracy)
+                with suppress(Unsolvable):
+                    return _predicted_cycle(wanted_mesh(near, FIRST_SHARE * aim, stages), near, accuracy)
             found = _on(wanted_mesh(near, aim, stages), near, aim, parameter)
             return calibrated_cycle(found, None, accuracy, parameter)
         except Unsolvable:
@@ -131,23 +137,29 @@ def refine(orbit: Orbit, accuracy: float, parameter: str | None = None) -> Refin
 def _predicted_cycle(mesh: OrbitMesh, near: Orbit, accuracy: float) -> RefinedCycle:
     """A cycle that stands alone, on the first mesh or a finer one, as coarser meshes predict it.
 
-    The best is returned where limits do not allow the accuracy; raises Unsolvable.
+    The best is returned where limits do not allow the accuracy. Raises Unsolvable where a coarser mesh has no
+    such cycle, where their errors do not fall as they should, or where they do not predict it.
     """
-    coarser, largest, last = CoarserMeshes(mesh, near, accuracy), inf, inf
+    coarser, last = CoarserMeshes(mesh, near, accuracy), inf
+    orbit, known = best = coarser.predicted(mesh)
     for _ in range(MOST_ROUNDS):
-        orbit, known = coarser.predicted(mesh)
         error = known.errors(accuracy).largest
-        if error < largest:
-            best, largest = (orbit, known), error
-        if error <= accuracy or error > last:
+        if error < best[1].errors(accuracy).largest:
+            best = orbit, known
+        if error <= accuracy:
             break
+        if error > last:
+            raise Unsolvable("the errors do not fall on finer meshes")
         mesh, last = finer_mesh(mesh, known.planned(accuracy)), LUCK * error
         if not mesh.allowed:
             break
         if not coarser.serve(mesh):
             coarser = CoarserMeshes(mesh, orbit, accuracy)
+        orbit, known = coarser.predicted(mesh)
     orbit, known = best
     found = same_motion(newton(orbit, newton_tolerance(accuracy)), near.size)
+    if found.distance > max(PREDICTED_WITHIN * accuracy, LEAST_WITHIN):
+        raise Unsolvable("coarser meshes do not predict the cycle")
     return judged_by(known, at_orbit(found, min(accuracy, LARGEST_DISTANCE)), accuracy)
 
 
