@@ -1,7 +1,7 @@
 # `make help` lists the targets. Each works alone straight after cloning; what pip installs stays in .venv.
 #
 # PETSC says where PETSc and SLEPc come from; the choice is remembered in .venv/route:
-#   debian  (default) the packages of Debian 12 or newer, or Ubuntu: about a minute
+#   debian  (default) the packages of Debian 12 or newer, or Ubuntu: about three minutes
 #   pypi    built from PyPI's sources with this machine's mpicc, BLAS and LAPACK: about ten minutes
 ROUTE  := $(shell cat .venv/route 2>/dev/null)
 PETSC  ?= $(or $(ROUTE),debian)
