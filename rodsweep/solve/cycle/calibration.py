@@ -9,11 +9,12 @@ the others both parts are larger by as much as the orbit's tails make them.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from math import ceil, inf
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Complex
 from ...discretization.resolution import LARGEST_ORDER
 from .cycle_errors import LEAST_CLAIM, ROUNDING, CycleErrors, largest_error
 from .measures import CyclePath
@@ -227,8 +228,12 @@ class Seen:
     """What of a cycle that was solved is compared with that on another mesh."""
 
     def __init__(self, found: Converged) -> None:
-        self.path = CyclePath(found.orbit)
-        self.multipliers = multipliers_of(at_orbit(found, DISTANCE))[0]
+        self._found, self.orbit, self.path = found, found.orbit, CyclePath(found.orbit)
+
+    @cached_property
+    def multipliers(self) -> Complex:
+        """All but the trivial one, (rank - 1,), by descending modulus."""
+        return multipliers_of(at_orbit(self._found, DISTANCE))[0]
 
     def difference(self, fine: "Seen") -> Array:
         """By what the one on a finer mesh differs, as `Calibration.space` says, (5,)."""

@@ -7,22 +7,28 @@ the coarse meshes are known, and those of the fine one by how fast errors fall a
 """
 
 from dataclasses import replace
-from functools import cached_property
 
 import numpy as np
 
-from ...arrays import Array, Complex
-from .calibration import DISTANCE, LARGEST_FALL, LEAST_FALL, TOLERANCE, Calibration, calibration_of
-from .measures import CyclePath
-from .newton import Converged, at_orbit, multiplier_change, multipliers_of, newton
+from ...arrays import Array
+from .calibration import (
+    LARGEST_FALL,
+    LEAST_FALL,
+    TOLERANCE,
+    Calibration,
+    Seen,
+    at_its_parameters,
+    calibration_of,
+)
+from .newton import multiplier_change
 from .orbit import Orbit
 from .orbit_mesh import OrbitMesh, tails_of
 from .path_differences import path_differences
 
-FEWER_ORDERS, FEWER_INTERVALS = 2, 1.4
-"""What the coarse mesh has less of than the fine one that it is made for."""
-MOST_ORDERS, MOST_INTERVALS = 4, 2.0
-"""What a fine mesh may have more of than the coarse one."""
+ORDERS_LESS, TIMES_FEWER = 2, 1.4
+"""Orders and intervals of the coarse mesh beside those of the fine one that it is made for."""
+SERVED_ORDERS, SERVED_INTERVALS = 4, 2.0
+"""Orders that a fine mesh may have more, and times how many intervals."""
 SLOWEST_FALL = 1.2
 """Of errors in space per order, natural logarithm: the least, in units of the decay of the coefficients."""
 
@@ -32,14 +38,16 @@ class CoarserMeshes:
 
     def __init__(self, mesh: OrbitMesh, near: Orbit, accuracy: float) -> None:
         """mesh: the fine one; near: an orbit near by, on any mesh. Raises Unsolvable."""
-        order, intervals = mesh.order - FEWER_ORDERS, round((mesh.intervals - 1) / FEWER_INTERVALS) + 1
+        order, intervals = mesh.order - ORDERS_LESS, round((mesh.intervals - 1) / TIMES_FEWER) + 1
         self.mesh, self._tolerance = replace(mesh, order=order, intervals=intervals), TOLERANCE * accuracy
-        self._both = _Solved(self.mesh, near, self._tolerance)
-        self._finer: dict[OrbitMesh, _Solved] = {}
+        self._both = Seen(at_its_parameters(self.mesh, near, self._tolerance))
+        self._finer: dict[OrbitMesh, Seen] = {}
 
     def serve(self, mesh: OrbitMesh) -> bool:
         """Whether they predict the cycle on a fine mesh."""
-        few = mesh.order - self.mesh.order <= MOST_ORDERS and self._refined_in_time(mesh) <= MOST_INTERVALS
+        few = (
+            mesh.order - self.mesh.order <= SERVED_ORDERS and self._refined_in_time(mesh) <= SERVED_INTERVALS
+        )
         return few and (mesh.elements, mesh.stages) == (self.mesh.elements, self.mesh.stages)
 
     def predicted(self, mesh: OrbitMesh) -> tuple[Orbit, Calibration]:
@@ -56,33 +64,16 @@ class CoarserMeshes:
         in_time = np.append(self._errors(time, by_intervals), apart)
         return orbit, calibration_of(mesh, in_space, in_time, orbit, None)
 
-    def _on(self, **finer: int) -> "_Solved":
+    def _on(self, **finer: int) -> Seen:
         mesh = replace(self.mesh, **finer)
         if mesh not in self._finer:
-            self._finer[mesh] = _Solved(mesh, self._both.orbit, self._tolerance)
+            self._finer[mesh] = Seen(at_its_parameters(mesh, self._both.orbit, self._tolerance))
         return self._finer[mesh]
 
-    def _errors(self, finer: "_Solved", factor: float) -> Array:
+    def _errors(self, finer: Seen, factor: float) -> Array:
         """One part of the errors on a mesh where it is smaller than on the coarse one by a factor, (4,)."""
         errors: Array = path_differences(self._both.path, finer.path) / (factor - 1)
         return errors
 
     def _refined_in_time(self, mesh: OrbitMesh) -> float:
         return (mesh.intervals - 1) / (self.mesh.intervals - 1)
-
-
-class _Solved:
-    """The cycle on a mesh; raises Unsolvable."""
-
-    def __init__(self, mesh: OrbitMesh, near: Orbit, tolerance: float) -> None:
-        self._found: Converged = newton(mesh.carry(near), tolerance)
-        self.orbit = self._found.orbit
-
-    @cached_property
-    def path(self) -> CyclePath:
-        return CyclePath(self.orbit)
-
-    @cached_property
-    def multipliers(self) -> Complex:
-        """All but the trivial one, (rank - 1,), by descending modulus."""
-        return multipliers_of(at_orbit(self._found, DISTANCE))[0]

@@ -141,6 +141,8 @@ class Transient:
         self.faint = abs(self.mode.w.real) * self.mode.period < FAINT
         careful = self.faint or traced
         self.scheme, self.noise = (CAREFUL, CAREFUL_NOISE) if careful else (TRANSIENT, NOISE)
+        grows_fast = self.mode.w.real * self.mode.period > SLOW_GROWTH
+        self.first_scheme = QUICK if grows_fast and not careful else self.scheme
         self.trace = TipTrace(beam) if traced else None
         self.bend = nan
         """c in g = g0 - c |z|^2, once it has shown."""
@@ -157,7 +159,7 @@ class Transient:
         """Where the rod goes from z, shape (unknowns,)."""
         z, first = self._relaxed(z), True
         while self.waited < self.most_periods:
-            returns, scheme = (FIRST_CHUNK, self._first_scheme) if first else (CHUNK, self.scheme)
+            returns, scheme = (FIRST_CHUNK, self.first_scheme) if first else (CHUNK, self.scheme)
             run = self._chunk(z, returns, scheme)
             if self.trace:
                 self.trace.add(run, self.clock)
@@ -207,11 +209,6 @@ class Transient:
             return self._ended(CycleStatus.left_the_model, where)
         why = run.message or ("too many steps" if run.ending == Ending.too_many_steps else "no step succeeds")
         return self._ended(CycleStatus.failed, why)
-
-    @property
-    def _first_scheme(self) -> TimeScheme:
-        grows_fast = self.mode.w.real * self.mode.period > SLOW_GROWTH
-        return QUICK if grows_fast and self.scheme is TRANSIENT else self.scheme
 
     def _chunk(self, z: Array, returns: int, scheme: TimeScheme) -> Trajectory:
         """A run of so many returns, or of three times the time they should take."""
