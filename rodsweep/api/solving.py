@@ -13,6 +13,7 @@ from threadpoolctl import ThreadpoolController
 from ..cli.job import Job
 from ..cli.running import plan_of
 from ..cli.tasks.protocol import Solver
+from ..cli.unforeseen import Note, guarded
 from ..results.file.creation import Plan
 from ..results.file.provenance import now
 from ..results.file.view import View
@@ -24,13 +25,16 @@ _warm: set[str] = set()
 """Tasks that have been solved in this process."""
 
 
-def solve_here(job: Job) -> tuple[xr.Dataset, list[str]]:
+def solve_here(job: Job, note: Note | None = None) -> tuple[xr.Dataset, list[str]]:
     """(the Dataset of all points, what each outcome has to say of points that are solved alone).
 
-    Raises EnvironmentLacks where PETSc is not to be found.
+    note: what is done about an exception that no solver foresees, whose point then fails; without it the
+    exception is raised. Raises EnvironmentLacks where PETSc is not to be found.
     """
     require_petsc()
     solver, started = job.solver(), now()
+    if note is not None:
+        solver = guarded(solver, job.layout, note)
     plan = plan_of(job, solver, Shard(), _kernels())
     if job.config.task not in _warm:
         solver.warm_up()

@@ -3,7 +3,7 @@
 import os
 import socket
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -29,6 +29,7 @@ from ..sweep.stretches import StretchSolver, Together
 from ..sweep.team import Team
 from .job import Job, make_job
 from .tasks.protocol import Solver
+from .unforeseen import Log, guarded
 from .wording import counted
 
 FAILURES_TOLD = 3
@@ -36,8 +37,15 @@ FAILURES_TOLD = 3
 CONTINUE = 75
 """Exit status of a run that was asked to stop: the same command continues it (EX_TEMPFAIL of sysexits.h)."""
 
-Contribution = tuple[str, list[str], Share]
-"""A rank's host, the failures that it tells, and what it did."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Contribution:
+    """What a rank tells the first one: its host, failed points in words, exceptions in its log, its share."""
+
+    host: str
+    failures: list[str]
+    exceptions: int
+    share: Share
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,6 +58,8 @@ class RunOptions:
     extend: bool = False
     """Whether an existing file of a smaller config is extended."""
     shard: Shard
+    strict: bool = False
+    """Whether the run ends at the first exception that is a bug."""
     quiet: bool = False
     """Whether only what is amiss is told."""
 
@@ -75,7 +85,8 @@ class _Run:
         self.team, self.job, self.output, self.stop = team, job, output, stop
         self.options, self.shard = options, options.shard
         self.began, self.started = time.monotonic(), provenance.now()
-        self.solver = job.solver()
+        self.log = Log(output, team.rank, self._where)
+        self.solver = guarded(job.solver(), job.layout, self._note)
         self.kernels = provenance.united_kernels(team.gather(blas()) or [])
         self.plan = plan_of(job, self.solver, self.shard, self.kernels)
 
@@ -90,14 +101,20 @@ class _Run:
         contributions: list[Contribution] = []
         if count:
             self.team.on_first(self._note_kernels)
-            failures, share = self._solve(units, missing, count)
-            contributions = self.team.gather((socket.gethostname(), failures, share)) or []
+            contributions = self.team.gather(self._solve(units, missing, count)) or []
         return self.team.on_first(lambda: self._finish(count, contributions))
 
     def _say(self, text: str, amiss: bool = False) -> None:
         """Tells the user, who may want to hear only what is amiss."""
         if amiss or not self.options.quiet:
             click.echo(text)
+
+    def _note(self, indices: Sequence[int], error: Exception) -> None:
+        """Writes an unforeseen exception into the log; raises it where the run is to end."""
+        self.log(indices, error)
+        if self.options.strict:
+            error.add_note(f"at {self._where(indices[0])}")
+            raise error
 
     def _open(self) -> list[IndexRange]:
         """Opens the file; returns the points that it misses."""
@@ -129,10 +146,8 @@ class _Run:
         if sentence := provenance.kernels_sentence(kernels):
             click.echo(f"{self.output}: {sentence}")
 
-    def _solve(
-        self, units: list[IndexRange], missing: list[IndexRange], count: int
-    ) -> tuple[list[str], Share]:
-        """This rank's share of the units, into its journal; and what to tell of failures."""
+    def _solve(self, units: list[IndexRange], missing: list[IndexRange], count: int) -> Contribution:
+        """Solves this rank's share of the units, into its journal."""
         failures: list[str] = []
         solver, plan = self.solver, self.plan
 
@@ -161,7 +176,9 @@ class _Run:
         finally:
             if tell:
                 tell.close()
-        return failures, share
+        return Contribution(
+            host=socket.gethostname(), failures=failures, exceptions=self.log.count, share=share
+        )
 
     def _solve_unit(
         self, missing: IndexSet, checkpoints: Checkpoints
@@ -210,9 +227,12 @@ class _Run:
         expected = {status.name for status in self.solver.statuses if status.succeeded} | {"missing"}
         amiss = not set(counts) <= expected
         self._say(f"{self.output}: " + ", ".join(f"{n} {name}" for name, n in counts.items()), amiss)
-        told = [failure for _, failures, _ in contributions for failure in failures]
+        told = [failure for contribution in contributions for failure in contribution.failures]
         for failure in told[:FAILURES_TOLD]:
             click.echo(f"  {failure}")
+        if exceptions := sum(contribution.exceptions for contribution in contributions):
+            raised = counted(exceptions, "unforeseen exception")
+            click.echo(f"  {raised}: a bug, please report it with {self.log.path}, which has the traceback")
         if left:
             kept = self.job.points.count - total(missing)
             click.echo(
@@ -227,8 +247,8 @@ class _Run:
     def _history(self, contributions: list[Contribution]) -> dict[str, Any]:
         """Attributes that say where, by what and by whom the points of this run were computed."""
         names = ("_version", "_commit", "_options")
-        hosts = {host for host, *_ in contributions}
-        shares = [share for *_, share in contributions[: provenance.MOST_RANKS_TOLD]]
+        hosts = {contribution.host for contribution in contributions}
+        shares = [contribution.share for contribution in contributions[: provenance.MOST_RANKS_TOLD]]
         points, busy, idle = zip(*((share.points, share.busy, share.idle) for share in shares), strict=True)
         numbers = (np.array(points, "i4"), np.array(busy, "f4"), np.array(idle, "f4"))
         return {k: v for k, v in self.plan.attributes.items() if k.endswith(names)} | {

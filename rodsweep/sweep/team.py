@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any, TypeVar
 
-from ..errors import EnvironmentLacks, Refusal
+from ..errors import BUG_STATUS, EnvironmentLacks, Refusal
 
 T = TypeVar("T")
 
@@ -65,7 +65,7 @@ class Team:
 
     @contextmanager
     def together(self) -> Iterator[None]:
-        """What fails in here on one rank ends all ranks with status 3 and a message: they would wait.
+        """What fails in here on one rank ends all ranks with its message and exit status: they would wait.
 
         With a single rank there is nobody to wait, and a refusal that all ranks share needs no abort:
         such exceptions go on.
@@ -83,5 +83,6 @@ class Team:
             for stream in (sys.stdout, sys.stderr):
                 with suppress(OSError):  # a full disk under the log must not keep the others waiting
                     stream.flush()
-            self.comm.Abort(3)
-            raise SystemExit(3) from error
+            status = error.exit_status if isinstance(error, Refusal) else BUG_STATUS
+            self.comm.Abort(status)
+            raise SystemExit(status) from error
