@@ -11,7 +11,7 @@ import xarray as xr
 from threadpoolctl import ThreadpoolController
 
 from ..cli.job import Job
-from ..cli.running import plan_of
+from ..cli.planning import plan_of
 from ..cli.tasks.protocol import AllPoints, Arrays, Solver
 from ..cli.unforeseen import Note, guarded
 from ..results.file.creation import Plan

@@ -1,6 +1,5 @@
 """`rodsweep run`, read aloud: read the config, open the file, solve what is missing, fold it in."""
 
-import os
 import socket
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -14,7 +13,6 @@ import numpy as np
 
 from ..errors import EnvironmentLacks
 from ..results.file import provenance
-from ..results.file.creation import Plan
 from ..results.file.store import Store
 from ..results.file.view import read_view
 from ..results.run.checkpoints import Checkpoints
@@ -29,9 +27,10 @@ from ..sweep.shards import Shard
 from ..sweep.stop import StopRequest
 from ..sweep.stretches import StretchSolver, Together
 from ..sweep.team import Team
+from .contribution import Contribution, history_of, of_the_last_run
 from .job import Job, make_job
 from .joint import JointWork
-from .tasks.protocol import Solver
+from .planning import plan_of
 from .unforeseen import Log, guarded
 from .wording import counted
 
@@ -39,16 +38,6 @@ FAILURES_TOLD = 3
 """Failed points that are named at the end of a run; the file has the status of all."""
 CONTINUE = 75
 """Exit status of a run that was asked to stop: the same command continues it (EX_TEMPFAIL of sysexits.h)."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Contribution:
-    """What a rank tells the first one: its host, failed points in words, exceptions in its log, its share."""
-
-    host: str
-    failures: list[str]
-    exceptions: int
-    share: Share
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -138,7 +127,9 @@ class _Run:
         """Folds the points into the file; returns what all points together are still to give."""
         self.seconds = time.monotonic() - self.began
         if count:
-            self.store.fold(self._history(contributions))
+            history = history_of(contributions, self.team.MPI.Get_library_version())
+            started = {"started": self.started, "stopped": self.stop.name}
+            self.store.fold(of_the_last_run(self.plan) | history | started)
         if not self._lacks_curves(total(self.store.missing())):
             return Joint(False)
         if not self.joint:
@@ -321,51 +312,3 @@ class _Run:
             return 0
         click.echo(f"  `rodsweep show {self.output}` says what each status means")
         return 1
-
-    def _history(self, contributions: list[Contribution]) -> dict[str, Any]:
-        """Attributes that say where, by what and by whom the points of this run were computed."""
-        names = ("_version", "_commit", "_options")
-        hosts = {contribution.host for contribution in contributions}
-        shares = [contribution.share for contribution in contributions[: provenance.MOST_RANKS_TOLD]]
-        points, busy, idle = zip(*((share.points, share.busy, share.idle) for share in shares), strict=True)
-        numbers = (np.array(points, "i4"), np.array(busy, "f4"), np.array(idle, "f4"))
-        return {k: v for k, v in self.plan.attributes.items() if k.endswith(names)} | {
-            "ranks": self.team.size,
-            "hosts": " ".join(sorted(hosts))[: provenance.LONGEST_ATTRIBUTE],
-            "started": self.started,
-            "stopped": self.stop.name,
-            "shard": self.plan.attributes["shard"],
-            "mpi_library": self.team.MPI.Get_library_version().split("\n")[0].strip("\0 "),
-            "slurm_job": os.environ.get("SLURM_JOB_ID", ""),
-            **dict(zip(provenance.RANK_SHARES, numbers, strict=True)),
-        }
-
-
-def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
-    """The file that a run of the job, with these BLAS kernels, makes or continues."""
-    from ..solve.backend import petsc
-
-    attributes = {
-        "Conventions": "CF-1.8",
-        "title": job.name,
-        "task": job.config.task,
-        "time_unit": "tau2 = gamma2 L^4/k3",
-        "config": job.text,
-        "petsc_options": petsc.options(),
-        "shard": str(shard) if shard.of > 1 else "",
-        "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in solver.statuses),
-        provenance.KERNELS: kernels,
-    }
-    versions = {f"{name}_version": value for name, value in petsc.versions().items()}
-    return Plan(
-        points=job.points,
-        layout=job.layout,
-        coordinates=job.task.coordinates(),
-        constants=job.task.constants(),
-        quantities=job.quantities,
-        config=job.resolved,
-        attributes=attributes | job.config.parameters.numbers | versions | provenance.provenance(),
-        flags=tuple((int(s), s.name) for s in solver.statuses),
-        chains=job.task.chains,
-        stretches=job.task.stretches,
-    )

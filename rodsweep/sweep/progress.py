@@ -68,10 +68,10 @@ class Teller:
 
     def _show(self) -> None:
         now = time.monotonic()
-        if now < self.next:
+        if not self.began or now < self.next:
             return
         passed = now - self.began
-        rate = rate_in_words(self.done, passed)
+        rate = rate_in_words(self.done, passed) if self.total else ""
         seconds = self.pace.left(self.done, passed) if self.pace else None
         left = "" if seconds is None else f"about {in_words(seconds)} left"
         count = f"{self.done} of {self.total}" if self.total else f"{self.done}"

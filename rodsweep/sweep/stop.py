@@ -11,7 +11,7 @@ from types import FrameType
 
 STOP_SIGNALS = (signal.SIGTERM, signal.SIGUSR1, signal.SIGINT)
 """What asks for a stop: what `kill` and a scheduler's end send, what schedulers warn with, and Ctrl-C."""
-GRACE = 0.5
+GRACE = 0.3
 """Seconds that a point may still take once a stop is asked for. What takes longer is computed again: a run is
 to end within two seconds, and the launcher of Open MPI kills after one."""
 HEARD_CTRL_C = b"\nstopping: all points that are done are kept (Ctrl-\\ ends at once)\n"
