@@ -14,11 +14,10 @@ from ..sweep.loop import Share
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Contribution:
-    """What a rank tells the first one: its host, failed points in words, exceptions in its log, its share."""
+    """What a rank tells the first one: its host, failed points in words, its share."""
 
     host: str
     failures: list[str]
-    exceptions: int
     share: Share
 
 

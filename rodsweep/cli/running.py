@@ -117,7 +117,8 @@ class _Run:
         if self.joint and joint.units is not None:
             title = None if self.options.quiet else self.job.name
             shares = self.team.gather(self.joint.solve(joint.units, self.prepare, title)) or []
-        return self.team.on_first(lambda: self._finish(count, contributions, joint, shares))
+        exceptions = sum(self.team.gather(self.log.count) or [])
+        return self.team.on_first(lambda: self._finish(count, contributions, joint, shares, exceptions))
 
     def _lacks_curves(self, missing: int) -> bool:
         """Whether the file is not finished although no point is missing; on the first rank."""
@@ -218,9 +219,7 @@ class _Run:
             ) from error
         finally:
             shown.close()
-        return Contribution(
-            host=socket.gethostname(), failures=failures, exceptions=self.log.count, share=share
-        )
+        return Contribution(host=socket.gethostname(), failures=failures, share=share)
 
     def _solve_unit(
         self, missing: IndexSet, checkpoints: Checkpoints
@@ -266,7 +265,12 @@ class _Run:
         return False
 
     def _finish(
-        self, count: int, contributions: list[Contribution], joint: "Joint", shares: list[Share]
+        self,
+        count: int,
+        contributions: list[Contribution],
+        joint: "Joint",
+        shares: list[Share],
+        exceptions: int,
     ) -> int:
         """Finishes the file, says how the run ended, and with which status it exits."""
         lacks_curves = self._finish_file(joint)
@@ -295,7 +299,7 @@ class _Run:
         told = [failure for contribution in contributions for failure in contribution.failures]
         for failure in told[:FAILURES_TOLD]:
             click.echo(f"  {failure}")
-        if exceptions := sum(contribution.exceptions for contribution in contributions):
+        if exceptions:
             raised = counted(exceptions, "unforeseen exception")
             click.echo(f"  {raised}: a bug, please report it with {self.log.path}, which has the traceback")
         if left or lacks_curves:
