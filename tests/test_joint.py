@@ -49,7 +49,7 @@ def hear_and_wait(self, text):
 
 UnitResults.write, RankListener.__call__ = write_and_note, hear_and_wait
 """
-"""What every rank executes first: in the half of a curve after so many it waits for a stop, at a safe place."""
+"""What every rank executes first: in the half of a curve after so many it waits for a stop."""
 
 
 @pytest.fixture(scope="module")
