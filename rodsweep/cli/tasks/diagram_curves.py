@@ -52,6 +52,15 @@ class DiagramCurves:
             self.special[number] = row.special
         return row
 
+    def starts(self, units: "SpecialBoundaries", wanted: Sequence[int]) -> "dict[int, Any]":
+        """What this rank has kept of the rows from which units start, by the row's number."""
+        rows = {units.row_of(unit) for unit in wanted}
+        return {row: self.special[row] for row in rows if row in self.special}
+
+    def take(self, starts: "Mapping[int, Any]") -> None:
+        """Keeps what another rank has of rows."""
+        self.special.update(starts)
+
     def units(self, view: View) -> "SpecialBoundaries | None":
         """The curves of cycles as units of work, from a view with all rows; None where there are none."""
         from ...solve.branch.special_boundaries import SpecialBoundaries
