@@ -27,7 +27,7 @@ NOUN = "halves of curves"
 
 
 @dataclass(frozen=True, slots=True)
-class Joint:
+class JointDue:
     """What all points together are to give: whether the file lacks it, and its units, if it has some."""
 
     due: bool
