@@ -11,8 +11,8 @@ class RunEnd:
 
     asked: points that were to do; left: those of them that still are; kept: points in the file. seconds: of
     the points; curve_seconds: of what all of them together give. in_the_middle: points that a stop ended.
-    followed: halves of curves of this run, None where no curves were due; halves: those that are kept while the
-    curves are missing, None where they are not.
+    followed: halves of curves of this run, None where no curves were due; halves: those that are kept while
+    the curves are missing, None where they are not.
     """
 
     ranks: int
