@@ -32,9 +32,10 @@ from ..cycle.orbit_mesh import OrbitMesh, mesh_of
 from ..cycle.path_differences import APART, HEIGHT, OTHERS, PERIOD, path_differences
 from .bordered import Condition, Scale, moved
 
-STEEP = 100.0
-"""|(p/y) dy/dp| of the parameter p and the largest y beyond which only the error of the parameter is held
-within the accuracy: beside a Hopf point or a fold."""
+STEEP = 120.0
+"""|(p/y) dy/dp| of the parameter p and the largest y from which errors at an equal p may exceed the accuracy,
+beside a Hopf point or a fold: in proportion to it, since p itself cannot be known better. That is a fifth
+above the 100 that is promised, for slopes that are taken between cycles."""
 LEAST_SHARE = 0.1
 """The least rate of the moment at the clamp, in units of the parameter's, both relative, with which errors at
 an equal moment are stated: where the moment is stationary the parameter at an equal moment means nothing."""
@@ -113,9 +114,8 @@ class BranchCalibration:
     @cached_property
     def _demanded(self) -> Calibration:
         """The errors that a mesh is chosen by: the parameter's counts as the period's does."""
-        if self.slope > STEEP:
-            return self._of_parameter
-        parts = [self.known.space.copy(), self.known.time.copy()]
+        steep = max(1.0, self.slope / STEEP)
+        parts = [self.known.space / steep, self.known.time / steep]
         for part, own in zip(parts, self.parameter, strict=True):
             part[PERIOD] = max(part[PERIOD], own)
         return replace(self.known, space=parts[0], time=parts[1])
