@@ -39,6 +39,8 @@ above the 100 that is promised, for slopes that are taken between cycles."""
 LEAST_SHARE = 0.1
 """The least rate of the moment at the clamp, in units of the parameter's, both relative, with which errors at
 an equal moment are stated: where the moment is stationary the parameter at an equal moment means nothing."""
+BETWEEN, LEAST_ERROR = 2.0, 1e-16
+"""Factor on errors that are interpolated, and the least error that counts: below, it is rounding."""
 TOLERANCE = 0.01
 """What Newton's method leaves on finer meshes, in units of the accuracy."""
 SLOPE_STEP = 1e-4
@@ -129,14 +131,29 @@ class BranchCalibration:
             part[numbers] = own
         return replace(self.known, space=parts[0], time=parts[1])
 
-    def united(self, other: "BranchCalibration", slope: float) -> "BranchCalibration":
-        """The larger errors of two, for a cycle of a slope between them on the same mesh."""
-        space, time = (np.maximum(getattr(self.known, part), getattr(other.known, part)) for part in PARTS)
-        known = replace(self.known, space=space, time=time, growth=np.ones(2))
-        return BranchCalibration(known, np.maximum(self.parameter, other.parameter), slope)
+    def towards(self, other: "BranchCalibration", share: float, slope: float) -> "BranchCalibration":
+        """The errors of a cycle of a slope at a share of the way to another one on the same mesh.
+
+        Each falls or grows along the way by a constant factor, and BETWEEN times that is stated.
+        """
+        mean = [
+            _between(one, there, share)
+            for one, there in (
+                (self.known.space, other.known.space),
+                (self.known.time, other.known.time),
+                (self.parameter, other.parameter),
+            )
+        ]
+        known = replace(self.known, space=mean[0], time=mean[1], growth=np.ones(2))
+        return BranchCalibration(known, mean[2], slope)
 
 
-PARTS = ("space", "time")
+def _between(one: Array, other: Array, share: float) -> Array:
+    """BETWEEN times the geometric means of errors, of any shape, but no more than the larger ones."""
+    logarithms = np.log(np.maximum([one, other], LEAST_ERROR))
+    means = np.exp(logarithms[0] + share * (logarithms[1] - logarithms[0]))
+    bounded: Array = np.minimum(BETWEEN * means, np.maximum(one, other))
+    return bounded
 
 
 def measured_errors(
