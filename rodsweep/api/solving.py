@@ -17,7 +17,7 @@ from ..cli.unforeseen import Note, guarded
 from ..results.file.creation import Plan
 from ..results.file.provenance import now
 from ..results.file.view import View
-from ..solve.backend.availability import require_petsc
+from ..solve.backend.availability import require_solvers
 from ..sweep.shards import Shard
 from .dataset import dataset_of
 
@@ -29,9 +29,9 @@ def solve_here(job: Job, note: Note | None = None) -> tuple[xr.Dataset, list[str
     """(the Dataset of all points, what each outcome has to say of points that are solved alone).
 
     note: what is done about an exception that no solver foresees, whose point then fails; without it the
-    exception is raised. Raises EnvironmentLacks where PETSc is not to be found.
+    exception is raised. Raises InputError and EnvironmentLacks where this process cannot solve.
     """
-    require_petsc()
+    require_solvers()
     solver, started = job.solver(), now()
     if note is not None:
         solver = guarded(solver, job.layout, note)

@@ -26,6 +26,8 @@ COMPUTED = (0, 1)
 """Exit statuses of a run that is whole, whatever its points ended with."""
 REFUSED: dict[int, type[Exception]] = {2: InputError, 3: EnvironmentLacks}
 """What the other exit statuses mean."""
+MOST_QUOTED = 2000
+"""Characters quoted of a run's standard error: enough for its last exception or a launcher's reason."""
 
 
 @in_sentences('rs.sweep("spectrum", F=[20, 30], k1=1e4, k2=100, gamma3=0.01)')
@@ -75,14 +77,26 @@ def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool) -> xr.Dataset:
         words += ["-o", str(output), *(["--strict"] if strict else [])]
         # The environment as this process got it: MPI, once started in here, adds to the one in C.
         given = dict(os.environ)
-        run = subprocess.run(words, cwd=place, env=given, capture_output=True, text=True, check=False)
+        try:
+            run = subprocess.run(words, cwd=place, env=given, capture_output=True, text=True, check=False)
+        except OSError as error:
+            raise EnvironmentLacks(f"{words[0]} cannot be started: {error.strerror}") from None
         if run.returncode not in COMPUTED:
-            lines = [line for line in run.stderr.splitlines() if line.startswith("rodsweep: ")]
-            sentence = lines[0].removeprefix("rodsweep: ") if lines else run.stderr[-2000:]
-            raise REFUSED.get(run.returncode, RuntimeError)(sentence)
+            raise _failure(run, begun=output.exists())
         if (log := log_file(output)).exists():
             warnings.warn(log.read_text(encoding="utf-8"), RuntimeWarning, stacklevel=2)
         return open_result(output)
+
+
+def _failure(run: subprocess.CompletedProcess[str], begun: bool) -> Exception:
+    """The exception for a run that is not whole; begun: whether its ranks came as far as to make a file."""
+    lines = [line for line in run.stderr.splitlines() if line.startswith("rodsweep: ")]
+    if lines:
+        return REFUSED.get(run.returncode, RuntimeError)(lines[0].removeprefix("rodsweep: "))
+    if begun or "Traceback" in run.stderr:
+        return RuntimeError(run.stderr[-MOST_QUOTED:])
+    said = " ".join(run.stderr.split()) or f"exit status {run.returncode}"
+    return EnvironmentLacks(f"{run.args[0]} did not start the ranks: {said[-MOST_QUOTED:]}")
 
 
 def _mpiexec() -> str:

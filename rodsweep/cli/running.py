@@ -18,7 +18,7 @@ from ..results.file.store import Store
 from ..results.file.view import read_view
 from ..results.run.checkpoints import Checkpoints
 from ..results.run.journal import Journal, journal_directory
-from ..solve.backend.availability import require_petsc
+from ..solve.backend.availability import require_solvers
 from ..sweep.chains import ChainSolver
 from ..sweep.loop import Indices, Share, sweep
 from ..sweep.progress import Teller
@@ -69,7 +69,7 @@ def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest)
     team = Team()
     with team.together():
         job = team.on_first(lambda: make_job(path, options.overrides))
-        team.all_can(require_petsc)
+        team.all_can(require_solvers)
         return _Run(team, job, output, options, stop).run()
 
 

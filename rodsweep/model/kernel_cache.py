@@ -12,6 +12,7 @@ import pickle
 import sys
 import warnings
 from collections.abc import Mapping, Sequence
+from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from types import FunctionType
@@ -72,11 +73,10 @@ class KernelCache(_Cache):
                 return
             except OSError as error:
                 failures.append(f"{directory} ({error.strerror})")
-        if failures:  # Python shows a warning of equal text once
-            warnings.warn(
+        if failures:
+            _warn_once(
                 f"compiled formulas cannot be kept in {' or '.join(failures)}: the next run takes minutes to "
-                "compile them again; NUMBA_CACHE_DIR names another directory",
-                stacklevel=1,
+                "compile them again; NUMBA_CACHE_DIR names another directory"
             )
 
     def _name(self, sig: Any, codegen: Any, parts: dict[FunctionType, Part]) -> str:
@@ -96,6 +96,12 @@ class KernelCache(_Cache):
 
     def flush(self) -> None:
         """Nothing is held back."""
+
+
+@cache
+def _warn_once(sentence: str) -> None:
+    """Python's own memory of warnings is emptied by numba at every compilation."""
+    warnings.warn(sentence, stacklevel=1)
 
 
 def _read(path: Path) -> bytes | None:
