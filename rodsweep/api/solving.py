@@ -1,7 +1,7 @@
 """Every point of a job, one after another in this process, without files and without other ranks."""
 
 import socket
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -11,12 +11,13 @@ import xarray as xr
 from threadpoolctl import ThreadpoolController
 
 from ..cli.job import Job
-from ..cli.running import plan_of
-from ..cli.tasks.protocol import Solver
+from ..cli.planning import plan_of
+from ..cli.tasks.protocol import AllPoints, Arrays, Solver
 from ..cli.unforeseen import Note, guarded
 from ..results.file.creation import Plan
 from ..results.file.provenance import now
 from ..results.file.view import View
+from ..results.layouts.variables import Filled
 from ..solve.backend.availability import require_solvers
 from ..sweep.shards import Shard
 from .dataset import dataset_of
@@ -43,8 +44,8 @@ def solve_here(job: Job, note: Note | None = None) -> tuple[xr.Dataset, list[str
         values, messages = _solved(job, solver, plan)
         attributes = {"ranks": 1, "hosts": socket.gethostname(), "started": started, "stopped": ""}
         filled = tuple(plan.constants)
-        if solver.finish:
-            filled += tuple(solver.finish(_view(job, plan, values)))
+        if solver.together:
+            filled += tuple(_joint(solver.together, _view(job, plan, values)))
     return dataset_of(plan, values, filled, attributes | {"finished": now()}), messages
 
 
@@ -67,6 +68,14 @@ def _solved(job: Job, solver: Solver, plan: Plan) -> tuple[dict[str, np.ndarray]
             messages[index] = outcome.message
     shape = job.points.shape
     return {name: array.reshape(*shape, *array.shape[1:]) for name, array in flat.items()}, messages
+
+
+def _joint(together: AllPoints, view: View) -> Sequence[Filled]:
+    """What all points together give."""
+    units, results = together.units(view), dict[int, Arrays]()
+    while units is not None and (wanted := units.wanted(results)):
+        results[wanted[0]] = together.solve(units, wanted[0])
+    return together.variables(view, units, results)
 
 
 def _outcomes(count: int, solver: Solver) -> Iterator[tuple[int, Any]]:

@@ -35,6 +35,8 @@ FAILED = "failed"
 
 Note = Callable[[Sequence[int], Exception], None]
 """What is done about an exception, from the flat indices of its points."""
+UnitNote = Callable[[str, Exception], None]
+"""What is done about an exception of a unit, from what that is in words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,13 +150,17 @@ class Log:
 
     def __call__(self, indices: Sequence[int], error: Exception) -> None:
         """Appends a traceback; of one that this rank has written before, its last line."""
-        self.count += 1
-        if self.count > MAX_NOTES:
-            return
         points = self.where(indices[0])
         if len(indices) > 1:
             points = f"{len(indices)} points together, from {points} to {self.where(indices[-1])}"
-        head = f"{now()} rodsweep {__version__}, rank {self.rank} on {socket.gethostname()}: {points}\n"
+        self.note(points, error)
+
+    def note(self, place: str, error: Exception) -> None:
+        """The same of a place in words."""
+        self.count += 1
+        if self.count > MAX_NOTES:
+            return
+        head = f"{now()} rodsweep {__version__}, rank {self.rank} on {socket.gethostname()}: {place}\n"
         lines = traceback.format_exception(error)
         text = "".join(lines)
         body = f"{lines[-1]}as above\n" if text in self._known else text

@@ -1,6 +1,7 @@
 """The ranks of a run: who is first, and how an error on one ends all at once."""
 
 import sys
+import time
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -9,6 +10,8 @@ from typing import Any, TypeVar
 from ..errors import BUG_STATUS, EnvironmentLacks, Refusal
 
 T = TypeVar("T")
+SHORTEST_PAUSE, LONGEST_PAUSE = 1e-4, 1e-2
+"""Seconds between two looks at whether the others have come, at first and after a while."""
 
 
 class Team:
@@ -41,11 +44,19 @@ class Team:
                 outcome = (work(), None)
             except Refusal as error:
                 outcome = (None, error)
+        self.meet()
         value, refusal = self.comm.bcast(outcome)
         if refusal is not None:
             refusal.collective = True
             raise refusal
         return value
+
+    def meet(self) -> None:
+        """Waits for all ranks without taking the processor from those that still work, as a barrier would."""
+        request, pause = self.comm.Ibarrier(), SHORTEST_PAUSE
+        while not request.Test():
+            time.sleep(pause)
+            pause = min(2 * pause, LONGEST_PAUSE)
 
     def all_can(self, work: Callable[[], object]) -> None:
         """Does `work` on every rank; where one refuses it, all raise its refusal."""
@@ -61,6 +72,7 @@ class Team:
 
     def gather(self, value: T) -> list[T] | None:
         """The values of all ranks on the first rank, None elsewhere."""
+        self.meet()
         return self.comm.gather(value)
 
     @contextmanager
