@@ -19,6 +19,7 @@ from ..results.file.provenance import now
 from ..results.file.view import View
 from ..results.layouts.variables import Filled
 from ..solve.backend.availability import require_solvers
+from ..solve.exclusive import solving
 from ..sweep.shards import Shard
 from .dataset import dataset_of
 
@@ -26,6 +27,7 @@ _warm: set[str] = set()
 """Tasks that have been solved in this process."""
 
 
+@solving
 def solve_here(job: Job, note: Note | None = None) -> tuple[xr.Dataset, list[str]]:
     """(the Dataset of all points, what each outcome has to say of points that are solved alone).
 

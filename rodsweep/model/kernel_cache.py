@@ -27,6 +27,7 @@ from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 
+from ..watch import report
 from .kernel_digest import Part, digest, kernel_of, type_text
 
 VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__)
@@ -52,6 +53,7 @@ class KernelCache(_Cache):
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """The compiled function for arguments `sig`, or None."""
+        report()  # a place to stop between two compilations of some seconds each
         target_context.refresh()  # as numba's cache does: registers what a loaded function may refer to
         name = self._name(sig, target_context.codegen(), _first_parts)
         for directory in self._directories:
