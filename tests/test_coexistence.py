@@ -17,7 +17,14 @@ from rodsweep.results.layouts.phase_diagram import CYCLE_CURVE_ENDS
 from rodsweep.solve.branch import coexistence
 from rodsweep.solve.branch.branches import BranchStatus
 from rodsweep.solve.branch.coexistence import CoexistenceStatus, Stable, solve_coexistence
-from rodsweep.solve.branch.special_curves import CurveCourse, CurveEnd, comes_back
+from rodsweep.solve.branch.special_curves import (
+    CurveCourse,
+    CurveEnd,
+    CurvePoint,
+    CycleCurve,
+    HalfCurve,
+    comes_back,
+)
 from rodsweep.solve.branch.special_points import SpecialKind
 from rodsweep.solve.changes.rows import RowRequest
 
@@ -86,7 +93,11 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     row = solve_coexistence(FIG_2C | {"k1": 149.9}, 1.0, request([60, 110]), 64)
     (fold,) = [point for point in row.special if point.kind == SpecialKind.fold]
     course = CurveCourse(SpecialKind.fold, PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 149.5, 150.0))
-    curve = course.trace(fold, 149.9)
+    halves = []
+    for side in (1.0, -1.0):
+        points, end = course.followed(fold, 149.9, side)
+        halves.append(HalfCurve(tuple(map(CurvePoint.of, points)), end))
+    curve = CycleCurve.joined(SpecialKind.fold, *halves)
     assert curve.ends == (CurveEnd.hopf, CurveEnd.edge)
     last = curve.points[-1]
     assert last.row == 150.0

@@ -145,7 +145,7 @@ def claims(mail, todo, monkeypatch):
     """The first rank's claims among two ranks, without a thread."""
     monkeypatch.setattr(FirstRankClaims, "_serve_until_over", lambda self: None)
     team = SimpleNamespace(MPI=mail, comm=mail, size=2, first=True)
-    return FirstRankClaims(team, todo, StopRequest())
+    return FirstRankClaims(team, Handout(todo, 2), StopRequest())
 
 
 def test_each_chunk_is_answered_once_whether_asked_for_ahead_or_not(monkeypatch):

@@ -122,8 +122,9 @@ def run_patched(command, patch, ranks=2):
     patch = (
         "import time\nimport rodsweep.cli.running as running\nreal = running.sweep\n"
         + patch
-        + "\ndef sweep(team, todo, solve, keep, tell, stop):\n"
-        "    return real(team, todo, patched(team.rank, solve), keep, tell, stop)\n"
+        + "\nfrom dataclasses import replace\n"
+        "def sweep(team, todo, loop, *words):\n"
+        "    return real(team, todo, replace(loop, solve=patched(team.rank, loop.solve)), *words)\n"
         "running.sweep = sweep\n"
     )
     return command("run", "c.yaml", ranks=ranks, patch=patch)

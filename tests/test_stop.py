@@ -62,7 +62,7 @@ def test_stopped_run_ends_with_its_points_in_the_file_and_goes_on(command, numbe
         assert "finished" not in file.attrs
     assert 0 < done < 1200
     assert re.search(stopped, out)[1] == str(done)
-    assert ("stopping with the point in hand" in err) == (number == signal.SIGINT and not ranks)
+    assert ("stopping: all points that are done are kept" in err) == (number == signal.SIGINT and not ranks)
     assert f"stopped by {number.name}" in command("show", "c.h5").stdout
     again = command("run", "c.yaml")
     assert again.returncode == 0, again.stderr
@@ -116,7 +116,7 @@ def test_ctrl_c_in_a_terminal_ends_like_sigterm(command):
     command.write("c.yaml", SPECTRA)
     status, said = typed_ctrl_c(command, ranks=0)
     assert status == 75
-    assert "stopping with the point in hand" in said
+    assert "stopping: all points that are done are kept" in said
     assert "stopped by SIGINT; 61 points kept, the same command continues" in said
     assert "61 kept" in command("run", "c.yaml").stdout
 

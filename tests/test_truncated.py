@@ -5,7 +5,7 @@ from random import Random
 import pytest
 
 from rodsweep.cli.job import make_job
-from rodsweep.cli.running import plan_of
+from rodsweep.cli.planning import plan_of
 from rodsweep.errors import InputError
 from rodsweep.post.figures import draw
 from rodsweep.post.summary import show_summary

@@ -18,10 +18,12 @@ from ..results.file.view import View
 from ..results.layouts import layout_of
 from ..results.layouts.variables import DIMENSIONS, MISSING, Filled, Variable
 from ..results.run.journal import journal_directory
+from ..solve.exclusive import one_at_a_time
 
 ENGINE = "h5netcdf"
 
 
+@one_at_a_time
 @in_sentences('rs.open("RESULT.h5")')
 def open_result(path: str | Path) -> xr.Dataset:
     """The Dataset of a result file, whole in memory; of a sweep that still runs, as far as it has come.

@@ -13,6 +13,7 @@ from ..errors import InputError
 from ..post.figures import draw
 from ..post.figures.request import KINDS, ROOTS, WIDTHS, Look
 from ..results.file.view import View, read_view
+from ..solve.exclusive import one_at_a_time
 from .answer import Answer
 from .dataset import view_of
 
@@ -45,6 +46,7 @@ class Picture:
     image: bytes = field(repr=False)
     """The PNG, or the GIF of an animation."""
 
+    @one_at_a_time
     def save(self, path: str | Path) -> str:
         """Draws the figure into a file (.png, .pdf, .svg); returns a sentence about it."""
         return draw(self.views, Path(path), **self.choices)
@@ -54,6 +56,7 @@ class Picture:
         return {f"image/{kind}": self.image, "text/plain": self.shown}
 
 
+@one_at_a_time
 @in_sentences('rs.plot(data, "figure.pdf", width="single")')
 def plot(
     data: Drawable | Sequence[Drawable],

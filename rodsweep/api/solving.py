@@ -1,7 +1,7 @@
 """Every point of a job, one after another in this process, without files and without other ranks."""
 
 import socket
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -11,12 +11,15 @@ import xarray as xr
 from threadpoolctl import ThreadpoolController
 
 from ..cli.job import Job
-from ..cli.running import plan_of
-from ..cli.tasks.protocol import Solver
+from ..cli.planning import plan_of
+from ..cli.tasks.protocol import AllPoints, Arrays, Solver
+from ..cli.unforeseen import Note, guarded
 from ..results.file.creation import Plan
 from ..results.file.provenance import now
 from ..results.file.view import View
-from ..solve.backend.availability import require_petsc
+from ..results.layouts.variables import Filled
+from ..solve.backend.availability import require_solvers
+from ..solve.exclusive import solving
 from ..sweep.shards import Shard
 from .dataset import dataset_of
 
@@ -24,13 +27,17 @@ _warm: set[str] = set()
 """Tasks that have been solved in this process."""
 
 
-def solve_here(job: Job) -> tuple[xr.Dataset, list[str]]:
+@solving
+def solve_here(job: Job, note: Note | None = None) -> tuple[xr.Dataset, list[str]]:
     """(the Dataset of all points, what each outcome has to say of points that are solved alone).
 
-    Raises EnvironmentLacks where PETSc is not to be found.
+    note: what is done about an exception that no solver foresees, whose point then fails; without it the
+    exception is raised. Raises InputError and EnvironmentLacks where this process cannot solve.
     """
-    require_petsc()
+    require_solvers()
     solver, started = job.solver(), now()
+    if note is not None:
+        solver = guarded(solver, job.layout, note)
     plan = plan_of(job, solver, Shard(), _kernels())
     if job.config.task not in _warm:
         solver.warm_up()
@@ -39,8 +46,8 @@ def solve_here(job: Job) -> tuple[xr.Dataset, list[str]]:
         values, messages = _solved(job, solver, plan)
         attributes = {"ranks": 1, "hosts": socket.gethostname(), "started": started, "stopped": ""}
         filled = tuple(plan.constants)
-        if solver.finish:
-            filled += tuple(solver.finish(_view(job, plan, values)))
+        if solver.together:
+            filled += tuple(_joint(solver.together, _view(job, plan, values)))
     return dataset_of(plan, values, filled, attributes | {"finished": now()}), messages
 
 
@@ -63,6 +70,14 @@ def _solved(job: Job, solver: Solver, plan: Plan) -> tuple[dict[str, np.ndarray]
             messages[index] = outcome.message
     shape = job.points.shape
     return {name: array.reshape(*shape, *array.shape[1:]) for name, array in flat.items()}, messages
+
+
+def _joint(together: AllPoints, view: View) -> Sequence[Filled]:
+    """What all points together give."""
+    units, results = together.units(view), dict[int, Arrays]()
+    while units is not None and (wanted := units.wanted(results)):
+        results[wanted[0]] = together.solve(units, wanted[0])
+    return together.variables(view, units, results)
 
 
 def _outcomes(count: int, solver: Solver) -> Iterator[tuple[int, Any]]:

@@ -4,12 +4,16 @@ import os
 import shutil
 import subprocess
 import sys
+import traceback
+import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 import xarray as xr
 
+from ..cli.unforeseen import described, log_file
 from ..config.arguments import in_sentences
 from ..config.reading import yaml_of
 from ..errors import EnvironmentLacks, InputError
@@ -22,10 +26,12 @@ COMPUTED = (0, 1)
 """Exit statuses of a run that is whole, whatever its points ended with."""
 REFUSED: dict[int, type[Exception]] = {2: InputError, 3: EnvironmentLacks}
 """What the other exit statuses mean."""
+MOST_QUOTED = 2000
+"""Characters quoted of a run's standard error: enough for its last exception or a launcher's reason."""
 
 
 @in_sentences('rs.sweep("spectrum", F=[20, 30], k1=1e4, k2=100, gamma3=0.01)')
-def sweep(task: str, *, ranks: int | None = None, **keywords: Any) -> xr.Dataset:
+def sweep(task: str, *, ranks: int | None = None, strict: bool = False, **keywords: Any) -> xr.Dataset:
     """The Dataset of a task over its points: the same as from the file of `rodsweep run`.
 
     keywords: the keys of a config without their sections. Parameters are a number, a list or array of
@@ -34,6 +40,8 @@ def sweep(task: str, *, ranks: int | None = None, **keywords: Any) -> xr.Dataset
     `accuracy`, `title` and the options of the task follow; what is not given has the config's default.
 
     ranks: by default the points are solved in this process; otherwise by the command on so many ranks.
+    strict: whether an exception that is a bug of rodsweep is raised. By default its point has the status
+    `failed`, a RuntimeWarning has the traceback, and the other points are solved.
 
     Raises InputError for what the command would refuse, in its words, and EnvironmentLacks where the machine
     lacks something. A point that fails keeps its status.
@@ -42,10 +50,22 @@ def sweep(task: str, *, ranks: int | None = None, **keywords: Any) -> xr.Dataset
         raise InputError(f"ranks = {ranks!r} is not allowed; it should be a whole number, 1 or above")
     tree = tree_of(task, keywords)
     job = job_from(tree)
-    return solve_here(job)[0] if ranks is None else _on_ranks(task, tree, ranks)
+    if ranks is not None:
+        return _on_ranks(task, tree, ranks, strict)
+    return solve_here(job, None if strict else _warn)[0]
 
 
-def _on_ranks(task: str, tree: Tree, ranks: int) -> xr.Dataset:
+def _warn(indices: Sequence[int], error: Exception) -> None:
+    """Warns of an exception that no solver foresees."""
+    points = f"point {indices[0]}" if len(indices) == 1 else f"points {indices[0]} to {indices[-1]}"
+    warnings.warn(
+        f"{points}: {described(error)}\n{''.join(traceback.format_exception(error))}",
+        RuntimeWarning,
+        stacklevel=2,
+    )
+
+
+def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool) -> xr.Dataset:
     """The Dataset that `rodsweep run` makes on so many ranks, in a directory that is then removed."""
     points = tree["parameters"].get("points")
     if points is not None:
@@ -54,15 +74,29 @@ def _on_ranks(task: str, tree: Tree, ranks: int) -> xr.Dataset:
         config, output = Path(place, f"{task}.yaml"), Path(place, f"{task}.h5")
         config.write_text(yaml_of(tree), encoding="utf-8")
         words = [_mpiexec(), "-n", str(ranks), sys.executable, "-m", "rodsweep", "run", str(config)]
-        words += ["-o", str(output)]
+        words += ["-o", str(output), *(["--strict"] if strict else [])]
         # The environment as this process got it: MPI, once started in here, adds to the one in C.
         given = dict(os.environ)
-        run = subprocess.run(words, cwd=place, env=given, capture_output=True, text=True, check=False)
+        try:
+            run = subprocess.run(words, cwd=place, env=given, capture_output=True, text=True, check=False)
+        except OSError as error:
+            raise EnvironmentLacks(f"{words[0]} cannot be started: {error.strerror}") from None
         if run.returncode not in COMPUTED:
-            lines = [line for line in run.stderr.splitlines() if line.startswith("rodsweep: ")]
-            sentence = lines[0].removeprefix("rodsweep: ") if lines else run.stderr[-2000:]
-            raise REFUSED.get(run.returncode, RuntimeError)(sentence)
+            raise _failure(run, begun=output.exists())
+        if (log := log_file(output)).exists():
+            warnings.warn(log.read_text(encoding="utf-8"), RuntimeWarning, stacklevel=2)
         return open_result(output)
+
+
+def _failure(run: subprocess.CompletedProcess[str], begun: bool) -> Exception:
+    """The exception for a run that is not whole; begun: whether its ranks came as far as to make a file."""
+    lines = [line for line in run.stderr.splitlines() if line.startswith("rodsweep: ")]
+    if lines:
+        return REFUSED.get(run.returncode, RuntimeError)(lines[0].removeprefix("rodsweep: "))
+    if begun or "Traceback" in run.stderr:
+        return RuntimeError(run.stderr[-MOST_QUOTED:])
+    said = " ".join(run.stderr.split()) or f"exit status {run.returncode}"
+    return EnvironmentLacks(f"{run.args[0]} did not start the ranks: {said[-MOST_QUOTED:]}")
 
 
 def _mpiexec() -> str:

@@ -3,13 +3,15 @@
 It joins the packages.
 
 Exit status: 0 when every point succeeded, 1 when the run is whole but some point did not, 2 for bad
-input, 3 when the machine lacks something, 75 when a run was asked to stop and wants to be continued.
+input, 3 when the machine lacks something, 70 for a bug, 75 when a run was asked to stop and wants to be
+continued.
 """
 
 import errno
 import io
 import os
 import sys
+import traceback
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -22,7 +24,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 import click  # noqa: E402 - after the environment is set
 
 from .. import __version__  # noqa: E402 - after the environment is set
-from ..errors import EnvironmentLacks, InputError  # noqa: E402 - after the environment is set
+from ..errors import BUG_STATUS, InputError, Refusal  # noqa: E402 - after the environment is set
 from .arm_options import arm_options  # noqa: E402 - after the environment is set
 
 FILE = click.Path(path_type=Path)
@@ -50,6 +52,7 @@ def commands(context: click.Context) -> None:
 @click.option("--fresh", is_flag=True, help="Replace an existing result file instead of continuing it.")
 @click.option("--extend", is_flag=True, help="Add to a result file whose config this one contains.")
 @click.option("--shard", metavar="I/N", default="1/1", help="Compute the I-th of N parts only, to be merged.")
+@click.option("--strict", is_flag=True, help="End the run at the first exception that is a bug.")
 @click.option("-q", "--quiet", is_flag=True, help="Say nothing but what is amiss; show no progress.")
 def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: str, **options: bool) -> None:
     """Compute CONFIG, continuing an interrupted result file. Start it with mpiexec for many ranks."""
@@ -278,10 +281,8 @@ def main() -> None:
         code, message = 2, error.format_message()
     except click.ClickException as error:
         code, message = 3, error.format_message()
-    except InputError as error:
-        code, message = 2, str(error)
-    except EnvironmentLacks as error:
-        code, message = 3, str(error)
+    except Refusal as error:
+        code, message = error.exit_status, str(error)
     except OSError as error:  # a name too long, a directory that may not be looked into
         if error.filename is None and error.errno not in (errno.ENOSPC, errno.EIO):
             raise
@@ -289,6 +290,9 @@ def main() -> None:
         message = f"{error.filename or 'standard output'}: {error.strerror}"
     except MemoryError:
         code, message = 3, "there is not enough memory"
+    except Exception:
+        traceback.print_exc()
+        code, message = BUG_STATUS, "this is a bug; please report it with the lines above"
     if message and _speaks():
         with suppress(OSError):  # both streams may go into one log on one full disk
             click.echo(f"rodsweep: {_one_line(message)}", err=True)

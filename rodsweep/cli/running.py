@@ -1,10 +1,10 @@
 """`rodsweep run`, read aloud: read the config, open the file, solve what is missing, fold it in."""
 
-import os
 import socket
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -13,31 +13,31 @@ import numpy as np
 
 from ..errors import EnvironmentLacks
 from ..results.file import provenance
-from ..results.file.creation import Plan
 from ..results.file.store import Store
 from ..results.file.view import read_view
 from ..results.run.checkpoints import Checkpoints
 from ..results.run.journal import Journal, journal_directory
-from ..solve.backend.availability import require_petsc
+from ..solve.backend.availability import require_solvers
 from ..sweep.chains import ChainSolver
-from ..sweep.loop import Indices, Share, sweep
-from ..sweep.progress import Teller
+from ..sweep.handout import Handout
+from ..sweep.loop import Indices, Loop, Share, sweep
+from ..sweep.progress import Silent, Teller
 from ..sweep.ranges import IndexRange, IndexSet, total
 from ..sweep.shards import Shard
 from ..sweep.stop import StopRequest
 from ..sweep.stretches import StretchSolver, Together
 from ..sweep.team import Team
+from .contribution import Contribution, history_of, of_the_last_run
 from .job import Job, make_job
-from .tasks.protocol import Solver
+from .joint import JointWork
+from .planning import plan_of
+from .unforeseen import Log, guarded
 from .wording import counted
 
 FAILURES_TOLD = 3
 """Failed points that are named at the end of a run; the file has the status of all."""
 CONTINUE = 75
 """Exit status of a run that was asked to stop: the same command continues it (EX_TEMPFAIL of sysexits.h)."""
-
-Contribution = tuple[str, list[str], Share]
-"""A rank's host, the failures that it tells, and what it did."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,6 +50,8 @@ class RunOptions:
     extend: bool = False
     """Whether an existing file of a smaller config is extended."""
     shard: Shard
+    strict: bool = False
+    """Whether the run ends at the first exception that is a bug."""
     quiet: bool = False
     """Whether only what is amiss is told."""
 
@@ -59,8 +61,16 @@ def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest)
     team = Team()
     with team.together():
         job = team.on_first(lambda: make_job(path, options.overrides))
-        team.all_can(require_petsc)
+        team.all_can(require_solvers)
         return _Run(team, job, output, options, stop).run()
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """What all points together are to give: whether the file lacks it, and its units, if it has some."""
+
+    due: bool
+    units: Any = None
 
 
 class _Run:
@@ -74,10 +84,16 @@ class _Run:
 
         self.team, self.job, self.output, self.stop = team, job, output, stop
         self.options, self.shard = options, options.shard
-        self.began, self.started = time.monotonic(), provenance.now()
-        self.solver = job.solver()
+        self.began, self.started, self.seconds = time.monotonic(), provenance.now(), 0.0
+        self.log = Log(output, team.rank, self._where)
+        self.solver = guarded(job.solver(), job.layout, self._note)
         self.kernels = provenance.united_kernels(team.gather(blas()) or [])
         self.plan = plan_of(job, self.solver, self.shard, self.kernels)
+        self.prepare = cache(self.solver.warm_up)
+        together = self.solver.together
+        self.joint = together and JointWork(
+            team, together, output, self.plan.fingerprint, self._note_unit, stop
+        )
 
     def run(self) -> int:
         """Solves what is missing and folds it into the file; returns the exit status."""
@@ -86,22 +102,66 @@ class _Run:
         if self.team.first:
             points, shard = self.job.points.count, f"; shard {self.shard}" if self.shard.of > 1 else ""
             kept = f", {points - total(missing)} kept" if points > total(missing) else ""
+            kept += (
+                ", then curves through all"
+                if self.joint and self._lacks_curves(total(missing) - count)
+                else ""
+            )
             self._say(f"{self.output}: {count} of {counted(points, 'point')} to do{kept}{shard}")
         contributions: list[Contribution] = []
         if count:
             self.team.on_first(self._note_kernels)
-            failures, share = self._solve(units, missing, count)
-            contributions = self.team.gather((socket.gethostname(), failures, share)) or []
-        return self.team.on_first(lambda: self._finish(count, contributions))
+            contributions = self.team.gather(self._solve(units, missing, count)) or []
+        joint = self.team.on_first(lambda: self._fold(count, contributions))
+        shares: list[Share] = []
+        if self.joint and joint.units is not None:
+            title = None if self.options.quiet else self.job.name
+            shares = self.team.gather(self.joint.solve(joint.units, self.prepare, title)) or []
+        return self.team.on_first(lambda: self._finish(count, contributions, joint, shares))
+
+    def _lacks_curves(self, missing: int) -> bool:
+        """Whether the file is not finished although no point is missing; on the first rank."""
+        return not missing and "finished" not in self.store.attributes()
+
+    def _fold(self, count: int, contributions: list[Contribution]) -> "Joint":
+        """Folds the points into the file; returns what all points together are still to give."""
+        self.seconds = time.monotonic() - self.began
+        if count:
+            history = history_of(contributions, self.team.MPI.Get_library_version())
+            started = {"started": self.started, "stopped": self.stop.name}
+            self.store.fold(of_the_last_run(self.plan) | history | started)
+        if not self._lacks_curves(total(self.store.missing())):
+            return Joint(False)
+        if not self.joint:
+            return Joint(True)
+        if not count:
+            self._note_kernels()
+        return Joint(True, self.joint.together.units(read_view(self.output)))
 
     def _say(self, text: str, amiss: bool = False) -> None:
         """Tells the user, who may want to hear only what is amiss."""
         if amiss or not self.options.quiet:
             click.echo(text)
 
+    def _note(self, indices: Sequence[int], error: Exception) -> None:
+        """Writes an unforeseen exception into the log; raises it where the run is to end."""
+        self.log(indices, error)
+        if self.options.strict:
+            error.add_note(f"at {self._where(indices[0])}")
+            raise error
+
+    def _note_unit(self, place: str, error: Exception) -> None:
+        """The same of what is no point."""
+        self.log.note(place, error)
+        if self.options.strict:
+            error.add_note(f"at {place}")
+            raise error
+
     def _open(self) -> list[IndexRange]:
         """Opens the file; returns the points that it misses."""
         self.store = Store(self.output, self.plan, self.options.fresh, self.options.extend)
+        if self.joint and (self.options.fresh or not self._lacks_curves(0)):
+            self.joint.kept.drop()
         if self.store.note:
             self._say(f"{self.output}: {self.store.note}")
         return self.store.missing()
@@ -129,10 +189,8 @@ class _Run:
         if sentence := provenance.kernels_sentence(kernels):
             click.echo(f"{self.output}: {sentence}")
 
-    def _solve(
-        self, units: list[IndexRange], missing: list[IndexRange], count: int
-    ) -> tuple[list[str], Share]:
-        """This rank's share of the units, into its journal; and what to tell of failures."""
+    def _solve(self, units: list[IndexRange], missing: list[IndexRange], count: int) -> Contribution:
+        """Solves this rank's share of the units, into its journal."""
         failures: list[str] = []
         solver, plan = self.solver, self.plan
 
@@ -144,14 +202,14 @@ class _Run:
             if len(failures) < FAILURES_TOLD:
                 failures.extend(self._failures(index, result))
 
-        solver.warm_up()
-        tell = Teller(count, self.job.name) if self.team.first and not self.options.quiet else None
+        shown = Teller(count, self.job.name) if self.team.first and not self.options.quiet else Silent()
         try:
             directory = journal_directory(self.output)
             journal = Journal(directory, self.team.rank, plan.layout, plan.fingerprint)
             checkpoints = Checkpoints(directory, plan.fingerprint)
             solve = self._solve_unit(IndexSet(missing), checkpoints)
-            share = sweep(self.team, units, solve, keep, tell or (lambda done: None), self.stop)
+            loop = Loop(solve=solve, keep=keep, prepare=self.prepare, name=self._unit_name)
+            share = sweep(self.team, Handout(units, self.team.size), loop, shown, self.stop)
             journal.close()
         except OSError as error:
             raise EnvironmentLacks(
@@ -159,9 +217,10 @@ class _Run:
                 "room and run again"
             ) from error
         finally:
-            if tell:
-                tell.close()
-        return failures, share
+            shown.close()
+        return Contribution(
+            host=socket.gethostname(), failures=failures, exceptions=self.log.count, share=share
+        )
 
     def _solve_unit(
         self, missing: IndexSet, checkpoints: Checkpoints
@@ -187,87 +246,69 @@ class _Run:
         values = self.job.points.values(index)
         return ", ".join(f"{name}={value!r}" for name, value in values.items())
 
-    def _finish(self, count: int, contributions: list[Contribution]) -> int:
-        """Folds everything into the file, says how the run ended, and with which status it exits."""
-        if count:
-            self.store.fold(self._history(contributions))
+    def _unit_name(self, unit: int) -> str:
+        """Which point or chain a unit is."""
+        if self.solver.chained:
+            return f"chain {unit + 1} of {self.solver.chained[0].count}"
+        return f"point {unit + 1} of {self.job.points.count}"
+
+    def _finish_file(self, joint: "Joint") -> bool:
+        """Puts what all points together give into the file; whether that is still missing."""
+        if not joint.due:
+            return False
+        variables = self.joint.variables(joint.units) if self.joint else ()
+        if variables is None:
+            self.store.fold({"stopped": self.stop.name})
+            return True
+        self.store.fold({"finished": provenance.now(), "stopped": self.stop.name}, variables)
+        if self.joint:
+            self.joint.kept.drop()
+        return False
+
+    def _finish(
+        self, count: int, contributions: list[Contribution], joint: "Joint", shares: list[Share]
+    ) -> int:
+        """Finishes the file, says how the run ended, and with which status it exits."""
+        lacks_curves = self._finish_file(joint)
         missing = self.store.missing()
-        if not missing and "finished" not in self.store.attributes():
-            finish = self.solver.finish
-            self.store.fold({"finished": provenance.now()}, finish(read_view(self.output)) if finish else ())
         counts = self.store.status_counts()
         self.store.close()
         left = self._units(missing)[1]
         part = f"shard {self.shard} of {self.output}" if missing else f"{self.output}"
         if count:
-            seconds, points = time.monotonic() - self.began, count - left
-            each = 1e3 * seconds * self.team.size / max(points, 1)
+            points = count - left
+            each = 1e3 * self.seconds * self.team.size / max(points, 1)
             pace = f" ({each:.3g} ms a point and rank)" if points else ""
             ranks = counted(self.team.size, "rank")
-            self._say(f"{counted(points, 'point')} in {seconds:.2f} s on {ranks}{pace}")
-        else:
+            self._say(f"{counted(points, 'point')} in {self.seconds:.2f} s on {ranks}{pace}")
+        elif not (joint.due and self.joint):
             self._say(f"{part} is complete, nothing to do")
+        if joint.due and self.joint:
+            seconds = time.monotonic() - self.began - self.seconds
+            done = sum(share.points for share in shares)
+            followed = f"; {done} halves of curves of cycles followed" if done else ""
+            ended = "curves stopped after" if lacks_curves else "curves in"
+            self._say(f"{ended} {seconds:.2f} s on {counted(self.team.size, 'rank')}{followed}")
         expected = {status.name for status in self.solver.statuses if status.succeeded} | {"missing"}
         amiss = not set(counts) <= expected
         self._say(f"{self.output}: " + ", ".join(f"{n} {name}" for name, n in counts.items()), amiss)
-        told = [failure for _, failures, _ in contributions for failure in failures]
+        told = [failure for contribution in contributions for failure in contribution.failures]
         for failure in told[:FAILURES_TOLD]:
             click.echo(f"  {failure}")
-        if left:
-            kept = self.job.points.count - total(missing)
-            click.echo(
-                f"stopped by {self.stop.name}; {counted(kept, 'point')} kept, the same command continues"
-            )
+        if exceptions := sum(contribution.exceptions for contribution in contributions):
+            raised = counted(exceptions, "unforeseen exception")
+            click.echo(f"  {raised}: a bug, please report it with {self.log.path}, which has the traceback")
+        if left or lacks_curves:
+            kept = f"{counted(self.job.points.count - total(missing), 'point')} kept"
+            if lacks_curves:
+                kept += (
+                    f", the curves are missing, {len(self.joint.results) if self.joint else 0} halves kept"
+                )
+            elif in_hand := sum(contribution.share.ended for contribution in contributions):
+                kept += f", {in_hand} left in the middle and solved again"
+            click.echo(f"stopped by {self.stop.name}; {kept}, the same command continues")
             return CONTINUE
         if not amiss:
             return 0
         click.echo(f"  `rodsweep show {self.output}` says what each status means")
         return 1
-
-    def _history(self, contributions: list[Contribution]) -> dict[str, Any]:
-        """Attributes that say where, by what and by whom the points of this run were computed."""
-        names = ("_version", "_commit", "_options")
-        hosts = {host for host, *_ in contributions}
-        shares = [share for *_, share in contributions[: provenance.MOST_RANKS_TOLD]]
-        points, busy, idle = zip(*((share.points, share.busy, share.idle) for share in shares), strict=True)
-        numbers = (np.array(points, "i4"), np.array(busy, "f4"), np.array(idle, "f4"))
-        return {k: v for k, v in self.plan.attributes.items() if k.endswith(names)} | {
-            "ranks": self.team.size,
-            "hosts": " ".join(sorted(hosts))[: provenance.LONGEST_ATTRIBUTE],
-            "started": self.started,
-            "stopped": self.stop.name,
-            "shard": self.plan.attributes["shard"],
-            "mpi_library": self.team.MPI.Get_library_version().split("\n")[0].strip("\0 "),
-            "slurm_job": os.environ.get("SLURM_JOB_ID", ""),
-            **dict(zip(provenance.RANK_SHARES, numbers, strict=True)),
-        }
-
-
-def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
-    """The file that a run of the job, with these BLAS kernels, makes or continues."""
-    from ..solve.backend import petsc
-
-    attributes = {
-        "Conventions": "CF-1.8",
-        "title": job.name,
-        "task": job.config.task,
-        "time_unit": "tau2 = gamma2 L^4/k3",
-        "config": job.text,
-        "petsc_options": petsc.options(),
-        "shard": str(shard) if shard.of > 1 else "",
-        "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in solver.statuses),
-        provenance.KERNELS: kernels,
-    }
-    versions = {f"{name}_version": value for name, value in petsc.versions().items()}
-    return Plan(
-        points=job.points,
-        layout=job.layout,
-        coordinates=job.task.coordinates(),
-        constants=job.task.constants(),
-        quantities=job.quantities,
-        config=job.resolved,
-        attributes=attributes | job.config.parameters.numbers | versions | provenance.provenance(),
-        flags=tuple((int(s), s.name) for s in solver.statuses),
-        chains=job.task.chains,
-        stretches=job.task.stretches,
-    )

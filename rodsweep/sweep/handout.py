@@ -11,13 +11,15 @@ to stop tells the first, which tells all: each ends with the point that it is at
 import threading
 import time
 from collections import Counter, deque
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
 
 from .ranges import IndexRange, total
 from .stop import StopRequest
 from .team import Team
 
-REQUEST_TAG, ANSWER_TAG, STOP_TAG = 71, 72, 73
+REQUEST_TAG, ANSWER_TAG, STOP_TAG, PLACE_TAG = 71, 72, 73, 74
 CHUNK_SECONDS, CHUNK_SECONDS_A_RANK = 0.1, 1e-3
 """How long a chunk should take: long against a message, short against a run; with many ranks so long that the
 first one, which answers a request in 50 microseconds, spends a twentieth of its time on answers."""
@@ -29,8 +31,13 @@ PLENTY = 4
 POLL_SECONDS, RELIEVED_POLL_SECONDS = 2e-3, 5e-3
 """How long the thread sleeps: each waking takes the first rank 20 microseconds or more of its solve. Longer
 where that rank itself answers between its points."""
-ASK_SECONDS = 1e-4
-"""How often a rank that waits for its next chunk looks for it."""
+ASK_SECONDS, LONGEST_ASK_SECONDS = 1e-4, 1e-2
+"""Seconds between two looks of a rank that waits for its next chunk, at first and after a while: what idles
+must not take the processor from what solves."""
+ASK_GROWTH = 1.1
+"""Ratio of a pause between looks to the one before: a wait of a millisecond costs a few looks."""
+WAIT_SECONDS = 0.05
+"""Seconds for which the first rank waits for a change before it looks at its mail itself."""
 
 OVER: IndexRange = (0, 0)
 
@@ -45,7 +52,8 @@ class Report:
     """What a rank says when it wants more: units done, their seconds, what it gives back, points kept.
 
     ahead: it says nothing but that it has begun a chunk, and would take the next. stop: the signal by which
-    it was asked to stop; what it gives back then is for another run.
+    it was asked to stop; what it gives back then is for another run. results: of units on which it depends
+    what is to be done next.
     """
 
     done: int = 0
@@ -54,6 +62,7 @@ class Report:
     points: int = 0
     ahead: bool = False
     stop: str = ""
+    results: dict[int, Any] = field(default_factory=dict)
 
 
 class Handout:
@@ -121,13 +130,22 @@ class Handout:
 class FirstRankClaims:
     """How the first rank gets its chunks, and how its thread serves the others."""
 
-    def __init__(self, team: Team, todo: list[IndexRange], stop: StopRequest):
-        self.team, self.handout, self.stop = team, Handout(todo, team.size), stop
+    def __init__(
+        self,
+        team: Team,
+        handout: Handout,
+        stop: StopRequest,
+        show: Callable[[str], None] = lambda place: None,
+    ):
+        """show: takes where another rank is in a long point."""
+        self.team, self.handout, self.stop, self.show = team, handout, stop, show
         self.waiting: deque[int] = deque()
         self.ahead: set[int] = set()
         """Ranks that have an answer to their next request already."""
         self.working = set(range(1, team.size))
         self.status = team.MPI.Status()
+        self.places: dict[int, str] = {}
+        """Where other ranks are in a long point, as they have said last."""
         self.serving = threading.Lock()
         self.served = 0.0
         self.thread: threading.Thread | None = None
@@ -142,13 +160,20 @@ class FirstRankClaims:
         self.between_points()
         while (chunk := self.handout.take(0)) is None:
             with self.handout.change:
-                self.handout.change.wait(0.05)
+                self.handout.change.wait(WAIT_SECONDS)
             self.between_points()
+            for place in list(self.places.values())[:1]:
+                self.show(place)
         return chunk
 
     def close(self) -> None:
         if self.thread is not None:
             self.thread.join()
+            self._hear_places()
+
+    def tell_place(self, place: str) -> None:
+        """Where this rank is in a long point."""
+        self.show(place)
 
     def between_points(self) -> None:
         """Answers what other ranks ask; while a long point is solved, the thread does.
@@ -175,6 +200,7 @@ class FirstRankClaims:
             while comm.Iprobe(source=MPI.ANY_SOURCE, tag=STOP_TAG, status=self.status):
                 self.stop.name = comm.recv(source=self.status.Get_source(), tag=STOP_TAG)
             self._heed_stop()
+            self._hear_places()
             while comm.Iprobe(source=MPI.ANY_SOURCE, tag=REQUEST_TAG, status=self.status):
                 rank = self.status.Get_source()
                 self._hear(rank, comm.recv(source=rank, tag=REQUEST_TAG))
@@ -183,6 +209,12 @@ class FirstRankClaims:
                 comm.send(chunk, dest=rank, tag=ANSWER_TAG)
                 if chunk == OVER:
                     self.working.discard(rank)
+
+    def _hear_places(self) -> None:
+        comm, MPI = self.team.comm, self.team.MPI
+        while comm.Iprobe(source=MPI.ANY_SOURCE, tag=PLACE_TAG, status=self.status):
+            rank = self.status.Get_source()
+            self.places[rank] = comm.recv(source=rank, tag=PLACE_TAG)
 
     def _hear(self, rank: int, report: Report) -> None:
         """A report: its rank waits for an answer unless it has it; one to a request ahead is sent at once."""
@@ -194,6 +226,7 @@ class FirstRankClaims:
         if report.stop:  # which may come before the message that says so
             self.stop.name = report.stop
             self._heed_stop()
+        self.places.pop(rank, None)
         self.handout.settle(rank, report)
         if rank in self.ahead:
             self.ahead.remove(rank)
@@ -217,13 +250,19 @@ class OtherRankClaims:
     def claim(self, report: Report) -> IndexRange:
         self.comm.send(report, dest=0, tag=REQUEST_TAG)
         # A blocking receive would spin and take the processor from the ranks that compute.
+        pause = ASK_SECONDS
         while not self.comm.Iprobe(source=0, tag=ANSWER_TAG):
             self.between_points()
-            time.sleep(ASK_SECONDS)
+            time.sleep(pause)
+            pause = min(ASK_GROWTH * pause, LONGEST_ASK_SECONDS)
         chunk: IndexRange = self.comm.recv(source=0, tag=ANSWER_TAG)
         if chunk != OVER:
             self.comm.send(Report(ahead=True), dest=0, tag=REQUEST_TAG)
         return chunk
+
+    def tell_place(self, place: str) -> None:
+        """Where this rank is in a long point."""
+        self.comm.send(place, dest=0, tag=PLACE_TAG)
 
     def between_points(self) -> None:
         """Passes a request to stop on to the first rank, or learns of it from there."""

@@ -2,72 +2,146 @@
 
 import time
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import dataclass
-from typing import TypeVar
+from functools import partial
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .handout import GIVE_BACK_AFTER, OVER, FirstRankClaims, OtherRankClaims, Report, chunk_seconds
+from ..watch import Stopped, heard_by
+from .handout import GIVE_BACK_AFTER, OVER, FirstRankClaims, Handout, OtherRankClaims, Report, chunk_seconds
+from .listener import RankListener
 from .ranges import IndexRange
 from .stop import StopRequest
 from .team import Team
 
-Result = TypeVar("Result")
 Indices = int | NDArray[np.int64]
 """The index of a point, or those of points that are kept together, shape (n,)."""
 
 
+class Solve(Protocol):
+    """From a unit to its points, each an index and a result, one after another.
+
+    A unit is a point or a chain of them, or a stretch, whose points come all at once.
+    """
+
+    def __call__(self, unit: int, /) -> Iterable[tuple[Indices, Any]]: ...
+
+
+class Shown(Protocol):
+    """What shows the first rank's user how far all are."""
+
+    def __call__(self, done: int) -> None:
+        """So many points are done in all."""
+
+    def place(self, text: str) -> None:
+        """Where a rank is in a long point."""
+
+
 @dataclass(frozen=True, slots=True)
 class Share:
-    """What one rank did: points, and seconds spent on them and on waiting for more or for the others."""
+    """What one rank did: points, and seconds spent on them and on waiting for more or for the others.
+
+    ended: whether a stop ended what it was solving, which is to be solved again.
+    """
 
     points: int
     busy: float
     idle: float
+    ended: bool = False
 
 
-def sweep(
-    team: Team,
-    todo: list[IndexRange],
-    solve: Callable[[int], Iterable[tuple[Indices, Result]]],
-    keep: Callable[[Indices, Result], None],
-    tell: Callable[[int], None],
-    stop: StopRequest,
-) -> Share:
-    """Solves every unit of the ranges `todo`, each on some rank; returns when all ranks are done.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Loop:
+    """What every rank does with its units.
 
-    `solve` maps a unit to its points, each an index and a result, one after another: a unit is a
-    point or a chain of them, or a stretch, whose points come all at once. `keep` makes a point durable
-    before the next is asked for, on the rank that solves it; `tell` hears on the first rank how many points
-    are done in all. What they raise ends all ranks. Once any rank has been asked to `stop`,
-    each ends with the unit or the point of a chain that it is at.
+    prepare: what it does before the first. keep: makes a point durable before the next is asked for, on the
+    rank that solves it. results: of what it has kept since, for the first rank where these decide what is to
+    be done next. name: of a unit, in words.
     """
-    started = time.monotonic()
-    busy, points = 0.0, 0
-    claims = FirstRankClaims(team, todo, stop) if team.first else OtherRankClaims(team, stop)
-    patience = GIVE_BACK_AFTER * chunk_seconds(team.size)
-    chunk = claims.claim(Report())
-    while chunk != OVER:
-        began = time.monotonic()
-        at, end = chunk
-        before = points
-        while at < end and not stop:
-            for index, result in solve(at):
-                keep(index, result)
-                points += 1 if isinstance(index, int) else len(index)
-                claims.between_points()
-                if isinstance(claims, FirstRankClaims):
-                    tell(claims.handout.points + points - before)
-            if stop:  # in the middle of the unit, perhaps
+
+    solve: Solve
+    keep: Callable[[Indices, Any], None]
+    prepare: Callable[[], object] = lambda: None
+    results: Callable[[], dict[int, Any]] = dict
+    name: Callable[[int], str] = lambda unit: ""
+
+
+def sweep(team: Team, todo: Handout, loop: Loop, shown: Shown, stop: StopRequest) -> Share:
+    """Solves every unit of `todo`, which only the first rank knows; returns when all ranks are done.
+
+    What is raised ends all ranks. Once any rank has been asked to stop, each ends with the unit or the point
+    of a chain that it is at, or within it where that takes longer than `stop.GRACE`.
+    """
+    claims = FirstRankClaims(team, todo, stop, shown.place) if team.first else OtherRankClaims(team, stop)
+    with suppress(Stopped), heard_by(RankListener(claims, stop)):
+        loop.prepare()
+    shown(0)
+    return _Rank(team, claims, loop, shown, stop).share()
+
+
+class _Rank:
+    """The loop on one rank."""
+
+    def __init__(
+        self,
+        team: Team,
+        claims: FirstRankClaims | OtherRankClaims,
+        loop: Loop,
+        shown: Shown,
+        stop: StopRequest,
+    ):
+        self.team, self.claims, self.loop, self.shown, self.stop = team, claims, loop, shown, stop
+        self.points = 0
+        self.ended = False
+
+    def share(self) -> Share:
+        """Solves chunk after chunk; returns what was done once all ranks are through."""
+        started, busy = time.monotonic(), 0.0
+        chunk = self.claims.claim(Report())
+        while chunk != OVER:
+            began, before = time.monotonic(), self.points
+            at = self._solved_up_to(chunk)
+            spent = time.monotonic() - began
+            busy += spent
+            report = Report(
+                done=at - chunk[0],
+                seconds=spent,
+                given_back=(at, chunk[1]),
+                points=self.points - before,
+                stop=self.stop.name,
+                results=self.loop.results(),
+            )
+            chunk = self.claims.claim(report)
+        if isinstance(self.claims, FirstRankClaims):
+            self.claims.close()
+        self.team.meet()
+        return Share(self.points, busy, time.monotonic() - started - busy, self.ended)
+
+    def _solved_up_to(self, chunk: IndexRange) -> int:
+        """Solves units of a chunk; returns the first that is left to others, or after a stop."""
+        patience = time.monotonic() + GIVE_BACK_AFTER * chunk_seconds(self.team.size)
+        at, before = chunk[0], self.points
+        while at < chunk[1] and not self.stop:
+            try:
+                with heard_by(RankListener(self.claims, self.stop, partial(self.loop.name, at))):
+                    self._solve(at, before)
+            except Stopped:
+                self.ended = True
+            if self.stop:  # in the middle of the unit, perhaps
                 break
             at += 1
-            if time.monotonic() - began > patience:
+            if time.monotonic() > patience:
                 break
-        spent = time.monotonic() - began
-        busy += spent
-        chunk = claims.claim(Report(at - chunk[0], spent, (at, end), points - before, stop=stop.name))
-    if isinstance(claims, FirstRankClaims):
-        claims.close()
-    team.comm.Barrier()
-    return Share(points, busy, time.monotonic() - started - busy)
+        return at
+
+    def _solve(self, unit: int, before: int) -> None:
+        """Solves a unit. before: the points that this rank had kept when its chunk began."""
+        for index, result in self.loop.solve(unit):
+            self.loop.keep(index, result)
+            self.points += 1 if isinstance(index, int) else len(index)
+            self.claims.between_points()
+            if isinstance(self.claims, FirstRankClaims):
+                self.shown(self.claims.handout.points + self.points - before)

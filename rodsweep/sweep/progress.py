@@ -1,17 +1,19 @@
-"""How far a sweep is: a bar on a terminal, a plain line now and then in a log."""
+"""How far a sweep is: a bar on a terminal or in a notebook, a plain line now and then in a log."""
 
 import os
 import sys
 import time
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+from rich.progress import BarColumn, Progress, TextColumn
 
 from .pace import Pace, in_words, rate_in_words
 
-LINE_SECONDS = 10.0
-"""Seconds between lines in a log; the first comes after one second."""
+FIRST_SECONDS, LINE_SECONDS = 1.0, 10.0
+"""Seconds after which something is shown, and between lines in a log."""
 BAR_SECONDS = 0.1
+FIELDS = ("count", "rate", "left", "where")
+"""What stands beside the bar."""
 
 
 def on_terminal() -> bool:
@@ -23,43 +25,82 @@ def on_terminal() -> bool:
     return under_mpi and os.path.realpath(launcher).startswith(("/dev/pts/", "/dev/tty"))
 
 
-class Teller:
-    """Tells how many of `total` points are done, with rate and remaining time."""
+class Silent:
+    """Shows nothing."""
 
-    def __init__(self, total: int, title: str):
-        self.total, self.began, self.pace = total, time.monotonic(), Pace(total)
-        self.next = self.began + 1.0
+    def __call__(self, done: int) -> None: ...
+
+    def place(self, text: str) -> None: ...
+
+    def close(self) -> None: ...
+
+
+class Teller:
+    """Shows how many of `total` points are done, with rate and remaining time, and where a long point is.
+
+    total: None where it is not known, as of units that depend on each other. noun: of what is counted.
+    """
+
+    def __init__(self, total: int | None, title: str, noun: str = "points", live: bool | None = None):
+        """live: whether there is a bar instead of lines; by default on a terminal."""
+        self.total, self.noun = total, noun
+        self.pace = None if total is None else Pace(total)
+        self.began = self.next = 0.0
+        self.done, self.where = 0, ""
         self.bar: Progress | None = None
-        if on_terminal():
-            console = Console(file=sys.stderr, force_terminal=True)
-            columns = (
-                TextColumn(title, markup=False),
-                BarColumn(),
-                MofNCompleteColumn(),
-                TextColumn("{task.fields[rate]}"),
-                TextColumn("{task.fields[left]}"),
-            )
-            self.bar = Progress(*columns, console=console, transient=True, auto_refresh=False)
-            self.task = self.bar.add_task(title, total=total, rate="", left="")
+        if on_terminal() if live is None else live:
+            self.bar = _bar(title)
+            self.task = self.bar.add_task(title, total=total, count="", rate="", left="", where="")
             self.bar.start()
 
     def __call__(self, done: int) -> None:
-        """Hears that `done` points are done in all; says so when it is time."""
+        """Takes how many points are done in all; shows it when it is time. The clock starts at 0."""
+        if not done:
+            self.began = time.monotonic()
+            self.next = self.began + FIRST_SECONDS
+        self.done, self.where = done, ""
+        self._show()
+
+    def place(self, text: str) -> None:
+        """Takes where a long point is; shows it when it is time."""
+        self.where = text
+        self._show()
+
+    def _show(self) -> None:
         now = time.monotonic()
-        if now < self.next:
+        if not self.began or now < self.next:
             return
         passed = now - self.began
-        rate, seconds = rate_in_words(done, passed), self.pace.left(done, passed)
+        rate = rate_in_words(self.done, passed) if self.total else ""
+        seconds = self.pace.left(self.done, passed) if self.pace else None
         left = "" if seconds is None else f"about {in_words(seconds)} left"
+        count = f"{self.done} of {self.total}" if self.total else f"{self.done}"
         if self.bar is not None:
             self.next = now + BAR_SECONDS
-            self.bar.update(self.task, completed=done, rate=rate, left=left)
+            self.bar.update(
+                self.task, completed=self.done, count=count, rate=rate, left=left, where=self.where
+            )
             self.bar.refresh()
             return
         self.next = now + LINE_SECONDS
-        told = ", ".join(filter(None, (f"{done} of {self.total} points", rate, left)))
-        print(told, file=sys.stderr, flush=True)
+        told = ", ".join(filter(None, (f"{count} {self.noun}", rate, left)))
+        print("; ".join(filter(None, (told, self.where))), file=sys.stderr, flush=True)
 
     def close(self) -> None:
         if self.bar is not None:
             self.bar.stop()
+
+
+def _bar(title: str) -> Progress:
+    """A bar on standard error, or in a notebook."""
+    notebook = Console().is_jupyter
+    console = Console() if notebook else Console(file=sys.stderr, force_terminal=True)
+    columns = (
+        TextColumn(title, markup=False),
+        BarColumn(),
+        *(
+            TextColumn(f"{{task.fields[{name}]}}", markup=False)
+            for name in ("count", "rate", "left", "where")
+        ),
+    )
+    return Progress(*columns, console=console, transient=True, auto_refresh=False)

@@ -1,14 +1,21 @@
-"""A request to stop early, by a scheduler's warning, a user's kill or Ctrl-C, heeded between two points."""
+"""A request to stop early, by a scheduler's warning, a user's kill or Ctrl-C.
+
+It is heeded between two points, and within a point that goes on for longer than `GRACE` seconds.
+"""
 
 import os
 import signal
+import time
 from contextlib import suppress
 from types import FrameType
 
 STOP_SIGNALS = (signal.SIGTERM, signal.SIGUSR1, signal.SIGINT)
 """What asks for a stop: what `kill` and a scheduler's end send, what schedulers warn with, and Ctrl-C."""
-HEARD_CTRL_C = b"\nstopping with the point in hand, all is kept (Ctrl-\\ ends at once and loses that point)\n"
-"""What is said at once, where a point may take its time."""
+GRACE = 0.3
+"""Seconds that a point may still take once a stop is asked for. What takes longer is computed again: a run is
+to end within two seconds, and the launcher of Open MPI kills after one."""
+HEARD_CTRL_C = b"\nstopping: all points that are done are kept (Ctrl-\\ ends at once)\n"
+"""What is said at once."""
 
 
 class StopRequest:
@@ -19,9 +26,18 @@ class StopRequest:
 
     def __init__(self, speaks: bool = False) -> None:
         self.name, self.speaks = "", speaks
+        self._since = 0.0
 
     def __bool__(self) -> bool:
         return bool(self.name)
+
+    @property
+    def is_due(self) -> bool:
+        """Whether what is being solved is to end now, also in the middle."""
+        if not self.name:
+            return False
+        self._since = self._since or time.monotonic()
+        return time.monotonic() - self._since >= GRACE
 
     def listen(self) -> None:
         """From here on the signals no longer end the process. Only the main thread may call it."""

@@ -1,14 +1,17 @@
 """The ranks of a run: who is first, and how an error on one ends all at once."""
 
 import sys
+import time
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any, TypeVar
 
-from ..errors import EnvironmentLacks, Refusal
+from ..errors import BUG_STATUS, EnvironmentLacks, Refusal
 
 T = TypeVar("T")
+SHORTEST_PAUSE, LONGEST_PAUSE = 1e-4, 1e-2
+"""Seconds between two looks at whether the others have come, at first and after a while."""
 
 
 class Team:
@@ -41,18 +44,26 @@ class Team:
                 outcome = (work(), None)
             except Refusal as error:
                 outcome = (None, error)
+        self.meet()
         value, refusal = self.comm.bcast(outcome)
         if refusal is not None:
             refusal.collective = True
             raise refusal
         return value
 
+    def meet(self) -> None:
+        """Waits for all ranks without taking the processor from those that still work, as a barrier would."""
+        request, pause = self.comm.Ibarrier(), SHORTEST_PAUSE
+        while not request.Test():
+            time.sleep(pause)
+            pause = min(2 * pause, LONGEST_PAUSE)
+
     def all_can(self, work: Callable[[], object]) -> None:
-        """Does `work` on every rank; where the machine of one lacks something, all raise its refusal."""
-        refusal = None
+        """Does `work` on every rank; where one refuses it, all raise its refusal."""
+        refusal: Refusal | None = None
         try:
             work()
-        except EnvironmentLacks as error:
+        except Refusal as error:
             refusal = error
         refusals = [r for r in self.comm.allgather(refusal) if r is not None]
         if refusals:
@@ -61,11 +72,12 @@ class Team:
 
     def gather(self, value: T) -> list[T] | None:
         """The values of all ranks on the first rank, None elsewhere."""
+        self.meet()
         return self.comm.gather(value)
 
     @contextmanager
     def together(self) -> Iterator[None]:
-        """What fails in here on one rank ends all ranks with status 3 and a message: they would wait.
+        """What fails in here on one rank ends all ranks with its message and exit status: they would wait.
 
         With a single rank there is nobody to wait, and a refusal that all ranks share needs no abort:
         such exceptions go on.
@@ -83,5 +95,6 @@ class Team:
             for stream in (sys.stdout, sys.stderr):
                 with suppress(OSError):  # a full disk under the log must not keep the others waiting
                     stream.flush()
-            self.comm.Abort(3)
-            raise SystemExit(3) from error
+            status = error.exit_status if isinstance(error, Refusal) else BUG_STATUS
+            self.comm.Abort(status)
+            raise SystemExit(status) from error

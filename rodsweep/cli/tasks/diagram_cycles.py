@@ -1,6 +1,6 @@
 """What `phase_diagram.cycles` adds to the task phase_diagram: rows with their cycles, and curves of these."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -12,8 +12,7 @@ from ...results.layouts.phase_diagram import MOST_SPECIAL
 
 if TYPE_CHECKING:
     from ...solve.branch.coexistence import CoexistenceRow
-    from ...solve.branch.special_boundaries import CycleCurves
-    from ...solve.branch.special_points import SpecialPoint
+    from ...solve.branch.special_boundaries import CycleCurves, RowSpecial
     from ...solve.hopf.generalised import CurveCriticality
 
 
@@ -36,29 +35,17 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
     return values | {"seconds": result.seconds, "status": int(result.status)}
 
 
-def curves_of_cycles(
-    plane: Plane,
-    view: View,
-    rows: np.ndarray,
-    told: "Sequence[CurveCriticality]",
-    located: "Callable[[int], Iterable[SpecialPoint]]",
-) -> dict[str, Any]:
-    """The curves through the folds and torus points of all finite rows, as variables of the file.
-
-    rows: their values, (rows,). told: of the Hopf curves, for the points where curves of folds end. located:
-    the special points of a row of a number, solved anew.
-    """
-    from ...solve.branch.special_boundaries import CURVE_KINDS, RowSpecial, cycle_curves
-    from ...solve.branch.special_curves import ending_at
+def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecial]":
+    """The folds and torus points of all finite rows as the file has them. rows: all values, (rows,)."""
+    from ...solve.branch.special_boundaries import CURVE_KINDS, RowSpecial
     from ...solve.branch.special_points import SpecialKind
 
-    line, row = (axis.name for axis in plane.axes)
     kinds = view.variables["cycle_special_kind"].reshape(len(rows), -1)
     at, period, height = (
         view.variables[f"cycle_special_{name}"].reshape(len(rows), -1)
         for name in (line, "period", "tip_y_max")
     )
-    special = [
+    return [
         RowSpecial(
             number=int(i),
             row=float(rows[i]),
@@ -70,13 +57,24 @@ def curves_of_cycles(
         for i in np.flatnonzero(np.isfinite(rows))
         for j in np.flatnonzero(np.isin(kinds[i], CURVE_KINDS))
     ]
-    found = cycle_curves(*plane.axes, special, located)
-    # Where a list is full its last points are not stored, and no curve starts from them.
-    cut = view.variables["cycle_special_count"].ravel() - np.count_nonzero(kinds, axis=1)
-    untraced = found.untraced + int(cut[np.isfinite(rows)].clip(min=0).sum())
+
+
+def unstored_specials(view: View, finite: np.ndarray) -> int:
+    """Special points that the full lists of finite rows lack; no curve starts from them. finite: (rows,)."""
+    stored = np.count_nonzero(view.variables["cycle_special_kind"].reshape(len(finite), -1), axis=1)
+    lacking = view.variables["cycle_special_count"].ravel() - stored
+    return int(lacking[finite].clip(min=0).sum())
+
+
+def with_hopf_ends(
+    found: "CycleCurves", plane: Plane, told: "Sequence[CurveCriticality]", unstored: int
+) -> "CycleCurves":
+    """The curves with the generalised Hopf points at their ends as they are located on Hopf curves."""
+    from ...solve.branch.special_curves import ending_at
+
     known = [point for curve in told for point in curve.points]
     curves = tuple(ending_at(curve, plane, known) for curve in found.curves)
-    return cycle_curve_record(replace(found, curves=curves, untraced=untraced), line, row)
+    return replace(found, curves=curves, untraced=found.untraced + unstored)
 
 
 def cycle_curve_record(found: "CycleCurves", line: str, row: str) -> dict[str, Any]:
@@ -84,7 +82,7 @@ def cycle_curve_record(found: "CycleCurves", line: str, row: str) -> dict[str, A
     names = (line, row, "error", "period", "tip_y_max")
     points, numbers, kinds, ends = [], [], [], []
     for number, curve in enumerate(found.curves, 1):
-        own = [(p.at, p.row, p.error, p.orbit.period, p.tip_y_max) for p in curve.points]
+        own = [(p.at, p.row, p.error, p.period, p.tip_y_max) for p in curve.points]
         first, last = ([(p.at, p.row, p.error, p.period, 0.0)] if p else [] for p in curve.vanishing)
         own = [*first, *own, *last]
         points += own

@@ -1,9 +1,9 @@
 """What a task is, for `check` and `run`: neither knows more of it than is said here."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +16,36 @@ from ...sweep.estimate import Estimate
 from ...sweep.grid import Points
 from ...sweep.stretches import Stretches, Together
 
+Arrays = dict[str, np.ndarray]
+"""The result of a unit of work."""
 Part = tuple[str, bool, str]
 """(what, whether it is modelled, why): a row of what `check` prints."""
+
+
+class Units(Protocol):
+    """Work on all points in units; which are wanted may depend on results. Sent to all ranks."""
+
+    def wanted(self, results: Mapping[int, Arrays]) -> list[int]:
+        """Units whose results are needed next, then some that may be; none once all are there."""
+
+    def where(self, unit: int) -> str:
+        """What a unit is, in words."""
+
+
+class AllPoints(Protocol):
+    """What only all points together give. On every rank."""
+
+    def units(self, view: View) -> Any:
+        """Its work in `Units`, from the file with all points; None where there is none in units."""
+
+    def solve(self, units: Any, unit: int) -> Arrays:
+        """The result of a unit."""
+
+    def nothing(self) -> Arrays:
+        """The result of a unit whose solver raised what nobody foresaw."""
+
+    def variables(self, view: View, units: Any, results: Mapping[int, Arrays]) -> Sequence[Filled]:
+        """Variables of the file, with the results of all units that were wanted. On the first rank."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,8 +58,8 @@ class Solver:
     solve: Callable[[int], Any]
     record: Callable[[int, Any], dict[str, Any]]
     """An index and its outcome as the variables of the file."""
-    finish: Callable[[View], Sequence[Filled]] | None = None
-    """Variables that only all points together give, on the first rank, from the file with all points."""
+    together: AllPoints | None = None
+    """What only all points together give, where there is such."""
     chained: tuple[Chains, ChainStep] | None = None
     """Where points start one from the other: how they are solved, instead of by `solve`."""
     stretched: tuple[Stretches, Callable[[NDArray[np.int64]], Together]] | None = None

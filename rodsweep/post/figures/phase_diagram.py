@@ -13,6 +13,7 @@ from matplotlib.patches import Patch
 from ...arrays import Array
 from ...model.parameters import CRUSHING, LINEAR_PARAMETERS
 from ...results.file.view import View
+from ...results.layouts import lacks_curves
 from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from .class_bars import CLASS_COLOURS
@@ -127,7 +128,8 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     handles += edge if (table == palette.crushed).any() else []
     legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
     axes.set_title(heading(view, fixed_text(view, line, row)), fontsize=9)
-    return request.write(figure, f"what the rod does over {line} and {row}")
+    missing = "; curves are missing, the file is not finished" if lacks_curves(view.attributes) else ""
+    return request.write(figure, f"what the rod does over {line} and {row}{missing}")
 
 
 def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:

@@ -9,6 +9,7 @@ from rich.table import Table
 
 from ...results.file.provenance import RANK_SHARES, kernels_of
 from ...results.file.view import View
+from ...results.layouts import lacks_curves
 from ...results.layouts.arm import QUANTITY_UNITS
 from ...results.layouts.variables import DIMENSIONS, MISSING
 from .arm import arm_lines
@@ -44,6 +45,8 @@ def show_summary(view: View, every_status: bool = False) -> None:
         console.print(
             f"{int((~done).sum())} points are missing; where no run goes on, the same command continues"
         )
+    elif lacks_curves(a):
+        console.print("all points are there; the curves through them are missing, the same command adds them")
     if view.journalled:
         console.print(
             f"{view.journalled} of the points that are done wait in the journal for the end of the run"

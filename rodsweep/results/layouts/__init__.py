@@ -1,6 +1,7 @@
 """What the file of each task holds: its variables, and `layout_of`, which finds them from a config."""
 
-from collections.abc import Callable
+import json
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from . import branch, criticality, limit_cycle, modes, phase_diagram, spectrum, thresholds
@@ -36,3 +37,10 @@ def layout_of(config: dict[str, Any]) -> Layout:
     if task not in LAYOUTS:
         raise KeyError(f"unknown task {task}")
     return with_si(LAYOUTS[task](config), config)
+
+
+def lacks_curves(attributes: Mapping[str, Any]) -> bool:
+    """Whether the file with these attributes still lacks the curves that all its points together give."""
+    if "finished" in attributes or "config_resolved" not in attributes:
+        return False
+    return layout_of(json.loads(attributes["config_resolved"])).needs_all_points

@@ -5,7 +5,8 @@ Left to Python they are not: petsc4py only sets aside what the garbage collector
 
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
-from typing import Generic, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
+from weakref import WeakSet
 
 
 class Destroyable(Protocol):
@@ -24,6 +25,7 @@ class Kept(Generic[Key, Object]):
     def __init__(self, create: Callable[[Key], Object], most: int) -> None:
         self._create, self._most = create, most
         self._objects: OrderedDict[Key, Object] = OrderedDict()
+        _pools.add(self)
 
     def __len__(self) -> int:
         return len(self._objects)
@@ -46,3 +48,12 @@ class Kept(Generic[Key, Object]):
         """Destroys all."""
         while self._objects:
             self._objects.popitem()[1].destroy()
+
+
+_pools: WeakSet[Kept[Any, Any]] = WeakSet()
+
+
+def forget_all() -> None:
+    """Destroys every kept object: after an exception in the middle of a solve any of them may be unusable."""
+    for pool in list(_pools):
+        pool.clear()

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from ...arrays import Array, Complex
+from ...watch import report
 from ..cycle.condensation import eliminate, substitute
 from ..cycle.linearisation import (
     Workspace,
@@ -190,6 +191,7 @@ class Condition:
         matrix, off, last = BorderedMatrix(orbit, self.scale), 0.0, np.inf
         step = matrix.step(self.border, self.missed(orbit))
         for _ in range(MOST_ITERATIONS):
+            report()
             change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
             if not change <= LONGEST_STEP:
                 raise Unsolvable("there is no cycle near on the branch")

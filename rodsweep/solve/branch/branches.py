@@ -11,6 +11,7 @@ from math import nan
 from ...determinant.parameter_path import Path
 from ...model.parameters import LINEAR_PARAMETERS
 from ...model.rod import Rod
+from ...watch import part
 from ..changes.along_path import Transitions, pair_crossings
 from ..changes.unstable_modes import Crossing
 from ..cycle.linearisation import release_workspace
@@ -165,7 +166,8 @@ def _followed(course: Course, name: str) -> list[BranchCurve]:
         if number in arrived:
             continue
         here = replace(course, most=left)
-        curve = follow_branch(number, here)
+        with part(f"branch {len(curves) + 1}"):
+            curve = follow_branch(number, here)
         arrived.add(curve.arrives)
         left -= len(curve.points)
         curves.append(curve)
@@ -174,7 +176,8 @@ def _followed(course: Course, name: str) -> list[BranchCurve]:
     for which, breaking in enumerate(breakings):
         if breaking in met:
             continue
-        curve = follow_without_symmetry(which, name, replace(course, most=left, breakings=breakings))
+        with part(f"branch {len(curves) + 1}"):
+            curve = follow_without_symmetry(which, name, replace(course, most=left, breakings=breakings))
         met += [curve.meets] if curve.meets else []
         left -= len(curve.points)
         curves.append(curve)

@@ -2,11 +2,13 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from math import nan
 
 import numpy as np
 from scipy.optimize import brentq
 
+from ...watch import report
 from ..cycle.neighbour import value_of
 from ..cycle.orbit_mesh import mesh_of
 from ..cycle.refinement import matrix_distance, newton_tolerance
@@ -103,9 +105,16 @@ def followed_from(curve: BranchCurve, first: ArcPoint, course: Course) -> Branch
     trail = Trail(curve, course.accuracy, first)
     going: ArcPoint | End = first
     while isinstance(going, ArcPoint):
+        report(partial(_place_on, curve, going))
         going = _next(trail, going, course)
     trail.end(going)
     return curve
+
+
+def _place_on(curve: BranchCurve, here: ArcPoint) -> str:
+    """Where on a branch its last cycle is, in words."""
+    name = here.scale.name
+    return f"{name} = {value_of(here.orbit.form, name):.5g}, {len(curve.points)} cycles"
 
 
 def special_hopf(hopf: HopfBirth) -> SpecialPoint:

@@ -10,6 +10,7 @@ from scipy.optimize import brentq
 
 from ...arrays import Array
 from ...determinant.parameter_plane import Plane, PlaneAxis
+from ...watch import report
 from ..cycle.measures import CyclePath
 from ..cycle.newton import relative_change
 from ..cycle.orbit import Orbit
@@ -69,6 +70,35 @@ class VanishingPoint:
 
 
 @dataclass(frozen=True, slots=True)
+class CurvePoint:
+    """The numbers of a point of a curve: both parameters, the place on the rows' axis, scaled, from 0 to 1.
+
+    error: absolute, of the line's parameter. period in tau2, tip_y_max in L.
+    """
+
+    at: float
+    row: float
+    place: float
+    error: float
+    period: float
+    tip_y_max: float
+
+    @classmethod
+    def of(cls, point: OnCurve) -> "CurvePoint":
+        """The numbers of a cycle on a curve."""
+        period = point.orbit.period
+        return cls(point.at, point.row, point.place, point.error, period, point.tip_y_max)
+
+
+@dataclass(frozen=True, slots=True)
+class HalfCurve:
+    """A curve from a special point of a row to one of its ends."""
+
+    points: tuple[CurvePoint, ...]
+    end: CurveEnd
+
+
+@dataclass(frozen=True, slots=True)
 class CycleCurve:
     """A curve of folds or torus points: its points in order, and why it ends before and behind them.
 
@@ -76,9 +106,20 @@ class CycleCurve:
     """
 
     kind: SpecialKind
-    points: tuple[OnCurve, ...]
+    points: tuple[CurvePoint, ...]
     ends: tuple[CurveEnd, CurveEnd]
     vanishing: tuple[VanishingPoint | None, VanishingPoint | None]
+
+    @classmethod
+    def joined(cls, kind: SpecialKind, ahead: HalfCurve, behind: HalfCurve | None) -> "CycleCurve":
+        """The curve of its two halves from one point. Of a closed curve the half ahead is all of it."""
+        before = behind or HalfCurve(ahead.points[:1], ahead.end)
+        points = (*before.points[:0:-1], *ahead.points)
+        vanishing = [
+            vanishing_point(side) if end is CurveEnd.hopf else None
+            for end, side in ((before.end, points[::-1]), (ahead.end, points))
+        ]
+        return cls(kind, points, (before.end, ahead.end), (vanishing[0], vanishing[1]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,23 +130,14 @@ class CurveCourse:
     line: PlaneAxis
     rows: PlaneAxis
 
-    def trace(self, special: SpecialPoint, row: float) -> CycleCurve:
-        """The curve through a special point of a row, followed both ways to its ends; raises Unsolvable."""
-        first = first_point(special, self.line.name, self.rows, row)
-        ahead, end = self._followed([first], 1.0)
-        behind, start = ([first], end) if end is CurveEnd.closed else self._followed([first], -1.0)
-        points = (*behind[:0:-1], *ahead)
-        ends = (start, end)
-        vanishing = [
-            vanishing_point(side) if at is CurveEnd.hopf else None
-            for at, side in zip(ends, (points[::-1], points), strict=True)
-        ]
-        return CycleCurve(self.kind, points, ends, (vanishing[0], vanishing[1]))
+    def followed(self, special: SpecialPoint, row: float, side: float) -> tuple[list[OnCurve], CurveEnd]:
+        """(the curve from a special point of a row on, why it ends); raises Unsolvable.
 
-    def _followed(self, points: list[OnCurve], side: float) -> tuple[list[OnCurve], CurveEnd]:
-        """(a curve from its first point on, to one side of the rows' axis first, why it ends)."""
-        step = FIRST
+        side: 1 or -1, to which the curve goes first along the rows' axis.
+        """
+        points, step = [first_point(special, self.line.name, self.rows, row)], FIRST
         while len(points) < MOST_POINTS:
+            report(lambda: f"{self.rows.name} = {points[-1].row:.5g}, {len(points)} points")
             try:
                 there, off = self._next(points, step, side)
             except FAILURES:
@@ -290,13 +322,13 @@ def slope_of(one: OnCurve, other: OnCurve) -> float:
     return (other.at - one.at) / apart if apart else 0.0
 
 
-def vanishing_point(points: Sequence[OnCurve]) -> VanishingPoint | None:
+def vanishing_point(points: Sequence[CurvePoint]) -> VanishingPoint | None:
     """Where the largest y is 0 behind the last point, by polynomials in its square."""
     known = points[-PREDICTED_BY:]
     if len(known) < PREDICTED_BY:
         return None
     squares = np.array([point.tip_y_max**2 for point in known])
-    table = np.array([[point.at, point.row, point.orbit.period] for point in known])
+    table = np.array([[point.at, point.row, point.period] for point in known])
     best, other = (np.dot(polynomial_weights(squares[i:], 0.0), table[i:]) for i in (0, 1))
     error = SAFETY * (abs(best[0] - other[0]) + max(point.error for point in known))
     return VanishingPoint(float(best[0]), float(best[1]), float(error), float(best[2]))

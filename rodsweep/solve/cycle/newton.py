@@ -6,6 +6,7 @@ from typing import Protocol
 import numpy as np
 
 from ...arrays import Array, Complex
+from ...watch import report
 from ..point import Unsolvable
 from .linearisation import Linearisation, largest_change
 from .orbit import Orbit
@@ -48,6 +49,7 @@ def newton(orbit: Orbit, tolerance: float, parameter: str | None = None, most: i
     matrix, distance, last = Linearisation(orbit, parameter), 0.0, np.inf
     step = matrix.step
     for iteration in range(1, most + 1):
+        report()
         change = relative_change(orbit, step)
         if not np.isfinite(change):
             raise Unsolvable("Newton's method for the orbit broke down")
