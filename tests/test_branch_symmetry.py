@@ -15,8 +15,9 @@ from rodsweep.post.summary.branch import _ends
 from rodsweep.solve.branch import following, special_points
 from rodsweep.solve.branch.arc import arc_point, next_point
 from rodsweep.solve.branch.beginning import hopf_point
+from rodsweep.solve.branch.branch_curve import BranchCurve
 from rodsweep.solve.branch.branches import BranchesOfRod, BranchStatus
-from rodsweep.solve.branch.following import BranchCurve, Course, follow_branch, follow_without_symmetry
+from rodsweep.solve.branch.following import Course, follow_branch, follow_without_symmetry
 from rodsweep.solve.branch.special_points import EndReason, SpecialKind, changes_between
 from rodsweep.solve.branch.symmetry import (
     asymmetry,

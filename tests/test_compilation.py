@@ -1,8 +1,13 @@
-"""What is compiled: a cache for each content of the sources, and the same bits in every process."""
+"""What is compiled: each kernel once for all that it is made of, and the same bits in every process."""
 
-import shutil
+import importlib
+import os
 import subprocess
 import sys
+
+import numba
+import pytest
+from numba.core import event
 
 from rodsweep.model import compilation
 
@@ -21,10 +26,72 @@ data = rs.sweep(
 for name in sorted(set(data.data_vars) - {"seconds"}):
     print(name, data[name].values.tobytes().hex())
 """
+PASSES_COUNTED = """
+from numba.core import event
+passes = event.RecordingListener()
+event.register("numba:run_pass", passes)
+"""
+PASSES_TOLD = "print('passes', len(passes.buffer))"
+
+INNER = '''
+"""Formulas that those of another module call."""
+from typing import NamedTuple
+from rodsweep.model.compilation import compiled
+
+FACTOR = 2.0
+
+class Pair(NamedTuple):
+    a: float
+    b: float
+
+@compiled
+def scaled(x):
+    """A product."""
+    return FACTOR * x
+
+@compiled
+def alone(x):
+    return x + 1.0
+'''
+OUTER = """
+import numpy as np
+from .inner import Pair, alone, compiled, scaled
+
+OFFSETS = np.array([10.0, 20.0])
+
+@compiled
+def shifted(x):
+    return scaled(x) + OFFSETS[0]
+
+@compiled
+def twice_shifted(x):
+    return [shifted(y) for y in (x, x)][1]
+
+@compiled
+def difference(p):
+    return p.a - p.b
+
+@compiled
+def calls_later(x):
+    return later(x)
+
+@compiled
+def later(x):
+    return 3.0 * x
+
+def values():
+    return alone(1.0), twice_shifted(1.0), difference(Pair(5.0, 3.0)), calls_later(1.0)
+"""
+VALUES = 2.0, 12.0, 2.0, 3.0
+KERNELS = {"alone", "scaled", "shifted", "twice_shifted", "difference", "calls_later", "later"}
 
 
-def printed(code):
-    return subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout
+def printed(code, **variables):
+    done = subprocess.run(
+        [sys.executable, "-c", code], check=False, capture_output=True, text=True, env=os.environ | variables
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
 
 
 def test_numbers_do_not_depend_on_what_was_loaded_before():
@@ -32,23 +99,83 @@ def test_numbers_do_not_depend_on_what_was_loaded_before():
     alone = printed(SOLVED)
     assert "tip_y_max" in alone
     assert printed(SOLVED_BEFORE + SOLVED) == alone
+    assert printed(PASSES_COUNTED + SOLVED + PASSES_TOLD) == alone + "passes 0\n", "it was compiled twice"
 
 
-def test_compiled_code_is_kept_for_one_content_of_the_sources(tmp_path, monkeypatch):
-    """A change in a module whose formulas are inlined elsewhere must not meet old compiled code."""
-    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
-    copy = tmp_path / "rodsweep"
-    for name in compilation.COMPILED_IN:
-        shutil.copytree(compilation.PACKAGE / name, copy / name, ignore=shutil.ignore_patterns("__pycache__"))
-    monkeypatch.setattr(compilation, "PACKAGE", copy)
-    before = compilation.cache_directory()
-    assert before == compilation.cache_directory()
-    assert copy in before.parents
-    digests = {before}
-    for formula in [path for name in compilation.COMPILED_IN for path in (copy / name).rglob("*.py")]:
-        formula.write_text(formula.read_text() + "# changed\n")
-        digests.add(compilation.cache_directory())
-    assert len(digests) == 1 + sum(1 for name in compilation.COMPILED_IN for _ in (copy / name).rglob("*.py"))
-    assert any("compiled" in path.read_text() for path in copy.glob("*/*/*.py")), "rooms have formulas too"
-    monkeypatch.setenv("NUMBA_CACHE_DIR", "/elsewhere")
-    assert str(compilation.cache_directory()).startswith("/elsewhere/compiled-")
+@pytest.fixture
+def made(tmp_path, monkeypatch):
+    """Imports a package of the two modules given as in a new process: its values, and what numba compiled."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(
+        sys, "dont_write_bytecode", True
+    )  # of equal size and time it would be taken for fresh
+    (tmp_path / "made").mkdir()
+
+    def values(inner=INNER, outer=OUTER):
+        for name in [name for name in sys.modules if name.partition(".")[0] == "made"]:
+            del sys.modules[name]
+        for name, content in (("__init__", ""), ("inner", inner), ("outer", outer)):
+            (tmp_path / "made" / f"{name}.py").write_text(content)
+        importlib.invalidate_caches()
+        outer = importlib.import_module("made.outer")
+        with event.install_recorder("numba:compile") as recorder:
+            found = outer.values()
+        return found, {seen.data["dispatcher"].__name__ for _, seen in recorder.buffer}
+
+    yield values
+    for name in [name for name in sys.modules if name.partition(".")[0] == "made"]:
+        del sys.modules[name]
+
+
+def test_comments_docstrings_and_lines_compile_nothing(made):
+    assert made() == (VALUES, KERNELS)
+    assert made() == (VALUES, set())
+    moved = INNER.replace('    """A product."""\n', "    # a comment\n").replace("\n@", "\n\n# another\n\n@")
+    commented = OUTER.replace("    return p.a", '    """A docstring where there was none."""\n    return p.a')
+    assert made(moved, commented) == (VALUES, set())
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "compiled", "changed"),
+    [
+        ("FACTOR = 2.0", "FACTOR = 3.0", {"scaled", "shifted", "twice_shifted"}, {1: 13.0}),
+        ("FACTOR * x", "FACTOR * x * x", {"scaled", "shifted", "twice_shifted"}, {}),
+        ("10.0, 20.0", "11.0, 20.0", {"shifted", "twice_shifted"}, {1: 13.0}),
+        ("(x, x)][1]", "(x, x + 1.0)][1]", {"twice_shifted"}, {1: 14.0}),
+        ("3.0 * x", "4.0 * x", {"calls_later", "later"}, {3: 4.0}),
+        ("    a: float\n    b: float", "    b: float\n    a: float", {"difference"}, {2: -2.0}),
+        ("p.a - p.b", "p.b - p.a", {"difference"}, {2: -2.0}),
+        ("@compiled\ndef alone", "@compiled_for_vectors\ndef alone", {"alone"}, {}),
+    ],
+)
+def test_a_change_compiles_the_kernel_and_its_callers_only(made, old, new, compiled, changed):
+    """The constant, the callee or the order of fields is in another module, or defined below its user."""
+    inner = INNER.replace("import compiled", "import compiled, compiled_for_vectors")
+    made(inner)
+    values = tuple(changed.get(place, value) for place, value in enumerate(VALUES))
+    assert made(inner.replace(old, new), OUTER.replace(old, new)) == (values, compiled)
+    assert made(inner) == (VALUES, set()), "versions share the directory"
+
+
+def test_what_was_compiled_of_an_outdated_value_is_not_kept(made, monkeypatch):
+    """A constant that a running process changed: numba has the first value in some kernels, not in others."""
+    made()
+    monkeypatch.setattr(sys.modules["made.inner"], "FACTOR", 100.0)
+    assert sys.modules["made.outer"].shifted(1) == 110.0, "compiled for an integer only now"
+    made()
+    assert sys.modules["made.outer"].shifted(1) == 12.0
+
+
+def test_a_value_that_has_no_digest_is_refused(made):
+    with pytest.raises(TypeError, match=r"scaled: there is no digest of <object"):
+        made(INNER.replace("FACTOR = 2.0", "FACTOR = object()"))
+    with pytest.raises(TypeError, match="kernels take no functions as arguments"):
+        made(outer=OUTER.replace("difference(Pair(5.0, 3.0))", "difference(shifted)"))
+
+
+def test_numba_looks_for_caches_where_ours_is():
+    """numba calls what its class `_Cache` promises; `_cache` is where it looks."""
+    kernel = compilation.compiled(lambda x: x)
+    assert isinstance(kernel._cache, numba.core.caching._Cache)
+    assert kernel.stats.cache_path == str(compilation.cache_directories()[0])

@@ -2,40 +2,36 @@
 
 The formulas are evaluated point by point inside adaptive loops, where NumPy would spend its time
 on calls. The compiled functions take floats and complex numbers and no objects of ours.
-
-A compiled function contains those of other modules that it calls, and numba does not notice when one of
-these changes. So the cache has a directory for each content of the modules that may hold formulas.
 """
 
 import os
 from collections.abc import Callable
-from hashlib import sha256
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 import numba
+from numba.core.ccallback import CFunc
+
+from .kernel_cache import KernelCache
 
 P = ParamSpec("P")
 R = TypeVar("R")
 
 PACKAGE = Path(__file__).parents[1]
-COMPILED_IN = ("model", "determinant", "discretization", "solve")
 
 
-def cache_directory() -> Path:
-    """Where numba keeps what it compiled from the present sources; NUMBA_CACHE_DIR moves it."""
-    digest = sha256()
-    for module in sorted(path for name in COMPILED_IN for path in (PACKAGE / name).rglob("*.py")):
-        digest.update(module.read_bytes())
-    place = os.environ.get("NUMBA_CACHE_DIR")
-    if place is None:
-        beside = os.access(PACKAGE, os.W_OK)
-        home = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
-        place = str(PACKAGE / "__pycache__" if beside else home / "rodsweep")
-    return Path(place) / f"compiled-{digest.hexdigest()[:16]}"
-
-
-numba.config.CACHE_DIR = str(cache_directory())
+def cache_directories() -> list[Path]:
+    """Where compiled code is kept: NUMBA_CACHE_DIR, or the package and, where that is read-only, ~/.cache."""
+    if place := os.environ.get("NUMBA_CACHE_DIR"):
+        return [Path(place) / "rodsweep"]
+    caches = [PACKAGE / "__pycache__"]
+    if place := os.environ.get("XDG_CACHE_HOME"):
+        caches.append(Path(place) / "rodsweep")
+    else:
+        with suppress(RuntimeError):  # this user has no home
+            caches.append(Path.home() / ".cache" / "rodsweep")
+    return [cache / "compiled" for cache in caches]
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
@@ -55,8 +51,16 @@ def compiled_for_vectors(function: Callable[P, R]) -> Callable[P, R]:
     return _compiled(function, fastmath={"reassoc", "contract", "nsz"}, forceinline=True)
 
 
+def c_callback(function: Callable, signature: Any) -> Any:
+    """`function` compiled at once into one that C can call; its `address` is a C function pointer."""
+    callback: Any = CFunc(function, numba.core.sigutils.normalize_signature(signature), locals={}, options={})
+    callback._cache = KernelCache(function, {"signature": "C"}, cache_directories())
+    callback.compile()
+    return callback
+
+
 def _compiled(function: Callable[P, R], **options: Any) -> Callable[P, R]:
-    try:
-        return numba.njit(cache=True, error_model="numpy", **options)(function)
-    except (RuntimeError, OSError):  # there is no directory that may be written
-        return numba.njit(error_model="numpy", **options)(function)
+    dispatcher: Any = numba.njit(error_model="numpy", **options)(function)
+    if not numba.config.DISABLE_JIT:
+        dispatcher._cache = KernelCache(function, dispatcher.targetoptions, cache_directories())
+    return dispatcher

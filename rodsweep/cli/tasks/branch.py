@@ -13,8 +13,8 @@ from .parts import count_of, rod_parts
 from .protocol import Part, Solver, Task
 
 if TYPE_CHECKING:
+    from ...solve.branch.branch_curve import BranchCurve, BranchPoint
     from ...solve.branch.branches import BranchesOfRod
-    from ...solve.branch.following import BranchCurve, BranchPoint
     from ...solve.branch.special_points import SpecialPoint
     from ...solve.changes.unstable_modes import Crossing
 

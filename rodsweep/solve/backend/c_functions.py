@@ -5,6 +5,7 @@ Nothing here knows the rod.
 
 import ctypes
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numba
@@ -14,7 +15,7 @@ from numba import types
 from numba.core import typing
 from numba.extending import intrinsic
 
-from ...model.compilation import compiled
+from ...model.compilation import c_callback, compiled
 from .petsc import PETSc
 
 CALLED = (
@@ -36,15 +37,7 @@ POINTER, INT = types.intp, types.int32 if PETSc.IntType == np.int32 else types.i
 
 def c_function(*arguments: Any) -> Callable[[Callable], Any]:
     """Compiles a function of these arguments into one that C can call and that returns an error code."""
-    signature = types.int32(*arguments)
-
-    def decorate(function: Callable) -> Any:
-        try:
-            return numba.cfunc(signature, cache=True)(function)
-        except (RuntimeError, OSError):  # there is no directory that may be written
-            return numba.cfunc(signature)(function)
-
-    return decorate
+    return partial(c_callback, signature=types.int32(*arguments))
 
 
 def petsc_function(name: str) -> Any:

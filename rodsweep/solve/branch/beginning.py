@@ -18,10 +18,10 @@ from ..cycle.hopf_start import NORMAL_FORM_ACCURACY, orbit_with
 from ..cycle.neighbour import with_coordinate
 from ..cycle.orbit import Orbit
 from ..cycle.orbit_mesh import stages_for, wanted_mesh
-from ..cycle.refinement import FIRST_ACCURACY, NEAR, matrix_distance
+from ..cycle.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tolerance
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..point import Unsolvable
-from .arc import ArcPoint, arc_point, measured, tangent_at
+from .arc import ArcPoint, first_point
 from .bordered import Condition, Scale, moment_of
 
 AMPLITUDES = (0.02, 0.008, 0.003)
@@ -113,9 +113,10 @@ def _cycle_of(hopf: HopfBirth, amplitude: float, accuracy: float) -> ArcPoint:
     if not 0.5 < y / amplitude < 2.0:
         raise Unsolvable("Newton's method left the cycle that the normal form predicts")
     aim = max(accuracy, FIRST_ACCURACY)
-    first = condition.on(wanted_mesh(near, aim, stages_for(accuracy)), near, matrix_distance(accuracy))
-    cycle = measured(first, None, condition, 0.0, accuracy)
-    return arc_point(cycle, scale, tangent_at(cycle.orbit, scale, border), FIRST_STEP)
+    mesh = wanted_mesh(near, aim, stages_for(accuracy))
+    first = condition.on(mesh, near, newton_tolerance(accuracy), matrix_distance(accuracy))
+    born = abs(moment_of(first.orbit)) / scale.moment
+    return first_point(first, scale, border, born, accuracy, FIRST_STEP)
 
 
 def predicted_cycle(hopf: HopfBirth, amplitude: float) -> Orbit:

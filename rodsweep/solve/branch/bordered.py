@@ -14,7 +14,14 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ..cycle.condensation import eliminate, substitute
-from ..cycle.linearisation import change_along, phase, phase_change, phase_row, workspace
+from ..cycle.linearisation import (
+    Workspace,
+    change_along,
+    phase,
+    phase_change,
+    phase_row,
+    reduced_residuals,
+)
 from ..cycle.multipliers import nonzero_eigenvalues
 from ..cycle.neighbour import coordinate_of, with_coordinate
 from ..cycle.newton import Converged, relative_change
@@ -25,7 +32,9 @@ from ..point import Unsolvable
 
 LONGEST_STEP = 0.5
 """Largest relative change of an orbit in one iteration."""
-MOST_ITERATIONS = 8
+MOST_ITERATIONS = 12
+SLUGGISH = 0.1
+"""Ratio of a correction to the one before from which the matrix is made anew."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,8 +75,8 @@ def moment_of(orbit: Orbit) -> float:
 class BorderedMatrix:
     """Newton's matrix at an orbit, with a parameter as a further unknown and one row still to be given.
 
-    Steps are arrays like `Orbit.values`, (N,), with the parameter's coordinate behind them. They can be had
-    until the next matrix is made; the multipliers for ever.
+    Steps are arrays like `Orbit.values`, (N,), with the parameter's coordinate behind them. They raise
+    RuntimeError once another matrix was made, for all share one memory; the multipliers stay.
     """
 
     def __init__(self, orbit: Orbit, scale: Scale) -> None:
@@ -75,32 +84,39 @@ class BorderedMatrix:
         self.tangent: Array | None = None  # by which parameter is for the branch to say
         p, (K, s, n) = orbit.semidiscrete, orbit.states.shape
         along, V = change_along(orbit.form, scale.name), np.empty((K, s, 3, len(p.matrices.weights)))
-        self._columns, self._factors = np.empty((K, s, 3, n)), workspace(K, s, n)
+        self._columns, self._workspace = np.empty((K, s, 3, n)), Workspace(K, s, n)
         right_sides(orbit.points, orbit.duration, p, along, V, self._columns)
-        ends = eliminate(orbit.points, V, orbit.duration, p, self._factors, self._columns)
+        ends = eliminate(orbit.points, V, orbit.duration, p, self._workspace.factors, self._columns)
         shift = phase_change(orbit.start, along.change, p.parameters, p.matrices)
         self._matrix = np.zeros((n + 2, n + 2))
-        self._matrix[:n, :n] = self._factors.propagator - np.diag(p.signs)
+        self._matrix[:n, :n] = self._workspace.propagator - np.diag(p.signs)
         self._matrix[:n, n], self._matrix[:n, n + 1] = ends[0], ends[2]
         row = np.empty(n)
         phase_row(orbit.start, p.parameters, p.matrices, row)
         self._matrix[n, :n], self._matrix[n, n + 1] = row, -shift
-        jump = p.signs * orbit.start - orbit.points[-1] - ends[1]
-        self._right = np.append(jump, -phase(orbit.start, p.parameters, p.matrices))
+        self._right = self._jump(orbit, ends[1])
 
     def step(self, border: Array, length: float) -> Array:
         """Newton's step along which `border` . place, (3,), grows by a length, (N + 1,)."""
-        return self._solved(border, np.append(self._right, length), 1.0)
+        return self._solved(border, np.append(self._right, length), self._columns[:, :, 1], 1.0)
+
+    def correction(self, orbit: Orbit, border: Array, length: float) -> Array:
+        """The same at another orbit near by, whose parameter may be another one."""
+        factors, p = self._workspace.factors, self.orbit.semidiscrete
+        columns, ends = reduced_residuals(orbit.points, orbit.duration, orbit.semidiscrete, p, factors)
+        right = np.append(self._jump(orbit, ends[0]), length)
+        return self._solved(border, right, columns[:, :, 0], 1.0)
 
     def direction(self, border: Array) -> Array:
         """The tangent of the branch, of unit length in `Scale.place`, on the side of a border, (N + 1,)."""
-        change = self._solved(border, np.append(np.zeros(len(self._right)), 1.0), 0.0)
+        right = np.append(np.zeros(len(self._right)), 1.0)
+        change = self._solved(border, right, self._columns[:, :, 1], 0.0)
         return change / np.linalg.norm(self.scale.moved(self.orbit, change))
 
     @cached_property
     def returns(self) -> Complex:
         """The multipliers of the map over what is solved, half a period and the reflection, (rank,)."""
-        return nonzero_eigenvalues(self.orbit.return_signs[:, None] * self._factors.propagator)
+        return nonzero_eigenvalues(self.orbit.return_signs[:, None] * self._workspace.propagator)
 
     def multipliers(self) -> Complex:
         """All Floquet multipliers but rounding, (rank,), by descending modulus, the trivial one too."""
@@ -114,23 +130,30 @@ class BorderedMatrix:
         """
         matrix = self._matrix.copy()
         matrix[-1, -1] = 1.0
-        return self._spread(np.linalg.svd(matrix)[2][-1], 0.0)
+        return self._spread(np.linalg.svd(matrix)[2][-1], self._columns[:, :, 1], 0.0)
 
-    def _solved(self, border: Array, right: Array, share: float) -> Array:
-        """The change for right sides of the ends and a share of those of the stages."""
+    def _jump(self, orbit: Orbit, end: Array) -> Array:
+        """Right side for an orbit's start and phase, (n + 1,), and what its stages make of its end, (n,)."""
+        p = orbit.semidiscrete
+        jump = p.signs * orbit.start - orbit.points[-1] - end
+        return np.append(jump, -phase(orbit.start, p.parameters, p.matrices))
+
+    def _solved(self, border: Array, right: Array, sides: Array, share: float) -> Array:
+        """The change for right sides of the ends and a share of those of the stages, (K, s, n)."""
         n = len(self.orbit.start)
         matrix = self._matrix.copy()
         matrix[-1, 2 * self.orbit.form.mesh.nodes] = border[0] / self.scale.moment
         matrix[-1, n:] = border[1] / self.orbit.period, border[2] / self.scale.coordinate
-        return self._spread(np.linalg.solve(matrix, right), share)
+        return self._spread(np.linalg.solve(matrix, right), sides, share)
 
-    def _spread(self, found: Array, share: float) -> Array:
+    def _spread(self, found: Array, sides: Array, share: float) -> Array:
         """The change of all, (N + 1,), from that of the ends, (n + 2,), and a share of the right sides."""
         n = len(self.orbit.start)
-        weights = np.array([found[n], share, found[n + 1]])
-        stages = np.ascontiguousarray((weights @ self._columns)[:, :, None])
+        stages = found[n] * self._columns[:, :, 0] + share * sides + found[n + 1] * self._columns[:, :, 2]
+        stages = np.ascontiguousarray(stages[:, :, None])
         out = np.empty_like(stages)
-        substitute(found[None, :n].copy(), stages, self.orbit.semidiscrete, self._factors, out)
+        factors, start = self._workspace.factors, found[None, :n].copy()
+        substitute(start, stages, self.orbit.semidiscrete, factors, out)
         return np.concatenate([found[:n], out.ravel(), found[n:]])
 
 
@@ -158,25 +181,33 @@ class Condition:
         """By how much an orbit's is less."""
         return self.value - float(self.border @ self.scale.place(orbit))
 
-    def solved(self, orbit: Orbit, tolerance: float) -> Converged:
-        """The cycle near an orbit with the matrix at itself; raises Unsolvable.
+    def solved(self, orbit: Orbit, tolerance: float, distance: float = np.inf) -> Converged:
+        """The cycle near an orbit; raises Unsolvable.
 
-        tolerance: relative, of the distance of the matrix from the orbit.
+        tolerance: relative error that is left of the orbit. distance: the largest relative distance of its
+        matrix from it, which is an error of its multipliers and of its tangent.
         """
+        matrix, off, last = BorderedMatrix(orbit, self.scale), 0.0, np.inf
+        step = matrix.step(self.border, self.missed(orbit))
         for _ in range(MOST_ITERATIONS):
-            matrix = BorderedMatrix(orbit, self.scale)
-            step = matrix.step(self.border, self.missed(orbit))
             change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate)
             if not change <= LONGEST_STEP:
                 raise Unsolvable("there is no cycle near on the branch")
-            orbit = moved(orbit, self.scale.name, step)
-            if change <= tolerance:
-                return Converged(orbit, matrix, change)
+            orbit, off = moved(orbit, self.scale.name, step), off + change
+            rate = change / last if off > change else np.inf  # unknown before a second step of one matrix
+            settled = change * min(rate, 1.0) <= tolerance and rate <= SLUGGISH
+            if (settled or change <= tolerance) and off <= distance:
+                return Converged(orbit, matrix, off)
+            if settled or change <= tolerance or (off > change and rate > SLUGGISH):
+                matrix, off = BorderedMatrix(orbit, self.scale), 0.0
+                step, last = matrix.step(self.border, self.missed(orbit)), np.inf
+            else:
+                step, last = matrix.correction(orbit, self.border, self.missed(orbit)), change
         raise Unsolvable(f"Newton's method on the branch is at {change:.0e}")
 
-    def on(self, mesh: OrbitMesh, orbit: Orbit, tolerance: float) -> Converged:
-        """The same cycle on another mesh; raises Unsolvable."""
-        return self.solved(mesh.carry(orbit), tolerance)
+    def on(self, mesh: OrbitMesh, orbit: Orbit, tolerance: float, distance: float = np.inf) -> Converged:
+        """The same cycle on another mesh; raises Unsolvable. tolerance and distance: as in `solved`."""
+        return self.solved(mesh.carry(orbit), tolerance, distance)
 
 
 def moved(orbit: Orbit, name: str, change: Array) -> Orbit:

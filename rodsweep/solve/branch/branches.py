@@ -16,7 +16,8 @@ from ..changes.unstable_modes import Crossing
 from ..point import FAILURES, cause_of, solved
 from ..status import PointStatus
 from .beginning import hopf_point
-from .following import BranchCurve, Course, follow_branch, follow_without_symmetry
+from .branch_curve import BranchCurve
+from .following import Course, follow_branch, follow_without_symmetry
 from .special_points import EndReason
 from .symmetry import Breaking, breakings_of
 

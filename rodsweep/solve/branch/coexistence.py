@@ -14,8 +14,8 @@ from ...arrays import Array
 from ..changes.rows import DiagramRow, Motion, RowRequest, solve_row
 from ..changes.thresholds import ThresholdStatus
 from ..status import PointStatus
+from .branch_curve import BranchCurve
 from .branches import BranchesOfRod, BranchRequest, BranchRod, BranchStatus, solve_branches
-from .following import BranchCurve
 from .special_points import EndReason, SpecialPoint
 
 ACCURACY = 1e-6

@@ -1,21 +1,28 @@
 """One branch of cycles, from the Hopf point or the symmetry breaking where it is born to where it ends."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from math import nan
 
 import numpy as np
 from scipy.optimize import brentq
 
-from ..cycle.cycle_errors import CycleErrors
-from ..cycle.measures import Measures
-from ..cycle.neighbour import coordinate_of, value_of
+from ..cycle.neighbour import value_of
 from ..cycle.orbit_mesh import mesh_of
-from ..cycle.refinement import MULTIPLIER_FACTOR, matrix_distance
+from ..cycle.refinement import matrix_distance, newton_tolerance
 from ..point import Unsolvable
-from .arc import SHORTEST, ArcPoint, Passed, arc_point, measured, next_point, point_at, tangent_at
+from .arc import (
+    SHORTEST,
+    ArcPoint,
+    due,
+    next_point,
+    point_at,
+    tangent_at,
+    there_from,
+)
 from .beginning import HopfBirth, beginning
-from .bordered import Condition
+from .bordered import Condition, bordered
+from .branch_curve import BranchCurve
 from .special_points import (
     EndReason,
     Segment,
@@ -27,6 +34,7 @@ from .special_points import (
     stretch_at,
 )
 from .symmetry import Breaking, beginning_without_symmetry, mirrored, symmetric_end
+from .trail import End, Trail, end_at
 
 PARAMETER = np.array([0.0, 0.0, 1.0])
 SMALL = 0.06
@@ -38,73 +46,6 @@ EXACT = 1e-15
 """Relative error of an end of the range."""
 CLOSE = 1e-6
 """Distance from a Hopf point, relative, that need not be less."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BranchPoint:
-    """A cycle of a branch. at: the parameter; multiplier: the largest nontrivial one's modulus; unstable: how
-    many lie outside the circle, -1 where one is on it within its error."""
-
-    at: float
-    measures: Measures
-    errors: CycleErrors
-    multiplier: float
-    unstable: int
-
-    @classmethod
-    def of(cls, point: ArcPoint) -> "BranchPoint":
-        """The numbers of a cycle."""
-        cycle = point.cycle
-        sizes = np.abs(cycle.multipliers)
-        beyond = sizes - 1
-        undecided = bool((np.abs(beyond) <= _margin(point)).any())
-        return cls(
-            at=value_of(point.orbit.form, point.scale.name),
-            measures=cycle.measures,
-            errors=cycle.errors,
-            multiplier=cycle.largest_multiplier,
-            unstable=-1 if undecided else int((beyond > 0).sum()),
-        )
-
-
-def _margin(point: ArcPoint) -> float:
-    """How far a multiplier's modulus near 1 must be from it to be told from it.
-
-    The errors of others are as small as they are, in units of the largest one's; that of the trivial one is
-    known.
-    """
-    cycle = point.cycle
-    relative = cycle.errors.multiplier_error / max(cycle.largest_multiplier, 1.0)
-    return relative + MULTIPLIER_FACTOR * cycle.trivial_error
-
-
-@dataclass(kw_only=True, slots=True)
-class BranchCurve:
-    """A branch: its cycles and its special points, both in order, from the Hopf point of a number, or -1.
-
-    arrives: the number of the Hopf point at which it ends, -1 for none. breaking: the symmetry breaking where
-    a branch without symmetry is born; meets: that at which it ends. complete: whether it was followed to
-    an end that is one. explained: whether the special points explain all multipliers that cross the circle.
-    """
-
-    hopf: int
-    points: list[BranchPoint] = field(default_factory=list)
-    special: list[SpecialPoint] = field(default_factory=list)
-    arrives: int = -1
-    breaking: Breaking | None = None
-    meets: Breaking | None = None
-    complete: bool = False
-    full: bool = False
-    explained: bool = True
-
-    def add(self, special: SpecialPoint) -> None:
-        """A special point behind the last cycle."""
-        self.special.append(replace(special, after=len(self.points) - 1))
-
-    def end(self, special: SpecialPoint, complete: bool) -> None:
-        """The special point at which it ends."""
-        self.add(special)
-        self.complete = complete
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,10 +95,11 @@ def _followed(curve: BranchCurve, course: Course, first: Callable[[], ArcPoint])
     if outside >= 0:
         curve.end(_end_beside(curve, course.reasons[outside]), True)
         return curve
-    curve.points.append(BranchPoint.of(here))
-    going: ArcPoint | None = here
-    while going is not None:
-        going = _next(curve, going, course)
+    trail = Trail(curve, course.accuracy, here)
+    going: ArcPoint | End = here
+    while isinstance(going, ArcPoint):
+        going = _next(trail, going, course)
+    trail.end(going)
     return curve
 
 
@@ -185,39 +127,36 @@ def _beyond(point: ArcPoint, course: Course) -> int:
     return 0 if point.at < low else 1 if point.at > high else -1
 
 
-def _end_at(point: ArcPoint, reason: EndReason, message: str = "") -> SpecialPoint:
-    """The end of a branch at a cycle."""
-    measures, at = point.cycle.measures, value_of(point.orbit.form, point.scale.name)
-    return SpecialPoint(
-        kind=SpecialKind.end,
-        at=at,
-        period=measures.period,
-        tip_y_max=measures.tip_y_max,
-        error=point.cycle.errors.largest * abs(at),
-        reason=reason,
-        message=message,
-    )
-
-
-def _next(curve: BranchCurve, here: ArcPoint, course: Course) -> ArcPoint | None:
-    """The next cycle, which the branch gets with what lies before it; None where it ends."""
+def _next(trail: Trail, here: ArcPoint, course: Course) -> ArcPoint | End:
+    """The next cycle, which the branch gets with what lies before it, or how the branch ends."""
+    curve = trail.curve
     if len(curve.points) >= course.most:
         curve.full = True
-        curve.end(_end_at(here, EndReason.list_full), False)
-        return None
+        return End(end_at(here, EndReason.list_full), complete=False)
     try:
         there = next_point(here, course.accuracy)
         if _back(here, there, course):
             return (_arrived if here.orbit.symmetric else _symmetric_again)(curve, here, there, course)
         outside = _beyond(there, course)
-        if outside >= 0:
-            there = _on_the_edge(here, there, course, outside)
+        edge = _edge(here, course, outside) if outside >= 0 else None
+        if edge is not None:
+            there = _on_the_edge(here, there, edge, course)
+        if stretch_at(there) <= 0:
+            return End(located(SpecialKind.left_the_model, here, there, course.accuracy), complete=True)
+        _add_special_points(curve, here, there, course)
+        trail.append(there)
+        last = trail.settle(edge) if edge is not None or due(there) else there
     except Unsolvable as why:
-        curve.end(_end_at(here, EndReason.no_cycle_found, f"no cycle is found beyond: {why}"), False)
-        return None
-    if stretch_at(there) <= 0:
-        curve.end(located(SpecialKind.left_the_model, here, there, course.accuracy), True)
-        return None
+        message = f"no cycle is found beyond: {why}"
+        return End(end_at(here, EndReason.no_cycle_found, message), complete=False)
+    if edge is None:
+        return last
+    at = value_of(last.orbit.form, last.scale.name)
+    return End(replace(end_at(last, course.reasons[outside]), error=EXACT * abs(at)), complete=True)
+
+
+def _add_special_points(curve: BranchCurve, here: ArcPoint, there: ArcPoint, course: Course) -> None:
+    """The special points between two cycles, of which the second is not among the branch's yet."""
 
     def step(point: ArcPoint, length: float) -> ArcPoint:
         return point_at(point, length, course.accuracy)
@@ -226,12 +165,6 @@ def _next(curve: BranchCurve, here: ArcPoint, course: Course) -> ArcPoint | None
     curve.explained &= explained
     for special in between:
         curve.add(special)
-    curve.points.append(BranchPoint.of(there))
-    if outside < 0:
-        return there
-    edge = replace(_end_at(there, course.reasons[outside]), error=EXACT * abs(BranchPoint.of(there).at))
-    curve.end(edge, True)
-    return None
 
 
 def _back(here: ArcPoint, there: ArcPoint, course: Course) -> bool:
@@ -252,7 +185,7 @@ def turned_round(here: ArcPoint, there: ArcPoint) -> bool:
     return float(one @ other) < 0
 
 
-def _arrived(curve: BranchCurve, here: ArcPoint, there: ArcPoint, course: Course) -> ArcPoint | None:
+def _arrived(curve: BranchCurve, here: ArcPoint, there: ArcPoint, course: Course) -> ArcPoint | End:
     """The Hopf point where cycles shrink to nothing between two; or the first of them, for a shorter step."""
     shorter = arc_between(here, there) / 2
     if here.cycle.measures.tip_y_max > SMALL:
@@ -268,40 +201,40 @@ def _arrived(curve: BranchCurve, here: ArcPoint, there: ArcPoint, course: Course
         also = WITHIN * abs(here.orbit.period - hopf.period) + WITHIN_PERIOD * hopf.period
         if abs(at - hopf.coordinate) <= near and abs(period - hopf.period) <= also:
             curve.arrives = number
-            curve.end(special_hopf(hopf), True)
-            return None
+            return End(special_hopf(hopf), complete=True)
     why = "cycles shrink to nothing where no Hopf point is known"
-    curve.end(_end_at(here, EndReason.no_cycle_found, why), False)
-    return None
+    return End(end_at(here, EndReason.no_cycle_found, why), complete=False)
 
 
-def _symmetric_again(curve: BranchCurve, here: ArcPoint, there: ArcPoint, course: Course) -> ArcPoint | None:
+def _symmetric_again(curve: BranchCurve, here: ArcPoint, there: ArcPoint, course: Course) -> ArcPoint | End:
     """The symmetry breaking where a branch ends between two; or the first of them, for a shorter step."""
     which = symmetric_end(here, there, course.breakings, course.accuracy)
     if which is None:
         return replace(here, length=arc_between(here, there) / 2)
     if which >= 0:
-        curve.meets = course.breakings[which]
-        curve.end(replace(curve.meets.point, message="", orbit=None), True)
-        return None
+        breaking = course.breakings[which]
+        curve.meets = breaking
+        return End(replace(breaking.point, message="", orbit=None), complete=True)
     why = "the cycles become symmetric at one that lies on no branch that was followed"
-    curve.end(_end_at(here, EndReason.no_cycle_found, why), False)
-    return None
+    return End(end_at(here, EndReason.no_cycle_found, why), complete=False)
 
 
-def _on_the_edge(here: ArcPoint, there: ArcPoint, course: Course, which: int) -> ArcPoint:
+def _edge(here: ArcPoint, course: Course, which: int) -> Condition:
+    """What holds for a cycle at an end of the range."""
+    return Condition(here.scale, PARAMETER, course.ends[which] / here.scale.coordinate)
+
+
+def _on_the_edge(here: ArcPoint, there: ArcPoint, edge: Condition, course: Course) -> ArcPoint:
     """The cycle at an end of the range that lies between two; raises Unsolvable."""
-    scale, edge = here.scale, course.ends[which]
-    condition = Condition(scale, PARAMETER, edge / scale.coordinate)
-    segment = Segment(here, there)
+    scale, segment = here.scale, Segment(here, there)
 
     def beyond(length: float) -> float:
-        return coordinate_of(segment.predicted(length).form, scale.name) - edge
+        return -edge.missed(segment.predicted(length))
 
     if not beyond(0.0) * beyond(segment.length) <= 0:
         raise Unsolvable("the end of the range is not between two cycles")
     length = float(brentq(beyond, 0.0, segment.length, xtol=1e-6 * segment.length))
-    found = condition.solved(segment.predicted(length), matrix_distance(course.accuracy))
-    cycle = measured(found, here.cycle.calibration, condition, length, course.accuracy)
-    tangent = tangent_at(cycle.orbit, scale, here.ahead)
-    return arc_point(cycle, scale, tangent, length, Passed(here.orbit, here.tangent))
+    tolerance, distance = newton_tolerance(course.accuracy), matrix_distance(course.accuracy)
+    found = edge.solved(segment.predicted(length), tolerance, distance)
+    tangent = tangent_at(found.orbit, scale, here.ahead, bordered(found))
+    return there_from(here, found, tangent, length, length, course.accuracy)

@@ -103,7 +103,9 @@ class CycleFamily:
 
         def solved(t: float) -> Converged:
             there = self.placed(orbit, place + t * float(across[1]))
-            return Condition(self.scale, self.border, length + t * float(across[0])).solved(there, TOLERANCE)
+            return Condition(self.scale, self.border, length + t * float(across[0])).solved(
+                there, TOLERANCE, TOLERANCE
+            )
 
         a, b, last = 0.0, FIRST_SECANT, FARTHEST
         found = solved(a)

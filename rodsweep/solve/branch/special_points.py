@@ -194,7 +194,7 @@ class Segment:
         else:
             last, orbit, tangent = self._known
             start = moved(orbit, name, (length - last) * tangent)
-        found = self.here.condition(length).solved(start, TOLERANCE)
+        found = self.here.condition(length).solved(start, TOLERANCE, TOLERANCE)
         tangent = tangent_at(found.orbit, scale, self.here.ahead, bordered(found))
         rate = float(scale.moved(found.orbit, tangent) @ self.here.ahead)
         self._known = length, found.orbit, tangent / rate
@@ -231,7 +231,7 @@ def located(kind: SpecialKind, here: ArcPoint, there: ArcPoint, accuracy: float)
         segment = Segment(here, there)
         segment.start_on(mesh_of(there.orbit))
         length = _enclosed(kind, segment)
-        mesh = there.cycle.calibration.planned(MESH_SHARE * aim)
+        mesh = there.calibration.planned_for_parameter(MESH_SHARE * aim)
         mesh = replace(mesh, stages=max(mesh.stages, stages_for(aim)))
         last, point = None, None
         for _ in range(MOST_PAIRS + 1):

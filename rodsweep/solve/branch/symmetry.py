@@ -18,9 +18,9 @@ from ..cycle.neighbour import coordinate_of
 from ..cycle.newton import relative_change
 from ..cycle.orbit import Orbit, node_times
 from ..cycle.orbit_mesh import stages_for, wanted_mesh
-from ..cycle.refinement import FIRST_ACCURACY, NEAR, matrix_distance
+from ..cycle.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tolerance
 from ..point import Unsolvable
-from .arc import SHORTEST, ArcPoint, arc_point, measured, tangent_at
+from .arc import SHORTEST, ArcPoint, first_point
 from .beginning import FIRST_STEP, MOMENT
 from .bordered import BorderedMatrix, Condition, Scale, moment_of, moved
 from .special_points import SpecialKind, SpecialPoint, arc_between
@@ -96,15 +96,18 @@ def beginning_without_symmetry(breaking: Breaking, name: str, accuracy: float) -
         try:
             ways = [moved(whole, name, sign * share * way) for sign in (1, -1)]
             start = max(ways, key=lambda orbit: CyclePath(orbit).extrema["tip_y_max"])
-            return _first_cycle(start, scale, np.sign(moment_of(start) - moment_of(whole)), accuracy)
+            return _first_cycle(start, scale, moment_of(start) - moment_of(whole), accuracy)
         except Unsolvable as error:
             why = error
     raise Unsolvable(f"no cycle is found beside the symmetry breaking: {why}") from why
 
 
-def _first_cycle(start: Orbit, scale: Scale, side: float, accuracy: float) -> ArcPoint:
-    """The cycle near a prediction, with the branch on the side of its moment; raises Unsolvable."""
-    border = side * MOMENT
+def _first_cycle(start: Orbit, scale: Scale, change: float, accuracy: float) -> ArcPoint:
+    """The cycle near a prediction, with the branch on the side of its moment; raises Unsolvable.
+
+    change: of the moment since the symmetric cycle.
+    """
+    border = np.sign(change) * MOMENT
     condition = Condition.at(scale, border, start)
     near = condition.solved(start, NEAR).orbit
     expected = asymmetry(start)
@@ -112,9 +115,9 @@ def _first_cycle(start: Orbit, scale: Scale, side: float, accuracy: float) -> Ar
     if not SAME_MOTION[0] < found < SAME_MOTION[1]:
         raise Unsolvable("Newton's method fell back to symmetric cycles")
     aim = max(accuracy, FIRST_ACCURACY)
-    first = condition.on(wanted_mesh(near, aim, stages_for(accuracy)), near, matrix_distance(accuracy))
-    cycle = measured(first, None, condition, 0.0, accuracy)
-    return arc_point(cycle, scale, tangent_at(cycle.orbit, scale, border), FIRST_STEP)
+    mesh = wanted_mesh(near, aim, stages_for(accuracy))
+    first = condition.on(mesh, near, newton_tolerance(accuracy), matrix_distance(accuracy))
+    return first_point(first, scale, border, abs(change) / scale.moment, accuracy, FIRST_STEP)
 
 
 def mirrored(here: ArcPoint, there: ArcPoint, known: Sequence[Breaking], accuracy: float) -> bool:

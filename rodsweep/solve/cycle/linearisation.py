@@ -34,6 +34,35 @@ from .orbit import Orbit
 from .right_sides import Along, residuals, right_sides
 
 _memory: list[Array] = [np.empty(0)]
+_latest: list["Workspace"] = []
+
+
+class Workspace:
+    """The factors of one Newton matrix, in memory that the next workspace takes over.
+
+    New pages take as long as half an elimination, so all matrices share one buffer.
+    """
+
+    def __init__(self, intervals: int, stages: int, unknowns: int) -> None:
+        shape = (intervals, stages, stages, unknowns, unknowns)
+        if len(_memory[0]) < prod(shape):
+            _memory[0] = np.empty(prod(shape))
+        blocks = _memory[0][: prod(shape)].reshape(shape)
+        square, inverse = np.zeros((unknowns, unknowns)), np.zeros((unknowns + 1, unknowns + 1))
+        self._factors = Factors(blocks, square, inverse)
+        _latest[:] = [self]
+
+    @property
+    def factors(self) -> Factors:
+        """The factors; raises RuntimeError once another workspace was made."""
+        if _latest[0] is not self:
+            raise RuntimeError("the factors of this matrix are overwritten: a matrix was made after it")
+        return self._factors
+
+    @property
+    def propagator(self) -> Array:
+        """P, (n, n), which stays."""
+        return self._factors.propagator
 
 
 class Linearisation:
@@ -45,22 +74,20 @@ class Linearisation:
 
     def __init__(self, orbit: Orbit, parameter: str | None = None) -> None:
         self.orbit = orbit
-        K, s, n = orbit.intervals, orbit.stages, orbit.form.unknowns
-        self._factors = workspace(K, s, n)
+        self._workspace = Workspace(orbit.intervals, orbit.stages, orbit.form.unknowns)
         along = None if parameter is None else change_along(orbit.form, parameter)
-        steps, self._by_period = linearise(
-            orbit.values, 2 if along is None else 3, along or STILL, orbit.semidiscrete, self._factors
-        )
+        count, factors = 2 if along is None else 3, self._workspace.factors
+        steps, self._by_period = linearise(orbit.values, count, along or STILL, orbit.semidiscrete, factors)
         self.step, self.tangent = steps[0], None if parameter is None else steps[1]
 
     def correction(self, orbit: Orbit) -> Array:
-        """Newton's step at another orbit near by, (N,)."""
-        step: Array = correct(orbit.values, self._by_period, orbit.semidiscrete, self._factors)
+        """Newton's step at another orbit near by, (N,); raises RuntimeError once another matrix was made."""
+        step: Array = correct(orbit.values, self._by_period, orbit.semidiscrete, self._workspace.factors)
         return step
 
     def multipliers(self) -> Complex:
         """All Floquet multipliers but rounding, (rank,), by descending modulus, the trivial one too."""
-        return multipliers_by(self._factors.propagator, self.orbit)
+        return multipliers_by(self._workspace.propagator, self.orbit)
 
 
 def multipliers_by(propagator: Array, orbit: Orbit) -> Complex:
@@ -68,15 +95,6 @@ def multipliers_by(propagator: Array, orbit: Orbit) -> Complex:
     values = nonzero_eigenvalues(orbit.return_signs[:, None] * propagator)
     values = values**2 if orbit.symmetric else values
     return values[np.argsort(-np.abs(values), kind="stable")]
-
-
-def workspace(intervals: int, stages: int, unknowns: int) -> Factors:
-    """Memory that every matrix uses again: new pages take as long as half an elimination."""
-    shape = (intervals, stages, stages, unknowns, unknowns)
-    if len(_memory[0]) < prod(shape):
-        _memory[0] = np.empty(prod(shape))
-    blocks = _memory[0][: prod(shape)].reshape(shape)
-    return Factors(blocks, np.zeros((unknowns, unknowns)), np.zeros((unknowns + 1, unknowns + 1)))
 
 
 def coordinate(name: str, value: float) -> float:
@@ -214,15 +232,28 @@ def steps_of(rights: Array, by_period: Array, columns: Array, p: Semidiscrete, f
 
 
 @compiled_for_vectors
+def reduced_residuals(
+    points: Array, duration: float, rod: Semidiscrete, p: Semidiscrete, factors: Factors
+) -> tuple[Array, Array]:
+    """The residuals of points, (1 + K s, n), for a rod, reduced by the matrix of another one, p, near by.
+
+    Returns them, (K, s, 1, n), and what they make of the last end where the start stays, (1, n).
+    """
+    K, s, n = factors.blocks.shape[0], factors.blocks.shape[1], len(p.mass)
+    columns, ends = np.empty((K, s, 1, n)), np.zeros((1, n))
+    residuals(points, duration, rod, columns[:, :, 0])
+    for k in range(K):
+        reduce(factors.blocks[k], columns[k], p)
+        to_end(factors.blocks[k], columns[k], p, ends)
+    return columns, ends
+
+
+@compiled_for_vectors
 def correct(values: Array, by_period: Array, p: Semidiscrete, factors: Factors) -> Array:
     """Newton's step at an orbit, values and result (N,), by the matrix of another one near by."""
     K, s, n = by_period.shape
     points, duration = values[:-1].reshape(1 + K * s, n), values[-1] / p.parts
-    columns, ends = np.empty((K, s, 1, n)), np.zeros((1, n))
-    residuals(points, duration, p, columns[:, :, 0])
-    for k in range(K):
-        reduce(factors.blocks[k], columns[k], p)
-        to_end(factors.blocks[k], columns[k], p, ends)
+    columns, ends = reduced_residuals(points, duration, p, p, factors)
     rights = np.empty((1, n + 1))
     for i in range(n):
         rights[0, i] = p.signs[i] * points[0, i] - points[K * s, i] - ends[0, i]

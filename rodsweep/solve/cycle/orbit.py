@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from ...arrays import Array
 from ...discretization.collocation import Collocation, radau
@@ -143,24 +144,29 @@ def node_times(intervals: int, stages: int) -> Array:
 
 
 @lru_cache(maxsize=256)
-def between_intervals(source: tuple[int, int], target: tuple[int, int]) -> Array:
+def between_intervals(source: tuple[int, int], target: tuple[int, int]) -> csr_array:
     """Matrix from the points of (intervals, stages) to those of others, (target points, source points)."""
     intervals, stages = target
     return piecewise(source, node_times(intervals, stages))
 
 
-def piecewise(source: tuple[int, int], times: Array) -> Array:
-    """Matrix from the start and the stages of (intervals, stages) to values at times in [0, 1], (m, ...)."""
+def piecewise(source: tuple[int, int], times: Array) -> csr_array:
+    """Matrix from the start and the stages of (intervals, stages) to values at times in [0, 1], (m, ...).
+
+    Sparse, for a value depends on one interval only: dense ones of long orbits would fill the memory.
+    """
     K, s = source
     starts, lengths = interval_starts(K), interval_lengths(K)
     k = np.searchsorted(starts, times, side="right") - 1
-    matrix = np.zeros((len(times), 1 + K * s))
+    weights = np.empty((len(times), s + 1))
     for interval in np.unique(k):
         here = k == interval
-        first = interval * s  # the end of the interval before is the start of this one
         within = (times[here] - starts[interval]) / lengths[interval]
-        matrix[here, first : first + s + 1] = radau(s).evaluation(within)
-    return matrix
+        weights[here] = radau(s).evaluation(within)
+    first = k * s  # the end of the interval before is the start of this one
+    columns = first[:, None] + np.arange(s + 1)
+    rows = np.arange(0, weights.size + 1, s + 1)
+    return csr_array((weights.ravel(), columns.ravel(), rows), shape=(len(times), 1 + K * s))
 
 
 def moved_to(source: StressForm, target: StressForm, x: Array) -> Array:

@@ -102,7 +102,8 @@ def judged_by(calibration: Calibration, found: Converged, accuracy: float) -> Re
     """The cycle on a mesh that is calibrated."""
     path, errors = CyclePath(found.orbit), calibration.errors(accuracy)
     multipliers, trivial_error = multipliers_of(found)
-    by_matrix = MULTIPLIER_FACTOR * (found.distance + trivial_error)
+    largest = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
+    by_matrix = MULTIPLIER_FACTOR * largest * (found.distance + trivial_error)
     errors = replace(errors, multiplier_error=errors.multiplier_error + by_matrix)
     measures = measures_of(path)
     return RefinedCycle(found, calibration, path, measures, multipliers, trivial_error, errors)
