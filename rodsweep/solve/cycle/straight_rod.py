@@ -56,7 +56,7 @@ class StraightRod:
 
 
 def straight_rod(rod: Rod, near: complex | None = None) -> StraightRod:
-    """The leading eigenvalue of a rod with its error; near: that of a rod near by, from which it is followed."""
+    """The leading eigenvalue of a rod with its error; near: that of a rod near by, which is followed."""
     followed = None if near is None else followed_leader(rod, near, SPECTRUM.accuracy)
     if followed is not None:
         return StraightRod(followed, root_error(followed, rod.coefficients)[0])

@@ -54,6 +54,9 @@ FAINT = 0.01
 """Linear growth per period below which the integration is a careful one."""
 NOISE, CAREFUL_NOISE = 1e-3, 1e-5
 """Growth per period that the integrator may add: 3e-4 and 8e-6 were seen."""
+WELL_SHOWN = 10.0
+"""What c must show in the growth, in units of that noise, to replace the c of a larger motion: stiff rods
+have up to five times the noise, in which c changes its sign."""
 NEAR = 0.1
 """Relative distance from the predicted amplitude that is left to Newton's method."""
 MOST_JUMPS, SHRINK, LARGEST_JUMP = 60, 0.7, 4.0
@@ -135,7 +138,7 @@ class Transient:
     without it that is None.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - one motion and what is asked of it
         self,
         beam: Beam,
         form: StressForm,
@@ -188,10 +191,8 @@ class Transient:
                 return self._ended(CycleStatus.straight, "decayed to rounding")
             if self.straight.stable is False and not self._swings(z):
                 if self.trace or self.jumps >= MOST_JUMPS:
-                    why = f"it swings no more after {self.waited} returns, but is unstable when straight"
-                    return self._ended(CycleStatus.not_settled, why)
-                z, self.jumps = self._relaxed(DEPARTURE * self.mode.z.real), self.jumps + 1
-                self.past.clear()
+                    break
+                z = self._jumped(DEPARTURE * self.mode.z.real)
                 continue
             early, first = first, False
             if len(times) < 3 or (early and self._slow(times, *self._growth(times, states))):
@@ -204,16 +205,26 @@ class Transient:
             if factor is not None:
                 scaled = factor * z
                 scaled[: self.beam.mesh.nodes] *= factor  # the stretch is quadratic in the deflection
-                z, self.jumps = relaxed(self.beam, scaled, self.mode.period), self.jumps + 1
-                self.past.clear()
+                z = self._jumped(scaled)
                 continue
             outcome = self._closed(z, times, states)
             if outcome is not None:
                 return outcome
-        if not self._swings(z):
-            why = f"it swings no more, but its stretch has not relaxed after {self.waited} returns"
-            return self._ended(CycleStatus.not_settled, why)
-        return self._ended(CycleStatus.not_settled, f"{self.waited} returns of the tip, none periodic")
+        return self._ended(CycleStatus.not_settled, self._not_settled(z))
+
+    def _jumped(self, z: Array) -> Array:
+        """Where the motion goes on from a state that is no state of its own, (unknowns,)."""
+        self.jumps += 1
+        self.past.clear()
+        return relaxed(self.beam, z, self.mode.period)
+
+    def _not_settled(self, z: Array) -> str:
+        """Why the motion that has come to z has no end."""
+        if self._swings(z):
+            return f"{self.waited} returns of the tip, none periodic"
+        unstable = self.straight.stable is False
+        why = "the straight rod is unstable" if unstable else "its stretch has not relaxed"
+        return f"it swings no more after {self.waited} returns, but {why}"
 
     def _swings(self, z: Array) -> bool:
         """Whether more than rounding bends or shears the rod."""
@@ -287,7 +298,7 @@ class Transient:
             return None
         size = float(np.linalg.norm(states[-1]))
         here = (linear - growth) / size**2
-        if abs(linear - growth) > self.noise:
+        if abs(linear - growth) > self.noise * (1 if isnan(self.bend) else WELL_SHOWN):
             self.bend = here
         bend = here if isnan(self.bend) else self.bend
         if isnan(self.bend) and linear > 0:
