@@ -4,6 +4,7 @@ import os
 import socket
 import time
 from collections.abc import Callable, Iterable
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,7 @@ from ..results.file.creation import Plan
 from ..results.file.store import Store
 from ..results.file.view import read_view
 from ..results.run.checkpoints import Checkpoints
-from ..results.run.journal import Journal, journal_directory
+from ..results.run.journal import Journal, journal_directory, kept_sentence
 from ..solve.backend.availability import require_petsc
 from ..sweep.chains import ChainSolver
 from ..sweep.loop import Indices, Share, sweep
@@ -102,9 +103,14 @@ class _Run:
     def _open(self) -> list[IndexRange]:
         """Opens the file; returns the points that it misses."""
         self.store = Store(self.output, self.plan, self.options.fresh, self.options.extend)
-        if self.store.note:
-            self._say(f"{self.output}: {self.store.note}")
+        self._tell_notes()
         return self.store.missing()
+
+    def _tell_notes(self) -> None:
+        """Tells what the store has to say of points and journals that are not where they were."""
+        for note in self.store.notes:
+            self._say(f"{self.output}: {note}", amiss=True)
+        self.store.notes.clear()
 
     def _units(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
         """(the units of this shard that miss a point, the points that they miss)."""
@@ -146,17 +152,16 @@ class _Run:
 
         solver.warm_up()
         tell = Teller(count, self.job.name) if self.team.first and not self.options.quiet else None
+        directory = journal_directory(self.output)
         try:
-            directory = journal_directory(self.output)
-            journal = Journal(directory, self.team.rank, plan.layout, plan.fingerprint)
-            checkpoints = Checkpoints(directory, plan.fingerprint)
-            solve = self._solve_unit(IndexSet(missing), checkpoints)
-            share = sweep(self.team, units, solve, keep, tell or (lambda done: None), self.stop)
-            journal.close()
+            with closing(Journal(directory, self.team.rank, plan.layout, plan.fingerprint)) as journal:
+                checkpoints = Checkpoints(directory, plan.fingerprint)
+                solve = self._solve_unit(IndexSet(missing), checkpoints)
+                share = sweep(self.team, units, solve, keep, tell or (lambda done: None), self.stop)
         except OSError as error:
             raise EnvironmentLacks(
-                f"cannot write beside {self.output}: {error.strerror or error}; what is done is kept: make "
-                "room and run again"
+                f"cannot write beside {self.output}: {error.strerror or error}"
+                f"{kept_sentence(directory, plan.fingerprint)}: make room and run again"
             ) from error
         finally:
             if tell:
@@ -195,6 +200,7 @@ class _Run:
         if not missing and "finished" not in self.store.attributes():
             finish = self.solver.finish
             self.store.fold({"finished": provenance.now()}, finish(read_view(self.output)) if finish else ())
+        self._tell_notes()
         counts = self.store.status_counts()
         self.store.close()
         left = self._units(missing)[1]
@@ -215,9 +221,8 @@ class _Run:
             click.echo(f"  {failure}")
         if left:
             kept = self.job.points.count - total(missing)
-            click.echo(
-                f"stopped by {self.stop.name}; {counted(kept, 'point')} kept, the same command continues"
-            )
+            ended = f"stopped by {self.stop.name}" if self.stop else "not complete"
+            click.echo(f"{ended}; {counted(kept, 'point')} kept, the same command continues")
             return CONTINUE
         if not amiss:
             return 0
