@@ -59,7 +59,7 @@ def named(name: object, most: int = 200) -> str:
 
 
 def printable(text: str) -> str:
-    """A text of several lines in which control characters, which a terminal would obey, are `\\x1b` and such."""
+    """A text of several lines whose control characters, which a terminal would obey, are `\\x1b` and such."""
     return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)
 
 

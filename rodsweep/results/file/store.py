@@ -176,15 +176,13 @@ class Store:
                 drop_files(self.journals, pattern)
 
     def _look_again(self) -> None:
-        """Makes the file anew where it was moved or deleted; EnvironmentLacks where another took its place."""
+        """Makes the file anew where it was moved or deleted; EnvironmentLacks where another is there."""
         if identity(self.path) == self.exchange.left:
             return
         if not self.path.exists():
             with self.exchange.replacing(None) as copy:
                 create_file(copy, self.plan)
-            self.notes.append(
-                "the file was moved or deleted meanwhile, and is made anew with the points since"
-            )
+            self.notes.append("the file was moved or deleted, and is made anew with the points since then")
             return
         try:
             header = self._header()

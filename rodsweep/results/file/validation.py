@@ -136,7 +136,8 @@ def _refuse_other_format(path: Path, attributes: Mapping[str, Any]) -> None:
     if found < FORMAT:
         raise InputError(
             f"{path} was written by an earlier rodsweep ({writer}) in format {found}, and this one reads "
-            f"format {FORMAT}: read it with that version, or compute it again, with --fresh or into another file"
+            f"format {FORMAT}: read it with that version, or compute it again, with --fresh or into another "
+            "file"
         )
 
 

@@ -1,0 +1,218 @@
+"""Random edits of a result file, as other programs, disks and transfers make them."""
+
+import json
+import os
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from random import Random
+
+import h5py
+import numpy as np
+
+from .damages import BYTES
+
+Edit = Callable[[h5py.File, Random, Path], object]
+"""Changes an open file; other files may be made in the directory."""
+
+
+def _name(file: h5py.File, rng: Random) -> str:
+    """One of the variables: an axis as often as a result."""
+    scales = sorted(name for name in file if h5py.h5ds.is_scale(file[name].id))
+    return rng.choice(rng.choice([scales, sorted(set(file) - set(scales))]))
+
+
+def _changed(values: np.ndarray, rng: Random) -> np.ndarray:
+    """Numbers of which one, or all, are others."""
+    changed = np.array(values)
+    flat = changed.reshape(-1)
+    places = slice(None) if rng.random() < 0.3 else rng.randrange(flat.size)
+    if changed.dtype.kind == "f":
+        flat[places] = rng.choice(
+            [np.nan, np.inf, 0.0, 300.0, -1.0, 1e300 if changed.itemsize == 8 else 1e30]
+        )
+        if np.array_equal(changed, values, equal_nan=True):
+            flat[places] = 7.25
+    else:
+        flat[places] += 1
+    return changed
+
+
+def value(file: h5py.File, rng: Random, _: Path) -> None:
+    """Other numbers in place."""
+    name = _name(file, rng)
+    file[name][...] = _changed(file[name][...], rng)
+
+
+def last_digit(file: h5py.File, rng: Random, _: Path) -> None:
+    """The last bit of a number."""
+    names = [name for name in sorted(file) if file[name].dtype.kind == "f"]
+    data = file[rng.choice(names)]
+    flat = data[...].reshape(-1)
+    place = rng.randrange(flat.size)
+    flat[place] = np.nextafter(flat[place], flat.dtype.type(np.inf)) if np.isfinite(flat[place]) else 1.0
+    data[...] = flat.reshape(data.shape)
+
+
+def swapped(file: h5py.File, rng: Random, _: Path) -> None:
+    """The numbers of two variables exchanged, where their shapes allow it."""
+    names = sorted(name for name in file if file[name].dtype == "f8")
+    first = rng.choice(names)
+    others = [name for name in names if file[name].shape == file[first].shape and name != first]
+    if others:
+        second = rng.choice(others)
+        file[first][...], file[second][...] = file[second][...], file[first][...]
+
+
+def anew(file: h5py.File, rng: Random, _: Path) -> None:
+    """A variable written anew: of another type, shape or layout, without attributes and dimensions."""
+    name = _name(file, rng)
+    old = file[name][...]
+    kinds = {
+        "f4": lambda: old.astype("f4"), "i4": lambda: np.nan_to_num(old).astype("i4"), ">f8": lambda: old.astype(">f8"),
+        "text": lambda: "text", "flat": old.ravel, "longer": lambda: np.repeat(old, 2, 0) if old.ndim else old,
+        "same": lambda: old, "empty": lambda: h5py.Empty(old.dtype), "complex": lambda: old.astype("c16"),
+        "fewer": lambda: old[:0] if old.ndim else old,
+    }  # fmt: skip
+    made = kinds[rng.choice(list(kinds))]()
+    storage = {}
+    if isinstance(made, np.ndarray) and made.ndim and made.size:
+        storage = rng.choice(
+            [{}, {"chunks": True}, {"compression": "gzip"}, {"maxshape": (None,) * made.ndim}]
+        )
+    kept = dict(file[name].attrs) if rng.random() < 0.5 else {}
+    del file[name]
+    file.create_dataset(name, data=made, **storage)
+    for key, text in kept.items():
+        if isinstance(text, str):
+            file[name].attrs[key] = text
+
+
+def attribute(file: h5py.File, rng: Random, _: Path) -> None:
+    """An attribute of the file or of a variable changed, removed or added."""
+    place = file if rng.random() < 0.5 else file[_name(file, rng)]
+    name = rng.choice(sorted(place.attrs))
+    ways = {
+        "remove": lambda: place.attrs.pop(name),
+        "text": lambda: place.attrs.update({name: "another\x1b[31m"}),
+        "number": lambda: place.attrs.update({name: 3}),
+        "array": lambda: place.attrs.update({name: np.zeros(3)}),
+        "scale": lambda: place.attrs.update(scale_factor=2.0),
+        "offset": lambda: place.attrs.update(add_offset=1.0),
+        "fill": lambda: place.attrs.update(_FillValue=place.attrs.get("_FillValue", 0.0)),
+        "format": lambda: file.attrs.update(format=rng.choice([0, 4, 6, "5", -1])),
+        "fingerprint": lambda: file.attrs.update(fingerprint="0" * 64),
+        "flags": lambda: file["status"].attrs.update(flag_meanings="ok " * len(file["status"].attrs["flag_values"])),
+        "seal": lambda: file.attrs.update(seal=rng.choice(["", "{}", "[]", "\x1b", '{"attributes": {}, "variables": {}}'])),
+    }  # fmt: skip
+    ways[rng.choice(list(ways))]()
+
+
+def config(file: h5py.File, rng: Random, _: Path) -> None:
+    """Another value in the config."""
+    tree = json.loads(file.attrs["config_resolved"])
+    task = tree["task"]
+    edit = {
+        "accuracy": lambda: tree.update(accuracy=1e-3), "title": lambda: tree.update(title="\x1b[31mother"),
+        "axis": lambda: tree["parameters"]["k2"].update(values=[77.0]),
+        "option": lambda: tree[task].update({next(iter(tree[task])): 1}), "gone": lambda: tree.pop(task),
+    }  # fmt: skip
+    edit[rng.choice(list(edit))]()
+    file.attrs["config_resolved"] = json.dumps(tree)
+
+
+def link(file: h5py.File, rng: Random, directory: Path) -> None:
+    """A variable replaced by a link, or another name for one."""
+    name = _name(file, rng)
+    other = directory / "other.h5"
+    with h5py.File(other, "w") as stranger:
+        stranger[name] = _changed(file[name][...], rng)
+    ways = {
+        "external": lambda: h5py.ExternalLink(other.name, f"/{name}"), "soft": lambda: h5py.SoftLink("/aside/x"),
+        "nowhere": lambda: h5py.SoftLink("/nowhere"), "itself": lambda: h5py.SoftLink(f"/{name}"),
+        "hard": lambda: file[_name(file, rng)],
+    }  # fmt: skip
+    way = rng.choice(list(ways))
+    if rng.random() < 0.3:
+        name = rng.choice(["extra", "user_extra", "gamma1", "point"])
+    elif way == "soft":
+        file.create_group("aside").move if False else None
+        file.require_group("aside")["x"] = _changed(file[name][...], rng)
+    made = ways[way]()
+    if name in file:
+        del file[name]
+    file[name] = made
+
+
+def elsewhere(file: h5py.File, rng: Random, directory: Path) -> None:
+    """A variable whose numbers lie in another file: virtual, or raw external storage."""
+    name = _name(file, rng)
+    values = np.atleast_1d(_changed(file[name][...], rng))
+    del file[name]
+    if rng.random() < 0.5:
+        with h5py.File(directory / "other.h5", "w") as stranger:
+            stranger[name] = values
+        layout = h5py.VirtualLayout(values.shape, values.dtype)
+        layout[...] = h5py.VirtualSource(str(directory / "other.h5"), name, values.shape)
+        file.create_virtual_dataset(name, layout)
+    else:
+        (directory / "raw").write_bytes(values.tobytes())
+        pieces = [(os.fsencode(directory / "raw"), 0, values.nbytes)]
+        file.create_dataset(name, values.shape, values.dtype, external=pieces)
+
+
+def addition(file: h5py.File, rng: Random, _: Path) -> None:
+    """Something beside what rodsweep wrote, under a name of the user's or another."""
+    name = rng.choice(["user_mine", "mine", "gamma1", "curve_F", "point", "\x1b[31m", "F "])
+    ways = {
+        "numbers": lambda: file.update({name: np.arange(3.0)}), "group": lambda: file.create_group(name),
+        "type": lambda: file.update({name: np.dtype("f8")}), "text": lambda: file.update({name: "text"}),
+        "attribute": lambda: file.attrs.update({name: "text"}),
+    }  # fmt: skip
+    if name not in file:
+        ways[rng.choice(list(ways))]()
+
+
+def dimensions(file: h5py.File, rng: Random, _: Path) -> None:
+    """The dimensions of a variable attached otherwise, or not at all."""
+    names = [name for name in sorted(file) if len(file[name].dims) and not h5py.h5ds.is_scale(file[name].id)]
+    data = file[rng.choice([name for name in names if file[name].shape])]
+    axis = data.dims[rng.randrange(len(data.dims))]
+    scale = next(iter(axis.values()))
+    axis.detach_scale(scale)
+    scales = [name for name in sorted(file) if h5py.h5ds.is_scale(file[name].id)]
+    if rng.random() < 0.6:
+        axis.attach_scale(file[rng.choice(scales)])
+
+
+def nothing(file: h5py.File, rng: Random, _: Path) -> None:
+    """Opened for writing, and closed."""
+
+
+BY_HDF5: tuple[Edit, ...] = (
+    value, value, last_digit, swapped, anew, anew, attribute, attribute, config, link, link, elsewhere, addition,
+    dimensions, nothing,
+)  # fmt: skip
+
+
+def edited(path: Path, rng: Random) -> str:
+    """Edits a file by chance, once or twice, by HDF5 or byte by byte; returns what was done."""
+    if rng.random() < 0.25:
+        damage = rng.choice(BYTES)
+        path.write_bytes(damage(path.read_bytes(), rng))
+        return damage.__name__
+    edits = rng.sample(BY_HDF5, rng.choice([1, 1, 2]))
+    with h5py.File(path, "r+") as file:
+        for edit in edits:
+            try:
+                edit(file, rng, path.parent)
+            except (KeyError, AttributeError, IndexError, StopIteration):  # the edit before left it nothing
+                assert edit is not edits[0]
+    return " and ".join(edit.__name__ for edit in edits)
+
+
+def copied(source: Path, to: Path) -> Path:
+    """A copy of a file in an empty directory."""
+    shutil.rmtree(to, ignore_errors=True)
+    to.mkdir()
+    return Path(shutil.copy(source, to / "a.h5"))
