@@ -15,7 +15,7 @@ from ..errors import InputError
 from ..results.file.content import SEAL, attribute_digests, variable_digest
 from ..results.file.creation import Plan
 from ..results.file.recent import journalled_points, put_in, unfolded
-from ..results.file.validation import FORMAT, PROGRAM, cleaned, open_whole, reading
+from ..results.file.validation import FORMAT, PROGRAM, Header, cleaned, open_whole, reading, reason_of
 from ..results.file.view import View
 from ..results.layouts import layout_of
 from ..results.layouts.variables import DIMENSIONS, MISSING, Filled, Variable
@@ -46,8 +46,7 @@ def file_path(given: object, example: str) -> Path:
 def _opened(path: Path) -> xr.Dataset:
     file, header = open_whole(path)
     file.close()
-    with reading(path), xr.open_dataset(path, engine=ENGINE) as stored:
-        data = stored.load()
+    data = _loaded(path, header)
     for variable in data.variables.values():
         variable.attrs = {name: cleaned(value) for name, value in variable.attrs.items()}
     data.attrs = {name: cleaned(value) for name, value in data.attrs.items()}
@@ -56,6 +55,22 @@ def _opened(path: Path) -> xr.Dataset:
         for name in data.variables.keys() & recent.dtype.fields.keys():
             put_in(data[name].values, str(name), recent)
         return _sealed(data)
+    return data
+
+
+def _loaded(path: Path, header: Header) -> xr.Dataset:
+    """A whole file as xarray reads it; InputError where xarray makes other numbers or dimensions of it."""
+    sealed = json.loads(header.attributes[SEAL])["variables"]
+    with reading(path):
+        try:
+            with xr.open_dataset(path, engine=ENGINE, phony_dims="sort") as stored:
+                data = stored.load()
+        except Exception as error:  # of attributes that other libraries have: whatever those raise on them
+            raise ValueError(reason_of(error)) from error
+        found = json.loads(_sealed(data).attrs[SEAL])["variables"]
+        for name, digest in sealed.items():
+            if found.get(name) != digest:
+                raise ValueError(f"its variable {name} is not read as rodsweep wrote it")
     return data
 
 

@@ -98,7 +98,7 @@ def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
             raise ValueError(f"{shown} is a link, which no result has")
         data = file[name]
         if not isinstance(data, h5py.Dataset):
-            if is_users(name):
+            if is_users(name) and isinstance(data, h5py.Group):
                 continue
             raise ValueError(f"{shown} is no variable")
         if data.is_virtual or data.external:
@@ -115,11 +115,31 @@ def _dataset_digest(name: str, data: h5py.Dataset) -> str:
     """The digest of a variable of an open file."""
     if data.dtype.kind not in NUMBERS or data.shape is None:
         raise ValueError(f"{named(name, 40)} has no numbers")
-    if h5py.h5ds.is_scale(data.id):
-        dimensions = [name]
-    else:
-        dimensions = [str(scale.name).removeprefix("/") for axis in data.dims for scale in axis.values()]
-    return variable_digest(data.dtype, data.shape, dimensions, data.attrs, _blocks(data))
+    return variable_digest(data.dtype, data.shape, _dimensions(name, data), data.attrs, _blocks(data))
+
+
+def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
+    """The dimensions of a variable: itself, or those that its attributes refer to.
+
+    Not by HDF5's own functions for dimensions, which crash where these attributes are not as HDF5 wrote them.
+    """
+    changed = ValueError(f"the dimensions of {named(name, 40)} are not as rodsweep wrote them")
+    if "CLASS" in data.attrs:
+        number = data.attrs.get("_Netcdf4Dimid", 0)  # of netCDF's dimensions, in files that xarray wrote
+        told = [data.attrs["CLASS"], data.attrs.get("NAME"), data.attrs.get("_Netcdf4Coordinates", number)]
+        if [_plain(value) for value in told] != [["DIMENSION_SCALE"], [name], _plain(number)]:
+            raise changed
+        return [name]
+    if "DIMENSION_LIST" not in data.attrs:
+        return []
+    kind = h5py.check_vlen_dtype(data.attrs.get_id("DIMENSION_LIST").dtype)
+    if kind is None or h5py.check_ref_dtype(kind) is not h5py.Reference:
+        raise changed
+    try:
+        scales = [data.file[place] for places in data.attrs["DIMENSION_LIST"] for place in places]
+    except (ValueError, RuntimeError, OSError, LookupError):
+        raise changed from None
+    return [str(scale.name).removeprefix("/") for scale in scales]
 
 
 def _blocks(data: h5py.Dataset) -> Iterator[Any]:
