@@ -18,7 +18,6 @@ from ..config.arguments import in_sentences
 from ..config.reading import yaml_of
 from ..errors import EnvironmentLacks, InputError
 from .asking import Tree, job_from, tree_of
-from .axes import plain
 from .dataset import open_result
 from .solving import solve_here
 
@@ -69,7 +68,7 @@ def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool) -> xr.Dataset:
     """The Dataset that `rodsweep run` makes on so many ranks, in a directory that is then removed."""
     points = tree["parameters"].get("points")
     if points is not None:
-        tree = tree | {"parameters": {"points": str(Path(plain(points)).absolute())}}
+        tree = tree | {"parameters": {"points": str(Path(points).absolute())}}
     with TemporaryDirectory(prefix="rodsweep-") as place:
         config, output = Path(place, f"{task}.yaml"), Path(place, f"{task}.h5")
         config.write_text(yaml_of(tree), encoding="utf-8")

@@ -3,6 +3,7 @@
 import socket
 import time
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -16,7 +17,7 @@ from ..results.file import provenance
 from ..results.file.store import Store
 from ..results.file.view import read_view
 from ..results.run.checkpoints import Checkpoints
-from ..results.run.journal import Journal, journal_directory
+from ..results.run.journal import Journal, journal_directory, kept_sentence
 from ..solve.backend.availability import require_solvers
 from ..sweep.chains import ChainSolver
 from ..sweep.handout import Handout
@@ -162,9 +163,14 @@ class _Run:
         self.store = Store(self.output, self.plan, self.options.fresh, self.options.extend)
         if self.joint and (self.options.fresh or not self._lacks_curves(0)):
             self.joint.kept.drop()
-        if self.store.note:
-            self._say(f"{self.output}: {self.store.note}")
+        self._tell_notes()
         return self.store.missing()
+
+    def _tell_notes(self) -> None:
+        """Tells what the store has to say of points and journals that are not where they were."""
+        for note in self.store.notes:
+            self._say(f"{self.output}: {note}", amiss=True)
+        self.store.notes.clear()
 
     def _units(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
         """(the units of this shard that miss a point, the points that they miss)."""
@@ -203,18 +209,17 @@ class _Run:
                 failures.extend(self._failures(index, result))
 
         shown = Teller(count, self.job.name) if self.team.first and not self.options.quiet else Silent()
+        directory = journal_directory(self.output)
         try:
-            directory = journal_directory(self.output)
-            journal = Journal(directory, self.team.rank, plan.layout, plan.fingerprint)
-            checkpoints = Checkpoints(directory, plan.fingerprint)
-            solve = self._solve_unit(IndexSet(missing), checkpoints)
-            loop = Loop(solve=solve, keep=keep, prepare=self.prepare, name=self._unit_name)
-            share = sweep(self.team, Handout(units, self.team.size), loop, shown, self.stop)
-            journal.close()
+            with closing(Journal(directory, self.team.rank, plan.layout, plan.fingerprint)) as journal:
+                checkpoints = Checkpoints(directory, plan.fingerprint)
+                solve = self._solve_unit(IndexSet(missing), checkpoints)
+                loop = Loop(solve=solve, keep=keep, prepare=self.prepare, name=self._unit_name)
+                share = sweep(self.team, Handout(units, self.team.size), loop, shown, self.stop)
         except OSError as error:
             raise EnvironmentLacks(
-                f"cannot write beside {self.output}: {error.strerror or error}; what is done is kept: make "
-                "room and run again"
+                f"cannot write beside {self.output}: {error.strerror or error}"
+                f"{kept_sentence(directory, plan.fingerprint)}: make room and run again"
             ) from error
         finally:
             shown.close()
@@ -271,6 +276,7 @@ class _Run:
         """Finishes the file, says how the run ended, and with which status it exits."""
         lacks_curves = self._finish_file(joint)
         missing = self.store.missing()
+        self._tell_notes()
         counts = self.store.status_counts()
         self.store.close()
         left = self._units(missing)[1]
@@ -306,7 +312,8 @@ class _Run:
                 )
             elif in_hand := sum(contribution.share.ended for contribution in contributions):
                 kept += f", {in_hand} left in the middle and solved again"
-            click.echo(f"stopped by {self.stop.name}; {kept}, the same command continues")
+            ended = f"stopped by {self.stop.name}" if self.stop else "not complete"
+            click.echo(f"{ended}; {kept}, the same command continues")
             return CONTINUE
         if not amiss:
             return 0

@@ -1,6 +1,5 @@
 """What the file of the task branch holds: the cycles of all branches of a rod, and their special points."""
 
-from math import nan
 from typing import Any
 
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS
@@ -71,15 +70,12 @@ def special_variables(along: str) -> tuple[Variable, ...]:
         real("special_error", unit, "estimate of the absolute error of special_at", SPECIAL),
         real("special_period", "tau2", "period of the cycle there", SPECIAL),
         real("special_tip_y_max", "L", "largest y of the tip there; 0 at a Hopf point", SPECIAL),
-        Variable(
+        real(
             "special_amplitude_coefficient",
-            "<f8",
-            nan,
             "L",
             "a of a Hopf point, to three digits: next to it the largest y is "
             f"|a| sqrt(|{along}/special_at - 1|), a < 0 where the cycles are at smaller {along}",
-            (SPECIAL,),
-            since=4,
+            SPECIAL,
         ),
         whole("special_branch", "number of the branch, from 1", SPECIAL),
         whole(
