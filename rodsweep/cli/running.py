@@ -18,7 +18,7 @@ from ..results.file.store import Store
 from ..results.file.view import read_view
 from ..results.run.checkpoints import Checkpoints
 from ..results.run.journal import Journal, journal_directory, kept_sentence
-from ..solve.backend.availability import require_solvers
+from ..solve.backend.availability import require_directory, require_solvers
 from ..sweep.chains import ChainSolver
 from ..sweep.handout import Handout
 from ..sweep.loop import Indices, Loop, Share, sweep
@@ -59,6 +59,7 @@ class RunOptions:
 
 def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest) -> int:
     """Runs a config, or a shard of it, on all ranks; returns the exit status."""
+    require_directory()
     team = Team()
     with team.together():
         job = team.on_first(lambda: make_job(path, options.overrides))

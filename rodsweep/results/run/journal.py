@@ -24,7 +24,7 @@ LONGEST_HEAD = 200
 
 def journal_directory(file: Path) -> Path:
     """Where the journals of a result file are kept until their points are in the file."""
-    return file.with_name(file.name + ".journal")
+    return file.parent / f"{file.name}.journal"
 
 
 class Journal:

@@ -8,18 +8,21 @@ import numba
 from ...errors import EnvironmentLacks, InputError
 
 
+def require_directory() -> None:
+    """EnvironmentLacks where the working directory was deleted: MPI and PETSc ask for it when they start."""
+    try:
+        os.getcwd()
+    except FileNotFoundError:
+        raise EnvironmentLacks("the working directory was deleted; change into one that exists") from None
+
+
 def require_solvers() -> None:
     """EnvironmentLacks where PETSc cannot be started, InputError where the formulas may not be compiled."""
     if numba.config.DISABLE_JIT:
         raise InputError(
             "NUMBA_DISABLE_JIT is set: PETSc calls compiled formulas, which Python cannot replace; unset it"
         )
-    try:
-        os.getcwd()
-    except FileNotFoundError:
-        raise EnvironmentLacks(
-            "the working directory has been deleted, and PETSc does not start without one; change to another"
-        ) from None
+    require_directory()
     for name in ("petsc4py", "slepc4py"):
         try:
             found = find_spec(name) is not None
