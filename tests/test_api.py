@@ -78,7 +78,7 @@ def test_names_are_these():
 
 
 def test_arguments_are_these():
-    assert list(inspect.signature(rs.sweep).parameters) == ["task", "ranks", "keywords"]
+    assert list(inspect.signature(rs.sweep).parameters) == ["task", "ranks", "strict", "progress", "keywords"]
     drawn = list(inspect.signature(rs.plot).parameters)
     assert drawn == ["data", "output", "roots", "what", "points", "look"]
     assert list(inspect.signature(rs.open).parameters) == ["path"]
@@ -240,7 +240,7 @@ def test_keywords_of_a_rods_tasks_are_the_keys_of_the_config():
     }
     for task, kind in kinds.items():
         section = CONFIGS[task].model_fields[task].annotation
-        assert set(kind.__annotations__) == {*section.model_fields, "accuracy", "title"}
+        assert set(kind.__annotations__) == {*section.model_fields, "accuracy", "title", "progress"}
 
 
 def test_no_key_is_in_two_sections():

@@ -85,7 +85,7 @@ def test_control_characters_of_a_file_do_not_reach_the_terminal(command):
             "ok", "o\x1b[31mk"
         )
         file["growth_rate"].attrs["units"] = "\x1b[31m"
-    broken = command("show", "c.h5")
+    command("show", "c.h5")
     seal(path)
     lines = [
         ("run", "c.yaml", "-o", "a.h5"),

@@ -156,6 +156,59 @@ def test_chain_stops_between_two_of_its_points_and_goes_on_from_there(command):
     assert same(content(command.directory / "c.h5"), content(command.directory / "whole.h5"))
 
 
+BRANCHES = """
+task: branch
+parameters: {k1: [100, 150, 200], k2: 1.0e4, gamma3: 1.0e-4}
+branch: {stop: 120, cycles: 100, special: 8}
+accuracy: 1.0e-4
+"""
+FOR_EVER_INSIDE = """
+import os, pathlib, time
+from rodsweep.sweep.listener import RankListener
+
+hear, rank = RankListener.__call__, os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK", "0"))
+
+def hear_and_wait(self, text):
+    hear(self, text)
+    if self.name() and self.name() != "point 1 of 3" and "cycles" in text():
+        pathlib.Path(f"inside-{rank}").write_text(f"{self.name()}: {text()}")
+        while True:
+            time.sleep(0.01)
+            hear(self, text)
+
+RankListener.__call__ = hear_and_wait
+"""
+"""What every rank executes first: within a point but the first it stays on a branch until a stop ends it."""
+
+
+@pytest.mark.parametrize(
+    ("number", "ranks", "rank"),
+    [(signal.SIGINT, 0, None), (signal.SIGTERM, 2, 1), (signal.SIGUSR1, 2, 0)],
+    ids=["Ctrl-C", "other rank", "first rank"],
+)
+def test_run_is_stopped_within_a_point_that_is_then_solved_anew(command, number, ranks, rank):
+    """Whichever rank hears the signal, both end where they are, and what they were at is missing."""
+    command.write("c.yaml", BRANCHES)
+    process = command.started("run", "c.yaml", ranks=ranks, patch=FOR_EVER_INSIDE)
+    begun = [command.directory / f"inside-{number}" for number in range(max(ranks, 1))]
+    pause_until(lambda: process.poll() is not None or all(path.exists() for path in begun), "no long point")
+    os.kill(ranks_in(command.directory)[rank] if ranks else process.pid, number)
+    out, err = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 75, err
+    assert "Traceback" not in err
+    said = rf"stopped by {number.name}; 1 point kept, {max(ranks, 1)} left in the middle and solved again"
+    assert re.search(said, out), out
+    for path in begun:
+        assert re.match(r"point [23] of 3: branch \d: F = [\d.]+, \d+ cycles", path.read_text())
+    with h5py.File(command.directory / "c.h5") as file:
+        assert (file["status"][...] == -1).sum() == 2
+    again = command("run", "c.yaml")
+    assert again.returncode == 0, again.stderr
+    assert "2 of 3 points to do, 1 kept" in again.stdout
+    assert command("run", "c.yaml", "-o", "whole.h5").returncode == 0
+    assert same(content(command.directory / "c.h5"), content(command.directory / "whole.h5"))
+
+
 def test_shares_of_the_ranks_are_kept_and_shown(command):
     command.write("c.yaml", SPECTRA)
     assert command("run", "c.yaml", ranks=3).returncode == 0

@@ -11,6 +11,9 @@ class OfEveryTask(TypedDict, total=False):
 
     accuracy: float
     title: str
+    progress: bool | None
+    """Whether a display shows how far a long solve is; by default where a terminal or a notebook is. No key
+    of a config."""
 
 
 class OfSpectrum(OfEveryTask, total=False):

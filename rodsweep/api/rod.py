@@ -119,9 +119,11 @@ class SoftRod:
         for name in options:
             if name in PARAMETERS:
                 raise InputError(f"{name} belongs to the rod: rod.replace({name}=...) is another one")
+        options = dict(options)
+        progress = options.pop("progress", None)
         taken = CONFIGS[task].taken_of_a_rod(options)
         values = {name: self._values[name] for name in taken if name in self._values}
-        data, messages = solve_here(job_from(tree_of(task, values | dict(options))))
+        data, messages = solve_here(job_from(tree_of(task, values | options)), progress=progress)
         return Answer(repr(self), data, messages[0])
 
     def __repr__(self) -> str:

@@ -19,21 +19,29 @@ from ..results.file.provenance import now
 from ..results.file.view import View
 from ..results.layouts.variables import Filled
 from ..solve.backend.availability import require_solvers
+from ..solve.backend.kept import forget_all
 from ..solve.exclusive import solving
+from ..sweep.listener import RankListener
 from ..sweep.shards import Shard
+from ..watch import heard_by
 from .dataset import dataset_of
+from .showing import Display, display, listener
 
 _warm: set[str] = set()
 """Tasks that have been solved in this process."""
 
 
 @solving
-def solve_here(job: Job, note: Note | None = None) -> tuple[xr.Dataset, list[str]]:
+def solve_here(
+    job: Job, note: Note | None = None, progress: bool | None = None
+) -> tuple[xr.Dataset, list[str]]:
     """(the Dataset of all points, what each outcome has to say of points that are solved alone).
 
     note: what is done about an exception that no solver foresees, whose point then fails; without it the
-    exception is raised. Raises InputError and EnvironmentLacks where this process cannot solve.
+    exception is raised. progress: whether a display is shown. Raises InputError and EnvironmentLacks where
+    this process cannot solve.
     """
+    shown = display(progress, job.points.count, job.name)
     require_solvers()
     solver, started = job.solver(), now()
     if note is not None:
@@ -43,15 +51,21 @@ def solve_here(job: Job, note: Note | None = None) -> tuple[xr.Dataset, list[str
         solver.warm_up()
         _warm.add(job.config.task)
     with _blas().limit(limits=1, user_api="blas"):  # as the command does: threads add in another order
-        values, messages = _solved(job, solver, plan)
+        shown(0)
+        try:
+            values, messages = _solved(job, solver, plan, shown)
+            joint = _joint(solver.together, _view(job, plan, values), shown) if solver.together else ()
+        except BaseException:  # in the middle of a solve, also by Ctrl-C
+            forget_all()
+            raise
+        finally:
+            shown.close()
         attributes = {"ranks": 1, "hosts": socket.gethostname(), "started": started, "stopped": ""}
-        filled = tuple(plan.constants)
-        if solver.together:
-            filled += tuple(_joint(solver.together, _view(job, plan, values)))
+        filled = (*plan.constants, *joint)
     return dataset_of(plan, values, filled, attributes | {"finished": now()}), messages
 
 
-def _solved(job: Job, solver: Solver, plan: Plan) -> tuple[dict[str, np.ndarray], list[str]]:
+def _solved(job: Job, solver: Solver, plan: Plan, shown: Display) -> tuple[dict[str, np.ndarray], list[str]]:
     """(the variables of the layout, each of the points' shape and its own; what points alone had to say)."""
     count, layout = job.points.count, plan.layout
     flat = {v.name: np.full((count, *layout.inner(v)), v.fill, v.dtype) for v in layout.variables}
@@ -62,34 +76,47 @@ def _solved(job: Job, solver: Solver, plan: Plan) -> tuple[dict[str, np.ndarray]
             found = solve_together(indices).values
             for name, array in flat.items():
                 array[indices] = found[name]
+            shown(int(indices[-1]) + 1)
     else:
-        for index, outcome in _outcomes(count, solver):
+        for done, (index, outcome) in enumerate(_outcomes(count, solver, shown), 1):
             record = solver.record(index, outcome)
             for name, array in flat.items():
                 array[index] = record[name]
             messages[index] = outcome.message
+            shown(done)
     shape = job.points.shape
     return {name: array.reshape(*shape, *array.shape[1:]) for name, array in flat.items()}, messages
 
 
-def _joint(together: AllPoints, view: View) -> Sequence[Filled]:
+def _joint(together: AllPoints, view: View, shown: Display) -> Sequence[Filled]:
     """What all points together give."""
     units, results = together.units(view), dict[int, Arrays]()
     while units is not None and (wanted := units.wanted(results)):
-        results[wanted[0]] = together.solve(units, wanted[0])
+        with heard_by(listener(shown, units.where(wanted[0]))):
+            results[wanted[0]] = together.solve(units, wanted[0])
     return together.variables(view, units, results)
 
 
-def _outcomes(count: int, solver: Solver) -> Iterator[tuple[int, Any]]:
+def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int, Any]]:
     """Every index with its outcome, along the chains where points start one from the other."""
+    done = 0
+
+    def place() -> RankListener:
+        return listener(shown, f"point {done + 1} of {count}" if count > 1 else "")
+
     if solver.chained is None:
-        yield from ((index, solver.solve(index)) for index in range(count))
+        for done in range(count):
+            with heard_by(place()):
+                outcome = solver.solve(done)
+            yield done, outcome
         return
     chains, solve_from = solver.chained
     for chain in range(chains.count):
         state = None
         for index in map(int, chains.indices(chain)):
-            outcome, state = solve_from(index, state)
+            with heard_by(place()):
+                outcome, state = solve_from(index, state)
+            done += 1
             yield index, outcome
 
 

@@ -19,6 +19,7 @@ from ..config.reading import yaml_of
 from ..errors import EnvironmentLacks, InputError
 from .asking import Tree, job_from, tree_of
 from .dataset import open_result
+from .showing import Display, display
 from .solving import solve_here
 
 COMPUTED = (0, 1)
@@ -30,7 +31,14 @@ MOST_QUOTED = 2000
 
 
 @in_sentences('rs.sweep("spectrum", F=[20, 30], k1=1e4, k2=100, gamma3=0.01)')
-def sweep(task: str, *, ranks: int | None = None, strict: bool = False, **keywords: Any) -> xr.Dataset:
+def sweep(
+    task: str,
+    *,
+    ranks: int | None = None,
+    strict: bool = False,
+    progress: bool | None = None,
+    **keywords: Any,
+) -> xr.Dataset:
     """The Dataset of a task over its points: the same as from the file of `rodsweep run`.
 
     keywords: the keys of a config without their sections. Parameters are a number, a list or array of
@@ -41,6 +49,8 @@ def sweep(task: str, *, ranks: int | None = None, strict: bool = False, **keywor
     ranks: by default the points are solved in this process; otherwise by the command on so many ranks.
     strict: whether an exception that is a bug of rodsweep is raised. By default its point has the status
     `failed`, a RuntimeWarning has the traceback, and the other points are solved.
+    progress: whether a display shows how far the sweep is, and where a long point is; by default where a
+    terminal or a notebook is.
 
     Raises InputError for what the command would refuse, in its words, and EnvironmentLacks where the machine
     lacks something. A point that fails keeps its status.
@@ -50,8 +60,8 @@ def sweep(task: str, *, ranks: int | None = None, strict: bool = False, **keywor
     tree = tree_of(task, keywords)
     job = job_from(tree)
     if ranks is not None:
-        return _on_ranks(task, tree, ranks, strict)
-    return solve_here(job, None if strict else _warn)[0]
+        return _on_ranks(task, tree, ranks, strict, display(progress, None, task))
+    return solve_here(job, None if strict else _warn, progress)[0]
 
 
 def _warn(indices: Sequence[int], error: Exception) -> None:
@@ -64,7 +74,7 @@ def _warn(indices: Sequence[int], error: Exception) -> None:
     )
 
 
-def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool) -> xr.Dataset:
+def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool, shown: Display) -> xr.Dataset:
     """The Dataset that `rodsweep run` makes on so many ranks, in a directory that is then removed."""
     points = tree["parameters"].get("points")
     if points is not None:
@@ -74,28 +84,48 @@ def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool) -> xr.Dataset:
         config.write_text(yaml_of(tree), encoding="utf-8")
         words = [_mpiexec(), "-n", str(ranks), sys.executable, "-m", "rodsweep", "run", str(config)]
         words += ["-o", str(output), *(["--strict"] if strict else [])]
-        # The environment as this process got it: MPI, once started in here, adds to the one in C.
-        given = dict(os.environ)
         try:
-            run = subprocess.run(words, cwd=place, env=given, capture_output=True, text=True, check=False)
+            status, told = _run_shown(words, place, shown)
         except OSError as error:
             raise EnvironmentLacks(f"{words[0]} cannot be started: {error.strerror}") from None
-        if run.returncode not in COMPUTED:
-            raise _failure(run, begun=output.exists())
+        if status not in COMPUTED:
+            raise _failure(words[0], status, told, begun=output.exists())
         if (log := log_file(output)).exists():
             warnings.warn(log.read_text(encoding="utf-8"), RuntimeWarning, stacklevel=2)
         return open_result(output)
 
 
-def _failure(run: subprocess.CompletedProcess[str], begun: bool) -> Exception:
+def _run_shown(words: list[str], place: str, shown: Display) -> tuple[int, str]:
+    """Runs a command in a directory and shows its progress; returns its exit status and standard error."""
+    # The environment as this process got it: MPI, once started in here, adds to the one in C.
+    run = subprocess.Popen(
+        words, cwd=place, env=dict(os.environ), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+    )
+    assert run.stderr is not None
+    told: list[str] = []
+    shown(0)
+    try:
+        for line in run.stderr:
+            told.append(line)
+            shown.place(line.strip())
+        return run.wait(), "".join(told)
+    except BaseException:  # Ctrl-C: the launcher ends its ranks within a second
+        run.terminate()
+        run.wait()
+        raise
+    finally:
+        shown.close()
+
+
+def _failure(launcher: str, status: int, told: str, begun: bool) -> Exception:
     """The exception for a run that is not whole; begun: whether its ranks came as far as to make a file."""
-    lines = [line for line in run.stderr.splitlines() if line.startswith("rodsweep: ")]
+    lines = [line for line in told.splitlines() if line.startswith("rodsweep: ")]
     if lines:
-        return REFUSED.get(run.returncode, RuntimeError)(lines[0].removeprefix("rodsweep: "))
-    if begun or "Traceback" in run.stderr:
-        return RuntimeError(run.stderr[-MOST_QUOTED:])
-    said = " ".join(run.stderr.split()) or f"exit status {run.returncode}"
-    return EnvironmentLacks(f"{run.args[0]} did not start the ranks: {said[-MOST_QUOTED:]}")
+        return REFUSED.get(status, RuntimeError)(lines[0].removeprefix("rodsweep: "))
+    if begun or "Traceback" in told:
+        return RuntimeError(told[-MOST_QUOTED:])
+    said = " ".join(told.split()) or f"exit status {status}"
+    return EnvironmentLacks(f"{launcher} did not start the ranks: {said[-MOST_QUOTED:]}")
 
 
 def _mpiexec() -> str:

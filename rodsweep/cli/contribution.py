@@ -1,7 +1,7 @@
 """What each rank did in a run, and what the file keeps of it."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,17 +9,30 @@ import numpy as np
 
 from ..results.file import provenance
 from ..results.file.creation import Plan
-from ..sweep.loop import Share
+from ..sweep.loop import Indices, Share
+from ..sweep.stretches import Together
+
+FAILURES_TOLD = 3
+"""Failed points that are named at the end of a run; the file has the status of all."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Contribution:
-    """What a rank tells the first one: its host, failed points in words, exceptions in its log, its share."""
+    """What a rank tells the first one: its host, failed points in words, its share."""
 
     host: str
     failures: list[str]
-    exceptions: int
     share: Share
+
+
+def failures_of(index: Indices, result: Any, where: Callable[[int], str]) -> list[str]:
+    """What to tell of points that did not succeed, as many as are told. where: the parameters of one."""
+    if isinstance(result, Together):
+        failed = np.flatnonzero(~result.succeeded)[:FAILURES_TOLD]
+        told = [(int(np.asarray(index)[i]), result.told(int(i))) for i in failed]
+    else:
+        told = [] if result.status.succeeded else [(int(index), f"{result.status.name} {result.message}")]
+    return [f"{where(at)}: {outcome}".rstrip() for at, outcome in told]
 
 
 def of_the_last_run(plan: Plan) -> dict[str, Any]:

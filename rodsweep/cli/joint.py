@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,14 @@ from .unforeseen import PASSING, UnitNote
 
 NOUN = "halves of curves"
 """What units are called; a curve is followed from one of its points in two halves."""
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """What all points together are to give: whether the file lacks it, and its units, if it has some."""
+
+    due: bool
+    units: Any = None
 
 
 class JointWork:

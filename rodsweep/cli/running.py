@@ -28,15 +28,13 @@ from ..sweep.shards import Shard
 from ..sweep.stop import StopRequest
 from ..sweep.stretches import StretchSolver, Together
 from ..sweep.team import Team
-from .contribution import Contribution, history_of, of_the_last_run
+from .contribution import FAILURES_TOLD, Contribution, failures_of, history_of, of_the_last_run
 from .job import Job, make_job
-from .joint import JointWork
+from .joint import Joint, JointWork
 from .planning import plan_of
 from .unforeseen import Log, guarded
 from .wording import counted
 
-FAILURES_TOLD = 3
-"""Failed points that are named at the end of a run; the file has the status of all."""
 CONTINUE = 75
 """Exit status of a run that was asked to stop: the same command continues it (EX_TEMPFAIL of sysexits.h)."""
 
@@ -65,14 +63,6 @@ def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest)
         job = team.on_first(lambda: make_job(path, options.overrides))
         team.all_can(require_solvers)
         return _Run(team, job, output, options, stop).run()
-
-
-@dataclass(frozen=True, slots=True)
-class Joint:
-    """What all points together are to give: whether the file lacks it, and its units, if it has some."""
-
-    due: bool
-    units: Any = None
 
 
 class _Run:
@@ -119,13 +109,14 @@ class _Run:
         if self.joint and joint.units is not None:
             title = None if self.options.quiet else self.job.name
             shares = self.team.gather(self.joint.solve(joint.units, self.prepare, title)) or []
-        return self.team.on_first(lambda: self._finish(count, contributions, joint, shares))
+        exceptions = sum(self.team.gather(self.log.count) or [])
+        return self.team.on_first(lambda: self._finish(count, contributions, joint, shares, exceptions))
 
     def _lacks_curves(self, missing: int) -> bool:
         """Whether the file is not finished although no point is missing; on the first rank."""
         return not missing and "finished" not in self.store.attributes()
 
-    def _fold(self, count: int, contributions: list[Contribution]) -> "Joint":
+    def _fold(self, count: int, contributions: list[Contribution]) -> Joint:
         """Folds the points into the file; returns what all points together are still to give."""
         self.seconds = time.monotonic() - self.began
         if count:
@@ -207,7 +198,7 @@ class _Run:
             else:
                 journal.append(int(index), solver.record(int(index), result))
             if len(failures) < FAILURES_TOLD:
-                failures.extend(self._failures(index, result))
+                failures.extend(failures_of(index, result, self._where))
 
         shown = Teller(count, self.job.name) if self.team.first and not self.options.quiet else Silent()
         directory = journal_directory(self.output)
@@ -224,9 +215,7 @@ class _Run:
             ) from error
         finally:
             shown.close()
-        return Contribution(
-            host=socket.gethostname(), failures=failures, exceptions=self.log.count, share=share
-        )
+        return Contribution(host=socket.gethostname(), failures=failures, share=share)
 
     def _solve_unit(
         self, missing: IndexSet, checkpoints: Checkpoints
@@ -239,15 +228,6 @@ class _Run:
             return ChainSolver(*solver.chained, missing, checkpoints, self.stop)
         return lambda index: ((index, solver.solve(index)),)
 
-    def _failures(self, index: Indices, result: Any) -> list[str]:
-        """What to tell of the points that did not succeed."""
-        if isinstance(result, Together):
-            failed = np.flatnonzero(~result.succeeded)[:FAILURES_TOLD]
-            told = [(int(np.asarray(index)[i]), result.told(int(i))) for i in failed]
-        else:
-            told = [] if result.status.succeeded else [(int(index), f"{result.status.name} {result.message}")]
-        return [f"{self._where(at)}: {outcome}".rstrip() for at, outcome in told]
-
     def _where(self, index: int) -> str:
         values = self.job.points.values(index)
         return ", ".join(f"{name}={value!r}" for name, value in values.items())
@@ -258,7 +238,7 @@ class _Run:
             return f"chain {unit + 1} of {self.solver.chained[0].count}"
         return f"point {unit + 1} of {self.job.points.count}"
 
-    def _finish_file(self, joint: "Joint") -> bool:
+    def _finish_file(self, joint: Joint) -> bool:
         """Puts what all points together give into the file; whether that is still missing."""
         if not joint.due:
             return False
@@ -272,7 +252,12 @@ class _Run:
         return False
 
     def _finish(
-        self, count: int, contributions: list[Contribution], joint: "Joint", shares: list[Share]
+        self,
+        count: int,
+        contributions: list[Contribution],
+        joint: Joint,
+        shares: list[Share],
+        exceptions: int,
     ) -> int:
         """Finishes the file, says how the run ended, and with which status it exits."""
         lacks_curves = self._finish_file(joint)
@@ -302,7 +287,7 @@ class _Run:
         told = [failure for contribution in contributions for failure in contribution.failures]
         for failure in told[:FAILURES_TOLD]:
             click.echo(f"  {failure}")
-        if exceptions := sum(contribution.exceptions for contribution in contributions):
+        if exceptions:
             raised = counted(exceptions, "unforeseen exception")
             click.echo(f"  {raised}: a bug, please report it with {self.log.path}, which has the traceback")
         if left or lacks_curves:

@@ -69,7 +69,8 @@ def _number(name: str, given: Any, unit: str, allowed: str) -> float:
         return float(given)
     except (TypeError, ValueError, OverflowError):
         raise InputError(
-            f"{name} = {' '.join(str(given).split()):.60} is not one quantity; write {allowed}, or one number in {unit}"
+            f"{name} = {' '.join(str(given).split()):.60} is not one quantity; "
+            f"write {allowed}, or one number in {unit}"
         ) from None
 
 

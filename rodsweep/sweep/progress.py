@@ -25,6 +25,11 @@ def on_terminal() -> bool:
     return under_mpi and os.path.realpath(launcher).startswith(("/dev/pts/", "/dev/tty"))
 
 
+def in_notebook() -> bool:
+    """Whether output goes into a cell of a notebook."""
+    return Console().is_jupyter
+
+
 class Silent:
     """Shows nothing."""
 
@@ -47,11 +52,9 @@ class Teller:
         self.pace = None if total is None else Pace(total)
         self.began = self.next = 0.0
         self.done, self.where = 0, ""
-        self.bar: Progress | None = None
-        if on_terminal() if live is None else live:
-            self.bar = _bar(title)
+        self.bar = _bar(title) if (on_terminal() if live is None else live) else None
+        if self.bar is not None:
             self.task = self.bar.add_task(title, total=total, count="", rate="", left="", where="")
-            self.bar.start()
 
     def __call__(self, done: int) -> None:
         """Takes how many points are done in all; shows it when it is time. The clock starts at 0."""
@@ -74,8 +77,9 @@ class Teller:
         rate = rate_in_words(self.done, passed) if self.total else ""
         seconds = self.pace.left(self.done, passed) if self.pace else None
         left = "" if seconds is None else f"about {in_words(seconds)} left"
-        count = f"{self.done} of {self.total}" if self.total else f"{self.done}"
+        count = f"{self.done} of {self.total}" if self.total else f"{self.done or ''}"
         if self.bar is not None:
+            self.bar.start()
             self.next = now + BAR_SECONDS
             self.bar.update(
                 self.task, completed=self.done, count=count, rate=rate, left=left, where=self.where
@@ -83,7 +87,7 @@ class Teller:
             self.bar.refresh()
             return
         self.next = now + LINE_SECONDS
-        told = ", ".join(filter(None, (f"{count} {self.noun}", rate, left)))
+        told = ", ".join(filter(None, (f"{count} {self.noun}" if count else "", rate, left)))
         print("; ".join(filter(None, (told, self.where))), file=sys.stderr, flush=True)
 
     def close(self) -> None:
@@ -93,8 +97,7 @@ class Teller:
 
 def _bar(title: str) -> Progress:
     """A bar on standard error, or in a notebook."""
-    notebook = Console().is_jupyter
-    console = Console() if notebook else Console(file=sys.stderr, force_terminal=True)
+    console = Console() if in_notebook() else Console(file=sys.stderr, force_terminal=True)
     columns = (
         TextColumn(title, markup=False),
         BarColumn(),

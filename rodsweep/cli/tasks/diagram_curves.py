@@ -1,7 +1,7 @@
 """The curves of a phase diagram, which all its rows together give."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,11 +23,16 @@ from .diagram_cycles import cycle_curve_record, row_specials, unstored_specials,
 from .diagram_records import bautin_curve_record, criticality_record, curve_record
 
 if TYPE_CHECKING:
+    from ...solve.branch.coexistence import CoexistenceRow
     from ...solve.branch.special_boundaries import SpecialBoundaries
     from ...solve.branch.special_points import SpecialPoint
     from ...solve.changes.boundaries import Boundaries
     from ...solve.hopf.generalised import CurveCriticality
     from .phase_diagram import PhaseDiagramTask
+
+MAX_KEPT_ROWS = 200
+"""Rows whose special points a process keeps: the cycles of a row take up to a megabyte. The special points of
+others are located anew, which gives the same and takes some seconds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +43,14 @@ class DiagramCurves:
     """
 
     task: "PhaseDiagramTask"
+    special: "dict[int, tuple[SpecialPoint, ...]]" = field(default_factory=dict)
+    """Special points, with their cycles, of rows that this process has solved: by the row's number."""
+
+    def keep(self, number: int, row: "CoexistenceRow") -> "CoexistenceRow":
+        """The row, whose special points are kept while there is room."""
+        if len(self.special) < MAX_KEPT_ROWS:
+            self.special[number] = row.special
+        return row
 
     def units(self, view: View) -> "SpecialBoundaries | None":
         """The curves of cycles as units of work, from a view with all rows; None where there are none."""
@@ -128,11 +141,14 @@ class DiagramCurves:
         return replace(found, untraced=found.untraced + int(cut[np.isfinite(rows)].clip(min=0).sum()))
 
     def _special_points(self, number: int) -> "tuple[SpecialPoint, ...]":
-        """The special points of the branches of the row of a number, solved anew."""
+        """The special points of the branches of the row of a number, kept or solved anew."""
         from ...solve.branch.coexistence import row_branches, special_of
 
-        fixed = self.task.points.values(number)
-        return special_of(row_branches(fixed, self.task.config.gamma1, self.task.row_request(), MOST_SPECIAL))
+        if number not in self.special:
+            fixed = self.task.points.values(number)
+            branches = row_branches(fixed, self.task.config.gamma1, self.task.row_request(), MOST_SPECIAL)
+            return special_of(branches)
+        return self.special[number]
 
     def _criticality(self, plane: Plane, found: "Boundaries") -> "list[CurveCriticality]":
         """On which side of each curve cycles are born, if it is one of Hopf points."""

@@ -109,15 +109,17 @@ class PhaseDiagramTask(LinearTask):
         from ...solve.branch.branches import warm_up
         from ...solve.branch.coexistence import CoexistenceStatus, solve_coexistence
 
-        gamma1 = self.config.gamma1
+        gamma1, curves = self.config.gamma1, DiagramCurves(self)
         return Solver(
             statuses=tuple(CoexistenceStatus),
             warm_up=warm_up,
-            solve=lambda i: solve_coexistence(self.points.values(i), gamma1, request, MOST_SPECIAL),
+            solve=lambda i: curves.keep(
+                i, solve_coexistence(self.points.values(i), gamma1, request, MOST_SPECIAL)
+            ),
             record=lambda index, result: (
                 record(result.row, request.crossings) | cycles_record(result, request.name)
             ),
-            together=DiagramCurves(self) if self.config.phase_diagram.curves else None,
+            together=curves if self.config.phase_diagram.curves else None,
         )
 
 

@@ -36,6 +36,7 @@ class Journal:
         self.directory, self.name = directory, f"rank-{rank:06d}-{os.getpid()}"
         self._create()
         self._write(_head(fingerprint))
+        self.head = len(_head(fingerprint))
 
     def append(self, index: int, values: dict) -> None:
         """Writes the record of a finished point, of which `values` has every variable."""
@@ -55,11 +56,17 @@ class Journal:
         self._write(b"".join(part + zlib.crc32(part).to_bytes(4, "little") for part in parts))
 
     def close(self) -> None:
-        """Puts everything on the disk proper; also where the journal was moved or deleted meanwhile."""
-        if not self._is_in_place():
+        """Puts everything on the disk proper; also where the journal was moved or deleted meanwhile.
+
+        A journal without points goes.
+        """
+        empty = os.fstat(self.handle).st_size == self.head
+        if not empty and not self._is_in_place():
             self._write_anew()
         os.fsync(self.handle)
         os.close(self.handle)
+        if empty:
+            self.path.unlink(missing_ok=True)
 
     def _is_in_place(self) -> bool:
         """Whether the file of the journal's name is the one that is written."""

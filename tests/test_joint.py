@@ -1,0 +1,240 @@
+"""Curves of cycles as units of work: shared, kept, stopped, resumed, the same whoever followed them."""
+
+import itertools
+import os
+import signal
+
+import h5py
+import pytest
+from conftest import Command
+from contents import content, same
+from ranks import PATIENCE, pause_until, wait_for_end
+
+from rodsweep.determinant.parameter_plane import PlaneAxis
+from rodsweep.results.run.unit_results import UnitResults
+from rodsweep.solve.branch.special_boundaries import RowSpecial, SpecialBoundaries, TracedHalf
+from rodsweep.solve.branch.special_curves import CurveEnd, CurvePoint, HalfCurve
+from rodsweep.solve.branch.special_points import SpecialKind
+from rodsweep.sweep.handout import OVER, Report
+from rodsweep.sweep.pool import Pool
+
+DIAGRAM = """
+task: phase_diagram
+parameters:
+  F: [60, 70, 80, 88, 90, 90.5, 91, 92, 110]
+  k1: [149.5, 152]
+  k2: 1.0e4
+  gamma3: 1.0e-4
+phase_diagram: {cycles: true}
+"""
+HALT = """
+import pathlib, time
+from rodsweep.results.run.unit_results import UnitResults
+import rodsweep.watch as watch
+from rodsweep.sweep.listener import RankListener
+
+write, hear = UnitResults.write, RankListener.__call__
+state = []
+
+def write_and_note(self, unit, arrays):
+    write(self, unit, arrays)
+    state.append(unit)
+
+def hear_and_wait(self, text):
+    while len(state) >= {units} and "curve of" in self.name():
+        pathlib.Path("inside").touch()
+        time.sleep(0.01)
+        hear(self, text)
+    hear(self, text)
+
+UnitResults.write, RankListener.__call__ = write_and_note, hear_and_wait
+"""
+"""What every rank executes first: in the half of a curve after so many it waits for a stop."""
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """The command in a directory with the diagram computed by one rank without a break, `whole.h5`."""
+    command = Command(tmp_path_factory.mktemp("joint"))
+    command.write("c.yaml", DIAGRAM)
+    run = command("run", "c.yaml", "-o", "whole.h5")
+    assert run.returncode == 0, run.stderr
+    assert "2 of 2 points to do, then curves through all" in run.stdout
+    assert "2 halves of curves of cycles followed" in run.stdout
+    yield command
+    command.clear()
+
+
+def run_halted(command, name, units, ranks, how):
+    """A run that ends by a signal, or is killed, in the middle of the half of a curve after so many."""
+    inside = command.directory / "inside"
+    inside.unlink(missing_ok=True)
+    process = command.started("run", "c.yaml", "-o", name, ranks=ranks, patch=HALT.format(units=units))
+    pause_until(lambda: inside.exists() or process.poll() is not None, "no curve is followed")
+    if how == signal.SIGKILL and ranks:
+        command.clear()
+    else:
+        process.send_signal(how)
+    out, err = process.communicate(timeout=PATIENCE)
+    wait_for_end(command.directory)
+    assert "Traceback" not in err
+    return process.returncode, out
+
+
+@pytest.mark.parametrize(
+    ("units", "ranks", "how"),
+    [(0, 0, signal.SIGINT), (1, 0, signal.SIGTERM), (1, 0, signal.SIGKILL), (0, 2, signal.SIGUSR1)],
+    ids=["Ctrl-C in the first", "in the second", "killed", "two ranks"],
+)
+def test_curves_are_stopped_said_to_be_missing_and_resumed(whole, units, ranks, how):
+    name = f"{units}-{ranks}-{how.name}.h5"
+    status, out = run_halted(whole, name, units, ranks, how)
+    if how != signal.SIGKILL:
+        assert status == 75
+        assert f"stopped by {how.name}; 2 points kept, the curves are missing, {units} halves" in out
+    shown = " ".join(whole("show", name).stdout.split())
+    assert "all points are there; the curves through them are missing" in shown
+    assert "curves are missing" in whole("plot", name, "-o", "c.png").stdout
+    with h5py.File(whole.directory / name) as file:
+        assert "cycle_curve_number" not in file
+        assert "finished" not in file.attrs
+    kept = UnitResults(whole.directory / f"{name}.journal", "")
+    assert len([p for p in kept.directory.glob("unit-*") if p.name[5:].isdecimal()]) == units
+    again = whole("run", "c.yaml", "-o", name)
+    assert again.returncode == 0, again.stderr
+    assert "0 of 2 points to do, 2 kept, then curves through all" in again.stdout
+    assert "nothing to do" not in again.stdout
+    assert f"{2 - units} halves of curves of cycles followed" in again.stdout or units == 2
+    assert same(content(whole.directory / name), content(whole.directory / "whole.h5"))
+    assert not kept.directory.exists()
+    assert "nothing to do" in whole("run", "c.yaml", "-o", name).stdout
+
+
+def test_two_ranks_share_the_halves_of_one_curve(whole):
+    """Each waits within its first half until the other is within one."""
+    patch = """
+import os, pathlib, time
+from rodsweep.cli.tasks.diagram_curves import DiagramCurves
+
+solve, rank = DiagramCurves.solve, os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK"))
+
+def solve_beside_another(self, units, unit):
+    pathlib.Path(f"follows-{rank}-{unit}").touch()
+    end = time.monotonic() + 60
+    while len(list(pathlib.Path().glob("follows-*"))) < 2 and time.monotonic() < end:
+        time.sleep(0.01)
+    return solve(self, units, unit)
+
+DiagramCurves.solve = solve_beside_another
+"""
+    run = whole("run", "c.yaml", "-o", "shared.h5", ranks=2, patch=patch)
+    assert run.returncode == 0, run.stderr
+    names = sorted(path.name.split("-") for path in whole.directory.glob("follows-*"))
+    assert [rank for _, rank, _ in names] == ["0", "1"]
+    assert len({unit for *_, unit in names}) == 2
+    assert same(content(whole.directory / "shared.h5"), content(whole.directory / "whole.h5"))
+
+
+def test_curve_whose_solver_raises_is_none_and_the_diagram_is_finished(whole):
+    patch = """
+from rodsweep.cli.tasks.diagram_curves import DiagramCurves
+
+def broken(self, units, unit):
+    raise IndexError("a bug")
+
+DiagramCurves.solve = broken
+"""
+    run = whole("run", "c.yaml", "-o", "broken.h5", patch=patch)
+    assert run.returncode == 0, run.stderr
+    assert "unforeseen exception" in run.stdout
+    assert "curve of folds from k1 = " in (whole.directory / "broken.h5.log").read_text()
+    with h5py.File(whole.directory / "broken.h5") as file:
+        assert file["cycle_curves_untraced"][()] == 1
+        assert file["cycle_curve_number"].size == 0
+
+
+LINE, ROWS = PlaneAxis("F", 0.0, 1.0), PlaneAxis("k1", 1.0, 5.0)
+
+
+def boundaries():
+    """Two curves of folds through the rows 1 to 5, at F = 0.2 and at F = 0.6."""
+    special = [
+        RowSpecial(number=row, row=float(row), kind=SpecialKind.fold, at=at, period=1.0, tip_y_max=0.1)
+        for row in range(1, 6)
+        for at in (0.2, 0.6)
+    ]
+    return SpecialBoundaries(LINE, ROWS, special)
+
+
+def half(units, unit):
+    """The half of a straight curve, as if followed."""
+    place, behind = divmod(unit, 2)
+    one = units.special[place]
+    last = 1.0 if behind else 5.0
+    points = tuple(
+        CurvePoint(at=one.at, row=row, place=(row - 1) / 4, error=0.0, period=1.0, tip_y_max=0.1)
+        for row in (one.row, last)
+    )
+    near = {i: 0.0 for i, other in enumerate(units.special) if other.at == one.at}
+    low, high = sorted((one.row, last))
+    near = {i: d for i, d in near.items() if low <= units.special[i].row <= high}
+    return TracedHalf(HalfCurve(points, CurveEnd.edge), near).arrays()
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 3, 8])
+def test_curves_do_not_depend_on_who_followed_what_in_which_order(ranks):
+    """Every rank in turn asks for a unit and hands in the one it had, in all rotations."""
+    found = []
+    for rotation in range(ranks):
+        units = boundaries()
+        pool = Pool(units, {}, ranks)
+        held, turn = {}, itertools.cycle([(rank + rotation) % ranks for rank in range(ranks)])
+        while True:
+            rank = next(turn)
+            results = {held[rank]: half(units, held[rank])} if rank in held else {}
+            pool.settle(rank, Report(results=results))
+            held.pop(rank, None)
+            chunk = pool.take(rank)
+            if chunk == OVER:
+                break
+            if chunk is not None:
+                held[rank] = chunk[0]
+        found.append(units.curves(pool.results))
+    assert all(curves == found[0] for curves in found)
+    assert [curve.points[0].at for curve in found[0].curves] == [0.6, 0.2]
+    assert found[0].untraced == 0
+
+
+def test_one_rank_follows_no_half_in_vain():
+    units, results = boundaries(), {}
+    while wanted := units.wanted(results):
+        results[wanted[0]] = half(units, wanted[0])
+    assert len(results) == 4  # two of each curve
+
+
+def test_unit_that_a_stop_ended_is_wanted_again():
+    units = boundaries()
+    pool = Pool(units, {}, 2)
+    first = pool.take(0)
+    assert pool.take(1) != first
+    pool.settle(0, Report(given_back=first))
+    assert pool.take(0) == first
+    pool.stop()
+    assert pool.take(1) == OVER
+
+
+def test_results_of_units_are_read_whole_or_not_at_all(tmp_path):
+    kept, arrays = UnitResults(tmp_path, "a"), half(boundaries(), 3)
+    kept.write(3, arrays)
+    (found,) = kept.read().values()
+    assert {name: values.tolist() for name, values in found.items()} == {
+        name: values.tolist() for name, values in arrays.items()
+    }
+    assert UnitResults(tmp_path, "b").read() == {}
+    path = tmp_path / "unit-000000003"
+    data = bytearray(path.read_bytes())
+    for damaged in (data[:-1], data[:20], b"", data[:60] + bytes([data[60] ^ 1]) + data[61:]):
+        path.write_bytes(bytes(damaged))
+        assert kept.read() == {}
+    os.remove(path)
+    kept.drop()
