@@ -24,8 +24,15 @@ _parts: ContextVar[tuple[str, ...]] = ContextVar("parts", default=())
 
 @contextmanager
 def heard_by(listener: Listener) -> Iterator[None]:
-    """Reports of solves in here go to the listener."""
-    token = _listener.set(listener)
+    """Reports of solves in here go to the listener, after those that hear them already."""
+    outer = _listener.get()
+
+    def both(text: Text) -> None:
+        if outer is not None:
+            outer(text)
+        listener(text)
+
+    token = _listener.set(both)
     try:
         yield
     finally:

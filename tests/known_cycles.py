@@ -6,6 +6,7 @@ import h5py
 import numpy as np
 
 from rodsweep.results.file.creation import Plan, create_file
+from rodsweep.results.file.seal import seal
 from rodsweep.results.file.view import View
 from rodsweep.results.layouts import layout_of
 from rodsweep.sweep.grid import Points
@@ -93,3 +94,4 @@ def store(view, path, **options):
     with h5py.File(path, "r+") as file:
         for name in view.variables.keys() - {*NAMES, "point"}:
             file[name][...] = view.variables[name]
+    seal(path)

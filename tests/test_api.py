@@ -2,6 +2,7 @@
 
 import inspect
 import json
+import os
 import shutil
 import signal
 import subprocess
@@ -164,6 +165,38 @@ def test_ranks_give_the_same_numbers(tmp_path, monkeypatch):
 def test_ranks_are_a_whole_number(ranks):
     with pytest.raises(rs.InputError, match="ranks = "):
         rs.sweep("thresholds", k1=200, k2=100, gamma3=0, ranks=ranks)
+
+
+@pytest.mark.parametrize("launcher", ["#!/bin/sh\nexec /nowhere/mpiexec", "#!/nowhere/sh", None])
+def test_ranks_that_no_mpiexec_starts_are_refused_in_a_sentence(tmp_path, monkeypatch, launcher):
+    if launcher is not None:
+        (tmp_path / "mpiexec").write_text(launcher)
+        (tmp_path / "mpiexec").chmod(0o755)
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(rs.EnvironmentLacks, match="mpiexec (is not found|cannot be started|did not start)"):
+        rs.sweep("spectrum", **ROD, ranks=2)
+
+
+@pytest.mark.parametrize(
+    ("before", "variables", "code", "sentence"),
+    [
+        ("import os, tempfile; d = tempfile.mkdtemp(); os.chdir(d); os.rmdir(d)", {}, 3, "working directory"),
+        ("", {"NUMBA_DISABLE_JIT": "1"}, 2, "NUMBA_DISABLE_JIT is set"),
+    ],
+)
+def test_a_process_that_cannot_solve_says_why(tmp_path, before, variables, code, sentence):
+    (tmp_path / "c.yaml").write_text(small.CONFIGS["spectrum"])
+    codes = (
+        f"rs.Rod(**{ROD}).spectrum()",
+        f"from rodsweep import cli; sys.argv[1:] = ['run', {str(tmp_path / 'c.yaml')!r}]; cli.main()",
+    )
+    for command in codes:
+        words = [sys.executable, "-c", f"import sys, rodsweep as rs; {before}\n{command}"]
+        done = subprocess.run(words, env=os.environ | variables, capture_output=True, text=True, check=False)
+        assert sentence in done.stderr.splitlines()[-1]
+    assert (done.returncode, done.stderr.count("rodsweep: ")) == (code, 1)
+    assert "Traceback" not in done.stderr
 
 
 @pytest.mark.parametrize("axis", [np.array([10, 20]), (10, 20.0), range(10, 30, 10), rs.linspace(10, 20, 2)])

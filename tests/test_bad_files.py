@@ -18,14 +18,16 @@ from faults import small
 from faults.damages import (
     ADDITIONS,
     BYTES,
-    EDITS,
     JOURNALS,
     MISFITS,
+    ODD_NUMBERS,
     OF_CHAINS,
     foreign,
     obstacles,
 )
 from faults.isolated import Isolated, Outcome
+
+from rodsweep.results.file.seal import seal
 
 MORE = int(os.environ.get("RODSWEEP_CASES", "1"))
 FILES, PAGES, CYCLE_PAGES = 8 * MORE, 8 * MORE, 3 * MORE
@@ -234,17 +236,18 @@ def test_result_that_another_program_made_unfit_is_refused(results, tmp_path, na
     assert not complaints, report(complaints)
 
 
-def test_result_that_another_program_edited_is_still_read(results, tmp_path, name):
+def test_result_with_odd_numbers_is_shown_and_continued(results, tmp_path, name):
     complaints = []
-    for edit, change in shared(EDITS.items(), name, 1):
+    for edit, change in shared(ODD_NUMBERS.items(), name, 1):
         path = changed(results, name, "whole", change, tmp_path / "a")
+        seal(path)
         # No figure can show some of these numbers, and a run tells of statuses that it does not know.
         lines = [(SHOW, {0}), (PLOT, {0, 2}), (RUN, {0, 1}), (SHOW, {0})]
         complaints += tried(results, path, edit, lines)
     assert not complaints, report(complaints)
 
 
-def test_interrupted_result_to_which_another_program_added_is_continued(results, tmp_path, name):
+def test_interrupted_result_to_which_the_user_added_is_continued(results, tmp_path, name):
     complaints = []
     plain = results.copied(name, "whole", tmp_path / "plain")
     drawn = results.run(plain.parent, *PLOT, seconds=LONG).status

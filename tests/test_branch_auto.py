@@ -15,9 +15,9 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.discretization.mesh import mesh
 from rodsweep.discretization.stress_form import StressForm
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.arc import next_point
+from rodsweep.solve.branch.arc import due, next_point, refined
 from rodsweep.solve.branch.beginning import beginning, hopf_point
-from rodsweep.solve.branch.following import Course, _on_the_edge
+from rodsweep.solve.branch.following import Course, _edge, _on_the_edge
 from rodsweep.solve.branch.special_points import EndReason, SpecialKind, special_points
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
@@ -73,8 +73,9 @@ def branch_of_this(rod, kind, F):
                 special = point
         if special is not None and (there.at - F) * (here.at - F) <= 0:
             course = Course([], (F, inf), (EndReason.range_end,) * 2, ACCURACY, 500)
-            return special, _on_the_edge(here, there, course, 0)
-        here = there
+            edge = _edge(here, course, 0)
+            return special, refined(_on_the_edge(here, there, edge, course), ACCURACY, edge)
+        here = refined(there, ACCURACY) if due(there) else there
 
 
 def test_auto_has_the_same_fold_and_the_same_unstable_cycle_beyond(auto, tmp_path):

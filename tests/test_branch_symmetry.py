@@ -1,5 +1,6 @@
 """Where cycles lose their mirror symmetry, and the branch of cycles without it that is born there."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,11 +14,11 @@ from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import CurveOfCycles, SpecialOfBranch
 from rodsweep.post.summary.branch import _ends
 from rodsweep.solve.branch import following, special_points
-from rodsweep.solve.branch.arc import arc_point, next_point
+from rodsweep.solve.branch.arc import next_point, refined
 from rodsweep.solve.branch.beginning import hopf_point
 from rodsweep.solve.branch.branch_curve import BranchCurve
 from rodsweep.solve.branch.branches import BranchesOfRod, BranchStatus
-from rodsweep.solve.branch.following import Course, follow_branch, follow_without_symmetry
+from rodsweep.solve.branch.following import Course, follow_branch, follow_without_symmetry, followed_from
 from rodsweep.solve.branch.special_points import EndReason, SpecialKind, changes_between
 from rodsweep.solve.branch.symmetry import (
     asymmetry,
@@ -116,14 +117,17 @@ def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(know
     assert np.abs(half + orbit.start)[moments].max() > 0.05 * np.abs(orbit.start[moments]).max()
 
 
+def turned_back(here):
+    """A cycle of a branch that is followed to its other side."""
+    place = replace(here.place, tangent=-here.tangent, ahead=-here.ahead)
+    return replace(here, place=place, before=None)
+
+
 def test_followed_back_the_branch_ends_where_it_was_born(known):
     here = beginning_without_symmetry(known.breakings[0], "F", ROUGH)
     for _ in range(2):
         here = next_point(here, ROUGH)
-    here = arc_point(here.cycle, here.scale, -here.tangent, here.length)
-    curve = BranchCurve(hopf=-1)
-    while here is not None:
-        here = following._next(curve, here, known)
+    curve = followed_from(BranchCurve(hopf=-1), turned_back(refined(here, ROUGH)), known)
     assert curve.complete
     assert curve.meets is known.breakings[0]
     assert kinds(curve) == ["symmetry_breaking"]
@@ -140,10 +144,7 @@ def test_a_symmetric_orbit_over_its_whole_period_is_the_same_motion(known):
 
 def test_a_known_breaking_that_lies_elsewhere_is_not_taken_for_the_end(known):
     here = beginning_without_symmetry(known.breakings[0], "F", ROUGH)
-    here = arc_point(here.cycle, here.scale, -here.tangent, here.length)
-    curve = BranchCurve(hopf=-1)
-    while here is not None:
-        here = following._next(curve, here, following.replace(known, breakings=[]))
+    curve = followed_from(BranchCurve(hopf=-1), turned_back(here), replace(known, breakings=[]))
     assert not curve.complete
     assert curve.special[-1].reason == EndReason.no_cycle_found
     assert "lies on no branch that was followed" in curve.special[-1].message

@@ -1,9 +1,10 @@
 """What is compiled: each kernel once for all that it is made of, and the same bits in every process."""
 
 import importlib
-import os
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import numba
 import pytest
@@ -86,10 +87,12 @@ VALUES = 2.0, 12.0, 2.0, 3.0
 KERNELS = {"alone", "scaled", "shifted", "twice_shifted", "difference", "calls_later", "later"}
 
 
-def printed(code, **variables):
-    done = subprocess.run(
-        [sys.executable, "-c", code], check=False, capture_output=True, text=True, env=os.environ | variables
-    )
+def run_python(code):
+    return subprocess.run([sys.executable, "-c", code], check=False, capture_output=True, text=True)
+
+
+def printed(code):
+    done = run_python(code)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -179,3 +182,62 @@ def test_numba_looks_for_caches_where_ours_is():
     kernel = compilation.compiled(lambda x: x)
     assert isinstance(kernel._cache, numba.core.caching._Cache)
     assert kernel.stats.cache_path == str(compilation.cache_directories()[0])
+
+
+@pytest.mark.parametrize("spoil", [lambda held: held[:100], lambda held: b"garbage", lambda held: b""])
+def test_damaged_files_are_compiled_and_written_again(made, tmp_path, spoil):
+    made()
+    files = sorted((tmp_path / "cache").rglob("*.kernel"))
+    assert len(files) == len(KERNELS)
+    for file in files:
+        file.write_bytes(spoil(file.read_bytes()))
+    assert made() == (VALUES, KERNELS)
+    assert made() == (VALUES, set())
+
+
+FULL = """
+import resource, sys
+sys.path.insert(0, {place!r})
+import numba
+resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+from made import outer
+print(outer.values())
+"""
+
+
+def test_a_full_disk_costs_the_cache_and_nothing_else(made, tmp_path):
+    """A limit on the size of files fails in `write` as a full disk does."""
+    made()
+    for file in (tmp_path / "cache").rglob("*.kernel"):
+        file.unlink()
+    done = run_python(FULL.format(place=str(tmp_path)))
+    assert (done.returncode, done.stdout) == (0, f"{VALUES}\n")
+    assert done.stderr.count(f"compiled formulas cannot be kept in {tmp_path}") == 1
+    assert [path for path in (tmp_path / "cache").rglob("*") if path.is_file()] == []
+
+
+def test_an_installation_that_cannot_be_written_is_read(made, tmp_path, monkeypatch):
+    """What is not in it goes to the user's cache; a file in the way of a directory stops root too."""
+    made()
+    installed, home = tmp_path / "cache" / "rodsweep", tmp_path / "home"
+    kept = sorted(installed.iterdir())
+    kept[0].unlink()
+    monkeypatch.setattr(compilation, "cache_directories", lambda: [installed, home])
+    assert len(made()[1]) == 1
+    shutil.rmtree(installed)
+    installed.write_text("no directory")
+    assert len(made()[1]) == len(KERNELS)
+    assert len(list(home.iterdir())) == len(KERNELS)
+    assert made() == (VALUES, set())
+
+
+def test_places_of_the_cache(monkeypatch):
+    for name in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("HOME", "/home/me")
+    package = compilation.PACKAGE / "__pycache__" / "compiled"
+    assert compilation.cache_directories() == [package, Path("/home/me/.cache/rodsweep/compiled")]
+    monkeypatch.setenv("XDG_CACHE_HOME", "/scratch")
+    assert compilation.cache_directories() == [package, Path("/scratch/rodsweep/compiled")]
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "/elsewhere")
+    assert compilation.cache_directories() == [Path("/elsewhere/rodsweep")]

@@ -314,16 +314,18 @@ def test_newer_format_is_refused_in_a_sentence(command, words):
         open_result(path)
 
 
-def test_earlier_file_with_other_variables_is_named(command):
+@pytest.mark.parametrize("words", [("run", "c.yaml"), ("show", "c.h5"), ("merge", "m.h5", "c.h5")])
+def test_earlier_format_is_refused_in_a_sentence(command, words):
     command.write("c.yaml", SPECTRA)
     assert command("run", "c.yaml").returncode == 0
-    with h5py.File(command.directory / "c.h5", "r+") as file:
-        del file.attrs["format"]
-    shown = command("show", "c.h5")
-    assert shown.returncode == 0, shown.stderr
-    with h5py.File(command.directory / "c.h5", "r+") as file:
-        del file["unstable_count"]
-    for words in (("show", "c.h5"), ("run", "c.yaml")):
-        refused = command(*words)
-        assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
-        assert "was written by an earlier rodsweep (0.1.0, commit" in refused.stderr
+    path = command.directory / "c.h5"
+    with h5py.File(path, "r+") as file:
+        file.attrs["format"] = FORMAT - 1
+        del file.attrs["seal"]
+    before = path.read_bytes()
+    refused = command(*words)
+    assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
+    assert "was written by an earlier rodsweep (0.1.0, commit" in refused.stderr
+    assert path.read_bytes() == before
+    with pytest.raises(InputError, match="was written by an earlier"):
+        open_result(path)

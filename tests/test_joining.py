@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 from contents import content, same
 
+from rodsweep.results.file.seal import seal
+
 SPECTRA = """
 task: spectrum
 parameters:
@@ -161,6 +163,7 @@ def test_points_of_two_files_must_agree(command, kernel, factor, returncode):
         file["growth_rate"][0, 1, 0, 1, 0] *= factor
         if kernel:
             file.attrs["blas_kernels"] = kernel
+    seal(command.directory / names[1])
     joined = command("merge", "m.h5", *names)
     assert joined.returncode == returncode, joined.stderr
     if returncode:

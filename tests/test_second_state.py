@@ -27,7 +27,7 @@ def test_words_have_the_numbers_of_the_solver():
 )
 def test_rod_below_a_supercritical_hopf_point_or_far_from_any_has_no_second_state(rod, F):
     assert subcritical_hopf_beside(Rod(F, *rod), 1.0) is None
-    state, at, message = second_state(Rod(F, *rod), 1.0, CycleStatus.straight, -1.0)
+    state, at, message = second_state(Rod(F, *rod), 1.0, CycleStatus.straight, True)
     assert (state, message) == (SecondState.none_known, "")
     assert np.isnan(at)
 
@@ -48,17 +48,17 @@ def test_the_nearer_of_two_subcritical_hopf_points_is_named():
 
 
 @pytest.mark.parametrize(
-    ("status", "rate", "state"),
+    ("status", "stable", "state"),
     [
-        (CycleStatus.cycle, 1.0, SecondState.none_known),
-        (CycleStatus.cycle, -1.0, SecondState.straight),
-        (CycleStatus.unstable, -1.0, SecondState.straight),
-        (CycleStatus.cycle, np.nan, SecondState.not_told),
-        (CycleStatus.failed, -1.0, SecondState.not_told),
+        (CycleStatus.cycle, False, SecondState.none_known),
+        (CycleStatus.cycle, True, SecondState.straight),
+        (CycleStatus.unstable, True, SecondState.straight),
+        (CycleStatus.cycle, None, SecondState.not_told),
+        (CycleStatus.failed, True, SecondState.not_told),
     ],
 )
-def test_state_is_told_from_the_straight_rod(status, rate, state):
-    assert second_state(Rod(180.0, *FIG_2C), 1.0, status, rate)[0] == state
+def test_state_is_told_from_the_straight_rod(status, stable, state):
+    assert second_state(Rod(180.0, *FIG_2C), 1.0, status, stable)[0] == state
 
 
 def test_small_start_below_a_subcritical_hopf_point_ends_straight_with_a_cycle_possible():

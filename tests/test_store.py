@@ -8,7 +8,7 @@ import pytest
 
 from rodsweep.config.reading import canonical, validated
 from rodsweep.errors import InputError
-from rodsweep.results.file import points, view
+from rodsweep.results.file import points, validation
 from rodsweep.results.file.creation import Plan
 from rodsweep.results.file.identity import config_difference
 from rodsweep.results.file.store import Store
@@ -228,13 +228,14 @@ def test_a_view_is_of_one_file_though_a_run_exchanges_it_meanwhile(tmp_path, mon
     path, other = tmp_path / "a.h5", tmp_path / "b.h5"
     for place, is_grid in ((path, True), (other, False)):
         Store(place, plan(is_grid)).close()
-    real = view.header_of
+    real = validation.header_of
 
     def exchanged_before(place, file, **asked):
-        os.replace(other, path)
+        if other.exists():
+            os.replace(other, path)
         return real(place, file, **asked)
 
-    monkeypatch.setattr(view, "header_of", exchanged_before)
+    monkeypatch.setattr(validation, "header_of", exchanged_before)
     shown = read_view(path)
     assert shown.is_grid
     assert shown.variables["status"].size == 12

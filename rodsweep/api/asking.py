@@ -4,12 +4,13 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
-from ..cli.job import Job, job_of
+from ..cli.job import Job, job_of, memory
 from ..config.arm import LOADS, ArmSection
 from ..config.reading import validated, yaml_of
 from ..config.refusals import nearest
 from ..config.schema import Config
 from ..config.tasks import CONFIGS
+from ..errors import InputError
 from ..model.arm import SlenderArm
 from .axes import plain
 
@@ -22,19 +23,27 @@ def tree_of(task: str, keywords: Mapping[str, Any]) -> Tree:
 
     A whole section is taken too, so that what YAML has read can be given as keywords.
     """
-    tree: Tree = {"task": plain(task)}
+    tree: Tree = {"task": _plain("task", task)}
     if not isinstance(task, str) or task not in CONFIGS:
         return tree
     sections = _sections(task)
     for name, value in keywords.items():
         if name in sections and isinstance(value, Mapping):
-            tree.setdefault(name, {}).update(plain(dict(value)))
+            tree.setdefault(name, {}).update(_plain(name, dict(value)))
             continue
         section = _section_of(name, sections) or _section_of(_meant(name, sections), sections)
         place = tree.setdefault(section, {}) if section else tree
-        place[name] = plain(value)
+        place[name] = _plain(f"{section}.{name}" if section else name, value)
     _write_out_arm(task, tree)
     return tree
+
+
+def _plain(key: str, value: Any) -> Any:
+    """A value without NumPy in it; InputError, which names the key, where it is masked."""
+    try:
+        return plain(value)
+    except ValueError as error:
+        raise InputError(f"{key}: {error}") from None
 
 
 def _write_out_arm(task: str, tree: Tree) -> None:
@@ -51,7 +60,14 @@ def _write_out_arm(task: str, tree: Tree) -> None:
 def job_from(tree: Tree) -> Job:
     """The job of a tree; InputError, in the words of the command line, for anything amiss."""
     config = validated(tree)
-    return job_of(Path(config.task), config, yaml_of(tree))
+    job = job_of(Path(config.task), config, yaml_of(tree))
+    size = job.points.count * job.layout.bytes_per_point
+    if size > memory():
+        raise InputError(
+            f"the results of {job.points.count:.6g} points take {size / 1e9:.3g} GB, more than the "
+            f"{memory() / 1e9:.3g} GB of memory of this machine; `rodsweep run` writes them into a file"
+        )
+    return job
 
 
 def _sections(task: str) -> dict[str, Collection[str]]:

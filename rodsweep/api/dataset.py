@@ -1,6 +1,7 @@
 """Results as xarray's Dataset: of what was solved in this process, or from a file; alike in both."""
 
 import json
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -9,43 +10,82 @@ import numpy as np
 import xarray as xr
 
 from ..config.arguments import in_sentences
+from ..config.values import short
 from ..errors import InputError
+from ..results.file.content import SEAL, attribute_digests, variable_digest
 from ..results.file.creation import Plan
 from ..results.file.recent import journalled_points, put_in, unfolded
-from ..results.file.seal import check_seal
-from ..results.file.validation import FORMAT, PROGRAM, read_header, reading, refuse_absent, refuse_newer
+from ..results.file.validation import FORMAT, PROGRAM, Header, cleaned, open_whole, reading, reason_of
 from ..results.file.view import View
 from ..results.layouts import layout_of
 from ..results.layouts.variables import DIMENSIONS, MISSING, Filled, Variable
 from ..results.run.journal import journal_directory
+from ..solve.exclusive import one_at_a_time
 
 ENGINE = "h5netcdf"
 
 
+@one_at_a_time
 @in_sentences('rs.open("RESULT.h5")')
 def open_result(path: str | Path) -> xr.Dataset:
     """The Dataset of a result file, whole in memory; of a sweep that still runs, as far as it has come.
 
-    Raises InputError where the file is no result or damaged.
+    Raises InputError where the file is no result, damaged, or changed by another program.
     """
-    path = Path(path)
+    path = file_path(path, 'rs.open("RESULT.h5")')
     return unfolded(path, lambda: _opened(path))
 
 
+def file_path(given: object, example: str) -> Path:
+    """The path of a file from what a user gives for it; InputError, with an example, where it is none."""
+    if not isinstance(given, str | os.PathLike) or not isinstance(name := os.fspath(given), str):
+        raise InputError(f"{short(given)} is not the name of a file; write it as in {example}")
+    if not name or "\0" in name:
+        raise InputError(f"{name!r} is not the name of a file; write it as in {example}")
+    return Path(os.path.realpath(name))
+
+
 def _opened(path: Path) -> xr.Dataset:
-    refuse_absent(path)
-    with reading(path):
-        check_seal(path, values=True)
-        with xr.open_dataset(path, engine=ENGINE) as file:
-            data = file.load()
-    if data.attrs.get("program") != PROGRAM:
-        raise InputError(f"{path} is no result of rodsweep")
-    refuse_newer(path, data.attrs)
+    file, header = open_whole(path)
+    file.close()
+    data = _loaded(path, header)
+    for variable in data.variables.values():
+        variable.attrs = {name: cleaned(value) for name, value in variable.attrs.items()}
+    data.attrs = {name: cleaned(value) for name, value in data.attrs.items()}
     if journal_directory(path).is_dir():
-        recent = journalled_points(read_header(path), data["status"].values.ravel())
-        for variable in data.variables.keys() & recent.dtype.fields.keys():
-            put_in(data[variable].values, str(variable), recent)
+        recent = journalled_points(header, data["status"].values.ravel())
+        for name in data.variables.keys() & recent.dtype.fields.keys():
+            put_in(data[name].values, str(name), recent)
+        return _sealed(data)
     return data
+
+
+def _loaded(path: Path, header: Header) -> xr.Dataset:
+    """A whole file as xarray reads it; InputError where xarray makes other numbers or dimensions of it."""
+    sealed = json.loads(header.attributes[SEAL])["variables"]
+    with reading(path):
+        try:
+            with xr.open_dataset(path, engine=ENGINE, phony_dims="sort") as stored:
+                data = stored.load()
+        except Exception as error:  # of attributes that other libraries have: whatever those raise on them
+            raise ValueError(reason_of(error)) from error
+        found = json.loads(_sealed(data).attrs[SEAL])["variables"]
+        for name, digest in sealed.items():
+            if found.get(name) != digest:
+                raise ValueError(f"its variable {name} is not read as rodsweep wrote it")
+    return data
+
+
+def _sealed(data: xr.Dataset) -> xr.Dataset:
+    """The Dataset with the seal by which its file, once xarray has written one, is known as whole."""
+    variables = {
+        str(name): variable_digest(
+            v.dtype, v.shape, map(str, v.dims), v.attrs, [np.ascontiguousarray(v.values)]
+        )
+        for name, v in data.variables.items()
+    }
+    digests = {"attributes": attribute_digests(data.attrs), "variables": variables}
+    return data.assign_attrs({SEAL: json.dumps(digests)})
 
 
 def dataset_of(
@@ -74,14 +114,13 @@ def dataset_of(
         "fingerprint": plan.fingerprint,
         "config_resolved": json.dumps(plan.config),
     }
-    return xr.Dataset(variables, coordinates, header | plan.attributes | dict(attributes))
+    return _sealed(xr.Dataset(variables, coordinates, header | plan.attributes | dict(attributes)))
 
 
 def view_of(data: xr.Dataset, path: Path) -> View:
     """A Dataset as `show` and `plot` see a file; InputError if it is not a whole result."""
     try:
         layout = layout_of(json.loads(data.attrs["config_resolved"]))
-        layout = layout.known_in(int(data.attrs.get("format", 0)))
         status = data["status"]
         words = str(status.attrs["flag_meanings"]).split()
         flags = dict(zip(map(int, np.atleast_1d(status.attrs["flag_values"])), words, strict=True))

@@ -9,13 +9,16 @@ from typing import Any, Literal, TypedDict, Unpack
 import xarray as xr
 
 from ..config.arguments import in_sentences, unknown
+from ..config.values import short
 from ..errors import InputError
 from ..post.figures import draw
 from ..post.figures.request import KINDS, ROOTS, WIDTHS, Look
 from ..results.file.view import View, read_view
+from ..solve.exclusive import one_at_a_time
 from .answer import Answer
-from .dataset import view_of
+from .dataset import file_path, view_of
 
+EXAMPLE = 'rs.plot(data, "figure.pdf", width="single")'
 Drawable = xr.Dataset | Answer | str | Path
 
 
@@ -45,6 +48,7 @@ class Picture:
     image: bytes = field(repr=False)
     """The PNG, or the GIF of an animation."""
 
+    @one_at_a_time
     def save(self, path: str | Path) -> str:
         """Draws the figure into a file (.png, .pdf, .svg); returns a sentence about it."""
         return draw(self.views, Path(path), **self.choices)
@@ -54,7 +58,8 @@ class Picture:
         return {f"image/{kind}": self.image, "text/plain": self.shown}
 
 
-@in_sentences('rs.plot(data, "figure.pdf", width="single")')
+@one_at_a_time
+@in_sentences(EXAMPLE)
 def plot(
     data: Drawable | Sequence[Drawable],
     output: str | Path | None = None,
@@ -75,6 +80,8 @@ def plot(
             raise unknown(name, ["output", "roots", "what", "points", *Looks.__annotations__])
     _refuse_other_than(roots=(roots, ROOTS), what=(what, KINDS), width=(look.get("width"), WIDTHS))
     points = [points] if isinstance(points, int) else points
+    if not isinstance(points, Sequence) or not all(isinstance(point, int) for point in points):
+        raise InputError(f"points = {short(points)} is not allowed; give whole numbers, from 1")
     several = [data] if isinstance(data, Drawable) else list(data) if isinstance(data, Sequence) else []
     if not several:
         raise InputError("there is nothing to draw; give a Dataset, an answer or a file")
@@ -86,12 +93,14 @@ def plot(
         shown = draw(views, path, **choices).partition(": ")[2]
         picture = Picture(views, choices, shown, path.read_bytes())
     if output is not None:
-        picture.save(output)
+        picture.save(file_path(output, EXAMPLE))
     return picture
 
 
 def _view(data: Drawable) -> View:
     if isinstance(data, str | Path):
-        return read_view(Path(data))
+        return read_view(file_path(data, EXAMPLE))
+    if not isinstance(data, Answer | xr.Dataset):
+        raise InputError(f"{short(data)} is no result; draw a Dataset, an answer or a file")
     whole = data.whole if isinstance(data, Answer) else data
     return view_of(whole, Path(str(whole.attrs.get("title", "data"))))

@@ -18,8 +18,9 @@ from ..results.file.creation import Plan
 from ..results.file.provenance import now
 from ..results.file.view import View
 from ..results.layouts.variables import Filled
-from ..solve.backend.availability import require_petsc
+from ..solve.backend.availability import require_solvers
 from ..solve.backend.kept import forget_all
+from ..solve.exclusive import solving
 from ..sweep.listener import RankListener
 from ..sweep.shards import Shard
 from ..watch import heard_by
@@ -30,17 +31,18 @@ _warm: set[str] = set()
 """Tasks that have been solved in this process."""
 
 
+@solving
 def solve_here(
     job: Job, note: Note | None = None, progress: bool | None = None
 ) -> tuple[xr.Dataset, list[str]]:
     """(the Dataset of all points, what each outcome has to say of points that are solved alone).
 
     note: what is done about an exception that no solver foresees, whose point then fails; without it the
-    exception is raised. progress: whether a display is shown. Raises EnvironmentLacks where PETSc is not to
-    be found.
+    exception is raised. progress: whether a display is shown. Raises InputError and EnvironmentLacks where
+    this process cannot solve.
     """
     shown = display(progress, job.points.count, job.name)
-    require_petsc()
+    require_solvers()
     solver, started = job.solver(), now()
     if note is not None:
         solver = guarded(solver, job.layout, note)

@@ -18,7 +18,6 @@ from ..config.arguments import in_sentences
 from ..config.reading import yaml_of
 from ..errors import EnvironmentLacks, InputError
 from .asking import Tree, job_from, tree_of
-from .axes import plain
 from .dataset import open_result
 from .showing import Display, display
 from .solving import solve_here
@@ -27,6 +26,8 @@ COMPUTED = (0, 1)
 """Exit statuses of a run that is whole, whatever its points ended with."""
 REFUSED: dict[int, type[Exception]] = {2: InputError, 3: EnvironmentLacks}
 """What the other exit statuses mean."""
+MOST_QUOTED = 2000
+"""Characters quoted of a run's standard error: enough for its last exception or a launcher's reason."""
 
 
 @in_sentences('rs.sweep("spectrum", F=[20, 30], k1=1e4, k2=100, gamma3=0.01)')
@@ -77,17 +78,18 @@ def _on_ranks(task: str, tree: Tree, ranks: int, strict: bool, shown: Display) -
     """The Dataset that `rodsweep run` makes on so many ranks, in a directory that is then removed."""
     points = tree["parameters"].get("points")
     if points is not None:
-        tree = tree | {"parameters": {"points": str(Path(plain(points)).absolute())}}
+        tree = tree | {"parameters": {"points": str(Path(points).absolute())}}
     with TemporaryDirectory(prefix="rodsweep-") as place:
         config, output = Path(place, f"{task}.yaml"), Path(place, f"{task}.h5")
         config.write_text(yaml_of(tree), encoding="utf-8")
         words = [_mpiexec(), "-n", str(ranks), sys.executable, "-m", "rodsweep", "run", str(config)]
         words += ["-o", str(output), *(["--strict"] if strict else [])]
-        status, told = _run_shown(words, place, shown)
+        try:
+            status, told = _run_shown(words, place, shown)
+        except OSError as error:
+            raise EnvironmentLacks(f"{words[0]} cannot be started: {error.strerror}") from None
         if status not in COMPUTED:
-            lines = [line for line in told.splitlines() if line.startswith("rodsweep: ")]
-            sentence = lines[0].removeprefix("rodsweep: ") if lines else told[-2000:]
-            raise REFUSED.get(status, RuntimeError)(sentence)
+            raise _failure(words[0], status, told, begun=output.exists())
         if (log := log_file(output)).exists():
             warnings.warn(log.read_text(encoding="utf-8"), RuntimeWarning, stacklevel=2)
         return open_result(output)
@@ -113,6 +115,17 @@ def _run_shown(words: list[str], place: str, shown: Display) -> tuple[int, str]:
         raise
     finally:
         shown.close()
+
+
+def _failure(launcher: str, status: int, told: str, begun: bool) -> Exception:
+    """The exception for a run that is not whole; begun: whether its ranks came as far as to make a file."""
+    lines = [line for line in told.splitlines() if line.startswith("rodsweep: ")]
+    if lines:
+        return REFUSED.get(status, RuntimeError)(lines[0].removeprefix("rodsweep: "))
+    if begun or "Traceback" in told:
+        return RuntimeError(told[-MOST_QUOTED:])
+    said = " ".join(told.split()) or f"exit status {status}"
+    return EnvironmentLacks(f"{launcher} did not start the ranks: {said[-MOST_QUOTED:]}")
 
 
 def _mpiexec() -> str:

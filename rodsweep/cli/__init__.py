@@ -24,6 +24,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 import click  # noqa: E402 - after the environment is set
 
 from .. import __version__  # noqa: E402 - after the environment is set
+from ..config.values import printable  # noqa: E402 - after the environment is set
 from ..errors import BUG_STATUS, InputError, Refusal  # noqa: E402 - after the environment is set
 from .arm_options import arm_options  # noqa: E402 - after the environment is set
 
@@ -203,7 +204,7 @@ def export(file: Path, output: Path | None, units: bool, replace: bool) -> None:
     from ..post.export import export as export_view
     from ..results.file.view import read_view
 
-    output = output or file.with_suffix(".csv")
+    output = _followed(output or file.with_suffix(".csv"))
     exported = export_view(read_view(_followed(file)), output, units, replace)
     click.echo(f"wrote {output}: {exported.sentence}")
 
@@ -244,8 +245,18 @@ def arm(poisson: float, **quantities: str | None) -> None:
 
 
 def _followed(path: Path) -> Path:
-    """What a link leads to, which has the journal and the lock; another path as it is."""
-    return Path(os.path.realpath(path)) if path.is_symlink() else path
+    """What a link leads to, which has the journal and the lock; another path as it is.
+
+    InputError for a link that leads to itself, in whose place nothing may be put.
+    """
+    if not path.is_symlink():
+        return path
+    try:
+        path.stat()
+    except OSError as error:
+        if error.errno == errno.ELOOP:
+            raise InputError(f"{path} is a link that leads to itself; name a file") from None
+    return Path(os.path.realpath(path))
 
 
 def _rank_variables() -> list[str]:
@@ -261,7 +272,7 @@ def _speaks() -> bool:
 
 def _one_line(message: str) -> str:
     """A message in one line of bounded length: what it quotes may be as long as a user likes."""
-    line = " ".join(message.split())
+    line = printable(" ".join(message.split()))
     return line if len(line) <= LONGEST_MESSAGE else f"{line[: LONGEST_MESSAGE - 100]} ... {line[-90:]}"
 
 

@@ -19,6 +19,10 @@ from ..sweep.stretches import Together
 from .tasks import TASKS
 from .tasks.protocol import Solver, Task
 
+LARGEST_FILE = 2**63 - 1
+"""Bytes of a file, and the largest number of a point."""
+BYTES_A_VALUE = 40
+"""Memory of a value of an axis while a run is set up: 33 to 36 were measured, four arrays of numbers."""
 LARGEST_RECORD = 100_000_000
 """Bytes of one point's results, which are held in memory and written at once."""
 
@@ -74,6 +78,11 @@ class Job:
         return layout_of(self.resolved)
 
 
+def memory() -> int:
+    """Bytes of this machine's memory."""
+    return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+
+
 def make_job(path: Path, overrides: tuple[str, ...]) -> Job:
     """The job of a config file; InputError for everything that can be known to be wrong beforehand."""
     return job_of(path, *load_config(path, overrides))
@@ -81,14 +90,19 @@ def make_job(path: Path, overrides: tuple[str, ...]) -> Job:
 
 def job_of(path: Path, config: Config, text: str) -> Job:
     """The job of a config with its YAML text, beside whose path a file of points is looked for."""
-    count = grid_size(config)  # before any axis is made
-    each = layout_of(canonical(config)).bytes_per_point
-    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    if count * each > memory:
+    values = sum(axis.size for axis in config.parameters.axes.values())  # before any axis is made
+    if values * BYTES_A_VALUE > memory():
         raise InputError(
-            f"{path}: parameters make a grid of {count:.6g} points, whose results take "
-            f"{count * each / 1e9:.3g} GB, more than the {memory / 1e9:.3g} GB of memory of this machine; "
-            "use fewer points or modes"
+            f"{path}: parameters make {grid_size(config):.6g} points, whose axes of {values:.6g} values take "
+            f"{values * BYTES_A_VALUE / 1e9:.3g} GB, more than the {memory() / 1e9:.3g} GB of memory of this "
+            "machine; use fewer values"
+        )
+    each = layout_of(canonical(config)).bytes_per_point
+    if grid_size(config) * each > LARGEST_FILE:
+        raise InputError(
+            f"{path}: parameters make a grid of {grid_size(config):.6g} points, whose results take "
+            f"{grid_size(config) * each:.3g} bytes, more than a file can have ({LARGEST_FILE:.3g}); use "
+            "fewer values"
         )
     if each > LARGEST_RECORD:
         raise InputError(

@@ -3,6 +3,7 @@
 import socket
 import time
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -16,8 +17,8 @@ from ..results.file import provenance
 from ..results.file.store import Store
 from ..results.file.view import read_view
 from ..results.run.checkpoints import Checkpoints
-from ..results.run.journal import Journal, journal_directory
-from ..solve.backend.availability import require_petsc
+from ..results.run.journal import Journal, journal_directory, kept_sentence
+from ..solve.backend.availability import require_directory, require_solvers
 from ..sweep.chains import ChainSolver
 from ..sweep.handout import Handout
 from ..sweep.loop import Indices, Loop, Share, sweep
@@ -57,10 +58,11 @@ class RunOptions:
 
 def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest) -> int:
     """Runs a config, or a shard of it, on all ranks; returns the exit status."""
+    require_directory()
     team = Team()
     with team.together():
         job = team.on_first(lambda: make_job(path, options.overrides))
-        team.all_can(require_petsc)
+        team.all_can(require_solvers)
         return _Run(team, job, output, options, stop).run()
 
 
@@ -154,9 +156,14 @@ class _Run:
         self.store = Store(self.output, self.plan, self.options.fresh, self.options.extend)
         if self.joint and (self.options.fresh or not self._lacks_curves(0)):
             self.joint.kept.drop()
-        if self.store.note:
-            self._say(f"{self.output}: {self.store.note}")
+        self._tell_notes()
         return self.store.missing()
+
+    def _tell_notes(self) -> None:
+        """Tells what the store has to say of points and journals that are not where they were."""
+        for note in self.store.notes:
+            self._say(f"{self.output}: {note}", amiss=True)
+        self.store.notes.clear()
 
     def _units(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
         """(the units of this shard that miss a point, the points that they miss)."""
@@ -195,18 +202,17 @@ class _Run:
                 failures.extend(failures_of(index, result, self._where))
 
         shown = Teller(count, self.job.name) if self.team.first and not self.options.quiet else Silent()
+        directory = journal_directory(self.output)
         try:
-            directory = journal_directory(self.output)
-            journal = Journal(directory, self.team.rank, plan.layout, plan.fingerprint)
-            checkpoints = Checkpoints(directory, plan.fingerprint)
-            solve = self._solve_unit(IndexSet(missing), checkpoints)
-            loop = Loop(solve=solve, keep=keep, prepare=self.prepare, name=self._unit_name)
-            share = sweep(self.team, Handout(units, self.team.size), loop, shown, self.stop)
-            journal.close()
+            with closing(Journal(directory, self.team.rank, plan.layout, plan.fingerprint)) as journal:
+                checkpoints = Checkpoints(directory, plan.fingerprint)
+                solve = self._solve_unit(IndexSet(missing), checkpoints)
+                loop = Loop(solve=solve, keep=keep, prepare=self.prepare, name=self._unit_name)
+                share = sweep(self.team, Handout(units, self.team.size), loop, shown, self.stop)
         except OSError as error:
             raise EnvironmentLacks(
-                f"cannot write beside {self.output}: {error.strerror or error}; what is done is kept: make "
-                "room and run again"
+                f"cannot write beside {self.output}: {error.strerror or error}"
+                f"{kept_sentence(directory, plan.fingerprint)}: make room and run again"
             ) from error
         finally:
             shown.close()
@@ -266,6 +272,7 @@ class _Run:
         """Finishes the file, says how the run ended, and with which status it exits."""
         lacks_curves = self._finish_file(joint)
         missing = self.store.missing()
+        self._tell_notes()
         counts = self.store.status_counts()
         self.store.close()
         left = self._units(missing)[1]
@@ -288,7 +295,8 @@ class _Run:
         self._say(f"{self.output}: " + ", ".join(f"{n} {name}" for name, n in counts.items()), amiss)
         self._say_failures(contributions, exceptions)
         if left or lacks_curves:
-            click.echo(f"stopped by {self.stop.name}; {ending.kept_words()}, the same command continues")
+            how = f"stopped by {self.stop.name}" if self.stop else "not complete"
+            click.echo(f"{how}; {ending.kept_words()}, the same command continues")
             return CONTINUE
         if amiss:
             click.echo(f"  `rodsweep show {self.output}` says what each status means")

@@ -25,7 +25,7 @@ LinearAxes: Any = _section(Strict, LINEAR_PARAMETERS, Values)
 class Axes(LinearAxes):
     """Axes, one for each parameter of a grid, or the name of a CSV file that lists points."""
 
-    points: Annotated[Text | None, Field(description="the name of a CSV file")] = None
+    points: Annotated[Text | None, Field(min_length=1, description="the name of a CSV file")] = None
     """A list of points instead of axes; the header names the parameters."""
     arm: Annotated[ArmSection | None, Field(description="a mapping of an arm's quantities to values")] = None
     """An arm in SI units; a parameter that is given beside it replaces the arm's."""

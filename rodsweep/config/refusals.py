@@ -2,6 +2,7 @@
 
 import difflib
 from collections.abc import Sequence
+from math import isinf
 from types import NoneType, UnionType
 from typing import Any, Literal, get_args, get_origin
 
@@ -87,5 +88,5 @@ def what_is_allowed(field: FieldInfo) -> str:
     if kind is int or kind is float:
         number = "a whole number" if kind is int else "a number"
         span = f"{number} from {bound['ge']:g} to {bound['le']:g}" if "ge" in bound else ""
-        return span or f"a finite number above {bound['gt']:g}"
+        return span or ("a finite number" if isinf(bound["gt"]) else f"a finite number above {bound['gt']:g}")
     return "a mapping of keys to values"

@@ -58,6 +58,11 @@ def named(name: object, most: int = 200) -> str:
     return text if len(text) <= most else f"{text[: most // 2]}...{text[3 - most // 2 :]}"
 
 
+def printable(text: str) -> str:
+    """A text of several lines whose control characters, which a terminal would obey, are `\\x1b` and such."""
+    return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)
+
+
 def as_text(value: Any) -> Any:
     """Text without control characters or lone surrogates, which no file name and no title needs."""
     if isinstance(value, str) and not all(c.isprintable() or c == " " for c in value):

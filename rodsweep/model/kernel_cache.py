@@ -12,6 +12,7 @@ import pickle
 import sys
 import warnings
 from collections.abc import Mapping, Sequence
+from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from types import FunctionType
@@ -26,6 +27,7 @@ from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 
+from ..watch import report
 from .kernel_digest import Part, digest, kernel_of, type_text
 
 VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__)
@@ -51,6 +53,7 @@ class KernelCache(_Cache):
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """The compiled function for arguments `sig`, or None."""
+        report()  # a place to stop between two compilations of some seconds each
         target_context.refresh()  # as numba's cache does: registers what a loaded function may refer to
         name = self._name(sig, target_context.codegen(), _first_parts)
         for directory in self._directories:
@@ -72,11 +75,10 @@ class KernelCache(_Cache):
                 return
             except OSError as error:
                 failures.append(f"{directory} ({error.strerror})")
-        if failures:  # Python shows a warning of equal text once
-            warnings.warn(
+        if failures:
+            _warn_once(
                 f"compiled formulas cannot be kept in {' or '.join(failures)}: the next run takes minutes to "
-                "compile them again; NUMBA_CACHE_DIR names another directory",
-                stacklevel=1,
+                "compile them again; NUMBA_CACHE_DIR names another directory"
             )
 
     def _name(self, sig: Any, codegen: Any, parts: dict[FunctionType, Part]) -> str:
@@ -96,6 +98,12 @@ class KernelCache(_Cache):
 
     def flush(self) -> None:
         """Nothing is held back."""
+
+
+@cache
+def _warn_once(sentence: str) -> None:
+    """Python's own memory of warnings is emptied by numba at every compilation."""
+    warnings.warn(sentence, stacklevel=1)
 
 
 def _read(path: Path) -> bytes | None:

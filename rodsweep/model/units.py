@@ -5,6 +5,8 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..errors import EnvironmentLacks, InputError
 
 if TYPE_CHECKING:
@@ -62,12 +64,13 @@ def _number(name: str, given: Any, unit: str, allowed: str) -> float:
             f"{name} = '{given!s:.60}'", f"{given.units:C}", unit, allowed
         )
     try:
-        if isinstance(given, bool | complex):
+        if isinstance(given, bool | complex) or np.ma.is_masked(given):
             raise TypeError
         return float(given)
     except (TypeError, ValueError, OverflowError):
         raise InputError(
-            f"{name} = {given!s:.60} is not one quantity; write {allowed}, or one number in {unit}"
+            f"{name} = {' '.join(str(given).split()):.60} is not one quantity; "
+            f"write {allowed}, or one number in {unit}"
         ) from None
 
 

@@ -159,8 +159,8 @@ def _specials(v: dict[str, Array], places: Iterable[int]) -> tuple[SpecialOfBran
             float(v["special_tip_y_max"][i]),
             END_REASONS[int(v["special_reason"][i])],
             int(v["special_unstable_after"][i]),
-            int(v["special_meets"][i]) if "special_meets" in v else 0,
-            float(v["special_amplitude_coefficient"][i]) if "special_amplitude_coefficient" in v else nan,
+            int(v["special_meets"][i]),
+            float(v["special_amplitude_coefficient"][i]),
         )
         for i in places
     )

@@ -6,6 +6,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from ..watch import report
 from .backend.petsc import PETSC_ERRORS
 
 Outcome = TypeVar("Outcome", bound=Any)
@@ -27,6 +28,7 @@ def solved(
     started = time.perf_counter()
     try:
         with np.errstate(all="ignore"):
+            report()
             outcome = solve()
     except (*FAILURES, *also) as error:
         outcome = failed(cause_of(error))

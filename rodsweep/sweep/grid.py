@@ -16,7 +16,7 @@ from ..arrays import Array
 from ..config.arm import ArmSection
 from ..config.axes import words
 from ..config.schema import Config
-from ..config.values import as_number, overflows
+from ..config.values import as_number, overflows, short
 from ..errors import InputError
 from ..model.parameters import CRUSHING, LINEAR_PARAMETERS, PARAMETERS, Range
 from ..model.rod import Rod
@@ -153,8 +153,7 @@ def _read_csv(path: Path, names: tuple[str, ...]) -> tuple[Array, ...]:
             rows = csv.reader(_lines(file, path))
             header = [cell.strip() for cell in next(rows, [])]
             if sorted(header) != sorted(names):
-                given = repr(",".join(header)[:60])[:80]
-                raise InputError(f"{path}: the header is {given}; it must name {words(names, 'and')}")
+                raise InputError(f"{path}: {_header_told(header)}; it must name {words(names, 'and')}")
             columns = [array("d") for _ in header]  # a list of numbers would take eight times the memory
             for row in filter(None, rows):
                 numbers = _row(row, header, f"{path}, line {rows.line_num}")
@@ -169,6 +168,13 @@ def _read_csv(path: Path, names: tuple[str, ...]) -> tuple[Array, ...]:
     if not columns[0]:
         raise InputError(f"{path}: there is no point after the header")
     return tuple(np.array(columns[header.index(name)]) for name in names)
+
+
+def _header_told(header: list[str]) -> str:
+    """What is wrong with a header: quoted only where it is one, for any file may be given for a list."""
+    if set(header) & set(PARAMETERS) and all(cell.isidentifier() for cell in header):
+        return f"the header is {short(','.join(header))}"
+    return "the first line names no parameter"
 
 
 def _lines(file: TextIO, path: Path) -> Iterator[str]:

@@ -59,11 +59,11 @@ class Team:
             pause = min(2 * pause, LONGEST_PAUSE)
 
     def all_can(self, work: Callable[[], object]) -> None:
-        """Does `work` on every rank; where the machine of one lacks something, all raise its refusal."""
-        refusal = None
+        """Does `work` on every rank; where one refuses it, all raise its refusal."""
+        refusal: Refusal | None = None
         try:
             work()
-        except EnvironmentLacks as error:
+        except Refusal as error:
             refusal = error
         refusals = [r for r in self.comm.allgather(refusal) if r is not None]
         if refusals:

@@ -7,6 +7,7 @@ from ..model.arm import SlenderArm
 from ..model.drag import Drag
 from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
 from ..solve.changes.unstable_modes import Crossing, Kind
+from ..solve.exclusive import solving
 
 FARTHEST = 1000.0
 """Force up to which changes are sought, if the arm is not crushed before: 25 times where filaments do."""
@@ -92,6 +93,7 @@ def flutter_forces(arm: SlenderArm, drag: Drag) -> FlutterForces:
     return FlutterForces(tau2=arm.tau2_with(drag), thresholds=thresholds)
 
 
+@solving
 def flutter_range(arm: SlenderArm) -> FlutterRange:
     """All changes of an arm over the range of its drag."""
     return FlutterRange(tuple(flutter_forces(arm, drag) for drag in arm.drags))

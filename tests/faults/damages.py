@@ -9,6 +9,8 @@ from random import Random
 import h5py
 import numpy as np
 
+from rodsweep.model.parameters import PARAMETERS
+
 
 def cut(data: bytes, rng: Random) -> bytes:
     """The beginning of a file."""
@@ -179,11 +181,22 @@ def _numbers(value: Callable[[np.ndarray], object]) -> Callable[[h5py.File], Non
     """Other values for every number that a point has."""
 
     def edit(file: h5py.File) -> None:
-        for data in file.values():
-            if data.dtype.kind == "f" and not h5py.h5ds.is_scale(data.id) and data.size:
+        for name, data in file.items():
+            if (
+                name not in PARAMETERS
+                and data.dtype.kind == "f"
+                and not h5py.h5ds.is_scale(data.id)
+                and data.size
+            ):
                 data[...] = value(data[...])
 
     return edit
+
+
+def _move_axis(file: h5py.File, by: float) -> None:
+    """Another first value on the first axis, or in the first column of a list."""
+    data = file[_first_axis(file)]
+    data[...] = np.concatenate([data[...][:1] * by + by, data[...][1:]])
 
 
 def _random_bits(old: np.ndarray) -> np.ndarray:
@@ -219,15 +232,26 @@ MISFITS: dict[str, Callable[[h5py.File], object]] = {
     "config without options": _attribute("config_resolved", '{"task": "modes", "modes": {}}'),
     "config a number": _attribute("config_resolved", 3),
     "config an array": _attribute("config_resolved", np.zeros(3)),
-}
-"""What another program may have made of a result file that then is none any more."""
-EDITS: dict[str, Callable[[h5py.File], object]] = {
-    "another attribute": _attribute("note", "mine"),
     "another title": _attribute("title", "mine"),
     "a title that is an array": _attribute("title", np.zeros(3)),
-    "another variable": lambda file: file.update(mine=np.zeros(3)),
     "no title": lambda file: file.attrs.pop("title"),
     "no sentences": lambda file: file.attrs.pop("status_sentences"),
+    "an axis moved": lambda file: _move_axis(file, 1.5),
+    "an axis not a number": lambda file: _move_axis(file, np.nan),
+    "a number changed": _numbers(lambda old: old + 1),
+    "a unit changed": lambda file: file["seconds"].attrs.update(units="ms"),
+    "a factor added": lambda file: file["seconds"].attrs.update(scale_factor=2.0),
+    "another attribute": _attribute("note", "mine"),
+    "another variable": lambda file: file.update(mine=np.zeros(3)),
+    "a group": lambda file: file.create_group("mine"),
+    "a type": lambda file: file.update(mine=np.dtype("f8")),
+    "a link to nowhere": lambda file: file.update(user_mine=h5py.SoftLink("/no")),
+    "a link to another file": lambda file: file.update(user_mine=h5py.ExternalLink("no.h5", "/no")),
+    "another name": lambda file: file.update(user_mine=file["seconds"]),
+    "no seal": lambda file: file.attrs.pop("seal"),
+}
+"""What another program may have made of a result file that then is none any more."""
+ODD_NUMBERS: dict[str, Callable[[h5py.File], object]] = {
     "status unknown": lambda file: file["status"].write_direct(np.full(file["status"].shape, 77, "i1")),
     "numbers not known": _numbers(lambda old: np.nan),
     "numbers infinite": _numbers(lambda old: np.inf),
@@ -236,14 +260,14 @@ EDITS: dict[str, Callable[[h5py.File], object]] = {
     "numbers huge": _numbers(lambda old: 1e300 if old.itemsize == 8 else 1e38),
     "numbers random": _numbers(_random_bits),
 }
-"""What another program may have made of a result file that may be shown all the same."""
+"""What a solver may have made of a result, however odd, and what is sealed as such."""
 ADDITIONS: dict[str, Callable[[h5py.File], object]] = {
-    "a group": lambda file: file.create_group("mine"),
-    "a link to nowhere": lambda file: file.update(mine=h5py.SoftLink("/no")),
-    "a link to another file": lambda file: file.update(mine=h5py.ExternalLink("no.h5", "/no")),
-    "another name": lambda file: file.update(mine=file["seconds"]),
-    "a type": lambda file: file.update(mine=np.dtype("f8")),
-    "no numbers": lambda file: file.update(mine=h5py.Empty("f8")),
-    "chunks": lambda file: file.create_dataset("mine", data=np.arange(9.0), chunks=(3,)),
+    "an attribute": _attribute("user_note", "mine"),
+    "an attribute of a variable": lambda file: file["seconds"].attrs.update(user_note="mine"),
+    "a group": lambda file: file.create_group("user_mine"),
+    "numbers": lambda file: file.update(user_mine=np.zeros(3)),
+    "text": lambda file: file.update(user_mine="mine"),
+    "no numbers": lambda file: file.update(user_mine=h5py.Empty("f8")),
+    "chunks": lambda file: file.create_dataset("user_mine", data=np.arange(9.0), chunks=(3,)),
 }
-"""What another program may have put into a result file under a name of its own."""
+"""What a user may put into a result file, under names that begin with user_."""

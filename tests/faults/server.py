@@ -77,7 +77,8 @@ def content(path: Path) -> dict:
     import h5py
 
     with h5py.File(path) as file:
-        variables = {name: file.get(name) for name in file if name not in {"seconds", "mine"}}
+        names = (name for name in file if name != "seconds" and not name.startswith("user_"))
+        variables = {name: file.get(name) for name in names}
         values = {name: data[...] for name, data in variables.items()}
     return {name: [v.dtype.str, list(v.shape), v.tobytes().hex()] for name, v in values.items()}
 

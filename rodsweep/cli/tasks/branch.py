@@ -121,6 +121,7 @@ def _cycle(point: "BranchPoint", along: str) -> dict[str, Any]:
     }
     return named | {
         f"branch_{along}": point.at,
+        f"branch_{along}_error": point.at_error,
         "multiplier": point.multiplier,
         "unstable_multipliers": point.unstable,
     }

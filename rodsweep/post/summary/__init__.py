@@ -6,7 +6,9 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
+from ...config.values import printable
 from ...results.file.provenance import RANK_SHARES, kernels_of
 from ...results.file.view import View
 from ...results.layouts import lacks_curves
@@ -35,10 +37,10 @@ SUMMARIES: dict[str, Callable[[View, np.ndarray], list[str]]] = {
 
 def show_summary(view: View, every_status: bool = False) -> None:
     """Prints a summary of a result file; `every_status` lists those of no point, too."""
-    console = Console(highlight=False)
+    console = Console(highlight=False, markup=False)
     a, status = view.attributes, view.variables["status"]
     done = status != MISSING
-    console.print(f"{view.path}: {a.get('title', '')}, task {view.task}", markup=False)
+    console.print(f"{printable(str(view.path))}: {a.get('title', '')}, task {view.task}")
     console.print(_table(("parameter", "values", "from", "to", "unit"), _axes(view)))
     console.print(_table(("status", "points", "meaning"), _statuses(view, status, every_status)))
     if not done.all():
@@ -66,7 +68,7 @@ def show_summary(view: View, every_status: bool = False) -> None:
         f"computed {ran}; rodsweep {a.get('rodsweep_version')}, PETSc {a.get('petsc_version')}, "
         f"SLEPc {a.get('slepc_version')}, commit {str(a.get('git_commit'))[:12]}"
     )
-    console.print(f"BLAS: {'; '.join(kernels_of(a))}", soft_wrap=True, markup=False)
+    console.print(f"BLAS: {'; '.join(kernels_of(a))}", soft_wrap=True)
 
 
 def _ranks(a: dict[str, Any]) -> list[str]:
@@ -87,7 +89,7 @@ def _ranks(a: dict[str, Any]) -> list[str]:
 def _table(headings: Iterable[str], rows: Iterable[tuple[str, ...]]) -> Table:
     table = Table(*headings, box=None, pad_edge=False)
     for row in rows:
-        table.add_row(*row)
+        table.add_row(*map(Text, row))
     return table
 
 

@@ -5,7 +5,7 @@ The new file is made beside the journals, is sealed and on the disk proper befor
 
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -14,15 +14,27 @@ from ..run.journal import journal_directory
 from ..run.lock import Lock
 from .seal import seal
 
+Identity = tuple[int, ...]
+"""What changes where a file is exchanged for another of its name, or written to; empty without a file."""
+
+
+def identity(path: Path) -> Identity:
+    """The identity of the file that has a name."""
+    try:
+        status = path.stat()
+    except OSError:
+        return ()
+    return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns
+
 
 @contextmanager
-def disk_refusals(path: Path, kept: str = "") -> Iterator[None]:
+def disk_refusals(path: Path, kept: Callable[[], str] = str) -> Iterator[None]:
     """What the disk refuses here (HDF5: RuntimeError) is EnvironmentLacks; `kept` says what is not lost."""
     try:
         yield
     except (OSError, RuntimeError) as error:
         reason = getattr(error, "strerror", None) or str(error).splitlines()[0]
-        raise EnvironmentLacks(f"{path} cannot be written: {reason}{kept}") from error
+        raise EnvironmentLacks(f"{path} cannot be written: {reason}{kept()}") from error
 
 
 class Exchange:
@@ -34,10 +46,13 @@ class Exchange:
         self.copy = self.journals / "next.h5"
         path.parent.mkdir(parents=True, exist_ok=True)
         self.lock = Lock(self.journals, path)
+        self.left: Identity = ()
+        """The file as it was last checked or written here."""
 
     @contextmanager
     def replacing(self, source: Path | None) -> Iterator[Path]:
         """The path of a copy of `source`, or of nothing, which becomes the file at the end."""
+        self.journals.mkdir(parents=True, exist_ok=True)  # it may have been moved or deleted meanwhile
         self.copy.unlink(missing_ok=True)  # it may be a link
         if source:
             shutil.copyfile(source, self.copy)
@@ -46,6 +61,7 @@ class Exchange:
         with self.copy.open("rb+") as file:
             os.fsync(file.fileno())
         os.replace(self.copy, self.path)
+        self.left = identity(self.path)
         directory = os.open(self.path.parent, os.O_RDONLY)
         os.fsync(directory)
         os.close(directory)

@@ -19,6 +19,7 @@ from ...config.values import Axis
 from ...errors import InputError
 from ...sweep.grid import Points
 from ..layouts.variables import MISSING, SECONDS
+from .content import SEAL
 from .creation import Plan
 from .extension import SAME, Places
 from .identity import config_difference
@@ -26,7 +27,9 @@ from .points import parameters_of, points_at, stored_points, write_points
 from .provenance import LONGEST_ATTRIBUTE, kernels_of
 from .validation import Header
 
-OF_ONE_FILE = ("program", "format", "fingerprint", "config_resolved", "coordinates", "finished", "snapshot")
+OF_ONE_FILE = (
+    "program", "format", "fingerprint", "config_resolved", "coordinates", "finished", "snapshot", SEAL,
+)  # fmt: skip
 """Attributes that a joined file does not take over."""
 ROUNDING_FACTOR = 1e3
 """In units of the accuracy asked for: how far numbers that differ by rounding may lie apart."""

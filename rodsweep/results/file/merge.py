@@ -45,7 +45,7 @@ def merge(output: Path, paths: Sequence[Path], planner: Planner) -> Merged:
     with disk_refusals(output):
         exchange = Exchange(output)
     try:
-        with disk_refusals(output, "; the shards are untouched"):
+        with disk_refusals(output, lambda: "; the shards are untouched"):
             if output.exists():  # it may have appeared while another run had the lock
                 sources = _opened([output, *(path for path in paths if not os.path.samefile(output, path))])
             if all(_is_continued(sources[0], source) for source in sources):
@@ -99,7 +99,7 @@ def _opened(paths: Sequence[Path]) -> list[Header]:
 
 def _is_continued(first: Header, other: Header) -> bool:
     """Whether two files were made for the same; InputError if yet their variables are not the same."""
-    if first.asked != other.asked and first.fingerprint != other.fingerprint:
+    if first.asked != other.asked:
         return False
     if (first.layout.record, first.points) != (other.layout.record, other.points):
         raise InputError(f"{other.path} was written by another version of rodsweep than {first.path}")

@@ -15,7 +15,7 @@ from ...errors import EnvironmentLacks, InputError
 from ...sweep.ranges import total
 from ..layouts.variables import MISSING
 from ..run.journal import journal_directory, read_journals
-from .exchange import Exchange, disk_refusals
+from .exchange import Exchange, disk_refusals, identity
 from .points import missing_ranges, write_points
 from .provenance import now
 from .validation import Header, is_ours, read_header, reading
@@ -35,20 +35,11 @@ def unfolded(path: Path, read: Callable[[], Found]) -> Found:
     EnvironmentLacks where the file never stays as it is.
     """
     for _ in range(FOLDS_MET):
-        runs, before = journal_directory(path).is_dir(), _identity(path)
+        runs, before = journal_directory(path).is_dir(), identity(path)
         found = read()
-        if not runs or _identity(path) == before:
+        if not runs or identity(path) == before:
             return found
     raise EnvironmentLacks(f"{path} is exchanged again and again, so that it cannot be read; try again")
-
-
-def _identity(path: Path) -> tuple[int, ...]:
-    """What changes where a file is exchanged for another of its name."""
-    try:
-        status = path.stat()
-    except OSError:
-        return ()
-    return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns
 
 
 def journalled_points(header: Header, status: np.ndarray) -> np.ndarray:

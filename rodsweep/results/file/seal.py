@@ -1,8 +1,9 @@
-"""The seal of a result file: checksums of all its bytes, written after HDF5's own end.
+"""The seal of a result file, in two parts: of its content, and of its bytes.
 
-HDF5 believes what it reads: a flipped bit gives another number and, in its own structures, an endless loop
-or a crash. So a file is sealed before it takes its name, and is opened only where the seal fits. HDF5 and
-netCDF do not see the seal; a program that changes the file by them takes it off, which is then no fault.
+The attribute `seal` has a digest of every variable and attribute (`rodsweep.results.file.content`), by which
+a change is noticed whichever program made it. Behind HDF5's own end, where other programs do not see it, lies
+a checksum of HDF5's structures: a flipped bit in those is an endless loop or a crash of HDF5, so they are
+compared before HDF5 reads the file. A program that changes the file by HDF5 takes this checksum off.
 """
 
 import json
@@ -14,13 +15,19 @@ from typing import BinaryIO
 
 import h5py
 
-SEAL_HEAD = b"\nrodsweep seal 1 "
+from .content import SEAL, digests_of
+
+FRAME_HEAD = b"\nrodsweep seal 2 "
+FORMER_HEAD = b"\nrodsweep seal 1 "
+"""Of files of format 4 and before, which are refused by their format."""
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 END_AT = {0: 40, 1: 44, 2: 28, 3: 28}
 """Where the superblock of each version has the end of the file, in eight bytes."""
-LONGEST_SEAL = 100_000
-"""Bytes of a seal."""
+LONGEST_FRAME = 100_000
+"""Bytes of the checksum with the places of the numbers that it leaves out."""
 BYTES_A_READ = 1 << 20
+SMALL = 1 << 16
+"""Bytes of a variable up to which the frame has its numbers too: axes, and what is read at every look."""
 
 Piece = tuple[int, int]
 
@@ -30,48 +37,48 @@ class BrokenSeal(ValueError):
 
 
 def seal(path: Path) -> None:
-    """Puts a new seal on a closed file."""
+    """Puts new seals on a closed file that rodsweep has just written."""
+    with h5py.File(path, "r+") as file:
+        file.attrs[SEAL] = json.dumps(digests_of(file))
+    with h5py.File(path, "r") as file:
+        pieces = _large_pieces(file)
     with path.open("r+b") as stream:
         end = _end(stream)
         stream.truncate(end)
-    pieces = _values(path)
-    with path.open("r+b") as stream:
-        sums = {"frame": _checksum(stream, _between(pieces, end)), "values": _checksum(stream, pieces)}
+        frame = {"end": end, "pieces": pieces, "frame": _checksum(stream, _between(pieces, end))}
         stream.seek(end)
-        stream.write(SEAL_HEAD + json.dumps({"end": end, "pieces": pieces} | sums).encode() + b"\n")
+        stream.write(FRAME_HEAD + json.dumps(frame).encode() + b"\n")
 
 
-def check_seal(path: Path, values: bool) -> None:
-    """BrokenSeal unless the file, with the numbers in it if `values`, is as it was sealed; or OSError.
+def check_frame(path: Path) -> bool:
+    """Whether HDF5's structures are as they were sealed; False where another program took the checksum off.
 
-    The numbers take a second for each GB, the rest a millisecond.
+    BrokenSeal where they are not, or OSError. Takes a millisecond.
     """
     with path.open("rb") as stream:
         end, size = _end(stream), os.fstat(stream.fileno()).st_size
         if size < end:
             raise BrokenSeal(f"it ends after {size} of {end} bytes")
-        if size == end:
-            return
         stream.seek(end)
-        data = stream.read(LONGEST_SEAL)
-        if not data.startswith(SEAL_HEAD) or not data.endswith(b"\n"):
+        data = stream.read(LONGEST_FRAME)
+        if not data or data.startswith(FORMER_HEAD):
+            return False
+        if not data.startswith(FRAME_HEAD) or not data.endswith(b"\n"):
             raise BrokenSeal("its checksum cannot be read")
         try:
-            given = json.loads(data[len(SEAL_HEAD) :])
-        except (ValueError, RecursionError):
-            raise BrokenSeal("its checksum cannot be read") from None
-        try:
+            given = json.loads(data[len(FRAME_HEAD) :])
             pieces = [(int(start), int(length)) for start, length in given["pieces"]]
             whole = given["end"] == end and given["frame"] == _checksum(stream, _between(pieces, end))
-            whole = whole and not (values and given["values"] != _checksum(stream, pieces))
-        except (KeyError, TypeError, ValueError, OverflowError, OSError):
-            whole = False
+        except (LookupError, TypeError, ValueError, OverflowError, RecursionError, OSError):
+            raise BrokenSeal("its checksum cannot be read") from None
     if not whole:
         raise BrokenSeal("its content does not fit its checksum")
+    return True
 
 
 def _end(stream: BinaryIO) -> int:
     """Where HDF5 says that the file ends."""
+    stream.seek(0)
     head = stream.read(64)
     if not head.startswith(HDF5_SIGNATURE) or len(head) < 64 or head[8] not in END_AT:
         raise BrokenSeal("it is not HDF5")
@@ -79,12 +86,11 @@ def _end(stream: BinaryIO) -> int:
     return int.from_bytes(head[at : at + 8], "little")
 
 
-def _values(path: Path) -> list[Piece]:
-    """(start, bytes) of all numbers that lie in one piece each, in order."""
-    with h5py.File(path, "r") as file:
-        variables = [data for data in map(file.get, file) if isinstance(data, h5py.Dataset)]
-        places = {(data.id.get_offset(), data.id.get_storage_size()) for data in variables}
-    return sorted((start, size) for start, size in places if start is not None and size)
+def _large_pieces(file: h5py.File) -> list[Piece]:
+    """(start, bytes) of the numbers of every variable that lies in one large piece, in order."""
+    variables = [data for data in map(file.get, file) if isinstance(data, h5py.Dataset)]
+    places = {(data.id.get_offset(), data.id.get_storage_size()) for data in variables}
+    return sorted((start, size) for start, size in places if start is not None and size > SMALL)
 
 
 def _between(pieces: list[Piece], end: int) -> Iterator[Piece]:
@@ -97,7 +103,7 @@ def _between(pieces: list[Piece], end: int) -> Iterator[Piece]:
         at = start + size
 
 
-def _checksum(stream: BinaryIO, pieces: Iterator[Piece] | list[Piece]) -> int:
+def _checksum(stream: BinaryIO, pieces: Iterator[Piece]) -> int:
     """The CRC-32 of pieces of a file, one after another."""
     checksum = 0
     for start, size in pieces:

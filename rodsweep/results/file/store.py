@@ -2,7 +2,8 @@
 
 The file is netCDF-4-compatible HDF5 and is only ever exchanged by a rename, so it opens at any
 instant. What ranks finish goes to the journal beside it (`rodsweep.results.run.journal`) and is folded
-in at the end of a run, or at the start of the next one where a run was killed.
+in at the end of a run, or at the start of the next one where a run was killed. Journals are recognised by
+the fingerprint of their points, whatever has become of the file; others are set aside, never deleted.
 """
 
 import json
@@ -19,29 +20,33 @@ from ...errors import EnvironmentLacks, InputError
 from ...sweep.ranges import IndexRange, total
 from ..layouts.variables import MISSING, Filled, Layout
 from ..run.checkpoints import CHECKPOINTS
-from ..run.journal import JOURNALS, drop_files, read_journals
+from ..run.journal import (
+    JOURNALS,
+    drop_files,
+    journal_directory,
+    journals_of,
+    kept_sentence,
+    other_journals,
+    read_journals,
+    set_aside,
+)
 from .creation import Plan, add_variables, create_file
-from .exchange import Exchange, disk_refusals
+from .exchange import Exchange, disk_refusals, identity
 from .extension import extension_of
 from .identity import change_between
 from .points import missing_ranges, parameters_of, statuses, write_points
 from .provenance import merged_history
 from .recent import SNAPSHOT
-from .seal import check_seal
-from .validation import DAMAGES, Header, header_of, is_ours, reason_of
+from .validation import Header, NotWhole, is_ours, read_header, reading
 
 SPACE_FACTOR, SPACE_FIXED = 3, 300_000
 """Room that a run needs: the file, the journals and the copy in units of the file, and bytes besides."""
 BEFORE = "before-*.h5"
 """Files beside the journals as they were before an extension that is not complete yet."""
-KEPT = "; what is done is kept"
 
 
 class Store:
     """A result file under one run; only the first rank has one, and only one run at a time."""
-
-    note = ""
-    """What is to be said of stored points that an extension computes anew."""
 
     def __init__(self, path: Path, plan: Plan, fresh: bool = False, extend: bool = False):
         """Opens the file that continues `plan`, or creates it; InputError if it is another's.
@@ -49,7 +54,9 @@ class Store:
         extend: whether the file of a smaller config becomes that of the plan, with the points that stay.
         """
         self.path, self.plan = path, plan
-        with disk_refusals(path, KEPT):
+        self.notes: list[str] = []
+        """What is to be said of points that are computed anew, of journals, and of a file that was moved."""
+        with disk_refusals(path, self._kept):
             self.exchange = Exchange(path)
             self.journals = self.exchange.journals
             try:
@@ -59,24 +66,40 @@ class Store:
                 raise
 
     def _open(self, fresh: bool, extend: bool) -> None:
-        if self.path.exists() and not fresh:
+        if fresh or not self.path.exists():
+            self._create(fresh)
+        else:
             header = self._header()
-            if self.plan.fingerprint not in (header.asked, header.fingerprint):
-                if not extend:
-                    self._refuse(header)
+            if header.asked == self.plan.fingerprint:
+                self._continue(header)
+            elif extend:
                 self._extend(header)
-                return
-            if header.fingerprint != self.plan.fingerprint:  # an earlier version's, and its journals have it
-                self._fold(header, {"fingerprint": self.plan.fingerprint})
-            self.fold(self._new_title() | ({SNAPSHOT: ""} if self.attributes().get(SNAPSHOT) else {}))
-            return
+            else:
+                self._refuse(header)
+        self._set_aside(other_journals(self.journals, self.plan.fingerprint), "journals of other points")
+        drop_files(self.journals, JOURNALS)  # what is left has no points
+
+    def _continue(self, header: Header) -> None:
+        """Takes up the file of the plan."""
+        if header.fingerprint != header.asked:  # an earlier version's, and its journals have it
+            self._fold(header, {"fingerprint": header.asked})
+        self.fold(self._new_title() | ({SNAPSHOT: ""} if self.attributes().get(SNAPSHOT) else {}))
+
+    def _create(self, fresh: bool) -> None:
+        """Makes the file of the plan, with the points of its journals unless all is to be computed anew."""
         if self.path.exists() and not is_ours(self.path):
             raise InputError(f"{self.path} is no result file, so --fresh leaves it alone")
         self._need_room()
-        for pattern in (JOURNALS, CHECKPOINTS, BEFORE):
-            drop_files(self.journals, pattern)
+        own = journals_of(self.journals, self.plan.fingerprint)
+        if fresh:
+            drop_files(self.journals, CHECKPOINTS)
+            self._set_aside(own, "journals that --fresh does not use")
+        self._set_aside(sorted(self.journals.glob(BEFORE)), "points from before an extension")
         with self.exchange.replacing(None) as copy:
             create_file(copy, self.plan)
+        if own and not fresh:
+            self.fold({})
+            self.notes.append("the file was gone, and is made anew with the points of its journal")
 
     def _extend(self, header: Header) -> None:
         """Exchanges the file of a smaller config for that of the plan, with all points that stay."""
@@ -95,11 +118,11 @@ class Store:
                     file.attrs.update(history)
             if anew:
                 before = self._keep_before()
-                self.note = (
+                self.notes.append(
                     f"{anew} of {done} stored points are computed anew; until all are done, {before} has them"
                 )
-        drop_files(self.journals, JOURNALS)
         drop_files(self.journals, CHECKPOINTS)
+        self.fold({})
 
     def _keep_before(self) -> Path:
         """Copies the file beside the journals, where it stays until the extension is complete."""
@@ -108,13 +131,15 @@ class Store:
         shutil.copyfile(self.path, copy)
         return copy
 
+    def _set_aside(self, paths: Sequence[Path], what: str) -> None:
+        """Moves what a later run could use, and this one does not, out of the way."""
+        if paths:
+            self.notes.append(f"{what} are kept in {set_aside(self.journals, paths)}")
+
     def _new_title(self) -> dict[str, Any]:
         """The attributes that change where the config has another title than the file; else none."""
         names = {name: self.plan.attributes.get(name, "") for name in ("title", "config")}
-        stored = self.attributes().get("title", "")
-        if (
-            not isinstance(stored, str) or names["title"] == stored
-        ):  # what another program wrote is left alone
+        if names["title"] == self.attributes().get("title", ""):
             return {}
         return names | {"config_resolved": json.dumps(self.plan.config)}
 
@@ -131,35 +156,56 @@ class Store:
 
     def attributes(self) -> dict[str, Any]:
         """What the file says of itself."""
-        with h5py.File(self.path, "r") as file:
+        with reading(self.path), h5py.File(self.path, "r") as file:
             return dict(file.attrs)
 
     def missing(self) -> list[IndexRange]:
         """Ranges of flat indices that are not computed yet, in order."""
-        return missing_ranges(self.path)
+        with reading(self.path):
+            return missing_ranges(self.path)
 
     def fold(self, attributes: dict[str, Any], additions: Sequence[Filled] = ()) -> None:
         """Puts journalled points, attributes and whole variables into the file at once; drops journals."""
         plan = self.plan
+        with disk_refusals(self.path, self._kept):
+            self._look_again()
         blocks = read_journals(self.journals, plan.layout, plan.fingerprint, plan.points.count)
-        self._fold_blocks(blocks, plan.layout, attributes, additions)
+        self._fold_blocks(blocks, plan.layout, plan.fingerprint, attributes, additions)
         if not self.missing():
             for pattern in (CHECKPOINTS, BEFORE):
                 drop_files(self.journals, pattern)
 
+    def _look_again(self) -> None:
+        """Makes the file anew where it was moved or deleted; EnvironmentLacks where another is there."""
+        if identity(self.path) == self.exchange.left:
+            return
+        if not self.path.exists():
+            with self.exchange.replacing(None) as copy:
+                create_file(copy, self.plan)
+            self.notes.append("the file was moved or deleted, and is made anew with the points since then")
+            return
+        try:
+            header = self._header()
+            if header.asked != self.plan.fingerprint:
+                self._refuse(header)
+        except InputError as error:
+            raise EnvironmentLacks(f"another file was put in its place meanwhile: {error}") from None
+
     def _fold(self, header: Header, attributes: dict[str, Any]) -> None:
         """Folds in the journals that were written for the file as it is."""
         blocks = read_journals(self.journals, header.layout, header.fingerprint, header.points)
-        self._fold_blocks(blocks, header.layout, attributes)
+        self._fold_blocks(blocks, header.layout, header.fingerprint, attributes)
 
     def _fold_blocks(
         self,
         blocks: Iterator[np.ndarray],
         layout: Layout,
+        fingerprint: str,
         attributes: dict[str, Any],
         additions: Sequence[Filled] = (),
     ) -> None:
-        with disk_refusals(self.path, KEPT):
+        with disk_refusals(self.path, self._kept):
+            journals = journals_of(self.journals, fingerprint)
             first = next(blocks, None)
             if first is not None or attributes or additions:
                 with self.exchange.replacing(self.path) as copy:
@@ -169,16 +215,22 @@ class Store:
                         with h5py.File(copy, "r+") as file:
                             add_variables(file, additions)
                             file.attrs.update(attributes)
-            drop_files(self.journals, JOURNALS)
+            for journal in journals:
+                journal.unlink(missing_ok=True)
+
+    def _kept(self) -> str:
+        """How a refusal goes on where points wait in the journals."""
+        return kept_sentence(journal_directory(self.path), self.plan.fingerprint)
 
     def status_counts(self) -> dict[str, int]:
         """How many points have each status, by the name of the status."""
         names = {MISSING: "missing", **dict(self.plan.flags)}
         counts: dict[str, int] = {}
-        for _, status in statuses(self.path):
-            for value, n in zip(*np.unique(status, return_counts=True), strict=True):
-                name = names.get(int(value), f"unknown ({value})")
-                counts[name] = counts.get(name, 0) + int(n)
+        with reading(self.path):
+            for _, status in statuses(self.path):
+                for value, n in zip(*np.unique(status, return_counts=True), strict=True):
+                    name = names.get(int(value), f"unknown ({value})")
+                    counts[name] = counts.get(name, 0) + int(n)
         return counts
 
     def close(self) -> None:
@@ -189,21 +241,25 @@ class Store:
         """The header of the existing file; InputError unless it is a whole result."""
         if not self.path.is_file():
             raise InputError(f"{self.path} is not a file; choose another with -o")
+        left = identity(self.path)
         try:
-            check_seal(self.path, values=True)
-            with h5py.File(self.path, "r") as file:
-                return header_of(self.path, file)
-        except DAMAGES as error:
-            raise InputError(
-                f"{self.path} exists and is not a whole rodsweep result ({reason_of(error)}); it is left as "
-                "it is: choose another file with -o, or replace it with --fresh"
-            ) from None
+            header = read_header(self.path)
+        except NotWhole as error:
+            raise InputError(f"{error}; it is left as it is: {self._ways_out()}") from None
+        self.exchange.left = left
+        return header
+
+    def _ways_out(self) -> str:
+        """What may be done about a file that stands in the way of this run."""
+        if journals_of(self.journals, self.plan.fingerprint):
+            return f"move it away, and the same command takes the points that wait in {self.journals}"
+        return "choose another file with -o, or replace it with --fresh"
 
     def _refuse(self, header: Header) -> None:
         """Refuses a file that was made for something else."""
+        change = change_between(header.config, self.plan.config)
         raise InputError(
-            f"{self.path} was made from another config ({change_between(header.config, self.plan.config)}); "
-            f"choose another file with -o, or replace it with --fresh{self._hint(header)}"
+            f"{self.path} was made from another config ({change}); {self._ways_out()}{self._hint(header)}"
         )
 
     def _hint(self, header: Header) -> str:

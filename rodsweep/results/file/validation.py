@@ -11,30 +11,36 @@ import h5py
 import numpy as np
 
 from ... import __version__
+from ...config.values import printable
 from ...errors import InputError
 from ..layouts import layout_of
 from ..layouts.variables import Layout
+from .content import refuse_changed
 from .identity import fingerprint_of
-from .seal import HDF5_SIGNATURE, check_seal
+from .seal import HDF5_SIGNATURE, check_frame
 
 PROGRAM = "rodsweep"
 """The attribute `program` of our files."""
-FORMAT = 4
-"""The attribute `format` of our files: grows when a variable is added or changes its meaning. What was
-written before there was one has none, which counts as 0."""
+FORMAT = 5
+"""The attribute `format` of our files: grows when a variable is added or changes its meaning. Only files of
+this format are read; 5 is the first whose content is sealed."""
 LONGEST_REASON = 150
 """Characters of what a library says."""
 DAMAGES = (OSError, LookupError, ValueError, TypeError, RuntimeError, OverflowError, MemoryError)
 """What h5py raises, and what reading goes on to raise, where a file is damaged."""
 
 
+class NotWhole(InputError):
+    """The refusal of a file that is no result, or is not as rodsweep wrote it."""
+
+
 @contextmanager
 def reading(path: Path) -> Iterator[None]:
-    """What is raised in here because the file is no result, or is damaged, becomes InputError."""
+    """What is raised in here because the file is no result, or is damaged, becomes NotWhole."""
     try:
         yield
     except DAMAGES as error:
-        raise InputError(f"{path} is not a whole rodsweep result file ({reason_of(error)})") from None
+        raise NotWhole(f"{path} is not a whole rodsweep result file ({reason_of(error)})") from None
 
 
 def reason_of(error: Exception) -> str:
@@ -59,13 +65,29 @@ class Header:
     has, which an earlier version may have made otherwise."""
 
 
-def read_header(path: Path) -> Header:
-    """InputError unless the file is a whole result, its numbers included."""
+def open_whole(path: Path, values: bool = True) -> tuple[h5py.File, Header]:
+    """The open file and its header: the one way to a result, for whoever reads, continues or merges it.
+
+    values: whether its numbers are compared with the seal too, which takes a second for each GB; otherwise
+    only what lies around the large variables, and all where another program has had the file. Raises
+    InputError unless the file is a whole result that says what rodsweep wrote.
+    """
     refuse_absent(path)
     with reading(path):
-        check_seal(path, values=True)
-        with h5py.File(path, "r") as file:
-            return header_of(path, file)
+        is_framed = check_frame(path)
+        file = h5py.File(path, "r")
+        try:
+            return file, header_of(path, file, check_content=values or not is_framed)
+        except BaseException:
+            file.close()
+            raise
+
+
+def read_header(path: Path) -> Header:
+    """InputError unless the file is a whole result, its numbers included."""
+    file, header = open_whole(path)
+    file.close()
+    return header
 
 
 def refuse_absent(path: Path) -> None:
@@ -74,62 +96,49 @@ def refuse_absent(path: Path) -> None:
         raise InputError(f"{path} is not a file" if path.exists() else f"{path} does not exist")
 
 
-def header_of(path: Path, file: h5py.File, shown: bool = False) -> Header:
-    """The header of an open file; one of DAMAGES unless its variables are those of its config.
+def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Header:
+    """The header of an open file; one of DAMAGES unless it is a result, and as it was sealed.
 
-    shown: whether the file is only shown, and need not have variables that came with a later format.
     InputError where another version of rodsweep wrote the file in a format that this one does not read.
     """
-    attributes = dict(file.attrs)
-    found = int(attributes.get("format", 0))
-    refuse_newer(path, attributes)
+    attributes = {name: cleaned(value) for name, value in file.attrs.items()}
+    if attributes.get("program") != PROGRAM:
+        raise ValueError("it is no result of rodsweep")
+    _refuse_other_format(path, attributes)
+    if check_content:
+        refuse_changed(file)
     config = json.loads(attributes["config_resolved"])
-    try:
-        layout = layout_of(config)
-        if shown:
-            layout = layout.known_in(found)
-        refuse_misfit(file, layout)
-        asked = fingerprint_of(config, [file[name][...] for name in layout.parameters])
-    except (LookupError, ValueError, TypeError) as error:
-        if found == FORMAT or "rodsweep_version" not in attributes:
-            raise
-        if not shown and _is_shown(file, config, found):
-            raise InputError(
-                f"{path} was written by an earlier rodsweep ({_writer(attributes)}), with less in it "
-                f"({reason_of(error)}): it is shown and drawn, and neither continued nor merged; compute it "
-                "again, with --fresh or into another file"
-            ) from None
-        raise InputError(
-            f"{path} was written by an earlier rodsweep ({_writer(attributes)}) and is read by that only "
-            f"({reason_of(error)}); compute it again, with --fresh or into another file"
-        ) from None
+    attributes.setdefault("task", config["task"])
+    layout = layout_of(config)
+    refuse_misfit(file, layout)
+    asked = fingerprint_of(config, [file[name][...] for name in layout.parameters])
     points = file["status"].size
     return Header(path, attributes, config, str(attributes["fingerprint"]), layout, points, asked)
 
 
-def _is_shown(file: h5py.File, config: dict[str, Any], found: int) -> bool:
-    """Whether a file of an earlier format, with its resolved config, has what files of that format have."""
-    try:
-        refuse_misfit(file, layout_of(config).known_in(found))
-    except (LookupError, ValueError, TypeError):
-        return False
-    return True
+def cleaned(value: Any) -> Any:
+    """The value of an attribute, a text without control characters that a terminal would obey."""
+    if isinstance(value, bytes):
+        value = value.decode(errors="replace")
+    return printable(value) if isinstance(value, str) else value
 
 
-def refuse_newer(path: Path, attributes: Mapping[str, Any]) -> None:
-    """InputError for a file whose format is newer than this program knows."""
+def _refuse_other_format(path: Path, attributes: Mapping[str, Any]) -> None:
+    """InputError for a file whose format is newer than this program knows, or older than it reads."""
     found = int(attributes.get("format", 0))
+    version, commit = (str(attributes.get(name, "unknown")) for name in ("rodsweep_version", "git_commit"))
+    writer = f"{version}, commit {commit[:12]}"
     if found > FORMAT:
         raise InputError(
-            f"{path} has format {found}, written by rodsweep {_writer(attributes)}; this one ({__version__}) "
-            f"reads formats up to {FORMAT}: update it"
+            f"{path} has format {found}, written by rodsweep {writer}; this one ({__version__}) "
+            f"reads format {FORMAT}: update it"
         )
-
-
-def _writer(attributes: Mapping[str, Any]) -> str:
-    """The version that wrote a file, and its commit."""
-    commit = str(attributes.get("git_commit", "unknown"))[:12]
-    return f"{attributes.get('rodsweep_version', 'unknown')}, commit {commit}"
+    if found < FORMAT:
+        raise InputError(
+            f"{path} was written by an earlier rodsweep ({writer}) in format {found}, and this one reads "
+            f"format {FORMAT}: read it with that version, or compute it again, with --fresh or into another "
+            "file"
+        )
 
 
 def refuse_misfit(file: h5py.File, layout: Layout) -> None:
@@ -154,7 +163,7 @@ def is_ours(path: Path) -> bool:
         if stream.read(8) != HDF5_SIGNATURE:
             return False
     try:
-        check_seal(path, values=False)
+        check_frame(path)
         with h5py.File(path, "r") as file:
             return bool(file.attrs.get("program") == PROGRAM)
     except DAMAGES:

@@ -10,9 +10,9 @@ import numpy as np
 
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ..layouts.arm import QUANTITY_UNITS
+from .content import is_users
 from .recent import journalled_points, put_in, unfolded
-from .seal import check_seal
-from .validation import header_of, reading, refuse_absent
+from .validation import cleaned, open_whole, reading, refuse_absent
 
 CHECKED_WHOLE = 10**9
 """Bytes up to which the numbers are checked too, not only HDF5's structures, before a file is shown."""
@@ -37,11 +37,10 @@ class Variables(Mapping[str, np.ndarray]):
 
     def __contains__(self, name: object) -> bool:
         with reading(self.path):
-            return name in self.file
+            return name in self.file and not is_users(str(name))
 
     def __iter__(self) -> Iterator[str]:
-        found = ((name, self.file.get(name)) for name in self.file)  # whatever another program put there
-        return (name for name, data in found if isinstance(data, h5py.Dataset) and data.shape is not None)
+        return (name for name in self.file if not is_users(name))
 
     def __len__(self) -> int:
         return sum(1 for _ in self)
@@ -95,16 +94,12 @@ def read_view(path: Path) -> View:
 
 def _view(path: Path) -> View:
     refuse_absent(path)
+    # Opened once: a run may exchange the file at any instant.
+    file, header = open_whole(path, values=path.stat().st_size <= CHECKED_WHOLE)
     with reading(path):
-        check_seal(path, values=path.stat().st_size <= CHECKED_WHOLE)
-        file = h5py.File(path, "r")  # once: a run may exchange the file at any instant
-        header = header_of(path, file, shown=True)
-        task, layout = header.config["task"], header.layout
-        if str(header.attributes.setdefault("task", task)) != task:
-            raise ValueError("its task is not that of its config")
         status = file["status"]
-        words = str(status.attrs["flag_meanings"]).split()
+        words = str(cleaned(status.attrs["flag_meanings"])).split()
         flags = dict(zip((int(v) for v in status.attrs["flag_values"]), words, strict=True))
         recent = journalled_points(header, status[...].ravel())
         variables = Variables(path, file, recent)
-    return View(path, header.attributes, variables, layout.parameters, flags, len(recent))
+    return View(path, header.attributes, variables, header.layout.parameters, flags, len(recent))

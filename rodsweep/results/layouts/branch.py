@@ -1,6 +1,5 @@
 """What the file of the task branch holds: the cycles of all branches of a rod, and their special points."""
 
-from math import nan
 from typing import Any
 
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS
@@ -23,6 +22,14 @@ SPECIAL_KINDS = tuple(SPECIAL_MEANINGS)
 END_REASONS = ("none", "range_end", "crushed", "no_cycle_found", "list_full")
 """Why a branch ends at a point of the kind end."""
 
+ERRORS = (
+    ("period_error", "the relative error of period"),
+    ("amplitude_error", "the relative error of tip_y_max"),
+    ("extrema_error", "the error of the other extrema, in units of tip_y_max"),
+    ("multiplier_error", "the absolute error of multiplier"),
+)
+"""Names of the errors of a cycle, and of what; all hold at the stored value of the parameter."""
+
 
 def followed_variables(along: str) -> tuple[Variable, ...]:
     """The cycles of all branches, one branch after another."""
@@ -30,6 +37,12 @@ def followed_variables(along: str) -> tuple[Variable, ...]:
     return (
         whole("branch", "number of the branch, from 1", ALONG),
         real(f"branch_{along}", unit, f"{along} of the cycle", ALONG),
+        real(
+            f"branch_{along}_error",
+            "1",
+            f"estimate of the relative error of branch_{along}, where the moment at the clamp is the same",
+            ALONG,
+        ),
         real("period", "tau2", "period of the cycle", ALONG),
         real("tip_y_max", "L", "largest y of the tip", ALONG),
         real("tip_y_min", "L", "smallest y of the tip; -tip_y_max where the cycle has the symmetry", ALONG),
@@ -43,12 +56,7 @@ def followed_variables(along: str) -> tuple[Variable, ...]:
             "Floquet multipliers outside the circle; 0 is stable; -1: one is on it within its error",
             ALONG,
         ),
-        real("period_error", "1", "estimate of the relative error of period", ALONG),
-        real("amplitude_error", "1", "estimate of the relative error of tip_y_max", ALONG),
-        real(
-            "extrema_error", "1", "estimate of the error of the other extrema, in units of tip_y_max", ALONG
-        ),
-        real("multiplier_error", "1", "estimate of the absolute error of multiplier", ALONG),
+        *(real(name, "1", f"estimate of {error}, at branch_{along}", ALONG) for name, error in ERRORS),
     )
 
 
@@ -62,15 +70,12 @@ def special_variables(along: str) -> tuple[Variable, ...]:
         real("special_error", unit, "estimate of the absolute error of special_at", SPECIAL),
         real("special_period", "tau2", "period of the cycle there", SPECIAL),
         real("special_tip_y_max", "L", "largest y of the tip there; 0 at a Hopf point", SPECIAL),
-        Variable(
+        real(
             "special_amplitude_coefficient",
-            "<f8",
-            nan,
             "L",
             "a of a Hopf point, to three digits: next to it the largest y is "
             f"|a| sqrt(|{along}/special_at - 1|), a < 0 where the cycles are at smaller {along}",
-            (SPECIAL,),
-            since=4,
+            SPECIAL,
         ),
         whole("special_branch", "number of the branch, from 1", SPECIAL),
         whole(

@@ -5,7 +5,7 @@ the table of every task.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import prod
 from typing import Any
 
@@ -51,8 +51,6 @@ class Variable:
     extra: tuple[str, ...] = ()
     flags: tuple[tuple[int, str], ...] = ()
     """Values and meanings, where the variable is a word; those of `status` come from the task's solver."""
-    since: int = 0
-    """The first format of files that have it; earlier ones are shown and drawn without it."""
 
 
 def real(name: str, units: str, long_name: str, *extra: str) -> Variable:
@@ -121,10 +119,6 @@ class Layout:
     def bytes_per_point(self) -> int:
         """Size of all variables at one point, also where that is more than a record can hold."""
         return sum(np.dtype(v.dtype).itemsize * prod(self.inner(v)) for v in self.variables)
-
-    def known_in(self, format_number: int) -> "Layout":
-        """The layout without the variables that files of a format have not."""
-        return replace(self, variables=tuple(v for v in self.variables if v.since <= format_number))
 
     def inner(self, variable: Variable) -> tuple[int, ...]:
         """Shape of a variable at one point."""

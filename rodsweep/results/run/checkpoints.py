@@ -34,6 +34,7 @@ class Checkpoints:
             np.save(stream, state, allow_pickle=False)
         content = self.header + index.to_bytes(INDEX_BYTES, "little") + stream.getvalue()
         path = self._path(chain)
+        self.directory.mkdir(parents=True, exist_ok=True)  # it may have been moved or deleted meanwhile
         # Ranks of a run that was killed live on for a moment and must not share our file.
         copy = path.with_name(f"{path.name}-{os.getpid()}-{os.urandom(4).hex()}")
         copy.write_bytes(content + _checksum(content))

@@ -47,7 +47,10 @@ class Lock:
 
     def release(self) -> None:
         """Gives the lock back and removes the directory where nothing is left in it."""
-        (self.directory / "lock").unlink(missing_ok=True)
+        own = self.directory / "lock"
+        with suppress(OSError):  # it was moved or deleted
+            if os.path.samestat(os.stat(own), os.fstat(self.handle)):
+                own.unlink()
         with suppress(OSError):  # it is not empty, or a link that the user has made
             self.directory.rmdir()
         os.close(self.handle)

@@ -1,12 +1,28 @@
-"""Whether PETSc can be started at all, without starting it: starting it is collective over all ranks."""
+"""Whether this process can solve at all, without starting PETSc: starting it is collective over all ranks."""
 
+import os
 from importlib.util import find_spec
 
-from ...errors import EnvironmentLacks
+import numba
+
+from ...errors import EnvironmentLacks, InputError
 
 
-def require_petsc() -> None:
-    """EnvironmentLacks where petsc4py or slepc4py is not to be found."""
+def require_directory() -> None:
+    """EnvironmentLacks where the working directory was deleted: MPI and PETSc ask for it when they start."""
+    try:
+        os.getcwd()
+    except FileNotFoundError:
+        raise EnvironmentLacks("the working directory was deleted; change into one that exists") from None
+
+
+def require_solvers() -> None:
+    """EnvironmentLacks where PETSc cannot be started, InputError where the formulas may not be compiled."""
+    if numba.config.DISABLE_JIT:
+        raise InputError(
+            "NUMBA_DISABLE_JIT is set: PETSc calls compiled formulas, which Python cannot replace; unset it"
+        )
+    require_directory()
     for name in ("petsc4py", "slepc4py"):
         try:
             found = find_spec(name) is not None

@@ -55,13 +55,15 @@ class Passed:
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ArcPoint:
     """A cycle of a branch. length: of the next step; before: the cycle before it; calibration: the errors,
-    measured at this cycle if unmeasured is 0, else at the one so many cycles before it."""
+    measured at this cycle if unmeasured is 0, else at the one so many cycles before it; way: length of the
+    branch since then."""
 
     cycle: RefinedCycle
     place: Place
     length: float
     calibration: BranchCalibration
     unmeasured: int = 0
+    way: float = 0.0
     before: Passed | None = None
 
     @property
@@ -201,6 +203,7 @@ def there_from(
         length=ahead,
         calibration=here.calibration,
         unmeasured=here.unmeasured + 1,
+        way=here.way + length,
         before=Passed(here.orbit, here.tangent),
     )
 
@@ -220,7 +223,7 @@ def measured(point: ArcPoint, accuracy: float) -> ArcPoint:
 def with_calibration(point: ArcPoint, calibration: BranchCalibration, accuracy: float) -> ArcPoint:
     """The same cycle with errors that are known."""
     cycle = judged_by(calibration.known, point.cycle.fine, accuracy)
-    return replace(point, cycle=cycle, calibration=calibration, unmeasured=0)
+    return replace(point, cycle=cycle, calibration=calibration, unmeasured=0, way=0.0)
 
 
 def refined(point: ArcPoint, accuracy: float, condition: Condition | None = None) -> ArcPoint:
@@ -266,12 +269,12 @@ def settled(
     """Cycles that follow one whose errors are measured, with errors within the accuracy; raises Unsolvable.
 
     condition: what holds for the last of them on every mesh; without it the place on the branch. Errors are
-    measured at the last of them. Those between two measured ones have the larger errors of both; what is too
-    inaccurate is solved again, on the mesh that the last one asks for.
+    measured at the last of them and interpolated at those between; what is too inaccurate is solved again, on
+    the mesh that the last one asks for.
     """
     *between, end = points
-    end = measured(end, accuracy)
-    known = [_between(last, point, end, accuracy) for point in between]
+    whole, end = end.way, measured(end, accuracy)
+    known = [_between(last, point, end, point.way / whole, accuracy) for point in between]
     end = refined(end, accuracy, condition)
     mesh = mesh_of(end.orbit)
     rough = [point.calibration.largest(accuracy) > accuracy for point in known]
@@ -282,16 +285,16 @@ def settled(
     return [*again, end]
 
 
-def _between(last: ArcPoint, point: ArcPoint, end: ArcPoint, accuracy: float) -> ArcPoint:
-    """A cycle between two on the same mesh with the larger errors of both, or its own; raises Unsolvable.
+def _between(last: ArcPoint, point: ArcPoint, end: ArcPoint, share: float, accuracy: float) -> ArcPoint:
+    """A cycle at a share of the way between two on the same mesh, with errors between theirs or its own.
 
     Where its tails are larger than theirs, or where the parameter changes more slowly, as beside a fold, they
-    do not bound its errors, which are measured.
+    do not bound its errors, which are measured. Raises Unsolvable.
     """
     ends = (last, end)
     slow = abs(point.rises) < SLOWER * min(abs(one.rises) for one in ends)
     grown = min(one.calibration.known.on_branch(point.orbit, 0.0).growth.max() for one in ends)
     if slow or float(grown) > SAME:
         return measured(point, accuracy)
-    known = last.calibration.united(end.calibration, slope_at(point.cycle.path, point.place))
+    known = last.calibration.towards(end.calibration, share, slope_at(point.cycle.path, point.place))
     return with_calibration(point, known, accuracy)

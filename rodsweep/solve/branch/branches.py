@@ -14,6 +14,7 @@ from ...model.rod import Rod
 from ...watch import part
 from ..changes.along_path import Transitions, pair_crossings
 from ..changes.unstable_modes import Crossing
+from ..cycle.linearisation import release_workspace
 from ..point import FAILURES, cause_of, solved
 from ..status import PointStatus
 from .beginning import hopf_point
@@ -99,9 +100,13 @@ class BranchesOfRod:
 
 def solve_branches(rod: BranchRod, request: BranchRequest) -> BranchesOfRod:
     """All branches born at Hopf points of one rod; failures are a status, never an exception."""
-    return solved(
-        lambda: _solve(rod, request), lambda cause: BranchesOfRod(status=BranchStatus.failed, message=cause)
-    )
+    try:
+        return solved(
+            lambda: _solve(rod, request),
+            lambda cause: BranchesOfRod(status=BranchStatus.failed, message=cause),
+        )
+    finally:
+        release_workspace()
 
 
 def warm_up() -> None:

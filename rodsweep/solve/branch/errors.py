@@ -32,12 +32,15 @@ from ..cycle.orbit_mesh import OrbitMesh, mesh_of
 from ..cycle.path_differences import APART, HEIGHT, OTHERS, PERIOD, path_differences
 from .bordered import Condition, Scale, moved
 
-STEEP = 100.0
-"""|(p/y) dy/dp| of the parameter p and the largest y beyond which only the error of the parameter is held
-within the accuracy: beside a Hopf point or a fold."""
+STEEP = 120.0
+"""|(p/y) dy/dp| of the parameter p and the largest y from which errors at an equal p may exceed the accuracy,
+beside a Hopf point or a fold: in proportion to it, since p itself cannot be known better. That is a fifth
+above the 100 that is promised, for slopes that are taken between cycles."""
 LEAST_SHARE = 0.1
 """The least rate of the moment at the clamp, in units of the parameter's, both relative, with which errors at
 an equal moment are stated: where the moment is stationary the parameter at an equal moment means nothing."""
+BETWEEN, LEAST_ERROR = 2.0, 1e-16
+"""Factor on errors that are interpolated, and the least error that counts: below, it is rounding."""
 TOLERANCE = 0.01
 """What Newton's method leaves on finer meshes, in units of the accuracy."""
 SLOPE_STEP = 1e-4
@@ -113,9 +116,8 @@ class BranchCalibration:
     @cached_property
     def _demanded(self) -> Calibration:
         """The errors that a mesh is chosen by: the parameter's counts as the period's does."""
-        if self.slope > STEEP:
-            return self._of_parameter
-        parts = [self.known.space.copy(), self.known.time.copy()]
+        steep = max(1.0, self.slope / STEEP)
+        parts = [self.known.space / steep, self.known.time / steep]
         for part, own in zip(parts, self.parameter, strict=True):
             part[PERIOD] = max(part[PERIOD], own)
         return replace(self.known, space=parts[0], time=parts[1])
@@ -129,14 +131,29 @@ class BranchCalibration:
             part[numbers] = own
         return replace(self.known, space=parts[0], time=parts[1])
 
-    def united(self, other: "BranchCalibration", slope: float) -> "BranchCalibration":
-        """The larger errors of two, for a cycle of a slope between them on the same mesh."""
-        space, time = (np.maximum(getattr(self.known, part), getattr(other.known, part)) for part in PARTS)
-        known = replace(self.known, space=space, time=time, growth=np.ones(2))
-        return BranchCalibration(known, np.maximum(self.parameter, other.parameter), slope)
+    def towards(self, other: "BranchCalibration", share: float, slope: float) -> "BranchCalibration":
+        """The errors of a cycle of a slope at a share of the way to another one on the same mesh.
+
+        Each falls or grows along the way by a constant factor, and BETWEEN times that is stated.
+        """
+        mean = [
+            _between(one, there, share)
+            for one, there in (
+                (self.known.space, other.known.space),
+                (self.known.time, other.known.time),
+                (self.parameter, other.parameter),
+            )
+        ]
+        known = replace(self.known, space=mean[0], time=mean[1], growth=np.ones(2))
+        return BranchCalibration(known, mean[2], slope)
 
 
-PARTS = ("space", "time")
+def _between(one: Array, other: Array, share: float) -> Array:
+    """BETWEEN times the geometric means of errors, of any shape, but no more than the larger ones."""
+    logarithms = np.log(np.maximum([one, other], LEAST_ERROR))
+    means = np.exp(logarithms[0] + share * (logarithms[1] - logarithms[0]))
+    bounded: Array = np.minimum(BETWEEN * means, np.maximum(one, other))
+    return bounded
 
 
 def measured_errors(

@@ -97,8 +97,13 @@ def _followed(curve: BranchCurve, course: Course, first: Callable[[], ArcPoint])
     if outside >= 0:
         curve.end(_end_beside(curve, course.reasons[outside]), True)
         return curve
-    trail = Trail(curve, course.accuracy, here)
-    going: ArcPoint | End = here
+    return followed_from(curve, here, course)
+
+
+def followed_from(curve: BranchCurve, first: ArcPoint, course: Course) -> BranchCurve:
+    """A branch from its first cycle, whose errors are measured, to its end."""
+    trail = Trail(curve, course.accuracy, first)
+    going: ArcPoint | End = first
     while isinstance(going, ArcPoint):
         report(partial(_place_on, curve, going))
         going = _next(trail, going, course)

@@ -39,12 +39,17 @@ MESH_SHARE = 0.1
 """Share of it that the first of the two meshes is chosen for."""
 TOLERANCE = 1e-10
 """To which a cycle is solved on the way: the square of it is left."""
-MOST_SECANTS, ZERO, STALLED = 12, 1e-9, 1e-6
-"""Steps of the secant method, the last one's length in units of the step of the branch, and the length from
-which one that is no shorter than half of the one before is rounding."""
-MOST_ENCLOSINGS, ROUGHLY, FIRST_SECANT = 30, 1e-3, 1e-3
-"""Steps by which a zero is enclosed, the value that ends them in units of those at the ends, and the first
-step of the secant method in units of the step of the branch."""
+MOST_SECANTS, STALLED = 12, 1e-6
+"""Steps of the secant method, and the length, in units of the step of the branch, from which a step that is
+no shorter than half of the one before is rounding."""
+ZERO, ZERO_OF_A_FOLD = 1e-9, 1e-5
+"""Last step of the secant method in units of the step of the branch: beside a fold the parameter changes with
+the square of the distance."""
+MATRIX_SHARE = 1e-2
+"""Relative distance of a matrix from its cycle, in units of the step that led there, for a test function that
+tells the next step to two digits."""
+MOST_ENCLOSINGS, ROUGHLY = 30, 1e-3
+"""Steps by which a zero is enclosed, and the value that ends them in units of those at the ends."""
 MOST_PAIRS, MORE_ORDERS, MORE_INTERVALS, SAFETY = 4, 4, 1.3, 3.0
 ROUNDING = 1e-13
 PLACES = 8
@@ -186,15 +191,15 @@ class Segment:
         """What follows is on a mesh, from what was found last."""
         self.mesh, self._known = mesh, None
 
-    def at(self, length: float) -> Converged:
-        """The cycle at a length from `here`; raises Unsolvable."""
+    def at(self, length: float, distance: float = TOLERANCE) -> Converged:
+        """The cycle at a length from `here`, with a matrix at a relative distance; raises Unsolvable."""
         scale, name = self.here.scale, self.here.scale.name
         if self._known is None:
             start = self.mesh.carry(self.predicted(length))
         else:
             last, orbit, tangent = self._known
             start = moved(orbit, name, (length - last) * tangent)
-        found = self.here.condition(length).solved(start, TOLERANCE, TOLERANCE)
+        found = self.here.condition(length).solved(start, TOLERANCE, distance)
         tangent = tangent_at(found.orbit, scale, self.here.ahead, bordered(found))
         rate = float(scale.moved(found.orbit, tangent) @ self.here.ahead)
         self._known = length, found.orbit, tangent / rate
@@ -230,13 +235,13 @@ def located(kind: SpecialKind, here: ArcPoint, there: ArcPoint, accuracy: float)
     try:
         segment = Segment(here, there)
         segment.start_on(mesh_of(there.orbit))
-        length = _enclosed(kind, segment)
+        length, slope = _enclosed(kind, segment)
         mesh = there.calibration.planned_for_parameter(MESH_SHARE * aim)
         mesh = replace(mesh, stages=max(mesh.stages, stages_for(aim)))
         last, point = None, None
         for _ in range(MOST_PAIRS + 1):
             segment.start_on(mesh)
-            length, found = _zero(kind, segment, length)
+            length, found, slope = _zero(kind, segment, length, slope)
             last, point = point, _point_at(kind, found)
             if last is not None:
                 error = SAFETY * abs(point.at - last.at) + ROUNDING * abs(point.at)
@@ -281,11 +286,15 @@ def _between(kind: SpecialKind, here: ArcPoint, there: ArcPoint, message: str) -
     )
 
 
-def _enclosed(kind: SpecialKind, segment: Segment) -> float:
-    """Where the test function of a kind is about zero, enclosed by the ends; raises Unsolvable."""
+def _enclosed(kind: SpecialKind, segment: Segment) -> tuple[float, float]:
+    """Where the test function of a kind is about zero, enclosed by the ends, and its slope.
+
+    Raises Unsolvable.
+    """
+    rough = MATRIX_SHARE * ROUGHLY * segment.length
 
     def value(length: float) -> float:
-        return test_function(kind, segment, segment.at(length))
+        return test_function(kind, segment, segment.at(length, rough))
 
     a, b = 0.0, segment.length
     f_b, f_a = value(b), value(a)
@@ -294,34 +303,35 @@ def _enclosed(kind: SpecialKind, segment: Segment) -> float:
     least = ROUGHLY * min(abs(f_a), abs(f_b))
     for _ in range(MOST_ENCLOSINGS):
         middle = a + min(max(f_a / (f_a - f_b), 0.1), 0.9) * (b - a)
-        f = value(middle)
+        f, slope = value(middle), (f_b - f_a) / (b - a)
         if f * f_a > 0:
             a, f_a = middle, f
         else:
             b, f_b = middle, f
         if abs(f) <= least:
-            return middle
-    return a + f_a / (f_a - f_b) * (b - a)
+            return middle, slope
+    return a + f_a / (f_a - f_b) * (b - a), slope
 
 
-def _zero(kind: SpecialKind, segment: Segment, guess: float) -> tuple[float, Converged]:
-    """Where the test function of a kind is zero near a guess, and the cycle there; raises Unsolvable."""
-    a, found = guess, segment.at(guess)
-    f_a, b = test_function(kind, segment, found), guess + FIRST_SECANT * segment.length
-    last = segment.length
+def _zero(kind: SpecialKind, segment: Segment, guess: float, slope: float) -> tuple[float, Converged, float]:
+    """Where the test function of a kind is zero near a guess, the cycle there, and the function's slope.
+
+    slope: about its slope, as a coarser mesh has it. Raises Unsolvable.
+    """
+    enough = segment.length * (ZERO_OF_A_FOLD if kind == SpecialKind.fold else ZERO)
+    at, step, before = guess, ROUGHLY * segment.length, None
     for _ in range(MOST_SECANTS):
-        found = segment.at(b)
-        f_b = test_function(kind, segment, found)
-        if f_b == f_a:
-            return b, found
-        step = -f_b * (b - a) / (f_b - f_a)
+        found = segment.at(at, max(TOLERANCE, MATRIX_SHARE * abs(step)))
+        f = test_function(kind, segment, found)
+        if before is not None and f != before[1]:
+            slope = (f - before[1]) / (at - before[0])
+        last, step = abs(step), -f / slope
         if not abs(step) < segment.length:
             raise Unsolvable("the secant method leaves the step")
-        if last / 2 < abs(step) <= STALLED * segment.length:
-            return b, found
-        a, f_a, b, last = b, f_b, b + step, abs(step)
-        if abs(step) <= ZERO * segment.length:
-            return b, segment.at(b)
+        if abs(step) <= enough or last / 2 < abs(step) <= STALLED * segment.length:
+            return at, found, slope
+        before = at, f
+        at += step
     raise Unsolvable("the secant method does not settle")
 
 

@@ -28,8 +28,6 @@ from ..hopf.normal_form import accurate_normal_form
 from ..motion.integrator import forget_integrators
 from ..motion.time_scheme import CYCLE_PREFIX
 from ..point import Unsolvable, solved
-from ..spectrum.followed_leader import followed_leader
-from ..spectrum.search import SpectrumRequest, solve_spectrum
 from .cycle_errors import UNKNOWN_ERRORS, CycleErrors
 from .hopf_start import hopf_point_below, orbit_from_hopf, small_orbit
 from .measures import Measures
@@ -37,6 +35,7 @@ from .neighbour import Neighbour, followed_cycle
 from .refinement import RefinedCycle, refined_cycle
 from .second_state import SecondState, second_state
 from .status import CycleStatus
+from .straight_rod import StraightRod, straight_rod
 from .torus import torus_or
 from .transient import NEUTRAL, Transient, TransientOutcome
 
@@ -60,8 +59,6 @@ UNTOLD = complex(nan, nan)
 """What is stored instead of one that is less."""
 FADING = 0.02
 """Cubic part of the growth rate, relative, below which a small motion decays as the linear one does."""
-SPECTRUM = SpectrumRequest(1, 1e-9, True)
-"""What is asked of the straight rod."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,7 +151,11 @@ def solve_cycle(
         return Cycle(status=CycleStatus.failed, message=cause)
 
     def solve() -> Cycle:
-        return _with_second_state(point, _solve(point, request, start, along))
+        rod = Rod(point.F, point.k1, point.k2, point.gamma3)
+        neighbour = Neighbour.unpack(start) if start is not None else None
+        stability = straight_rod(rod, neighbour.leading if neighbour else None)
+        cycle = _solve(point, request, stability, neighbour, along)
+        return _with_second_state(point, _by_the_spectrum(cycle, stability), stability)
 
     return solved(solve, failed)
 
@@ -180,16 +181,20 @@ def warm_up() -> None:
         )
 
 
-def _solve(point: CyclePoint, request: CycleRequest, start: Array | None, along: str | None) -> Cycle:
-    rod = Rod(point.F, point.k1, point.k2, point.gamma3)
-    neighbour = Neighbour.unpack(start) if start is not None else None
-    leading = _leading_eigenvalue(rod, neighbour)
+def _solve(
+    point: CyclePoint,
+    request: CycleRequest,
+    stability: StraightRod,
+    neighbour: Neighbour | None,
+    along: str | None,
+) -> Cycle:
+    rod, leading = Rod(point.F, point.k1, point.k2, point.gamma3), stability.w
     straight = Cycle(
         status=CycleStatus.straight, linear_growth_rate=leading.real, linear_frequency=abs(leading.imag)
     )
     beam, form = _beam_and_form(rod, point.gamma1)
     if request.start == "hopf":
-        return _from_hopf(form, request, straight)
+        return _from_hopf(form, request, straight, stability)
     found = None
     if neighbour is not None and along is not None:
         with suppress(Unsolvable):
@@ -203,7 +208,7 @@ def _solve(point: CyclePoint, request: CycleRequest, start: Array | None, along:
     if faded and not request.transient:
         return replace(straight, message=faded)
     traced = request.transient > 0
-    transient = Transient(beam, form, request.accuracy, request.most_periods, along, traced=traced)
+    transient = Transient(beam, form, stability, request.accuracy, request.most_periods, along, traced=traced)
     transient.unstable = found if found is not None and found.stable is False else None
     end = _from_motion(transient, request, neighbour)
     cycle = replace(
@@ -245,30 +250,27 @@ def _small_cycle(
     return found if settled and 1 - found.largest_multiplier >= NEUTRAL else None
 
 
-def _with_second_state(point: CyclePoint, cycle: Cycle) -> Cycle:
+def _by_the_spectrum(cycle: Cycle, stability: StraightRod) -> Cycle:
+    """The same, but straight only where the spectrum says that the straight rod is stable."""
+    if cycle.status != CycleStatus.straight or stability.stable:
+        return cycle
+    return replace(cycle, status=CycleStatus.not_settled, message=stability.doubt)
+
+
+def _with_second_state(point: CyclePoint, cycle: Cycle, stability: StraightRod) -> Cycle:
     """The same, and whether the rod has another stable state."""
     rod = Rod(point.F, point.k1, point.k2, point.gamma3)
-    state, F, why = second_state(rod, point.gamma1, cycle.status, cycle.linear_growth_rate)
+    state, F, why = second_state(rod, point.gamma1, cycle.status, stability.stable)
     message = "; ".join(filter(None, (cycle.message, why)))
     return replace(cycle, second_state=int(state), subcritical_F=F, message=message)
 
 
-def _leading_eigenvalue(rod: Rod, neighbour: Neighbour | None) -> complex:
-    """Of the straight rod, 1/tau2; NaN where none is found."""
-    followed = followed_leader(rod, neighbour.leading, SPECTRUM.accuracy) if neighbour else None
-    if followed is not None:
-        return followed
-    w = solve_spectrum(rod, SPECTRUM).eigenvalues
-    return complex(w[0]) if len(w) else complex(nan, nan)
-
-
-def _from_hopf(form: StressForm, request: CycleRequest, straight: Cycle) -> Cycle:
+def _from_hopf(form: StressForm, request: CycleRequest, straight: Cycle, stability: StraightRod) -> Cycle:
     """The cycle on the branch from the Hopf point; straight: the outcome where there is none below."""
     try:
         hopf = hopf_point_below(form.rod)
         if hopf is None:
-            stays = straight.linear_growth_rate < 0
-            status = CycleStatus.straight if stays else CycleStatus.not_settled
+            status = CycleStatus.straight if stability.stable else CycleStatus.not_settled
             return replace(straight, status=status, message="no Hopf point at any smaller force")
         found = refined_cycle(orbit_from_hopf(form, hopf), request.accuracy)
     except Unsolvable as why:

@@ -55,7 +55,7 @@ class Workspace:
     @property
     def factors(self) -> Factors:
         """The factors; raises RuntimeError once another workspace was made."""
-        if _latest[0] is not self:
+        if self not in _latest:
             raise RuntimeError("the factors of this matrix are overwritten: a matrix was made after it")
         return self._factors
 
@@ -95,6 +95,17 @@ def multipliers_by(propagator: Array, orbit: Orbit) -> Complex:
     values = nonzero_eigenvalues(orbit.return_signs[:, None] * propagator)
     values = values**2 if orbit.symmetric else values
     return values[np.argsort(-np.abs(values), kind="stable")]
+
+
+KEPT_NUMBERS = 2**23
+"""Numbers of the shared buffer, 64 MB, that stay when a rod is done: most rods need less."""
+
+
+def release_workspace() -> None:
+    """Gives the memory of large meshes back; the matrix made last loses its factors."""
+    _latest.clear()
+    if len(_memory[0]) > KEPT_NUMBERS:
+        _memory[0] = np.empty(0)
 
 
 def coordinate(name: str, value: float) -> float:

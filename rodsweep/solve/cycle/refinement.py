@@ -6,7 +6,7 @@ measured (`calibration`), are too large after all, they say which one does at le
 
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from math import inf
+from math import inf, log
 
 import numpy as np
 
@@ -33,6 +33,9 @@ FIRST_ACCURACY, NEAR, AIM_LOWERED = 1e-7, 1e-3, 1e-3
 tolerance of that orbit; factor of the accuracy where a mesh is too coarse."""
 FIRST_SHARE = 0.5
 """Of what the first mesh of a cycle alone is chosen for: another round costs more than a finer mesh."""
+LEAST_PREDICTED = 6
+"""Intervals of the coarsest mesh whose errors are predicted: with 4 and 5, of which the prediction is made,
+errors in time do not yet fall as a power (largest y off by four times its estimate)."""
 PREDICTED_WITHIN, LEAST_WITHIN = 30.0, 1e-9
 """Distance of a cycle from what coarser meshes predict beyond which their errors are no measure of its own,
 in units of the accuracy, of which up to 4.4 were seen; and its least bound, for rounding."""
@@ -104,9 +107,19 @@ def judged_by(calibration: Calibration, found: Converged, accuracy: float) -> Re
     multipliers, trivial_error = multipliers_of(found)
     largest = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
     by_matrix = MULTIPLIER_FACTOR * largest * (found.distance + trivial_error)
-    errors = replace(errors, multiplier_error=errors.multiplier_error + by_matrix)
+    at_least = errors.amplitude_error * _by_exponent(multipliers)
+    errors = replace(errors, multiplier_error=max(errors.multiplier_error, at_least) + by_matrix)
     measures = measures_of(path)
     return RefinedCycle(found, calibration, path, measures, multipliers, trivial_error, errors)
+
+
+def _by_exponent(multipliers: Complex) -> float:
+    """Change of the largest multiplier with a relative change of its exponent, |mu ln |mu||.
+
+    Exponents are relatively as inaccurate as amplitudes, also where two meshes have one multiplier by luck.
+    """
+    modulus = float(np.abs(multipliers[0])) if len(multipliers) else 0.0
+    return modulus * abs(log(modulus)) if modulus else 0.0
 
 
 def refine(orbit: Orbit, accuracy: float, parameter: str | None = None) -> RefinedCycle:
@@ -124,8 +137,10 @@ def refine(orbit: Orbit, accuracy: float, parameter: str | None = None) -> Refin
             near = same_motion(newton(start, NEAR), orbit.size).orbit
             stages = stages_for(accuracy)
             if parameter is None:
+                first = wanted_mesh(near, FIRST_SHARE * aim, stages)
+                first = replace(first, intervals=max(first.intervals, LEAST_PREDICTED))
                 with suppress(Unsolvable):
-                    return _predicted_cycle(wanted_mesh(near, FIRST_SHARE * aim, stages), near, accuracy)
+                    return _predicted_cycle(first, near, accuracy)
             found = _on(wanted_mesh(near, aim, stages), near, aim, parameter)
             return calibrated_cycle(found, None, accuracy, parameter)
         except Unsolvable:

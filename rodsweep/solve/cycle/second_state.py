@@ -5,7 +5,7 @@ the straight rod, a subcritical Hopf point next to it says that another is possi
 """
 
 from enum import IntEnum
-from math import isnan, nan
+from math import nan
 
 from ...model.rod import Rod
 from ..hopf.hopf_beside import SubcriticalHopf, subcritical_hopf_beside
@@ -23,15 +23,15 @@ class SecondState(IntEnum):
 
 
 def second_state(
-    rod: Rod, gamma1: float, status: CycleStatus, growth_rate: float
+    rod: Rod, gamma1: float, status: CycleStatus, stable: bool | None
 ) -> tuple[SecondState, float, str]:
     """(what is known, force of the subcritical Hopf point or NaN, a sentence) of a point that ended so.
 
-    growth_rate: of the straight rod's leading mode, 1/tau2; NaN where it is not known.
+    stable: whether the straight rod is; None where it is not known.
     """
-    if status == CycleStatus.failed or isnan(growth_rate):
+    if status == CycleStatus.failed or stable is None:
         return SecondState.not_told, nan, ""
-    if growth_rate >= 0:
+    if not stable:
         return SecondState.none_known, nan, ""
     if status != CycleStatus.straight:
         return SecondState.straight, nan, "the straight rod is stable here too"

@@ -4,13 +4,17 @@ The motion is followed from return to return, theta of the tip rising through 0.
 tenth go to Newton's method. Slow motions about the straight rod are not waited for. Per period they grow by
 g = g0 - c a^2 at amplitude a, with the exact linear growth g0, so that a cycle lies at a*^2 = g0/c and the
 state is scaled to it; c is measured where it shows in g, which near a* may be lost in the integrator's error.
-What decays slowly is scaled down until it decays at the linear rate; what grows slowly, and the faster the
-larger it is (c < 0), is scaled up. A motion whose path is stored is never scaled, but waited for.
+The linear growth of the mesh, or of a rod near a limit, differs from g0: what is measured is corrected by the
+difference. What decays slowly is scaled down until it decays at the linear rate; what grows slowly, and the
+faster the larger it is (c < 0), is scaled up. A motion whose path is stored is never scaled, but waited for.
+
+A rod that is unstable when straight does not stay straight. Where its swinging dies out nevertheless, as it
+does while a large stretch relaxes slowly, it starts again from a small deflection in its leading mode.
 """
 
 from collections import deque
 from dataclasses import dataclass
-from math import isnan, nan
+from math import inf, isnan, nan
 from operator import mul
 
 import numpy as np
@@ -26,6 +30,7 @@ from ..point import Unsolvable
 from .from_motion import orbit_from_motion
 from .refinement import RefinedCycle, refined_cycle
 from .status import CycleStatus
+from .straight_rod import StraightRod
 from .trace import TipTrace
 
 TRANSIENT = TimeScheme("arkimex", "4", tolerance=1e-5)
@@ -50,6 +55,9 @@ FAINT = 0.01
 """Linear growth per period below which the integration is a careful one."""
 NOISE, CAREFUL_NOISE = 1e-3, 1e-5
 """Growth per period that the integrator may add: 3e-4 and 8e-6 were seen."""
+WELL_SHOWN = 10.0
+"""What c must show in the growth, in units of that noise, to replace the c of a larger motion: stiff rods
+have up to five times the noise, in which c changes its sign."""
 NEAR = 0.1
 """Relative distance from the predicted amplitude that is left to Newton's method."""
 MOST_JUMPS, SHRINK, LARGEST_JUMP = 60, 0.7, 4.0
@@ -58,7 +66,11 @@ on the way; the largest."""
 LINEAR = 0.05
 """Relative distance from the linear decay rate and frequency at which a decaying rod is called straight."""
 STRAIGHT_SIZE = 1e-6
-"""Norm of z at which a rod that is stable when straight is called straight."""
+"""Norm of z at which a rod that is stable when straight is called straight; of its part that bends and
+shears, at which the rod no longer swings: numerical damping, not the rod, rules what is smaller."""
+DEPARTURE = 1e-3
+"""Tip deflection, in L, with which an unstable straight rod is left: the square of it is the relative change
+of the linear growth."""
 SAME_CROSSING = 0.03
 """Relative distance of two returns that are one and the same crossing of the orbit."""
 LONGEST_ORBIT = 8
@@ -122,14 +134,16 @@ class Transient:
     """The motion of one rod from a start; `follow` is called once.
 
     beam: the rod as the time stepper sees it, form: the rod whose cycle is wanted; they differ in a limit
-    only, which the time stepper comes near. along: the parameter along which the cycle's tangent is wanted.
-    traced: whether `trace` is to hold the tip's path; without it that is None.
+    only, which the time stepper comes near. straight: the stability of that rod when straight. along: the
+    parameter along which the cycle's tangent is wanted. traced: whether `trace` is to hold the tip's path;
+    without it that is None.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - one motion and what is asked of it
         self,
         beam: Beam,
         form: StressForm,
+        straight: StraightRod,
         accuracy: float,
         most_periods: int,
         along: str | None = None,
@@ -139,10 +153,13 @@ class Transient:
         self.beam, self.form, self.along = beam, form, along
         self.accuracy, self.most_periods = accuracy, most_periods
         self.mode, self.row = leading_mode(beam), angle_weights(beam)
-        self.faint = abs(self.mode.w.real) * self.mode.period < FAINT
+        self.straight, self.linear_rate = straight, straight.growth_rate(self.mode.w.real)
+        self.excess = self.linear_rate - self.mode.w.real
+        """What the linear growth rate of the rod has more than that of the beam on its mesh."""
+        self.faint = abs(self.linear_rate) * self.mode.period < FAINT
         careful = self.faint or traced
         self.scheme, self.noise = (CAREFUL, CAREFUL_NOISE) if careful else (TRANSIENT, NOISE)
-        grows_fast = self.mode.w.real * self.mode.period > SLOW_GROWTH
+        grows_fast = self.linear_rate * self.mode.period > SLOW_GROWTH
         self.first_scheme = QUICK if grows_fast and not careful else self.scheme
         self.trace = TipTrace(beam) if traced else None
         self.bend = nan
@@ -172,8 +189,13 @@ class Transient:
             moments = states[:, 2 * self.beam.mesh.nodes :]
             self.past.extend(zip(map(float, self.clock + times), moments, strict=True))
             self.clock += run.times[-1]
-            if self.mode.w.real < 0 and np.linalg.norm(z) < STRAIGHT_SIZE:
+            if self.straight.stable is not False and np.linalg.norm(z) < STRAIGHT_SIZE:
                 return self._ended(CycleStatus.straight, "decayed to rounding")
+            if self.straight.stable is False and not self._swings(z):
+                if self.trace or self.jumps >= MOST_JUMPS:
+                    break
+                z = self._jumped(DEPARTURE * self.mode.z.real)
+                continue
             early, first = first, False
             if len(times) < 3 or (early and self._slow(times, *self._growth(times, states))):
                 continue
@@ -185,13 +207,30 @@ class Transient:
             if factor is not None:
                 scaled = factor * z
                 scaled[: self.beam.mesh.nodes] *= factor  # the stretch is quadratic in the deflection
-                z, self.jumps = relaxed(self.beam, scaled, self.mode.period), self.jumps + 1
-                self.past.clear()
+                z = self._jumped(scaled)
                 continue
             outcome = self._closed(z, times, states)
             if outcome is not None:
                 return outcome
-        return self._ended(CycleStatus.not_settled, f"{self.waited} returns of the tip, none periodic")
+        return self._ended(CycleStatus.not_settled, self._not_settled(z))
+
+    def _jumped(self, z: Array) -> Array:
+        """Where the motion goes on from a state that is no state of its own, (unknowns,)."""
+        self.jumps += 1
+        self.past.clear()
+        return relaxed(self.beam, z, self.mode.period)
+
+    def _not_settled(self, z: Array) -> str:
+        """Why the motion that has come to z has no end."""
+        if self._swings(z):
+            return f"{self.waited} returns of the tip, none periodic"
+        unstable = self.straight.stable is False
+        why = "the straight rod is unstable" if unstable else "its stretch has not relaxed"
+        return f"it swings no more after {self.waited} returns, but {why}"
+
+    def _swings(self, z: Array) -> bool:
+        """Whether more than rounding bends or shears the rod."""
+        return bool(np.linalg.norm(z[self.beam.mesh.nodes :]) >= STRAIGHT_SIZE)
 
     def _relaxed(self, z: Array) -> Array:
         """What the start relaxes to, in a time that a stored path counts."""
@@ -232,15 +271,17 @@ class Transient:
         return run
 
     def _growth(self, times: Array, states: Array) -> tuple[float, float]:
-        """(growth of |z| over the last return, that of the leading mode)."""
-        sizes = np.linalg.norm(states[-2:], axis=1)
-        return float(np.log(sizes[1] / sizes[0])), float(self.mode.w.real * (times[-1] - times[-2]))
+        """(growth of |z| over the last return, that of the leading mode), of the rod and not of the mesh."""
+        sizes, duration = np.linalg.norm(states[-2:], axis=1), float(times[-1] - times[-2])
+        growth = float(np.log(sizes[1] / sizes[0]))
+        return growth + self.excess * duration, self.linear_rate * duration
 
     def _decays(self, times: Array, states: Array) -> bool:
         """Whether the returns shrink steadily, at last as the leading mode does, or would but for noise."""
         growth, linear = self._growth(times, states)
         sizes, margin = np.linalg.norm(states, axis=1), LINEAR * abs(linear)
-        alike = bool((np.diff(sizes) < 0).all()) and abs(growth - linear) < margin
+        falls = np.diff(np.log(sizes)) + self.excess * np.diff(times) < 0
+        alike = bool(falls.all()) and abs(growth - linear) < margin
         faded = abs(self.bend) * sizes[-1] ** 2 < margin and growth - linear < margin + self.noise
         return linear < 0 and (alike or faded) and self._in_time(times)
 
@@ -259,7 +300,7 @@ class Transient:
             return None
         size = float(np.linalg.norm(states[-1]))
         here = (linear - growth) / size**2
-        if abs(linear - growth) > self.noise:
+        if abs(linear - growth) > self.noise * (1 if isnan(self.bend) else WELL_SHOWN):
             self.bend = here
         bend = here if isnan(self.bend) else self.bend
         if isnan(self.bend) and linear > 0:
@@ -317,6 +358,8 @@ class Transient:
         """
         moments = [state for _, state in self.past][-1 - LONGEST_ORBIT :]
         size = np.linalg.norm(moments[-1])
+        if size < STRAIGHT_SIZE:  # what is left of them is rounding, which repeats nothing
+            return 1, inf
         found = [
             (float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))
         ]

@@ -17,6 +17,7 @@ from ...discretization.pencil import Pencil, assemble
 from ...discretization.resolution import Resolution
 from ...model.compilation import compiled
 from ...model.rod import Rod
+from ...watch import report
 from ..backend.kept import Kept
 from ..backend.petsc import PETSc, SLEPc, sparse_package
 
@@ -104,6 +105,7 @@ class EigenSolver:
         Complex, shape (k,), in 1/tau2. tight: to the last digit of the mesh, not just to start from.
         Raises PETSc.Error where PETSc fails.
         """
+        report()
         rod, self.pace = _as_filament(rod)
         shift *= self.pace**2
         coefficients = self.pencil.coefficients(rod)

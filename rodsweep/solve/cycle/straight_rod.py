@@ -1,0 +1,67 @@
+"""The stability of the straight rod, by its spectrum: no motion on a mesh may overrule it.
+
+Next to a Hopf point the mesh of a motion has a Hopf point of its own, and so has the rod near a limit that a
+time stepper follows. The exact leading eigenvalue decides there, within its error.
+"""
+
+from dataclasses import dataclass
+from math import isnan, nan
+
+from ...determinant.roots import ON_THE_AXIS, root_error
+from ...model.rod import Rod
+from ..spectrum.followed_leader import followed_leader
+from ..spectrum.search import SpectrumRequest, solve_spectrum
+
+SPECTRUM = SpectrumRequest(1, 1e-9, True)
+"""Spectrum request for the straight rod: its leading eigenvalue, proved to lead."""
+ERRORS_FROM_AXIS = 4.0
+"""Distance from the imaginary axis, in units of its error estimate, beyond which the sign of the growth rate
+is sure: the spectrum's own criterion, so that both always agree."""
+
+
+@dataclass(frozen=True, slots=True)
+class StraightRod:
+    """w: leading eigenvalue in 1/tau2, Im w >= 0; error: its error estimate; both NaN where it is not known.
+
+    message: why it is not known.
+    """
+
+    w: complex
+    error: float
+    message: str = ""
+
+    @property
+    def stable(self) -> bool | None:
+        """Whether all small motions decay; None where the error leaves this open."""
+        margin = max(ERRORS_FROM_AXIS * self.error, ON_THE_AXIS * abs(self.w))
+        return self.w.real < 0 if abs(self.w.real) > margin else None  # NaN exceeds nothing
+
+    def growth_rate(self, otherwise: float) -> float:
+        """Of the leading mode, 1/tau2: 0 where its sign is open, another value where it is not known."""
+        if isnan(self.error):
+            return otherwise
+        return 0.0 if self.stable is None else self.w.real
+
+    @property
+    def doubt(self) -> str:
+        """Why a rod whose motion decays is not called straight; empty where it may be."""
+        if self.stable:
+            return ""
+        if isnan(self.error):
+            return f"whether the straight rod is stable is not known: {self.message}"
+        rate = f"the straight rod's growth rate is {self.w.real:.2g} +- {self.error:.0e}"
+        if self.stable is None:
+            return f"{rate}, so whether it stays straight is not decided"
+        return f"{rate}, so it leaves a straight state to which its motion on a mesh comes"
+
+
+def straight_rod(rod: Rod, near: complex | None = None) -> StraightRod:
+    """The leading eigenvalue of a rod with its error; near: that of a rod near by, which is followed."""
+    followed = None if near is None else followed_leader(rod, near, SPECTRUM.accuracy)
+    if followed is not None:
+        return StraightRod(followed, root_error(followed, rod.coefficients)[0])
+    found = solve_spectrum(rod, SPECTRUM)
+    if not len(found.eigenvalues) or isnan(found.error_estimate[0]):
+        return StraightRod(complex(nan, nan), nan, found.message)
+    w = complex(found.eigenvalues[0])
+    return StraightRod(complex(w.real, abs(w.imag)), float(found.error_estimate[0]))

@@ -1,0 +1,139 @@
+"""The errors that cycles of branches state, against finer meshes at the stored value of the parameter.
+
+The rods are those whose branches once lay outside their errors, and random ones in and out of every limit.
+The suite takes a few of these, RODSWEEP_RODS as many as it says (`make survey`: 300).
+"""
+
+import os
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import islice
+from math import ceil, inf
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from rodsweep.determinant.parameter_path import Path
+from rodsweep.model.rod import Rod
+from rodsweep.solve.branch.arc import ArcPoint, due, next_point, settled
+from rodsweep.solve.branch.beginning import beginning, hopf_point
+from rodsweep.solve.branch.branch_curve import BranchPoint
+from rodsweep.solve.changes.along_path import pair_crossings
+from rodsweep.solve.cycle.measures import CyclePath
+from rodsweep.solve.cycle.newton import linearised, multipliers_of, newton
+from rodsweep.solve.cycle.orbit_mesh import mesh_of
+from rodsweep.solve.point import Unsolvable
+
+RODS, BATCH = int(os.environ.get("RODSWEEP_RODS", "4")), 2
+MOST_CYCLES, EACH = 40, 4
+"""Cycles of a branch that are followed, and of how many one is compared."""
+LARGEST_MESH = 6e7
+"""Cost of a mesh, in its own unit, beyond which a branch is left: its cycles take seconds each."""
+STEEP = 100.0
+"""|(F/y) dy/dF| up to which all errors are promised to be within the accuracy."""
+ROUNDING = 1e-11
+"""Relative error of the reference."""
+
+
+class Case(NamedTuple):
+    """A rod whose first branch is followed in F up to a force, and the accuracy."""
+
+    k1: float
+    k2: float
+    gamma3: float
+    gamma1: float
+    stop: float
+    accuracy: float
+
+
+CASES = {
+    "soft in shear": Case(70.66930650719088, 7.475835067356657, 2.865170033984985e-4, 1.0, 30.0, 1e-6),
+    "soft in shear, without drag, to 1e-4": Case(69.1488759661356, 10.400752159399405, 0.0, 1.0, 40.0, 1e-4),
+    "soft in shear, without drag": Case(69.1488759661356, 10.400752159399405, 0.0, 1.0, 40.0, 1e-7),
+    "errors that grow along the branch": Case(
+        3166.00394470897, 10.7616966732189, 1.45290872997025e-05, 1.0, 16.0, 1e-4
+    ),
+    "Fig. 2c, through its fold": Case(200.0, 1e4, 1e-4, 1.0, 199.9, 1e-7),
+    "a fold close to the Hopf point": Case(150.0, 1e4, 1e-4, 1.0, 110.0, 1e-6),
+    "filament": Case(inf, inf, 0.0, 1.0, 80.0, 1e-6),
+    "multipliers of 1e8": Case(1012.3, 21.16, 5.9886e-2, 4.72, 68.0, 1e-6),
+}
+
+
+def random_case(index: int) -> Case:
+    """The case of that number, whatever others are asked for."""
+    random = np.random.default_rng([30, index])
+    k1 = inf if random.random() < 0.12 else 10 ** random.uniform(1.7, 5)
+    k2 = inf if random.random() < 0.12 else 10 ** random.uniform(0.6, 5)
+    gamma3 = 0.0 if random.random() < 0.1 else 10 ** random.uniform(-6, 0.3)
+    gamma1 = 10 ** random.uniform(np.log10(0.02), 2) if random.random() < 0.6 else 1.0
+    accuracy = float(random.choice([1e-4, 1e-5, 1e-6, 1e-7, 1e-8]))
+    return Case(k1, k2, gamma3, gamma1, min(random.uniform(30, 130), 0.97 * k1), accuracy)
+
+
+def cycles_of(case: Case) -> Iterator[ArcPoint]:
+    """The cycles of the first branch, with the errors that it states, as far as MOST_CYCLES."""
+    rod = Rod(0.0, case.k1, case.k2, case.gamma3)
+    crossings = pair_crossings(Path(rod, "F"), 0.0, case.stop).crossings
+    if not crossings:
+        return
+    here = last = beginning(hopf_point(rod, case.gamma1, "F", crossings[0]), case.accuracy)
+    yield last
+    waiting: list[ArcPoint] = []
+    for _ in range(MOST_CYCLES):
+        try:
+            here = next_point(here, case.accuracy)
+        except Unsolvable:
+            return
+        outside = not 0 < here.at < case.stop or here.moment * last.moment < 0
+        if outside or mesh_of(here.orbit).cost > LARGEST_MESH:
+            return
+        waiting.append(here)
+        if due(here):
+            yield from (points := settled(last, waiting, case.accuracy, None))
+            here = last = points[-1]
+            waiting = []
+
+
+def broken_promises(case: Case) -> list[str]:
+    """What of the cycles of a case is further off than it says, or than the accuracy."""
+    wrong = []
+    for point in islice(cycles_of(case), 0, None, EACH):
+        stored, mesh = BranchPoint.of(point, case.accuracy), mesh_of(point.orbit)
+        longer = ceil(1.7 * mesh.intervals) + 1
+        fine = replace(mesh, order=mesh.order + 6, intervals=longer, stages=min(mesh.stages + 1, 6))
+        exact = linearised(newton(fine.carry(point.orbit), 1e-11).orbit)
+        extrema, slope = CyclePath(exact.orbit).extrema, point.calibration.slope
+        y, multipliers = extrema["tip_y_max"], multipliers_of(exact)[0]
+        others = max(abs(getattr(stored.measures, name) - value) for name, value in extrema.items())
+        errors = stored.errors
+        off = {
+            "period": (abs(stored.measures.period / exact.orbit.period - 1), errors.period_error),
+            "y": (abs(stored.measures.tip_y_max / y - 1), errors.amplitude_error),
+            "others": (others / abs(y), errors.extrema_error),
+            "multiplier": (abs(stored.multiplier - abs(multipliers[0])), errors.multiplier_error),
+        }
+        rounding = ROUNDING * max(1.0, slope)
+        wrong += [f"{name} at {stored.at!r}: {a} > {b}" for name, (a, b) in off.items() if a > b + rounding]
+        if stored.at_error > case.accuracy or (slope <= STEEP and errors.largest > case.accuracy):
+            wrong.append(f"errors at {stored.at!r}: {stored.at_error}, {errors}, slope {slope}")
+    return wrong
+
+
+@pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
+def test_cycles_of_a_branch_are_as_near_to_the_true_ones_at_their_force_as_they_say(case):
+    assert broken_promises(case) == []
+
+
+@pytest.mark.parametrize("first", range(0, RODS, BATCH))
+def test_branches_of_random_rods_keep_their_promises(first):
+    wrong = {index: broken_promises(random_case(index)) for index in range(first, min(first + BATCH, RODS))}
+    assert not any(wrong.values()), wrong
+
+
+def test_branch_is_exercised_where_it_is_steep_and_where_it_is_not():
+    """The fold and the Hopf point of Fig. 2c's branch are steep; the promise there is another one."""
+    slopes = [point.calibration.slope for point in cycles_of(CASES["a fold close to the Hopf point"])]
+    assert min(slopes) < 2
+    assert max(slopes) > STEEP
