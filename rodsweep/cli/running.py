@@ -95,11 +95,8 @@ class _Run:
         if self.team.first:
             points, shard = self.job.points.count, f"; shard {self.shard}" if self.shard.of > 1 else ""
             kept = f", {points - total(missing)} kept" if points > total(missing) else ""
-            kept += (
-                ", then curves through all"
-                if self.joint and self._lacks_curves(total(missing) - count)
-                else ""
-            )
+            if self.joint and self._lacks_curves(total(missing) - count):
+                kept += ", then curves through all"
             self._say(f"{self.output}: {count} of {counted(points, 'point')} to do{kept}{shard}")
         contributions: list[Contribution] = []
         if count:
