@@ -4,6 +4,7 @@ import inspect
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 
@@ -446,3 +447,38 @@ def test_what_is_no_result_is_not_opened(tmp_path):
         rs.open(tmp_path / "x.nc")
     with pytest.raises(rs.InputError, match="is not a whole rodsweep result file"):
         rs.open(tmp_path / "x.h5")
+
+
+@pytest.mark.parametrize("progress", [None, False, True])
+def test_a_long_solve_is_shown_where_it_is_asked_for_or_a_terminal_is(progress, monkeypatch, capsys):
+    """The display is due at once; standard error is no terminal here."""
+    monkeypatch.setattr("rodsweep.sweep.progress.FIRST_SECONDS", 0.0)
+    monkeypatch.setattr("rodsweep.sweep.progress.BAR_SECONDS", 0.0)
+    monkeypatch.setattr("rodsweep.sweep.listener.PLACE_SECONDS", 0.0)
+    asked = {} if progress is None else {"progress": progress}
+    rs.Rod(k1=1e4, k2=1e4, gamma3=1e-4).branch(stop=40, accuracy=1e-4, **asked)
+    said = capsys.readouterr().err
+    assert bool(said) == bool(progress)
+    assert ("branch 1: F = " in said) == bool(progress)
+
+
+def test_progress_is_true_or_false():
+    with pytest.raises(rs.InputError, match="progress = 3 is not allowed; it should be True, False or None"):
+        rs.Rod(k1=1e4, k2=1e4, gamma3=1e-4).thresholds(progress=3)
+
+
+def test_ctrl_c_on_a_branch_is_a_keyboard_interrupt_and_the_next_solve_is_right(monkeypatch):
+    rod = rs.Rod(k1=1e4, k2=1e4, gamma3=1e-4)
+    alone = rod.branch(stop=40, accuracy=1e-4)
+
+    def interrupt(self, text):
+        if "cycles" in text():
+            signal.raise_signal(signal.SIGINT)
+
+    with monkeypatch.context() as patch:
+        patch.setattr("rodsweep.sweep.listener.RankListener.__call__", interrupt)
+        with pytest.raises(KeyboardInterrupt):
+            rod.branch(stop=40, accuracy=1e-4)
+    assert (
+        rod.branch(stop=40, accuracy=1e-4).data.drop_vars("seconds").equals(alone.data.drop_vars("seconds"))
+    )

@@ -91,7 +91,10 @@ def test_curves_are_stopped_said_to_be_missing_and_resumed(whole, units, ranks, 
     status, out = run_halted(whole, name, units, ranks, how)
     if how != signal.SIGKILL:
         assert status == 75
-        assert f"stopped by {how.name}; 2 points kept, the curves are missing, {units} halves" in out
+        assert (
+            f"stopped by {how.name}; 2 points kept, the curves are missing, {units} of their halves kept"
+            in out
+        )
     shown = " ".join(whole("show", name).stdout.split())
     assert "all points are there; the curves through them are missing" in shown
     assert "curves are missing" in whole("plot", name, "-o", "c.png").stdout

@@ -6,6 +6,8 @@ A few kills here; RODSWEEP_KILLS=N asks for N on each task (`make stress`).
 import os
 import random
 import signal
+import subprocess
+import time
 from contextlib import suppress
 
 import h5py
@@ -41,6 +43,17 @@ task: branch
 parameters: {k1: [100, 150], k2: 1.0e4, gamma3: [1.0e-5, 1.0e-4, 1.0e-3]}
 branch: {stop: 120, cycles: 100, special: 8}
 accuracy: 1.0e-4
+"""
+DIAGRAM = """
+task: phase_diagram
+parameters: {F: {start: 60, stop: 110, num: 11}, k1: [149.5, 150.5, 152], k2: 1.0e4, gamma3: 1.0e-4}
+phase_diagram: {cycles: true}
+"""
+LONG_BRANCHES = """
+task: branch
+parameters: {k1: [200, 1143.4], k2: 16.497, gamma3: 2.6e-4}
+branch: {stop: 90}
+accuracy: 1.0e-5
 """
 FAULTS = ("kill a rank", "kill all", "kill the launcher", "SIGTERM to a rank", "SIGUSR1 to the launcher")
 
@@ -131,3 +144,37 @@ def test_run_killed_at_random_ends_in_the_file_of_an_undisturbed_one(command, co
     assert [p.name for p in command.directory.glob("*.journal")] == []
     with h5py.File(path) as file:
         assert "finished" in file.attrs
+
+
+@pytest.mark.parametrize("config", [DIAGRAM, LONG_BRANCHES], ids=["diagram with cycles", "long branches"])
+def test_run_struck_within_points_and_curves_ends_in_the_file_of_an_undisturbed_one(command, config):
+    """At random instants of the time that a whole run takes: within rows, branches and curves of cycles."""
+    random.seed(config)
+    command.write("c.yaml", config)
+    path = command.directory / "c.h5"
+    began = time.monotonic()
+    assert command.afresh("run", "c.yaml", "-o", "whole.h5").returncode == 0
+    whole, struck, told = time.monotonic() - began, 0, []
+    while struck < KILLS:
+        ranks, fault = random.randint(1, 2), random.choice(FAULTS)
+        process = command.started("run", "c.yaml", ranks=ranks)
+        with suppress(subprocess.TimeoutExpired):
+            process.wait(random.uniform(0, whole))
+        if process.poll() is None:
+            strike(process, command.directory, fault)
+            struck += 1
+        _, said = process.communicate(timeout=PATIENCE)
+        told.append((ranks, fault, process.returncode))
+        wait_for_end(command.directory)
+        assert "Traceback" not in said, told
+        if path.exists():
+            with h5py.File(path) as file:
+                finished = "finished" in file.attrs
+            assert ("missing" in command("show", "c.h5").stdout) != finished, told
+        if process.returncode == 0:
+            assert same(content(path), content(command.directory / "whole.h5")), told
+            path.unlink()
+    again = command("run", "c.yaml")
+    assert again.returncode == 0, (again.stderr, told)
+    assert same(content(path), content(command.directory / "whole.h5")), told
+    assert [p.name for p in command.directory.glob("*.journal")] == []

@@ -27,7 +27,7 @@ NOUN = "halves of curves"
 
 
 @dataclass(frozen=True, slots=True)
-class Joint:
+class JointDue:
     """What all points together are to give: whether the file lacks it, and its units, if it has some."""
 
     due: bool
@@ -70,6 +70,7 @@ class JointWork:
         if self.team.first:
             self.results = self.kept.read()
             todo = Pool(units, self.results, self.team.size)
+        self._exchange_starts(units)
         shown = Teller(None, f"{title}, curves", NOUN) if self.team.first and title else Silent()
         loop = Loop(
             solve=lambda unit: self._solved(units, unit),
@@ -82,6 +83,12 @@ class JointWork:
             return sweep(self.team, todo, loop, shown, self.stop)
         finally:
             shown.close()
+
+    def _exchange_starts(self, units: Any) -> None:
+        """Gives every rank what any has kept of where the first units start: none computes it anew."""
+        wanted = self.team.on_first(lambda: units.wanted(self.results))
+        for starts in self.team.exchange(self.together.starts(units, wanted)):
+            self.together.take(starts)
 
     def _solved(self, units: Any, unit: int) -> Iterable[tuple[int, Arrays]]:
         try:

@@ -28,9 +28,10 @@ from ..sweep.shards import Shard
 from ..sweep.stop import StopRequest
 from ..sweep.stretches import StretchSolver, Together
 from ..sweep.team import Team
+from .closing import RunEnd
 from .contribution import FAILURES_TOLD, Contribution, failures_of, history_of, of_the_last_run
 from .job import Job, make_job
-from .joint import Joint, JointWork
+from .joint import JointDue, JointWork
 from .planning import plan_of
 from .unforeseen import Log, guarded
 from .wording import counted
@@ -116,7 +117,7 @@ class _Run:
         """Whether the file is not finished although no point is missing; on the first rank."""
         return not missing and "finished" not in self.store.attributes()
 
-    def _fold(self, count: int, contributions: list[Contribution]) -> Joint:
+    def _fold(self, count: int, contributions: list[Contribution]) -> JointDue:
         """Folds the points into the file; returns what all points together are still to give."""
         self.seconds = time.monotonic() - self.began
         if count:
@@ -124,12 +125,12 @@ class _Run:
             started = {"started": self.started, "stopped": self.stop.name}
             self.store.fold(of_the_last_run(self.plan) | history | started)
         if not self._lacks_curves(total(self.store.missing())):
-            return Joint(False)
+            return JointDue(False)
         if not self.joint:
-            return Joint(True)
+            return JointDue(True)
         if not count:
             self._note_kernels()
-        return Joint(True, self.joint.together.units(read_view(self.output)))
+        return JointDue(True, self.joint.together.units(read_view(self.output)))
 
     def _say(self, text: str, amiss: bool = False) -> None:
         """Tells the user, who may want to hear only what is amiss."""
@@ -238,7 +239,7 @@ class _Run:
             return f"chain {unit + 1} of {self.solver.chained[0].count}"
         return f"point {unit + 1} of {self.job.points.count}"
 
-    def _finish_file(self, joint: Joint) -> bool:
+    def _finish_file(self, joint: JointDue) -> bool:
         """Puts what all points together give into the file; whether that is still missing."""
         if not joint.due:
             return False
@@ -251,11 +252,20 @@ class _Run:
             self.joint.kept.drop()
         return False
 
+    def _say_failures(self, contributions: list[Contribution], exceptions: int) -> None:
+        """Says which points failed, the first of them, and where tracebacks are."""
+        told = [failure for contribution in contributions for failure in contribution.failures]
+        for failure in told[:FAILURES_TOLD]:
+            click.echo(f"  {failure}")
+        if exceptions:
+            raised = counted(exceptions, "unforeseen exception")
+            click.echo(f"  {raised}: a bug, please report it with {self.log.path}, which has the traceback")
+
     def _finish(
         self,
         count: int,
         contributions: list[Contribution],
-        joint: Joint,
+        joint: JointDue,
         shares: list[Share],
         exceptions: int,
     ) -> int:
@@ -267,41 +277,27 @@ class _Run:
         self.store.close()
         left = self._units(missing)[1]
         part = f"shard {self.shard} of {self.output}" if missing else f"{self.output}"
-        if count:
-            points = count - left
-            each = 1e3 * self.seconds * self.team.size / max(points, 1)
-            pace = f" ({each:.3g} ms a point and rank)" if points else ""
-            ranks = counted(self.team.size, "rank")
-            self._say(f"{counted(points, 'point')} in {self.seconds:.2f} s on {ranks}{pace}")
-        elif not (joint.due and self.joint):
-            self._say(f"{part} is complete, nothing to do")
-        if joint.due and self.joint:
-            seconds = time.monotonic() - self.began - self.seconds
-            done = sum(share.points for share in shares)
-            followed = f"; {done} halves of curves of cycles followed" if done else ""
-            ended = "curves stopped after" if lacks_curves else "curves in"
-            self._say(f"{ended} {seconds:.2f} s on {counted(self.team.size, 'rank')}{followed}")
+        ending = RunEnd(
+            ranks=self.team.size,
+            asked=count,
+            left=left,
+            kept=self.job.points.count - total(missing),
+            seconds=self.seconds,
+            curve_seconds=time.monotonic() - self.began - self.seconds,
+            in_the_middle=sum(contribution.share.ended for contribution in contributions),
+            followed=sum(share.points for share in shares) if joint.due and self.joint else None,
+            halves=len(self.joint.results) if self.joint and lacks_curves else None,
+        )
+        for sentence in ending.times() or [f"{part} is complete, nothing to do"]:
+            self._say(sentence)
         expected = {status.name for status in self.solver.statuses if status.succeeded} | {"missing"}
         amiss = not set(counts) <= expected
         self._say(f"{self.output}: " + ", ".join(f"{n} {name}" for name, n in counts.items()), amiss)
-        told = [failure for contribution in contributions for failure in contribution.failures]
-        for failure in told[:FAILURES_TOLD]:
-            click.echo(f"  {failure}")
-        if exceptions:
-            raised = counted(exceptions, "unforeseen exception")
-            click.echo(f"  {raised}: a bug, please report it with {self.log.path}, which has the traceback")
+        self._say_failures(contributions, exceptions)
         if left or lacks_curves:
-            kept = f"{counted(self.job.points.count - total(missing), 'point')} kept"
-            if lacks_curves:
-                kept += (
-                    f", the curves are missing, {len(self.joint.results) if self.joint else 0} halves kept"
-                )
-            elif in_hand := sum(contribution.share.ended for contribution in contributions):
-                kept += f", {in_hand} left in the middle and solved again"
-            ended = f"stopped by {self.stop.name}" if self.stop else "not complete"
-            click.echo(f"{ended}; {kept}, the same command continues")
+            how = f"stopped by {self.stop.name}" if self.stop else "not complete"
+            click.echo(f"{how}; {ending.kept_words()}, the same command continues")
             return CONTINUE
-        if not amiss:
-            return 0
-        click.echo(f"  `rodsweep show {self.output}` says what each status means")
-        return 1
+        if amiss:
+            click.echo(f"  `rodsweep show {self.output}` says what each status means")
+        return int(amiss)

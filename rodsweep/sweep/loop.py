@@ -30,7 +30,7 @@ class Solve(Protocol):
     def __call__(self, unit: int, /) -> Iterable[tuple[Indices, Any]]: ...
 
 
-class Shown(Protocol):
+class ProgressSink(Protocol):
     """What shows the first rank's user how far all are."""
 
     def __call__(self, done: int) -> None:
@@ -69,7 +69,7 @@ class Loop:
     name: Callable[[int], str] = lambda unit: ""
 
 
-def sweep(team: Team, todo: Handout, loop: Loop, shown: Shown, stop: StopRequest) -> Share:
+def sweep(team: Team, todo: Handout, loop: Loop, shown: ProgressSink, stop: StopRequest) -> Share:
     """Solves every unit of `todo`, which only the first rank knows; returns when all ranks are done.
 
     What is raised ends all ranks. Once any rank has been asked to stop, each ends with the unit or the point
@@ -90,7 +90,7 @@ class _Rank:
         team: Team,
         claims: FirstRankClaims | OtherRankClaims,
         loop: Loop,
-        shown: Shown,
+        shown: ProgressSink,
         stop: StopRequest,
     ):
         self.team, self.claims, self.loop, self.shown, self.stop = team, claims, loop, shown, stop

@@ -75,6 +75,11 @@ class Team:
         self.meet()
         return self.comm.gather(value)
 
+    def exchange(self, value: T) -> list[T]:
+        """The values of all ranks on every rank."""
+        self.meet()
+        return self.comm.allgather(value)
+
     @contextmanager
     def together(self) -> Iterator[None]:
         """What fails in here on one rank ends all ranks with its message and exit status: they would wait.

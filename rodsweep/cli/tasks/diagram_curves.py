@@ -52,6 +52,15 @@ class DiagramCurves:
             self.special[number] = row.special
         return row
 
+    def starts(self, units: "SpecialBoundaries", wanted: Sequence[int]) -> "dict[int, Any]":
+        """What this rank has kept of the rows from which units start, by the row's number."""
+        rows = {units.row_of(unit) for unit in wanted}
+        return {row: self.special[row] for row in rows if row in self.special}
+
+    def take(self, starts: "Mapping[int, Any]") -> None:
+        """Keeps what another rank has of rows."""
+        self.special.update(starts)
+
     def units(self, view: View) -> "SpecialBoundaries | None":
         """The curves of cycles as units of work, from a view with all rows; None where there are none."""
         from ...solve.branch.special_boundaries import SpecialBoundaries
@@ -64,11 +73,11 @@ class DiagramCurves:
         return SpecialBoundaries(*plane.axes, special)
 
     def solve(self, units: "SpecialBoundaries", unit: int) -> dict[str, np.ndarray]:
-        """The result of a unit."""
+        """The result of a unit, arrays of the shapes that `TracedHalf` has."""
         return units.solve(unit, self._special_points)
 
     def nothing(self) -> dict[str, np.ndarray]:
-        """The result of a unit that finds no curve."""
+        """The result of a unit that finds no curve, arrays of no length along their first shape."""
         from ...solve.branch.special_boundaries import TracedHalf
 
         return TracedHalf(None).arrays()
@@ -76,7 +85,7 @@ class DiagramCurves:
     def variables(
         self, view: View, units: "SpecialBoundaries | None", results: Mapping[int, dict[str, np.ndarray]]
     ) -> list[Filled]:
-        """All curves as variables of the file, with the results of all units that were wanted."""
+        """All curves as variables of the file. results: of all units that were wanted, of their shapes."""
         plane = self.plane
         if plane is None:
             return []

@@ -38,6 +38,12 @@ class AllPoints(Protocol):
     def units(self, view: View) -> Any:
         """Its work in `Units`, from the file with all points; None where there is none in units."""
 
+    def starts(self, units: Any, wanted: Sequence[int]) -> dict[int, Any]:
+        """What this rank has that spares others the beginning of units."""
+
+    def take(self, starts: Mapping[int, Any]) -> None:
+        """Takes what another rank has."""
+
     def solve(self, units: Any, unit: int) -> Arrays:
         """The result of a unit."""
 

@@ -130,6 +130,10 @@ class SpecialBoundaries:
         course = CurveCourse(one.kind, self.line, self.rows)
         return _traced(course, one, located(one.number), self.special, -1.0 if behind else 1.0).arrays()
 
+    def row_of(self, unit: int) -> int:
+        """The number of the row on which a unit starts."""
+        return self.special[unit // 2].number
+
     def where(self, unit: int) -> str:
         """Which half of which curve a unit is, in words."""
         place, behind = divmod(unit, 2)
