@@ -173,12 +173,13 @@ are stored as numbers, with the attributes `flag_values` and `flag_meanings`.
 
 ### The seal
 
-The attribute `seal` is JSON: a digest (16 digits of SHA-256) of every variable, with its type, shape, dimensions
-and attributes, and of every attribute of the file. Whoever opens a result (`show`, `plot`, `export`, `run`,
-`merge`, `snapshot`, `rs.open`) compares it first, and refuses in one sentence what is not as rodsweep wrote it:
-a changed number, axis, unit or config; links of any kind, and variables whose numbers lie in another file; what
-rodsweep did not write. Names of variables and attributes that begin with `user_` are yours: they are left alone,
-kept when a run goes on, and read by `rs.open` only. Take the change back, and the file is whole again.
+The attribute `seal` is JSON: a digest (16 digits of SHA-256) of every variable, with its type, shape,
+dimensions and attributes, and of every attribute of the file. Whoever opens a result (`show`, `plot`,
+`export`, `run`, `merge`, `snapshot`, `rs.open`) compares it first, and refuses in one sentence what is
+not as rodsweep wrote it: a changed number, axis, unit or config; links of any kind, and variables whose
+numbers lie in another file; what rodsweep did not write. Names of variables and attributes that begin
+with `user_` are yours: they are left alone, kept when a run goes on, and read by `rs.open` only. Take the
+change back, and the file is whole again.
 
 Behind HDF5's own end lies a checksum of HDF5's structures, which other programs do not see: they are compared
 before HDF5 reads them. A program that opens the file for writing takes this checksum off, which is no fault.
@@ -189,8 +190,8 @@ VERSIONS = """
 The attribute `format` is a whole number, now 5, that grows when a variable is added or changes its meaning.
 
 - A file of a higher format is refused in one sentence that names the version which wrote it.
-- A file of a lower format, or without the attribute, has no seal, and is refused in one sentence that names the
-  version and the commit which wrote it: that version reads it.
+- A file of a lower format, or without the attribute, is refused in one sentence that names the version and
+  the commit which wrote it: that version reads it.
 
 HDF5, netCDF and xarray read files of every format.
 """
