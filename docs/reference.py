@@ -111,7 +111,8 @@ ATTRIBUTES = {
     "config": "the text of the config, with what `--set` changed at its end",
     "config_resolved": "the config with all defaults, as JSON",
     "snapshot": "when `rodsweep snapshot` wrote the file; empty once a run has continued it",
-    "format": "4; see [which version reads what](#which-version-reads-what)",
+    "format": "5; see [which version reads what](#which-version-reads-what)",
+    "seal": "a digest of every variable and attribute; see [the seal](#the-seal)",
     "fingerprint": "of what the config means, and of all points: what a continued file shares",
     "time_unit": "`tau2 = gamma2 L^4/k3`",
     "gamma1": "where a spectrum or a phase diagram is given it",
@@ -167,19 +168,30 @@ FILE = """
 ## The result file
 
 netCDF-4-compatible HDF5. Below, `...` stands for the dimensions of the points: the parameters of the task in
-their order, or `point` for a list of points, in whose file each parameter is a variable along `point`. The
-file ends with checksums of its bytes behind HDF5's own end, where other programs do not see them. Words are
-stored as numbers, with the attributes `flag_values` and `flag_meanings`.
+their order, or `point` for a list of points, in whose file each parameter is a variable along `point`. Words
+are stored as numbers, with the attributes `flag_values` and `flag_meanings`.
+
+### The seal
+
+The attribute `seal` is JSON: a digest (16 digits of SHA-256) of every variable, with its type, shape,
+dimensions and attributes, and of every attribute of the file. Whoever opens a result (`show`, `plot`,
+`export`, `run`, `merge`, `snapshot`, `rs.open`) compares it first, and refuses in one sentence what is
+not as rodsweep wrote it: a changed number, axis, unit or config; links of any kind, and variables whose
+numbers lie in another file; what rodsweep did not write. Names of variables and attributes that begin
+with `user_` are yours: they are left alone, kept when a run goes on, and read by `rs.open` only. Take the
+change back, and the file is whole again.
+
+Behind HDF5's own end lies a checksum of HDF5's structures, which other programs do not see: they are compared
+before HDF5 reads them. A program that opens the file for writing takes this checksum off, which is no fault.
 """
 VERSIONS = """
 ### Which version reads what
 
-The attribute `format` is a whole number, now 4, that grows when a variable is added or changes its meaning.
+The attribute `format` is a whole number, now 5, that grows when a variable is added or changes its meaning.
 
 - A file of a higher format is refused in one sentence that names the version which wrote it.
-- A file of a lower format, or without the attribute, is read, continued and merged like others where it has
-  the variables of today; else one sentence names the version and the commit that wrote it. `show`, `plot`,
-  `export` and Python read a file of format 3 without `special_amplitude_coefficient`, too.
+- A file of a lower format, or without the attribute, is refused in one sentence that names the version and
+  the commit which wrote it: that version reads it.
 
 HDF5, netCDF and xarray read files of every format.
 """

@@ -1,5 +1,6 @@
 """Input that is neither computed nor printed as it is: masked numbers, control characters, loops of links."""
 
+import json
 import os
 import warnings
 
@@ -85,8 +86,36 @@ def test_control_characters_of_a_file_do_not_reach_the_terminal(command):
             "ok", "o\x1b[31mk"
         )
         file["growth_rate"].attrs["units"] = "\x1b[31m"
-    command("show", "c.h5")
+    broken = command("show", "c.h5")
     seal(path)
+    for words in (("show", "c.h5"), ("show", "c.h5", "--statuses"), ("export", "c.h5"), ("run", "c.yaml")):
+        done = command(*words)
+        assert done.returncode == 0, done.stderr
+        assert "\x1b" not in done.stdout + done.stderr + broken.stdout + broken.stderr
+        assert "\u202e" not in done.stdout
+    assert "\x1b" not in (command.directory / "c.csv").read_text()
+    data = rs.open(path)
+    texts = [data.attrs, *(variable.attrs for variable in data.variables.values())]
+    assert not any("\x1b" in str(value) for attributes in texts for value in attributes.values())
+    assert json.loads(data.attrs["config_resolved"])["task"] == "spectrum"
+
+
+def test_lines_of_a_file_that_is_no_list_of_points_are_not_printed(command):
+    secret = command.write("shadow", "root:$y$secret,k1:19000:0:::\n")
+    command.write("c.yaml", f"task: spectrum\nparameters: {{points: {secret}}}\n")
+    refused = command("check", "c.yaml")
+    assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
+    assert "the first line names no parameter; it must name F, k1, k2 and gamma3" in refused.stderr
+    assert "secret" not in refused.stderr
+    secret.write_text("F,k1,k2,gama3\n1,2,3,4\n")
+    assert "the header is 'F,k1,k2,gama3'" in command("check", "c.yaml").stderr
+
+
+def test_link_that_leads_to_itself_is_left_alone(command):
+    command.write("c.yaml", SPECTRA)
+    for name, to in (("a.h5", "b.h5"), ("b.h5", "a.h5"), ("c.csv", "c.csv")):
+        (command.directory / name).symlink_to(to)
+    assert command("run", "c.yaml").returncode == 0
     lines = [
         ("run", "c.yaml", "-o", "a.h5"),
         ("merge", "a.h5", "c.h5"),
@@ -129,12 +158,12 @@ def test_large_grid_may_be_larger_than_the_memory_but_not_its_axes(command, monk
     assert make_job(path, sets).points.count == 10**9
     checked = command("check", "c.yaml", *(word for given in sets for word in ("--set", given)))
     assert checked.returncode == 0, checked.stderr
+    axis = rs.linspace(100, 1000, 1000)
+    with pytest.raises(rs.InputError, match="memory of this machine; `rodsweep run` writes them into a file"):
+        rs.sweep("spectrum", F=rs.linspace(0, 9, 1000), k1=axis, k2=axis, gamma3=rs.linspace(0, 1, 1000))
     monkeypatch.setattr(job, "memory", lambda: 10**7)
     with pytest.raises(rs.InputError, match="GB of memory of this machine; use fewer values"):
         make_job(path, ("parameters.F={start: 0, stop: 9, num: 1000000}",))
-    axis = rs.linspace(100, 1000, 1000)
-    with pytest.raises(rs.InputError, match="memory of this machine; `rodsweep run` writes them into a file"):
-        rs.sweep("spectrum", F=rs.linspace(0, 9, 1000), k1=axis, k2=axis, gamma3=rs.linspace(0, 1, 10**6))
 
 
 def test_deleted_working_directory_is_told_in_a_sentence(command):

@@ -12,6 +12,7 @@ from ..config.schema import Config
 from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.arm import SlenderArm
+from ..solve.exclusive import signals_held
 from .axes import plain
 
 Tree = dict[str, Any]
@@ -57,6 +58,7 @@ def _write_out_arm(task: str, tree: Tree) -> None:
         parameters["arm"] = {name: plain(value) for name, value in given.items() if value is not None}
 
 
+@signals_held
 def job_from(tree: Tree) -> Job:
     """The job of a tree; InputError, in the words of the command line, for anything amiss."""
     config = validated(tree)

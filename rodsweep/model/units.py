@@ -68,9 +68,9 @@ def _number(name: str, given: Any, unit: str, allowed: str) -> float:
             raise TypeError
         return float(given)
     except (TypeError, ValueError, OverflowError):
+        told = " ".join(str(given).split())
         raise InputError(
-            f"{name} = {' '.join(str(given).split()):.60} is not one quantity; "
-            f"write {allowed}, or one number in {unit}"
+            f"{name} = {told:.60} is not one quantity; write {allowed}, or one number in {unit}"
         ) from None
 
 

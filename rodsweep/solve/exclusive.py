@@ -2,7 +2,7 @@
 
 PETSc, the solvers that are kept from point to point, HDF5 and matplotlib belong to one thread at a time. And
 compiled code calls Python back when it makes a NamedTuple of its results: an exception that a signal handler
-raises there, as Ctrl-C does, is a segmentation fault.
+raises there, as Ctrl-C does, is a segmentation fault; pydantic makes another exception of it.
 """
 
 import inspect
@@ -33,8 +33,19 @@ def one_at_a_time(function: Callable[P, R]) -> Callable[P, R]:
     return call
 
 
+def signals_held(function: Callable[P, R]) -> Callable[P, R]:
+    """`function`, where signal handlers run at the safe places that solvers report, or at its end."""
+
+    @wraps(function)
+    def call(*values: P.args, **named: P.kwargs) -> R:
+        with HeldSignals() as held, heard_by(held.hear):
+            return function(*values, **named)
+
+    return call
+
+
 def solving(function: Callable[P, R]) -> Callable[P, R]:
-    """`function`, one at a time, where signal handlers run at the safe places that solvers report.
+    """`function`, one at a time and with signals held.
 
     Kept solvers are dropped after an exception: it may have come in the middle of their work.
     """
@@ -42,13 +53,12 @@ def solving(function: Callable[P, R]) -> Callable[P, R]:
     @wraps(function)
     def call(*values: P.args, **named: P.kwargs) -> R:
         try:
-            with HeldSignals() as held, heard_by(held.hear):
-                return function(*values, **named)
+            return function(*values, **named)
         except BaseException:
             forget_all()
             raise
 
-    return one_at_a_time(call)
+    return one_at_a_time(signals_held(call))
 
 
 class HeldSignals:

@@ -11,8 +11,13 @@ from math import inf
 
 import pytest
 
+from rodsweep.discretization.mesh import mesh
+from rodsweep.discretization.stress_form import StressForm
+from rodsweep.model.rod import Rod
+from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.measures import CyclePath
 from rodsweep.solve.cycle.newton import multipliers_of
+from rodsweep.solve.cycle.refinement import refined_cycle
 from rodsweep.solve.cycle.status import CycleStatus
 from rodsweep.solve.point import Unsolvable
 
@@ -40,6 +45,26 @@ CASES = {
     "dragged as the rod itself": Case(9.7e5, 4.1e5, 1.0, 0.88, 2.0, 1e-7),
 }
 """Those of `random_case` whose errors were beyond their estimates or that were not found, and corners."""
+AT_FORCES = {
+    "five intervals, y agrees by luck": (
+        (17.439189883135555, 30615.672708773414, 2.2467517181714847, 4.4254609457904794e-06, 1.0),
+        1e-3,
+    ),
+    "period agrees by luck in space": (
+        (32.61637980043989, inf, 20.795771940157643, 0.00034536991742286786, 24.733605539397864),
+        1e-5,
+    ),
+    "period agrees by luck in time": (
+        (137.31119463886094, 454.90208772310126, 43862653.642129, 4.1677144454501896e-05, 62.135714861595),
+        1e-5,
+    ),
+    "multiplier agrees by luck": (
+        (9.654864273086966, 245854.90096542615, 5.785909379749388, 0.22924452257870387, 19.88691826900185),
+        1e-3,
+    ),
+}
+"""F, k1, k2, gamma3, gamma1 and accuracy of cycles whose errors were up to 4.5 times their estimates: the
+meshes of which these are made agreed by luck."""
 FOURIER = {
     "filament": (Case(inf, inf, 0.0, 1.0, 1.05, 1e-6), 21),
     "stiff without rotational drag": (Case(1.7e7, 1.3e6, 0.0, 0.94, 1.008, 1e-7), 11),
@@ -53,6 +78,15 @@ def test_true_errors_are_at_most_the_estimates_and_these_at_most_the_accuracy(ca
     found = cycle_of(case)
     assert broken_promises(found, case.accuracy) == []
     assert found.verdict(case.accuracy)[0] in (CycleStatus.cycle, CycleStatus.unstable)
+
+
+@pytest.mark.parametrize("parameter", [None, "F"])
+@pytest.mark.parametrize("point, accuracy", AT_FORCES.values(), ids=AT_FORCES.keys())
+def test_meshes_that_agree_by_luck_are_not_believed(point, accuracy, parameter):
+    *rod, gamma1 = point
+    form = StressForm(Rod(*rod), gamma1, mesh(1, 16))
+    found = refined_cycle(orbit_from_hopf(form, hopf_point_below(form.rod)), accuracy, parameter)
+    assert broken_promises(found, accuracy) == []
 
 
 @pytest.mark.parametrize("case, phases", FOURIER.values(), ids=FOURIER.keys())

@@ -125,7 +125,7 @@ def cleaned(value: Any) -> Any:
 
 def _refuse_other_format(path: Path, attributes: Mapping[str, Any]) -> None:
     """InputError for a file whose format is newer than this program knows, or older than it reads."""
-    found = int(attributes.get("format", 0))
+    found = int(np.atleast_1d(attributes.get("format", 0))[0])  # netCDF has lists of one
     version, commit = (str(attributes.get(name, "unknown")) for name in ("rodsweep_version", "git_commit"))
     writer = f"{version}, commit {commit[:12]}"
     if found > FORMAT:

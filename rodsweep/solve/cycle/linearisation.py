@@ -44,25 +44,23 @@ class Workspace:
     """
 
     def __init__(self, intervals: int, stages: int, unknowns: int) -> None:
+        for former in _latest:  # it may live on for its multipliers, and would keep a buffer that is outgrown
+            former._blocks = None
         shape = (intervals, stages, stages, unknowns, unknowns)
         if len(_memory[0]) < prod(shape):
+            _memory[0] = np.empty(0)
             _memory[0] = np.empty(prod(shape))
-        blocks = _memory[0][: prod(shape)].reshape(shape)
-        square, inverse = np.zeros((unknowns, unknowns)), np.zeros((unknowns + 1, unknowns + 1))
-        self._factors = Factors(blocks, square, inverse)
+        self._blocks: Array | None = _memory[0][: prod(shape)].reshape(shape)
+        self.propagator, self._inverse = np.zeros((unknowns,) * 2), np.zeros((unknowns + 1,) * 2)
+        """P, (n, n), which stays."""
         _latest[:] = [self]
 
     @property
     def factors(self) -> Factors:
         """The factors; raises RuntimeError once another workspace was made."""
-        if self not in _latest:
+        if self._blocks is None:
             raise RuntimeError("the factors of this matrix are overwritten: a matrix was made after it")
-        return self._factors
-
-    @property
-    def propagator(self) -> Array:
-        """P, (n, n), which stays."""
-        return self._factors.propagator
+        return Factors(self._blocks, self.propagator, self._inverse)
 
 
 class Linearisation:
@@ -103,6 +101,8 @@ KEPT_NUMBERS = 2**23
 
 def release_workspace() -> None:
     """Gives the memory of large meshes back; the matrix made last loses its factors."""
+    for last in _latest:
+        last._blocks = None
     _latest.clear()
     if len(_memory[0]) > KEPT_NUMBERS:
         _memory[0] = np.empty(0)

@@ -4,7 +4,7 @@ The motion is followed from return to return, theta of the tip rising through 0.
 tenth go to Newton's method. Slow motions about the straight rod are not waited for. Per period they grow by
 g = g0 - c a^2 at amplitude a, with the exact linear growth g0, so that a cycle lies at a*^2 = g0/c and the
 state is scaled to it; c is measured where it shows in g, which near a* may be lost in the integrator's error.
-The linear growth of the mesh, or of a rod near a limit, differs from g0: what is measured is corrected by the
+The linear growth of a rod near a limit differs from that of the limit: what is measured is corrected by the
 difference. What decays slowly is scaled down until it decays at the linear rate; what grows slowly, and the
 faster the larger it is (c < 0), is scaled up. A motion whose path is stored is never scaled, but waited for.
 
@@ -30,7 +30,7 @@ from ..point import Unsolvable
 from .from_motion import orbit_from_motion
 from .refinement import RefinedCycle, refined_cycle
 from .status import CycleStatus
-from .straight_rod import StraightRod
+from .straight_rod import StraightRod, straight_rod
 from .trace import TipTrace
 
 TRANSIENT = TimeScheme("arkimex", "4", tolerance=1e-5)
@@ -56,8 +56,8 @@ FAINT = 0.01
 NOISE, CAREFUL_NOISE = 1e-3, 1e-5
 """Growth per period that the integrator may add: 3e-4 and 8e-6 were seen."""
 WELL_SHOWN = 10.0
-"""What c must show in the growth, in units of that noise, to replace the c of a larger motion: stiff rods
-have up to five times the noise, in which c changes its sign."""
+"""What c must show in the growth, in units of that noise, to replace the c of a larger motion: a tenth of it
+is noise then. In the noise itself c changes its sign."""
 NEAR = 0.1
 """Relative distance from the predicted amplitude that is left to Newton's method."""
 MOST_JUMPS, SHRINK, LARGEST_JUMP = 60, 0.7, 4.0
@@ -154,8 +154,8 @@ class Transient:
         self.accuracy, self.most_periods = accuracy, most_periods
         self.mode, self.row = leading_mode(beam), angle_weights(beam)
         self.straight, self.linear_rate = straight, straight.growth_rate(self.mode.w.real)
-        self.excess = self.linear_rate - self.mode.w.real
-        """What the linear growth rate of the rod has more than that of the beam on its mesh."""
+        self.excess = self.linear_rate - self._rate_of_the_beam()
+        """What the linear growth rate of the rod has more than that of the beam."""
         self.faint = abs(self.linear_rate) * self.mode.period < FAINT
         careful = self.faint or traced
         self.scheme, self.noise = (CAREFUL, CAREFUL_NOISE) if careful else (TRANSIENT, NOISE)
@@ -231,6 +231,15 @@ class Transient:
     def _swings(self, z: Array) -> bool:
         """Whether more than rounding bends or shears the rod."""
         return bool(np.linalg.norm(z[self.beam.mesh.nodes :]) >= STRAIGHT_SIZE)
+
+    def _rate_of_the_beam(self) -> float:
+        """Its linear growth rate, 1/tau2, by its spectrum.
+
+        The mesh has it to 1e-10 per period; the eigenvalues of its matrix have rounding, 1e-4 for stiff rods.
+        """
+        if self.beam.rod == self.form.rod:
+            return self.linear_rate
+        return straight_rod(self.beam.rod, self.straight.w).growth_rate(self.linear_rate)
 
     def _relaxed(self, z: Array) -> Array:
         """What the start relaxes to, in a time that a stored path counts."""

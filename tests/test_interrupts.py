@@ -1,0 +1,174 @@
+"""Ctrl-C at any instant, and several threads: no crash, and afterwards the same bits as alone.
+
+RODSWEEP_INTERRUPTS says how often each task is interrupted; `make stress` does it more often.
+"""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import threading
+
+import pytest
+
+from rodsweep import watch
+from rodsweep.solve.exclusive import HeldSignals, one_at_a_time
+
+INTERRUPTS = int(os.environ.get("RODSWEEP_INTERRUPTS", "2"))
+TASKS = """
+import rodsweep as rs
+ROD = rs.Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2)
+FREE = {"k1": [1e3, 1e4], "k2": 1e2, "gamma3": 1e-2}
+ARM = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "1 Pa s", "pressure": "1 kPa"}
+TASKS = {
+    "spectrum": lambda: ROD.spectrum().data,
+    "thresholds": lambda: ROD.thresholds().data,
+    "modes": lambda: ROD.modes(nodes=9).data,
+    "criticality": lambda: ROD.criticality(F_max=60).data,
+    "cycle": lambda: ROD.cycle(accuracy=1e-3).data,
+    "branch": lambda: ROD.branch(start=20, stop=40, accuracy=1e-3).data,
+    "sweep of spectra": lambda: rs.sweep("spectrum", F=[20, 30, 40], **FREE),
+    "sweep of thresholds": lambda: rs.sweep("thresholds", **FREE),
+    "sweep of normal forms": lambda: rs.sweep("criticality", F_max=60, **FREE),
+    "sweep of cycles": lambda: rs.sweep("limit_cycle", F=[35, 40], accuracy=1e-3, **FREE),
+    "arm": lambda: repr(rs.Arm(**ARM).report()),
+    "figure": lambda: rs.plot(rs.sweep("spectrum", **(FREE | {"k1": 1e4}), F=[20, 30, 40])).image,
+    "phase diagram": lambda: rs.sweep("phase_diagram", F=[10, 20, 30, 40], **FREE),
+}
+
+def bits(task):
+    data = TASKS[task]()
+    if isinstance(data, str | bytes):
+        return data
+    return {name: data[name].values.tobytes() for name in data.data_vars if name != "seconds"}
+"""
+ALONE = f"""
+import pickle, sys
+{TASKS}
+sys.stdout.buffer.write(pickle.dumps({{task: bits(task) for task in TASKS}}))
+"""
+THREADS = f"""
+import pickle, random, sys, threading
+{TASKS}
+alone = pickle.load(sys.stdin.buffer)
+faults = []
+def work(seed):
+    try:
+        for task in random.Random(seed).sample(sorted(TASKS), len(TASKS)):
+            if bits(task) != alone[task]:
+                faults.append(task)
+    except BaseException as error:
+        faults.append(repr(error))
+threads = [threading.Thread(target=work, args=(seed,)) for seed in range(6)]
+for thread in threads:
+    thread.start()
+for thread in threads:
+    thread.join()
+print(faults)
+"""
+INTERRUPTED = f"""
+import pickle, random, signal, sys, threading, time
+{TASKS}
+alone = pickle.load(sys.stdin.buffer)
+chance, faults, came = random.Random(int(sys.argv[1])), [], 0
+
+def interrupt(delay):
+    time.sleep(delay)
+    signal.raise_signal(signal.SIGINT)
+
+for task in TASKS:
+    bits(task)
+    began = time.perf_counter()
+    bits(task)
+    seconds = time.perf_counter() - began
+    for _ in range(int(sys.argv[2])):
+        thread = threading.Thread(target=interrupt, args=(chance.random() * seconds,))
+        try:
+            thread.start()
+            bits(task)
+            thread.join()
+            time.sleep(0.001)
+        except KeyboardInterrupt:
+            came += 1
+        except Exception as error:
+            faults.append(repr(error))
+        thread.join()
+        if bits(task) != alone[task]:
+            faults.append(task)
+print(came, faults)
+"""
+
+
+def run(code, *words, given=b""):
+    done = subprocess.run([sys.executable, "-c", code, *words], input=given, capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr.decode()
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def alone():
+    """The bits of every task, each solved once in one thread, pickled."""
+    return run(ALONE)
+
+
+def test_six_threads_give_the_bits_of_one(alone):
+    assert run(THREADS, given=alone) == b"[]\n"
+
+
+def test_interrupts_at_random_instants_leave_the_same_bits(alone):
+    seed = random.randrange(10**9)
+    came, faults = run(INTERRUPTED, str(seed), str(INTERRUPTS), given=alone).split(maxsplit=1)
+    assert faults == b"[]\n", f"seed {seed}"
+    assert int(came) > 0
+
+
+def test_a_handler_runs_at_a_safe_place_and_not_before():
+    place = []
+
+    def handler(number, frame):
+        place.append(number)
+        raise TimeoutError
+
+    before = signal.signal(signal.SIGUSR2, handler)
+    try:
+        with pytest.raises(TimeoutError), HeldSignals() as held, watch.heard_by(held.hear):
+            signal.raise_signal(signal.SIGUSR2)
+            assert place == []
+            watch.report()
+            pytest.fail("the handler's exception was lost")
+        with pytest.raises(TimeoutError), HeldSignals():
+            signal.raise_signal(signal.SIGUSR2)
+        assert place == [signal.SIGUSR2] * 2
+        assert signal.getsignal(signal.SIGUSR2) == handler
+    finally:
+        signal.signal(signal.SIGUSR2, before)
+
+
+def test_reports_are_heard_by_all_who_listen():
+    heard = []
+    with (
+        watch.heard_by(lambda text: heard.append("outer")),
+        watch.heard_by(lambda text: heard.append(text())),
+    ):
+        watch.report(lambda: "inner")
+    watch.report()
+    assert heard == ["outer", "inner"]
+
+
+def test_threads_wait_for_one_another():
+    inside, most = [], []
+
+    @one_at_a_time
+    def work():
+        inside.append(1)
+        most.append(len(inside))
+        threading.Event().wait(0.001)
+        inside.pop()
+
+    threads = [threading.Thread(target=work) for _ in range(6)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert most == [1] * 6
