@@ -12,7 +12,13 @@ from rodsweep.model.parameters import NONLINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.bordered import BorderedMatrix, Scale
 from rodsweep.solve.cycle.condensation import PANEL, eliminate, invert, substitute
-from rodsweep.solve.cycle.linearisation import Linearisation, Workspace, change_along, phase, phase_change
+from rodsweep.solve.cycle.linearisation import (
+    Linearisation,
+    NewtonWorkspace,
+    change_along,
+    phase,
+    phase_change,
+)
 from rodsweep.solve.cycle.neighbour import coordinate_of, with_coordinate
 from rodsweep.solve.cycle.orbit import Orbit
 from rodsweep.solve.cycle.right_sides import equations, residuals, right_sides
@@ -59,7 +65,7 @@ def dense_matrix(orbit, k):
 def test_elimination_is_the_solution_of_the_dense_systems(rod, stages):
     orbit = orbit_with(rod, stages)
     p, n = orbit.semidiscrete, orbit.form.unknowns
-    factors = Workspace(INTERVALS, stages, n).factors
+    factors = NewtonWorkspace(INTERVALS, stages, n).factors
     random = np.random.default_rng(0)
     columns = random.normal(size=(INTERVALS, stages, COLUMNS, n)) * (p.mass + 1e-3)
     start = random.normal(size=(COLUMNS, n))

@@ -35,7 +35,7 @@ CHEAPER = 0.5
 """Cost of another mesh, in units of the present one's, for which it is taken."""
 MARGIN = 0.3
 """Share of the accuracy that a mesh is chosen for, so that it serves the cycles that follow."""
-SLOWER, SAME = 0.7, 2.0
+SLOWER, SIMILAR = 0.7, 2.0
 """Rate of the parameter at a cycle between two, in units of the smaller one of theirs, below which their
 errors do not bound its own, and growth of the errors since one of them beyond which they do not."""
 MOST_UNMEASURED = 3
@@ -72,10 +72,12 @@ class ArcPoint:
 
     @property
     def tangent(self) -> Array:
+        """The place's, (N + 1,)."""
         return self.place.tangent
 
     @property
     def ahead(self) -> Array:
+        """The place's, (3,)."""
         return self.place.ahead
 
     @property
@@ -192,7 +194,10 @@ def point_at(here: ArcPoint, length: float, accuracy: float) -> ArcPoint:
 def there_from(
     here: ArcPoint, found: Converged, tangent: Array, length: float, ahead: float, accuracy: float
 ) -> ArcPoint:
-    """A cycle at a length from another one, its errors not measured; ahead: length of the next step."""
+    """A cycle at a length from another one, its errors not measured.
+
+    tangent: of the branch there, (N + 1,); ahead: length of the next step.
+    """
     cycle = judged_by(here.calibration.known, found, accuracy)
     place = _place(found, here.scale, tangent)
     curvature = (place.rate - here.rises) / length
@@ -294,7 +299,7 @@ def _between(last: ArcPoint, point: ArcPoint, end: ArcPoint, share: float, accur
     ends = (last, end)
     slow = abs(point.rises) < SLOWER * min(abs(one.rises) for one in ends)
     grown = min(one.calibration.known.on_branch(point.orbit, 0.0).growth.max() for one in ends)
-    if slow or float(grown) > SAME:
+    if slow or float(grown) > SIMILAR:
         return measured(point, accuracy)
     known = last.calibration.towards(end.calibration, share, slope_at(point.cycle.path, point.place))
     return with_calibration(point, known, accuracy)

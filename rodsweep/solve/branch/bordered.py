@@ -16,7 +16,7 @@ from ...arrays import Array, Complex
 from ...watch import report
 from ..cycle.condensation import eliminate, substitute
 from ..cycle.linearisation import (
-    Workspace,
+    NewtonWorkspace,
     change_along,
     phase,
     phase_change,
@@ -85,7 +85,7 @@ class BorderedMatrix:
         self.tangent: Array | None = None  # by which parameter is for the branch to say
         p, (K, s, n) = orbit.semidiscrete, orbit.states.shape
         along, V = change_along(orbit.form, scale.name), np.empty((K, s, 3, len(p.matrices.weights)))
-        self._columns, self._workspace = np.empty((K, s, 3, n)), Workspace(K, s, n)
+        self._columns, self._workspace = np.empty((K, s, 3, n)), NewtonWorkspace(K, s, n)
         right_sides(orbit.points, orbit.duration, p, along, V, self._columns)
         ends = eliminate(orbit.points, V, orbit.duration, p, self._workspace.factors, self._columns)
         shift = phase_change(orbit.start, along.change, p.parameters, p.matrices)

@@ -36,7 +36,7 @@ from .special_points import (
     stretch_at,
 )
 from .symmetry import Breaking, beginning_without_symmetry, mirrored, symmetric_end
-from .trail import End, Trail, end_at
+from .trail import BranchEnd, Trail, end_at
 
 PARAMETER = np.array([0.0, 0.0, 1.0])
 SMALL = 0.06
@@ -103,7 +103,7 @@ def _followed(curve: BranchCurve, course: Course, first: Callable[[], ArcPoint])
 def followed_from(curve: BranchCurve, first: ArcPoint, course: Course) -> BranchCurve:
     """A branch from its first cycle, whose errors are measured, to its end."""
     trail = Trail(curve, course.accuracy, first)
-    going: ArcPoint | End = first
+    going: ArcPoint | BranchEnd = first
     while isinstance(going, ArcPoint):
         report(partial(_place_on, curve, going))
         going = _next(trail, going, course)
@@ -141,12 +141,12 @@ def _beyond(point: ArcPoint, course: Course) -> int:
     return 0 if point.at < low else 1 if point.at > high else -1
 
 
-def _next(trail: Trail, here: ArcPoint, course: Course) -> ArcPoint | End:
+def _next(trail: Trail, here: ArcPoint, course: Course) -> ArcPoint | BranchEnd:
     """The next cycle, which the branch gets with what lies before it, or how the branch ends."""
     curve = trail.curve
     if len(curve.points) >= course.most:
         curve.full = True
-        return End(end_at(here, EndReason.list_full), complete=False)
+        return BranchEnd(end_at(here, EndReason.list_full), complete=False)
     try:
         there = next_point(here, course.accuracy)
         if _back(here, there, course):
@@ -156,17 +156,17 @@ def _next(trail: Trail, here: ArcPoint, course: Course) -> ArcPoint | End:
         if edge is not None:
             there = _on_the_edge(here, there, edge, course)
         if stretch_at(there) <= 0:
-            return End(located(SpecialKind.left_the_model, here, there, course.accuracy), complete=True)
+            return BranchEnd(located(SpecialKind.left_the_model, here, there, course.accuracy), complete=True)
         _add_special_points(curve, here, there, course)
         trail.append(there)
         last = trail.settle(edge) if edge is not None or due(there) else there
     except Unsolvable as why:
         message = f"no cycle is found beyond: {why}"
-        return End(end_at(here, EndReason.no_cycle_found, message), complete=False)
+        return BranchEnd(end_at(here, EndReason.no_cycle_found, message), complete=False)
     if edge is None:
         return last
     at = value_of(last.orbit.form, last.scale.name)
-    return End(replace(end_at(last, course.reasons[outside]), error=EXACT * abs(at)), complete=True)
+    return BranchEnd(replace(end_at(last, course.reasons[outside]), error=EXACT * abs(at)), complete=True)
 
 
 def _add_special_points(curve: BranchCurve, here: ArcPoint, there: ArcPoint, course: Course) -> None:
@@ -199,7 +199,7 @@ def turned_round(here: ArcPoint, there: ArcPoint) -> bool:
     return float(one @ other) < 0
 
 
-def _arrived(curve: BranchCurve, here: ArcPoint, there: ArcPoint, course: Course) -> ArcPoint | End:
+def _arrived(curve: BranchCurve, here: ArcPoint, there: ArcPoint, course: Course) -> ArcPoint | BranchEnd:
     """The Hopf point where cycles shrink to nothing between two; or the first of them, for a shorter step."""
     shorter = arc_between(here, there) / 2
     if here.cycle.measures.tip_y_max > SMALL:
@@ -215,12 +215,14 @@ def _arrived(curve: BranchCurve, here: ArcPoint, there: ArcPoint, course: Course
         also = WITHIN * abs(here.orbit.period - hopf.period) + WITHIN_PERIOD * hopf.period
         if abs(at - hopf.coordinate) <= near and abs(period - hopf.period) <= also:
             curve.arrives = number
-            return End(special_hopf(hopf), complete=True)
+            return BranchEnd(special_hopf(hopf), complete=True)
     why = "cycles shrink to nothing where no Hopf point is known"
-    return End(end_at(here, EndReason.no_cycle_found, why), complete=False)
+    return BranchEnd(end_at(here, EndReason.no_cycle_found, why), complete=False)
 
 
-def _symmetric_again(curve: BranchCurve, here: ArcPoint, there: ArcPoint, course: Course) -> ArcPoint | End:
+def _symmetric_again(
+    curve: BranchCurve, here: ArcPoint, there: ArcPoint, course: Course
+) -> ArcPoint | BranchEnd:
     """The symmetry breaking where a branch ends between two; or the first of them, for a shorter step."""
     which = symmetric_end(here, there, course.breakings, course.accuracy)
     if which is None:
@@ -228,9 +230,9 @@ def _symmetric_again(curve: BranchCurve, here: ArcPoint, there: ArcPoint, course
     if which >= 0:
         breaking = course.breakings[which]
         curve.meets = breaking
-        return End(replace(breaking.point, message="", orbit=None), complete=True)
+        return BranchEnd(replace(breaking.point, message="", orbit=None), complete=True)
     why = "the cycles become symmetric at one that lies on no branch that was followed"
-    return End(end_at(here, EndReason.no_cycle_found, why), complete=False)
+    return BranchEnd(end_at(here, EndReason.no_cycle_found, why), complete=False)
 
 
 def _edge(here: ArcPoint, course: Course, which: int) -> Condition:

@@ -14,7 +14,7 @@ from .special_points import EndReason, SpecialKind, SpecialPoint
 
 
 @dataclass(frozen=True, slots=True)
-class End:
+class BranchEnd:
     """The special point at which a branch ends, and whether it is followed to an end that is one."""
 
     special: SpecialPoint
@@ -60,7 +60,7 @@ class Trail:
             self._measured, self._waiting = points[-1], []
         return self._measured
 
-    def end(self, end: End) -> None:
+    def end(self, end: BranchEnd) -> None:
         """The end of the branch; where waiting cycles have no errors it ends before them."""
         curve = self.curve
         try:
@@ -69,7 +69,7 @@ class Trail:
             del curve.points[-len(self._waiting) :]
             curve.special[:] = [point for point in curve.special if point.after < len(curve.points)]
             message = f"the errors of the cycles beyond cannot be measured: {why}"
-            end = End(end_at(self._measured, EndReason.no_cycle_found, message), complete=False)
+            end = BranchEnd(end_at(self._measured, EndReason.no_cycle_found, message), complete=False)
         special = end.special
         if np.isnan(special.error):
             special = replace(special, error=curve.points[-1].at_error * abs(special.at))

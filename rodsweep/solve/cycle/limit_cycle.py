@@ -205,24 +205,32 @@ def _solve(
         cycle = _measured(replace(straight, status=CycleStatus.cycle), found, request)
         return _handed_on(cycle, found, neighbour, along, request.accuracy)
     faded = _fades(rod, point.gamma1, leading, request.amplitude) if neighbour is None else ""
-    if faded and not request.transient:
-        return replace(straight, message=faded)
     traced = request.transient > 0
+    if faded and not traced:
+        return replace(straight, message=faded)
     transient = Transient(beam, form, stability, request.accuracy, request.most_periods, along, traced=traced)
     transient.unstable = found if found is not None and found.stable is False else None
     end = _from_motion(transient, request, neighbour)
-    cycle = replace(
+    cycle = _after_motion(straight, transient, end, faded, request)
+    if faded or end.found is None:
+        return cycle if faded or end.around is None else _with_multipliers(cycle, end.around)
+    return _handed_on(_measured(cycle, end.found, request), end.found, None, along, request.accuracy)
+
+
+def _after_motion(
+    straight: Cycle, transient: Transient, end: TransientOutcome, faded: str, request: CycleRequest
+) -> Cycle:
+    """The outcome of a motion, without the numbers of its cycle; faded: why it decays, if that is known."""
+    grid = transient.beam.mesh
+    return replace(
         straight,
         status=CycleStatus.straight if faded else end.status,
         message=faded or end.message,
         periods=end.periods,
-        elements=beam.mesh.elements,
-        order=beam.mesh.order,
+        elements=grid.elements,
+        order=grid.order,
         transient=transient.trace.at_equal_times(request.transient) if transient.trace else None,
     )
-    if faded or end.found is None:
-        return cycle if faded or end.around is None else _with_multipliers(cycle, end.around)
-    return _handed_on(_measured(cycle, end.found, request), end.found, None, along, request.accuracy)
 
 
 def _handed_on(

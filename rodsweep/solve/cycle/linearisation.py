@@ -34,10 +34,10 @@ from .orbit import Orbit
 from .right_sides import Along, residuals, right_sides
 
 _memory: list[Array] = [np.empty(0)]
-_latest: list["Workspace"] = []
+_latest: list["NewtonWorkspace"] = []
 
 
-class Workspace:
+class NewtonWorkspace:
     """The factors of one Newton matrix, in memory that the next workspace takes over.
 
     New pages take as long as half an elimination, so all matrices share one buffer.
@@ -72,7 +72,7 @@ class Linearisation:
 
     def __init__(self, orbit: Orbit, parameter: str | None = None) -> None:
         self.orbit = orbit
-        self._workspace = Workspace(orbit.intervals, orbit.stages, orbit.form.unknowns)
+        self._workspace = NewtonWorkspace(orbit.intervals, orbit.stages, orbit.form.unknowns)
         along = None if parameter is None else change_along(orbit.form, parameter)
         count, factors = 2 if along is None else 3, self._workspace.factors
         steps, self._by_period = linearise(orbit.values, count, along or STILL, orbit.semidiscrete, factors)
