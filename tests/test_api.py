@@ -51,8 +51,9 @@ METHODS = {
 ROD = {"F": 50, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
 SILICONE = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "1.4 Pa s"}
 LOADED = SILICONE | {"pressure": "2 kPa"}
-OF_A_RUN = {"seconds", "started", "finished", "config"}
-"""What differs between two runs of one config, and its text, which a file has as it was written."""
+OF_A_RUN = {"seconds", "started", "finished", "config", "seal"}
+"""What differs between two runs of one config, its text, which a file has as it was written, and the seal of
+all that."""
 OF_RANKS = {
     "rank_points",
     "rank_busy_seconds",

@@ -42,7 +42,8 @@ def file_path(given: object, example: str) -> Path:
         raise InputError(f"{short(given)} is not the name of a file; write it as in {example}")
     if not name or "\0" in name:
         raise InputError(f"{name!r} is not the name of a file; write it as in {example}")
-    return Path(os.path.realpath(name))
+    path = Path(name)
+    return Path(os.path.realpath(path)) if path.is_symlink() else path
 
 
 def _opened(path: Path) -> xr.Dataset:
