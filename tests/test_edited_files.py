@@ -40,7 +40,7 @@ limit_cycle: {start: neighbour, samples: 8}
 accuracy: 1.0e-3
 """,
 }
-EDITS = 100 * int(os.environ.get("RODSWEEP_CASES", "1"))
+EDITS = 25 * int(os.environ.get("RODSWEEP_CASES", "1"))
 LONGEST_REFUSAL = 600
 """Characters of a refusal in a directory with a long name."""
 
