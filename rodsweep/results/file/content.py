@@ -30,7 +30,7 @@ BOOKKEEPING = frozenset(
 """Attributes by which HDF5 and netCDF tie dimensions to variables; digests have the dimensions themselves."""
 NUMBERS = "iuf"
 """Kinds of NumPy's types that variables of a result have."""
-BYTES_A_READ = 1 << 22
+BYTES_A_READ = 1 << 18
 
 FILLED_WITH_NAN = ("_FillValue", "[nan]")
 """An attribute that xarray adds to what it writes, and which changes nothing."""
