@@ -227,7 +227,14 @@ def test_run_killed_before_its_end_was_written_writes_it_the_next_time(command):
 @pytest.mark.parametrize("rank", [0, 1])
 def test_bug_on_one_rank_ends_all_ranks(command, rank):
     command.write("c.yaml", MANY)
-    patch = f"def patched(rank, solve):\n    return (lambda index: 1 / 0) if rank == {rank} else solve\n"
+    patch = (
+        "import time\n"
+        "def patched(rank, solve):\n"
+        "    def slow(index):\n"  # so slow that the other rank, which may begin later, gets a point too
+        "        time.sleep(0.1)\n"
+        "        return solve(index)\n"
+        f"    return (lambda index: 1 / 0) if rank == {rank} else slow\n"
+    )
     run = run_patched(command, patch)
     assert run.returncode not in (0, 1, 2)
     assert f"rank {rank} failed, all ranks end" in run.stderr
