@@ -279,7 +279,7 @@ def settled(
     """
     *between, end = points
     whole, end = end.way, measured(end, accuracy)
-    known = [_between(last, point, end, point.way / whole, accuracy) for point in between]
+    known = [_with_errors_between(last, point, end, point.way / whole, accuracy) for point in between]
     end = refined(end, accuracy, condition)
     mesh = mesh_of(end.orbit)
     rough = [point.calibration.largest(accuracy) > accuracy for point in known]
@@ -290,7 +290,9 @@ def settled(
     return [*again, end]
 
 
-def _between(last: ArcPoint, point: ArcPoint, end: ArcPoint, share: float, accuracy: float) -> ArcPoint:
+def _with_errors_between(
+    last: ArcPoint, point: ArcPoint, end: ArcPoint, share: float, accuracy: float
+) -> ArcPoint:
     """A cycle at a share of the way between two on the same mesh, with errors between theirs or its own.
 
     Where its tails are larger than theirs, or where the parameter changes more slowly, as beside a fold, they

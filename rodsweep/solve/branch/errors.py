@@ -137,7 +137,7 @@ class BranchCalibration:
         Each falls or grows along the way by a constant factor, and BETWEEN times that is stated.
         """
         mean = [
-            _between(one, there, share)
+            _interpolated(one, there, share)
             for one, there in (
                 (self.known.space, other.known.space),
                 (self.known.time, other.known.time),
@@ -148,8 +148,8 @@ class BranchCalibration:
         return BranchCalibration(known, mean[2], slope)
 
 
-def _between(one: Array, other: Array, share: float) -> Array:
-    """BETWEEN times the geometric means of errors, of any shape, but no more than the larger ones."""
+def _interpolated(one: Array, other: Array, share: float) -> Array:
+    """BETWEEN times the errors at a share of the way, of any shape, but no more than the larger ones."""
     logarithms = np.log(np.maximum([one, other], LEAST_ERROR))
     means = np.exp(logarithms[0] + share * (logarithms[1] - logarithms[0]))
     bounded: Array = np.minimum(BETWEEN * means, np.maximum(one, other))
