@@ -90,7 +90,7 @@ def store(view, path, **options):
     layout = layout_of(config)
     columns = tuple(np.asarray(view.variables[name], float) for name in layout.parameters)
     points = Points(layout.parameters, columns, view.is_grid)
-    create_file(path, Plan(points, layout, {}, (), config, {"task": "limit_cycle", "title": "arms"}, flags))
+    create_file(path, Plan(points, layout, {}, tuple, config, {"task": "limit_cycle", "title": "arms"}, flags))
     with h5py.File(path, "r+") as file:
         for name in view.variables.keys() - {*NAMES, "point"}:
             file[name][...] = view.variables[name]

@@ -284,7 +284,7 @@ def filled_file(directory, text=None):
     """The file of a run whose last point is straight."""
     job = job_of(directory, text or config(STORED))
     attributes = {"title": "t", "task": job.config.task}
-    plan = Plan(job.points, job.layout, job.task.coordinates(), (), job.resolved, attributes, FLAGS)
+    plan = Plan(job.points, job.layout, job.task.coordinates(), tuple, job.resolved, attributes, FLAGS)
     store = Store(directory / "c.h5", plan)
     journal = Journal(store.journals, 0, job.layout, plan.fingerprint)
     for index in range(job.points.count):

@@ -14,14 +14,14 @@ from .tasks import TASKS
 
 
 def plan_without_solver(config: Config, points: Points) -> Plan:
-    """The plan of a config on these points, without attributes and flags, for which PETSc is not needed."""
+    """The plan of a config on these points, without attributes and flags."""
     task = TASKS[config.task](config, points)
     resolved = canonical(config)
     return Plan(
         points=points,
         layout=layout_of(resolved),
         coordinates=task.coordinates(),
-        constants=task.constants(),
+        constants=task.constants,
         config=resolved,
         attributes={},
         flags=(),
