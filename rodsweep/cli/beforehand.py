@@ -19,7 +19,5 @@ def planned_beforehand(plan: Plan, task: Task, team: Team, stop: StopRequest) ->
         skipped = skipped or bool(stop)
         return None if skipped else work(item)
 
-    found = task.constants(
-        lambda items, work: team.in_order(items, lambda item: unless_stopped(work, item))
-    )
+    found = task.constants(lambda items, work: team.in_order(items, lambda item: unless_stopped(work, item)))
     return None if any(team.exchange(skipped)) else replace(plan, constants=lambda: found)

@@ -26,6 +26,7 @@ from ..sweep.ranges import IndexRange, IndexSet, total
 from ..sweep.stop import StopRequest
 from ..sweep.stretches import StretchSolver, Together
 from ..sweep.team import Team
+from ..wording import counted
 from .beforehand import planned_beforehand
 from .closing import RunEnd
 from .contribution import FAILURES_TOLD, Contribution, failures_of, history_of, of_the_last_run
@@ -34,7 +35,6 @@ from .joint import JointDue, JointWork
 from .planning import plan_of
 from .run_options import RunOptions
 from .unforeseen import Log, guarded
-from ..wording import counted
 
 CONTINUE = 75
 """Exit status of a run that was asked to stop: the same command continues it (EX_TEMPFAIL of sysexits.h)."""

@@ -1,4 +1,4 @@
-"""Where the straight rod changes along a line of points of a file: located by a solver, or between two points.
+"""Where the straight rod changes along a line of points of a file: located, or between two points.
 
 Of limit cycles the file holds the Hopf points of its lines, found by the task. Nothing is solved here, and
 nothing is interpolated: a change that no solver has located lies between two points, and no more is said.
@@ -7,7 +7,7 @@ nothing is interpolated: a change that no solver has located lies between two po
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
-from math import floor, log10, nan
+from math import nan
 
 import numpy as np
 
@@ -17,14 +17,11 @@ from ..results.file.view import View
 from ..results.layouts.limit_cycle import HOPF_ALONG
 from ..results.layouts.thresholds import CROSSING_KINDS
 
-MOST_DECIMALS = 15
-"""Decimals to which a place is written whose error says that all are known."""
-
 SAME_PLACE = 1e-9
 """Relative distance below which a point of a file lies on a Hopf point: the growth rate there is rounding."""
 STABILITY_CHANGES = {("hopf", 2): True, ("restabilization", 0): False}
-"""Whether the straight rod is unstable beyond a Hopf point where it changes its stability, by the kind and the
-number of unstable modes beyond; at the others further modes join those that grow, or leave them."""
+"""Whether the straight rod is unstable beyond a Hopf point, by its kind and the number of modes that grow
+there; at all others further modes join those that grow, or leave them."""
 HOPF_FIELDS = ("along", "kind", "error", "frequency", "unstable_after", *LINEAR_PARAMETERS)
 
 
@@ -43,12 +40,6 @@ class Located:
     def agrees(self, other: "Located") -> bool:
         """Whether the two may be one: of a kind, and within their errors."""
         return self.kind == other.kind and abs(self.position - other.position) <= self.error + other.error
-
-    @property
-    def text(self) -> str:
-        """The position to the last decimal that is larger than the error."""
-        decimals = floor(-log10(self.error)) if self.error > 0 else MOST_DECIMALS
-        return f"{self.position:.{min(max(0, decimals), MOST_DECIMALS)}f}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,10 +76,6 @@ class Bracket:
     @property
     def kind(self) -> str:
         return kind_of_change(self.destabilises)
-
-    @property
-    def text(self) -> str:
-        return f"between {self.low:.6g} and {self.high:.6g}"
 
 
 Change = HopfPoint | Bracket

@@ -103,9 +103,7 @@ def _path_over_force(parameters: dict[str, float], F: float) -> "Path":
     return Path(Rod(**{name: parameters.get(name, F) for name in LINEAR_PARAMETERS}), "F")
 
 
-def _change_between(
-    parameters: dict[str, float], ends: list[tuple[float, Array]], unstable: int
-) -> Change:
+def _change_between(parameters: dict[str, float], ends: list[tuple[float, Array]], unstable: int) -> Change:
     """The change between two forces, each with its leading eigenvalues; `unstable` modes on one side."""
     (low, before), (high, after) = ends
     destabilises = bool(after[0].real > 0)

@@ -1,10 +1,10 @@
 """How `rodsweep show` writes a number with its error, and a range of numbers.
 
-A number is written to the last digit that its error leaves, and an error is rounded up: the true number lies
-within the error that stands beside it, but for half a unit of the last digit.
+Where an error stands beside a number the true one lies within it, the rounding of both included. Where none
+does, as in a range, the error is at most half a unit of the last digit.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import ceil, floor, isfinite, isnan, log10
 
 import numpy as np
@@ -13,6 +13,8 @@ MOST_DIGITS_SHOWN = 15
 """Digits of a number whose error says that all are known."""
 DIGITS_OF_RANGE = 6
 """Digits of the ends of a range, where their errors leave so many."""
+DIGITS_OF_END = 9
+"""Digits of the end of a range that is one number, such as a fold."""
 PLAIN = range(-4, MOST_DIGITS_SHOWN)
 """Decimal exponents of numbers that are written without an exponent."""
 UNDER = 1e-9
@@ -34,17 +36,21 @@ def span(values: np.ndarray, errors: np.ndarray | None = None) -> str:
     known = np.zeros_like(values) if errors is None else np.asarray(errors, dtype=float)
     flat, known = values[there], np.nan_to_num(known[there], nan=0.0)
     ends = (int(flat.argmin()), int(flat.argmax()))
-    low, high = (_rounded(float(flat[i]), float(known[i]), DIGITS_OF_RANGE) for i in ends)
+    low, high = (rounded(flat[i], known[i]) for i in ends)
     return low if low == high else f"{low} to {high}"
 
 
-def listed(ranges: Sequence[tuple[float, float]]) -> str:
-    """Ranges of a parameter as words; "none" where there are none."""
-    return ", ".join(f"{a:.9g} to {b:.9g}" for a, b in ranges) or NONE
+def listed(ranges: Sequence[tuple[float, float]], errors: Mapping[float, float]) -> str:
+    """Ranges of a parameter as words; "none" where there are none.
+
+    errors: absolute ones of those ends that are not exact.
+    """
+    ends = [[_rounded(end, 2 * errors.get(end, 0.0), DIGITS_OF_END) for end in ends] for ends in ranges]
+    return ", ".join(" to ".join(pair) for pair in ends) or NONE
 
 
 def to_error(value: float, error: float) -> str:
-    """A number to the last digit that its absolute error leaves, and the error.
+    """A number to the first digit that its absolute error reaches, and the error.
 
     Six digits are given where the error is not known; "none" where there is no number, "0" where it is exact.
     """
@@ -55,7 +61,14 @@ def to_error(value: float, error: float) -> str:
         return "0"
     if not isfinite(error):
         return f"{value:.6g} (error not known)"
-    return f"{_rounded(value, error, MOST_DIGITS_SHOWN)} (+- {error_text(error)})"
+    text, stated = stated_error(value, error)
+    return f"{text} (+- {error_text(stated)})"
+
+
+def stated_error(value: float, error: float) -> tuple[str, float]:
+    """(a number to the first digit that its error reaches, its error with that of rounding the number)."""
+    text = _rounded(value, error / 10, MOST_DIGITS_SHOWN)
+    return text, error + abs(float(text) - value)
 
 
 def error_text(error: float) -> str:
@@ -67,17 +80,17 @@ def error_text(error: float) -> str:
 
 
 def rounded(value: float, error: float) -> str:
-    """A number to the last digit that its absolute error leaves, at most six."""
-    return _rounded(float(value), float(error), DIGITS_OF_RANGE) if isfinite(value) else NONE
+    """A number to the last digit of which its absolute error is at most a half, six digits at most."""
+    return _rounded(float(value), 2 * float(error), DIGITS_OF_RANGE) if isfinite(value) else NONE
 
 
 def _rounded(value: float, error: float, most: int) -> str:
-    """A finite number to the last digit that its error leaves, at most so many digits, at least one."""
+    """A finite number to the last digit that is larger than its error: one digit at least, so many at most."""
     if value == 0:
         return "0"
     size = floor(log10(abs(value)))
     last = floor(log10(error)) if error > 0 and isfinite(error) else size - most
     digits = min(max(size - last, 1), most)
-    if most == DIGITS_OF_RANGE and digits == most:
+    if most < MOST_DIGITS_SHOWN and digits == most:
         return f"{value:.{most}g}"
     return f"{value:.{max(digits - 1 - size, 0)}f}" if size in PLAIN else f"{value:.{digits - 1}e}"

@@ -8,7 +8,7 @@ from ...results.file.view import View
 from ...wording import counted, some_of
 from ..hopf_points import Bracket, HopfPoint, Located, ParameterLine, lines_over
 from .arm import threshold_lines_in_si
-from .ranges import error_text
+from .ranges import error_text, stated_error
 
 FEW_LINES = 3
 """Lines whose thresholds are named one by one."""
@@ -46,7 +46,8 @@ def stability_lines(
         of_kind = [[point for point in points if point.kind == kind] for points in along]
         if found := {i: points for i, points in enumerate(of_kind) if points}:
             texts.append(f"{words.format(name=name)}: {_positions(found, names, name)}")
-            located = [(p, lines[i].at) for i, points in found.items() for p in points if isinstance(p, Located)]
+            every = [(point, lines[i].at) for i, points in found.items() for point in points]
+            located = [(point, at) for point, at in every if isinstance(point, Located)]
             texts += threshold_lines_in_si(view, located) if name == "F" else []
     return texts
 
@@ -61,29 +62,34 @@ def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: st
     """The thresholds on those of the named lines that have any: one by one where few, else their range."""
     points = [point for line in found.values() for point in line]
     located = [point for point in points if isinstance(point, Located)]
-    error = f" (+- {error_text(max(point.error for point in located))})" if located else ""
+    stated = [stated_error(point.position, point.error)[1] for point in located]
+    error = f" (+- {error_text(max(stated))})" if stated else ""
     some = f", on {some_of(len(found), len(names), 'line')} over {along}" if len(found) < len(names) else ""
     if len(located) == len(points) and all(point.agrees(located[0]) for point in located):
         frequency = located[0].frequency if isinstance(located[0], HopfPoint) else np.nan
         beats = f", frequency {frequency:.6g} 1/tau2" if np.isfinite(frequency) else ""
-        return located[0].text + error + some + beats
+        return _text(located[0]) + error + some + beats
     if len(found) <= FEW_LINES:
         texts = (_together(found[i], names[i]) for i in found)
         return f"{', '.join(texts)}{error}"
     if not located:
-        low, high = min(point.low for point in _brackets(points)), max(point.high for point in _brackets(points))
+        ends = [(point.low, point.high) for point in points if isinstance(point, Bracket)]
+        low, high = min(low for low, _ in ends), max(high for _, high in ends)
         return f"between {low:.6g} and {high:.6g}{some}"
     first = min(located, key=lambda point: point.position)
     last = max(located, key=lambda point: point.position)
     rest = len(points) - len(located)
     more = f"; at {counted(rest, 'other place')} known only to lie between two points" if rest else ""
-    return f"{first.text} to {last.text}{error}{some}{more}"
+    return f"{_text(first)} to {_text(last)}{error}{some}{more}"
 
 
 def _together(points: Sequence[Threshold], name: str) -> str:
     """The thresholds of a line, and which line it is."""
-    return " for ".join(filter(None, (" and ".join(point.text for point in points), name)))
+    return " for ".join(filter(None, (" and ".join(map(_text, points)), name)))
 
 
-def _brackets(points: Sequence[Threshold]) -> list[Bracket]:
-    return [point for point in points if isinstance(point, Bracket)]
+def _text(threshold: Threshold) -> str:
+    """Where a threshold lies, to the first digit that its error reaches, or between which points."""
+    if isinstance(threshold, Bracket):
+        return f"between {threshold.low:.6g} and {threshold.high:.6g}"
+    return stated_error(threshold.position, threshold.error)[0]

@@ -82,6 +82,8 @@ HOPF = "hopf"
 """Dimension of the Hopf points that lie on the lines between the points of a file."""
 HOPF_ALONG = LINEAR_PARAMETERS
 """Parameters along which Hopf points are searched; gamma1 moves none."""
+OF_PAIRS = ("none", "hopf", "hopf_reverse", "restabilization")
+"""What changes where a pair crosses the imaginary axis."""
 HOPF_POINTS = (
     Variable(
         "hopf_along",
@@ -99,7 +101,7 @@ HOPF_POINTS = (
         "1",
         "what changes at the Hopf point as that parameter grows",
         (HOPF,),
-        tuple((i, kind) for i, kind in enumerate(CROSSING_KINDS) if kind in ("none", "hopf", "hopf_reverse", "restabilization")),
+        tuple((CROSSING_KINDS.index(kind), kind) for kind in OF_PAIRS),
     ),
     *(real(f"hopf_{name}", PARAMETERS[name].unit, f"{name} at the Hopf point", HOPF) for name in HOPF_ALONG),
     real("hopf_error", "1", "estimate of the relative error of the parameter along which was searched", HOPF),
