@@ -20,11 +20,20 @@ from ..branch_curves import (
 from .ranges import listed, rounded, span, to_error
 from .told import Told
 
-SPECIAL_ACCURACY = 10.0
+SPECIAL_ACCURACY = 2.0
 """Error of the cycle at a special point, which the file does not tell, in units of the accuracy asked for."""
 NAMED_RODS = 8
 """Rods whose coexistence is named."""
 FULL = "they have more special points than the list holds; raise branch.special"
+SPECIAL_WORDS = {
+    "fold": "fold",
+    "torus": "torus point",
+    "symmetry_breaking": "symmetry breaking",
+    "left_the_model": "place where h1 = 0",
+    "end": "end of a branch",
+    "period_doubling": "period doubling",
+}
+"""What special points other than Hopf points are called."""
 ENDS = {
     "range_end": "the end of the range",
     "crushed": "where F all but reaches k1",
@@ -121,14 +130,15 @@ def ends_of(view: View) -> Range:
 def _specials(view: View, rods: np.ndarray) -> Iterator[str]:
     """How many special points of each kind all rods have, and where."""
     along = followed_parameter(view)
-    found: dict[str, list[float]] = {}
+    found: dict[str, list[tuple[float, float]]] = {}
     for rod in rods:
         for curve in curves_of(view, int(rod)):
             for special in curve.special:
-                found.setdefault(special.kind, []).append(special.at)
-    for kind, places in found.items():
+                found.setdefault(special.kind, []).append((special.at, special.error))
+    for kind, located in found.items():
         if kind != "hopf":
-            yield f"{len(places)} of kind {kind}: {along} = {span(np.array(places))}"
+            places, errors = np.array(located).T
+            yield f"{counted(len(places), SPECIAL_WORDS[kind])}: {along} = {span(places, errors)}"
 
 
 def _coexistence(view: View, rods: np.ndarray) -> Iterator[str]:

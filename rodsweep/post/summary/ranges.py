@@ -85,7 +85,7 @@ def rounded(value: float, error: float) -> str:
 
 
 def _rounded(value: float, error: float, most: int) -> str:
-    """A finite number to the last digit that is larger than its error: one digit at least, so many at most."""
+    """A finite number to the last digit that is larger than its error: one at least, so many at most."""
     if value == 0:
         return "0"
     size = floor(log10(abs(value)))
