@@ -48,7 +48,7 @@ def test_cycles_of_random_chains_keep_their_promises(first):
 
 
 def test_error_that_changes_its_sign_where_it_is_measured_is_not_believed():
-    """At one cycle the period's error in time is a fifteenth of that before, two cycles later as large again."""
+    """The error in time of the period is small at one cycle, and as large as before two cycles later."""
     rod = (np.inf, 3653.326612087487, 0.38416323905216987, 26.630693011029624)
     case = Case(*rod, beyond=2.5100148543047274, accuracy=1.63e-8)
     cycles = list(chain_of(case, "F", 1.0482541621611525, 8))
