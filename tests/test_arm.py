@@ -8,7 +8,7 @@ import pytest
 
 from rodsweep.errors import InputError
 from rodsweep.model.drag import cox, gray_hancock, least_rotational, lighthill, most_rotational
-from rodsweep.model.section import Circle, Rectangle
+from rodsweep.model.section import Circle, Rectangle, Tube
 from rodsweep.solve.changes.along_path import Transitions
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdStatus, nothing_found
 from rodsweep.solve.changes.unstable_modes import Crossing, Kind
@@ -62,6 +62,29 @@ def test_sections_by_hand():
     assert rectangle.shear_coefficient(0.5) == pytest.approx(15 / 17.5)
 
 
+def test_tube_by_hand():
+    """a = 2, b = 1: A = 3 pi, I = 15 pi/4; Cowper's coefficient from m = 1/2, and a thin wall's."""
+    tube = Tube(2.0, 1.0)
+    numbers = (tube.area, tube.second_moment, tube.face_area, tube.bore_area)
+    assert numbers == pytest.approx((3 * math.pi, 15 * math.pi / 4, 4 * math.pi, math.pi))
+    assert tube.shear_coefficient(0.5) == pytest.approx(9 * 1.5625 / (10 * 1.5625 + 26 * 0.25))
+    assert Tube(1.0, 1 - 1e-9).shear_coefficient(0.3) == pytest.approx(2 * 1.3 / (4 + 0.9))
+    assert Tube(1.0, 1e-9).shear_coefficient(0.3) == pytest.approx(Circle(1.0).shear_coefficient(0.3))
+
+
+def test_pressure_on_a_tube_pushes_on_the_whole_face_of_its_closed_tip():
+    """a = 5 mm, b = 3 mm: E A L^2/k3 = 4 L^2/(a^2 + b^2), and the tip's force is p pi a^2."""
+    rod = arm(inner_radius="3 mm", density_difference="100 kg/m^3")
+    assert rod.k1 == pytest.approx(4 * 0.01 / 34e-6)
+    assert rod.tip_force == pytest.approx(2000 * math.pi * 25e-6)
+    assert rod.F * rod.pressure_scale == pytest.approx(2000)
+    assert rod.mass_per_length == pytest.approx(math.pi * (16e-6 * 1100 + 9e-6 * 1000))
+    crushing = 1e5 * 16 / 25
+    assert arm(inner_radius="3 mm", pressure=0.999 * crushing).k1 > 0
+    with pytest.raises(InputError, match=r"compresses the arm to nothing; it must be below 6\.4e.04 Pa"):
+        arm(inner_radius="3 mm", pressure=crushing)
+
+
 def test_least_rotational_drag_is_the_torque_of_its_flow():
     """Of the axial flow -Omega a^2 cos(phi)/r around a section that turns, by quadrature."""
     a, step, phi = 0.7, 1e-6, [2 * math.pi * k / 64 for k in range(64)]
@@ -106,6 +129,11 @@ def test_only_time_scales_with_viscosity():
         ({"length": "10 m**9**9**9**9"}, "length = .* not understood"),
         ({"radius": "-1 mm"}, "radius = '-1 mm' is not above 0"),
         ({"radius": None}, "radius: give either a radius, or width and height"),
+        ({"inner_radius": "5 mm"}, "inner_radius = '5 mm' is not below radius = '5 mm'"),
+        (
+            {"radius": None, "width": "1 cm", "height": "1 cm", "inner_radius": "1 mm"},
+            "inner_radius = '1 mm' needs a radius",
+        ),
         ({"width": "1 cm"}, "radius: give either"),
         ({"viscosity": "1400 mPas"}, "viscosity = '1400 mPas' is not measured in Pa"),
         ({"pressure": "100 kPa"}, "pressure = '100 kPa' compresses .* below 1e.05 Pa"),

@@ -8,6 +8,7 @@ import click
 OPTIONS = {
     "length": "Length of the arm.",
     "radius": "Radius of a circular section; or give --width and --height.",
+    "inner_radius": "Radius of the bore of a tube, closed at its tip.",
     "width": "Width of a rectangular section, across the plane of motion.",
     "height": "Height of a rectangular section, in the plane of motion.",
     "young": "Young's modulus.",

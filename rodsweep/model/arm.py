@@ -12,12 +12,13 @@ from typing import Any
 
 from ..errors import InputError
 from .drag import LEAST_SLENDERNESS, Drag, range_of_drag
-from .section import Circle, Rectangle, Section
+from .section import Circle, Rectangle, Section, Tube
 from .units import Given, in_si
 
 UNITS = {
     "length": ("m", "10 cm"),
     "radius": ("m", "5 mm"),
+    "inner_radius": ("m", "3 mm"),
     "width": ("m", "10 mm"),
     "height": ("m", "8 mm"),
     "young": ("Pa", "100 kPa"),
@@ -39,6 +40,7 @@ class InSI:
 
     length: float
     radius: float
+    inner_radius: float
     width: float
     height: float
     young: float
@@ -53,15 +55,17 @@ class InSI:
 class SlenderArm:
     """An arm, clamped at one end, in a viscous fluid, with a pressure on its tip's section or a force there.
 
-    Either a radius or width and height, of which the height lies in the plane of motion; a pressure or a
-    force, of which positive ones push, or no load. density_difference: of the arm over the fluid. Raises
-    InputError, naming the quantity.
+    Either a radius, or width and height, of which the height lies in the plane of motion. inner_radius: of
+    the bore of a tube, which is closed at the tip and filled with the fluid at the pressure around. A pressure
+    on the tip or a force there, of which positive ones push, or no load. density_difference: of the arm's
+    material over the fluid. Raises InputError, naming the quantity.
     """
 
     length: Given
     young: Given
     viscosity: Given
     radius: Given | None = None
+    inner_radius: Given | None = None
     width: Given | None = None
     height: Given | None = None
     pressure: Given | None = None
@@ -105,7 +109,7 @@ class SlenderArm:
         loaded = self.load
         if loaded is None or self.k1 > self.F:
             return
-        limit = self.si.young * (self.section.area if loaded == "force" else 1.0)
+        limit = self.si.young * self.section.area / self._loaded_area
         raise InputError(
             f"{self._told(loaded)} compresses the arm to nothing; it must be below "
             f"{limit:.4g} {UNITS[loaded][0]}, where a linear material is crushed"
@@ -119,6 +123,10 @@ class SlenderArm:
         sides = (self.width, self.height)
         if (self.radius is None) == (sides == (None, None)) or (self.radius is None and None in sides):
             raise InputError("radius: give either a radius, or width and height")
+        if self.inner_radius is not None and self.radius is None:
+            raise InputError(f"{self._told('inner_radius')} needs a radius; a rectangle has no bore here")
+        if self.si.inner_radius >= self.si.radius:
+            raise InputError(f"{self._told('inner_radius')} is not below {self._told('radius')}")
         if self.pressure is not None and self.force is not None:
             raise InputError(
                 f"{self._told('pressure')} and {self._told('force')} are both given; give one of them: the "
@@ -146,7 +154,11 @@ class SlenderArm:
     @property
     def section(self) -> Section:
         """The cross section."""
-        return Circle(self.si.radius) if self.radius is not None else Rectangle(self.si.width, self.si.height)
+        if self.radius is None:
+            return Rectangle(self.si.width, self.si.height)
+        if self.inner_radius is None:
+            return Circle(self.si.radius)
+        return Tube(self.si.radius, self.si.inner_radius)
 
     @property
     def load(self) -> str | None:
@@ -155,20 +167,33 @@ class SlenderArm:
 
     @property
     def mass_per_length(self) -> float:
-        """Density times area, in kg/m; the density of the fluid where no difference is given."""
-        difference = self.si.density_difference
-        density = self.si.fluid_density + (0.0 if isnan(difference) else difference)
-        return density * self.section.area
+        """Mass of the material and of the fluid in its bore, in kg/m.
+
+        The material is as dense as the fluid where no difference is given.
+        """
+        difference, fluid = self.si.density_difference, self.si.fluid_density
+        density = fluid + (0.0 if isnan(difference) else difference)
+        return density * self.section.area + fluid * self.section.bore_area
 
     @property
     def tip_force(self) -> float:
-        """The resultant of the pressure over the tip's cross section, p A, in N (Sec. IV).
+        """The resultant of the pressure over the tip's face, p A, in N (Sec. IV).
 
         Raises InputError for an arm without load, as `F` does.
         """
         if self.load is None:
             raise InputError("pressure is missing; give the pressure on the tip's cross section, or a force")
-        return self.si.force if self.load == "force" else self.si.pressure * self.section.area
+        return float(getattr(self.si, self.load)) * self._loaded_area
+
+    @property
+    def _loaded_area(self) -> float:
+        """Resultant over load: the area of the tip's face for a pressure, 1 for a force."""
+        return 1.0 if self.load == "force" else self.section.face_area
+
+    @property
+    def pressure_scale(self) -> float:
+        """Pressure on the tip's face that makes F = 1, in Pa."""
+        return self.force_scale / self.section.face_area
 
     @property
     def bending_stiffness(self) -> float:
