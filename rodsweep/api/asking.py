@@ -13,6 +13,7 @@ from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.arm import SlenderArm
 from ..solve.exclusive import signals_held
+from ..verdict.planes import with_known_load
 from .axes import plain
 
 Tree = dict[str, Any]
@@ -54,7 +55,8 @@ def _write_out_arm(task: str, tree: Tree) -> None:
     if isinstance(arm, SlenderArm):
         loaded = "F" in CONFIGS[task].taken_of_a_rod(tree.get(task, {}))
         names = [name for name in ArmSection.model_fields if loaded or name not in LOADS]
-        given = {name: getattr(arm, name) for name in names}
+        known = with_known_load(arm) if loaded else arm
+        given = {name: getattr(known, name) for name in names}
         parameters["arm"] = {name: plain(value) for name, value in given.items() if value is not None}
 
 

@@ -4,6 +4,7 @@ Stiffness is of the paper's Sec. III, the force of Sec. IV, scales and dimension
 Knows no mesh and no solver. Quantities are given as text with a unit, or as numbers in SI.
 """
 
+import re
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import inf, isnan
@@ -34,6 +35,16 @@ LOADS = ("pressure", "force")
 SIGNED = (*LOADS, "density_difference")
 
 
+OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*of\s+flutter\s*", re.ASCII)
+"""A load relative to the threshold of flutter, as "1.2 of flutter" or "120 % of flutter"."""
+
+
+def share_of_flutter(given: Given) -> float | None:
+    """The load over that at which an arm flutters, of a text that says so; None of any other."""
+    found = OF_FLUTTER.fullmatch(given) if isinstance(given, str) else None
+    return float(found[1]) / (100.0 if found[2] else 1.0) if found else None
+
+
 @dataclass(frozen=True, slots=True)
 class InSI:
     """What is given of an arm, in SI units; what is not given is nan."""
@@ -56,9 +67,10 @@ class SlenderArm:
     """An arm, clamped at one end, in a viscous fluid, with a pressure on its tip's section or a force there.
 
     Either a radius, or width and height, of which the height lies in the plane of motion. inner_radius: of
-    the bore of a tube, which is closed at the tip and filled with the fluid at the pressure around. A pressure
-    on the tip or a force there, of which positive ones push, or no load. density_difference: of the arm's
-    material over the fluid. Raises InputError, naming the quantity.
+    the bore of a tube, which is closed at the tip and filled with the fluid at the pressure around. A
+    pressure on the tip or a force there, of which positive ones push, or no load; "1.2 of flutter" is a load
+    that is known once the threshold is. density_difference: of the arm's material over the fluid. Raises
+    InputError, naming the quantity.
     """
 
     length: Given
@@ -107,7 +119,7 @@ class SlenderArm:
     def _refuse_crushed(self) -> None:
         """InputError where F is not below k1."""
         loaded = self.load
-        if loaded is None or self.k1 > self.F:
+        if loaded is None or self.share_of_flutter is not None or self.k1 > self.F:
             return
         limit = self.si.young * self.section.area / self._loaded_area
         raise InputError(
@@ -134,9 +146,9 @@ class SlenderArm:
             )
 
     def _read(self, name: str) -> float:
-        """A quantity in SI; nan where it is not given."""
+        """A quantity in SI; nan where it is not given, or relative to the threshold of flutter."""
         given = getattr(self, name)
-        if given is None:
+        if given is None or (name in LOADS and share_of_flutter(given) is not None):
             return float("nan")
         value = in_si(name, given, *UNITS[name])
         if name not in SIGNED and not value > 0:
@@ -166,6 +178,11 @@ class SlenderArm:
         return next((name for name in LOADS if getattr(self, name) is not None), None)
 
     @property
+    def share_of_flutter(self) -> float | None:
+        """The load over that at which the arm flutters, where it is given so."""
+        return None if self.load is None else share_of_flutter(getattr(self, self.load))
+
+    @property
     def mass_per_length(self) -> float:
         """Mass of the material and of the fluid in its bore, in kg/m.
 
@@ -179,10 +196,12 @@ class SlenderArm:
     def tip_force(self) -> float:
         """The resultant of the pressure over the tip's face, p A, in N (Sec. IV).
 
-        Raises InputError for an arm without load, as `F` does.
+        Raises InputError for an arm without load, or with one relative to flutter, as `F` does.
         """
         if self.load is None:
             raise InputError("pressure is missing; give the pressure on the tip's cross section, or a force")
+        if self.share_of_flutter is not None:
+            raise InputError(f"{self._told(self.load)} is no number yet; it takes the threshold of flutter")
         return float(getattr(self.si, self.load)) * self._loaded_area
 
     @property
@@ -194,6 +213,11 @@ class SlenderArm:
     def pressure_scale(self) -> float:
         """Pressure on the tip's face that makes F = 1, in Pa."""
         return self.force_scale / self.section.face_area
+
+    @property
+    def load_scale(self) -> float:
+        """The load that makes F = 1: in N where the arm has a force, else a pressure, in Pa."""
+        return self.force_scale if self.load == "force" else self.pressure_scale
 
     @property
     def bending_stiffness(self) -> float:
@@ -223,7 +247,7 @@ class SlenderArm:
 
     @property
     def F(self) -> float:
-        """p A L^2/k3 (Sec. IV and VI); InputError for an arm without load."""
+        """p A L^2/k3 (Sec. IV and VI); InputError where the load is not known."""
         return self.tip_force / self.force_scale
 
     @cached_property
