@@ -1,4 +1,4 @@
-"""What is said of an arm: where the model does not apply, which plane goes first, no load and relative ones."""
+"""What is said of an arm: that the model does not apply, which plane goes first, no or relative loads."""
 
 import math
 import re

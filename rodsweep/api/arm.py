@@ -125,4 +125,6 @@ class Arm(SlenderArm):
         return {name: getattr(self, name) for name in self._names if getattr(self, name) is not None}
 
     def __repr__(self) -> str:
-        return f"Arm({', '.join(f'{name}={value!r}' for name, value in self._given.items())})"
+        default = {each.name: each.default for each in fields(self)}
+        given = (f"{name}={value!r}" for name, value in self._given.items() if value != default[name])
+        return f"Arm({', '.join(given)})"
