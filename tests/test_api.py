@@ -85,7 +85,7 @@ def test_arguments_are_these():
     assert drawn == ["data", "output", "roots", "what", "points", "look"]
     assert list(inspect.signature(rs.open).parameters) == ["path"]
     arguments = inspect.signature(rs.Rod).parameters
-    assert [name for name in arguments if name != "unknown"] == list(PARAMETERS)
+    assert [name for name in arguments if name != "unknown"] == [*PARAMETERS, "arm"]
 
 
 def test_import_loads_nothing():

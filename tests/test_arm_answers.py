@@ -1,6 +1,8 @@
 """`rs.Arm` answers the tasks of a rod, in SI units too."""
 
 import math
+import subprocess
+import sys
 
 import pytest
 
@@ -41,6 +43,16 @@ def test_a_rod_made_of_an_arm_keeps_what_is_given():
     assert "F" not in rod.parameters
     assert rod.parameters["gamma3"] == 0.5
     assert rod.parameters["k2"] == arm.k2
+
+
+def test_making_an_arm_starts_no_solver():
+    """Nor does a rod of it, unless its load is relative to flutter."""
+    code = (
+        f"import sys, rodsweep as rs; arm = rs.Arm(**{THICK}, pressure='2 kPa'); rs.Rod(arm=arm.turned)\n"
+        "assert 'petsc4py' not in sys.modules; rs.Rod(arm=arm.replace(pressure='1.2 of flutter'))\n"
+        "assert 'petsc4py' in sys.modules"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
 def test_replace_changes_quantities_and_lets_one_load_or_section_take_the_place_of_the_other():

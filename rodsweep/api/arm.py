@@ -3,20 +3,21 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Any, Unpack
+from typing import TYPE_CHECKING, Any, Unpack
 
 from ..config.arguments import in_sentences
 from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.arm import SlenderArm
 from ..model.units import Given
-from ..verdict.arm import ArmReport, report_on
-from ..verdict.flutter import FlutterRange, flutter_range
-from ..verdict.planes import turned, with_known_load
 from .answer import Answer
-from .asking import job_from, tree_of
+from .asking import job_from, known_load, tree_of
 from .options import OfBranch, OfCriticality, OfLimitCycle, OfModes, OfSpectrum, OfThresholds
 from .solving import solve_here
+
+if TYPE_CHECKING:
+    from ..verdict.arm import ArmReport
+    from ..verdict.flutter import FlutterRange
 
 EXAMPLE = 'rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s", pressure="2 kPa")'
 ROUND, RECTANGULAR = ("radius", "inner_radius"), ("width", "height")
@@ -40,12 +41,16 @@ class Arm(SlenderArm):
     __init__ = in_sentences(EXAMPLE)(SlenderArm.__init__)
 
     @cached_property
-    def flutter(self) -> FlutterRange:
+    def flutter(self) -> "FlutterRange":
         """Where it flutters and how fast in its plane of motion, over the range of its drag."""
+        from ..verdict.flutter import flutter_range
+
         return flutter_range(self)
 
-    def report(self) -> ArmReport:
+    def report(self) -> "ArmReport":
         """Verdict, numbers with formulas and sources, and what the model leaves out."""
+        from ..verdict.arm import report_on
+
         return report_on(self)
 
     @in_sentences('arm.replace(length="12 cm")')
@@ -62,12 +67,12 @@ class Arm(SlenderArm):
     @property
     def turned(self) -> "Arm":
         """The arm that moves in the other plane of its rectangular section; itself where it is round."""
-        return self if self.radius is not None else turned(self)
+        return self if self.radius is not None else self.replace(width=self.height, height=self.width)
 
     @cached_property
     def loaded(self) -> "Arm":
         """The arm with its load as a quantity where it is given relative to flutter; itself otherwise."""
-        return with_known_load(self)
+        return known_load(self)
 
     @in_sentences("arm.thresholds(F_max=100)")
     def thresholds(self, **options: Unpack[OfThresholds]) -> Answer:

@@ -14,9 +14,8 @@ from ..errors import InputError
 from ..model.arm import SlenderArm
 from ..model.parameters import PARAMETERS
 from ..sweep.grid import refuse_axes
-from ..verdict.planes import with_known_load
 from .answer import Answer
-from .asking import job_from, tree_of
+from .asking import job_from, known_load, tree_of
 from .axes import plain
 from .options import OfBranch, OfCriticality, OfLimitCycle, OfModes, OfSpectrum, OfThresholds
 from .solving import solve_here
@@ -55,8 +54,8 @@ class SoftRod:
         **unknown: Any,
     ):
         for name in unknown:
-            close = nearest(name, list(PARAMETERS))
-            hint = f"did you mean {close[0]}?" if close else f"known keys are {', '.join(PARAMETERS)}"
+            close = nearest(name, (*PARAMETERS, "arm"))
+            hint = f"did you mean {close[0]}?" if close else f"known keys are {', '.join(PARAMETERS)}, arm"
             raise InputError(f"unknown key parameters.{name}; {hint}")
         if arm is not None:
             F, k1, k2, gamma3, gamma1 = _of_arm(arm, F=F, k1=k1, k2=k2, gamma3=gamma3, gamma1=gamma1).values()
@@ -148,7 +147,7 @@ def _of_arm(arm: object, **given: Any) -> dict[str, Any]:
     """The parameters that are given, and the arm's where they are not; no F of an arm without load."""
     if not isinstance(arm, SlenderArm):
         raise InputError(f"arm = {short(arm)} is no arm; write it as in {ARM_EXAMPLE}")
-    known = with_known_load(arm)
+    known = known_load(arm)
     left_out = {name: value is None or value is NOT_GIVEN for name, value in given.items()}
     of_arm = (name for name in given if left_out[name] and not (name == "F" and known.load is None))
     return given | {name: getattr(known, name) for name in of_arm}
