@@ -1,7 +1,7 @@
 """Sweeps of random rods, what `show` says of them, and the same numbers from the solvers.
 
 Numbers are read from the sentences that `show` prints. With an error beside it a number must lie within it of
-the true one; an end of a range within one unit of its last digit: half a unit is its error, half its rounding.
+the true one; an end of a range within one unit of its last digit, half for its error, half for rounding.
 True numbers of motions and normal forms are those of a far smaller accuracy asked for; those of spectra and
 thresholds come from eigenvalues on both sides of a stated place, which share no code with the covering.
 """
@@ -82,7 +82,7 @@ def told_of(task, keywords):
 
 
 def wrong_sentences(task, keywords):
-    """The sentences of a sweep with a number that is wrong, each with what is wrong; and how many were read."""
+    """The sentences of a sweep with a wrong number, each with what is wrong; and how many were read."""
     view, told = told_of(task, keywords)
     sentences = [*told.answer, *told.trust, *told.details]
     found = CHECKS[task](view, sentences, keywords)
@@ -118,7 +118,7 @@ def range_as_stated(text, true):
 
 
 def read(sentences, pattern):
-    """(sentence, match) of every sentence with a pattern, in which RANGE and NUMBER stand for what they say."""
+    """(sentence, match) of every sentence with a pattern, in which RANGE and NUMBER stand for theirs."""
     number = f"({NUMBER}(?: to {NUMBER})?|none)"
     whole = re.compile(pattern.replace("RANGE", number).replace("NUMBER", f"({NUMBER})"))
     return [(sentence, match) for sentence in sentences for match in whole.finditer(sentence)]
@@ -220,7 +220,7 @@ def _misplaced(match, error, true, name, kind):
     return "" if is_change(rod, name, float(at), kind) else f"eigenvalues do not change at {at}"
 
 
-# --- the sentences of each task -------------------------------------------------------------------------------
+# --- the sentences of each task ----------------------------------------------------------------------------
 
 
 def spectrum_sentences(view, sentences, _):
