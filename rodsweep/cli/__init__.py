@@ -196,17 +196,23 @@ def plot(
 
 @commands.command()
 @click.argument("file", type=FILE)
-@click.option("-o", "--output", type=FILE, help="CSV file; by default FILE's name with .csv.")
+@click.option("-o", "--output", type=FILE, help="A .csv or .tsv file; by default FILE's name with .csv.")
+@click.option("--table", metavar="NAME", help="Which table: points, or a list of the task's, as crossings.")
+@click.option("--columns", metavar="A,B,C", help="Which columns, in their order; by default all.")
 @click.option("--units", is_flag=True, help="Put units into the headings: F_onset [k3/L^2].")
 @click.option("--replace", is_flag=True, help="Write over a file that is there already.")
-def export(file: Path, output: Path | None, units: bool, replace: bool) -> None:
-    """Write the result FILE as CSV: a line a point, a column a parameter and a number."""
+def export(
+    file: Path, output: Path | None, table: str | None, columns: str | None, units: bool, replace: bool
+) -> None:
+    """Write a table of the result FILE as CSV: a row a point, or a row an item of a list."""
+    from ..post.export import Request
     from ..post.export import export as export_view
     from ..results.file.view import read_view
 
     output = _followed(output or file.with_suffix(".csv"))
-    exported = export_view(read_view(_followed(file)), output, units, replace)
-    click.echo(f"wrote {output}: {exported.sentence}")
+    names = tuple(name.strip() for name in columns.split(",")) if columns is not None else ()
+    request = Request(table=table, columns=names, units=units, replace=replace)
+    click.echo(f"wrote {output}: {export_view(read_view(_followed(file)), output, request)}")
 
 
 @commands.command()

@@ -128,7 +128,9 @@ def in_si(
             value = np.asarray(record[variable.name])
             up, down = (_product(quantities, names, index) for names in (factors, divisors))
             scale = up / (2 * np.pi * down if unit == HERTZ else down)
-            values[twin_of(variable.name, unit)] = value * scale.reshape(scale.shape + (1,) * (value.ndim - scale.ndim))
+            values[twin_of(variable.name, unit)] = value * scale.reshape(
+                scale.shape + (1,) * (value.ndim - scale.ndim)
+            )
     return values
 
 

@@ -3,7 +3,7 @@
 from math import nan
 from typing import Any
 
-from .variables import ANEW, ANGULAR, BESIDE, MESH, SECONDS, STATUS, Layout, Variable, real, whole
+from .variables import ANEW, ANGULAR, BESIDE, MESH, SECONDS, STATUS, Layout, Variable, real, truth, whole
 
 
 def complex_pair(name: str, units: str, long_name: str) -> tuple[Variable, Variable]:
@@ -25,9 +25,7 @@ EACH_MODE = (
         "mode",
     ),
 )
-CERTIFIED = Variable(
-    "certified", "|i1", 0, "1", "1 where the winding number of D proves that no leading mode is missing"
-)
+CERTIFIED = truth("certified", "whether the winding number of D proves that no leading mode is missing")
 EACH_POINT = (UNSTABLE_COUNT, CERTIFIED, *MESH, SECONDS, STATUS)
 EACH_FOLLOWED_POINT = (
     UNSTABLE_COUNT,
@@ -42,7 +40,6 @@ VECTORS = (
     *complex_pair("Y", "1", "the eigenmode's deflection, scaled to Y(1) = 1"),
     *complex_pair("Theta", "1", "the eigenmode's angle, scaled as Y"),
 )
-
 
 
 def longitudinal(gamma1: float, along: str) -> Variable:
