@@ -145,7 +145,8 @@ IN_FULL = ("modes", "crossings", "special_points", "harmonics", "multipliers")
 @cache
 def _statuses(task: str, words: tuple[str, ...]) -> type[StrEnum]:
     """The statuses of a task as words."""
-    found: Any = StrEnum("Status", {word: word for word in words})
+    made: Any = StrEnum  # of members that only the result knows
+    found = made("Status", {word: word for word in words})
     found.__name__ = "".join(part.title() for part in task.split("_")) + "Status"
     return cast(type[StrEnum], found)
 

@@ -127,8 +127,8 @@ def dataset_of(
         "fingerprint": plan.fingerprint,
         "config_resolved": json.dumps(plan.config),
     }
-    data = xr.Dataset(variables, coordinates, header | plan.attributes | dict(attributes))
-    return _sealed(_ordered(data, plan.layout, plan.config))
+    whole = xr.Dataset(variables, coordinates, header | plan.attributes | dict(attributes))
+    return _sealed(_ordered(whole, plan.layout, plan.config))
 
 
 def view_of(data: xr.Dataset, path: Path) -> View:

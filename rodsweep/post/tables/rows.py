@@ -1,6 +1,7 @@
 """Rows of the tables of a result: one for each item that was found, with the coordinates of its point."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,7 +9,7 @@ from numpy.typing import NDArray
 from ...config.arm import AXIS_OF
 from ...results.file.view import View
 from ...results.layouts.arm import MEANINGS, QUANTITY_UNITS
-from ...results.layouts.variables import DIMENSIONS, Variable
+from ...results.layouts.variables import DIMENSIONS, MISSING, STATUS, Variable
 from .columns import Column, absent_in, column_of, coordinate, tells_of_items
 
 Rows = tuple[NDArray[np.int64], ...]
@@ -37,9 +38,14 @@ def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]
         yield coordinate(name, *DIMENSIONS[name], values[points])
     for name, values in _quantities_at_points(view).items():
         yield coordinate(name, QUANTITY_UNITS[name], MEANINGS[name], values[points])
+    missing = view.variables[STATUS.name].reshape(-1)[points] == MISSING
     for variable in own:
-        words = view.flags if variable.name == "status" else None
-        yield column_of(variable, view.variables[variable.name].reshape(-1)[points], words)
+        values = view.variables[variable.name].reshape(-1)[points]
+        if variable.name == STATUS.name:
+            yield column_of(variable, values, view.flags)
+        else:
+            column = column_of(variable, values)
+            yield replace(column, absent=column.absent | missing)
 
 
 def list_columns(view: View, variables: Sequence[Variable], rows: Rows, joint: bool) -> Iterator[Column]:
