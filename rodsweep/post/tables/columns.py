@@ -53,8 +53,8 @@ class Column:
     def text(self) -> list[str]:
         """The values as CSV has them: words, or the shortest decimal number that reads back the same."""
         if self.is_truth:
-            return [TRUTHS[int(value)] for value in self.values]
-        if self.words:
+            texts = [TRUTHS[int(value)] for value in self.values]
+        elif self.words:
             texts = [self.words.get(int(v), "") for v in np.nan_to_num(self.values)]
         elif self.values.dtype.kind == "f":
             texts = self._numbers()
