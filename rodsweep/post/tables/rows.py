@@ -42,7 +42,7 @@ def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]
     for variable in own:
         values = view.variables[variable.name].reshape(-1)[points]
         if variable.name == STATUS.name:
-            yield column_of(variable, values, view.flags)
+            yield replace(column_of(variable, values, view.flags), absent=np.zeros(len(points), bool))
         else:
             column = column_of(variable, values)
             yield replace(column, absent=column.absent | missing)
