@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from ..cli.job import Job, job_of, memory
+from ..config.arguments import unknown
 from ..config.arm import LOADS, ArmSection
 from ..config.reading import validated, yaml_of
 from ..config.refusals import nearest
@@ -32,7 +33,9 @@ def tree_of(task: str, keywords: Mapping[str, Any]) -> Tree:
         if name in sections and isinstance(value, Mapping):
             tree.setdefault(name, {}).update(_plain(name, dict(value)))
             continue
-        section = _section_of(name, sections) or _section_of(_meant(name, sections), sections)
+        section = _section_of(name, sections)
+        if section is None:
+            section = _section_of(_meant(name, sections), sections)
         place = tree.setdefault(section, {}) if section else tree
         place[name] = _plain(f"{section}.{name}" if section else name, value)
     _write_out_arm(task, tree)
@@ -86,6 +89,9 @@ def _section_of(name: str, sections: Mapping[str, Collection[str]]) -> str | Non
 
 
 def _meant(name: str, sections: Mapping[str, Collection[str]]) -> str:
-    """The known key that an unknown one is most like; the first of the options where it is like none."""
+    """The known key that an unknown one is most like; InputError with all where it is like none."""
     known = [key for keys in sections.values() for key in keys]
-    return next(iter(nearest(name, known)), known[0])
+    close = nearest(name, known)
+    if not close and name not in ArmSection.model_fields:
+        raise unknown(name, known)
+    return close[0] if close else known[0]
