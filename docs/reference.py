@@ -269,7 +269,8 @@ def task_keys(task: str) -> str:
 
 def key_row(name: str, field: FieldInfo, meaning: str) -> list[str]:
     """A key as a row of a table."""
-    return [f"`{name}`", what_is_allowed(field), yaml_of(field.default), meaning]
+    default = "" if field.is_required() else yaml_of(field.default)
+    return [f"`{name}`", what_is_allowed(field), default, meaning]
 
 
 def yaml_of(value: object) -> str:
@@ -380,6 +381,8 @@ def variables_of(job: Job) -> dict[str, tuple[Variable, list[str]]]:
 def variable_row(variable: Variable, dims: list[str], only: str) -> list[str]:
     """A variable as a row of a table."""
     meaning = variable.long_name
+    if variable.is_truth:
+        meaning += ": 1 yes, 0 no"
     if variable.flags:
         meaning += ": " + ", ".join(f"{value} {word}" for value, word in variable.flags)
     if only:

@@ -273,7 +273,7 @@ def test_variables_added_when_a_run_ends_have_their_own_dimensions(tmp_path, cou
         "spectrum": ["stable at all of 4 points", "proved at 4 of 4 points", "unknowns a point: 60"],
         "thresholds": [
             "F** (straight rod starts to beat): F = 2 (",
-            "at all of 6 rods; frequency 20 to 70 1/tau2",
+            "at all of 6 rods; frequency 20 to 70 rad/tau2",
             "at all of 6 rods; growth rate -6 to -1 1/tau2",
             "stable again: F = 3 (",
             "searched up to F = 200 ",

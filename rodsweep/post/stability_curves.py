@@ -21,13 +21,17 @@ def bounds_stability(view: View, line: str, row: str) -> dict[int, bool]:
         v[name].reshape(len(rows), -1) for name in ("crossing_kind", "unstable_after", "crossing_at")
     )
     paths = {
-        number: [v[f"curve_{name}"][v["curve_number"] == number] for name in (line, row)]
+        number: (
+            v[f"curve_{line}"][v["curve_number"] == number],
+            v[f"curve_{row}"][v["curve_number"] == number],
+        )
         for number in numbers
     }
     for place, i in zip(*np.nonzero(np.isfinite(at)), strict=True):
         kind = CROSSING_KINDS[int(kinds[place, i])]
         if numbers and (kind, int(after[place, i])) in STABILITY_CHANGES and np.isfinite(rows[place]):
-            away = {n: _distance(*path, float(at[place, i]), float(rows[place])) for n, path in paths.items()}
+            here = float(at[place, i]), float(rows[place])
+            away = {n: _distance(x, y, *here) for n, (x, y) in paths.items()}
             found[min(away, key=away.__getitem__)] = True
     return found
 

@@ -227,7 +227,10 @@ def spectrum_sentences(view, sentences, _):
     eigenvalues = np.array([leading(rod)[0] for rod in rods_of(view)])
     numbers = [count_right_of(0.0, rod).number for rod in rods_of(view)]
     found = ranges(
-        sentences, "leading growth rate RANGE, frequency RANGE 1/tau2", eigenvalues.real, eigenvalues.imag
+        sentences,
+        "leading growth rate RANGE 1/tau2, frequency RANGE rad/tau2",
+        eigenvalues.real,
+        eigenvalues.imag,
     )
     for word, true in (("stable", sum(n == 0 for n in numbers)), ("unstable", sum(n > 0 for n in numbers))):
         found += [
@@ -247,7 +250,7 @@ def _eigenvalue_sentences(rod, sentences, unstable):
     true = solve_spectrum(rod, SpectrumRequest(6, 1e-12, True)).eigenvalues
     stated = f"({NUMBER})(?: \\(\\+- ({NUMBER})\\))?"
     found = []
-    for sentence, match in read(sentences, rf"mode (\d+): growth rate {stated}, frequency {stated}"):
+    for sentence, match in read(sentences, rf"mode (\d+): growth rate {stated} 1/tau2, frequency {stated}"):
         w = true[int(match[1]) - 1]
         pairs = ((match[2], match[3], w.real), (match[4], match[5], w.imag))
         found.append((sentence, "; ".join(filter(None, (with_error(a, b or 0, c) for a, b, c in pairs)))))
@@ -302,7 +305,7 @@ def _crossing_sentences(rod, crossings, sentences):
     """Of the crossings of the one rod of a file."""
     found = []
     for sentence, match in read(
-        sentences, rf"^(\w+) at F = NUMBER \(\+- ({NUMBER})\).*growth rate NUMBER, frequency NUMBER"
+        sentences, rf"^(\w+) at F = NUMBER \(\+- ({NUMBER})\).*growth rate NUMBER 1/tau2, frequency NUMBER"
     ):
         near = min(crossings, key=lambda c: abs(c.at - float(match[2])))
         why = [with_error(match[2], match[3], near.at)]
@@ -360,7 +363,10 @@ def cycle_sentences(view, sentences, keywords):
     )
     ratio = v["frequency"][beats] / v["linear_frequency"][beats]
     found += ranges(
-        sentences, "frequency RANGE 1/tau2, over that of the leading mode RANGE", v["frequency"][beats], ratio
+        sentences,
+        "frequency RANGE rad/tau2, over that of the leading mode RANGE",
+        v["frequency"][beats],
+        ratio,
     )
     tips = [v[f"tip_{name}"][beats] for name in ("x_min", "x_max", "theta_max")]
     found += ranges(sentences, "least x RANGE L, largest x RANGE L, largest theta RANGE rad", *tips)
@@ -374,7 +380,7 @@ def cycle_sentences(view, sentences, keywords):
     eigenvalues = np.array([leading(rod)[0] for rod in rods_of(view)])
     found += ranges(
         sentences,
-        "straight rod: leading growth rate RANGE, frequency RANGE",
+        "straight rod: leading growth rate RANGE 1/tau2, frequency RANGE",
         eigenvalues.real,
         eigenvalues.imag,
     )

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, PARAMETERS
 from .thresholds import CROSSING_KINDS
-from .variables import ANEW, MESH, SECONDS, STATUS, Increase, Layout, Variable, real, whole
+from .variables import ANEW, ANGULAR, MESH, SECONDS, STATUS, Increase, Layout, Variable, real, whole
 
 POWER = "k3/(L tau2)"
 STORED_MULTIPLIERS = 6
@@ -15,9 +15,13 @@ SECOND_STATES = ((-1, "not_told"), (0, "none_known"), (1, "straight"), (2, "cycl
 """What is known of a stable state beside the one in which a point ended."""
 CYCLE = (
     real("period", "tau2", "period of the limit cycle"),
-    real("frequency", "1/tau2", "angular frequency of the limit cycle, 2 pi/period"),
+    real("frequency", ANGULAR, "angular frequency of the limit cycle, 2 pi/period"),
     real("linear_growth_rate", "1/tau2", "real part of the leading eigenvalue of the straight rod"),
-    real("linear_frequency", "1/tau2", "imaginary part of the leading eigenvalue of the straight rod"),
+    real(
+        "linear_frequency",
+        ANGULAR,
+        "angular frequency, imaginary part of the leading eigenvalue of the straight rod",
+    ),
     Variable(
         "second_state",
         "|i1",
@@ -105,8 +109,8 @@ HOPF_POINTS = (
     ),
     *(real(f"hopf_{name}", PARAMETERS[name].unit, f"{name} at the Hopf point", HOPF) for name in HOPF_ALONG),
     real("hopf_error", "1", "estimate of the relative error of the parameter along which was searched", HOPF),
-    real("hopf_frequency", "1/tau2", "frequency of the pair that crosses", HOPF),
-    real("hopf_frequency_error", "1/tau2", "estimate of the absolute error of hopf_frequency", HOPF),
+    real("hopf_frequency", ANGULAR, "frequency of the pair that crosses", HOPF),
+    real("hopf_frequency_error", ANGULAR, "estimate of the absolute error of hopf_frequency", HOPF),
     whole("hopf_unstable_after", "number of modes with positive growth rate beyond it; -1: not known", HOPF),
     whole("hopf_lines", "lines of points that differ in one of F, k1, k2 and gamma3, which were searched"),
     whole("hopf_lines_proved", "those of them on which it is proved that no Hopf point is missing"),
