@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
-from ..config.arguments import in_sentences
+from ..config.arguments import in_sentences, unknown
 from ..config.axes import words
 from ..config.refusals import nearest
 from ..config.tasks import CONFIGS
@@ -126,6 +126,11 @@ class SoftRod:
         for name in options:
             if name in PARAMETERS:
                 raise InputError(f"{name} belongs to the rod: rod.replace({name}=...) is another one")
+        section: Any = CONFIGS[task].model_fields[task].annotation
+        known = [*section.model_fields, "accuracy", "title", "progress"]
+        for name in options:
+            if name not in known and not nearest(name, known):
+                raise unknown(name, known)
         options = dict(options)
         progress = options.pop("progress", None)
         taken = CONFIGS[task].taken_of_a_rod(options)
