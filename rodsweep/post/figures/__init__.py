@@ -19,7 +19,7 @@ from .modes import draw_modes
 from .phase_diagram import draw_phase_diagram
 from .request import FigureRequest, Look
 from .spectrum import draw_spectrum
-from .style import STYLE
+from .style import PRINT_STYLE, STYLE
 from .thresholds import draw_thresholds
 
 FIGURES: dict[str, Callable[[FigureRequest], str]] = {
@@ -39,8 +39,9 @@ PLAIN = Look()
 
 def _styled(look: Look) -> AbstractContextManager[None]:
     """The settings of all figures, and the user's above them; InputError for a style that there is not."""
+    ours = STYLE if look.width is None else PRINT_STYLE
     if look.style is None:
-        return matplotlib.rc_context(STYLE)
+        return matplotlib.rc_context(ours)
     try:
         if look.style not in matplotlib.style.library:
             Path(look.style).read_text(encoding="utf-8")  # matplotlib logs what is no text
@@ -49,7 +50,7 @@ def _styled(look: Look) -> AbstractContextManager[None]:
         )
     except (OSError, ValueError):  # no such file, or one that is no text
         raise InputError(f"{look.style} is neither a style of matplotlib's nor a style file") from None
-    return matplotlib.rc_context(STYLE | dict(own))
+    return matplotlib.rc_context(ours | dict(own))
 
 
 def draw(

@@ -38,6 +38,8 @@ MARKS = {
 """Colour, marker and word of the crossings that are marked."""
 FILL = 0.8
 """Part of its place that the bar of a rod takes."""
+BAR_ASPECT = 0.12
+"""Height of the panel with one bar in units of its width."""
 DIGITS = 6
 """To which the thresholds of a single rod are written."""
 
@@ -66,7 +68,7 @@ def draw_class_bars(view: View) -> Figure:
         axes.set(ylim=(0, end), ylabel=LABELS["F"])
         number_points(axes, view, count)
     legend_below(figure, handles, columns=2)
-    figure.suptitle(heading(view, parameter_text(shared_parameters(view))), fontsize=9)
+    figure.suptitle(heading(view, parameter_text(shared_parameters(view))))
     return figure
 
 

@@ -31,13 +31,13 @@ def draw_eigenvalues(view: View) -> Figure:
     for place in range(min(modes, MOST_NUMBERED)):
         if np.isfinite(growth[place]):
             at = growth[place], frequency[place]
-            axes.annotate(str(place + 1), at, (5, 5), textcoords="offset points", fontsize=8)
+            axes.annotate(str(place + 1), at, (5, 5), textcoords="offset points", size=8)
     axes.axvline(0, color="0.5", lw=0.6)
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.margins(0.12)
     axes.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
     legend_below(figure, handles, columns=2)
-    figure.suptitle(heading(view, parameter_text(shared_parameters(view))), fontsize=9)
+    figure.suptitle(heading(view, parameter_text(shared_parameters(view))))
     return figure
 
 
@@ -54,7 +54,7 @@ def draw_list_of_spectra(view: View) -> Figure:
         axes.set_ylabel(rf"$\mathrm{{{part}}}\,\omega\,\tau_2$")
     number_points(panels[1], view, len(growth))
     legend_below(figure, handles, columns=2)
-    figure.suptitle(heading(view, parameter_text(shared_parameters(view))), fontsize=9)
+    figure.suptitle(heading(view, parameter_text(shared_parameters(view))))
     return figure
 
 

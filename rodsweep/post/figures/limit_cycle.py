@@ -12,6 +12,7 @@ from .cycle.point_map import point_map, varied_parameters
 from .cycle.portrait import draw_portrait
 from .cycle.selection import MOST_CYCLES, SHAPES, TRACE, outcomes
 from .cycle.transient import draw_transients
+from .fitting import MAP_ASPECT
 from .request import FigureRequest
 
 ALL_POINTS = {"amplitude": "amplitudes", "maps": "maps"}
@@ -30,8 +31,8 @@ def draw_limit_cycle(request: FigureRequest) -> str:
     if name == "amplitude":
         return request.write(*draw_amplitude(request.views))
     if name == "maps":
-        return request.write(*draw_maps(view))
-    return request.write(*OF_POINTS[name](view, points))
+        return request.write(*draw_maps(view, request.look.narrow), MAP_ASPECT)
+    return request.write(*OF_POINTS[name](view, points, request.look.narrow))
 
 
 def figure_name(request: FigureRequest) -> str:

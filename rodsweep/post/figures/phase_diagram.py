@@ -16,7 +16,8 @@ from ...results.file.view import View
 from ...results.layouts import lacks_curves
 from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
-from .class_bars import CLASS_COLOURS
+from .class_bars import BAR_ASPECT, CLASS_COLOURS
+from .fitting import MAP_ASPECT
 from .request import FigureRequest
 from .style import LABELS, SYMBOLS, THIRD, fixed_text, heading, legend_below, need, scale
 from .style import number as number_text
@@ -86,6 +87,8 @@ SIDE_LOOKS = {
 """Of the parts of Hopf curves, where the file tells on which side cycles are born; by Re c's sign."""
 CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", THIRD)}
 """Legend and colour of the curves of special points of cycles, by kind."""
+NAME_SIZE = 8
+"""Points of type of a curve's name."""
 BESIDE_SIDES = "double eigenvalue", 1.0, ":"
 """Of double eigenvalues beside them, because dashed then means subcritical."""
 
@@ -102,7 +105,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     keep = np.isfinite(y)
     if keep.sum() < 2:
         return request.write(
-            _draw_rows(view, palette, line, row), f"what the rod does over {line}, for each {row}"
+            _draw_rows(view, palette, line, row), f"what the rod does over {line}, for each {row}", BAR_ASPECT * len(y)
         )
     table = values.reshape(len(y), len(x))[keep]
     y = y[keep]
@@ -127,9 +130,9 @@ def draw_phase_diagram(request: FigureRequest) -> str:
         handles += _cycle_curves(axes, view, line, row)
     handles += edge if (table == palette.crushed).any() else []
     legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
-    axes.set_title(heading(view, fixed_text(view, line, row)), fontsize=9)
+    axes.set_title(heading(view, fixed_text(view, line, row)))
     missing = "; curves are missing, the file is not finished" if lacks_curves(view.attributes) else ""
-    return request.write(figure, f"what the rod does over {line} and {row}{missing}")
+    return request.write(figure, f"what the rod does over {line} and {row}{missing}", MAP_ASPECT)
 
 
 def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
@@ -146,7 +149,7 @@ def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
     axes.tick_params("y", length=0)
     axes.set(xlim=(x[0], x[-1]), xlabel=LABELS[line])
     legend_below(figure, palette.patches(table), columns=3)
-    axes.set_title(heading(view, fixed_text(view, line, row)), fontsize=9)
+    axes.set_title(heading(view, fixed_text(view, line, row)))
     return figure
 
 
@@ -163,7 +166,7 @@ def _name_longest(axes: Axes, paths: list[Array], name: str, share: float) -> No
     if lengths[longest][-1] > 0:
         at = int(np.searchsorted(lengths[longest], share * lengths[longest][-1]))
         axes.annotate(
-            name, seen[longest][at], xytext=(4, -2), textcoords="offset points", fontsize=8, va="top"
+            name, seen[longest][at], xytext=(4, -2), textcoords="offset points", size=NAME_SIZE, va="top"
         )
 
 

@@ -1,17 +1,16 @@
 """What a figure is asked for: the common interface of the modules that each draw the figures of a task."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from math import ceil
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from matplotlib.figure import Figure
-from matplotlib.legend import Legend
-from matplotlib.text import Text
 
 from ...errors import InputError
+from ...model.units import in_si
 from ...results.file.view import View
 from .arm_axes import add_si_scales
+from .fitting import LEAST_ASPECT, fit
 
 WIDTHS = {"single": 3.375, "double": 7.0}
 """Of a journal's columns, in inches."""
@@ -20,59 +19,56 @@ KINDS = ("cycle", "amplitude", "maps", "energy", "transient", "animation")
 """Which two roots a figure of spectra may follow, and which figures of limit cycles there are."""
 HEIGHT_POWER = 0.5
 """Of the ratio of the widths, by which a figure gets lower: panels get narrower, their text does not."""
-POINTS_OF_TYPE = 8.0
-"""Size of all text in a figure of such a width."""
-MOST_COLUMNS, ROW = 3, 0.17
-"""Of a legend below a figure; the height of its rows, in inches."""
+INCH = 0.0254
+"""Metres."""
+NARROW = 5.0
+"""Inches below which panels have no room beside each other."""
+NARROWEST, WIDEST = 2.5, 20.0
+"""Inches that a figure may be wide: below, its labels are wider than its panels."""
 
 
 @dataclass(frozen=True, slots=True)
 class Look:
     """How a figure looks, whatever it shows.
 
-    title: whether it has that of the config; width: one of WIDTHS, None: what the figure needs; style: a
-    style of matplotlib's, by name or file.
+    title: whether it has that of the config; width: one of WIDTHS or a length with its unit, None: what the
+    figure needs; style: a style of matplotlib's, by name or file. Raises InputError for another width.
     """
 
     title: bool = False
     width: str | None = None
     style: str | None = None
+    inches: float | None = field(init=False)
+    """The width, None where it is that which the figure needs."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "inches", None if self.width is None else _inches(self.width))
 
     @property
     def narrow(self) -> bool:
         """Whether panels have no room beside each other."""
-        return self.width == "single"
+        return self.inches is not None and self.inches < NARROW
 
-    def fit(self, figure: Figure) -> None:
-        """Gives a figure the width of a column, and its text the size that belongs to it."""
-        if self.width is None:
-            return
-        across, down = figure.get_size_inches()
-        width = WIDTHS[self.width]
-        figure.set_size_inches(width, down * min(1.0, width / across) ** HEIGHT_POWER)
-        for axes in figure.axes:
-            axes.tick_params(labelsize=POINTS_OF_TYPE)
-        for text in figure.findobj(Text):
-            text.set_fontsize(POINTS_OF_TYPE)
-        for legend in list(figure.legends):
-            narrow(legend, figure)
+    def fit(self, figure: Figure, least_aspect: float = LEAST_ASPECT) -> None:
+        """Gives a figure its width, and makes all that is in it fit."""
+        if self.inches is not None:
+            across, down = figure.get_size_inches()
+            figure.set_size_inches(self.inches, down * min(1.0, self.inches / across) ** HEIGHT_POWER)
+        fit(figure, least_aspect)
 
 
-def narrow(legend: Legend, figure: Figure) -> None:
-    """Gives a legend that is wider than its figure fewer columns, and the figure the height of the rows."""
-    texts = [text.get_text() for text in legend.get_texts()]
-    handles = [handle for handle in legend.legend_handles if handle is not None]
-    size = legend.get_texts()[0].get_fontsize() if texts else POINTS_OF_TYPE
-    for columns in range(MOST_COLUMNS - 1, 0, -1):
-        if legend.get_window_extent().width <= figure.bbox.width:
-            return
-        legend.remove()
-        legend = figure.legend(
-            handles, texts, loc="outside lower center", ncols=columns, frameon=False, fontsize=size
-        )
-        width, height = figure.get_size_inches()
-        more = ceil(len(texts) / columns) - ceil(len(texts) / (columns + 1))
-        figure.set_size_inches(width, height + ROW * more)
+def _inches(width: str) -> float:
+    """A width as `--width` takes it, in inches; InputError for what no page has room for."""
+    if width in WIDTHS:
+        return WIDTHS[width]
+    refusal = f"width = {width!r} is not allowed; choose {', '.join(WIDTHS)}, or a length as '89 mm'"
+    try:
+        inches = in_si("width", width, "m", "89 mm") / INCH
+    except InputError:
+        raise InputError(refusal) from None
+    if not NARROWEST <= inches <= WIDEST:
+        raise InputError(f"{refusal}, from {NARROWEST * INCH * 1e3:.0f} to {WIDEST * INCH * 1e3:.0f} mm")
+    return inches
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,9 +112,12 @@ class FigureRequest:
         if self.taken:
             raise InputError(f"--output {self.output} is not a name for a figure; choose another")
 
-    def write(self, figure: Figure, shown: str) -> str:
-        """Writes the figure, with SI units where the rod is an arm; returns what it shows."""
+    def write(self, figure: Figure, shown: str, least_aspect: float = LEAST_ASPECT) -> str:
+        """Writes the figure, with SI units where the rod is an arm; returns what it shows.
+
+        least_aspect: height of its panels in units of their width, below which it grows.
+        """
         add_si_scales(figure, self.views)
-        self.look.fit(figure)
+        self.look.fit(figure, least_aspect)
         figure.savefig(self.output)
         return shown

@@ -8,8 +8,9 @@ from matplotlib.lines import Line2D
 from ...arrays import Array
 from ...results.file.view import View
 from . import style
-from .class_bars import draw_class_bars
+from .class_bars import BAR_ASPECT, draw_class_bars
 from .lists import as_grid
+from .fitting import LEAST_ASPECT
 from .request import FigureRequest
 
 CRITICAL_FORCES = (
@@ -27,7 +28,8 @@ def draw_thresholds(request: FigureRequest) -> str:
     """One panel for each long axis, the first thresholds along it; else a bar of classes for each rod."""
     view = as_grid(request.only_view())
     if not view.is_grid or view.variables["status"].size == 1:
-        return request.write(draw_class_bars(view), "what each rod does over F")
+        least_aspect = BAR_ASPECT if view.variables["status"].size == 1 else LEAST_ASPECT
+        return request.write(draw_class_bars(view), "what each rod does over F", least_aspect)
     long = style.long_axes(view)
     style.need(
         view, any(np.isfinite(view.variables[name]).any() for name, *_ in CRITICAL_FORCES), "threshold"
@@ -45,7 +47,7 @@ def draw_thresholds(request: FigureRequest) -> str:
         if np.isfinite(view.variables[variable]).any()
     ]
     style.legend_below(figure, there, columns=3)
-    figure.suptitle(style.heading(view, style.fixed_text(view, *long), _searched(view)), fontsize=9)
+    figure.suptitle(style.heading(view, style.fixed_text(view, *long), _searched(view)))
     left_out = [name for name in long if not np.isfinite(view.axes[name]).all()]
     without = f"; {' and '.join(left_out)} = inf has no place on an axis and is left out" if left_out else ""
     return request.write(figure, "critical forces against " + " and ".join(long) + without)
@@ -82,7 +84,7 @@ def _panel(panel: Axes, view: View, name: str, others: list[str]) -> None:
     panel.set_xlabel(label)
     panel.set_ylim(bottom=0)
     if place:
-        panel.legend(frameon=False, fontsize=8, loc="lower left", bbox_to_anchor=(0.0, 1.0))
+        panel.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0))
 
 
 def _far_apart(lines: dict[int, Array]) -> list[int]:

@@ -93,7 +93,7 @@ def draw_line(view: View, name: str, roots: str) -> Figure:
     bottom.axvline(0, color="0.5", lw=0.6)
     bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
     legend_below(figure, top.get_legend_handles_labels()[0], 2)
-    figure.suptitle(heading(view, fixed_text(view, name), FOLLOWED_ROOTS[roots]), fontsize=9)
+    figure.suptitle(heading(view, fixed_text(view, name), FOLLOWED_ROOTS[roots]))
     return figure
 
 
