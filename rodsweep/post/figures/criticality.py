@@ -13,7 +13,7 @@ from ...arrays import Array
 from ...errors import InputError
 from ...results.file.view import View
 from . import style
-from .cycle.maps import label_maps, two_maps
+from .cycle.maps import label_maps, map_panels
 from .cycle.point_map import PointMap, cell_edges, point_map, varied_parameters
 from .fitting import MAP_ASPECT
 from .request import FigureRequest
@@ -96,11 +96,14 @@ def _mark(axes: Axes, x: Array, values: Array, side: Array) -> list[Line2D]:
 
 
 def _map(view: View, points: PointMap, narrow: bool) -> Figure:
-    """The criticality of the first Hopf points, and how fast their cycles grow; narrow: one above the other."""
+    """The criticality of the first Hopf points, and how fast their cycles grow.
+
+    narrow: whether the two maps have no room beside each other.
+    """
     side = _by_point(view, "criticality")[points.at]
     a = np.abs(_by_point(view, "amplitude_coefficient")[:, 0][points.at])
     style.need(view, np.isfinite(a).any(), "first Hopf point with a normal form")
-    figure, panels = two_maps(narrow)
+    figure, panels = map_panels(2, narrow)
     edges = cell_edges(points.x), cell_edges(points.y)
     classes = _classes(side)
     norm = BoundaryNorm(np.arange(len(CLASSES) + 1) - 0.5, len(CLASSES))

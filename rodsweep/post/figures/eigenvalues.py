@@ -27,7 +27,7 @@ def draw_eigenvalues(view: View) -> Figure:
     figure = Figure(figsize=(5.2, 4.0), layout="constrained")
     axes = figure.subplots()
     handles = _mark(axes, growth, frequency, growth > 0)
-    _spread(axes, growth, frequency)
+    spread(axes, growth, frequency)
     for place in range(min(modes, MOST_NUMBERED)):
         if np.isfinite(growth[place]):
             at = growth[place], frequency[place]
@@ -49,7 +49,7 @@ def draw_list_of_spectra(view: View) -> Figure:
     number = np.broadcast_to(np.arange(1, len(growth) + 1)[:, None], growth.shape)
     for axes, values, part in zip(panels, (growth, frequency), ("Re", "Im"), strict=True):
         handles = _mark(axes, number, values, growth > 0)
-        _spread(axes, None, values)
+        spread(axes, None, values)
         axes.axhline(0, color="0.5", lw=0.6, zorder=0)
         axes.set_ylabel(rf"$\mathrm{{{part}}}\,\omega\,\tau_2$")
     number_points(panels[1], view, len(growth))
@@ -68,7 +68,7 @@ def _mark(axes: Axes, x: np.ndarray, y: np.ndarray, grows: np.ndarray) -> list[L
     return handles
 
 
-def _spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
+def spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
     """Makes those axes logarithmic but near 0 whose numbers are of very different size."""
     for set_scale, values in ((axes.set_xscale, x), (axes.set_yscale, y)):
         sizes = np.abs(values[np.isfinite(values) & (values != 0)]) if values is not None else np.zeros(0)

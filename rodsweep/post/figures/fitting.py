@@ -1,4 +1,4 @@
-"""Fits a drawn figure to its page: text in lines that have room, legends in columns that fit, panels not too flat.
+"""Fits a drawn figure to its page: lines of text, columns of legends, heights of panels.
 
 Sizes are measured on the laid out figure; the layout itself is matplotlib's constrained layout.
 """
@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable
 from math import ceil
 
+import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
@@ -26,6 +27,8 @@ SPARE = 4.0
 """Inches by which a figure is higher while its text is measured, so that its panels do not vanish."""
 MARGIN = 0.04
 """Inches between text and the edge of the figure."""
+BLANK = 0.25
+"""Space between the labels of two ticks beside each other, in units of the size of type."""
 WORDS = re.compile(r"(?:\\.|\$(?:\\.|[^$\\])*\$|[^\s$])+")
 """Words of a text; mathematics between dollars is part of its word, with the blanks in it."""
 
@@ -51,7 +54,7 @@ def fit(figure: Figure, least_aspect: float = LEAST_ASPECT) -> None:
 
 
 def break_lines(text: Text, room: float, length: Callable[[], float]) -> bool:
-    """Breaks the lines of a text at blanks so that each is at most `room` pixels long; whether that changed it.
+    """Breaks the lines of a text at blanks so that none is longer than `room` pixels; whether that did.
 
     length: of the text as it stands, in pixels along its lines.
     """
@@ -78,7 +81,7 @@ def _break_texts(figure: Figure) -> bool:
     """Breaks headings and the labels of axes where they are longer than the room that they have."""
     margin = MARGIN * figure.dpi
     changed = False
-    heading = figure._suptitle if hasattr(figure, "_suptitle") else None  # noqa: SLF001 - it has no getter
+    heading = figure._suptitle  # the artist has no getter
     if heading is not None:
         room = figure.bbox.width - 2 * margin
         changed |= break_lines(heading, room, lambda: heading.get_window_extent().width)
@@ -90,9 +93,9 @@ def _break_texts(figure: Figure) -> bool:
         down = max(figure.bbox.height / rows - 2 * margin, box.height)
         for text in (axes.title, axes.xaxis.label):
             changed |= break_lines(text, across, lambda text=text: text.get_window_extent().width)
-        left = axes._left_title  # noqa: SLF001 - the artist has no getter
+        left = axes._left_title  # the artist has no getter
         room = min(figure.bbox.width - box.x0 - margin, figure.bbox.width / columns - 2 * margin)
-        changed |= break_lines(left, room, lambda: left.get_window_extent().width)
+        changed |= break_lines(left, room, lambda text=left: text.get_window_extent().width)
         vertical = axes.yaxis.label
         changed |= break_lines(vertical, down, lambda text=vertical: text.get_window_extent().height)
         for second in axes.child_axes:
@@ -113,35 +116,31 @@ def _rows_and_columns(axes: Axes) -> tuple[int, int]:
 
 
 def _fit_legends(figure: Figure) -> bool:
-    """Gives legends that are wider than the figure fewer columns, and breaks entries that are too long for one."""
+    """Gives legends that are wider than the figure fewer columns, and breaks entries too long for one."""
     room = figure.bbox.width - 2 * MARGIN * figure.dpi
     changed = False
-    for legend in list(figure.legends):
-        while legend.get_window_extent().width > room:
-            columns = _columns(legend)
-            changed = True
-            if columns > 1:
-                legend = _with_columns(figure, legend, columns - 1)
-                continue
-            wide = max(legend.get_texts(), key=lambda text: text.get_window_extent().width)
-            beside = legend.get_window_extent().width - wide.get_window_extent().width
-            if not break_lines(wide, room - beside, lambda text=wide: text.get_window_extent().width):
-                break
-            figure.draw_without_rendering()
+    for given in list(figure.legends):
+        legend = given
+        while legend.get_window_extent().width > room and _columns(legend) > 1:
+            legend, changed = _with_columns(figure, legend, _columns(legend) - 1), True
+        texts = legend.get_texts()
+        if legend.get_window_extent().width > room:
+            beside = legend.get_window_extent().width - max(text.get_window_extent().width for text in texts)
+            for text in texts:
+                changed |= break_lines(text, room - beside, lambda text=text: text.get_window_extent().width)
     return changed
 
 
 def _columns(legend: Legend) -> int:
-    return min(legend._ncols, len(legend.get_texts()))  # noqa: SLF001 - it has no getter
+    return min(legend._ncols, len(legend.get_texts()))
 
 
 def _with_columns(figure: Figure, legend: Legend, columns: int) -> Legend:
     """The legend of a figure anew, with another number of columns."""
     texts = [text.get_text() for text in legend.get_texts()]
     handles = [handle for handle in legend.legend_handles if handle is not None]
-    size = legend.get_texts()[0].get_fontsize()
     legend.remove()
-    new = figure.legend(handles, texts, loc="outside lower center", ncols=columns, frameon=False, fontsize=size)
+    new = figure.legend(handles, texts, loc="outside lower center", ncols=columns, frameon=False)
     figure.draw_without_rendering()
     return new
 
@@ -155,9 +154,9 @@ def _thin_ticks(figure: Figure) -> bool:
 def _thin(axis: Axis, way: int) -> bool:
     """Fewer labels on an axis where two of them meet; way: 0 for a horizontal axis, 1 for a vertical one."""
     shown = [label for label in axis.get_majorticklabels() if label.get_visible() and label.get_text()]
-    boxes = sorted((label.get_window_extent() for label in shown), key=lambda box: box.intervalx[0] if way == 0 else box.intervaly[0])
-    least = 0.25 * shown[0].get_fontsize() * axis.figure.dpi / 72 if shown and way == 0 else 0.0
-    spans = [box.intervalx if way == 0 else box.intervaly for box in boxes]
+    boxes = [label.get_window_extent() for label in shown]
+    spans = sorted(tuple(box.intervaly if way else box.intervalx) for box in boxes)
+    least = 0.0 if way else BLANK * matplotlib.rcParams["font.size"] * axis.get_figure().dpi / 72
     if all(later[0] - earlier[1] >= least for earlier, later in zip(spans[:-1], spans[1:], strict=True)):
         return False
     locator = axis.get_major_locator()

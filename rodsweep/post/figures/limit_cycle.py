@@ -13,7 +13,7 @@ from .cycle.portrait import draw_portrait
 from .cycle.selection import MOST_CYCLES, SHAPES, TRACE, outcomes
 from .cycle.transient import draw_transients
 from .fitting import MAP_ASPECT
-from .request import FigureRequest
+from .request import KINDS_OF_TASK, FigureRequest
 
 ALL_POINTS = {"amplitude": "amplitudes", "maps": "maps"}
 """Figures that show every point of a file."""
@@ -42,6 +42,8 @@ def figure_name(request: FigureRequest) -> str:
         if view.task != first.task:
             request.refuse_choices(view)
     name = request.what or _suggested(request)
+    if name not in KINDS_OF_TASK["limit_cycle"]:
+        request.refuse_points(first)
     if others and name != "amplitude":
         raise InputError(f"--what {name} draws one file; only amplitudes of several files make one figure")
     if request.points and name in ALL_POINTS:

@@ -14,9 +14,14 @@ from .fitting import LEAST_ASPECT, fit
 
 WIDTHS = {"single": 3.375, "double": 7.0}
 """Of a journal's columns, in inches."""
-ROOTS = ("rightmost", "smallest")
-KINDS = ("cycle", "amplitude", "maps", "energy", "transient", "animation")
-"""Which two roots a figure of spectra may follow, and which figures of limit cycles there are."""
+ROOTS = ("rightmost", "smallest", "all")
+"""Which roots a line of spectra shows: two that are followed, or all that are stored."""
+KINDS_OF_TASK = {
+    "limit_cycle": ("cycle", "amplitude", "maps", "energy", "transient", "animation"),
+    "thresholds": ("lines", "map"),
+}
+"""Which figures there are of a task that has several."""
+KINDS = tuple(kind for kinds in KINDS_OF_TASK.values() for kind in kinds)
 HEIGHT_POWER = 0.5
 """Of the ratio of the widths, by which a figure gets lower: panels get narrower, their text does not."""
 INCH = 0.0254
@@ -84,25 +89,29 @@ class FigureRequest:
     """Whether the file to write is there already and is no figure."""
     look: Look = Look()
 
-    def only_view(self) -> View:
-        """The file, for tasks that draw one and know neither --what nor --point; else InputError."""
-        self.refuse_choices(self.views[0])
+    def only_view(self, *kinds: str) -> View:
+        """The file, for tasks that draw one, know no --point, and of --what the kinds; else InputError."""
+        self.refuse_choices(self.views[0], kinds)
         self.check_output()
         return self.views[0]
 
-    def refuse_choices(self, view: View) -> None:
+    def refuse_choices(self, view: View, kinds: Sequence[str] = ()) -> None:
         """InputError if anything is asked for that the task of `view` does not offer."""
-        self.refuse_points(view)
+        self.refuse_points(view, kinds)
         if self.views[1:]:
             raise InputError(
                 f"{view.path}: several files are drawn of limit_cycle or of spectrum, and this is {view.task}"
             )
 
-    def refuse_points(self, view: View) -> None:
-        """InputError if a figure or points are chosen, which the task of `view` lacks."""
-        asked = {"--what": self.what, "--point": self.points}
-        if word := next((word for word, given in asked.items() if given), ""):
-            raise InputError(f"{view.path}: {word} is for results of limit_cycle, and this is {view.task}")
+    def refuse_points(self, view: View, kinds: Sequence[str] = ()) -> None:
+        """InputError if points, or a figure that is none of the kinds, are chosen: the task of `view` lacks them."""
+        if self.points:
+            raise InputError(f"{view.path}: --point is for results of limit_cycle, and this is {view.task}")
+        if self.what and self.what not in kinds:
+            task = next(task for task, known in KINDS_OF_TASK.items() if self.what in known)
+            raise InputError(
+                f"{view.path}: --what {self.what} is for results of {task}, and this is {view.task}"
+            )
 
     def check_output(self, *suffixes: str) -> None:
         """InputError unless a figure with one of the suffixes, by default an image's, can have the name."""

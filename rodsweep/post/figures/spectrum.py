@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from ...errors import InputError
 from ...results.file.view import View
 from .eigenvalues import draw_eigenvalues, draw_list_of_spectra
-from .lists import as_grid
 from .fitting import MAP_ASPECT
+from .lists import as_grid
 from .request import FigureRequest
 from .spectra.line import FOLLOWED_ROOTS, draw_line, roots_to_follow
 from .spectra.panels import MOST_PANELS, draw_panels

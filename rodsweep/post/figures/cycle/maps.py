@@ -71,7 +71,7 @@ def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
     words = outcomes(view)[points.at]
     cycles = np.isin(words, CYCLE_WORDS)
     need(view, cycles.any(), "cycle")
-    figure, panels = two_maps(narrow)
+    figure, panels = map_panels(2, narrow)
     lines = hopf_lines(points, view)
     for axes, (name, label, colours, ratios) in zip(panels, QUANTITIES, strict=True):
         values = np.where(cycles, view.variables[name].ravel()[points.at], np.nan)
@@ -91,12 +91,12 @@ def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
     return figure, f"period and amplitude over {' and '.join(points.names)}{points.left_out}"
 
 
-def two_maps(narrow: bool) -> tuple[Figure, list[Axes]]:
-    """A figure with two panels that share their axes: side by side, or if narrow one above the other."""
+def map_panels(count: int, narrow: bool) -> tuple[Figure, list[Axes]]:
+    """A figure with panels that share their axes: side by side, or if narrow one above the other."""
     apart = ConstrainedLayoutEngine(wspace=0.0 if narrow else 0.06)  # the first bar's label is its own
-    figure = Figure(figsize=(4.2, 6.4) if narrow else (9.6, 4.5), layout=apart)
-    shape = (2, 1) if narrow else (1, 2)
-    return figure, list(figure.subplots(*shape, sharex=True, sharey=True).ravel())
+    figure = Figure(figsize=(4.2, 3.2 * count) if narrow else (4.8 * count, 4.5), layout=apart)
+    shape = (count, 1) if narrow else (1, count)
+    return figure, list(figure.subplots(*shape, sharex=True, sharey=True, squeeze=False).ravel())
 
 
 def label_maps(panels: Sequence[Axes], points: PointMap) -> None:

@@ -75,7 +75,7 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
 
 
 def _panels(count: int, narrow: bool) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
-    """(figure, a panel for each cycle's shapes, two for its tip: beside those of one with room, else below)."""
+    """(figure, a panel for each cycle's shapes, two for its tip: beside those of one, or below)."""
     if count == 1 and not narrow:
         figure = Figure(figsize=(8.6, 4.4), layout="constrained")
         table: dict[str, Axes] = figure.subplot_mosaic(
@@ -95,9 +95,7 @@ def drawn_shapes(stored: int) -> tuple[range, float]:
     return range(0, stored, stride), stride / stored
 
 
-def _phase_bar(
-    figure: Figure, panels: list[Axes], colours: ListedColormap, step: float, below: bool
-) -> None:
+def _phase_bar(figure: Figure, panels: list[Axes], colours: ListedColormap, step: float, below: bool) -> None:
     """The times of the shapes beside their colours, or below; `step` is the time between two in periods."""
     n = colours.N
     norm = BoundaryNorm((np.arange(n + 1) - 0.5) * step, n)
