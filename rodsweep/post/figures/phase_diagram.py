@@ -74,7 +74,7 @@ LEGEND = {
 MOTIONS = Palette("class", CLASSES, CLASS_COLOURS)
 STATES = Palette("stable_states", STABLE_STATES, STATE_COLOURS)
 BESIDE_CRUSHING = 1 - np.linspace(0, 3e-3, 7)
-"""F/k1 that no colour passes: curves of cycles end where F comes within 1e-3 of k1, and bound regions there."""
+"""F/k1 that no colour passes: curves of cycles end where F is within 1e-3 of k1, and bound regions there."""
 
 
 def draw_phase_diagram(request: FigureRequest) -> str:

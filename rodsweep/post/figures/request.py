@@ -1,6 +1,6 @@
 """What a figure is asked for: the common interface of the modules that each draw the figures of a task."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -12,6 +12,8 @@ from ...results.file.view import View
 from .arm_axes import add_si_scales
 from .fitting import LEAST_ASPECT, fit
 
+Shapes = Callable[[View, Sequence[int]], View]
+"""A file with the shapes of the cycles of some points, numbered from 1."""
 WIDTHS = {"single": 3.375, "double": 7.0}
 """Of a journal's columns, in inches."""
 ROOTS = ("rightmost", "smallest", "all")
@@ -88,6 +90,8 @@ class FigureRequest:
     taken: bool = False
     """Whether the file to write is there already and is no figure."""
     look: Look = Look()
+    shapes: Shapes | None = None
+    """Solves cycles whose shapes a file lacks."""
 
     def only_view(self, *kinds: str) -> View:
         """The file, for tasks that draw one, know no --point, and of --what the kinds; else InputError."""
@@ -104,7 +108,7 @@ class FigureRequest:
             )
 
     def refuse_points(self, view: View, kinds: Sequence[str] = ()) -> None:
-        """InputError if points, or a figure that is none of the kinds, are chosen: the task of `view` lacks them."""
+        """InputError for points, or a figure that is none of the kinds, which the task of `view` lacks."""
         if self.points:
             raise InputError(f"{view.path}: --point is for results of limit_cycle, and this is {view.task}")
         if self.what and self.what not in kinds:

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator, SymmetricalLogLocator
 
-from ....arrays import Complex
+from ....arrays import Array, Complex
 from ....results.file.view import View
 from ...hopf_points import HopfPoint, Located, lines_over
 from ...stability_changes import thresholds_on
