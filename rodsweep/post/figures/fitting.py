@@ -4,10 +4,9 @@ Sizes are measured on the laid out figure; the layout itself is matplotlib's con
 """
 
 import re
-from collections.abc import Callable
 from math import ceil
 
-import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
@@ -28,7 +27,9 @@ SPARE = 4.0
 MARGIN = 0.04
 """Inches between text and the edge of the figure."""
 BLANK = 0.25
-"""Space between the labels of two ticks beside each other, in units of the size of type."""
+"""Space between the labels of two ticks beside each other, in units of their height."""
+SEEN = 1e-9
+"""Length of an axis by which a tick at its end may lie outside by rounding."""
 WORDS = re.compile(r"(?:\\.|\$(?:\\.|[^$\\])*\$|[^\s$])+")
 """Words of a text; mathematics between dollars is part of its word, with the blanks in it."""
 
@@ -53,11 +54,16 @@ def fit(figure: Figure, least_aspect: float = LEAST_ASPECT) -> None:
             break
 
 
-def break_lines(text: Text, room: float, length: Callable[[], float]) -> bool:
+def break_lines(text: Text, room: float, upright: bool = False) -> bool:
     """Breaks the lines of a text at blanks so that none is longer than `room` pixels; whether that did.
 
-    length: of the text as it stands, in pixels along its lines.
+    upright: whether its lines go up the page.
     """
+
+    def length() -> float:
+        box = text.get_window_extent()
+        return float(box.height if upright else box.width)
+
     before = text.get_text()
     if not before or length() <= room:
         return False
@@ -79,31 +85,23 @@ def break_lines(text: Text, room: float, length: Callable[[], float]) -> bool:
 
 def _break_texts(figure: Figure) -> bool:
     """Breaks headings and the labels of axes where they are longer than the room that they have."""
-    margin = MARGIN * figure.dpi
-    changed = False
-    heading = figure._suptitle  # the artist has no getter
-    if heading is not None:
-        room = figure.bbox.width - 2 * margin
-        changed |= break_lines(heading, room, lambda: heading.get_window_extent().width)
+    margin, width = MARGIN * figure.dpi, figure.bbox.width
+    changed = [break_lines(heading, width - 2 * margin) for heading in figure.texts]
     for axes in figure.axes:
         box = axes.get_window_extent()
         rows, columns = _rows_and_columns(axes)
-        centred = 2 * (min(box.x0 + box.x1, 2 * figure.bbox.width - box.x0 - box.x1) / 2 - margin)
-        across = min(centred, max(figure.bbox.width / columns, box.width) - 2 * margin)
+        centred = min(box.x0 + box.x1, 2 * width - box.x0 - box.x1) - 2 * margin
+        across = min(centred, max(width / columns, box.width) - 2 * margin)
         down = max(figure.bbox.height / rows - 2 * margin, box.height)
-        for text in (axes.title, axes.xaxis.label):
-            changed |= break_lines(text, across, lambda text=text: text.get_window_extent().width)
-        left = axes._left_title  # the artist has no getter
-        room = min(figure.bbox.width - box.x0 - margin, figure.bbox.width / columns - 2 * margin)
-        changed |= break_lines(left, room, lambda text=left: text.get_window_extent().width)
-        vertical = axes.yaxis.label
-        changed |= break_lines(vertical, down, lambda text=vertical: text.get_window_extent().height)
-        for second in axes.child_axes:
-            label = second.xaxis.label
-            changed |= break_lines(label, across, lambda text=label: text.get_window_extent().width)
-            label = second.yaxis.label
-            changed |= break_lines(label, down, lambda text=label: text.get_window_extent().height)
-    return changed
+        own = [text for text in axes.get_children() if isinstance(text, Text) and text not in axes.texts]
+        for title in own:
+            from_left = min(width - box.x0 - margin, width / columns - 2 * margin)
+            room = across if title.get_horizontalalignment() == "center" else from_left
+            changed.append(break_lines(title, room))
+        for one in (axes, *axes.child_axes):
+            changed.append(break_lines(one.xaxis.label, across))
+            changed.append(break_lines(one.yaxis.label, down, upright=True))
+    return any(changed)
 
 
 def _rows_and_columns(axes: Axes) -> tuple[int, int]:
@@ -126,13 +124,12 @@ def _fit_legends(figure: Figure) -> bool:
         texts = legend.get_texts()
         if legend.get_window_extent().width > room:
             beside = legend.get_window_extent().width - max(text.get_window_extent().width for text in texts)
-            for text in texts:
-                changed |= break_lines(text, room - beside, lambda text=text: text.get_window_extent().width)
+            changed |= any([break_lines(text, room - beside) for text in texts])
     return changed
 
 
 def _columns(legend: Legend) -> int:
-    return min(legend._ncols, len(legend.get_texts()))
+    return len({round(text.get_window_extent().x0) for text in legend.get_texts()})
 
 
 def _with_columns(figure: Figure, legend: Legend, columns: int) -> Legend:
@@ -151,12 +148,23 @@ def _thin_ticks(figure: Figure) -> bool:
     return any([_thin(axis, way) for axes in every for axis, way in ((axes.xaxis, 0), (axes.yaxis, 1))])
 
 
+def labels_in_sight(axis: Axis) -> list[Text]:
+    """The labels of the ticks within the limits of an axis."""
+    low, high = sorted(axis.get_view_interval())
+    near = SEEN * (high - low)
+    return [
+        label
+        for place, label in zip(axis.get_majorticklocs(), axis.get_majorticklabels(), strict=False)
+        if label.get_visible() and label.get_text() and low - near <= place <= high + near
+    ]
+
+
 def _thin(axis: Axis, way: int) -> bool:
     """Fewer labels on an axis where two of them meet; way: 0 for a horizontal axis, 1 for a vertical one."""
-    shown = [label for label in axis.get_majorticklabels() if label.get_visible() and label.get_text()]
+    shown = labels_in_sight(axis)
     boxes = [label.get_window_extent() for label in shown]
     spans = sorted(tuple(box.intervaly if way else box.intervalx) for box in boxes)
-    least = 0.0 if way else BLANK * matplotlib.rcParams["font.size"] * axis.get_figure().dpi / 72
+    least = 0.0 if way else BLANK * max((box.height for box in boxes), default=0.0)
     if all(later[0] - earlier[1] >= least for earlier, later in zip(spans[:-1], spans[1:], strict=True)):
         return False
     locator = axis.get_major_locator()
@@ -194,7 +202,7 @@ def _spare_height(figure: Figure, least_aspect: float) -> float:
         if place is None or hasattr(axes, "_colorbar"):
             continue
         room = axes.get_position(original=True)
-        ratios = place.get_gridspec().get_height_ratios()
-        part = sum(ratios[row] for row in place.rowspan) / sum(ratios)
+        ratios = np.asarray(place.get_gridspec().get_height_ratios())
+        part = ratios[place.rowspan.start : place.rowspan.stop].sum() / ratios.sum()
         spare.append((room.height * height - least_aspect * room.width * width) / part)
     return min(spare)

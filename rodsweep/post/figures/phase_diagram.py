@@ -96,7 +96,12 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     axes = figure.subplots()
     crushing = (line, row) == CRUSHING
     pixels = _class_of_pixels(view, palette, line, row, table)
-    unit = {"extent": (0, 1, 0, 1), "transform": axes.transAxes, "origin": "lower", "aspect": "auto"}
+    unit: dict[str, Any] = {
+        "extent": (0, 1, 0, 1),
+        "transform": axes.transAxes,
+        "origin": "lower",
+        "aspect": "auto",
+    }
     axes.imshow(pixels, interpolation="nearest", **unit, **palette.colours_of_numbers)
     scale(axes, "x", x)
     scale(axes, "y", y)
@@ -127,7 +132,7 @@ def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
     table = view.variables[palette.variable].reshape(len(y), len(x))
     figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")
     axes = figure.subplots()
-    looks = {"shading": "nearest", "rasterized": True} | palette.colours_of_numbers
+    looks: dict[str, Any] = {"shading": "nearest", "rasterized": True} | palette.colours_of_numbers
     axes.pcolormesh(x, np.arange(len(y)), table, **looks)
     for between in np.arange(len(y) - 1) + 0.5:
         axes.axhline(between, color="white", lw=4)

@@ -79,7 +79,7 @@ def coloured(computed: ClassedPlaces, further: ClassedPlaces, curves: Sequence[A
     return table
 
 
-def _nearest(pixels: tuple[Array, ...], places: Array, classes: NDArray[Any]) -> NDArray[Any]:
+def _nearest(pixels: tuple[NDArray[Any], ...], places: Array, classes: NDArray[Any]) -> NDArray[Any]:
     """The class of the point that is nearest to each pixel, (rows, columns) of the shape (n,) each."""
     if (classes == classes[0]).all():
         return classes[0]

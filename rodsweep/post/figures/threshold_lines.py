@@ -1,5 +1,7 @@
 """The first thresholds of rods as lines over a parameter, for all values of another one or for some."""
 
+from typing import Any
+
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
@@ -40,7 +42,7 @@ def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, 
     handles = []
     for values, shade in zip(table, shades, strict=True):
         for forces, (_, word, colour, marker, line) in zip(values, CRITICAL_FORCES, strict=True):
-            look = {"marker": marker, "ms": 3, "lw": 1.2, "color": shade if other else colour}
+            look: dict[str, Any] = {"marker": marker, "ms": 3, "lw": 1.2, "color": shade if other else colour}
             look |= {"ls": line} if other else {}
             _plot(axes, _abscissa(view, along), forces, look)
             if not other and np.isfinite(forces).any():
