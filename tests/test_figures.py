@@ -355,7 +355,9 @@ def test_phase_diagram_has_its_edge_as_a_line_marks_apart_and_a_legend_inside(co
 def test_classes_are_bounded_by_a_curve_however_few_points_are_computed():
     """Below the parabola y = x^2 class 1, above it class 2, from four points."""
     x = np.linspace(0, 1, 200)
-    places = ClassedPlaces(np.array([[0.1, 0.9], [0.05, 0.1], [0.9, 0.1], [0.95, 0.8]]), np.array([2, 2, 1, 1]))
+    places = ClassedPlaces(
+        np.array([[0.1, 0.9], [0.05, 0.1], [0.9, 0.1], [0.95, 0.8]]), np.array([2, 2, 1, 1])
+    )
     table = coloured(places, places, [np.column_stack([x, x**2])])
     centres = (np.arange(PIXELS) + 0.5) / PIXELS
     off = centres[:, None] - centres[None, :] ** 2
@@ -412,7 +414,9 @@ def test_thresholds_of_every_value_are_lines_or_cells_of_a_map(command, monkeypa
     figure, shown = drawn_of(command, monkeypatch, THRESHOLDS)
     assert "critical forces against k2 for every k1" in shown
     view = read_view(command.directory / "c.h5")
-    stored = np.concatenate([view.variables[f"F_{name}"].ravel() for name in ("onset", "hopf", "restabilization")])
+    stored = np.concatenate(
+        [view.variables[f"F_{name}"].ravel() for name in ("onset", "hopf", "restabilization")]
+    )
     lines = np.concatenate([line.get_ydata() for line in figure.axes[0].lines])
     assert sorted(lines[np.isfinite(lines)]) == sorted(stored[np.isfinite(stored)])
     drawn = []

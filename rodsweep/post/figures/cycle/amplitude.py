@@ -86,7 +86,7 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
     if len(branches) > len(BRANCH_LOOKS):
         raise InputError(
             f"{first.path} makes {len(branches)} lines over {name}, for which a figure has no room; "
-            f"it has room for {len(BRANCH_LOOKS)}: choose by --at, as --at k1=150, or draw two parameters, each"
+            f"it has room for {len(BRANCH_LOOKS)}: choose by --at k1=150, or draw two parameters, each"
             " combination once, as maps (--what maps)"
         )
     need(first, any(np.isfinite(branch.amplitude_y).any() for branch in branches), "amplitude")
