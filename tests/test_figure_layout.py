@@ -5,6 +5,7 @@ from functools import cache
 from itertools import combinations
 from pathlib import Path
 
+import matplotlib
 import numpy as np
 import pytest
 from known_cycles import make_view
@@ -14,8 +15,11 @@ from matplotlib.text import Text
 import rodsweep as rs
 from rodsweep.api.dataset import view_of
 from rodsweep.post.figures import draw
+from rodsweep.post.figures.cycle.animation import first_frame
+from rodsweep.post.figures.cycle.selection import chosen_cycles
 from rodsweep.post.figures.fitting import WORDS, break_lines, fit, labels_in_sight
 from rodsweep.post.figures.request import Look
+from rodsweep.post.figures.style import STYLE
 
 WIDTHS = ("89 mm", "183 mm", None)
 LONG = "An arm of silicone whose length is to be chosen for the laboratory, a title too long for a line"
@@ -172,7 +176,17 @@ def test_nothing_of_cycles_is_cut_or_over_anything_else(name, what, width, tmp_p
     assert faults(drawn(view, tmp_path, monkeypatch, width, what=what)) == []
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("name", ["one", "two", "three"])
+def test_the_frames_of_a_film_are_whole(name):
+    selection = chosen_cycles(of_cycles(*CYCLES[name][0], seed=1), (), ())
+    with matplotlib.rc_context(STYLE):
+        figure, arms = first_frame(selection)
+        for arm in arms:
+            arm.show(7)
+        assert faults(figure) == []
+
+
+@pytest.mark.parametrize("seed", range(6))
 def test_random_figures_of_cycles_are_whole(seed, tmp_path, monkeypatch):
     rng = np.random.default_rng(seed)
     forces = list(np.sort(rng.uniform(10, 10 ** rng.uniform(2, 4), rng.integers(2, 30))))
