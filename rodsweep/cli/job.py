@@ -12,10 +12,11 @@ from ..config import Config, load_config
 from ..config.reading import canonical
 from ..errors import InputError
 from ..results.layouts import LAYOUTS, layout_of
-from ..results.layouts.arm import in_si, quantities_of
+from ..results.layouts.arm import at_points, in_si, quantities_of
 from ..results.layouts.variables import Filled, Layout
 from ..sweep.grid import Points, grid_size, points_of
 from ..sweep.stretches import Together
+from .arm_points import around
 from .tasks import TASKS
 from .tasks.protocol import Solver, Task
 
@@ -49,15 +50,19 @@ class Job:
     @property
     def quantities(self) -> tuple[Filled, ...]:
         """The quantities of the arm, where the config has one, as coordinates of the points."""
-        return quantities_of(self.config.parameters, self.points.is_grid)
+        return quantities_of(self.config.parameters, self.points)
 
     def solver(self) -> Solver:
         """The task's solver, whose records tell an arm's results in SI units too. Starts PETSc."""
         solver = self.task.solver()
         if self.config.parameters.arm is None:
             return solver
+        return around(self._in_si(solver), self.points, self.layout)
+
+    def _in_si(self, solver: Solver) -> Solver:
+        """The solver with records that tell an arm's results in SI units too."""
         layout = LAYOUTS[self.config.task](self.resolved)
-        quantities = {variable.name: values for variable, values in self.quantities}
+        quantities = at_points(self.quantities, self.points)
 
         def record(index: int, outcome: Any) -> dict[str, Any]:
             values = solver.record(index, outcome)

@@ -70,7 +70,12 @@ class Config(Strict, ABC):
         options = getattr(self, self.task).model_dump(mode="json", exclude=set(self.unused))
         numbers = dict(self.parameters.numbers)
         meant = {"task": self.task, "parameters": numbers, "accuracy": self.accuracy, self.task: options}
-        return meant if self.parameters.arm is None else meant | {"arm": self.parameters.arm.meaning}
+        if self.parameters.arm is None:
+            return meant
+        if self.parameters.over:  # whose axes do not tell what has one value
+            beside = self.parameters.given_axes.items()
+            meant["parameters"] |= {name: float(axis.array()[0]) for name, axis in beside if axis.size == 1}
+        return meant | {"arm": self.parameters.arm.meaning}
 
 
 class LinearConfig(Config, ABC):

@@ -31,6 +31,10 @@ UNITS = {
 SIGNED = ("pressure", "force", "density_difference")
 
 
+class NotSlender(InputError):
+    """The refusal of an arm that is too short for the drag of slender bodies."""
+
+
 @dataclass(frozen=True, slots=True)
 class InSI:
     """What is given of an arm, in SI units; what is not given is nan."""
@@ -92,7 +96,7 @@ class SlenderArm:
                 "modulus; check their units"
             )
         if slenderness < LEAST_SLENDERNESS:
-            raise InputError(
+            raise NotSlender(
                 f"{self._told('length')} is {slenderness:.3g} radii; the drag of a slender arm needs at "
                 f"least {LEAST_SLENDERNESS:g}"
             )

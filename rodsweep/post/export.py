@@ -68,7 +68,7 @@ def export(view: View, output: Path, units: bool, replace: bool) -> Exported:
         raise InputError(f"--output {output} is no name for a CSV file")
     if output.exists() and not replace:
         raise InputError(f"{output} is there already; --replace writes over it, -o names another file")
-    layout = layout_of(json.loads(view.attributes["config_resolved"]))
+    view, layout = view.listed, layout_of(json.loads(view.attributes["config_resolved"]))
     kept = [variable for variable in layout.variables if _fits(layout, variable)]
     left_out = tuple(variable.name for variable in layout.variables if variable not in kept)
     columns = list(_columns(view, layout, kept))

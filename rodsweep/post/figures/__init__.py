@@ -65,7 +65,7 @@ def draw(
     `what` and `points`, numbered from 1, choose for tasks with several figures. Raises InputError where there
     is nothing that a figure could show.
     """
-    views = [views] if isinstance(views, View) else views
+    views = [view.listed for view in ([views] if isinstance(views, View) else views)]
     if look.width and what == "animation":
         raise InputError("--width is for figures in print, and an animation is none; leave it out")
     if not look.title:

@@ -37,7 +37,7 @@ SUMMARIES: dict[str, Callable[[View, np.ndarray], list[str]]] = {
 
 def show_summary(view: View, every_status: bool = False) -> None:
     """Prints a summary of a result file; `every_status` lists those of no point, too."""
-    console = Console(highlight=False, markup=False)
+    view, console = view.listed, Console(highlight=False, markup=False)
     a, status = view.attributes, view.variables["status"]
     done = status != MISSING
     console.print(f"{printable(str(view.path))}: {a.get('title', '')}, task {view.task}")

@@ -11,11 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...config.arm import AXIS_OF
+from ...config.arm import AXIS_OF, ArmSection, names_over
 from ...config.axes import Axes
+from ...config.quantities import typed_unit
 from ...model.arm import UNITS
 from ...model.parameters import PARAMETERS
-from .variables import Filled, Layout, Variable, real
+from ...sweep.grid import Points
+from .variables import DIMENSIONS, Filled, Layout, Variable, real
 
 SUFFIX = "_si"
 OF_TIME_AND_LENGTH = {
@@ -43,6 +45,8 @@ MEANINGS = {
     "young": "Young's modulus of the arm",
     "poisson": "Poisson's ratio of the arm",
     "viscosity": "viscosity of the fluid",
+    "fluid_density": "density of the fluid",
+    "density_difference": "density of the arm less that of the fluid",
     "pressure": "pressure on the tip's cross section",
     "force": "follower force at the tip",
     "tau2": "unit of time, gamma2 L^4/k3, with the likeliest drag",
@@ -62,7 +66,8 @@ def with_si(layout: Layout, config: Mapping[str, Any]) -> Layout:
     """The layout with what a resolved config that has an arm stores in SI units too."""
     if config.get("parameters", {}).get("arm") is None:
         return layout
-    return replace(layout, variables=(*layout.variables, *twins_of(layout, config)))
+    over = over_of(config)
+    return replace(layout, variables=(*layout.variables, *twins_of(layout, config)), over=over)
 
 
 def twins_of(layout: Layout, config: Mapping[str, Any]) -> list[Variable]:
@@ -82,17 +87,63 @@ def _unit_of(variable: Variable, as_force: bool) -> tuple[str, tuple[str, ...], 
     return ("rad/s" if unit == "1/s" and "frequency" in variable.name else unit), factors, divisors
 
 
-def quantities_of(parameters: Axes, is_grid: bool) -> tuple[Filled, ...]:
-    """The quantities of a config's arm as coordinates; none where it has no arm."""
-    if parameters.arm is None:
+def over_of(config: Mapping[str, Any]) -> tuple[str, ...]:
+    """The axes of the grid over an arm's quantities that a resolved config asks for; none for others."""
+    parameters = config["parameters"]
+    axes = parameters["arm"] | {name: axis for name, axis in parameters.items() if name in PARAMETERS}
+    sizes = {name: _size(axis) for name, axis in axes.items() if isinstance(axis, Mapping)}
+    return names_over(sizes)
+
+
+def _size(axis: Mapping[str, Any]) -> int:
+    """How many values a resolved axis has."""
+    return len(axis["values"]) if axis.get("values") is not None else int(axis["num"])
+
+
+def quantities_of(parameters: Axes, points: Points) -> tuple[Filled, ...]:
+    """What a file of a config's arm has beside the axes of a grid of parameters; nothing without arm.
+
+    Of a grid over the arm's quantities these are the first, and every parameter on that grid.
+    """
+    arm = parameters.arm
+    if arm is None:
         return ()
-    beside = {name: axis.array() for name, axis in parameters.given_axes.items()}
-    found = []
-    for name, values in parameters.arm.quantities(beside).items():
-        dimension = AXIS_OF.get(name, "") if is_grid else "point"
-        extra = (dimension,) if np.ndim(values) else ()
-        found.append((real(name, QUANTITY_UNITS[name], MEANINGS[name], *extra), np.asarray(values)))
-    return tuple(found)
+    if not points.over:
+        return tuple(
+            _filled(arm, name, values, (AXIS_OF[name],) if np.ndim(values) else ())
+            for name, values in arm.grid_quantities().items()
+        )
+    numbers = {name: axis.array()[0] for name, axis in arm.given.items() if name not in points.over}
+    own = points.units | {name: column for name, column in points.by_name.items() if name not in points.over}
+    return (
+        *(_filled(arm, name, values, (name,)) for name, values in points.over.items()),
+        *(_filled(arm, name, value, ()) for name, value in numbers.items()),
+        *(
+            _filled(arm, name, column.reshape(points.shape), tuple(points.over))
+            for name, column in own.items()
+        ),
+    )
+
+
+def _filled(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]) -> Filled:
+    """A quantity or a parameter with its values along dimensions."""
+    units, meaning = DIMENSIONS[name] if name in PARAMETERS else (QUANTITY_UNITS[name], MEANINGS[name])
+    variable = real(name, units, meaning, *dimensions)
+    if name in UNITS:
+        variable = replace(variable, typed=typed_unit(name, getattr(arm, name)))
+    return variable, np.asarray(values)
+
+
+def at_points(quantities: Iterable[Filled], points: Points) -> dict[str, NDArray[Any]]:
+    """Quantities by name, those along a grid over them at every point, shape (points,)."""
+    if not points.over:
+        return {variable.name: values for variable, values in quantities}
+    dimensions, found = tuple(points.over), {}
+    for variable, values in quantities:
+        place = [slice(None) if name in variable.extra else None for name in dimensions]
+        whole = np.broadcast_to(values[tuple(place)], points.shape).ravel() if variable.extra else values
+        found[variable.name] = whole
+    return found
 
 
 def in_si(

@@ -51,6 +51,8 @@ class Variable:
     extra: tuple[str, ...] = ()
     flags: tuple[tuple[int, str], ...] = ()
     """Values and meanings, where the variable is a word; those of `status` come from the task's solver."""
+    typed: str = ""
+    """The unit in which the user typed it, where that is known; the values are in `units`."""
 
 
 def real(name: str, units: str, long_name: str, *extra: str) -> Variable:
@@ -106,8 +108,14 @@ class Layout:
     """Lengths of the extra dimensions."""
     parameters: tuple[str, ...] = LINEAR_PARAMETERS
     """What makes a point: the dimensions of a grid, or what is given along `point`."""
+    over: tuple[str, ...] = ()
+    """The dimensions of the points where these are a grid over an arm's quantities."""
     needs_all_points: bool = False
     """Whether the file is whole only with variables that all points together give."""
+
+    def dimensions(self, is_list: bool) -> tuple[str, ...]:
+        """Names of the dimensions of the points; is_list: whether these are from a file of points."""
+        return self.over or (("point",) if is_list else self.parameters)
 
     @property
     def record(self) -> np.dtype:
