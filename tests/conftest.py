@@ -3,6 +3,7 @@
 import compileall
 import json
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -47,7 +48,10 @@ def pytest_configure(config):
     """Compiles the package: where bytecode is not written, each process that a test starts would do it.
 
     Before NumPy is loaded BLAS is given one core, as by the command: two workers' threads would compete.
+    Where the tests were started in the background SIGINT is ignored, and all processes would inherit that.
     """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
     if not hasattr(config, "workerinput"):  # the workers of pytest-xdist come later

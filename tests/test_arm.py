@@ -109,8 +109,10 @@ def test_only_time_scales_with_viscosity():
         ({"width": "1 cm"}, "radius: give either"),
         ({"viscosity": "1400 mPas"}, "viscosity = '1400 mPas' is not measured in Pa"),
         ({"pressure": "100 kPa"}, "pressure = '100 kPa' compresses .* below 1e.05 Pa"),
-        ({"pressure": None}, "pressure: give either"),
-        ({"force": "1 N"}, "pressure: give either"),
+        (
+            {"force": "1 N"},
+            "pressure = '2 kPa' and force = '1 N' are both given; give one",
+        ),
         ({"poisson": math.nan}, "poisson = nan is not a number above -1 and up to 0.5"),
         ({"density_difference": "-2 g/cm^3"}, "density_difference = '-2 g/cm.3' leaves the arm no mass"),
     ],
@@ -201,7 +203,7 @@ def test_command_prints_verdict_numbers_and_checks(command):
         (["--radius", "5 foo"], "--radius = '5 foo' has the unknown unit 'foo'"),
         (["--fluid-density", "1"], "--fluid-density = '1' has no unit"),
         (["--poisson", "2"], "--poisson = 2.0 is not"),
-        (["--force", "1 N"], "--pressure: give either"),
+        (["--force", "1 N"], "--pressure = '2 kPa' and force = '1 N' are both given"),
     ],
 )
 def test_command_refuses_in_one_sentence(command, words, sentence):

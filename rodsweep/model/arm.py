@@ -6,7 +6,7 @@ Knows no mesh and no solver. Quantities are given as text with a unit, or as num
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import inf
+from math import inf, isnan
 from numbers import Real
 from typing import Any
 
@@ -28,7 +28,9 @@ UNITS = {
     "density_difference": ("kg/m^3", "-160 kg/m^3"),
 }
 """SI unit of each quantity, and how it may be written."""
-SIGNED = ("pressure", "force", "density_difference")
+LOADS = ("pressure", "force")
+"""What may push the tip; an arm has one of them or none."""
+SIGNED = (*LOADS, "density_difference")
 
 
 class NotSlender(InputError):
@@ -55,8 +57,8 @@ class InSI:
 class SlenderArm:
     """An arm, clamped at one end, in a viscous fluid, with a pressure on its tip's section or a force there.
 
-    Either a radius or width and height, of which the height lies in the plane of motion; either a pressure
-    or a force; positive ones push. density_difference: of the arm over the fluid. Raises
+    Either a radius or width and height, of which the height lies in the plane of motion; a pressure or a
+    force, of which positive ones push, or no load. density_difference: of the arm over the fluid. Raises
     InputError, naming the quantity.
     """
 
@@ -104,9 +106,9 @@ class SlenderArm:
 
     def _refuse_crushed(self) -> None:
         """InputError where F is not below k1."""
-        if self.k1 > self.F:
+        loaded = self.load
+        if loaded is None or self.k1 > self.F:
             return
-        loaded = "force" if self.pressure is None else "pressure"
         limit = self.si.young * (self.section.area if loaded == "force" else 1.0)
         raise InputError(
             f"{self._told(loaded)} compresses the arm to nothing; it must be below "
@@ -114,15 +116,18 @@ class SlenderArm:
         )
 
     def _refuse_other_sets(self) -> None:
-        """InputError unless length, material, fluid, one section and one load are given."""
+        """InputError unless length, material, fluid and one section are given, and at most one load."""
         for name in ("length", "young", "viscosity"):
             if getattr(self, name) is None:
                 raise InputError(f"{name} is missing; write it as in '{UNITS[name][1]}'")
         sides = (self.width, self.height)
         if (self.radius is None) == (sides == (None, None)) or (self.radius is None and None in sides):
             raise InputError("radius: give either a radius, or width and height")
-        if (self.pressure is None) == (self.force is None):
-            raise InputError("pressure: give either a pressure on the tip's cross section, or a force")
+        if self.pressure is not None and self.force is not None:
+            raise InputError(
+                f"{self._told('pressure')} and {self._told('force')} are both given; give one of them: the "
+                "pressure on the tip's cross section, or its resultant"
+            )
 
     def _read(self, name: str) -> float:
         """A quantity in SI; nan where it is not given."""
@@ -148,9 +153,26 @@ class SlenderArm:
         return Circle(self.si.radius) if self.radius is not None else Rectangle(self.si.width, self.si.height)
 
     @property
+    def load(self) -> str | None:
+        """Which of the loads is given, "pressure" or "force"; None for an arm without load."""
+        return next((name for name in LOADS if getattr(self, name) is not None), None)
+
+    @property
+    def mass_per_length(self) -> float:
+        """Density times area, in kg/m; the density of the fluid where no difference is given."""
+        difference = self.si.density_difference
+        density = self.si.fluid_density + (0.0 if isnan(difference) else difference)
+        return density * self.section.area
+
+    @property
     def tip_force(self) -> float:
-        """The resultant of the pressure over the tip's cross section, p A, in N (Sec. IV)."""
-        return self.si.force if self.pressure is None else self.si.pressure * self.section.area
+        """The resultant of the pressure over the tip's cross section, p A, in N (Sec. IV).
+
+        Raises InputError for an arm without load, as `F` does.
+        """
+        if self.load is None:
+            raise InputError("pressure is missing; give the pressure on the tip's cross section, or a force")
+        return self.si.force if self.load == "force" else self.si.pressure * self.section.area
 
     @property
     def bending_stiffness(self) -> float:
@@ -180,7 +202,7 @@ class SlenderArm:
 
     @property
     def F(self) -> float:
-        """p A L^2/k3 (Sec. IV and VI)."""
+        """p A L^2/k3 (Sec. IV and VI); InputError for an arm without load."""
         return self.tip_force / self.force_scale
 
     @cached_property
