@@ -154,7 +154,7 @@ def _coordinates(plan: Plan) -> dict[str, Any]:
     points = plan.points
     found: dict[str, Any] = {}
     if not points.axes:
-        found["point"] = (("point",), np.arange(points.count, dtype="<i4"), _named("point"))
+        found["point"] = (("point",), np.arange(1, points.count + 1, dtype="<i4"), _named("point"))
     for name, column in () if points.over else points.by_name.items():
         found[name] = ((name if points.is_grid else "point",), column, _named(name))
     for variable, values in plan.quantities:

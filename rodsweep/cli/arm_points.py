@@ -8,12 +8,16 @@ from numpy.typing import NDArray
 
 from ..config.arm import CRUSHED, NOT_SLENDER, SLENDER
 from ..model.drag import LEAST_SLENDERNESS
+from ..model.neglected import Validity
+from ..results.layouts.arm import VALIDITY
 from ..results.layouts.variables import SECONDS, STATUS, Layout
 from ..solve.status import PointStatus
 from ..sweep.chains import State
 from ..sweep.grid import Points
 from ..sweep.stretches import Together
 from .tasks.protocol import Solver
+
+MODEL_APPLIES = VALIDITY[0].name
 
 
 class NoRod(PointStatus):
@@ -77,7 +81,7 @@ class _Around:
     def _record(self, index: int, outcome: Any) -> dict[str, Any]:
         if not isinstance(outcome, Uncovered):
             return self.inner.record(index, outcome)
-        return self._filled() | {STATUS.name: int(outcome.status)}
+        return self._filled() | {STATUS.name: int(outcome.status), MODEL_APPLIES: Validity.does_not_apply}
 
     def _filled(self) -> dict[str, Any]:
         """Every variable of a point without numbers."""
@@ -92,6 +96,7 @@ class _Around:
         places = np.flatnonzero(covered == SLENDER)
         values = {name: np.stack([value] * len(indices)) for name, value in self._filled().items()}
         values[STATUS.name][...] = covered
+        values[MODEL_APPLIES][...] = Validity.does_not_apply
         found = self.inner.stretched[1](indices[places]) if len(places) else None
         for name, column in found.values.items() if found else ():
             values[name][places] = column

@@ -17,6 +17,7 @@ from ..results.layouts.variables import Filled, Layout
 from ..sweep.grid import Points, grid_size, points_of
 from ..sweep.stretches import Together
 from .arm_points import around
+from .arm_validity import ArmValidity
 from .tasks import TASKS
 from .tasks.protocol import Solver, Task
 
@@ -60,23 +61,27 @@ class Job:
         return around(self._in_si(solver), self.points, self.layout)
 
     def _in_si(self, solver: Solver) -> Solver:
-        """The solver with records that tell an arm's results in SI units too."""
+        """The solver whose records tell results in SI units too, and whether the model applies."""
         layout = LAYOUTS[self.config.task](self.resolved)
         quantities = at_points(self.quantities, self.points)
+        validity = ArmValidity(self.config, self.points)
 
-        def record(index: int, outcome: Any) -> dict[str, Any]:
-            values = solver.record(index, outcome)
-            return values | in_si(values, index, layout, quantities)
+        def told(values: dict[str, Any], index: int | NDArray[np.int64]) -> dict[str, Any]:
+            return values | in_si(values, index, layout, quantities) | validity.of(values, index)
 
         if solver.stretched is None:
-            return replace(solver, record=record)
+            return replace(solver, record=lambda index, outcome: told(solver.record(index, outcome), index))
         stretches, solve_together = solver.stretched
 
         def together(indices: NDArray[np.int64]) -> Together:
             found = solve_together(indices)
-            return replace(found, values=found.values | in_si(found.values, indices, layout, quantities))
+            return replace(found, values=told(found.values, indices))
 
-        return replace(solver, record=record, stretched=(stretches, together))
+        return replace(
+            solver,
+            record=lambda index, outcome: told(solver.record(index, outcome), index),
+            stretched=(stretches, together),
+        )
 
     @property
     def layout(self) -> Layout:

@@ -217,6 +217,13 @@ class ArmSection(Strict):
         for values in product(*(self.given[name].array() for name in names)):
             yield dict(zip(names, map(float, values), strict=True))
 
+    def arm_at(self, number: int) -> SlenderArm:
+        """The arm of a section without load, numbered in row-major order of the section's axes."""
+        axes = {name: axis.array() for name, axis in self.given.items() if name in SECTION}
+        places = np.unravel_index(number, [len(column) for column in axes.values()])
+        values = {name: float(axes[name][place]) for name, place in zip(axes, places, strict=True)}
+        return self._made(values)
+
     def _arms(self) -> Iterator[SlenderArm | None]:
         """The arms of all sections without load; None for one that is too short for its radius."""
         for values in self._sections():

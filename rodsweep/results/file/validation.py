@@ -22,9 +22,9 @@ from .seal import HDF5_SIGNATURE, check_frame
 
 PROGRAM = "rodsweep"
 """The attribute `program` of our files."""
-FORMAT = 5
+FORMAT = 6
 """The attribute `format` of our files: grows when a variable is added or changes its meaning. Only files of
-this format are read; 5 is the first whose content is sealed."""
+this format are read: 5 was the first whose content is sealed, 6 has frequencies in Hz and counts from 1."""
 LONGEST_REASON = 150
 """Characters of what a library says."""
 DAMAGES = (OSError, LookupError, ValueError, TypeError, RuntimeError, OverflowError, MemoryError)

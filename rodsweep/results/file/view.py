@@ -91,7 +91,7 @@ class View:
             return self
         shape = self.variables["status"].shape
         found = {name: self._listed(name, shape) for name in self.variables}
-        found["point"] = np.arange(self.variables["status"].size)
+        found["point"] = np.arange(1, self.variables["status"].size + 1)
         return replace(self, variables=found, over=())
 
     def _listed(self, name: str, shape: tuple[int, ...]) -> np.ndarray:

@@ -80,13 +80,13 @@ def special_variables(along: str) -> tuple[Variable, ...]:
         whole("special_branch", "number of the branch, from 1", SPECIAL),
         whole(
             "special_point",
-            "branch_point, from 0, behind which it lies on its branch; -1: before the first cycle of it",
+            "branch_point, from 1, behind which it lies on its branch; 0: before the first cycle of it",
             SPECIAL,
         ),
         Variable("special_reason", "|i1", 0, "1", "why the branch ends there", (SPECIAL,), reasons),
         whole(
             "special_meets",
-            "at a symmetry breaking, number of the other branch that begins or ends there; 0: none",
+            "at a symmetry breaking, number of the other branch that begins or ends there; -1: none",
             SPECIAL,
         ),
         whole(

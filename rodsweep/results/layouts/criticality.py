@@ -4,7 +4,7 @@ from typing import Any
 
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS
 from .thresholds import CROSSINGS, search_variables
-from .variables import ANEW, Layout, Variable, real, whole
+from .variables import ANEW, ANGULAR, Layout, Variable, real, whole
 
 FORCE = PARAMETERS["F"].unit
 SLOPE = "L^2/(k3 tau2)"
@@ -13,7 +13,7 @@ ALONG = "crossing"
 OF_NO_HOPF_POINT = ("crossing_growth_rate", "solves")
 """Variables of a search that a search for Hopf points has not: 0 at all of them."""
 NORMAL_FORM = (
-    real("crossing_frequency_error", "1/tau2", "estimate of the absolute error of crossing_frequency", ALONG),
+    real("crossing_frequency_error", ANGULAR, "estimate of the absolute error of crossing_frequency", ALONG),
     real("growth_slope_real", SLOPE, "d(growth rate)/dF of the pair at the crossing", ALONG),
     real("growth_slope_imag", SLOPE, "d(frequency)/dF of the pair at the crossing", ALONG),
     real("growth_slope_error", "1", "estimate of the error of the complex slope, relative to it", ALONG),

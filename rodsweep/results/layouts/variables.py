@@ -17,8 +17,12 @@ from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
 MISSING = -1
 """Status of a point that has not been computed."""
 
+ANGULAR = "rad/tau2"
+"""Unit of every variable whose name has `frequency`: angular, the imaginary part of an eigenvalue or 2 pi/period.
+Of an arm the same stands in cycles per second beside it, under a name that ends in `_hz`; rad/s is nowhere."""
+
 DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
-    "point": ("1", "row of the point list, from 0"),
+    "point": ("1", "row of the point list, from 1"),
     "mode": ("1", "leading first: descending growth rate, of a pair the positive frequency first"),
     "u": ("1", "material coordinate along the rod"),
     "crossing": ("1", "in increasing order of the parameter that is varied"),
