@@ -73,8 +73,9 @@ class Config(Strict, ABC):
         if self.parameters.arm is None:
             return meant
         if self.parameters.over:  # whose axes do not tell what has one value
-            beside = self.parameters.given_axes.items()
-            meant["parameters"] |= {name: float(axis.array()[0]) for name, axis in beside if axis.size == 1}
+            given = self.parameters.given_axes
+            beside = {name: float(given[name].array()[0]) if name in given else None for name in self.names}
+            meant["parameters"] |= {k: v for k, v in beside.items() if k not in self.parameters.over}
         return meant | {"arm": self.parameters.arm.meaning}
 
 

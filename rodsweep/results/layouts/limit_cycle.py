@@ -16,7 +16,11 @@ CYCLE = (
     real("period", "tau2", "period of the limit cycle"),
     real("frequency", ANGULAR, "angular frequency of the limit cycle, 2 pi/period"),
     real("linear_growth_rate", "1/tau2", "real part of the leading eigenvalue of the straight rod"),
-    real("linear_frequency", ANGULAR, "angular frequency, imaginary part of the leading eigenvalue of the straight rod"),
+    real(
+        "linear_frequency",
+        ANGULAR,
+        "angular frequency, imaginary part of the leading eigenvalue of the straight rod",
+    ),
     Variable(
         "second_state",
         "|i1",
