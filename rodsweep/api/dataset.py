@@ -19,7 +19,7 @@ from ..results.file.recent import journalled_points, put_in, unfolded
 from ..results.file.validation import FORMAT, PROGRAM, Header, cleaned, open_whole, reading, reason_of
 from ..results.file.view import View
 from ..results.layouts import layout_of
-from ..results.layouts.variables import DIMENSIONS, MISSING, Filled, Variable
+from ..results.layouts.variables import DIMENSIONS, MISSING, TYPED, Filled, Variable
 from ..results.run.journal import journal_directory
 from ..solve.exclusive import one_at_a_time
 
@@ -146,7 +146,8 @@ def view_of(data: xr.Dataset, path: Path) -> View:
                 f"{', '.join(dimensions)}; draw a selection by xarray's own plot"
             )
     variables = {str(name): array.values for name, array in data.variables.items()}
-    return View(path, dict(data.attrs), variables, layout.parameters, flags, 0, layout.over)
+    typed = {str(name): str(v.attrs[TYPED]) for name, v in data.variables.items() if TYPED in v.attrs}
+    return View(path, dict(data.attrs), variables, layout.parameters, flags, 0, layout.over, typed)
 
 
 def _coordinates(plan: Plan) -> dict[str, Any]:
@@ -173,7 +174,7 @@ def _described(variable: Variable) -> dict[str, Any]:
     """The attributes of a variable."""
     described: dict[str, Any] = {"units": variable.units, "long_name": variable.long_name}
     if variable.typed:
-        described["typed_unit"] = variable.typed
+        described[TYPED] = variable.typed
     return described | (_flags(variable.flags) if variable.flags else {})
 
 

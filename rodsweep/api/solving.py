@@ -133,6 +133,7 @@ def _view(job: Job, plan: Plan, values: dict[str, np.ndarray]) -> View:
         dict(plan.flags),
         journalled=0,
         over=plan.layout.over,
+        typed={variable.name: variable.typed for variable, _ in plan.quantities if variable.typed},
     )
 
 

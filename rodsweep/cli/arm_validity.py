@@ -101,8 +101,8 @@ class ArmValidity:
             motion = Motion(motion.frequency)
         return self._told(self._arm_of(int(np.ravel(index)[0])), motion, index)
 
-    def at_rest(self) -> Array:
-        """`Validity` of every point with a rod by what is known before anything moves."""
+    def at_rest(self) -> dict[str, Array]:
+        """The variables of VALIDITY at all points with a rod, (n,), before anything moves."""
         found = []
         for first in range(0, self.points.count, self.each):
             indices = np.arange(first, first + self.each)
@@ -110,8 +110,8 @@ class ArmValidity:
                 indices = indices[self.points.covered[indices] == SLENDER]
             if len(indices):
                 nothing = Motion(np.full(len(indices), np.nan))
-                found.append(self._told(self._arm_of(first), nothing, indices)["model_applies"])
-        return np.concatenate(found)
+                found.append(self._told(self._arm_of(first), nothing, indices))
+        return {name: np.concatenate([each[name] for each in found]) for name in found[0]}
 
     def _arm_of(self, index: int) -> SlenderArm:
         return self.arm(index // self.each if self.points.over else 0)

@@ -15,6 +15,7 @@ from ...results.layouts import lacks_curves
 from ...results.layouts.arm import QUANTITY_UNITS
 from ...results.layouts.variables import DIMENSIONS, MISSING
 from .arm import arm_lines
+from .arm_answer import arm_answer
 from .branch import branch_summary
 from .criticality import criticality_summary
 from .limit_cycle import limit_cycle_summary
@@ -41,6 +42,8 @@ def show_summary(view: View, every_status: bool = False) -> None:
     a, status = view.attributes, view.variables["status"]
     done = status != MISSING
     console.print(f"{printable(str(view.path))}: {a.get('title', '')}, task {view.task}")
+    for line in arm_answer(view, done):
+        console.print(line, soft_wrap=True)
     console.print(_table(("parameter", "values", "from", "to", "unit"), _axes(view)))
     console.print(_table(("status", "points", "meaning"), _statuses(view, status, every_status)))
     if not done.all():

@@ -14,7 +14,7 @@ from ...arrays import Array
 from ...sweep.chains import Chains
 from ...sweep.grid import Points
 from ...sweep.stretches import Stretches
-from ..layouts.variables import DIMENSIONS, MISSING, Filled, Layout, Variable
+from ..layouts.variables import DIMENSIONS, MISSING, TYPED, Filled, Layout, Variable
 from .identity import fingerprint_of
 from .validation import FORMAT, PROGRAM
 
@@ -139,7 +139,7 @@ def _describe(file: h5py.File, data: h5py.Dataset, variable: Variable, dimension
     """What the table says of a variable, and its dimensions."""
     data.attrs.update(units=variable.units, long_name=variable.long_name)
     if variable.typed:
-        data.attrs["typed_unit"] = variable.typed
+        data.attrs[TYPED] = variable.typed
     if variable.flags:
         _describe_flags(data, variable.flags)
     for axis, name in enumerate(dimensions):

@@ -1,7 +1,7 @@
 """A result file with what its journals add to it, read only: what `show` and `plot` work on."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ..layouts.arm import QUANTITY_UNITS
+from ..layouts.variables import TYPED
 from .content import is_users
 from .recent import journalled_points, put_in, unfolded
 from .validation import cleaned, open_whole, reading, refuse_absent
@@ -60,6 +61,8 @@ class View:
     """Finished points that are shown and still in the journal: of a run that goes on, or was interrupted."""
     over: tuple[str, ...] = ()
     """The dimensions of a grid over an arm's quantities."""
+    typed: dict[str, str] = field(default_factory=dict)
+    """The units in which an arm's quantities were typed."""
 
     @property
     def task(self) -> str:
@@ -127,5 +130,11 @@ def _view(path: Path) -> View:
         flags = dict(zip((int(v) for v in status.attrs["flag_values"]), words, strict=True))
         recent = journalled_points(header, status[...].ravel())
         variables = Variables(path, file, recent)
+        typed = {name: str(file[name].attrs[TYPED]) for name in QUANTITY_UNITS if is_typed(file, name)}
     layout = header.layout
-    return View(path, header.attributes, variables, layout.parameters, flags, len(recent), layout.over)
+    return View(path, header.attributes, variables, layout.parameters, flags, len(recent), layout.over, typed)
+
+
+def is_typed(file: h5py.File, name: str) -> bool:
+    """Whether a file says in which unit a quantity was typed."""
+    return name in file and TYPED in file[name].attrs

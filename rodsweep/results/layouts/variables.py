@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
 
+TYPED = "typed_unit"
+"""The attribute of a variable with the unit in which the user typed it."""
 MISSING = -1
 """Status of a point that has not been computed."""
 
