@@ -12,6 +12,7 @@ from matplotlib import rc_params_from_file
 
 from ...errors import EnvironmentLacks, InputError
 from ...results.file.view import View
+from .arm_map import can_draw, draw_arm_map
 from .branch import draw_branch
 from .criticality import draw_criticality
 from .limit_cycle import draw_limit_cycle
@@ -52,6 +53,14 @@ def _styled(look: Look) -> AbstractContextManager[None]:
     return matplotlib.rc_context(STYLE | dict(own))
 
 
+def _drawn(request: FigureRequest) -> str:
+    """Writes the figure and returns what it shows: of an arm over its quantities, or as of a rod."""
+    if can_draw(request):
+        return draw_arm_map(request)
+    listed = replace(request, views=[view.listed for view in request.views])
+    return FIGURES[request.views[0].task](listed)
+
+
 def draw(
     views: View | Sequence[View],
     output: Path,
@@ -65,7 +74,7 @@ def draw(
     `what` and `points`, numbered from 1, choose for tasks with several figures. Raises InputError where there
     is nothing that a figure could show.
     """
-    views = [view.listed for view in ([views] if isinstance(views, View) else views)]
+    views = [views] if isinstance(views, View) else views
     if look.width and what == "animation":
         raise InputError("--width is for figures in print, and an animation is none; leave it out")
     if not look.title:
@@ -76,7 +85,7 @@ def draw(
     request = FigureRequest(views, output, roots, what, points, taken, look)
     with _styled(look), np.errstate(all="ignore"):
         try:
-            shown = FIGURES[views[0].task](request)
+            shown = _drawn(request)
         except OSError as error:
             raise EnvironmentLacks(f"{output} cannot be written: {error.strerror or error}") from error
         except RuntimeError as error:  # of programs that a style asks for, as LaTeX
