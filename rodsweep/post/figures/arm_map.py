@@ -85,7 +85,7 @@ def draw_arm_map(request: FigureRequest) -> str:
 def can_draw(request: FigureRequest) -> bool:
     """Whether a figure is one over an arm's quantities: of its tasks, and nothing else is asked for."""
     view = request.views[0]
-    return bool(view.over) and view.task in PANELS and not (request.what or request.points)
+    return bool(view.over) and view.task in PANELS and not (request.what or request.points or request.roots)
 
 
 def in_typed(view: View, name: str, values: Array, si: str = "") -> tuple[Array, str]:

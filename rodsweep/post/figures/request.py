@@ -12,6 +12,7 @@ from matplotlib.text import Text
 from ...errors import InputError
 from ...results.file.view import View
 from .arm_axes import add_si_scales
+from .arm_validity import add_validity
 
 WIDTHS = {"single": 3.375, "double": 7.0}
 """Of a journal's columns, in inches."""
@@ -119,6 +120,8 @@ class FigureRequest:
     def write(self, figure: Figure, shown: str) -> str:
         """Writes the figure, with SI units where the rod is an arm; returns what it shows."""
         add_si_scales(figure, self.views)
+        if not any(view.over for view in self.views):  # whose own figures tell it
+            add_validity(figure, self.views)
         self.look.fit(figure)
         figure.savefig(self.output)
         return shown
