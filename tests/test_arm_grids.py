@@ -8,7 +8,7 @@ from contents import content, same
 
 import rodsweep as rs
 from rodsweep.api.asking import job_from, tree_of
-from rodsweep.config.arm import CRUSHED, NOT_SLENDER
+from rodsweep.config.arm import CRUSHED, NO_WALL, NOT_SLENDER
 from rodsweep.model.arm import SlenderArm
 from rodsweep.results.file.view import read_view
 
@@ -95,6 +95,13 @@ def test_points_that_no_rod_covers_have_a_status_and_the_others_their_numbers(co
     told = command("show", "a.h5").stdout
     assert "shorter than 10 radii" in told
     assert "compresses the arm to nothing" in told
+
+
+def test_a_bore_as_wide_as_the_arm_is_a_corner_of_the_map():
+    arm = GLYCEROL | {"length": "10 cm", "radius": ["4 mm", "5 mm"], "inner_radius": ["2 mm", "4 mm"]}
+    data = rs.sweep("thresholds", arm=arm, crossings=4)
+    assert data.status.values.ravel().tolist() == [0, NO_WALL, 0, 0]
+    assert np.isfinite(data.pressure_hopf.values.ravel()).tolist() == [True, False, True, True]
 
 
 def test_spectra_followed_along_the_load_are_those_of_single_arms(command):

@@ -16,7 +16,7 @@ from pydantic import Field
 
 from ..arrays import Array
 from ..errors import InputError
-from ..model.arm import SIGNED, UNITS, NotSlender, SlenderArm
+from ..model.arm import SIGNED, UNITS, NotSlender, NoWall, SlenderArm
 from ..model.parameters import NONLINEAR_PARAMETERS
 from .quantities import Quantities
 from .values import Axis, Strict, Values
@@ -27,13 +27,15 @@ AXIS_OF = dict.fromkeys(LOADS, "F") | {"poisson": "k2"}
 FLUID = ("viscosity", "fluid_density", "density_difference")
 """What moves no parameter: units of time are proportional to viscosity, densities say whether the model
 applies."""
-SECTION = ("length", "young", "radius", "width", "height", "poisson", *FLUID)
+SECTION = ("length", "young", "radius", "inner_radius", "width", "height", "poisson", *FLUID)
 """What makes an arm beside its load."""
 MOST_POINTS = 1_000_000
 """Points of a grid over an arm's quantities, whose parameters are all in memory."""
-SLENDER, NOT_SLENDER, CRUSHED = 0, 100, 101
-"""Whether a rod covers a point: it does; the arm is too short for the drag of slender bodies; F reaches k1.
-The last two are the statuses of such points, which no task's own statuses reach."""
+SLENDER, NOT_SLENDER, CRUSHED, NO_WALL = 0, 100, 101, 102
+"""Whether a rod covers a point: it does; the arm is too short for the drag of slender bodies; F reaches k1;
+the bore is as wide as the arm. All but the first are statuses, which no task's own statuses reach."""
+UNCOVERED = {NotSlender: NOT_SLENDER, NoWall: NO_WALL}
+"""What refusals of an arm mean for a point."""
 UNIT_NAMES = ("tau2", "force_scale", "pressure_scale")
 """Units of time, force and pressure that an arm makes."""
 
@@ -41,8 +43,12 @@ Allowed = Field(description="a quantity with its unit, a list or a range of quan
 RatioAllowed = Field(description="a number above -1 and up to 0.5, a list or a range")
 
 
-class _TooShort(ValueError):
-    """What is said of an arm that is not slender."""
+class _Uncovered(ValueError):
+    """What is said of an arm that no rod covers; `status` is that of its points."""
+
+    def __init__(self, error: NotSlender | NoWall):
+        super().__init__(f"parameters.arm.{error}")
+        self.status = UNCOVERED[type(error)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +72,8 @@ class ArmSection(Strict):
     """From the clamp to the tip."""
     radius: Annotated[Quantities | None, Allowed] = None
     """Of a circular section; or give width and height."""
+    inner_radius: Annotated[Quantities | None, Allowed] = None
+    """Of the bore of a tube, which is closed at its tip."""
     width: Annotated[Quantities | None, Allowed] = None
     """Of a rectangular section, across the plane of motion."""
     height: Annotated[Quantities | None, Allowed] = None
@@ -171,7 +179,7 @@ class ArmSection(Strict):
 
         beside: values of parameters that replace the arm's. ValueError where no rod covers any point.
         """
-        arms = list(self._arms())
+        arms, statuses = zip(*self._arms(), strict=True)
         loads = self.given[self.load].array() if self.load else np.zeros(1)
         crossed = dict(zip(beside, np.meshgrid(*beside.values(), indexing="ij"), strict=True))
         shape = (len(arms), len(loads), next(iter(crossed.values())).size if crossed else 1)
@@ -183,7 +191,7 @@ class ArmSection(Strict):
             of_arms["F"] = scale * _along(1, loads)
         of_arms |= {name: _along(2, column.ravel()) for name, column in crossed.items()}
         table = {name: np.broadcast_to(column, shape) for name, column in of_arms.items()}
-        covered = np.broadcast_to(_along(0, [SLENDER if arm else NOT_SLENDER for arm in arms]), shape).copy()
+        covered = np.broadcast_to(_along(0, statuses), shape).copy()
         if "F" in table:
             covered[(covered == SLENDER) & (table["F"] >= table["k1"])] = CRUSHED
         if (covered != SLENDER).all():
@@ -224,13 +232,13 @@ class ArmSection(Strict):
         values = {name: float(axes[name][place]) for name, place in zip(axes, places, strict=True)}
         return self._made(values)
 
-    def _arms(self) -> Iterator[SlenderArm | None]:
-        """The arms of all sections without load; None for one that is too short for its radius."""
+    def _arms(self) -> Iterator[tuple[SlenderArm | None, int]]:
+        """The arms of all sections without load, None where no rod covers one, each with its status."""
         for values in self._sections():
             try:
-                yield self._made(values)
-            except _TooShort:
-                yield None
+                yield self._made(values), SLENDER
+            except _Uncovered as error:
+                yield None, error.status
 
     def _made(self, values: Mapping[str, float], place: int | None = None) -> SlenderArm:
         """An arm with the load at a place of its axis, or without; ValueError where it cannot be."""
@@ -240,14 +248,14 @@ class ArmSection(Strict):
             load = {self.load: float(self.given[self.load].array()[place])}
         try:
             return SlenderArm(**{**section, **load})
-        except NotSlender as error:
-            raise _TooShort(f"parameters.arm.{error}") from None
+        except (NotSlender, NoWall) as error:
+            raise _Uncovered(error) from None
         except InputError as error:
             raise ValueError(f"parameters.arm.{error}") from None
 
     def _force_of(self, arm: SlenderArm) -> float:
         """F of a load of 1 in SI on an arm."""
-        return (arm.section.area if self.load == "pressure" else 1.0) / arm.force_scale
+        return 1.0 / (arm.pressure_scale if self.load == "pressure" else arm.force_scale)
 
 
 def names_over(sizes: Mapping[str, int]) -> tuple[str, ...]:
@@ -270,7 +278,7 @@ def _units_of(arm: SlenderArm | None) -> dict[str, float]:
     """The units that an arm makes; nan for none."""
     if arm is None:
         return dict.fromkeys(UNIT_NAMES, np.nan)
-    return dict(zip(UNIT_NAMES, (arm.tau2, arm.force_scale, arm.force_scale / arm.section.area), strict=True))
+    return dict(zip(UNIT_NAMES, (arm.tau2, arm.force_scale, arm.pressure_scale), strict=True))
 
 
 def _along(dimension: int, values: Any) -> Array:

@@ -18,7 +18,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...arrays import Array
-from ...config.arm import CRUSHED, NOT_SLENDER
+from ...config.arm import CRUSHED, NO_WALL, NOT_SLENDER
 from ...model.neglected import Validity
 from ...model.units import written_in
 from ...results.file.view import View
@@ -36,6 +36,7 @@ HATCHES: tuple[tuple[str, int, str, dict[str, Any]], ...] = (
     ("model_applies", Validity.does_not_apply, "model does not apply", {"fc": "none", "hatch": "////"}),
     ("status", NOT_SLENDER, "shorter than 10 radii", {"fc": "0.85", "hatch": ""}),
     ("status", CRUSHED, "crushed", {"fc": "0.65", "hatch": ""}),
+    ("status", NO_WALL, "no wall", {"fc": "0.45", "hatch": ""}),
 )
 """Which cells are covered: the variable, its value, what the legend says, and how; later ones lie above."""
 WITHOUT: dict[str, Any] = {"fc": "#E8EDF2"}
