@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .api.answer import Answer
+    from .api.arm import Arm
     from .api.axes import linspace, logspace
     from .api.dataset import open_result as open  # noqa: A004 - `rs.open`
     from .api.picture import Picture, plot
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from .api.sweeping import sweep
     from .api.tabling import table
     from .errors import EnvironmentLacks, InputError
-    from .verdict.arm import Arm
 
 __version__ = "0.1.0"
 __all__ = [
@@ -36,7 +36,7 @@ __all__ = [
 
 _PLACES = {
     "Answer": "api.answer.Answer",
-    "Arm": "verdict.arm.Arm",
+    "Arm": "api.arm.Arm",
     "EnvironmentLacks": "errors.EnvironmentLacks",
     "InputError": "errors.InputError",
     "Picture": "api.picture.Picture",

@@ -86,7 +86,7 @@ def test_arguments_are_these():
     assert drawn == ["data", "output", "roots", "what", "points", "look"]
     assert list(inspect.signature(rs.open).parameters) == ["path"]
     arguments = inspect.signature(rs.Rod).parameters
-    assert [name for name in arguments if name != "unknown"] == list(PARAMETERS)
+    assert [name for name in arguments if name != "unknown"] == [*PARAMETERS, "arm"]
 
 
 def test_import_loads_nothing():
@@ -318,7 +318,15 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
         (lambda: rs.Arm(**LOADED | {"radius": "1e-300 m"}), "length = '10 cm' makes numbers too large or"),
         (lambda: rs.Arm(**LOADED | {"poisson": "0.5"}), "poisson = '0.5' is not a number above -1"),
         (lambda: rs.Arm(**SILICONE | {"radius": "-5 mm"}), "radius = '-5 mm' is not above 0"),
-        (lambda: rs.Arm(**SILICONE), "pressure: give either a pressure"),
+        (lambda: rs.Arm(**LOADED, force="1 N"), "pressure = '2 kPa' and force = '1 N' are both given"),
+        (
+            lambda: rs.Arm(**SILICONE).spectrum(),
+            "spectrum needs a load; arm.replace(pressure='2 kPa') has one",
+        ),
+        (lambda: rs.Arm(**LOADED).cycle(young="1 MPa"), "young belongs to the arm: arm.replace(young=...)"),
+        (lambda: rs.Arm(**LOADED).thresholds(F_mx=3), "unknown key thresholds.F_mx; did you mean F_max?"),
+        (lambda: rs.Arm(**LOADED).replace(lenght=3), "unknown key lenght; did you mean length?"),
+        (lambda: rs.Rod(arm=3), "arm = 3 is no arm; write it as in rs.Rod(arm=rs.Arm("),
         (lambda: rs.linspace(0, 10), "num is missing; write it as in rs.linspace(0, 10, num=11)"),
         (lambda: rs.linspace(0, 10, 5, 6), "6 has no name; write it as in rs.linspace("),
         (lambda: rs.linspace(0, 10, n=5), "unknown key n; did you mean num?"),

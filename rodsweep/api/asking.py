@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from ..cli.job import Job, job_of, memory
 from ..config.arguments import unknown
@@ -16,6 +16,7 @@ from ..model.arm import SlenderArm
 from ..solve.exclusive import signals_held
 from .axes import plain
 
+ArmKind = TypeVar("ArmKind", bound=SlenderArm)
 Tree = dict[str, Any]
 """Keys and values as YAML would be read."""
 
@@ -57,8 +58,18 @@ def _write_out_arm(task: str, tree: Tree) -> None:
     if isinstance(arm, SlenderArm):
         loaded = "F" in CONFIGS[task].taken_of_a_rod(tree.get(task, {}))
         names = [name for name in ArmSection.model_fields if loaded or name not in LOADS]
-        given = {name: getattr(arm, name) for name in names}
+        known = known_load(arm) if loaded else arm
+        given = {name: getattr(known, name) for name in names}
         parameters["arm"] = {name: plain(value) for name, value in given.items() if value is not None}
+
+
+def known_load(arm: ArmKind) -> ArmKind:
+    """The arm with its load as a quantity; starts PETSc where it is given relative to flutter, and solves."""
+    if arm.share_of_flutter is None:
+        return arm
+    from ..verdict.planes import with_known_load
+
+    return with_known_load(arm)
 
 
 @signals_held

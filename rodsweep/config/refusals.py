@@ -1,6 +1,5 @@
 """What is wrong with a config as one sentence: which key, which value, what is allowed, what was meant."""
 
-import difflib
 from collections.abc import Sequence
 from math import isinf
 from types import NoneType, UnionType
@@ -15,8 +14,10 @@ from .values import named, short
 
 KEY_SHOWN = 100
 """Characters of a key that a sentence has room for."""
-ALIKE = 0.6
-"""Least similarity, as difflib measures it, of a misspelt key: gama3 has 0.9 to gamma3, taper 0.5 to arm."""
+LETTERS_A_SLIP = 3
+"""Letters of a key that are needed for each that is wrong, so that the rest says which was meant."""
+LONG_PART = 4
+"""Letters of a part of a key from which it says which was meant, as `density` of `fluid_density`."""
 
 
 def sentence_of(config: type[Config], problem: Any) -> str:
@@ -42,13 +43,41 @@ def sentence_of(config: type[Config], problem: Any) -> str:
 
 
 def nearest(key: str, known: Sequence[str]) -> list[str]:
-    """The known key that an unknown one may mean: but for capitals, the only one that begins so, or alike."""
-    low = key.casefold()
-    same = [name for name in known if name.casefold() == low]
-    begun = [name for name in known if name.casefold().startswith(low)]
-    if same or len(begun) == 1:
-        return (same or begun)[:1]
-    return difflib.get_close_matches(key, known, n=1, cutoff=ALIKE)
+    """The known key that an unknown one was meant to be, if one is near.
+
+    Near is the same but for capitals and underscores, a beginning or a long part of it, or a slip of the pen
+    in every third letter at most.
+    """
+    near = [(slips, name) for name in known if (slips := _slips(_plain(key), _plain(name))) is not None]
+    return [min(near, key=lambda each: each[0])[1]] if near else []
+
+
+def _plain(key: str) -> str:
+    return key.lower().replace("_", "")
+
+
+def _slips(key: str, name: str) -> float | None:
+    """Letters by which a key differs from a name, half of one where it is a part of it; None where far."""
+    if key == name:
+        return 0
+    if name.startswith(key) or (len(key) >= LONG_PART and key in name):
+        return 0.5
+    distance = _edits(key, name)
+    return distance if LETTERS_A_SLIP * distance <= max(len(key), len(name)) else None
+
+
+def _edits(a: str, b: str) -> int:
+    """Letters to put in, take out, change or swap with the next to make b of a."""
+    rows = [list(range(len(b) + 1))]
+    for i, letter in enumerate(a, 1):
+        row = [i]
+        for j, other in enumerate(b, 1):
+            least = min(rows[-1][j] + 1, row[-1] + 1, rows[-1][j - 1] + (letter != other))
+            if i > 1 and j > 1 and (letter, a[i - 2]) == (b[j - 2], other):
+                least = min(least, rows[-2][j - 2] + 1)
+            row.append(least)
+        rows.append(row)
+    return rows[-1][-1]
 
 
 def places_of(config: type[Config], location: Sequence[str]) -> list[str]:

@@ -43,6 +43,7 @@ WITHIN = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))
 MEANINGS = {
     "length": "length of the arm",
     "radius": "radius of the arm's circular section",
+    "inner_radius": "radius of the bore of the arm, closed at its tip",
     "width": "width of the arm's section, across the plane of motion",
     "height": "height of the arm's section, in the plane of motion",
     "young": "Young's modulus of the arm",
