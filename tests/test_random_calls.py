@@ -6,6 +6,7 @@ Some dozen calls here; RODSWEEP_CASES=N makes N times as many, the same ones eve
 import os
 import re
 import warnings
+from dataclasses import replace
 from random import Random
 
 import numpy as np
@@ -23,7 +24,9 @@ INTERNAL = re.compile(
     r"Undefined|<class|object at 0x|NoneType|Traceback|np\.|float64|pydantic|validat|\[type=|Error\b|\bNone\b"
 )
 """What no refusal has: words of the program, not of its user."""
-HINT = re.compile(r"unknown (?:key|attribute) '?([\w.]+)'?; did you mean ([\w.]+)\?")
+COUNTED = ("mode", "crossing", "branch_point", "special", "harmonic", "multiplier_number")
+"""Dimensions whose coordinate numbers the items."""
+HINT = re.compile(r"unknown (?:key|attribute) '?([\w.]+)'?; did you mean ([\w., ]+)\?")
 
 
 def refusal_of(call):
@@ -31,7 +34,7 @@ def refusal_of(call):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         try:
-            return getattr(rs.Rod(**call.rod), call.task)(**call.options), ""
+            return getattr(getattr(rs, call.kind)(**call.rod), call.task)(**call.options), ""
         except rs.InputError as error:
             return None, str(error)
 
@@ -51,15 +54,18 @@ def leads_astray(call, sentence):
     hint = HINT.search(sentence)
     if not hint:
         return ""
-    wrong, right = hint[1].rpartition(".")[2], hint[2].rpartition(".")[2]
-    if call.misspelt and call.misspelt[0] == wrong and right != call.misspelt[1]:
-        return f"it means {right} by {wrong}"
+    wrong, *meant = (name.rpartition(".")[2] for name in (hint[1], *re.split(", | or ", hint[2])))
+    if call.misspelt and call.misspelt[0] == wrong and call.misspelt[1] not in meant:
+        return f"it means {' or '.join(meant)} by {wrong}"
     place = call.rod if wrong in call.rod else call.options
-    again = dict(place)
-    again[right] = again.pop(wrong)
-    rod, options = (again, call.options) if place is call.rod else (call.rod, again)
-    _, told = refusal_of(calls.Call(call.task, rod, options))
-    return f"the key that it means is unknown too: {told}" if f"unknown key {right}" in told else ""
+    for right in meant:
+        again = dict(place)
+        again[right] = again.pop(wrong)
+        rod, options = (again, call.options) if place is call.rod else (call.rod, again)
+        _, told = refusal_of(replace(call, rod=rod, options=options))
+        if re.search(rf"unknown key ([\w.]+\.)?{right};", told):
+            return f"the key that it means is unknown too: {told}"
+    return ""
 
 
 def flaws_of(answer):
@@ -90,7 +96,7 @@ def flaws_of_list(answer, name):
     frame = getattr(answer, name)
     if len(frame) and not frame.notna().any(axis=1).all():
         yield f"{name} has a row without anything"
-    if frame.index.name and frame.index.tolist() != list(range(1, len(frame) + 1)):
+    if frame.index.name in COUNTED and frame.index.tolist() != list(range(1, len(frame) + 1)):
         yield f"{name} is numbered {frame.index.tolist()}"
     words = [column for column in frame if frame[column].dtype == object or "str" in str(frame[column].dtype)]
     for column in words:

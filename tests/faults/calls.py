@@ -50,7 +50,6 @@ WRONG_VALUES = [
     "",
     "1e-3",
 ]
-ARM = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "1.4 Pa s", "pressure": "2 kPa"}
 ENDINGS = ["", ".h5", ".csv", ".tsv", ".png", ".pdf", ".gif", ".xlsx", ".txt", ".md", ".nc", ".json", ".H5"]
 
 
@@ -63,10 +62,12 @@ class Call:
     options: dict[str, Any]
     misspelt: tuple[str, str] | None = None
     """(the key that is written, the one that is meant)."""
+    kind: str = "Rod"
+    """Rod or Arm."""
 
     def __str__(self) -> str:
         given, asked = (", ".join(f"{k}={v!r}" for k, v in d.items()) for d in (self.rod, self.options))
-        return f"rs.Rod({given}).{self.task}({asked})"
+        return f"rs.{self.kind}({given}).{self.task}({asked})"
 
 
 @dataclass(frozen=True)
@@ -87,10 +88,27 @@ def drawn_rod(rng: Random) -> dict[str, Any]:
     return rod | ({"gamma1": 10 ** rng.uniform(-0.5, 0.5)} if rng.random() < 0.3 else {})
 
 
+def drawn_arm(rng: Random) -> dict[str, Any]:
+    """The quantities of an arm, in this unit or that, or in SI."""
+    arm: dict[str, Any] = {
+        "length": rng.choice(["10 cm", "120 mm", 0.08]),
+        "young": rng.choice(["80 kPa", "0.1 MPa", 2e5]),
+        "viscosity": rng.choice(["1.4 Pa s", "1 mPa s", 0.5]),
+    }
+    arm |= rng.choice(
+        [{"radius": "5 mm"}, {"width": "6 mm", "height": "5 mm"}, {"width": 5e-3, "height": "8 mm"}]
+    )
+    arm |= rng.choice(
+        [{"pressure": f"{rng.uniform(0, 4):.3g} kPa"}, {"force": f"{rng.uniform(0, 200):.3g} mN"}]
+    )
+    return arm | ({"poisson": rng.choice([0.3, 0.49])} if rng.random() < 0.3 else {})
+
+
 def call(rng: Random) -> Call:
     """A call that is right, or one with a mistake in a key or a value."""
     task = rng.choice(TASKS)
-    rod = drawn_rod(rng)
+    kind = rng.choice(["Rod", "Rod", "Arm"])
+    rod = drawn_rod(rng) if kind == "Rod" else drawn_arm(rng)
     options = {key: rng.choice(values) for key, values in OPTIONS[task].items() if rng.random() < 0.5}
     options |= {"accuracy": ACCURACY[task]} if task in ACCURACY else {}
     if task == "branch":
@@ -101,13 +119,13 @@ def call(rng: Random) -> Call:
         wrong = misspelt(rng, key)
         place = rod if key in rod else options
         place[wrong] = place.pop(key)
-        return Call(task, rod, options, (wrong, key))
+        return Call(task, rod, options, (wrong, key), kind)
     if mistake < 0.4:
         key = rng.choice([*rod, *options])
         (rod if key in rod else options)[key] = rng.choice(WRONG_VALUES)
     if mistake > 0.9:
         options[rng.choice(["colour", "k3", "F", "taper", "length", "mods", "points", "task"])] = 3
-    return Call(task, rod, options)
+    return Call(task, rod, options, kind=kind)
 
 
 def misspelt(rng: Random, key: str) -> str:
@@ -129,7 +147,7 @@ def misspelt(rng: Random, key: str) -> str:
                 key[:i] + key[i + 1 : i + 2] + key[i] + key[i + 2 :],
             ]
         )
-        if wrong.isidentifier() and wrong not in known:
+        if wrong.isidentifier() and wrong != key and wrong not in known:
             return wrong
     return key + "_"
 

@@ -17,7 +17,7 @@ def complex_pair(name: str, units: str, long_name: str) -> tuple[Variable, Varia
 UNSTABLE_COUNT = whole("unstable_count", "number of modes with positive growth rate; -1: not known")
 EACH_MODE = (
     real("growth_rate", "1/tau2", "real part of the transverse eigenvalue", "mode"),
-    real("frequency", ANGULAR, "angular frequency, imaginary part of the transverse eigenvalue", "mode"),
+    real("frequency", ANGULAR, "angular frequency of the mode, imaginary part of its eigenvalue", "mode"),
     real(
         "error_estimate",
         "1/tau2",
