@@ -18,8 +18,9 @@ from ..results.file.creation import Plan
 from ..results.file.recent import journalled_points, put_in, unfolded
 from ..results.file.validation import FORMAT, PROGRAM, Header, cleaned, open_whole, reading, reason_of
 from ..results.file.view import View
-from ..results.layouts import layout_of
-from ..results.layouts.variables import DIMENSIONS, MISSING, TYPED, Filled, Variable
+from ..results.layouts import beside_points, layout_of
+from ..results.layouts.arm import MEANINGS
+from ..results.layouts.variables import DIMENSIONS, MISSING, TYPED, Filled, Layout, Variable
 from ..results.run.journal import journal_directory
 from ..solve.exclusive import one_at_a_time
 
@@ -54,6 +55,7 @@ def _opened(path: Path) -> xr.Dataset:
     for variable in data.variables.values():
         variable.attrs = {name: cleaned(value) for name, value in variable.attrs.items()}
     data.attrs = {name: cleaned(value) for name, value in data.attrs.items()}
+    data = _ordered(data, header.layout, header.config)
     if journal_directory(path).is_dir():
         recent = journalled_points(header, data["status"].values.ravel())
         for name in data.variables.keys() & recent.dtype.fields.keys():
@@ -68,6 +70,16 @@ def _selectable(data: xr.Dataset) -> xr.Dataset:
         if name in data.coords and data[name].dims == (AXIS_OF[name],) and name not in data.xindexes:
             data = data.set_xindex(name)
     return data
+
+
+def _ordered(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dataset:
+    """The Dataset with its variables in the order in which they are declared; HDF5 has the alphabet's."""
+    declared = (*layout.variables, *beside_points(config, "point" not in data.dims))
+    places = {name: place for place, name in enumerate([*DIMENSIONS, *MEANINGS, *(v.name for v in declared)])}
+    names = sorted(data.variables, key=lambda name: places.get(str(name), len(places)))
+    variables = {name: data.variables[name] for name in names}
+    coords = {name: variables.pop(name) for name in names if name in data.coords}
+    return xr.Dataset(variables, coords, data.attrs)
 
 
 def _loaded(path: Path, header: Header) -> xr.Dataset:
@@ -124,8 +136,8 @@ def dataset_of(
         "fingerprint": plan.fingerprint,
         "config_resolved": json.dumps(plan.config),
     }
-    attributes = header | plan.attributes | dict(attributes)
-    return _selectable(_sealed(xr.Dataset(variables, coordinates, attributes)))
+    whole = xr.Dataset(variables, coordinates, header | plan.attributes | dict(attributes))
+    return _selectable(_sealed(_ordered(whole, plan.layout, plan.config)))
 
 
 def view_of(data: xr.Dataset, path: Path) -> View:

@@ -46,7 +46,7 @@ def layout_of(config: dict[str, Any]) -> Layout:
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """What the file of a resolved config may hold that is no variable of a point; `extra` has all dimensions."""
+    """What the file of a resolved config may hold beside its points; `extra` has all dimensions."""
     found = BESIDE_POINTS.get(config["task"])
     return found(config, is_grid) if found else ()
 

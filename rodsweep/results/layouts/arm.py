@@ -127,8 +127,10 @@ def twin_of(name: str, unit: str) -> str:
 
 def _meaning(variable: Variable, unit: str) -> str:
     """What a variable in an SI unit is: a frequency is no longer angular there."""
-    words = variable.long_name.removeprefix("angular ") if unit == HERTZ else variable.long_name
-    return f"{words}; in {'cycles per second' if unit == HERTZ else 'SI units'}"
+    if unit != HERTZ:
+        return f"{variable.long_name}; in SI units"
+    words = variable.long_name.removeprefix("angular ").partition(",")[0]  # what follows is angular
+    return f"{words}; in cycles per second"
 
 
 def _unit_of(variable: Variable, as_force: bool) -> tuple[str, tuple[str, ...], tuple[str, ...]]:

@@ -3,7 +3,7 @@
 from typing import Any
 
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS
-from .variables import ANEW, SECONDS, STATUS, Increase, Layout, Variable, real, whole
+from .variables import ANEW, SECONDS, STATUS, Increase, Layout, Variable, real, truth, whole
 
 ALONG, SPECIAL = "branch_point", "special"
 
@@ -115,7 +115,7 @@ def layout(config: dict[str, Any]) -> Layout:
         whole("point_count", "cycles of all branches"),
         whole("special_count", "special points of all branches, stored or not"),
         whole("unstable_at_start", "unstable modes of the straight rod at start; -1: not known"),
-        Variable("certified", "|i1", 0, "1", "1 where it is proved that no Hopf point is missing"),
+        truth("certified", "whether it is proved that no Hopf point is missing"),
         *followed_variables(along),
         *special_variables(along),
         SECONDS,

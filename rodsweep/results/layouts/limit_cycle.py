@@ -19,7 +19,7 @@ CYCLE = (
     real(
         "linear_frequency",
         ANGULAR,
-        "angular frequency, imaginary part of the leading eigenvalue of the straight rod",
+        "angular frequency of the leading mode of the straight rod, imaginary part of its eigenvalue",
     ),
     Variable(
         "second_state",

@@ -4,7 +4,7 @@ from typing import Any
 
 from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS, all_but
 from .branch import SPECIAL_KINDS
-from .criticality import LANDAU, SLOPE
+from .criticality import LANDAU, SLOPE, side
 from .spectrum import UNSTABLE_COUNT
 from .thresholds import CROSSINGS, search_variables
 from .variables import ANEW, ANGULAR, BESIDE, MISSING, Layout, Variable, real, whole
@@ -161,13 +161,7 @@ def criticality_variables(line: str, row: str) -> dict[str, Variable]:
     units = {name: PARAMETERS[name].unit for name in along}
     error = "estimate of the error of bautin_"
     variables = (
-        real(
-            "curve_criticality",
-            "1",
-            "-1: supercritical, cycles where the pair grows, stable unless other modes grow; 1: "
-            "subcritical; 0: undecided within the error; NaN: no Hopf point, or no normal form there",
-            "curve_point",
-        ),
+        side("curve_criticality", "Re c", "curve_point"),
         real("curve_gamma1", PARAMETERS["gamma1"].unit, "axial drag of curve_criticality and bautin_*"),
         whole("bautin_curve", "number of the curve on which the generalised Hopf point lies", "bautin"),
         whole("bautin_curve_point", "curve_point, from 1, behind which it lies on the curve", "bautin"),

@@ -3,7 +3,7 @@
 from typing import Any
 
 from ...model.parameters import PARAMETERS, all_but
-from .variables import ANEW, ANGULAR, SECONDS, STATUS, Increase, Layout, Variable, real, whole
+from .variables import ANEW, ANGULAR, SECONDS, STATUS, Increase, Layout, Variable, real, truth, whole
 
 FORCE = PARAMETERS["F"].unit
 THRESHOLDS = (
@@ -47,7 +47,7 @@ def search_variables(line: str, at: str) -> tuple[Variable, ...]:
         whole("unstable_after", "number of modes with positive growth rate beyond the crossing", "crossing"),
         real("open_from", units, f"start {undecided}"),
         real("open_to", units, f"end {undecided}"),
-        Variable("certified", "|i1", 0, "1", "1 where it is proved that no crossing is missing"),
+        truth("certified", "whether it is proved that no crossing is missing"),
         whole("boxes", "evaluations of D over a box"),
         whole("solves", "eigenproblems solved"),
         SECONDS,
