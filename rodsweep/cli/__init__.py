@@ -64,7 +64,8 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
     stop = StopRequest(speaks=not _rank_variables())
     stop.listen()  # before everything that takes time: a warning may come early
     from ..sweep.shards import shard_of
-    from .running import RunOptions, run_config
+    from .run_options import RunOptions
+    from .running import run_config
 
     if options["fresh"] and options["extend"]:
         raise InputError("--fresh and --extend are both given: one replaces the file, the other adds to it")

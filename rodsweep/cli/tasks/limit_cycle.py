@@ -18,13 +18,15 @@ from ...results.layouts.limit_cycle import (
     TIP,
     TRANSIENT,
 )
-from ...results.layouts.variables import Variable
+from ...results.layouts.variables import Filled, Variable
+from ...solve.backend.availability import require_solvers
 from ...sweep.chains import Chains, State
 from ...sweep.estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, Estimate
 from ...sweep.grid import refuse_outside
-from ..wording import counted
+from ...wording import counted
+from .hopf_lines import HopfLine, hopf_lines_of, hopf_variables
 from .parts import count_of, rod_parts
-from .protocol import Part, Solver, Task
+from .protocol import InOrder, Part, Solver, Task, alone
 
 if TYPE_CHECKING:
     from ...solve.cycle.limit_cycle import Cycle
@@ -64,6 +66,13 @@ class LimitCycleTask(Task):
         if options.transient:
             times["transient"] = np.linspace(0.0, 1.0, options.transient)
         return times | ({"u": lobatto_points(options.nodes)} if options.shapes else {})
+
+    def constants(self, in_order: InOrder = alone) -> tuple[Filled, ...]:
+        """The Hopf points of the lines on which the points lie."""
+        lines = hopf_lines_of(self.points)
+        if lines:
+            require_solvers()
+        return hopf_variables(lines, in_order(lines, HopfLine.search))
 
     def headline(self) -> str:
         options, chains = self.config.limit_cycle, self.chains

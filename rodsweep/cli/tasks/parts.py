@@ -9,7 +9,7 @@ import numpy as np
 
 from ...model.parameters import PARAMETERS, Parameter
 from ...sweep.grid import Points
-from ..wording import counted
+from ...wording import counted
 from .protocol import Part, Task
 
 

@@ -16,7 +16,7 @@ from ...results.layouts.variables import Filled
 from ...sweep.estimate import Estimate, estimate_followed, estimate_spectra
 from ...sweep.stretches import Stretches, Together, along_the_longest
 from .parts import LinearTask, count_of
-from .protocol import Part, Solver
+from .protocol import InOrder, Part, Solver, alone
 
 if TYPE_CHECKING:
     from ...solve.spectrum.search import Spectrum, SpectrumRequest
@@ -48,7 +48,7 @@ class SpectrumTask(LinearTask):
         """The material coordinate of the vectors' nodes, shape (nodes,), where there are vectors."""
         return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
 
-    def constants(self) -> tuple[Filled, ...]:
+    def constants(self, in_order: InOrder = alone) -> tuple[Filled, ...]:
         """The longitudinal rates, where they are asked for: along k1 on a grid, along the points else."""
         gamma1 = self.config.parameters.numbers.get("gamma1")
         if gamma1 is None:

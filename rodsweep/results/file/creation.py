@@ -1,7 +1,7 @@
 """A new result file: netCDF-4-compatible HDF5 with every variable in its place; and what is added later."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -27,8 +27,8 @@ class Plan:
     layout: Layout
     coordinates: dict[str, Array]
     """Values of extra dimensions that have some, such as u."""
-    constants: tuple[Filled, ...]
-    """Variables known without solving, such as those along (k1, mode) on a grid, (point, mode) else."""
+    constants: Callable[[], tuple[Filled, ...]]
+    """Variables that are known before any point is solved; asked for once, where a file is created."""
     config: dict[str, Any]
     """The resolved config."""
     attributes: dict[str, Any]
@@ -61,7 +61,7 @@ def create_file(path: Path, plan: Plan) -> None:
         for variable in plan.layout.variables:
             data = _contiguous(file, variable, plan.points.shape + plan.layout.inner(variable))
             _describe(file, data, variable, (*plan.dimensions, *variable.extra))
-        add_variables(file, plan.constants)
+        add_variables(file, plan.constants())
         add_variables(file, [filled for filled in plan.quantities if not is_axis(filled[0])])
         _describe_flags(file["status"], ((MISSING, "missing"), *plan.flags))
         file.attrs["program"] = PROGRAM

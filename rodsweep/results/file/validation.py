@@ -24,7 +24,8 @@ PROGRAM = "rodsweep"
 """The attribute `program` of our files."""
 FORMAT = 6
 """The attribute `format` of our files: grows when a variable is added or changes its meaning. Only files of
-this format are read: 5 was the first whose content is sealed, 6 has frequencies in Hz and counts from 1."""
+this format are read: 5 was the first whose content is sealed, 6 has frequencies in Hz, counts from 1,
+the Hopf points of the lines of limit cycles, and grids over an arm's quantities."""
 CONFIGS = (".yaml", ".yml")
 """Endings of configs."""
 LONGEST_REASON = 150

@@ -16,7 +16,7 @@ from ....arrays import Array
 from ....config.limit_cycle import LONGEST
 from ....errors import InputError
 from ....results.file.view import View
-from ...hopf_points import HopfPoint, lines_over
+from ...hopf_points import HopfPoint, StoredHopfPoints, lines_over
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, need, plain, scale
 from .hopf_marks import draw_laws, mark_hopf_points
 from .selection import CYCLE_WORDS, outcomes, told_apart
@@ -204,8 +204,10 @@ def branches_of(view: View, name: str) -> list[AmplitudeBranch]:
         np.where(straight, 0.0, np.where(cycle, values, np.nan)) for values in (reach, v["tip_y_max"].ravel())
     )
     branches = []
+    stored = StoredHopfPoints(view, "F")
     for line in lines_over(view, name):
-        at, hopf = line.at, line.hopf_points(view) if name == "F" else []
+        changes = stored.on(line) if name == "F" else []
+        at, hopf = line.at, [change for change in changes if isinstance(change, HopfPoint)]
         branches.append(
             AmplitudeBranch(view, line.parameters, line.x, along_x[at], along_y[at], words[at], hopf)
         )
