@@ -62,7 +62,8 @@ class Panel:
 def draw_arm_map(request: FigureRequest) -> str:
     """The main numbers of a task over the axes of an arm: two panels, of lines or of maps."""
     view = request.only_view()
-    axes = sorted(view.over, key=lambda name: -len(view.variables[name]))[:2]
+    long = [name for name in view.over if len(view.variables[name]) > 1] or list(view.over[:1])
+    axes = sorted(long, key=lambda name: -len(view.variables[name]))[:2]
     x = next(name for name in view.over if name in axes)
     y = next((name for name in view.over if name in axes and name != x), "")
     place = tuple(slice(None) if name in axes else 0 for name in view.over)
@@ -190,7 +191,7 @@ def _fixed(view: View, drawn: list[str]) -> str:
         value = np.ravel(values)[:1]
         shown, unit = in_typed(view, name, value)
         unit = unit.replace("^3", "$^3$")
-        more = f" (of {len(values)} values)" if name in view.over else ""
+        more = f" (of {len(values)} values)" if np.size(values) > 1 else ""
         told.append(f"{WORDS.get(name, name.replace('_', ' '))} {shown[0]:.4g} {unit}".rstrip() + more)
     return ", ".join(told)
 

@@ -86,7 +86,7 @@ def draw_amplitude(views: Sequence[View]) -> tuple[Figure, str]:
     scale(panels[1], "x", np.unique(branches[0].x))
     if legend := [handle for handle in handles if handle.get_label()]:
         legend_below(figure, legend, columns=min(2, len(legend)))
-    figure.suptitle(heading(first, shared), fontsize=10)
+    figure.suptitle(heading(first, shared))
     return figure, f"amplitudes of the tip against {name}"
 
 
