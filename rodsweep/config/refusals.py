@@ -8,6 +8,7 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from ..model.parameters import PARAMETERS
 from .axes import words
 from .schema import Config
 from .values import named, short
@@ -26,7 +27,11 @@ def sentence_of(config: type[Config], problem: Any) -> str:
     key = dotted(location)
     kind, value = problem["type"], problem["input"]
     if kind == "extra_forbidden":
-        known = list(_section(config, location[:-1]).model_fields)
+        fields = _section(config, location[:-1]).model_fields
+        known = [
+            *(name for name in PARAMETERS if name in fields),
+            *(n for n in fields if n not in PARAMETERS),
+        ]
         elsewhere = places_of(config, location)
         hint = f"did you mean {elsewhere[0]}?" if elsewhere else hint_of(location[-1], known)
         return f"unknown key {key}; {hint}"
