@@ -37,6 +37,11 @@ def results(loaded, tmp_path_factory):
         (("show", "c.yaml"), "c.yaml is a config and no result file; `rodsweep run` makes one of it"),
         (("export", "c.yaml"), "c.yaml is a config and no result file; `rodsweep run` makes one of it"),
         (("check", "c.h5"), "c.h5 is a result file and no config; `rodsweep show` says what it holds"),
+        (("export", "."), ". is a directory; name a file"),
+        (("plot", "."), ". is a directory; name a file"),
+        (("plot", ".."), ".. is a directory; name a file"),
+        (("snapshot", "."), ". is a directory; name a file"),
+        (("show", "."), ". is not a file"),
         (
             ("run", "c.csv"),
             "c.csv is no config but a table; a config names a list of points, parameters.points",
