@@ -1,5 +1,6 @@
 """Phase diagrams with cycles: where straight and beating rods are both stable, and the curves of folds."""
 
+import re
 from dataclasses import replace
 
 import h5py
@@ -163,9 +164,8 @@ def test_it_is_told_and_drawn(diagram):
     told = " ".join(diagram("show", "c.h5").stdout.split())
     assert "straight rod and cycle both stable: on 1 of 2 rows, F = 90.5 to 91, k1 = 152" in told
     assert "folds of cycles: on 1 of 2 rows" in told
-    assert (
-        "curve of folds: from k1 = 149.616892, F = 84.4786266 (Hopf point, where the cycles vanish)" in told
-    )
+    curve = r"curve of folds: from k1 = 149.616892, F = 84.4786266\d* \(\+- \de-\d+\) \(Hopf point, where"
+    assert re.search(curve, told)
     assert diagram("plot", "c.h5", "-o", "c.png").returncode == 0
 
 

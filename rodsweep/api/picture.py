@@ -1,18 +1,21 @@
 """`rs.plot`: the figures of `rodsweep plot`, shown in a notebook or written into a file."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from types import MappingProxyType
 from typing import Any, Literal, TypedDict, Unpack
 
 import xarray as xr
 
+from ..cli.cycle_shapes import with_shapes
 from ..config.arguments import in_sentences, unknown
 from ..config.values import short
 from ..errors import InputError
 from ..post.figures import draw
-from ..post.figures.request import KINDS, ROOTS, WIDTHS, Look
+from ..post.figures.request import KINDS, ROOTS, Look
+from ..post.figures.sections import choices_of, section
 from ..results.file.view import View, read_view
 from ..solve.exclusive import one_at_a_time
 from .answer import Answer
@@ -26,7 +29,7 @@ class Looks(TypedDict, total=False):
     """How a figure looks, as the options of `rodsweep plot` say."""
 
     title: bool
-    width: Literal["single", "double"] | None
+    width: str | None
     style: str | None
 
 
@@ -67,6 +70,7 @@ def plot(
     roots: Literal["rightmost", "smallest"] | None = None,
     what: str | None = None,
     points: Sequence[int] | int = (),
+    at: Mapping[str, float] = MappingProxyType({}),
     **look: Unpack[Looks],
 ) -> Picture:
     """The figure that suits the task of `data`: a Dataset, an Answer, a file, or several of limit cycles
@@ -77,17 +81,18 @@ def plot(
     """
     for name in look:
         if name not in Looks.__annotations__:
-            raise unknown(name, ["output", "roots", "what", "points", *Looks.__annotations__])
-    _refuse_other_than(roots=(roots, ROOTS), what=(what, KINDS), width=(look.get("width"), WIDTHS))
+            raise unknown(name, ["output", "roots", "what", "points", "at", *Looks.__annotations__])
+    _refuse_other_than(roots=(roots, ROOTS), what=(what, KINDS))
     points = [points] if isinstance(points, int) else points
     if not isinstance(points, Sequence) or not all(isinstance(point, int) for point in points):
         raise InputError(f"points = {short(points)} is not allowed; give whole numbers, from 1")
     several = [data] if isinstance(data, Drawable) else list(data) if isinstance(data, Sequence) else []
     if not several:
         raise InputError("there is nothing to draw; give a Dataset, an answer or a file")
-    views = [_view(one) for one in several]
+    values = choices_of(at)
+    views = [section(_view(one), values) for one in several]
     choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(points)}
-    choices["look"] = Look(**look)
+    choices |= {"look": Look(**look), "shapes": with_shapes}
     with TemporaryDirectory(prefix="rodsweep-") as place:
         path = Path(place, "figure.gif" if what == "animation" else "figure.png")
         shown = draw(views, path, **choices).partition(": ")[2]

@@ -63,7 +63,8 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
     stop = StopRequest(speaks=not _rank_variables())
     stop.listen()  # before everything that takes time: a warning may come early
     from ..sweep.shards import shard_of
-    from .running import RunOptions, run_config
+    from .run_options import RunOptions
+    from .running import run_config
 
     if options["fresh"] and options["extend"]:
         raise InputError("--fresh and --extend are both given: one replaces the file, the other adds to it")
@@ -139,14 +140,14 @@ def show(file: Path, statuses: bool) -> None:
 )
 @click.option(
     "--roots",
-    type=click.Choice(["rightmost", "smallest"]),
-    help="Which two roots to follow: the smallest in magnitude, as the paper does, or the rightmost; by "
-    "default those that change places with others less often.",
+    type=click.Choice(["rightmost", "smallest", "all"]),
+    help="Which roots of spectra: all that are stored, or two to follow, the smallest in magnitude, as the "
+    "paper does, or the rightmost; by default those that change places with others less often.",
 )
 @click.option(
     "--what",
-    type=click.Choice(["cycle", "amplitude", "maps", "energy", "transient", "animation"]),
-    help="Which figure of limit_cycle; by default what the file's content suggests.",
+    type=click.Choice(["cycle", "amplitude", "maps", "energy", "transient", "animation", "lines", "map"]),
+    help="Which figure of limit_cycle, or, lines and map, of thresholds; by default what the file suggests.",
 )
 @click.option(
     "--point",
@@ -156,11 +157,18 @@ def show(file: Path, statuses: bool) -> None:
     metavar="N",
     help="Which points of limit_cycle, from 1; up to 3 times.",
 )
+@click.option(
+    "--at",
+    "at",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="Draw the points with this value of a parameter, e.g. k1=150; several times.",
+)
 @click.option("--title", is_flag=True, help="Put the title of the config above the figure.")
 @click.option(
     "--width",
-    type=click.Choice(["single", "double"]),
-    help="Of a journal's single (3.375 in) or double column (7 in), with type of 8 pt.",
+    metavar="WIDTH",
+    help="Of a journal's column, with type of 8 pt: single (3.375 in), double (7 in), or as '89 mm'.",
 )
 @click.option("--style", metavar="STYLE", help="A style of matplotlib's, by its name or file.")
 def plot(
@@ -169,24 +177,33 @@ def plot(
     roots: str | None,
     what: str | None,
     points: tuple[int, ...],
+    at: tuple[str, ...],
     **look: Any,
 ) -> None:
     """Draw the result FILE; or several: spectra in panels, amplitudes of limit cycles in one figure."""
     from ..post.figures import draw
     from ..post.figures.request import Look
+    from ..post.figures.sections import section
     from ..results.file.view import read_view
+    from .cycle_shapes import with_shapes
 
     output = output or beside(files[0], ".gif" if what == "animation" else ".png")
-    click.echo(
-        draw(
-            [read_view(followed(file)) for file in files],
-            output,
-            roots,
-            what,
-            points,
-            Look(**look),
-        )
-    )
+    values = _values(at)
+    views = [section(read_view(followed(file)), values) for file in files]
+    drawn = draw(views, output, look=Look(**look), shapes=with_shapes, roots=roots, what=what, points=points)
+    click.echo(drawn)
+
+
+def _values(at: tuple[str, ...]) -> dict[str, float]:
+    """The values of `--at NAME=VALUE` by name; InputError for what is no number."""
+    found = {}
+    for text in at:
+        name, _, value = text.partition("=")
+        try:
+            found[name.strip()] = float(value)
+        except ValueError:
+            raise InputError(f"--at {printable(text)} is no parameter with a number, as k1=150 is") from None
+    return found
 
 
 @commands.command()

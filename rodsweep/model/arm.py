@@ -35,6 +35,14 @@ LOADS = ("pressure", "force")
 SIGNED = (*LOADS, "density_difference")
 
 
+class NotSlender(InputError):
+    """The refusal of an arm that is too short for the drag of slender bodies."""
+
+
+class NoWall(InputError):
+    """The refusal of an arm whose bore is as wide as itself."""
+
+
 OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*of\s+flutter\s*", re.ASCII)
 """A load relative to the threshold of flutter, as "1.2 of flutter" or "120 % of flutter"."""
 
@@ -110,7 +118,7 @@ class SlenderArm:
                 "modulus; check their units"
             )
         if slenderness < LEAST_SLENDERNESS:
-            raise InputError(
+            raise NotSlender(
                 f"{self._told('length')} is {slenderness:.3g} radii; the drag of a slender arm needs at "
                 f"least {LEAST_SLENDERNESS:g}"
             )
@@ -138,7 +146,7 @@ class SlenderArm:
         if self.inner_radius is not None and self.radius is None:
             raise InputError(f"{self._told('inner_radius')} needs a radius; a rectangle has no bore here")
         if self.si.inner_radius >= self.si.radius:
-            raise InputError(f"{self._told('inner_radius')} is not below {self._told('radius')}")
+            raise NoWall(f"{self._told('inner_radius')} is not below {self._told('radius')}")
         if self.pressure is not None and self.force is not None:
             raise InputError(
                 f"{self._told('pressure')} and {self._told('force')} are both given; give one of them: the "

@@ -74,7 +74,7 @@ def draw_branch(request: FigureRequest) -> str:
     there = {int(s) for curve in curves for s in curve.stable} | {1, 0}
     handles = [Line2D([], [], color="k", ls=LINES[s][0], label=LINES[s][1]) for s in sorted(there)[::-1]]
     style.legend_below(figure, [*handles, *marked.values()], columns=3)
-    figure.suptitle(style.heading(view, style.fixed_text(view)), fontsize=9)
+    figure.suptitle(style.heading(view, style.fixed_text(view)))
     hidden = branches_not_told(view, 0)
     more = f"; {hidden} more have special points that are not stored" if hidden else ""
     return request.write(figure, f"{len(curves)} branches of cycles over {along}{more}")

@@ -34,13 +34,13 @@ def draw_modes(request: FigureRequest) -> str:
     for row, point in zip(panels.reshape(len(drawn), len(PANELS)), drawn, strict=True):
         for panel, (word, fields) in zip(row, PANELS, strict=True):
             _panel(panel, view, int(point), fields)
-            panel.set_title(word, fontsize=9)
+            panel.set_title(word)
         place = 0 if narrow else 1
         where = ("\n" if narrow else ": ").join(_where(view, int(point)))
-        row[place].set_title(f"{where}\n{PANELS[place][0]}", fontsize=9)
+        row[place].set_title(f"{where}\n{PANELS[place][0]}")
     for panel in panels[-1]:
         panel.set_xlabel("material coordinate $u/L$")
-    figure.suptitle(heading(view), fontsize=9)
+    figure.suptitle(heading(view))
     legend_below(figure, _parts(view, drawn), columns=2)
     left = f" of the first {len(drawn)} of {points.size} points" if points.size > len(drawn) else ""
     return request.write(figure, f"the leading mode{left}: real part solid, imaginary part dotted")
@@ -65,7 +65,7 @@ def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], .
         axes.plot(u, real, color=colour, lw=1.5)
         if np.abs(imag).max() > 0:
             axes.plot(u, imag, ":", color=colour, lw=1.5)
-        axes.tick_params(axis="y", colors=colour, labelsize=8)
+        axes.tick_params(axis="y", colors=colour)
         axes.set_ylabel(label, color=colour)
         spans.append((min(real.min(), imag.min(), 0.0), max(real.max(), imag.max(), 0.0)))
     zero = max(-low / (high - low) if high > low else 0.5 for low, high in spans)

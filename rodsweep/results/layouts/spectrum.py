@@ -42,13 +42,13 @@ VECTORS = (
 )
 
 
-def longitudinal(gamma1: float, along: str) -> Variable:
-    """The longitudinal rates, which depend on k1 only; along: `k1` on a grid, `point` in a list."""
+def longitudinal(gamma1: float, *along: str) -> Variable:
+    """The longitudinal rates, which depend on k1 only; along: k1, or all points where k1 is no axis."""
     return real(
         "longitudinal_rate",
         "1/tau2",
         f"longitudinal eigenvalue, real, for gamma1 = {gamma1:g}",
-        along,
+        *along,
         "mode",
     )
 

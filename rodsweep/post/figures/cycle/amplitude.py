@@ -16,7 +16,7 @@ from ....arrays import Array
 from ....config.limit_cycle import LONGEST
 from ....errors import InputError
 from ....results.file.view import View
-from ...hopf_points import HopfPoint, lines_over
+from ...hopf_points import HopfPoint, StoredHopfPoints, lines_over
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, need, plain, scale
 from .hopf_marks import draw_laws, mark_hopf_points
 from .selection import CYCLE_WORDS, outcomes, told_apart
@@ -86,7 +86,7 @@ def draw_amplitude(views: Sequence[View]) -> tuple[Figure, str]:
     scale(panels[1], "x", np.unique(branches[0].x))
     if legend := [handle for handle in handles if handle.get_label()]:
         legend_below(figure, legend, columns=min(2, len(legend)))
-    figure.suptitle(heading(first, shared), fontsize=10)
+    figure.suptitle(heading(first, shared))
     return figure, f"amplitudes of the tip against {name}"
 
 
@@ -204,8 +204,10 @@ def branches_of(view: View, name: str) -> list[AmplitudeBranch]:
         np.where(straight, 0.0, np.where(cycle, values, np.nan)) for values in (reach, v["tip_y_max"].ravel())
     )
     branches = []
+    stored = StoredHopfPoints(view, "F")
     for line in lines_over(view, name):
-        at, hopf = line.at, line.hopf_points(view) if name == "F" else []
+        changes = stored.on(line) if name == "F" else []
+        at, hopf = line.at, [change for change in changes if isinstance(change, HopfPoint)]
         branches.append(
             AmplitudeBranch(view, line.parameters, line.x, along_x[at], along_y[at], words[at], hopf)
         )

@@ -39,7 +39,7 @@ def write_animation(view: View, points: Sequence[int], output: Path) -> str:
     writer = _writer(output, max(1, round(frames / PERIOD_SECONDS)))
     figure = Figure(figsize=(2.7 * len(cycles) + 0.9, 4.4), layout="constrained")
     panels = figure.subplots(1, len(cycles), squeeze=False, sharey=True)[0]
-    figure.suptitle(selection.title, fontsize=10)
+    figure.suptitle(selection.title)
     panels[0].set_ylabel("$y/L$")
     arms = [MovingArm(axes, cycle) for axes, cycle in zip(panels, cycles, strict=True)]
     frame(panels, cycles)
@@ -73,9 +73,9 @@ class MovingArm:
         self.ghosts = [axes.plot([], [], color=str(grey), lw=1.2, zorder=1.5)[0] for grey in fading]
         (self.rod,) = axes.plot([], [], color=FIRST, lw=3.0, solid_capstyle="round", zorder=3)
         self.arrow = force_arrow(axes, np.zeros(1), np.zeros(1), np.zeros(1), SECOND)
-        self.text = axes.text(0.02, 0.02, "", transform=axes.transAxes, fontsize=9)
+        self.text = axes.text(0.02, 0.02, "", transform=axes.transAxes, size=9)
         axes.set_xlabel("$x/L$")
-        axes.set_title(cycle.heading(rf"$T$ = {cycle.period:.6g} $\tau_2$"), fontsize=9)
+        axes.set_title(cycle.heading(rf"$T$ = {cycle.period:.6g} $\tau_2$"))
 
     def show(self, k: int) -> None:
         """Moves the arm to its k-th shape."""
