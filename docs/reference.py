@@ -72,6 +72,7 @@ LENGTHS = {
     "crossing": "`thresholds.crossings`, `phase_diagram.crossings`, `criticality.crossings`",
     "curve_point": "as found",
     "fold": "as found",
+    "hopf": "as found",
     "bautin": "as found",
     "cycle_special": "64",
     "cycle_curve_point": "as found",
