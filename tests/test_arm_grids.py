@@ -1,5 +1,7 @@
 """Grids over an arm's own quantities: axes in files and Datasets, points without a rod, resume and merge."""
 
+from pathlib import Path
+
 import h5py
 import numpy as np
 import pytest
@@ -10,8 +12,10 @@ import rodsweep as rs
 from rodsweep.api.asking import job_from, tree_of
 from rodsweep.config.arm import CRUSHED, NO_WALL, NOT_SLENDER
 from rodsweep.model.arm import SlenderArm
+from rodsweep.model.neglected import Validity
 from rodsweep.results.file.view import read_view
 
+ROOT = Path(__file__).parents[1]
 GLYCEROL = {"radius": "5 mm", "young": "100 kPa", "viscosity": "1.4 Pa s"}
 TALL = GLYCEROL | {"length": ["4 cm", "10 cm", "12 cm"]}
 """The first of which is shorter than ten radii."""
@@ -255,3 +259,18 @@ def test_a_list_of_a_grid_has_every_point_in_its_order(command):
     for name, place in zip(view.over, places, strict=True):
         assert (listed.variables[name] == view.variables[name][place]).all()
     assert listed.point_columns["F"] == pytest.approx(view.variables["F"].ravel(), nan_ok=True)
+
+
+def test_map_of_configs_has_the_numbers_that_it_states(command):
+    done = command("run", ROOT / "configs" / "arm_map.yaml", "-o", "map.h5")
+    assert done.returncode == 0, done.stdout + done.stderr
+    data = rs.open(command.directory / "map.h5")
+    assert (data.status == NOT_SLENDER).sum("young").values.tolist() == [4] + [0] * 8
+    there = data.sel(length=0.1, young=1e5, method="nearest")
+    assert there.F_hopf.item() == pytest.approx(34.809000317504, rel=1e-9)
+    assert there.pressure_hopf.item() == pytest.approx(2175.56, abs=0.005)
+    assert there.frequency_hopf_hz.item() == pytest.approx(0.27439, abs=5e-6)
+    ratio = data.pressure_hopf / data.young
+    assert np.ptp(ratio.values[1:], axis=1) == pytest.approx(0, abs=1e-12)
+    rods = data.model_applies.where(data.status == 0)
+    assert np.argwhere((rods == Validity.does_not_apply).values).tolist() == [[1, 3]]

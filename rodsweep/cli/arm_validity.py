@@ -28,49 +28,49 @@ ARMS_KEPT = 64
 
 
 @dataclass(frozen=True, slots=True)
-class Motion:
+class ArmMotion:
     """How the arm moves at n points, each (n, ...): frequency in 1/tau2, F, and the tip's amplitude in L."""
 
     frequency: Array
     F: Array | None = None
-    """None where it is that of the points."""
+    """None where it is that of the points, which comes first where they have one."""
     amplitude: Array | float = HALF_LENGTH
     is_cycle: bool = False
 
 
-def _of_modes(record: Record) -> Motion:
+def _of_modes(record: Record) -> ArmMotion:
     """That of the leading mode which oscillates."""
     frequency = np.abs(record["frequency"])
     first = np.argmax(frequency > 0, axis=-1, keepdims=True)  # the first of all where none does
     leading = np.take_along_axis(frequency, first, axis=-1)[..., 0]
-    return Motion(np.where(leading > 0, leading, np.nan))
+    return ArmMotion(np.where(leading > 0, leading, np.nan))
 
 
-def _of_hopf_point(at: str) -> Callable[[Record], Motion]:
+def _of_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
     """That of the first Hopf point, whose force is the variable `at`."""
 
-    def found(record: Record) -> Motion:
+    def found(record: Record) -> ArmMotion:
         hopf = np.asarray(record["crossing_kind"]) == CROSSING_KINDS.index("hopf")
         first = np.argmax(hopf, axis=-1, keepdims=True)
         there = hopf.any(axis=-1)
         pair = (np.asarray(record[name], float) for name in ("crossing_frequency", at))
         frequency, F = (np.where(there, np.take_along_axis(v, first, axis=-1)[..., 0], np.nan) for v in pair)
-        return Motion(np.abs(frequency), F)
+        return ArmMotion(np.abs(frequency), F)
 
     return found
 
 
-def _of_cycle(record: Record) -> Motion:
+def _of_cycle(record: Record) -> ArmMotion:
     frequency, amplitude = (np.asarray(record[name], float) for name in ("frequency", "tip_y_max"))
-    return Motion(frequency, None, np.where(np.isfinite(amplitude), amplitude, 0.0), is_cycle=True)
+    return ArmMotion(frequency, None, np.where(np.isfinite(amplitude), amplitude, 0.0), is_cycle=True)
 
 
-def _of_branches(record: Record) -> Motion:
+def _of_branches(record: Record) -> ArmMotion:
     period, F, amplitude = (np.asarray(record[name], float) for name in ("period", "branch_F", "tip_y_max"))
-    return Motion(2 * pi / period, F, amplitude, is_cycle=True)
+    return ArmMotion(2 * pi / period, F, amplitude, is_cycle=True)
 
 
-MOTIONS: dict[str, Callable[[Record], Motion]] = {
+MOTIONS: dict[str, Callable[[Record], ArmMotion]] = {
     "spectrum": _of_modes,
     "modes": _of_modes,
     "thresholds": _of_hopf_point("crossing_F"),
@@ -97,8 +97,6 @@ class ArmValidity:
     def of(self, record: Record, index: int | NDArray[np.int64]) -> dict[str, Any]:
         """The variables of VALIDITY of a point, or of several of one arm, (n,), with records (n, ...)."""
         motion = MOTIONS[self.task](record)
-        if self.task == "phase_diagram" and "F" in self.points.names:  # its rows cross another parameter
-            motion = Motion(motion.frequency)
         return self._told(self._arm_of(int(np.ravel(index)[0])), motion, index)
 
     def at_rest(self) -> dict[str, Array]:
@@ -109,14 +107,14 @@ class ArmValidity:
             if self.points.covered is not None:
                 indices = indices[self.points.covered[indices] == SLENDER]
             if len(indices):
-                nothing = Motion(np.full(len(indices), np.nan))
+                nothing = ArmMotion(np.full(len(indices), np.nan))
                 found.append(self._told(self._arm_of(first), nothing, indices))
         return {name: np.concatenate([each[name] for each in found]) for name in found[0]}
 
     def _arm_of(self, index: int) -> SlenderArm:
         return self.arm(index // self.each if self.points.over else 0)
 
-    def _told(self, arm: SlenderArm, motion: Motion, index: int | NDArray[np.int64]) -> dict[str, Any]:
+    def _told(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> dict[str, Any]:
         rate = fastest_rate(arm, motion.frequency)
         F = self._force(arm, motion, index)
         effects = effects_of(arm, rate, F, amplitude=motion.amplitude)
@@ -134,10 +132,10 @@ class ArmValidity:
             "neglected_excess": np.where(at_worst >= 0, at_worst, np.nan),
         }
 
-    def _force(self, arm: SlenderArm, motion: Motion, index: int | NDArray[np.int64]) -> Array:
+    def _force(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> Array:
         """F in units of the arm's own k1, which a parameter beside it may replace; nan without load."""
         own = self._column("k1", index)
-        F = self._column("F", index) if motion.F is None else motion.F
+        F = self._column("F", index) if "F" in self.points.names else motion.F
         if F is None:
             return np.asarray(np.nan)
         if own is None:

@@ -177,7 +177,7 @@ class ArmSection(Strict):
     def own_grid(self, beside: Mapping[str, Array]) -> ArmGrid:
         """The grid over the arm's quantities, and over those parameters of `beside` that have several values.
 
-        beside: values of parameters that replace the arm's. ValueError where no rod covers any point.
+        beside: values of parameters that replace the arm's, (n,). ValueError where no rod covers any point.
         """
         arms, statuses = zip(*self._arms(), strict=True)
         loads = self.given[self.load].array() if self.load else np.zeros(1)

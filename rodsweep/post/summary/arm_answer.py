@@ -56,7 +56,7 @@ def spanned(view: View, values: np.ndarray, si: str, *typed: str) -> str:
 
 
 def load_spanned(view: View, loads: np.ndarray) -> str:
-    """The range of loads in SI, as the load of the arm is told."""
+    """The range of loads in SI, (n,), as the load of the arm is told."""
     if "force" in view.quantities:
         return spanned(view, loads, "N", "force")
     return spanned(view, loads, "Pa", *OF_PRESSURE)

@@ -24,7 +24,7 @@ LONGEST_VALUE = 80
 def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
     """What two files must share for the one to continue the other: of a resolved config and its points.
 
-    columns: the `identity` of the points. ValueError for a config of no use.
+    columns: the `identity` of the points, each (n,). ValueError for a config of no use.
     """
     asked = config_of(config)
     meant = {"meaning": asked.meaning, "grid": not asked.parameters.is_list}
