@@ -16,8 +16,8 @@ from faults import calls
 import rodsweep as rs
 
 MORE = int(os.environ.get("RODSWEEP_CASES", "1"))
-ANSWERS, FILES, COMMANDS = 20 * MORE, 2 * MORE, 12
-"""Calls of Python; sweeps; and commands on each of them."""
+ANSWERS, TABLES, FILES, COMMANDS = 20 * MORE, 4 * MORE, 2 * MORE, 12
+"""Calls of Python; tables and figures of answers; sweeps; and commands on each of them."""
 FILLER = re.compile(r"\bnan\b|<NA>|(?<![\w.(+])-1(?![\w.)])|\.\.\.|\bNone\b")
 """What no answer has: fill values, cut lists."""
 INTERNAL = re.compile(
@@ -117,6 +117,26 @@ def test_an_answer_or_a_refusal_says_what_it_should(seed):
         assert sentence, f"{call} takes {call.misspelt[0]}"
 
 
+@pytest.mark.parametrize("seed", range(TABLES))
+def test_tables_and_figures_of_answers_are_made_or_refused(seed):
+    rng = Random(f"tables {seed}")
+    call = calls.call(rng)
+    answer, _ = refusal_of(call)
+    if answer is None:
+        return
+    asked = calls.asked_of_a_result(rng, sorted(map(str, answer.data.variables)))
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            made = asked.of(rs, answer)
+    except rs.InputError as error:
+        assert not unclear(str(error), str(asked)), (str(call), str(asked), str(error))
+        hint = re.search(r"'([^']*)'; did you mean (\w+)", str(error))
+        assert not hint or hint[2] in (*answer.lists, "points", *map(str, answer.data.variables)), str(error)
+    else:
+        assert "..." not in getattr(made, "shown", ""), made.shown
+
+
 @pytest.mark.parametrize("seed", range(FILES))
 def test_commands_on_a_result_say_what_they_should(seed, command):
     rng = Random(f"commands {seed}")
@@ -124,6 +144,9 @@ def test_commands_on_a_result_say_what_they_should(seed, command):
     command.write("c.yaml", text)
     (command.directory / "sub").mkdir()
     made = command("run", "c.yaml", "-q")
+    if made.returncode == 2:  # a combination that is not allowed
+        assert not unclear(made.stderr.strip(), text)
+        return
     assert made.returncode in (0, 1), (text, made.stderr)
     for _ in range(COMMANDS):
         words = calls.words(rng, "c.h5", "c.yaml")

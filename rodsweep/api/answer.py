@@ -132,7 +132,7 @@ class Answer:
             absent=tuple(c.name for c in own if c.absent[0]) if int(self.data["status"]) == 0 else (),
             totals=totals,
             lists={name: columns for name, columns in lists.items() if name in IN_FULL},
-            named={name: len(columns[0].values) for name, columns in lists.items() if name not in IN_FULL},
+            named={name: rows for name, columns in lists.items() if (rows := _rows_beyond(name, columns))},
         )
 
 
@@ -153,6 +153,11 @@ def _statuses(task: str, words: tuple[str, ...]) -> type[StrEnum]:
     found = made("Status", {word: word for word in words})
     found.__name__ = "".join(part.title() for part in task.split("_")) + "Status"
     return cast(type[StrEnum], found)
+
+
+def _rows_beyond(name: str, columns: Sequence[Column]) -> int:
+    """How many rows a list has that is not printed."""
+    return 0 if name in IN_FULL else len(columns[0].values)
 
 
 def _is_dimensionless(column: Column) -> bool:

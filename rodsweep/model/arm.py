@@ -99,8 +99,11 @@ class SlenderArm:
         """Reads the units, and refuses what is no slender arm."""
         object.__setattr__(self, "si", InSI(**{name: self._read(name) for name in UNITS}))
         ratio: Any = self.poisson
-        if isinstance(ratio, bool) or not isinstance(ratio, Real) or not -1 < float(ratio) <= 0.5:
-            told = repr(ratio) if isinstance(ratio, str) else str(ratio)
+        if isinstance(ratio, bool) or not isinstance(ratio, Real) or not -1 < ratio <= 0.5:
+            try:
+                told = repr(ratio) if isinstance(ratio, str) else str(ratio)
+            except ValueError:  # an integer of thousands of digits
+                told = "an integer too large to be shown"
             raise InputError(f"poisson = {told:.60} is not a number above -1 and up to 0.5")
         self._refuse_other_sets()
         if self.si.density_difference <= -self.si.fluid_density:

@@ -80,6 +80,39 @@ class Words:
         return "rodsweep " + " ".join(self.words)
 
 
+@dataclass(frozen=True)
+class Asked:
+    """A table or a figure of a result: `rs.table` or `rs.plot` with these keywords."""
+
+    name: str
+    keywords: dict[str, Any]
+
+    def of(self, module: Any, result: Any) -> Any:
+        """What comes of it."""
+        return getattr(module, self.name)(result, **self.keywords)
+
+    def __str__(self) -> str:
+        return f"rs.{self.name}(result, {', '.join(f'{k}={v!r}' for k, v in self.keywords.items())})"
+
+
+def asked_of_a_result(rng: Random, variables: list[str]) -> Asked:
+    """A table or a figure, of columns and with choices that there are or are not."""
+    if rng.random() < 0.6:
+        names = [*variables, *variables, "k3", "crossing", "", misspelt(rng, rng.choice(variables))]
+        columns = rng.sample(names, rng.choice([1, 2, 3]))
+        table = rng.choice([None, *NAMES.values(), GRID, BRANCHES, POINTS, "mode", 3])
+        return Asked(
+            "table", rng.choice([{"columns": columns}, {"name": table}, {"name": table, "columns": columns}])
+        )
+    what = rng.choice([None, None, "cycle", "amplitude", "maps", "energy", "transient", "heat"])
+    choices = {
+        "what": what,
+        "points": rng.choice([(), 1, 0, [1], [2, 3]]),
+        "width": rng.choice([None, "single", "x"]),
+    }
+    return Asked("plot", {key: value for key, value in choices.items() if rng.random() < 0.7})
+
+
 def drawn_rod(rng: Random) -> dict[str, Any]:
     """The parameters of a rod, some of them in a limit."""
     k1, k2 = (rng.choice([10 ** rng.uniform(1.5, 5), 10 ** rng.uniform(1.5, 5), float("inf")]) for _ in "12")
@@ -162,8 +195,12 @@ def config(rng: Random) -> str:
     if task == "phase_diagram":
         values |= {"F": "[5, 20, 29]", "k1": f"[{30 + 100 * rng.random():.4g}, 1.0e4]", "k2": "1.0e4"}
     options = {key: rng.choice(v) for key, v in OPTIONS.get(task, {}).items() if rng.random() < 0.3}
+    written = {True: "true", False: "false"}
+    # "longitudinal" and "nodes" are not taken without others
     options = {
-        key: str(value).lower() for key, value in options.items() if key not in ("longitudinal", "nodes")
+        key: written[value] if isinstance(value, bool) else value
+        for key, value in options.items()
+        if key not in ("longitudinal", "nodes")
     }
     lines = [f"task: {task}", "parameters:", *(f"  {name}: {value}" for name, value in values.items())]
     lines += [f"{task}: {{{', '.join(f'{k}: {v}' for k, v in options.items())}}}"] if options else []

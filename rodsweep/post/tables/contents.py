@@ -27,6 +27,7 @@ NAMES = {
     ("cycle_special",): "cycle_special_points",
     ("curve_point",): "curves",
     ("fold",): "folds",
+    ("hopf",): "hopf_points",
     ("cycle_curve_point",): "cycle_curves",
     ("bautin",): "generalised_hopf_points",
     ("bautin_step",): "generalised_hopf_curves",
