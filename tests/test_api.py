@@ -317,6 +317,11 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
         (lambda: rs.Arm(**LOADED | {"length": "1e300 km"}), "length = '1e300 km' makes numbers too large"),
         (lambda: rs.Arm(**LOADED | {"radius": "1e-300 m"}), "length = '10 cm' makes numbers too large or"),
         (lambda: rs.Arm(**LOADED | {"poisson": "0.5"}), "poisson = '0.5' is not a number above -1"),
+        (lambda: rs.Arm(**LOADED | {"poisson": 10**400}), "poisson = 1000000000"),
+        (
+            lambda: rs.Arm(**LOADED | {"poisson": 10**5000}),
+            "poisson = an integer too large to be shown is not",
+        ),
         (lambda: rs.Arm(**SILICONE | {"radius": "-5 mm"}), "radius = '-5 mm' is not above 0"),
         (lambda: rs.Arm(**LOADED, force="1 N"), "pressure = '2 kPa' and force = '1 N' are both given"),
         (
