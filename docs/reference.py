@@ -73,7 +73,6 @@ LENGTHS = {
     "crossing": "`thresholds.crossings`, `phase_diagram.crossings`, `criticality.crossings`",
     "curve_point": "as found",
     "fold": "as found",
-    "hopf": "as found",
     "bautin": "as found",
     "hopf": "as found",
     "cycle_special": "64",
