@@ -74,7 +74,6 @@ LENGTHS = {
     "curve_point": "as found",
     "hopf": "as found",
     "fold": "as found",
-    "hopf": "as found",
     "bautin": "as found",
     "cycle_special": "64",
     "cycle_curve_point": "as found",
@@ -316,7 +315,8 @@ times `tau2` a time.
 
 """
 UNCOVERED = """
-A point of such a grid may be an arm that no rod covers. Then `status` is one of these, and nothing is computed:
+A point of such a grid may be an arm that no rod covers. Then `status` is one of these, and nothing is
+computed:
 
 """
 
