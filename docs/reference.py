@@ -111,7 +111,7 @@ ATTRIBUTES = {
     "config": "the text of the config, with what `--set` changed at its end",
     "config_resolved": "the config with all defaults, as JSON",
     "snapshot": "when `rodsweep snapshot` wrote the file; empty once a run has continued it",
-    "format": "5; see [which version reads what](#which-version-reads-what)",
+    "format": "6; see [which version reads what](#which-version-reads-what)",
     "seal": "a digest of every variable and attribute; see [the seal](#the-seal)",
     "fingerprint": "of what the config means, and of all points: what a continued file shares",
     "time_unit": "`tau2 = gamma2 L^4/k3`",
@@ -187,7 +187,7 @@ before HDF5 reads them. A program that opens the file for writing takes this che
 VERSIONS = """
 ### Which version reads what
 
-The attribute `format` is a whole number, now 5, that grows when a variable is added or changes its meaning.
+The attribute `format` is a whole number, now 6, that grows when a variable is added or changes its meaning.
 
 - A file of a higher format is refused in one sentence that names the version which wrote it.
 - A file of a lower format, or without the attribute, is refused in one sentence that names the version and
@@ -268,7 +268,8 @@ def task_keys(task: str) -> str:
 
 def key_row(name: str, field: FieldInfo, meaning: str) -> list[str]:
     """A key as a row of a table."""
-    return [f"`{name}`", what_is_allowed(field), yaml_of(field.default), meaning]
+    default = "" if field.is_required() else yaml_of(field.default)
+    return [f"`{name}`", what_is_allowed(field), default, meaning]
 
 
 def yaml_of(value: object) -> str:
@@ -379,6 +380,8 @@ def variables_of(job: Job) -> dict[str, tuple[Variable, list[str]]]:
 def variable_row(variable: Variable, dims: list[str], only: str) -> list[str]:
     """A variable as a row of a table."""
     meaning = variable.long_name
+    if variable.is_truth:
+        meaning += ": 1 yes, 0 no"
     if variable.flags:
         meaning += ": " + ", ".join(f"{value} {word}" for value, word in variable.flags)
     if only:

@@ -124,7 +124,7 @@ def test_other_units_ask_for_the_same():
         ("spectrum", {"young": None}, {}, "parameters.arm.young"),
         ("spectrum", {"viscosity": ["1 Pa s", "2 Pa s"]}, {}, "every time is proportional to it"),
         ("spectrum", {"pressure": "100 kPa"}, {}, "pressure = 100000 Pa compresses the arm to nothing"),
-        ("spectrum", {"force": "1 N"}, {}, "give either a pressure"),
+        ("spectrum", {"force": "1 N"}, {}, "pressure.* and .*force.* are both given"),
         ("spectrum", {"radius": "-5 mm", "pressure": None}, {}, "arm.radius = -0.005 m is not above 0"),
         ("thresholds", {"young": 0}, {}, "parameters.arm.young = 0 Pa is not above 0"),
         ("spectrum", {"radius": 1e-300}, {}, "makes numbers too large or too small"),
@@ -181,6 +181,15 @@ def test_file_of_every_task_has_si_units_and_is_what_python_gives(command, task)
             xr.testing.assert_allclose(file[name], dimensionless * file.tau2, rtol=1e-12)
         if dimensionless.units == "1/tau2":
             xr.testing.assert_allclose(file[name], dimensionless / file.tau2, rtol=1e-12)
+    for name in (name for name in file.data_vars if "frequency" in name and "slope" not in name):
+        if file[name].dims[-1] in ("curve_point", "fold"):
+            continue  # told once
+        if name.endswith("_hz"):
+            angular = file[name.removesuffix("_hz")]
+            assert (file[name].units, angular.units) == ("Hz", "rad/tau2")
+            xr.testing.assert_allclose(2 * np.pi * file[name] * file.tau2, angular, rtol=1e-12)
+        else:
+            assert f"{name}_hz" in file.data_vars
     load = next((name for name in ("pressure", "force") if name in file.coords), None)
     if load:
         assert (file.F * file[f"{load}_scale"] - file[load]).values == pytest.approx(0, abs=1e-9)
@@ -268,7 +277,7 @@ SILICONE_YAML = "length: 10 cm, radius: 5 mm, young: 100 kPa, viscosity: 1.4 Pa 
 def test_show_tells_thresholds_as_the_load_is_given_and_frequencies_in_hertz(
     command, task, load, unit, scale
 ):
-    """F = 1 is 1/16 kPa and 4.9 mN; 1/tau2 is rad/s, of which a Hz has 2 pi."""
+    """F = 1 is 1/16 kPa and 4.9 mN; a frequency is in rad/tau2, of which a Hz has 2 pi."""
     command.write("a.yaml", f"task: {task}\nparameters: {{arm: {{{SILICONE_YAML}, {load}}}}}\n")
     assert command("run", "a.yaml").returncode == 0
     lines = command("show", "a.h5").stdout.splitlines()

@@ -60,7 +60,7 @@ def test_file_has_the_branches_in_order_and_nothing_behind_them(command):
     assert (y[:count] > 0).all()
     kinds = [SPECIAL_KINDS[i] for i in v["special_kind"].reshape(2, -1)[1] if i]
     assert kinds == ["hopf", "fold", "hopf"]
-    fold = int(v["special_point"].reshape(2, -1)[1, 1])
+    fold = int(v["special_point"].reshape(2, -1)[1, 1]) - 1
     assert set(unstable[: fold + 1]) <= {0, -1}
     assert (unstable[1 : fold // 2] == 0).all()
     assert set(unstable[fold + 1 : count]) <= {1, -1}

@@ -17,8 +17,9 @@ from ..results.file.creation import Plan
 from ..results.file.recent import journalled_points, put_in, unfolded
 from ..results.file.validation import FORMAT, PROGRAM, Header, cleaned, open_whole, reading, reason_of
 from ..results.file.view import View
-from ..results.layouts import layout_of
-from ..results.layouts.variables import DIMENSIONS, MISSING, Filled, Variable
+from ..results.layouts import beside_points, layout_of
+from ..results.layouts.arm import MEANINGS
+from ..results.layouts.variables import DIMENSIONS, MISSING, Filled, Layout, Variable
 from ..results.run.journal import journal_directory
 from ..solve.exclusive import one_at_a_time
 
@@ -53,12 +54,23 @@ def _opened(path: Path) -> xr.Dataset:
     for variable in data.variables.values():
         variable.attrs = {name: cleaned(value) for name, value in variable.attrs.items()}
     data.attrs = {name: cleaned(value) for name, value in data.attrs.items()}
+    data = _ordered(data, header.layout, header.config)
     if journal_directory(path).is_dir():
         recent = journalled_points(header, data["status"].values.ravel())
         for name in data.variables.keys() & recent.dtype.fields.keys():
             put_in(data[name].values, str(name), recent)
         return _sealed(data)
     return data
+
+
+def _ordered(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dataset:
+    """The Dataset with its variables in the order in which they are declared; HDF5 has the alphabet's."""
+    declared = (*layout.variables, *beside_points(config, "point" not in data.dims))
+    places = {name: place for place, name in enumerate([*DIMENSIONS, *MEANINGS, *(v.name for v in declared)])}
+    names = sorted(data.variables, key=lambda name: places.get(str(name), len(places)))
+    variables = {name: data.variables[name] for name in names}
+    coords = {name: variables.pop(name) for name in names if name in data.coords}
+    return xr.Dataset(variables, coords, data.attrs)
 
 
 def _loaded(path: Path, header: Header) -> xr.Dataset:
@@ -115,7 +127,8 @@ def dataset_of(
         "fingerprint": plan.fingerprint,
         "config_resolved": json.dumps(plan.config),
     }
-    return _sealed(xr.Dataset(variables, coordinates, header | plan.attributes | dict(attributes)))
+    whole = xr.Dataset(variables, coordinates, header | plan.attributes | dict(attributes))
+    return _sealed(_ordered(whole, plan.layout, plan.config))
 
 
 def view_of(data: xr.Dataset, path: Path) -> View:
@@ -144,7 +157,7 @@ def _coordinates(plan: Plan) -> dict[str, Any]:
     points = plan.points
     found: dict[str, Any] = {}
     if not points.is_grid:
-        found["point"] = (("point",), np.arange(points.count, dtype="<i4"), _named("point"))
+        found["point"] = (("point",), np.arange(1, points.count + 1, dtype="<i4"), _named("point"))
     for name, column in zip(plan.layout.parameters, points.columns, strict=True):
         found[name] = ((name if points.is_grid else "point",), column, _named(name))
     for variable, values in plan.quantities:

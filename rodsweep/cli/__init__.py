@@ -29,6 +29,8 @@ from ..errors import BUG_STATUS, InputError, Refusal  # noqa: E402 - after the e
 from .arm_options import arm_options  # noqa: E402 - after the environment is set
 
 FILE = click.Path(path_type=Path)
+RESULTS = (".h5", ".hdf5", ".nc")
+"""Endings of result files."""
 LONGEST_MESSAGE = 350
 """Characters of a refusal."""
 overrides_option = click.option(
@@ -68,9 +70,7 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
         raise InputError("--fresh and --extend are both given: one replaces the file, the other adds to it")
     part = shard_of(shard)
     suffix = f"-{part.number}-of-{part.of}.h5" if part.of > 1 else ".h5"
-    output = _followed(output or Path(config.stem + suffix))
-    if output.is_dir() or not output.name:
-        raise InputError(f"--output {output} is a directory; name a file")
+    output = _result_file(output or Path(config.stem + suffix))
     asked = RunOptions(overrides=overrides, shard=part, **options)
     code = run_config(config, output, asked, stop)
     stop.ignore()  # the status is decided
@@ -85,9 +85,7 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
     from .merging import merge_files
     from .running import CONTINUE
 
-    if output.is_dir():
-        raise InputError(f"{output} is a directory; name the file to write first")
-    output = _followed(output)
+    output = _result_file(output)
     merged = merge_files(output, tuple(map(_followed, shards)))
     if merged.missing:
         click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing ones")
@@ -103,9 +101,7 @@ def snapshot(file: Path, output: Path | None) -> None:
     """Write what is done of the result FILE so far, without disturbing the run that computes it."""
     from ..results.file.recent import take_snapshot
 
-    output = _followed(output or file.with_name(f"{file.stem}-snapshot{file.suffix}"))
-    if output.is_dir():
-        raise InputError(f"--output {output} is a directory; name a file")
+    output = _result_file(output or file.with_name(f"{file.stem}-snapshot{file.suffix}"))
     done, points = take_snapshot(_followed(file), output)
     click.echo(f"wrote {output}: {done} of {points} points are done")
 
@@ -196,17 +192,23 @@ def plot(
 
 @commands.command()
 @click.argument("file", type=FILE)
-@click.option("-o", "--output", type=FILE, help="CSV file; by default FILE's name with .csv.")
+@click.option("-o", "--output", type=FILE, help="A .csv or .tsv file; by default FILE's name with .csv.")
+@click.option("--table", metavar="NAME", help="Which table: points, or a list of the task's, as crossings.")
+@click.option("--columns", metavar="A,B,C", help="Which columns, in their order; by default all.")
 @click.option("--units", is_flag=True, help="Put units into the headings: F_onset [k3/L^2].")
 @click.option("--replace", is_flag=True, help="Write over a file that is there already.")
-def export(file: Path, output: Path | None, units: bool, replace: bool) -> None:
-    """Write the result FILE as CSV: a line a point, a column a parameter and a number."""
+def export(
+    file: Path, output: Path | None, table: str | None, columns: str | None, units: bool, replace: bool
+) -> None:
+    """Write a table of the result FILE as CSV: a row a point, or a row an item of a list."""
+    from ..post.export import Request
     from ..post.export import export as export_view
     from ..results.file.view import read_view
 
     output = _followed(output or file.with_suffix(".csv"))
-    exported = export_view(read_view(_followed(file)), output, units, replace)
-    click.echo(f"wrote {output}: {exported.sentence}")
+    names = tuple(name.strip() for name in columns.split(",")) if columns is not None else ()
+    request = Request(table=table, columns=names, units=units, replace=replace)
+    click.echo(f"wrote {output}: {export_view(read_view(_followed(file)), output, request)}")
 
 
 @commands.command()
@@ -235,8 +237,8 @@ def bench(what: str | None, quick: bool, output: Path | None, directory: Path | 
 
     output = output or Path("bench.md")
     unfit = output.exists() and not output.is_file()
-    if unfit or not output.parent.is_dir() or output.suffix in {".png", ".h5"}:
-        raise InputError(f"--output {output} is no name for Markdown in an existing directory")
+    if unfit or not output.parent.is_dir() or output.suffix != ".md":
+        raise InputError(f"--output {output}: the name must end in .md, in an existing directory")
     run_benchmarks(what, quick, output, directory)
 
 
@@ -248,6 +250,16 @@ def arm(poisson: float, **quantities: str | None) -> None:
     from .arm_report import describe_arm
 
     describe_arm(quantities, poisson)
+
+
+def _result_file(path: Path) -> Path:
+    """The file for results that a name means; InputError for a directory or another ending."""
+    endings = ", ".join(RESULTS)
+    if path.is_dir() or not path.name:
+        raise InputError(f"{path} is a directory; name a file for results, which ends in {endings}")
+    if path.suffix not in RESULTS:
+        raise InputError(f"{path} is no name for results, which are HDF5: it must end in {endings}")
+    return _followed(path)
 
 
 def _followed(path: Path) -> Path:

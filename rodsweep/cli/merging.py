@@ -11,6 +11,7 @@ from ..results.file.merge import Merged, merge
 from ..results.layouts import layout_of
 from ..sweep.grid import Points
 from .tasks import TASKS
+from .wording import counted
 
 
 def plan_without_solver(config: Config, points: Points) -> Plan:
@@ -33,7 +34,9 @@ def plan_without_solver(config: Config, points: Points) -> Plan:
 def merge_files(output: Path, paths: tuple[Path, ...]) -> Merged:
     """Merges result files into `output` and says what came of it."""
     merged = merge(output, paths, plan_without_solver)
-    click.echo(f"{output}: {merged.points} points from {len(paths)} files, {merged.missing} missing")
+    click.echo(
+        f"{output}: {merged.points} points from {counted(len(paths), 'file')}, {merged.missing} missing"
+    )
     if merged.kernels:
         click.echo(f"{output}: {merged.kernels}")
     return merged

@@ -24,7 +24,7 @@ AXIS_OF = dict.fromkeys(LOADS, "F") | {"poisson": "k2"}
 """The one parameter that a quantity moves, where it moves one only."""
 UNSWEPT = "viscosity"
 """What moves no parameter: every time is proportional to it."""
-SECTION = ("length", "young", "viscosity", "radius", "width", "height", "poisson")
+SECTION = ("length", "young", "viscosity", "radius", "inner_radius", "width", "height", "poisson")
 """What makes an arm beside its load."""
 MOST_LISTED = 1_000_000
 """Points that are made of the axes of an arm, one by one."""
@@ -79,6 +79,8 @@ class ArmSection(Strict):
     """From the clamp to the tip."""
     radius: Annotated[Quantities | None, Allowed] = None
     """Of a circular section; or give width and height."""
+    inner_radius: Annotated[Quantities | None, Allowed] = None
+    """Of the bore of a tube, which is closed at its tip."""
     width: Annotated[Quantities | None, Allowed] = None
     """Of a rectangular section, across the plane of motion."""
     height: Annotated[Quantities | None, Allowed] = None
@@ -191,7 +193,7 @@ class ArmSection(Strict):
         units = {
             "tau2": [arm.tau2 for arm in arms],
             "force_scale": [arm.force_scale for arm in arms],
-            "pressure_scale": [arm.force_scale / arm.section.area for arm in arms],
+            "pressure_scale": [arm.pressure_scale for arm in arms],
         }
         if self.is_grid:
             if self.poisson is not None:  # k2 falls as it rises
@@ -233,7 +235,7 @@ class ArmSection(Strict):
 
     def _force_of(self, arm: SlenderArm) -> float:
         """F of a load of 1 in SI on an arm."""
-        return (arm.section.area if self.load == "pressure" else 1.0) / arm.force_scale
+        return 1.0 / (arm.pressure_scale if self.load == "pressure" else arm.force_scale)
 
 
 def _scaled(axis: Axis, scale: float) -> Axis:

@@ -112,5 +112,5 @@ class NonlinearParameters(AllAxes):
 
 
 def words(names: tuple[str, ...], last: str) -> str:
-    """The names as a list in a sentence."""
-    return f"{', '.join(names[:-1])} {last} {names[-1]}"
+    """The names, one or more, as a list in a sentence."""
+    return f"{', '.join(names[:-1])} {last} {names[-1]}" if names[1:] else names[0]

@@ -73,7 +73,7 @@ def restrict_arm(section: Schema, axis: Schema) -> None:
                 node["pattern"] = pattern
     circle, rectangle = all_of(["radius"], none_of(["width", "height"])), ["width", "height"]
     section["allOf"] = [
-        {"oneOf": [circle, all_of(rectangle, none_of(["radius"]))]},
+        {"oneOf": [circle, all_of(rectangle, none_of(["radius", "inner_radius"]))]},
         {"not": all_of(LOADS)},
     ]
 

@@ -15,8 +15,8 @@ from .values import named, short
 
 KEY_SHOWN = 100
 """Characters of a key that a sentence has room for."""
-ALIKE = 0.5
-"""How alike an unknown key must be to a known one for that to be meant."""
+ALIKE = 0.6
+"""Least similarity, as difflib measures it, of a misspelt key: gama3 has 0.9 to gamma3, taper 0.5 to arm."""
 
 
 def sentence_of(config: type[Config], problem: Any) -> str:
@@ -26,7 +26,7 @@ def sentence_of(config: type[Config], problem: Any) -> str:
     kind, value = problem["type"], problem["input"]
     if kind == "extra_forbidden":
         known = list(_section(config, location[:-1]).model_fields)
-        close = nearest(location[-1], known)
+        close = places_of(config, location) or nearest(location[-1], known)
         hint = f"did you mean {close[0]}?" if close else f"known keys are {', '.join(known)}"
         return f"unknown key {key}; {hint}"
     if kind == "missing":
@@ -42,8 +42,24 @@ def sentence_of(config: type[Config], problem: Any) -> str:
 
 
 def nearest(key: str, known: Sequence[str]) -> list[str]:
-    """The known key that an unknown one was meant to be, if one is alike."""
+    """The known key that an unknown one may mean: but for capitals, the only one that begins so, or alike."""
+    low = key.casefold()
+    same = [name for name in known if name.casefold() == low]
+    begun = [name for name in known if name.casefold().startswith(low)]
+    if same or len(begun) == 1:
+        return (same or begun)[:1]
     return difflib.get_close_matches(key, known, n=1, cutoff=ALIKE)
+
+
+def places_of(config: type[Config], location: Sequence[str]) -> list[str]:
+    """The places of other sections at which a key is known that is unknown where it stands."""
+    task = str(get_args(config.model_fields["task"].annotation)[0])
+    found = []
+    for section in ((), ("parameters",), (task,), ("parameters", "arm")):
+        known = _section(config, section).model_fields
+        if location[-1] in known and section != tuple(location[:-1]):
+            found.append(dotted((*section, location[-1])))
+    return found
 
 
 def dotted(location: Sequence[str]) -> str:

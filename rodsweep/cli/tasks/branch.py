@@ -83,7 +83,7 @@ def record(result: "BranchesOfRod", along: str, points: int, special: int) -> di
     others = meetings(result.curves)
     specials = [
         _special(one, starts[number - 1], after.get(one.at))
-        | {"special_branch": number, "special_meets": others.get((number, place), 0)}
+        | {"special_branch": number, "special_meets": others.get((number, place), -1)}
         for number, curve in enumerate(result.curves, 1)
         for place, one in enumerate(curve.special)
     ]
@@ -136,7 +136,7 @@ def _special(point: "SpecialPoint", start: int, hopf: "Crossing | None") -> dict
         "special_period": point.period,
         "special_tip_y_max": point.tip_y_max,
         "special_amplitude_coefficient": point.amplitude_coefficient,
-        "special_point": start + point.after if point.after >= 0 else -1,
+        "special_point": start + point.after + 1 if point.after >= 0 else 0,
         "special_reason": int(point.reason or 0),
         "special_unstable_after": hopf.unstable_after if hopf else -1,
     }

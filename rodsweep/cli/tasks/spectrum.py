@@ -11,7 +11,8 @@ from ...discretization.quadrature import lobatto_points
 from ...discretization.resolution import mesh_accuracy
 from ...errors import InputError
 from ...model.longitudinal import longitudinal_rates
-from ...results.layouts.variables import Filled, Variable
+from ...results.layouts.spectrum import longitudinal
+from ...results.layouts.variables import Filled
 from ...sweep.estimate import Estimate, estimate_followed, estimate_spectra
 from ...sweep.stretches import Stretches, Together, along_the_longest
 from .parts import LinearTask, count_of
@@ -54,9 +55,7 @@ class SpectrumTask(LinearTask):
             return ()
         k1, modes = self.points.by_name["k1"], self.config.spectrum.modes
         rates = np.array([longitudinal_rates(float(k), gamma1, modes) for k in k1])
-        dims = ("k1" if self.points.is_grid else "point", "mode")
-        meaning = f"longitudinal eigenvalue, real, for gamma1 = {gamma1:g}"
-        return ((Variable("longitudinal_rate", "<f8", np.nan, "1/tau2", meaning, dims), rates),)
+        return ((longitudinal(gamma1, "k1" if self.points.is_grid else "point"), rates),)
 
     def headline(self) -> str:
         return f"{count_of(self.points)}, {self.config.spectrum.modes} leading modes each"

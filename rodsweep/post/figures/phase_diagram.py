@@ -273,7 +273,7 @@ def parts_of_one_side(view: View, curve: int, line: str, row: str) -> list[tuple
     v = view.variables
     rows = np.flatnonzero(v["curve_number"] == curve)
     on = np.flatnonzero(v["bautin_curve"] == curve)
-    places = np.searchsorted(rows, v["bautin_curve_point"][on], side="right")
+    places = np.searchsorted(rows, v["bautin_curve_point"][on] - 1, side="right")
     columns = [np.insert(v[f"curve_{name}"][rows], places, v[f"bautin_{name}"][on]) for name in (line, row)]
     points = np.column_stack(columns)
     side = np.insert(np.nan_to_num(v["curve_criticality"][rows]), places, 0)

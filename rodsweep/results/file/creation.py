@@ -85,7 +85,7 @@ def _write_parameters(file: h5py.File, plan: Plan) -> None:
     """The parameters, each a dimension of its own or all along `point`."""
     names, points = plan.layout.parameters, plan.points
     if not points.is_grid:
-        _write_scale(file, "point", np.arange(points.count, dtype="<i4"))
+        _write_scale(file, "point", np.arange(1, points.count + 1, dtype="<i4"))
     for name, column in zip(names, points.columns, strict=True):
         if points.is_grid:
             _write_scale(file, name, column)

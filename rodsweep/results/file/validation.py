@@ -21,9 +21,11 @@ from .seal import HDF5_SIGNATURE, check_frame
 
 PROGRAM = "rodsweep"
 """The attribute `program` of our files."""
-FORMAT = 5
+FORMAT = 6
 """The attribute `format` of our files: grows when a variable is added or changes its meaning. Only files of
-this format are read; 5 is the first whose content is sealed."""
+this format are read: 5 was the first whose content is sealed, 6 has frequencies in Hz and counts from 1."""
+CONFIGS = (".yaml", ".yml")
+"""Endings of configs."""
 LONGEST_REASON = 150
 """Characters of what a library says."""
 DAMAGES = (OSError, LookupError, ValueError, TypeError, RuntimeError, OverflowError, MemoryError)
@@ -73,6 +75,8 @@ def open_whole(path: Path, values: bool = True) -> tuple[h5py.File, Header]:
     InputError unless the file is a whole result that says what rodsweep wrote.
     """
     refuse_absent(path)
+    if path.suffix in CONFIGS:
+        raise NotWhole(f"{path} is a config and no result file; `rodsweep run` makes one of it")
     with reading(path):
         is_framed = check_frame(path)
         file = h5py.File(path, "r")

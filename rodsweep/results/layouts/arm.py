@@ -1,6 +1,7 @@
 """What the file of an arm holds beside that of a rod: its quantities, and results in SI units too.
 
-A variable such as `period`, in tau2, has `period_si`, in s. The quantities of the arm, and the units tau2,
+A variable such as `period`, in tau2, has `period_si`, in s; `frequency`, in rad/tau2, has `frequency_hz`, in
+cycles per second. The quantities of the arm, and the units tau2,
 force_scale and pressure_scale that they make, are coordinates: numbers, or along a parameter or `point`.
 """
 
@@ -15,17 +16,21 @@ from ...config.arm import AXIS_OF
 from ...config.axes import Axes
 from ...model.arm import UNITS
 from ...model.parameters import PARAMETERS
-from .variables import Filled, Layout, Variable, real
+from .variables import ANGULAR, Filled, Layout, Variable, real
 
-SUFFIX = "_si"
+SUFFIX, OF_HERTZ = "_si", "_hz"
+HERTZ = "Hz"
+"""Cycles per second: what is counted on the bench. A radian a second is told nowhere."""
 OF_TIME_AND_LENGTH = {
     "tau2": ("s", ("tau2",), ()),
     "1/tau2": ("1/s", (), ("tau2",)),
+    ANGULAR: (HERTZ, (), ("tau2",)),
     "L": ("m", ("length",), ()),
     "k3/L": ("J", ("force_scale", "length"), ()),
     "k3/(L tau2)": ("W", ("force_scale", "length"), ("tau2",)),
 }
-"""Dimensionless units in SI: the unit, and which quantities one is a product of, and divided by."""
+"""Dimensionless units in SI: the unit, and which quantities one is a product of, and divided by; a
+frequency in Hz by a turn of 2 pi too."""
 FORCES = {
     "pressure": ("Pa", ("pressure_scale",), ()),
     "force": ("N", ("force_scale",), ()),
@@ -38,6 +43,7 @@ WITHIN = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))
 MEANINGS = {
     "length": "length of the arm",
     "radius": "radius of the arm's circular section",
+    "inner_radius": "radius of the bore of the arm, closed at its tip",
     "width": "width of the arm's section, across the plane of motion",
     "height": "height of the arm's section, in the plane of motion",
     "young": "Young's modulus of the arm",
@@ -69,7 +75,18 @@ def twins_of(layout: Layout, config: Mapping[str, Any]) -> list[Variable]:
     """What is stored in SI units too of a rod's layout, for a resolved config that has an arm."""
     as_force = "force" in config["parameters"]["arm"]
     units = ((variable, _unit_of(variable, as_force)[0]) for variable in layout.variables)
-    return [real(v.name + SUFFIX, unit, f"{v.long_name}; in SI units", *v.extra) for v, unit in units if unit]
+    return [real(twin_of(v.name, unit), unit, _meaning(v, unit), *v.extra) for v, unit in units if unit]
+
+
+def twin_of(name: str, unit: str) -> str:
+    """The name under which a variable stands in an SI unit."""
+    return name + (OF_HERTZ if unit == HERTZ else SUFFIX)
+
+
+def _meaning(variable: Variable, unit: str) -> str:
+    """What a variable in an SI unit is: a frequency is no longer angular there."""
+    words = variable.long_name.removeprefix("angular ") if unit == HERTZ else variable.long_name
+    return f"{words}; in {'cycles per second' if unit == HERTZ else 'SI units'}"
 
 
 def _unit_of(variable: Variable, as_force: bool) -> tuple[str, tuple[str, ...], tuple[str, ...]]:
@@ -78,8 +95,7 @@ def _unit_of(variable: Variable, as_force: bool) -> tuple[str, tuple[str, ...], 
         return "", (), ()
     if variable.units == PARAMETERS["F"].unit and ("F_" in variable.name or variable.name in OF_BRANCHES):
         return FORCES["force" if as_force else "pressure"]
-    unit, factors, divisors = OF_TIME_AND_LENGTH.get(variable.units, ("", (), ()))
-    return ("rad/s" if unit == "1/s" and "frequency" in variable.name else unit), factors, divisors
+    return OF_TIME_AND_LENGTH.get(variable.units, ("", (), ()))
 
 
 def quantities_of(parameters: Axes, is_grid: bool) -> tuple[Filled, ...]:
@@ -108,13 +124,14 @@ def in_si(
     """
     values = {}
     for variable in layout.variables:
-        told = variable.name + SUFFIX
         unit, factors, divisors = _unit_of(variable, "force" in quantities)
         if unit:
             value = np.asarray(record[variable.name])
             up, down = (_product(quantities, names, index) for names in (factors, divisors))
-            scale = up / down
-            values[told] = value * scale.reshape(scale.shape + (1,) * (value.ndim - scale.ndim))
+            scale = up / (2 * np.pi * down if unit == HERTZ else down)
+            values[twin_of(variable.name, unit)] = value * scale.reshape(
+                scale.shape + (1,) * (value.ndim - scale.ndim)
+            )
     return values
 
 

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from ...model.parameters import NONLINEAR_PARAMETERS
-from .variables import ANEW, MESH, SECONDS, STATUS, Increase, Layout, Variable, real, whole
+from .variables import ANEW, ANGULAR, MESH, SECONDS, STATUS, Increase, Layout, Variable, real, whole
 
 POWER = "k3/(L tau2)"
 STORED_MULTIPLIERS = 6
@@ -14,9 +14,13 @@ SECOND_STATES = ((-1, "not_told"), (0, "none_known"), (1, "straight"), (2, "cycl
 """What is known of a stable state beside the one in which a point ended."""
 CYCLE = (
     real("period", "tau2", "period of the limit cycle"),
-    real("frequency", "1/tau2", "angular frequency of the limit cycle, 2 pi/period"),
+    real("frequency", ANGULAR, "angular frequency of the limit cycle, 2 pi/period"),
     real("linear_growth_rate", "1/tau2", "real part of the leading eigenvalue of the straight rod"),
-    real("linear_frequency", "1/tau2", "imaginary part of the leading eigenvalue of the straight rod"),
+    real(
+        "linear_frequency",
+        ANGULAR,
+        "angular frequency, imaginary part of the leading eigenvalue of the straight rod",
+    ),
     Variable(
         "second_state",
         "|i1",

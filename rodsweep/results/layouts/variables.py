@@ -17,8 +17,12 @@ from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
 MISSING = -1
 """Status of a point that has not been computed."""
 
+ANGULAR = "rad/tau2"
+"""Unit of every frequency, which is angular: imaginary part of an eigenvalue, or 2 pi/period. Of an arm it
+stands in cycles per second beside, under a name that ends in `_hz`; rad/s is nowhere."""
+
 DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
-    "point": ("1", "row of the point list, from 0"),
+    "point": ("1", "row of the point list, from 1"),
     "mode": ("1", "leading first: descending growth rate, of a pair the positive frequency first"),
     "u": ("1", "material coordinate along the rod"),
     "crossing": ("1", "in increasing order of the parameter that is varied"),
@@ -52,15 +56,29 @@ class Variable:
     flags: tuple[tuple[int, str], ...] = ()
     """Values and meanings, where the variable is a word; those of `status` come from the task's solver."""
 
+    @property
+    def is_truth(self) -> bool:
+        """Whether the variable says yes or no."""
+        return self.dtype == "|i1" and not self.flags and self.name != STATUS.name
+
 
 def real(name: str, units: str, long_name: str, *extra: str) -> Variable:
     """A variable of floating-point numbers, NaN where there is none."""
     return Variable(name, "<f8", np.nan, units, long_name, extra)
 
 
+NOT_KNOWN = "; -1: not known"
+"""What the file says of a count that may be missing; tables have nothing there."""
+
+
 def whole(name: str, long_name: str, *extra: str) -> Variable:
     """A variable of counts, -1 where it is not known."""
     return Variable(name, "<i4", -1, "1", long_name, extra)
+
+
+def truth(name: str, long_name: str) -> Variable:
+    """A variable that is 1 where something is so, and 0 elsewhere."""
+    return Variable(name, "|i1", 0, "1", long_name)
 
 
 SECONDS = Variable("seconds", "<f4", np.nan, "s", "time spent on the point")
