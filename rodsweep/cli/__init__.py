@@ -241,15 +241,21 @@ def schema() -> None:
 @click.argument("what", type=click.Choice(["spectrum", "thresholds", "limit_cycle", "sweep"]), required=False)
 @click.option("--quick", is_flag=True, help="Fewer rounds, for a first impression.")
 @click.option("-o", "--output", type=FILE, help="Markdown file; the numbers (.h5) and figures go beside it.")
-def bench(what: str | None, quick: bool, output: Path | None) -> None:
-    """Time WHAT (by default all) beside what one would otherwise use, and state every error."""
+@click.option(
+    "--peers",
+    "directory",
+    type=FILE,
+    help="Folder of what is timed beside rodsweep; by default `benchmarks` of the checkout that is run.",
+)
+def bench(what: str | None, quick: bool, output: Path | None, directory: Path | None) -> None:
+    """Time WHAT (by default all), its peers beside it where they are there, and state every error."""
     from .benching import run_benchmarks
 
     output = output or Path("bench.md")
     unfit = output.exists() and not output.is_file()
     if unfit or not output.parent.is_dir() or output.suffix != ".md":
         raise InputError(f"--output {output}: the name must end in .md, in an existing directory")
-    run_benchmarks(what, quick, output)
+    run_benchmarks(what, quick, output, directory)
 
 
 @commands.command()
