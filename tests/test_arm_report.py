@@ -57,6 +57,12 @@ def test_the_fluid_and_the_thickness_that_are_stated_would_do_and_less_would_not
         assert (report.validity == Validity.does_not_apply) != fine
 
 
+def test_large_numbers_and_units_are_written_as_people_do():
+    """Of an arm in SI: 6800, not 6.8e+03, and Pa s, not Pa*s."""
+    said = headline(SlenderArm(length=1.76e-3, radius=1.2e-4, young=5.5e4, poisson=0.41, viscosity=1.1e-3))
+    assert re.search(r"is \d{4,5} times what the model allows; .* \(0\.\d+ Pa s\) would do", said)
+
+
 def test_near_a_limit_a_warning_stands_above_the_verdict():
     """Inertia goes as 1/viscosity^2: 0.64 at 1.4 Pa s."""
     arm = SlenderArm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="7 Pa s", pressure="2 kPa")
