@@ -10,19 +10,19 @@ from ..results.file.creation import Plan
 from ..results.file.merge import Merged, merge
 from ..results.layouts import layout_of
 from ..sweep.grid import Points
+from ..wording import counted
 from .tasks import TASKS
-from .wording import counted
 
 
 def plan_without_solver(config: Config, points: Points) -> Plan:
-    """The plan of a config on these points, without attributes and flags, for which PETSc is not needed."""
+    """The plan of a config on these points, without attributes and flags."""
     task = TASKS[config.task](config, points)
     resolved = canonical(config)
     return Plan(
         points=points,
         layout=layout_of(resolved),
         coordinates=task.coordinates(),
-        constants=task.constants(),
+        constants=task.constants,
         config=resolved,
         attributes={},
         flags=(),

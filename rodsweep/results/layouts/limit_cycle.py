@@ -4,7 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from ...model.parameters import NONLINEAR_PARAMETERS
+from ...model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, PARAMETERS
+from .thresholds import CROSSING_KINDS
 from .variables import ANEW, ANGULAR, MESH, SECONDS, STATUS, Increase, Layout, Variable, real, whole
 
 POWER = "k3/(L tau2)"
@@ -19,7 +20,7 @@ CYCLE = (
     real(
         "linear_frequency",
         ANGULAR,
-        "angular frequency, imaginary part of the leading eigenvalue of the straight rod",
+        "angular frequency of the leading mode of the straight rod, imaginary part of its eigenvalue",
     ),
     Variable(
         "second_state",
@@ -80,6 +81,41 @@ TRANSIENT = (
         for name, units in PLACE.items()
     ),
 )
+
+HOPF = "hopf"
+"""Dimension of the Hopf points that lie on the lines between the points of a file."""
+HOPF_ALONG = LINEAR_PARAMETERS
+"""Parameters along which Hopf points are searched; gamma1 moves none."""
+OF_PAIRS = ("none", "hopf", "hopf_reverse", "restabilization")
+"""What changes where a pair crosses the imaginary axis."""
+HOPF_POINTS = (
+    Variable(
+        "hopf_along",
+        "|i1",
+        0,
+        "1",
+        "parameter along which the Hopf point was searched, between the points of a line",
+        (HOPF,),
+        tuple(enumerate(HOPF_ALONG)),
+    ),
+    Variable(
+        "hopf_kind",
+        "|i1",
+        0,
+        "1",
+        "what changes at the Hopf point as that parameter grows",
+        (HOPF,),
+        tuple((CROSSING_KINDS.index(kind), kind) for kind in OF_PAIRS),
+    ),
+    *(real(f"hopf_{name}", PARAMETERS[name].unit, f"{name} at the Hopf point", HOPF) for name in HOPF_ALONG),
+    real("hopf_error", "1", "estimate of the relative error of the parameter along which was searched", HOPF),
+    real("hopf_frequency", ANGULAR, "angular frequency of the pair that crosses", HOPF),
+    real("hopf_frequency_error", ANGULAR, "estimate of the absolute error of hopf_frequency", HOPF),
+    whole("hopf_unstable_after", "number of modes with positive growth rate beyond it; -1: not known", HOPF),
+    whole("hopf_lines", "lines of points that differ in one of F, k1, k2 and gamma3, which were searched"),
+    whole("hopf_lines_proved", "those of them on which it is proved that no Hopf point is missing"),
+)
+"""Hopf points of the straight rods between the points of a file: known before any of these is solved."""
 
 NO_CYCLE = Increase(lambda records, before: np.isnan(records["period"]))
 """More of a cycle, which a rod that does not beat has none of."""
