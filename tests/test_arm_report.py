@@ -57,6 +57,21 @@ def test_the_fluid_and_the_thickness_that_are_stated_would_do_and_less_would_not
         assert (report.validity == Validity.does_not_apply) != fine
 
 
+def test_a_thinner_arm_is_no_way_out_where_it_would_hang_down():
+    """Weight over stiffness goes as 1/radius^2."""
+    stiff = {"length": 0.19, "radius": 9e-3, "young": 1.33e6, "poisson": 0.3, "viscosity": 0.39}
+    assert "or an arm at most 0.1" in headline(SlenderArm(**stiff))
+    heavy = headline(SlenderArm(**stiff, density_difference=-188.0))
+    assert "times as viscous" in heavy
+    assert "thick" not in heavy
+
+
+def test_large_numbers_and_units_are_written_as_people_do():
+    """Of an arm in SI: 6800, not 6.8e+03, and Pa s, not Pa*s."""
+    said = headline(SlenderArm(length=1.76e-3, radius=1.2e-4, young=5.5e4, poisson=0.41, viscosity=1.1e-3))
+    assert re.search(r"is \d{4,5} times what the model allows; .* \(0\.\d+ Pa s\) would do", said)
+
+
 def test_near_a_limit_a_warning_stands_above_the_verdict():
     """Inertia goes as 1/viscosity^2: 0.64 at 1.4 Pa s."""
     arm = SlenderArm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="7 Pa s", pressure="2 kPa")
