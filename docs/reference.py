@@ -72,8 +72,8 @@ LENGTHS = {
     "u": "`spectrum.nodes`, `modes.nodes`, `limit_cycle.nodes`",
     "crossing": "`thresholds.crossings`, `phase_diagram.crossings`, `criticality.crossings`",
     "curve_point": "as found",
-    "fold": "as found",
     "hopf": "as found",
+    "fold": "as found",
     "bautin": "as found",
     "cycle_special": "64",
     "cycle_curve_point": "as found",
@@ -315,7 +315,8 @@ times `tau2` a time.
 
 """
 UNCOVERED = """
-A point of such a grid may be an arm that no rod covers: `status` is one of these then, nothing is computed:
+A point of such a grid may be an arm that no rod covers. Then `status` is one of these, and nothing is
+computed:
 
 """
 

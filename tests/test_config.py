@@ -362,6 +362,9 @@ def test_file_that_is_no_text_is_refused(tmp_path):
         ("density", ("viscosity", "fluid_density"), ["fluid_density"]),
         ("presure", ("force", "pressure"), ["pressure"]),
         ("tolerance", ("accuracy", "title"), []),
+        ("", ("F", "k1"), []),
+        ("k", ("F", "k1", "k2"), ["k1", "k2"]),
+        ("a", ("a1", "a2", "a3", "a4", "a5"), []),
     ],
 )
 def test_only_near_keys_are_suggested(key, known, meant):

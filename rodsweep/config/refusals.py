@@ -17,6 +17,8 @@ KEY_SHOWN = 100
 """Characters of a key that a sentence has room for."""
 LETTERS_A_SLIP = 3
 """Letters of a key that are needed for each that is wrong, so that the rest says which was meant."""
+MOST_MEANT = 4
+"""Keys that an unknown one may mean; where it may mean more, all that there are say as much."""
 LONG_PART = 4
 """Letters of a part of a key from which it says which was meant, as `density` of `fluid_density`."""
 
@@ -61,7 +63,8 @@ def nearest(key: str, known: Sequence[str]) -> list[str]:
     """
     near = [(slips, name) for name in known if (slips := _slips(_plain(key), _plain(name))) is not None]
     least = min((slips for slips, _ in near), default=0)
-    return [name for slips, name in near if slips == least]
+    nearest_ones = [name for slips, name in near if slips == least]
+    return nearest_ones if key and len(nearest_ones) <= MOST_MEANT else []
 
 
 def _plain(key: str) -> str:

@@ -99,7 +99,8 @@ class SlenderArm:
         """Reads the units, and refuses what is no slender arm."""
         object.__setattr__(self, "si", InSI(**{name: self._read(name) for name in UNITS}))
         ratio: Any = self.poisson
-        if isinstance(ratio, bool) or not isinstance(ratio, Real) or not -1 < ratio <= 0.5:
+        is_number = isinstance(ratio, Real) and not isinstance(ratio, bool)
+        if not is_number or not -1 < ratio <= 0.5:
             try:
                 told = repr(ratio) if isinstance(ratio, str) else str(ratio)
             except ValueError:  # an integer of thousands of digits
