@@ -7,6 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import rodsweep as rs
+from rodsweep.cli.arm_validity import MOTIONS
 from rodsweep.model.arm import SlenderArm
 from rodsweep.model.neglected import Validity, effects_of, fastest_rate, worst_validity
 from rodsweep.post.figures import draw
@@ -62,6 +63,12 @@ def test_the_motion_is_that_of_the_task(task, more):
         counted = [e for e in effects if task == "limit_cycle" or not e.of_cycles_only]
         expected = np.nanmax([float(effect.excess) for effect in counted])
         assert point.neglected_excess.item() == pytest.approx(expected, rel=1e-12)
+
+
+def test_the_leading_mode_that_oscillates_is_not_always_the_first():
+    frequency = np.array([[0, 3, -3], [2, -2, 0], [0, 0, 0]])
+    motion = MOTIONS["spectrum"]({"frequency": frequency}).frequency
+    assert motion == pytest.approx(np.array([3, 2, np.nan]), nan_ok=True)
 
 
 def test_a_stiffness_beside_the_arm_is_what_is_compressed():
