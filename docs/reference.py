@@ -73,8 +73,8 @@ LENGTHS = {
     "crossing": "`thresholds.crossings`, `phase_diagram.crossings`, `criticality.crossings`",
     "curve_point": "as found",
     "fold": "as found",
-    "bautin": "as found",
     "hopf": "as found",
+    "bautin": "as found",
     "cycle_special": "64",
     "cycle_curve_point": "as found",
     "bautin_step": "as found",
@@ -300,17 +300,18 @@ def dimensions() -> str:
 ARM = """
 ### File of an arm
 
-Where only the load or Poisson's ratio of `parameters.arm` have several values, the points are a grid of parameters:
-`pressure` or `force` stands along F, `poisson` along k2. Where another quantity has several, the points are a grid
-over the arm's own quantities and the parameters beside it: every one with several values is a dimension, in SI with
-the unit that was typed as `typed_unit`, and F, k1, k2, gamma3, gamma1 and the units below are coordinates on that
-grid. What has one value is a number.
+Where only the load or Poisson's ratio of `parameters.arm` have several values, the points are a grid of
+parameters: `pressure` or `force` stands along F, `poisson` along k2. Where another quantity has several,
+the points are a grid over the arm's own quantities and the parameters beside it: every one with several
+values is a dimension, in SI with the unit that was typed as `typed_unit`, and F, k1, k2, gamma3, gamma1 and
+the units below are coordinates on that grid. What has one value is a number.
 
-What has the units tau2, rad/tau2, 1/tau2, L, k3/L or k3/(L tau2), and forces, stand in SI beside: `period_si` in s,
-`frequency_hz` in cycles per second, `growth_rate_si` in 1/s; a force F as the load, `pressure_hopf` of `F_hopf` in
-Pa, `force_hopf` in N where the arm has a force; and `frequency_hopf_hz` of `hopf_frequency`. Tables over more than
-modes, crossings and branches are not stored twice, nor are the curves, crossings and cycles of a phase diagram:
-times `pressure_scale` or `force_scale` a force is in SI, times `tau2` a time.
+What has the units tau2, rad/tau2, 1/tau2, L, k3/L or k3/(L tau2), and forces, stand in SI beside:
+`period_si` in s, `frequency_hz` in cycles per second, `growth_rate_si` in 1/s; a force F as the load,
+`pressure_hopf` of `F_hopf` in Pa, `force_hopf` in N where the arm has a force; and `frequency_hopf_hz` of
+`hopf_frequency`. Tables over more than modes, crossings and branches are not stored twice, nor are the
+curves, crossings and cycles of a phase diagram: times `pressure_scale` or `force_scale` a force is in SI,
+times `tau2` a time.
 
 """
 UNCOVERED = """

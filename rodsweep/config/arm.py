@@ -29,6 +29,8 @@ FLUID = ("viscosity", "fluid_density", "density_difference")
 applies."""
 SECTION = ("length", "young", "radius", "inner_radius", "width", "height", "poisson", *FLUID)
 """What makes an arm beside its load."""
+SIGNED_IN_SECTION = ("density_difference",)
+"""What of it may be negative."""
 MOST_POINTS = 1_000_000
 """Points of a grid over an arm's quantities, whose parameters are all in memory."""
 SLENDER, NOT_SLENDER, CRUSHED, NO_WALL = 0, 100, 101, 102

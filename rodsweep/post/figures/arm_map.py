@@ -5,7 +5,7 @@ cell is hatched.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -29,6 +29,8 @@ from .request import FigureRequest
 
 WORDS = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
 """What quantities are called along an axis, where that is not their name."""
+MAPS = ("map", "maps")
+"""What may be asked for of a task that has several figures."""
 DECADE = 10
 """Ratio of the largest to the smallest value above which colours are logarithmic."""
 HATCHES: tuple[tuple[str, int, str, dict[str, Any]], ...] = (
@@ -61,7 +63,7 @@ class Panel:
 
 def draw_arm_map(request: FigureRequest) -> str:
     """The main numbers of a task over the axes of an arm: two panels, of lines or of maps."""
-    view = request.only_view()
+    view = replace(request, what=None).only_view()
     long = [name for name in view.over if len(view.variables[name]) > 1] or list(view.over[:1])
     axes = sorted(long, key=lambda name: -len(view.variables[name]))[:2]
     x = next(name for name in view.over if name in axes)
@@ -87,7 +89,8 @@ def draw_arm_map(request: FigureRequest) -> str:
 def can_draw(request: FigureRequest) -> bool:
     """Whether a figure is one over an arm's quantities: of its tasks, and nothing else is asked for."""
     view = request.views[0]
-    return bool(view.over) and view.task in PANELS and not (request.what or request.points or request.roots)
+    chosen = request.what not in (None, *MAPS) or request.points or request.roots
+    return bool(view.over) and view.task in PANELS and not chosen
 
 
 def in_typed(view: View, name: str, values: Array, si: str = "") -> tuple[Array, str]:
