@@ -315,7 +315,8 @@ times `tau2` a time.
 
 """
 UNCOVERED = """
-A point of such a grid may be an arm that no rod covers. Then `status` is one of these, and nothing is computed:
+A point of such a grid may be an arm that no rod covers. Then `status` is one of these, and nothing is
+computed:
 
 """
 
