@@ -136,6 +136,8 @@ def test_a_branch_is_a_table_of_cycles_with_its_special_points_marked(command):
     assert F[fold] == F.max() == pytest.approx(85.6055765, abs=1e-6)
     places = [int(text) for text in columns["branch_point"] if text]
     assert places == list(range(1, len(rows) - 2))
+    chosen = command("export", "c.h5", "--columns", "branch_F,special_kind", "--replace")
+    assert f"{len(rows)} rows of branches in 2 columns" in chosen.stdout
 
 
 def test_longitudinal_rates_stand_beside_the_modes(command):
