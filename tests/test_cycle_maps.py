@@ -188,7 +188,7 @@ def make_list():
         ((FORCES, [1e4], [1e2], [1e-2], np.linspace(1, 2, 6)), (), "f.png", "amplitude"),
         ((FORCES, [1e4, 1e5], [1e2], [1e-2], np.linspace(1, 2, 7)), (), "f.png", "amplitude"),
         (([50.0], [1e4], np.linspace(50, 99, 8), np.linspace(1, 2, 7), [1.0]), (), "f.png", "maps"),
-        (([50.0], [1e4], np.linspace(50, 99, 8), [1e-2], [1.0]), (), "f.png", "cycle"),
+        (([50.0], [1e4], np.linspace(50, 99, 8), [1e-2], [1.0]), (), "f.png", "amplitude"),
         ((FORCES, [1e4], [1e2], [1e-2], np.linspace(1, 2, 7)), (3,), "f.png", "cycle"),
         ((FORCES, [1e4], [1e2], [1e-2], np.linspace(1, 2, 7)), (), "f.gif", "animation"),
     ],
