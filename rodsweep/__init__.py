@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from .api.picture import Picture, plot
     from .api.rod import SoftRod as Rod
     from .api.sweeping import sweep
+    from .api.tabling import table
     from .errors import EnvironmentLacks, InputError
 
 __version__ = "0.1.0"
@@ -30,6 +31,7 @@ __all__ = [
     "open",
     "plot",
     "sweep",
+    "table",
 ]
 
 _PLACES = {
@@ -44,6 +46,7 @@ _PLACES = {
     "open": "api.dataset.open_result",
     "plot": "api.picture.plot",
     "sweep": "sweep",
+    "table": "api.tabling.table",
 }
 """Where the public names come from; `sweep` is a package that can be called."""
 

@@ -172,7 +172,7 @@ def test_a_diagram_tells_shows_and_draws_it(command):
         sides = file["curve_criticality"][:]
         assert np.isnan(sides[~hopf]).all()
         assert set(sides[hopf]) == {-1, 1}
-        after = int(file["bautin_curve_point"][0])
+        after = int(file["bautin_curve_point"][0]) - 1
         assert sides[after] * sides[after + 1] == -1
         assert file["curve_number"][after] == file["bautin_curve"][0]
     told = command("show", "generalised_hopf.h5").stdout.replace("\n", " ")

@@ -34,7 +34,9 @@ def tree_of(task: str, keywords: Mapping[str, Any]) -> Tree:
         if name in sections and isinstance(value, Mapping):
             tree.setdefault(name, {}).update(_plain(name, dict(value)))
             continue
-        section = _section_of(name, sections) or _section_of(_meant(name, sections), sections)
+        section = _section_of(name, sections)
+        if section is None:
+            section = _section_of(_meant(name, sections), sections)
         place = tree.setdefault(section, {}) if section else tree
         place[name] = _plain(f"{section}.{name}" if section else name, value)
     _write_out_arm(task, tree)
@@ -98,9 +100,9 @@ def _section_of(name: str, sections: Mapping[str, Collection[str]]) -> str | Non
 
 
 def _meant(name: str, sections: Mapping[str, Collection[str]]) -> str:
-    """The known key that an unknown one is most like; InputError where it is like none."""
+    """The known key that an unknown one is most like; InputError with all where it is like none."""
     known = [key for keys in sections.values() for key in keys]
     close = nearest(name, known)
-    if not close:
+    if not close and name not in ArmSection.model_fields:
         raise unknown(name, known)
-    return close[0]
+    return close[0] if close else known[0]

@@ -16,10 +16,11 @@ from ..errors import InputError
 from ..post.figures import draw
 from ..post.figures.request import KINDS, ROOTS, Look
 from ..post.figures.sections import choices_of, section
-from ..results.file.view import View, read_view
+from ..results.file.view import View
 from ..solve.exclusive import one_at_a_time
 from .answer import Answer
-from .dataset import file_path, view_of
+from .dataset import file_path
+from .tabling import view_for
 
 EXAMPLE = 'rs.plot(data, "figure.pdf", width="single")'
 Drawable = xr.Dataset | Answer | str | Path
@@ -90,7 +91,7 @@ def plot(
     if not several:
         raise InputError("there is nothing to draw; give a Dataset, an answer or a file")
     values = choices_of(at)
-    views = [section(_view(one), values) for one in several]
+    views = [section(view_for(one, EXAMPLE), values) for one in several]
     choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(points)}
     choices |= {"look": Look(**look), "shapes": with_shapes}
     with TemporaryDirectory(prefix="rodsweep-") as place:
@@ -100,12 +101,3 @@ def plot(
     if output is not None:
         picture.save(file_path(output, EXAMPLE))
     return picture
-
-
-def _view(data: Drawable) -> View:
-    if isinstance(data, str | Path):
-        return read_view(file_path(data, EXAMPLE))
-    if not isinstance(data, Answer | xr.Dataset):
-        raise InputError(f"{short(data)} is no result; draw a Dataset, an answer or a file")
-    whole = data.whole if isinstance(data, Answer) else data
-    return view_of(whole, Path(str(whole.attrs.get("title", "data"))))

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
-from ..config.arguments import in_sentences
+from ..config.arguments import in_sentences, unknown
 from ..config.axes import words
-from ..config.refusals import nearest
+from ..config.refusals import hint_of, nearest
 from ..config.tasks import CONFIGS
 from ..config.values import as_number, short
 from ..errors import InputError
@@ -53,9 +53,10 @@ class SoftRod:
         arm: SlenderArm | None = None,
         **unknown: Any,
     ):
+        free = {"F": F, "k1": k1, "k2": k2, "gamma3": gamma3, "gamma1": gamma1, "arm": arm}
         for name in unknown:
-            close = nearest(name, (*PARAMETERS, "arm"))
-            hint = f"did you mean {close[0]}?" if close else f"known keys are {', '.join(PARAMETERS)}, arm"
+            left = [other for other, value in free.items() if value is None or value is NOT_GIVEN]
+            hint = hint_of(name, left if nearest(name, left) else (*PARAMETERS, "arm"))
             raise InputError(f"unknown key parameters.{name}; {hint}")
         if arm is not None:
             F, k1, k2, gamma3, gamma1 = _of_arm(arm, F=F, k1=k1, k2=k2, gamma3=gamma3, gamma1=gamma1).values()
@@ -126,6 +127,11 @@ class SoftRod:
         for name in options:
             if name in PARAMETERS:
                 raise InputError(f"{name} belongs to the rod: rod.replace({name}=...) is another one")
+        section: Any = CONFIGS[task].model_fields[task].annotation
+        known = [*section.model_fields, "accuracy", "title", "progress"]
+        for name in options:
+            if name not in known and not nearest(name, known):
+                raise unknown(name, known)
         options = dict(options)
         progress = options.pop("progress", None)
         taken = CONFIGS[task].taken_of_a_rod(options)

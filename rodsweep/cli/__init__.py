@@ -27,6 +27,7 @@ from .. import __version__  # noqa: E402 - after the environment is set
 from ..config.values import printable  # noqa: E402 - after the environment is set
 from ..errors import BUG_STATUS, InputError, Refusal  # noqa: E402 - after the environment is set
 from .arm_options import arm_options  # noqa: E402 - after the environment is set
+from .file_names import beside, followed, result_file  # noqa: E402 - after the environment is set
 
 FILE = click.Path(path_type=Path)
 LONGEST_MESSAGE = 350
@@ -62,15 +63,14 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
     stop = StopRequest(speaks=not _rank_variables())
     stop.listen()  # before everything that takes time: a warning may come early
     from ..sweep.shards import shard_of
-    from .running import RunOptions, run_config
+    from .run_options import RunOptions
+    from .running import run_config
 
     if options["fresh"] and options["extend"]:
         raise InputError("--fresh and --extend are both given: one replaces the file, the other adds to it")
     part = shard_of(shard)
     suffix = f"-{part.number}-of-{part.of}.h5" if part.of > 1 else ".h5"
-    output = _followed(output or Path(config.stem + suffix))
-    if output.is_dir() or not output.name:
-        raise InputError(f"--output {output} is a directory; name a file")
+    output = result_file(output or Path(config.stem + suffix))
     asked = RunOptions(overrides=overrides, shard=part, **options)
     code = run_config(config, output, asked, stop)
     stop.ignore()  # the status is decided
@@ -85,10 +85,8 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
     from .merging import merge_files
     from .running import CONTINUE
 
-    if output.is_dir():
-        raise InputError(f"{output} is a directory; name the file to write first")
-    output = _followed(output)
-    merged = merge_files(output, tuple(map(_followed, shards)))
+    output = result_file(output)
+    merged = merge_files(output, tuple(map(followed, shards)))
     if merged.missing:
         click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing ones")
         sys.exit(CONTINUE)
@@ -103,10 +101,8 @@ def snapshot(file: Path, output: Path | None) -> None:
     """Write what is done of the result FILE so far, without disturbing the run that computes it."""
     from ..results.file.recent import take_snapshot
 
-    output = _followed(output or file.with_name(f"{file.stem}-snapshot{file.suffix}"))
-    if output.is_dir():
-        raise InputError(f"--output {output} is a directory; name a file")
-    done, points = take_snapshot(_followed(file), output)
+    output = result_file(output or beside(file, f"-snapshot{file.suffix}"))
+    done, points = take_snapshot(followed(file), output)
     click.echo(f"wrote {output}: {done} of {points} points are done")
 
 
@@ -131,7 +127,7 @@ def show(file: Path, statuses: bool) -> None:
     from ..post.summary import show_summary
     from ..results.file.view import read_view
 
-    show_summary(read_view(_followed(file)), statuses)
+    show_summary(read_view(followed(file)), statuses)
 
 
 @commands.command()
@@ -191,9 +187,9 @@ def plot(
     from ..results.file.view import read_view
     from .cycle_shapes import with_shapes
 
-    output = output or files[0].with_suffix(".gif" if what == "animation" else ".png")
+    output = output or beside(files[0], ".gif" if what == "animation" else ".png")
     values = _values(at)
-    views = [section(read_view(_followed(file)), values) for file in files]
+    views = [section(read_view(followed(file)), values) for file in files]
     drawn = draw(views, output, look=Look(**look), shapes=with_shapes, roots=roots, what=what, points=points)
     click.echo(drawn)
 
@@ -212,17 +208,23 @@ def _values(at: tuple[str, ...]) -> dict[str, float]:
 
 @commands.command()
 @click.argument("file", type=FILE)
-@click.option("-o", "--output", type=FILE, help="CSV file; by default FILE's name with .csv.")
+@click.option("-o", "--output", type=FILE, help="A .csv or .tsv file; by default FILE's name with .csv.")
+@click.option("--table", metavar="NAME", help="Which table: points, or a list of the task's, as crossings.")
+@click.option("--columns", metavar="A,B,C", help="Which columns, in their order; by default all.")
 @click.option("--units", is_flag=True, help="Put units into the headings: F_onset [k3/L^2].")
 @click.option("--replace", is_flag=True, help="Write over a file that is there already.")
-def export(file: Path, output: Path | None, units: bool, replace: bool) -> None:
-    """Write the result FILE as CSV: a line a point, a column a parameter and a number."""
+def export(
+    file: Path, output: Path | None, table: str | None, columns: str | None, units: bool, replace: bool
+) -> None:
+    """Write a table of the result FILE as CSV: a row a point, or a row an item of a list."""
+    from ..post.export import Request
     from ..post.export import export as export_view
     from ..results.file.view import read_view
 
-    output = _followed(output or file.with_suffix(".csv"))
-    exported = export_view(read_view(_followed(file)), output, units, replace)
-    click.echo(f"wrote {output}: {exported.sentence}")
+    output = followed(output or beside(file, ".csv"))
+    names = tuple(name.strip() for name in columns.split(",")) if columns is not None else ()
+    request = Request(table=table, columns=names, units=units, replace=replace)
+    click.echo(f"wrote {output}: {export_view(read_view(followed(file)), output, request)}")
 
 
 @commands.command()
@@ -245,8 +247,8 @@ def bench(what: str | None, quick: bool, output: Path | None) -> None:
 
     output = output or Path("bench.md")
     unfit = output.exists() and not output.is_file()
-    if unfit or not output.parent.is_dir() or output.suffix in {".png", ".h5"}:
-        raise InputError(f"--output {output} is no name for Markdown in an existing directory")
+    if unfit or not output.parent.is_dir() or output.suffix != ".md":
+        raise InputError(f"--output {output}: the name must end in .md, in an existing directory")
     run_benchmarks(what, quick, output)
 
 
@@ -258,21 +260,6 @@ def arm(poisson: float, **quantities: str | None) -> None:
     from .arm_report import describe_arm
 
     describe_arm(quantities, poisson)
-
-
-def _followed(path: Path) -> Path:
-    """What a link leads to, which has the journal and the lock; another path as it is.
-
-    InputError for a link that leads to itself, in whose place nothing may be put.
-    """
-    if not path.is_symlink():
-        return path
-    try:
-        path.stat()
-    except OSError as error:
-        if error.errno == errno.ELOOP:
-            raise InputError(f"{path} is a link that leads to itself; name a file") from None
-    return Path(os.path.realpath(path))
 
 
 def _rank_variables() -> list[str]:

@@ -8,6 +8,7 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from ..model.parameters import PARAMETERS
 from .axes import words
 from .schema import Config
 from .values import named, short
@@ -16,6 +17,8 @@ KEY_SHOWN = 100
 """Characters of a key that a sentence has room for."""
 LETTERS_A_SLIP = 3
 """Letters of a key that are needed for each that is wrong, so that the rest says which was meant."""
+MOST_MEANT = 4
+"""Keys that an unknown one may mean; where it may mean more, all that there are say as much."""
 LONG_PART = 4
 """Letters of a part of a key from which it says which was meant, as `density` of `fluid_density`."""
 
@@ -26,9 +29,13 @@ def sentence_of(config: type[Config], problem: Any) -> str:
     key = dotted(location)
     kind, value = problem["type"], problem["input"]
     if kind == "extra_forbidden":
-        known = list(_section(config, location[:-1]).model_fields)
-        close = nearest(location[-1], known)
-        hint = f"did you mean {close[0]}?" if close else f"known keys are {', '.join(known)}"
+        fields = _section(config, location[:-1]).model_fields
+        known = [
+            *(name for name in PARAMETERS if name in fields),
+            *(n for n in fields if n not in PARAMETERS),
+        ]
+        elsewhere = places_of(config, location)
+        hint = f"did you mean {elsewhere[0]}?" if elsewhere else hint_of(location[-1], known)
         return f"unknown key {key}; {hint}"
     if kind == "missing":
         return f"{key} is missing"
@@ -42,14 +49,22 @@ def sentence_of(config: type[Config], problem: Any) -> str:
     return f"{key} = {short(value)} is not allowed; it should be {allowed}"
 
 
+def hint_of(key: str, known: Sequence[str], there_are: str = "known keys are") -> str:
+    """What is said of an unknown key: which it may mean, or which there are."""
+    close = nearest(key, known)
+    return f"did you mean {words(tuple(close), 'or')}?" if close else f"{there_are} {', '.join(known)}"
+
+
 def nearest(key: str, known: Sequence[str]) -> list[str]:
-    """The known key that an unknown one was meant to be, if one is near.
+    """The known keys that an unknown one may mean, the nearest ones, in their order; none if none is near.
 
     Near is the same but for capitals and underscores, a beginning or a long part of it, or a slip of the pen
     in every third letter at most.
     """
     near = [(slips, name) for name in known if (slips := _slips(_plain(key), _plain(name))) is not None]
-    return [min(near, key=lambda each: each[0])[1]] if near else []
+    least = min((slips for slips, _ in near), default=0)
+    nearest_ones = [name for slips, name in near if slips == least]
+    return nearest_ones if key and len(nearest_ones) <= MOST_MEANT else []
 
 
 def _plain(key: str) -> str:
@@ -78,6 +93,17 @@ def _edits(a: str, b: str) -> int:
             row.append(least)
         rows.append(row)
     return rows[-1][-1]
+
+
+def places_of(config: type[Config], location: Sequence[str]) -> list[str]:
+    """The places of other sections at which a key is known that is unknown where it stands."""
+    task = str(get_args(config.model_fields["task"].annotation)[0])
+    found = []
+    for section in ((), ("parameters",), (task,), ("parameters", "arm")):
+        known = _section(config, section).model_fields
+        if location[-1] in known and section != tuple(location[:-1]):
+            found.append(dotted((*section, location[-1])))
+    return found
 
 
 def dotted(location: Sequence[str]) -> str:

@@ -13,6 +13,7 @@ from matplotlib import rc_params_from_file
 
 from ...errors import EnvironmentLacks, InputError
 from ...results.file.view import View
+from .arm_map import can_draw, draw_arm_map
 from .branch import draw_branch
 from .criticality import draw_criticality
 from .cycle.selection import outcomes
@@ -65,6 +66,14 @@ class Choices(TypedDict, total=False):
     points: Sequence[int]
 
 
+def _drawn(request: FigureRequest) -> str:
+    """Writes the figure and returns what it shows: of an arm over its quantities, or as of a rod."""
+    if can_draw(request):
+        return draw_arm_map(request)
+    listed = replace(request, views=[view.listed for view in request.views])
+    return FIGURES[request.views[0].task](listed)
+
+
 def draw(
     views: View | Sequence[View],
     output: Path,
@@ -89,7 +98,7 @@ def draw(
     request = FigureRequest(views, output, taken=taken, look=look, shapes=shapes, **choices)
     with _styled(look), np.errstate(all="ignore"):
         try:
-            shown = FIGURES[views[0].task](request)
+            shown = _drawn(request)
         except OSError as error:
             raise EnvironmentLacks(f"{output} cannot be written: {error.strerror or error}") from error
         except RuntimeError as error:  # of programs that a style asks for, as LaTeX

@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
 
 from ...results.file.view import View
+from ...wording import counted
 from ..branch_curves import (
     CurveOfCycles,
     Range,
@@ -83,7 +84,7 @@ def draw_branch(request: FigureRequest) -> str:
     style.legend_below(figure, [*handles, *marked.values()], columns=3)
     figure.suptitle(style.heading(view, shared))
     return request.write(
-        figure, f"{len(curves)} branches of cycles over {along}{_left_out(view, drawn, beating)}"
+        figure, f"{counted(len(curves), 'branch')} of cycles over {along}{_left_out(view, drawn, beating)}"
     )
 
 

@@ -119,11 +119,10 @@ def _pitch(axes: Axes, figure: Figure) -> float:
     place = axes.get_subplotspec()
     if place is None:
         return float(figure.bbox.width)
-    others = [other for other in figure.axes if other.get_subplotspec() is not None]
     middles = {
         round(other.get_position(original=True).intervalx.mean() * figure.bbox.width)
-        for other in others
-        if other.get_subplotspec().get_gridspec() is place.get_gridspec()
+        for other in figure.axes
+        if (its := other.get_subplotspec()) is not None and its.get_gridspec() is place.get_gridspec()
     }
     own = round(axes.get_position(original=True).intervalx.mean() * figure.bbox.width)
     return float(min((abs(middle - own) for middle in middles - {own}), default=figure.bbox.width))
@@ -201,7 +200,9 @@ def _thin(axis: Axis, way: int) -> bool:
 def _thin_powers(axis: Axis, shown: int) -> bool:
     """Fewer powers of ten on an axis that is logarithmic but near 0, of which so many are shown."""
     start = getattr(axis.get_transform(), "linthresh", None)
-    for powers in (2, 3, 4, 6) if start else ():
+    if start is None:
+        return False
+    for powers in (2, 3, 4, 6):
         axis.set_major_locator(SymmetricalLogLocator(base=10.0**powers, linthresh=10 * start))
         if len(labels_in_sight(axis)) < shown:
             return True

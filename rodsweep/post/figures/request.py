@@ -10,6 +10,7 @@ from ...errors import InputError
 from ...model.units import in_si
 from ...results.file.view import View
 from .arm_axes import add_si_scales
+from .arm_validity import add_validity
 from .fitting import LEAST_ASPECT, fit
 
 Shapes = Callable[[View, Sequence[int]], View]
@@ -131,6 +132,8 @@ class FigureRequest:
         least_aspect: height of its panels in units of their width, below which it grows.
         """
         add_si_scales(figure, self.views)
+        if not any(view.over for view in self.views):  # whose own figures tell it
+            add_validity(figure, self.views)
         self.look.fit(figure, least_aspect)
         figure.savefig(self.output)
         return shown

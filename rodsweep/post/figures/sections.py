@@ -26,9 +26,10 @@ def section(view: View, at: Mapping[str, float]) -> View:
 
 
 def _cut(view: View, name: str, value: float) -> View:
-    if name not in view.parameters:
-        known = ", ".join(view.parameters)
-        close = nearest(name, list(view.parameters))
+    axes = view.over or view.parameters
+    if name not in axes:
+        known = ", ".join(axes)
+        close = nearest(name, list(axes))
         hint = f"did you mean {close[0]}?" if close else f"the points differ in {known}"
         followed = f"; {name} is no axis of points in this file" if name in NONLINEAR_PARAMETERS else ""
         raise InputError(f"--at {name}={value:.15g}: {view.path} has no such axis{followed}; {hint}")
@@ -43,18 +44,19 @@ def _cut(view: View, name: str, value: float) -> View:
             f"--at {name}={value:.15g}: {view.path} has no point there; it has {name} = "
             f"{', '.join(named)}{more}"
         )
-    return _grid_at(view, name, there) if view.is_grid else _list_at(view, there)
+    return _grid_at(view, name, there) if view.is_grid or view.over else _list_at(view, there)
 
 
 def _grid_at(view: View, name: str, there: np.ndarray) -> View:
     """A grid with the places of one axis, a mask of its shape."""
-    shape, axis = view.variables["status"].shape, view.parameters.index(name)
+    names = view.over or view.parameters
+    shape, axis = view.variables["status"].shape, names.index(name)
     along = {name, *(quantity for quantity, moved in AXIS_OF.items() if moved == name)}
     variables = {}
     for key, data in view.variables.items():
         if key in along and np.ndim(data):
             variables[key] = data[there]
-        elif data.shape[: len(shape)] == shape and key not in (*view.parameters, *BESIDE_POINTS):
+        elif data.shape[: len(shape)] == shape and key not in (*names, *BESIDE_POINTS):
             variables[key] = np.compress(there, data, axis=axis)
         else:
             variables[key] = data

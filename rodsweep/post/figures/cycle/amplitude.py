@@ -16,7 +16,7 @@ from ....arrays import Array
 from ....config.limit_cycle import LONGEST
 from ....errors import InputError
 from ....results.file.view import View
-from ...hopf_points import HopfPoint, lines_over
+from ...hopf_points import HopfPoint, StoredHopfPoints, lines_over
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, need, plain, scale
 from .hopf_marks import draw_laws, mark_hopf_points
 from .selection import CYCLE_WORDS, outcomes, told_apart
@@ -224,14 +224,23 @@ def branches_of(view: View, name: str) -> list[AmplitudeBranch]:
     along_x, along_y = (
         np.where(straight, 0.0, np.where(cycle, values, np.nan)) for values in (reach, v["tip_y_max"].ravel())
     )
-    further = (np.where(cycle, v[key].ravel(), np.nan) for key in ("period", "injection_mean"))
-    measures = (along_x, along_y, *further)
+    period, power = (np.where(cycle, v[key].ravel(), np.nan) for key in ("period", "injection_mean"))
     branches = []
+    stored = StoredHopfPoints(view, "F")
     for line in lines_over(view, name):
-        at, hopf = line.at, line.hopf_points(view) if name == "F" else []
+        changes = stored.on(line) if name == "F" else []
+        at, hopf = line.at, [change for change in changes if isinstance(change, HopfPoint)]
         branches.append(
             AmplitudeBranch(
-                view, line.parameters, line.x, *(values[at] for values in measures), words[at], hopf
+                view=view,
+                parameters=line.parameters,
+                x=line.x,
+                amplitude_x=along_x[at],
+                amplitude_y=along_y[at],
+                period=period[at],
+                power=power[at],
+                words=words[at],
+                hopf=hopf,
             )
         )
     return branches

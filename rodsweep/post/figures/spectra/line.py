@@ -10,7 +10,7 @@ from matplotlib.ticker import NullLocator, SymmetricalLogLocator
 
 from ....arrays import Array, Complex
 from ....results.file.view import View
-from ...hopf_points import HopfPoint, Located, lines_over
+from ...hopf_points import Bracket, HopfPoint, Located, lines_over
 from ...stability_changes import thresholds_on
 from ..eigenvalues import spread
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, fixed_text, heading, legend_below, scale
@@ -160,6 +160,13 @@ def threshold_text(threshold: Located) -> str:
     return f"{word} = {threshold.position:#.{THRESHOLD_DIGITS}g}"
 
 
+def edge_of_flutter(change: HopfPoint | Bracket) -> float:
+    """The force to which the rod is known to be unstable beside a change of its stability."""
+    if isinstance(change, HopfPoint):
+        return change.position
+    return change.high if change.destabilises else change.low
+
+
 def mark_thresholds(axes: Axes, view: View, name: str) -> list[Located]:
     """Shades where the rod is unstable, over F up to the thresholds, which get a line; returns these.
 
@@ -172,13 +179,14 @@ def mark_thresholds(axes: Axes, view: View, name: str) -> list[Located]:
             axes.fill_between(x, 0, 1, where=unstable, transform=across, label="flutter", **SHADE)
         return []
     (line,) = lines_over(view, name)
-    thresholds = thresholds_on(line, view)
+    found = thresholds_on(line, view)
+    thresholds = [threshold for threshold in found if isinstance(threshold, Located)]
     for threshold in thresholds:
         _, style = THRESHOLD_LOOKS[threshold.kind]
         axes.axvline(threshold.position, ls=style, label=threshold_text(threshold), **THRESHOLD_LINE)
-    changes = [threshold for threshold in thresholds if isinstance(threshold, HopfPoint)]
-    starts = [change.position for change in changes if change.destabilises]
-    ends = [change.position for change in changes if not change.destabilises]
+    changes = [change for change in found if isinstance(change, HopfPoint | Bracket)]
+    starts = [edge_of_flutter(change) for change in changes if change.destabilises]
+    ends = [edge_of_flutter(change) for change in changes if not change.destabilises]
     if ends and (not starts or ends[0] < starts[0]):
         starts.insert(0, float(x[0]))
     if len(starts) > len(ends):
