@@ -10,9 +10,11 @@ from contents import content, same
 
 import rodsweep as rs
 from rodsweep.api.asking import job_from, tree_of
+from rodsweep.api.dataset import view_of
 from rodsweep.config.arm import CRUSHED, NO_WALL, NOT_SLENDER
 from rodsweep.model.arm import SlenderArm
 from rodsweep.model.neglected import Validity
+from rodsweep.post.figures.sections import section
 from rodsweep.results.file.view import read_view
 
 ROOT = Path(__file__).parents[1]
@@ -68,6 +70,15 @@ def test_values_are_selected_by_the_quantities_in_si(thresholds):
     assert here.frequency_hopf_hz.item() == pytest.approx(hertz.item(), rel=1e-12)
     assert data.length.attrs == {"units": "m", "long_name": "length of the arm", "typed_unit": "cm"}
     assert data.young.typed_unit == "kPa"
+
+
+def test_a_section_has_the_points_of_a_quantity_in_any_unit(thresholds):
+    view = view_of(thresholds, Path("arm.h5"))
+    for length in ("10 cm", "100 mm", 0.1):
+        cut = section(view, {"length": length, "young": "0.1 MPa"})
+        assert cut.variables["F_hopf"].tolist() == [[thresholds.F_hopf.sel(length=0.1, young=1e5).item()]]
+    with pytest.raises(rs.InputError, match=r"has no point there; it has length = 0\.04, 0\.1, 0\.12"):
+        section(view, {"length": "11 cm"})
 
 
 def test_a_force_is_told_as_a_force():

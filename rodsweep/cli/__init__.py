@@ -162,7 +162,7 @@ def show(file: Path, statuses: bool) -> None:
     "at",
     multiple=True,
     metavar="NAME=VALUE",
-    help="Draw the points with this value of a parameter, e.g. k1=150; several times.",
+    help="Draw the points with this value of a parameter, as k1=150, or of a listed arm, as 'length=12 cm'.",
 )
 @click.option("--title", is_flag=True, help="Put the title of the config above the figure.")
 @click.option(
@@ -194,15 +194,14 @@ def plot(
     click.echo(drawn)
 
 
-def _values(at: tuple[str, ...]) -> dict[str, float]:
-    """The values of `--at NAME=VALUE` by name; InputError for what is no number."""
+def _values(at: tuple[str, ...]) -> dict[str, str]:
+    """The values of `--at NAME=VALUE` by name; InputError for what has not this form."""
     found = {}
     for text in at:
-        name, _, value = text.partition("=")
-        try:
-            found[name.strip()] = float(value)
-        except ValueError:
-            raise InputError(f"--at {printable(text)} is no parameter with a number, as k1=150 is") from None
+        name, equals, value = text.partition("=")
+        if not equals:
+            raise InputError(f"--at {printable(text)} is no parameter with a number, as k1=150 is")
+        found[name.strip()] = value.strip()
     return found
 
 
