@@ -30,7 +30,7 @@ def thresholds_summary(view: View, done: np.ndarray) -> Told:
 
 
 def event_line(view: View, done: np.ndarray, event: str) -> str:
-    """At which forces the rods that are `done` have their first crossing of a kind, and at which rods."""
+    """Forces at which rods first have a crossing of a kind, and which rods; done: of the grid's shape."""
     words, rate, noun, unit = EVENTS[event]
     v = view.variables
     F = np.where(done, v[f"F_{event}"], np.nan).ravel()

@@ -33,7 +33,7 @@ def item_rows(view: View, variables: Sequence[Variable], joint: bool) -> Rows:
 
 
 def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]) -> Iterator[Column]:
-    """What belongs to the points of rows: their parameters, an arm's quantities, and their own variables."""
+    """Columns of the points of rows, (rows,): parameters, an arm's quantities, their own variables."""
     for name, values in view.point_columns.items():
         yield coordinate(name, *DIMENSIONS[name], values[points])
     for name, values in _quantities_at_points(view).items():
