@@ -8,6 +8,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from ...config.arm import NOT_SLENDER
 from ...config.values import printable
 from ...results.file.provenance import RANK_SHARES, kernels_of
 from ...results.file.view import View
@@ -50,7 +51,9 @@ def show_summary(view: View, every_status: bool = False) -> None:
     view, console = view.listed, Console(highlight=False, markup=False)
     a, status = view.attributes, view.variables["status"]
     done, noun = status != MISSING, NOUNS.get(view.task, "point")
-    told = SUMMARIES[view.task](view, done) if done.any() else Told([f"no {noun} is computed yet"])
+    rods = done & (status < NOT_SLENDER)
+    nothing = Told([] if done.any() else [f"no {noun} is computed yet"])
+    told = SUMMARIES[view.task](view, rods) if rods.any() else nothing
     console.print(f"{printable(str(view.path))}: {a.get('title', '')}, task {view.task}", soft_wrap=True)
     for line in [*arm_answer(view, done), *told.answer, *(arm_lines(view, done) if done.any() else [])]:
         console.print(line, soft_wrap=True)
