@@ -72,6 +72,7 @@ LENGTHS = {
     "u": "`spectrum.nodes`, `modes.nodes`, `limit_cycle.nodes`",
     "crossing": "`thresholds.crossings`, `phase_diagram.crossings`, `criticality.crossings`",
     "curve_point": "as found",
+    "hopf": "as found",
     "fold": "as found",
     "hopf": "as found",
     "bautin": "as found",

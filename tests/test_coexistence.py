@@ -78,10 +78,16 @@ def test_what_a_branch_that_stopped_leaves_open_is_undecided(monkeypatch):
         return replace(real(rod, asked), status=BranchStatus.stopped, message="no further cycle")
 
     monkeypatch.setattr(coexistence, "solve_branches", stopped)
-    row = solve_coexistence(FIG_2C, 1.0, request([40, 60, 70]), 64)
+    row = solve_coexistence(FIG_2C, 1.0, request([0, 40, 60, 70]), 64)
     assert row.status == CoexistenceStatus.branches_stopped
     assert "no further cycle" in row.message
-    assert row.stable_states.tolist() == [Stable.undecided, Stable.cycle, Stable.cycle]
+    nothing_beats_without_a_force = Stable.straight
+    assert row.stable_states.tolist() == [
+        nothing_beats_without_a_force,
+        Stable.undecided,
+        Stable.cycle,
+        Stable.cycle,
+    ]
 
 
 def test_a_list_of_special_points_that_is_full_is_told():

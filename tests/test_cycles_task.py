@@ -382,7 +382,7 @@ def test_show_tells_ranges_and_worst_errors(tmp_path, capsys):
         "gamma1 2 0.5 1 gamma2",
         "of 8 points: beats at 7 (",
         "period: 2 to 8 tau2; largest y of the tip: 7 L",
-        "period: 40 to 320 tau1",
+        "period: 40 to 300 tau1",
         "multiplier: 0.2; returns",
         "worst errors: period 9e+00, amplitude 1e+01, other extrema 2e+01",
         "energy balance 2e+01",

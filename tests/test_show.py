@@ -32,7 +32,7 @@ def test_the_thresholds_of_the_demo_come_out_of_show(command):
     )
     assert hopf == pytest.approx(HOPF, abs=1e-12)
     assert again == pytest.approx(STABLE_AGAIN, abs=1e-12)
-    assert "frequency 334.321 1/tau2" in told
+    assert "frequency 334.321 rad/tau2" in told
     assert "zeros of the characteristic determinant" in told
 
 
@@ -71,16 +71,18 @@ def test_thresholds_of_several_lines_are_named_by_what_differs(command):
 def test_eigenvalues_of_a_single_point_are_told_with_errors_and_count(command):
     told = shown(command, f"task: spectrum\nparameters: {{F: 60, {ROD}}}\n")
     assert re.search(
-        r"mode 1: growth rate 72\.04009792307\d* \(\+- \de-1\d\), frequency 433\.79628096374\d*", told
+        r"mode 1: growth rate 72\.04009792307\d* \(\+- \de-1\d\) 1/tau2, frequency 433\.79628096374\d*", told
     )
-    assert re.search(r"mode 4: growth rate -19940\.00335896\d* \(\+- \de-1\d\), frequency 0 1/tau2", told)
+    assert re.search(
+        r"mode 4: growth rate -19940\.00335896\d* \(\+- \de-1\d\) 1/tau2, frequency 0 rad/tau2", told
+    )
     assert "unstable modes: 2, proved by a winding number" in told
 
 
 def test_modes_of_a_single_point_are_told_with_their_eigenvalues(command):
     told = shown(command, f"task: modes\nparameters: {{F: 30, {ROD}}}\n")
     assert re.search(
-        r"mode 1: growth rate -115\.51902382007\d* \(\+- \de-1\d\), frequency 151\.864644304\d*", told
+        r"mode 1: growth rate -115\.51902382007\d* \(\+- \de-1\d\) 1/tau2, frequency 151\.864644304\d*", told
     )
     assert "unstable modes: 0, proved" in told
     assert "largest transient growth: 1.26004 times" in told
@@ -94,7 +96,9 @@ def test_several_points_are_told_by_how_many_are_stable(command, task, listed):
     points = "points: p.csv" if listed else f"F: [30, 100, 180], {ROD}"
     told = shown(command, f"task: {task}\nparameters: {{{points}}}\n{task}: {{modes: 1}}\n")
     assert "straight rod, of 3 points: stable at 2 (F = 30 to 180), unstable at 1 (F = 100)" in told
-    low, high = map(float, re.search(r"leading growth rate (-[\d.]+) to ([\d.]+), frequency", told).groups())
+    low, high = map(
+        float, re.search(r"leading growth rate (-[\d.]+) to ([\d.]+) 1/tau2, frequency", told).groups()
+    )
     assert low < 0 < high
 
 

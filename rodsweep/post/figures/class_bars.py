@@ -35,9 +35,12 @@ STABLE_CLASS = {
     "pair_leads": "oscillatory",
 }
 """What a rod does beyond a crossing where no mode grows, by the kind of the crossing."""
+LATER = "later"
+"""Hopf points at which the rod is unstable already, and further modes begin to grow."""
 MARKS = {
     "onset": (FIRST, "o", rf"onset ${SYMBOLS['F']}_*$"),
     "hopf": (SECOND, "s", rf"Hopf ${SYMBOLS['F']}_{{**}}$"),
+    LATER: (SECOND, "D", "further Hopf points"),
     "restabilization": (THIRD, "^", "restabilization"),
 }
 """Colour, marker and word of the crossings that are marked."""
@@ -146,10 +149,14 @@ def _bar(axes: Axes, view: View, rod: int, upright: bool) -> set[str]:
 def _mark(axes: Axes, view: View, upright: bool) -> list[Line2D]:
     """Marks the thresholds; returns what the legend says of them, with the numbers of a single rod."""
     crossings = view.variables["crossing_F"].shape[-1]
-    kinds, F = (view.variables[name].reshape(-1, crossings) for name in ("crossing_kind", "crossing_F"))
+    names = ("crossing_kind", "crossing_F", "unstable_after")
+    kinds, F, after = (view.variables[name].reshape(-1, crossings) for name in names)
+    hopf = kinds == CROSSING_KINDS.index("hopf")
+    chosen = {kind: kinds == CROSSING_KINDS.index(kind) for kind in MARKS if kind != LATER}
+    chosen |= {"hopf": hopf & (after <= 2), LATER: hopf & (after > 2)}
     handles = []
     for kind, (colour, marker, word) in MARKS.items():
-        rods, places = np.nonzero(kinds == CROSSING_KINDS.index(kind))
+        rods, places = np.nonzero(chosen[kind])
         if not rods.size:
             continue
         force = F[rods, places]

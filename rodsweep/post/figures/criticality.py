@@ -16,6 +16,7 @@ from . import style
 from .cycle.maps import label_maps, map_panels
 from .cycle.point_map import PointMap, cell_edges, point_map, varied_parameters
 from .fitting import MAP_ASPECT
+from .normal_forms import draw_predictions
 from .request import FigureRequest
 
 MARKS = {
@@ -39,15 +40,14 @@ FEW = 0.1
 
 
 def draw_criticality(request: FigureRequest) -> str:
-    """A map of the first Hopf points over two parameters; over one, a and Re c of all."""
+    """First Hopf points over two parameters; a and Re c of all over one; else the cycles predicted."""
     view = request.only_view()
     style.need(view, np.isfinite(view.variables["criticality"]).any(), "Hopf point with a normal form")
     varied = varied_parameters(view)
     if len(varied) == 1:
         return request.write(_along(view, varied[0]), f"the normal forms of Hopf points along {varied[0]}")
     if len(varied) != 2:
-        names = ", ".join(varied) or "none"
-        raise InputError(f"{view.path} varies {len(varied)} parameters ({names}); a figure needs one or two")
+        return request.write(*draw_predictions(view))
     points = point_map(view)
     shown = f"the normal form of the first Hopf point over {' and '.join(points.names)}{points.left_out}"
     return request.write(_map(view, points, request.look.narrow), shown, MAP_ASPECT)

@@ -3,11 +3,13 @@
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.branch import SPECIAL_KINDS
+from ..stability_curves import bounds_stability
 from .style import SYMBOLS, THIRD
 from .style import number as number_text
 
@@ -52,11 +54,30 @@ def draw_curves(axes: Axes, view: View, line: str, row: str, states: bool) -> li
         if there.any():
             handles.append(Line2D([], [], color="k", lw=width, ls=style, label=word))
         if there.any() and not sides:
-            paths = [np.column_stack([v[f"curve_{line}"][one], v[f"curve_{row}"][one]]) for one in curves]
-            if "F" in (line, row):
+            named = boundaries_to_name(view, number, line, row)
+            paths = [np.column_stack([v[f"curve_{n}"][one] for n in (line, row)]) for one in named]
+            if paths and "F" in (line, row):
                 paths = _first_over_force(paths, 0 if line == "F" else 1)
-            _name_longest(axes, paths, *CURVE_NAMES[number])
+            name, share = CURVE_NAMES[number]
+            if paths:
+                _name_longest(axes, paths, name + force_of_plane(view, line, row), share)
     return handles if states else handles + _points(axes, view, line, row)
+
+
+def boundaries_to_name(view: View, kind: int, line: str, row: str) -> list[NDArray[np.bool_]]:
+    """The curves that a symbol may stand beside, each as a mask of the curves' points, (curve_point,).
+
+    F** is where the straight rod becomes unstable: not at Hopf points of further modes.
+    """
+    v = view.variables
+    numbers = np.unique(v["curve_number"][v["curve_kind"] == kind])
+    bounds = bounds_stability(view, line, row) if kind else dict.fromkeys(numbers.tolist(), True)
+    return [v["curve_number"] == number for number in numbers if bounds[int(number)]]
+
+
+def force_of_plane(view: View, line: str, row: str) -> str:
+    """The force at which a plane lies that has none, behind the symbol of a critical one; else nothing."""
+    return "" if "F" in (line, row) else f" = {float(view.axes['F'][0]):g}"
 
 
 def _points(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:

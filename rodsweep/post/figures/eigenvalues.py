@@ -13,6 +13,8 @@ SPREAD = 100.0
 """Largest eigenvalue in units of the smallest from which on their axes are logarithmic but near 0."""
 LEAST_OF_LARGEST = 1e-6
 """In units of the largest eigenvalue: what is nearer to 0 is not spread out."""
+FEW = 0.1
+"""Share of the numbers that is on the linear part of such an axis."""
 LOOKS = {True: (SECOND, "s", "growing mode"), False: (FIRST, "o", "decaying mode")}
 """Colour, marker and word of modes, by whether they grow."""
 MOST_NUMBERED = 8
@@ -73,5 +75,5 @@ def spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
     for set_scale, values in ((axes.set_xscale, x), (axes.set_yscale, y)):
         sizes = np.abs(values[np.isfinite(values) & (values != 0)]) if values is not None else np.zeros(0)
         if sizes.size and sizes.max() > SPREAD * sizes.min():
-            smallest = max(sizes.min(), sizes.max() * LEAST_OF_LARGEST)
+            smallest = max(float(np.quantile(sizes, FEW)), sizes.max() * LEAST_OF_LARGEST)
             set_scale("symlog", linthresh=10 ** np.floor(np.log10(smallest)))

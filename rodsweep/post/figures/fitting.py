@@ -12,12 +12,14 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.text import Text
-from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator
+from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, SymmetricalLogLocator
 
 LEAST_ASPECT = 0.45
 """Height of a panel in units of its width below which the figure grows: a curve needs as much to be read."""
 MAP_ASPECT = 0.7
 """The same of a map, in which a slope is as worth seeing along either axis."""
+STRIP_ASPECT = 0.25
+"""The same of a curve in time, which is long and low, and goes with others."""
 TALLEST = 9.5
 """Height in inches beyond which no figure grows: that of a page between its margins."""
 MOST_PASSES = 6
@@ -89,13 +91,13 @@ def _break_texts(figure: Figure) -> bool:
     changed = [break_lines(heading, width - 2 * margin) for heading in figure.texts]
     for axes in figure.axes:
         box = axes.get_window_extent()
-        rows, columns = _rows_and_columns(axes)
+        rows = _rows(axes)
         centred = min(box.x0 + box.x1, 2 * width - box.x0 - box.x1) - 2 * margin
-        across = min(centred, max(width / columns, box.width) - 2 * margin)
+        across = min(centred, _pitch(axes, figure) - 2 * margin)
         down = max(figure.bbox.height / rows - 2 * margin, box.height)
         own = [text for text in axes.get_children() if isinstance(text, Text) and text not in axes.texts]
         for title in own:
-            from_left = min(width - box.x0 - margin, width / columns - 2 * margin)
+            from_left = min(width - box.x0 - margin, _pitch(axes, figure) - 2 * margin)
             room = across if title.get_horizontalalignment() == "center" else from_left
             changed.append(break_lines(title, room))
         for one in (axes, *axes.child_axes):
@@ -104,13 +106,24 @@ def _break_texts(figure: Figure) -> bool:
     return any(changed)
 
 
-def _rows_and_columns(axes: Axes) -> tuple[int, int]:
-    """Of the grid of panels of which the axes are one, one that spans several counted as one."""
+def _rows(axes: Axes) -> int:
+    """Rows of the grid of panels of which the axes are one, one that spans several counted as one."""
+    place = axes.get_subplotspec()
+    return 1 if place is None else ceil(place.get_gridspec().nrows / len(place.rowspan))
+
+
+def _pitch(axes: Axes, figure: Figure) -> float:
+    """Pixels from the middle of a panel to that of the next beside it; the figure's width without one."""
     place = axes.get_subplotspec()
     if place is None:
-        return 1, 1
-    grid = place.get_gridspec()
-    return ceil(grid.nrows / len(place.rowspan)), ceil(grid.ncols / len(place.colspan))
+        return float(figure.bbox.width)
+    middles = {
+        round(other.get_position(original=True).intervalx.mean() * figure.bbox.width)
+        for other in figure.axes
+        if (its := other.get_subplotspec()) is not None and its.get_gridspec() is place.get_gridspec()
+    }
+    own = round(axes.get_position(original=True).intervalx.mean() * figure.bbox.width)
+    return float(min((abs(middle - own) for middle in middles - {own}), default=figure.bbox.width))
 
 
 def _fit_legends(figure: Figure) -> bool:
@@ -174,9 +187,23 @@ def _thin(axis: Axis, way: int) -> bool:
         return True
     if isinstance(locator, LogLocator):
         return _thin_decades(axis, locator)
+    if isinstance(locator, SymmetricalLogLocator):
+        return _thin_powers(axis, len(shown))
     if isinstance(locator, MaxNLocator) and len(shown) > 2:
         axis.set_major_locator(MaxNLocator(max(len(shown) - 2, 1), steps=[1, 2, 2.5, 5, 10]))
         return True
+    return False
+
+
+def _thin_powers(axis: Axis, shown: int) -> bool:
+    """Fewer powers of ten on an axis that is logarithmic but near 0, of which so many are shown."""
+    start = getattr(axis.get_transform(), "linthresh", None)
+    if start is None:
+        return False
+    for powers in (2, 3, 4, 6):
+        axis.set_major_locator(SymmetricalLogLocator(base=10.0**powers, linthresh=10 * start))
+        if len(labels_in_sight(axis)) < shown:
+            return True
     return False
 
 
@@ -204,5 +231,7 @@ def _spare_height(figure: Figure, least_aspect: float) -> float:
         room = axes.get_position(original=True)
         ratios = np.asarray(place.get_gridspec().get_height_ratios())
         part = ratios[place.rowspan.start : place.rowspan.stop].sum() / ratios.sum()
-        spare.append((room.height * height - least_aspect * room.width * width) / part)
+        label = axes.yaxis.label.get_window_extent().height / figure.dpi
+        least = max(least_aspect * room.width * width, label + MARGIN)
+        spare.append((room.height * height - least) / part)
     return min(spare)

@@ -12,7 +12,7 @@ from .cycle.point_map import point_map, varied_parameters
 from .cycle.portrait import draw_portrait
 from .cycle.selection import ENERGIES, MOST_CYCLES, SHAPES, TRACE, chosen_cycles, outcomes
 from .cycle.transient import draw_transients
-from .fitting import MAP_ASPECT
+from .fitting import MAP_ASPECT, STRIP_ASPECT
 from .request import KINDS_OF_TASK, FigureRequest
 
 ALL_POINTS = {"amplitude": "amplitudes", "maps": "maps"}
@@ -32,10 +32,10 @@ def draw_limit_cycle(request: FigureRequest) -> str:
         return write_animation(view, points, request.output)
     request.check_output()
     if name == "amplitude":
-        return request.write(*draw_amplitude(request.views))
+        return request.write(*draw_amplitude(request.views, request.look.narrow))
     if name == "maps":
         return request.write(*draw_maps(view, request.look.narrow), MAP_ASPECT)
-    return request.write(*OF_POINTS[name](view, points, request.look.narrow))
+    return request.write(*OF_POINTS[name](view, points, request.look.narrow), STRIP_ASPECT)
 
 
 def _with_needs(request: FigureRequest, name: str) -> View:

@@ -10,7 +10,7 @@ from .request import FigureRequest
 from .style import FIRST, SECOND, heading, legend_below, need, number, parameter_text
 
 MOST_RODS = 4
-"""Points for which one figure has room."""
+"""Points for which one figure has room; one whose panels are below each other has room for one."""
 PANELS = (
     ("mode", (("Y", r"$Y_1$"), ("Theta", r"$\Theta_1$"))),
     ("deformations", (("h2", r"$h_2$"), ("Pi", r"$\Pi$"))),
@@ -25,8 +25,8 @@ def draw_modes(request: FigureRequest) -> str:
     growth = v["growth_rate"][..., 0].ravel()
     points = np.flatnonzero(np.isfinite(growth))
     need(view, points.size, "computed point")
-    drawn = points[:MOST_RODS]
     narrow = request.look.narrow
+    drawn = points[: 1 if narrow else MOST_RODS]
     rows, columns = (len(drawn) * len(PANELS), 1) if narrow else (len(drawn), len(PANELS))
     size = (4.6, 2.4 * rows + 0.4) if narrow else (10.0, 2.8 * rows + 0.4)
     figure = Figure(figsize=size, layout="constrained")
@@ -42,7 +42,10 @@ def draw_modes(request: FigureRequest) -> str:
         panel.set_xlabel("material coordinate $u/L$")
     figure.suptitle(heading(view))
     legend_below(figure, _parts(view, drawn), columns=2)
-    left = f" of the first {len(drawn)} of {points.size} points" if points.size > len(drawn) else ""
+    left = f" of the first of {points.size} points" if len(drawn) == 1 < points.size else ""
+    if points.size > len(drawn) > 1:
+        left = f" of the first {len(drawn)} of {points.size} points"
+    left += " (--at chooses others)" if left else ""
     return request.write(figure, f"the leading mode{left}: real part solid, imaginary part dotted")
 
 

@@ -107,8 +107,9 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     scale(axes, "y", y)
     edge: list[Line2D] = []
     if crushing:
-        ends = np.linspace(y[0], y[-1], 1000)
-        axes.fill_between(ends, ends, y[0], color=CLASS_COLOURS["crushed"], lw=0)
+        ends = np.linspace(max(x[0], y[0]), min(x[-1], y[-1]), 1000)
+        below = np.append(ends, x[-1])
+        axes.fill_between(below, np.minimum(below, y[-1]), y[0], color=CLASS_COLOURS["crushed"], lw=0)
         word = f"${SYMBOLS[row]} = {SYMBOLS[line]}$"
         edge = axes.plot(ends, ends, color="0.4", lw=1.2, label=word)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=LABELS[line], ylabel=LABELS[row])
@@ -121,7 +122,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
         handles += mark_cycles_on_rows(axes, view, line, row)
     handles += edge if (table == palette.crushed).any() else []
     legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
-    axes.set_title(heading(view, fixed_text(view, line, row)))
+    figure.suptitle(heading(view, fixed_text(view, line, row)))
     missing = "; curves are missing, the file is not finished" if lacks_curves(view.attributes) else ""
     return request.write(figure, f"what the rod does over {line} and {row}{missing}", MAP_ASPECT)
 
@@ -141,7 +142,7 @@ def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
     axes.tick_params("y", length=0)
     axes.set(xlim=(x[0], x[-1]), xlabel=LABELS[line])
     legend_below(figure, palette.patches(table), columns=3)
-    axes.set_title(heading(view, fixed_text(view, line, row)))
+    figure.suptitle(heading(view, fixed_text(view, line, row)))
     return figure
 
 

@@ -109,5 +109,5 @@ def _map(view: View, names: list[str]) -> Figure:
     axes.set(xlabel=LABELS[horizontal], ylabel=LABELS[vertical])
     colours = matplotlib.cm.ScalarMappable(norm, MAP_COLOURS)
     figure.colorbar(colours, ax=axes, label=r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$")
-    axes.set_title(heading(view, fixed_text(view, *names), "black: zero growth"))
+    figure.suptitle(heading(view, fixed_text(view, *names), "black: zero growth"))
     return figure

@@ -68,7 +68,8 @@ def _one_rod(view: View, rod: int) -> Iterator[str]:
         yield f"no Hopf point in the range of {along}: no branch is born there"
     for number, curve in enumerate(curves, 1):
         cycles = curve.cycles
-        extent = f"{along} = {span(curve.at[cycles])}, largest tip y {span(curve.y[cycles])} L"
+        sizes, errors = curve.y[cycles], v["amplitude_error"].ravel()[v["branch"].ravel() == number]
+        extent = f"{along} = {span(curve.at[cycles])}, largest tip y {span(sizes, errors * sizes)} L"
         yield f"branch {number}, {_ends(curve, along)}: {counted(int(cycles.sum()), 'cycle')}, {extent}"
         for special in curve.special:
             if special.kind in ("hopf", "end"):

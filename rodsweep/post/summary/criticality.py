@@ -64,7 +64,7 @@ def _hopf_lines(view: View) -> Iterator[str]:
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
         after = int(v["unstable_after"][i])
         yield (
-            f"{kind} at F = {F}, frequency {frequency} 1/tau2; unstable modes above: "
+            f"{kind} at F = {F}, frequency {frequency} rad/tau2; unstable modes above: "
             f"{after if after >= 0 else 'not known'}"
         )
         yield from crossing_line_in_si(view, int(i))

@@ -74,7 +74,8 @@ def _straight_line(v: Mapping[str, np.ndarray], done: np.ndarray) -> str:
     """The leading eigenvalue of the straight rods."""
     rate, frequency = v["linear_growth_rate"][done], v["linear_frequency"][done]
     error = ACCURATE * np.hypot(rate, frequency)
-    return f"straight rod: leading growth rate {span(rate, error)}, frequency {span(frequency, error)} 1/tau2"
+    told = f"leading growth rate {span(rate, error)} 1/tau2, frequency {span(frequency, error)} rad/tau2"
+    return f"straight rod: {told}"
 
 
 def orbit_lines(v: Mapping[str, np.ndarray], stable: bool) -> list[str]:
@@ -132,7 +133,7 @@ def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
     )  # fmt: skip
     power = v["injection_mean"][beats]
     of_power = 2 * v["amplitude_error"][beats] + of_period + np.abs(v["energy_imbalance"][beats])
-    lines = [f"frequency {span(frequency, frequency * of_period)} 1/tau2, "
+    lines = [f"frequency {span(frequency, frequency * of_period)} rad/tau2, "
              f"over that of the leading mode {span(ratio, ratio * of_period)}"]  # fmt: skip
     if "period_tau1" in v:
         tau1 = v["period_tau1"][beats]

@@ -93,4 +93,5 @@ def _rounded(value: float, error: float, most: int) -> str:
     digits = min(max(size - last, 1), most)
     if most < MOST_DIGITS_SHOWN and digits == most:
         return f"{value:.{most}g}"
-    return f"{value:.{max(digits - 1 - size, 0)}f}" if size in PLAIN else f"{value:.{digits - 1}e}"
+    short = f"{value:.{digits - 1}e}"
+    return f"{float(short):.{max(digits - 1 - size, 0)}f}" if size in PLAIN else short

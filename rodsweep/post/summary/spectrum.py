@@ -48,7 +48,7 @@ def leading_line(view: View, done: np.ndarray) -> str:
     rate, frequency = (
         span(v[name][done][:, 0], v["error_estimate"][done][:, 0]) for name in ("growth_rate", "frequency")
     )
-    return f"leading growth rate {rate}, frequency {frequency} 1/tau2"
+    return f"leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"
 
 
 def threshold_lines(view: View) -> tuple[list[str], list[str]]:
@@ -62,7 +62,8 @@ def eigenvalue_lines(view: View) -> list[str]:
     v = view.variables
     columns = (v[name].ravel() for name in ("growth_rate", "frequency", "error_estimate"))
     lines = [
-        f"mode {number}: growth rate {to_error(growth, error)}, frequency {to_error(frequency, error)} 1/tau2"
+        f"mode {number}: growth rate {to_error(growth, error)} 1/tau2, "
+        f"frequency {to_error(frequency, error)} rad/tau2"
         for number, (growth, frequency, error) in enumerate(zip(*columns, strict=True), 1)
         if np.isfinite(growth)
     ]

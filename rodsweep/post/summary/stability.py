@@ -67,7 +67,7 @@ def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: st
     some = f", on {some_of(len(found), len(names), 'line')} over {along}" if len(found) < len(names) else ""
     if len(located) == len(points) and all(point.agrees(located[0]) for point in located):
         frequency = located[0].frequency if isinstance(located[0], HopfPoint) else np.nan
-        beats = f", frequency {frequency:.6g} 1/tau2" if np.isfinite(frequency) else ""
+        beats = f", frequency {frequency:.6g} rad/tau2" if np.isfinite(frequency) else ""
         return _text(located[0]) + error + some + beats
     if len(found) <= FEW_LINES:
         texts = (_together(found[i], names[i]) for i in found)

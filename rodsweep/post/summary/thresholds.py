@@ -6,15 +6,16 @@ import numpy as np
 
 from ...results.file.view import View
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
+from ...results.layouts.variables import ANGULAR
 from ...wording import counted, plural, some_of
 from .arm import crossing_line_in_si
 from .ranges import error_text, rounded, span, to_error
 from .told import Told, at_point, in_brackets
 
 EVENTS = {
-    "hopf": ("F** (straight rod starts to beat)", "hopf_frequency", "frequency"),
-    "restabilization": ("stable again", "restabilization_frequency", "frequency"),
-    "onset": ("F* (straight rod starts to oscillate)", "onset_growth_rate", "growth rate"),
+    "hopf": ("F** (straight rod starts to beat)", "hopf_frequency", "frequency", ANGULAR),
+    "restabilization": ("stable again", "restabilization_frequency", "frequency", ANGULAR),
+    "onset": ("F* (straight rod starts to oscillate)", "onset_growth_rate", "growth rate", "1/tau2"),
 }
 """What the first crossing of each kind is called, and what is told of it beside the force."""
 
@@ -30,7 +31,7 @@ def thresholds_summary(view: View, done: np.ndarray) -> Told:
 
 def event_line(view: View, done: np.ndarray, event: str) -> str:
     """At which forces the rods that are `done` have their first crossing of a kind, and at which rods."""
-    words, rate, noun = EVENTS[event]
+    words, rate, noun, unit = EVENTS[event]
     v = view.variables
     F = np.where(done, v[f"F_{event}"], np.nan).ravel()
     there, rods = np.isfinite(F), int(done.sum())
@@ -41,7 +42,7 @@ def event_line(view: View, done: np.ndarray, event: str) -> str:
     places = [f"{rounded(F[i], errors[i])}{in_brackets(at_point(view, i))}" for i in (low, high)]
     forces = " to ".join(places if places[0] != places[1] else places[:1])
     where = "at all" if there.sum() == rods else f"at {int(there.sum())}"
-    return f"{words}: F = {forces}, {where} of {counted(rods, 'rod')}; {noun} {span(v[rate][done])} 1/tau2"
+    return f"{words}: F = {forces}, {where} of {counted(rods, 'rod')}; {noun} {span(v[rate][done])} {unit}"
 
 
 def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
@@ -58,7 +59,7 @@ def crossing_lines(view: View) -> list[str]:
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
         F = to_error(v["crossing_F"][i], v["crossing_error"][i])
         growth, frequency = v["crossing_growth_rate"][i], v["crossing_frequency"][i]
-        rates = f"growth rate {growth:.6g}, frequency {frequency:.6g} 1/tau2"
+        rates = f"growth rate {growth:.6g} 1/tau2, frequency {frequency:.6g} {ANGULAR}"
         after = int(v["unstable_after"][i])
         above = f"; unstable modes above: {after if after >= 0 else 'not known'}"
         lines.append(f"{kind} at F = {F}: {CROSSING_MEANINGS[kind]}; {rates}{above}")
