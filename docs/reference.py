@@ -74,7 +74,6 @@ LENGTHS = {
     "curve_point": "as found",
     "hopf": "as found",
     "fold": "as found",
-    "hopf": "as found",
     "bautin": "as found",
     "cycle_special": "64",
     "cycle_curve_point": "as found",
