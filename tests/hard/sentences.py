@@ -406,7 +406,7 @@ def diagram_sentences(view, sentences, keywords):
         for crossing in crossings:
             true.setdefault(crossing.kind.name, []).append((crossing.at, float(value)))
         for F in values:
-            if F >= rod.k1:
+            if rod.k1 <= F:
                 classes.append("crushed")
                 continue
             w = leading(replace(rod, F=float(F)))[0]
