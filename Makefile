@@ -45,10 +45,11 @@ figures: .venv/installed  ## compute every config on two ranks and draw its figu
 	  $(BIN)/mpiexec -n 2 $(BIN)/rodsweep run $$config -o results/$$name.h5
 	done
 	draw="$(BIN)/rodsweep plot"
-	for name in fig2a fig2b fig2c fig2d fig3 fig4 fig5 fig6 fig7 fig8 fig9 beating_map criticality generalised_hopf branches lopsided bistability; do
+	for name in fig2a fig2b fig2c fig2d fig4 fig5 fig6 fig7 fig8 fig9 beating_map criticality generalised_hopf branches lopsided bistability; do
 	  $$draw results/$$name.h5 -o results/$$name.pdf
 	  $$draw results/$$name.h5 -o docs/$$name.png
 	done
+	for end in results/fig3.pdf docs/fig3.png; do $$draw results/fig3.h5 --what lines -o $$end; done
 	$$draw results/fig2a.h5 results/fig2b.h5 results/fig2c.h5 results/fig2d.h5 -o results/fig2.pdf
 	for end in results/hysteresis.pdf docs/hysteresis.png; do
 	  $$draw results/hysteresis_up.h5 results/hysteresis_down.h5 -o $$end

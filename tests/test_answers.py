@@ -167,9 +167,9 @@ def test_no_answer_has_filler(task, asked):
 
 
 def test_variables_have_the_same_order_in_a_file_and_in_python(command, monkeypatch):
-    arm = {"length": "10 cm", "radius": ["4 mm", "5 mm"], "young": "100 kPa", "viscosity": "1.4 Pa s"}
-    here = rs.sweep("thresholds", arm=arm, F_max=60, crossings=3)
     monkeypatch.chdir(command.directory)
+    command.write("p.csv", "gamma3,k1,k2\n0.01,1600,480\n0.02,inf,480\n")
+    here = rs.sweep("thresholds", points="p.csv", F_max=60, crossings=3)
     command.write("c.yaml", here.attrs["config"])
     assert command("run", "c.yaml").returncode == 0
     file = rs.open("c.h5")

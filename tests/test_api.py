@@ -22,7 +22,7 @@ from rodsweep.cli import commands
 from rodsweep.config.schema import Config
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import PARAMETERS
-from rodsweep.post.figures.request import KINDS, ROOTS, WIDTHS
+from rodsweep.post.figures.request import KINDS, ROOTS
 
 NAMES = [
     "Answer",
@@ -317,6 +317,11 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
         (lambda: rs.Arm(**LOADED | {"length": "1e300 km"}), "length = '1e300 km' makes numbers too large"),
         (lambda: rs.Arm(**LOADED | {"radius": "1e-300 m"}), "length = '10 cm' makes numbers too large or"),
         (lambda: rs.Arm(**LOADED | {"poisson": "0.5"}), "poisson = '0.5' is not a number above -1"),
+        (lambda: rs.Arm(**LOADED | {"poisson": 10**400}), "poisson = 1000000000"),
+        (
+            lambda: rs.Arm(**LOADED | {"poisson": 10**5000}),
+            "poisson = an integer too large to be shown is not",
+        ),
         (lambda: rs.Arm(**SILICONE | {"radius": "-5 mm"}), "radius = '-5 mm' is not above 0"),
         (lambda: rs.Arm(**LOADED, force="1 N"), "pressure = '2 kPa' and force = '1 N' are both given"),
         (
@@ -367,12 +372,31 @@ def test_an_answer_is_drawn():
     assert picture.shown.startswith("the leading mode")
 
 
+def test_a_cycle_without_stored_shapes_is_drawn_with_the_shapes_that_it_would_have():
+    cycle = rs.Rod(F=50, k1=1e4, k2=100, gamma3=0.01).cycle(accuracy=1e-4)
+    assert "shape_x" not in cycle.data
+    assert rs.plot(cycle).shown.startswith("shapes through the cycle")
+    assert rs.plot(cycle, what="energy").shown.startswith("energy, injection and dissipation")
+    with pytest.raises(
+        rs.InputError, match=r"holds no cycle \(its points are: straight\) that could be drawn"
+    ):
+        rs.plot(rs.Rod(F=5, k1=1e4, k2=100, gamma3=0.01).cycle(accuracy=1e-4))
+
+
+def test_a_branch_and_the_criticality_of_one_rod_are_drawn():
+    rod = rs.Rod(k1=200, k2=1e4, gamma3=1e-4)
+    assert rs.plot(rod.criticality(F_max=60)).shown.startswith("the cycles that normal forms predict")
+    assert rs.plot(rod.branch(stop=60, accuracy=1e-4)).shown.startswith("1 branch of cycles over F")
+
+
 @pytest.mark.parametrize(
     ("choice", "sentence"),
     [
         ({"what": "heat"}, "what = 'heat' is not allowed; choose cycle, amplitude, maps"),
-        ({"width": "tiny"}, "width = 'tiny' is not allowed; choose single, double"),
-        ({"roots": "left"}, "roots = 'left' is not allowed; choose rightmost, smallest"),
+        ({"width": "tiny"}, "width = 'tiny' is not allowed; choose single, double, or a length as '89 mm'"),
+        ({"roots": "left"}, "roots = 'left' is not allowed; choose rightmost, smallest, all"),
+        ({"at": {"k1": 100}}, "has no point there; it has k1 = 200"),
+        ({"at": 3}, "at is not allowed; give numbers by parameter"),
         ({"points": 3}, "--point is for results of limit_cycle"),
     ],
 )
@@ -390,7 +414,6 @@ def test_choices_of_a_figure_are_those_of_the_command():
     assert {name: tuple(words) for name, words in choices.items()} == {
         "roots": ROOTS,
         "what": KINDS,
-        "width": tuple(WIDTHS),
     }
 
 

@@ -131,13 +131,21 @@ def test_figure_holds_the_amplitude_against_the_normal_form_from_both_hopf_point
 
 @pytest.mark.parametrize(
     ("k1", "said"),
-    [("[100, 150]", "c.h5 holds 2 rods; a bifurcation diagram is of one"), (100, "c.h5 holds no branch")],
+    [(100, "c.h5 holds no branch")],
 )
 def test_figure_that_shows_nothing_is_refused(command, k1, said):
     shown(command, CONFIG.format(k1=k1, stop=90))
     refused = command("plot", "c.h5", "-o", "c.png")
     assert refused.returncode == 2
     assert said in " ".join(refused.stderr.split())
+
+
+def test_branches_of_several_rods_are_drawn_together_and_one_of_them_by_at(command):
+    shown(command, CONFIG.format(k1="[100, 150]", stop=90))
+    assert "1 of 2 rods have none" in " ".join(command("plot", "c.h5", "-o", "c.png").stdout.split())
+    alone = command("plot", "c.h5", "--at", "k1=150", "-o", "one.png")
+    assert alone.returncode == 0, alone.stderr
+    assert "have none" not in alone.stdout
 
 
 def test_branches_without_room_for_their_special_points_are_told_of_and_not_drawn(command):

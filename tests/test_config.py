@@ -356,12 +356,15 @@ def test_file_that_is_no_text_is_refused(tmp_path):
         ("k3", ("F", "k1", "k2"), []),
         ("G", ("F", "k1"), []),
         ("Fmax", ("certify", "F_max"), ["F_max"]),
-        ("gamma", ("k1", "gamma3", "gamma1"), ["gamma3"]),
+        ("gamma", ("k1", "gamma3", "gamma1"), ["gamma3", "gamma1"]),
         ("n", ("start", "num"), ["num"]),
         ("lenght", ("length", "height"), ["length"]),
         ("density", ("viscosity", "fluid_density"), ["fluid_density"]),
         ("presure", ("force", "pressure"), ["pressure"]),
         ("tolerance", ("accuracy", "title"), []),
+        ("", ("F", "k1"), []),
+        ("k", ("F", "k1", "k2"), ["k1", "k2"]),
+        ("a", ("a1", "a2", "a3", "a4", "a5"), []),
     ],
 )
 def test_only_near_keys_are_suggested(key, known, meant):

@@ -153,7 +153,7 @@ def test_an_arm_has_its_quantities_as_they_were_typed_and_results_in_si(command)
     assert columns["radius [m]"] == ("0.004", "0.005")
     assert columns["k1 [k3/L^2]"] == ("2500", "1600")  # no 2500.0000000000005
     assert columns["pressure_scale [Pa]"] == ("40", "62.5")
-    assert "hopf_frequency_hz [Hz]" in head
+    assert "frequency_hopf_hz [Hz]" in head
     assert not any("rad/s" in name for name in head)
 
 

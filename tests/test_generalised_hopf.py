@@ -16,7 +16,7 @@ from rodsweep.determinant.curves import trace
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
-from rodsweep.post.figures.phase_diagram import parts_of_one_side
+from rodsweep.post.figures.diagram_curves import parts_of_one_side
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.hopf import bautin_curves, generalised
 from rodsweep.solve.hopf.bautin_curves import BautinCurvePoint, BautinEnd, BautinSpace, bautin_curve, lies_on

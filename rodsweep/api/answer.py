@@ -1,6 +1,7 @@
 """What a task says of one rod: numbers and words by name, and lists that hold what was found."""
 
 import json
+from collections.abc import Sequence
 from enum import StrEnum
 from functools import cache
 from math import prod
@@ -118,7 +119,8 @@ class Answer:
     def _printed(self) -> Printed:
         tables = self._tables
         own = [c for c in tables.table(POINTS).columns if c.name not in NOT_PRINTED and not c.given]
-        lists = {name: tables.items(name) for name in self.lists}
+        own.sort(key=_is_dimensionless)
+        lists = {name: _units_first(tables.items(name)) for name in self.lists}
         if int(self.data["status"]) != 0:  # another answer than the one hoped for, as a rod at rest
             lists = {name: columns for name, columns in lists.items() if len(columns[0].values)}
         totals = {name: int(self.data[count]) for name, count in TOTALS.items() if count in self.data}
@@ -130,12 +132,14 @@ class Answer:
             absent=tuple(c.name for c in own if c.absent[0]) if int(self.data["status"]) == 0 else (),
             totals=totals,
             lists={name: columns for name, columns in lists.items() if name in IN_FULL},
-            named={name: len(columns[0].values) for name, columns in lists.items() if name not in IN_FULL},
+            named={name: rows for name, columns in lists.items() if (rows := _rows_beyond(name, columns))},
         )
 
 
 NOT_PRINTED = ("status", "seconds")
 """Variables without a row: the status is in the heading, the time is of no rod but of a machine."""
+SI_UNITS = ("Pa", "N", "Hz", "s", "1/s", "m", "J", "W")
+"""Units of what is stored of an arm beside the units of the rod."""
 TOTALS = {"crossings": "crossing_count", "special_points": "special_count", "cycles": "point_count"}
 """Variables that count all items of a list, stored or not."""
 IN_FULL = ("modes", "crossings", "special_points", "harmonics", "multipliers")
@@ -149,6 +153,22 @@ def _statuses(task: str, words: tuple[str, ...]) -> type[StrEnum]:
     found = made("Status", {word: word for word in words})
     found.__name__ = "".join(part.title() for part in task.split("_")) + "Status"
     return cast(type[StrEnum], found)
+
+
+def _rows_beyond(name: str, columns: Sequence[Column]) -> int:
+    """How many rows a list has that is not printed."""
+    return 0 if name in IN_FULL else len(columns[0].values)
+
+
+def _is_dimensionless(column: Column) -> bool:
+    """Whether a column is in units of the rod; of an arm what is in SI units comes first."""
+    return column.unit not in SI_UNITS
+
+
+def _units_first(columns: Sequence[Column]) -> tuple[Column, ...]:
+    """The number of the items, what is in SI units, and the others, each in their order."""
+    first, *others = columns
+    return (first, *sorted(others, key=_is_dimensionless))
 
 
 def _scalar(column: Column) -> float | int | bool | str | None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..config.arguments import in_sentences, unknown
 from ..config.axes import words
-from ..config.refusals import nearest
+from ..config.refusals import hint_of, nearest
 from ..config.tasks import CONFIGS
 from ..config.values import as_number, short
 from ..errors import InputError
@@ -53,9 +53,10 @@ class SoftRod:
         arm: SlenderArm | None = None,
         **unknown: Any,
     ):
+        free = {"F": F, "k1": k1, "k2": k2, "gamma3": gamma3, "gamma1": gamma1, "arm": arm}
         for name in unknown:
-            close = nearest(name, (*PARAMETERS, "arm"))
-            hint = f"did you mean {close[0]}?" if close else f"known keys are {', '.join(PARAMETERS)}, arm"
+            left = [other for other, value in free.items() if value is None or value is NOT_GIVEN]
+            hint = hint_of(name, left if nearest(name, left) else (*PARAMETERS, "arm"))
             raise InputError(f"unknown key parameters.{name}; {hint}")
         if arm is not None:
             F, k1, k2, gamma3, gamma1 = _of_arm(arm, F=F, k1=k1, k2=k2, gamma3=gamma3, gamma1=gamma1).values()

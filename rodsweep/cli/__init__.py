@@ -27,10 +27,9 @@ from .. import __version__  # noqa: E402 - after the environment is set
 from ..config.values import printable  # noqa: E402 - after the environment is set
 from ..errors import BUG_STATUS, InputError, Refusal  # noqa: E402 - after the environment is set
 from .arm_options import arm_options  # noqa: E402 - after the environment is set
+from .file_names import beside, followed, result_file  # noqa: E402 - after the environment is set
 
 FILE = click.Path(path_type=Path)
-RESULTS = (".h5", ".hdf5", ".nc")
-"""Endings of result files."""
 LONGEST_MESSAGE = 350
 """Characters of a refusal."""
 overrides_option = click.option(
@@ -71,7 +70,7 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
         raise InputError("--fresh and --extend are both given: one replaces the file, the other adds to it")
     part = shard_of(shard)
     suffix = f"-{part.number}-of-{part.of}.h5" if part.of > 1 else ".h5"
-    output = _result_file(output or Path(config.stem + suffix))
+    output = result_file(output or Path(config.stem + suffix))
     asked = RunOptions(overrides=overrides, shard=part, **options)
     code = run_config(config, output, asked, stop)
     stop.ignore()  # the status is decided
@@ -86,8 +85,8 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
     from .merging import merge_files
     from .running import CONTINUE
 
-    output = _result_file(output)
-    merged = merge_files(output, tuple(map(_followed, shards)))
+    output = result_file(output)
+    merged = merge_files(output, tuple(map(followed, shards)))
     if merged.missing:
         click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing ones")
         sys.exit(CONTINUE)
@@ -102,8 +101,8 @@ def snapshot(file: Path, output: Path | None) -> None:
     """Write what is done of the result FILE so far, without disturbing the run that computes it."""
     from ..results.file.recent import take_snapshot
 
-    output = _result_file(output or file.with_name(f"{file.stem}-snapshot{file.suffix}"))
-    done, points = take_snapshot(_followed(file), output)
+    output = result_file(output or beside(file, f"-snapshot{file.suffix}"))
+    done, points = take_snapshot(followed(file), output)
     click.echo(f"wrote {output}: {done} of {points} points are done")
 
 
@@ -128,7 +127,7 @@ def show(file: Path, statuses: bool) -> None:
     from ..post.summary import show_summary
     from ..results.file.view import read_view
 
-    show_summary(read_view(_followed(file)), statuses)
+    show_summary(read_view(followed(file)), statuses)
 
 
 @commands.command()
@@ -141,14 +140,14 @@ def show(file: Path, statuses: bool) -> None:
 )
 @click.option(
     "--roots",
-    type=click.Choice(["rightmost", "smallest"]),
-    help="Which two roots to follow: the smallest in magnitude, as the paper does, or the rightmost; by "
-    "default those that change places with others less often.",
+    type=click.Choice(["rightmost", "smallest", "all"]),
+    help="Which roots of spectra: all that are stored, or two to follow, the smallest in magnitude, as the "
+    "paper does, or the rightmost; by default those that change places with others less often.",
 )
 @click.option(
     "--what",
-    type=click.Choice(["cycle", "amplitude", "maps", "energy", "transient", "animation"]),
-    help="Which figure of limit_cycle; by default what the file's content suggests.",
+    type=click.Choice(["cycle", "amplitude", "maps", "energy", "transient", "animation", "lines", "map"]),
+    help="Which figure of limit_cycle, or, lines and map, of thresholds; by default what the file suggests.",
 )
 @click.option(
     "--point",
@@ -158,11 +157,18 @@ def show(file: Path, statuses: bool) -> None:
     metavar="N",
     help="Which points of limit_cycle, from 1; up to 3 times.",
 )
+@click.option(
+    "--at",
+    "at",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="Draw the points with this value of a parameter, e.g. k1=150; several times.",
+)
 @click.option("--title", is_flag=True, help="Put the title of the config above the figure.")
 @click.option(
     "--width",
-    type=click.Choice(["single", "double"]),
-    help="Of a journal's single (3.375 in) or double column (7 in), with type of 8 pt.",
+    metavar="WIDTH",
+    help="Of a journal's column, with type of 8 pt: single (3.375 in), double (7 in), or as '89 mm'.",
 )
 @click.option("--style", metavar="STYLE", help="A style of matplotlib's, by its name or file.")
 def plot(
@@ -171,24 +177,33 @@ def plot(
     roots: str | None,
     what: str | None,
     points: tuple[int, ...],
+    at: tuple[str, ...],
     **look: Any,
 ) -> None:
     """Draw the result FILE; or several: spectra in panels, amplitudes of limit cycles in one figure."""
     from ..post.figures import draw
     from ..post.figures.request import Look
+    from ..post.figures.sections import section
     from ..results.file.view import read_view
+    from .cycle_shapes import with_shapes
 
-    output = output or files[0].with_suffix(".gif" if what == "animation" else ".png")
-    click.echo(
-        draw(
-            [read_view(_followed(file)) for file in files],
-            output,
-            roots,
-            what,
-            points,
-            Look(**look),
-        )
-    )
+    output = output or beside(files[0], ".gif" if what == "animation" else ".png")
+    values = _values(at)
+    views = [section(read_view(followed(file)), values) for file in files]
+    drawn = draw(views, output, look=Look(**look), shapes=with_shapes, roots=roots, what=what, points=points)
+    click.echo(drawn)
+
+
+def _values(at: tuple[str, ...]) -> dict[str, float]:
+    """The values of `--at NAME=VALUE` by name; InputError for what is no number."""
+    found = {}
+    for text in at:
+        name, _, value = text.partition("=")
+        try:
+            found[name.strip()] = float(value)
+        except ValueError:
+            raise InputError(f"--at {printable(text)} is no parameter with a number, as k1=150 is") from None
+    return found
 
 
 @commands.command()
@@ -206,10 +221,10 @@ def export(
     from ..post.export import export as export_view
     from ..results.file.view import read_view
 
-    output = _followed(output or file.with_suffix(".csv"))
+    output = followed(output or beside(file, ".csv"))
     names = tuple(name.strip() for name in columns.split(",")) if columns is not None else ()
     request = Request(table=table, columns=names, units=units, replace=replace)
-    click.echo(f"wrote {output}: {export_view(read_view(_followed(file)), output, request)}")
+    click.echo(f"wrote {output}: {export_view(read_view(followed(file)), output, request)}")
 
 
 @commands.command()
@@ -245,31 +260,6 @@ def arm(poisson: float, **quantities: str | None) -> None:
     from .arm_report import describe_arm
 
     describe_arm(quantities, poisson)
-
-
-def _result_file(path: Path) -> Path:
-    """The file for results that a name means; InputError for a directory or another ending."""
-    endings = ", ".join(RESULTS)
-    if path.is_dir() or not path.name:
-        raise InputError(f"{path} is a directory; name a file for results, which ends in {endings}")
-    if path.suffix not in RESULTS:
-        raise InputError(f"{path} is no name for results, which are HDF5: it must end in {endings}")
-    return _followed(path)
-
-
-def _followed(path: Path) -> Path:
-    """What a link leads to, which has the journal and the lock; another path as it is.
-
-    InputError for a link that leads to itself, in whose place nothing may be put.
-    """
-    if not path.is_symlink():
-        return path
-    try:
-        path.stat()
-    except OSError as error:
-        if error.errno == errno.ELOOP:
-            raise InputError(f"{path} is a link that leads to itself; name a file") from None
-    return Path(os.path.realpath(path))
 
 
 def _rank_variables() -> list[str]:

@@ -35,6 +35,14 @@ LOADS = ("pressure", "force")
 SIGNED = (*LOADS, "density_difference")
 
 
+class NotSlender(InputError):
+    """The refusal of an arm that is too short for the drag of slender bodies."""
+
+
+class NoWall(InputError):
+    """The refusal of an arm whose bore is as wide as itself."""
+
+
 OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*of\s+flutter\s*", re.ASCII)
 """A load relative to the threshold of flutter, as "1.2 of flutter" or "120 % of flutter"."""
 
@@ -91,8 +99,12 @@ class SlenderArm:
         """Reads the units, and refuses what is no slender arm."""
         object.__setattr__(self, "si", InSI(**{name: self._read(name) for name in UNITS}))
         ratio: Any = self.poisson
-        if isinstance(ratio, bool) or not isinstance(ratio, Real) or not -1 < float(ratio) <= 0.5:
-            told = repr(ratio) if isinstance(ratio, str) else str(ratio)
+        is_number = isinstance(ratio, Real) and not isinstance(ratio, bool)
+        if not is_number or not -1 < ratio <= 0.5:
+            try:
+                told = repr(ratio) if isinstance(ratio, str) else str(ratio)
+            except ValueError:  # an integer of thousands of digits
+                told = "an integer too large to be shown"
             raise InputError(f"poisson = {told:.60} is not a number above -1 and up to 0.5")
         self._refuse_other_sets()
         if self.si.density_difference <= -self.si.fluid_density:
@@ -110,7 +122,7 @@ class SlenderArm:
                 "modulus; check their units"
             )
         if slenderness < LEAST_SLENDERNESS:
-            raise InputError(
+            raise NotSlender(
                 f"{self._told('length')} is {slenderness:.3g} radii; the drag of a slender arm needs at "
                 f"least {LEAST_SLENDERNESS:g}"
             )
@@ -138,7 +150,7 @@ class SlenderArm:
         if self.inner_radius is not None and self.radius is None:
             raise InputError(f"{self._told('inner_radius')} needs a radius; a rectangle has no bore here")
         if self.si.inner_radius >= self.si.radius:
-            raise InputError(f"{self._told('inner_radius')} is not below {self._told('radius')}")
+            raise NoWall(f"{self._told('inner_radius')} is not below {self._told('radius')}")
         if self.pressure is not None and self.force is not None:
             raise InputError(
                 f"{self._told('pressure')} and {self._told('force')} are both given; give one of them: the "

@@ -36,7 +36,7 @@ class BranchTask(Task):
         why = "winding number of D" if options.certify else "branch.certify: false; Hopf points may be missed"
         kept = f"at most {options.cycles} cycles and {options.special} special points of a rod are stored"
         return [
-            *rod_parts(self.points.by_name | {options.along: np.array([options.start, options.stop])}),
+            *rod_parts(self.points.of_rods | {options.along: np.array([options.start, options.stop])}),
             ("axial drag", True, "parameters.gamma1; it moves no Hopf point, and every cycle"),
             ("branches born at Hopf points", True, kept),
             ("unstable cycles", True, "with all their Floquet multipliers"),

@@ -60,7 +60,7 @@ def hopf_lines_of(points: Points) -> list[HopfLine]:
 
 def _lines_over(points: Points, name: str) -> Iterator[HopfLine]:
     """The lines over a parameter of points with at least two finite values of it."""
-    columns = {n: points.by_name[n] for n in LINEAR_PARAMETERS}
+    columns = {n: points.of_rods[n] for n in LINEAR_PARAMETERS}
     others = [n for n in LINEAR_PARAMETERS if n != name]
     if points.is_grid:
         rods = np.array(list(product(*(np.unique(columns[n]) for n in others))))

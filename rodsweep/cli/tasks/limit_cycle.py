@@ -46,8 +46,8 @@ class LimitCycleTask(Task):
     def __post_init__(self) -> None:
         if self.config.limit_cycle.time == "tau1":
             why = ", because tau1 = gamma3/k2 is the unit of time that limit_cycle.time asks for"
-            refuse_outside(FINITE_STIFFNESS, "k2", self.points.by_name["k2"], "", why)
-            refuse_outside(POSITIVE_DRAG, "gamma3", self.points.by_name["gamma3"], "", why)
+            refuse_outside(FINITE_STIFFNESS, "k2", self.points.of_rods["k2"], "", why)
+            refuse_outside(POSITIVE_DRAG, "gamma3", self.points.of_rods["gamma3"], "", why)
 
     @property
     def chains(self) -> Chains | None:
@@ -55,7 +55,7 @@ class LimitCycleTask(Task):
         options = self.config.limit_cycle
         if options.start != "neighbour":
             return None
-        axis = self.points.names.index(self.config.along)
+        axis = self.points.moved.index(self.config.along)
         return Chains(self.points.shape, axis, options.direction == "up")
 
     def coordinates(self) -> dict[str, np.ndarray]:
@@ -90,9 +90,9 @@ class LimitCycleTask(Task):
 
     def parts(self) -> list[Part]:
         options = self.config.limit_cycle
-        gamma1 = np.unique(self.points.by_name["gamma1"])[:5]
+        gamma1 = np.unique(self.points.of_rods["gamma1"])[:5]
         return [
-            *rod_parts(self.points.by_name),
+            *rod_parts(self.points.of_rods),
             ("axial drag", True, f"gamma1 = {', '.join(f'{value:g}' for value in gamma1)}"),
             ("nonlinear motion", True, "task: limit_cycle; in the plane, geometrically exact"),
             ("energy budget", True, "means and fluctuations over a cycle"),

@@ -42,7 +42,7 @@ class SpectrumTask(LinearTask):
     @property
     def stretches(self) -> Stretches | None:
         """The stretches along which eigenvalues are followed, where they are."""
-        return along_the_longest(self.points.shape) if self.config.follows else None
+        return along_the_longest(self.points.shape, self.points.moved) if self.config.follows else None
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """The material coordinate of the vectors' nodes, shape (nodes,), where there are vectors."""
@@ -54,8 +54,10 @@ class SpectrumTask(LinearTask):
         if gamma1 is None:
             return ()
         k1, modes = self.points.by_name["k1"], self.config.spectrum.modes
+        shape = self.points.shape if self.points.over else k1.shape
         rates = np.array([longitudinal_rates(float(k), gamma1, modes) for k in k1])
-        return ((longitudinal(gamma1, "k1" if self.points.is_grid else "point"), rates),)
+        along = tuple(self.points.over) or ("k1" if self.points.is_grid else "point",)
+        return ((longitudinal(gamma1, *along), rates.reshape(*shape, modes)),)
 
     def headline(self) -> str:
         return f"{count_of(self.points)}, {self.config.spectrum.modes} leading modes each"
@@ -101,7 +103,7 @@ class SpectrumTask(LinearTask):
 
         stretches = self.stretches
         assert stretches is not None
-        varied = self.points.names[stretches.axis]
+        varied = self.points.moved[stretches.axis]
         found = solve_stretch(Stretch(varied, self.points.values_of(indices)), request)
         return Together(record_all(found), found.succeeded, found.told)
 

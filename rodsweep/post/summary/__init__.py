@@ -16,6 +16,7 @@ from ...results.layouts.arm import QUANTITY_UNITS
 from ...results.layouts.variables import DIMENSIONS, MISSING
 from ...wording import counted, is_or_are, plural
 from .arm import arm_lines
+from .arm_answer import arm_answer
 from .branch import branch_summary
 from .criticality import criticality_summary
 from .limit_cycle import limit_cycle_summary
@@ -46,12 +47,12 @@ def show_summary(view: View, every_status: bool = False) -> None:
     First the answer in words, of an arm in its units too; then what is needed to trust it, what else the file
     says, and last by what it was computed.
     """
-    console = Console(highlight=False, markup=False)
+    view, console = view.listed, Console(highlight=False, markup=False)
     a, status = view.attributes, view.variables["status"]
     done, noun = status != MISSING, NOUNS.get(view.task, "point")
     told = SUMMARIES[view.task](view, done) if done.any() else Told([f"no {noun} is computed yet"])
     console.print(f"{printable(str(view.path))}: {a.get('title', '')}, task {view.task}", soft_wrap=True)
-    for line in [*told.answer, *(arm_lines(view, done) if done.any() else [])]:
+    for line in [*arm_answer(view, done), *told.answer, *(arm_lines(view, done) if done.any() else [])]:
         console.print(line, soft_wrap=True)
     console.print()
     for line in [*_unfinished(view, int((~done).sum()), noun), *told.trust]:

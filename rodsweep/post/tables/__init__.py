@@ -37,6 +37,10 @@ class Tables:
 
     view: View
 
+    def __post_init__(self) -> None:
+        """A grid over an arm's quantities is a list of its points, as any table."""
+        object.__setattr__(self, "view", self.view.listed)
+
     @cached_property
     def contents(self) -> Contents:
         """Which tables there are."""

@@ -7,13 +7,14 @@ its status. `grid` is a diagram's grid, whose rows are points of the file.
 import json
 from dataclasses import dataclass
 
-from ...config.refusals import nearest
+from ...config.refusals import hint_of
 from ...errors import InputError
 from ...model.parameters import PARAMETERS
 from ...results.file.view import View
 from ...results.layouts import beside_points, layout_of
 from ...results.layouts.variables import Variable
 
+THERE_ARE = "there are"
 POINTS, GRID, BRANCHES = "points", "grid", "branches"
 PARTS_OF_BRANCHES = {"cycles", "special_points"}
 """What `branches` puts together."""
@@ -26,6 +27,7 @@ NAMES = {
     ("cycle_special",): "cycle_special_points",
     ("curve_point",): "curves",
     ("fold",): "folds",
+    ("hopf",): "hopf_points",
     ("cycle_curve_point",): "cycle_curves",
     ("bautin",): "generalised_hopf_points",
     ("bautin_step",): "generalised_hopf_curves",
@@ -103,7 +105,9 @@ def chosen(view: View, contents: Contents, table: str | None, columns: tuple[str
     """The table that is asked for: by name, by its columns, or the first of the task; else InputError."""
     if table is not None:
         if table not in contents.tables:
-            raise InputError(f"{view.path} has no table {table!r}; {_hint(table, contents.tables)}")
+            raise InputError(
+                f"{view.path} has no table {table!r}; {hint_of(table, contents.tables, THERE_ARE)}"
+            )
         return table
     holding = {v.name: name for name, variables in contents.lists.items() for v in variables}
     holding |= {name: each for each in contents.lists for name in contents.dimensions(each)}
@@ -127,11 +131,6 @@ def refuse_unknown(path: object, columns: tuple[str, ...], known: tuple[str, ...
     for place, name in enumerate(columns):
         if name not in known:
             what = f"the table {table} has" if table else "its tables have"
-            raise InputError(f"{path}: {what} no column {name!r}; {_hint(name, known)}")
+            raise InputError(f"{path}: {what} no column {name!r}; {hint_of(name, known, THERE_ARE)}")
         if name in columns[:place]:
             raise InputError(f"{path}: the column {name} is named twice")
-
-
-def _hint(name: str, known: tuple[str, ...]) -> str:
-    close = nearest(name, known)
-    return f"did you mean {close[0]}?" if close else f"there are {', '.join(known)}"

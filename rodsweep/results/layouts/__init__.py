@@ -33,6 +33,7 @@ INCREASES: dict[str, dict[str, Increase]] = {
 BESIDE_POINTS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
     "spectrum": spectrum.beside_points,
     "phase_diagram": phase_diagram.beside_points,
+    "limit_cycle": lambda config, is_grid: limit_cycle.HOPF_POINTS,
 }
 """What tasks store that all points share or together give, from (resolved config, whether a grid)."""
 

@@ -20,7 +20,7 @@ CYCLE = (
     real(
         "linear_frequency",
         ANGULAR,
-        "angular frequency, imaginary part of the leading eigenvalue of the straight rod",
+        "angular frequency of the leading mode of the straight rod, imaginary part of its eigenvalue",
     ),
     Variable(
         "second_state",
@@ -109,7 +109,7 @@ HOPF_POINTS = (
     ),
     *(real(f"hopf_{name}", PARAMETERS[name].unit, f"{name} at the Hopf point", HOPF) for name in HOPF_ALONG),
     real("hopf_error", "1", "estimate of the relative error of the parameter along which was searched", HOPF),
-    real("hopf_frequency", ANGULAR, "frequency of the pair that crosses", HOPF),
+    real("hopf_frequency", ANGULAR, "angular frequency of the pair that crosses", HOPF),
     real("hopf_frequency_error", ANGULAR, "estimate of the absolute error of hopf_frequency", HOPF),
     whole("hopf_unstable_after", "number of modes with positive growth rate beyond it; -1: not known", HOPF),
     whole("hopf_lines", "lines of points that differ in one of F, k1, k2 and gamma3, which were searched"),

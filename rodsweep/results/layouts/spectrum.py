@@ -17,7 +17,7 @@ def complex_pair(name: str, units: str, long_name: str) -> tuple[Variable, Varia
 UNSTABLE_COUNT = whole("unstable_count", "number of modes with positive growth rate; -1: not known")
 EACH_MODE = (
     real("growth_rate", "1/tau2", "real part of the transverse eigenvalue", "mode"),
-    real("frequency", ANGULAR, "angular frequency, imaginary part of the transverse eigenvalue", "mode"),
+    real("frequency", ANGULAR, "angular frequency of the mode, imaginary part of its eigenvalue", "mode"),
     real(
         "error_estimate",
         "1/tau2",
@@ -42,13 +42,13 @@ VECTORS = (
 )
 
 
-def longitudinal(gamma1: float, along: str) -> Variable:
-    """The longitudinal rates, which depend on k1 only; along: `k1` on a grid, `point` in a list."""
+def longitudinal(gamma1: float, *along: str) -> Variable:
+    """The longitudinal rates, which depend on k1 only; along: k1, or all points where k1 is no axis."""
     return real(
         "longitudinal_rate",
         "1/tau2",
         f"longitudinal eigenvalue, real, for gamma1 = {gamma1:g}",
-        along,
+        *along,
         "mode",
     )
 

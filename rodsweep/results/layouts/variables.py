@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
 
+TYPED = "typed_unit"
+"""The attribute of a variable with the unit in which the user typed it."""
 MISSING = -1
 """Status of a point that has not been computed."""
 
@@ -56,6 +58,8 @@ class Variable:
     extra: tuple[str, ...] = ()
     flags: tuple[tuple[int, str], ...] = ()
     """Values and meanings, where the variable is a word; those of `status` come from the task's solver."""
+    typed: str = ""
+    """The unit in which the user typed it, where that is known; the values are in `units`."""
 
     @property
     def is_truth(self) -> bool:
@@ -125,8 +129,14 @@ class Layout:
     """Lengths of the extra dimensions."""
     parameters: tuple[str, ...] = LINEAR_PARAMETERS
     """What makes a point: the dimensions of a grid, or what is given along `point`."""
+    over: tuple[str, ...] = ()
+    """The dimensions of the points where these are a grid over an arm's quantities."""
     needs_all_points: bool = False
     """Whether the file is whole only with variables that all points together give."""
+
+    def dimensions(self, is_list: bool) -> tuple[str, ...]:
+        """Names of the dimensions of the points; is_list: whether these are from a file of points."""
+        return self.over or (("point",) if is_list else self.parameters)
 
     @property
     def record(self) -> np.dtype:
