@@ -15,7 +15,7 @@ from rodsweep.solve.changes.unstable_modes import Kind
 from rodsweep.verdict.arm import report_on
 from rodsweep.verdict.checks import LOWERED_BY_INERTIA, stiffening
 from rodsweep.verdict.flutter import FlutterForces, FlutterRange
-from rodsweep.verdict.planes import Plane, Planes, with_load
+from rodsweep.verdict.planes import PlaneOfMotion, Planes, with_load
 
 WATER = {"length": "12 cm", "radius": "6 mm", "young": "80 kPa", "poisson": 0.49, "viscosity": "1 mPa s"}
 THICK = {"length": "15 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "100 Pa s"}
@@ -263,7 +263,7 @@ def test_a_load_relative_to_no_flutter_is_refused():
     arm = SlenderArm(**THICK, pressure="1.2 of flutter")
     none = FlutterForces(tau2=1.0, thresholds=nothing_found(ThresholdStatus.ok, 200.0))
     with pytest.raises(rs.InputError, match="^pressure = '1.2 of flutter' is nothing: .* up to 5.56e.03 Pa"):
-        with_load(Planes(Plane(arm, FlutterRange((none,)))))
+        with_load(Planes(PlaneOfMotion(arm, FlutterRange((none,)))))
 
 
 def test_the_report_is_a_table_in_a_notebook():

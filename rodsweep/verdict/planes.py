@@ -31,7 +31,7 @@ class PlaneOfMotion:
 
 
 @dataclass(frozen=True, slots=True)
-class PlanesOfMotion:
+class Planes:
     """The planes of an arm, of which it leaves `first` first: with the likeliest drag where drag decides."""
 
     first: PlaneOfMotion
@@ -46,16 +46,16 @@ class PlanesOfMotion:
         return all(ours <= other for ours, other in loads)
 
 
-def planes_of(arm: SlenderArm) -> PlanesOfMotion:
+def planes_of(arm: SlenderArm) -> Planes:
     """Both planes of a rectangle, or the only one of a section that is the same in all. Solves for them."""
     if arm.radius is not None or arm.si.width == arm.si.height:
-        return PlanesOfMotion(PlaneOfMotion(arm, flutter_range(arm)))
+        return Planes(PlaneOfMotion(arm, flutter_range(arm)))
     other = turned(arm)
     own = PlaneOfMotion(arm, flutter_range(arm), "the plane of its height")
     across = PlaneOfMotion(other, flutter_range(other), "the plane of its width")
     if across.flutter_loads[0] < own.flutter_loads[0]:
-        return PlanesOfMotion(across, own)
-    return PlanesOfMotion(own, across)
+        return Planes(across, own)
+    return Planes(own, across)
 
 
 def turned(arm: A) -> A:
@@ -63,7 +63,7 @@ def turned(arm: A) -> A:
     return replace(arm, width=arm.height, height=arm.width)
 
 
-def with_load(planes: PlanesOfMotion) -> PlanesOfMotion:
+def with_load(planes: Planes) -> Planes:
     """The planes with a load as a quantity where it is given relative to flutter.
 
     Relative to the first flutter of all planes with the likeliest drag. InputError where nothing flutters.
@@ -82,7 +82,7 @@ def with_load(planes: PlanesOfMotion) -> PlanesOfMotion:
     factor, unit = compact(share * flutter * scale, UNITS[load][0])
     given: dict[str, Any] = {load: f"{share * flutter * scale * factor:.15g} {unit}"}
     second = planes.second and replace(planes.second, arm=replace(planes.second.arm, **given))
-    return PlanesOfMotion(replace(first, arm=replace(first.arm, **given)), second)
+    return Planes(replace(first, arm=replace(first.arm, **given)), second)
 
 
 def with_known_load(arm: A) -> A:

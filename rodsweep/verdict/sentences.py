@@ -8,12 +8,12 @@ from ..model.neglected import Validity
 from ..solve.changes.unstable_modes import Kind
 from .flutter import FlutterRange, Span
 from .load import Load, rounded, rounded_percent
-from .planes import PlaneOfMotion, PlanesOfMotion
+from .planes import PlaneOfMotion, Planes
 from .remedies import does_not_apply, words_of
 from .validity import Assessment
 
 
-def verdict_sentences(planes: PlanesOfMotion, assessment: Assessment) -> list[str]:
+def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
     """What becomes of the arm in the plane in which it flutters first, over the range of its drag."""
     plane = planes.first
     if plane.found.failures:
@@ -103,7 +103,7 @@ def _without(plane: PlaneOfMotion, neglected: str) -> list[str]:
     return [*says, f"{load.given} would be {place} that threshold."]
 
 
-def _other_plane(planes: PlanesOfMotion, verb: str) -> list[str]:
+def _other_plane(planes: Planes, verb: str) -> list[str]:
     """When a rectangle flutters in the plane in which it does not flutter first."""
     second = planes.second
     if second is None:
