@@ -130,10 +130,19 @@ def test_show_begins_with_the_answer_in_the_units_that_were_typed(command):
     )
     assert float(worst[1]) == pytest.approx(float(data.neglected_excess.max()), rel=6e-2)
     found = re.fullmatch(
-        rf"flutters from {number} to {number} kPa; beats at {number} to {number} Hz", second
+        rf"where it applies: flutters from {number} to {number} kPa; beats at {number} to {number} Hz", second
     ).groups()
-    span(found[:2], data.pressure_hopf / 1e3)
-    span(found[2:], data.frequency_hopf_hz)
+    inside = data.where(rods & (data.model_applies != Validity.does_not_apply))
+    span(found[:2], inside.pressure_hopf / 1e3)
+    span(found[2:], inside.frequency_hopf_hz)
+
+
+def test_show_of_an_arm_in_water_says_nothing_without_reservation(command):
+    command.write("w.yaml", MAP.replace("viscosity: 4 Pa s", "viscosity: 1 mPa s"))
+    assert command("run", "w.yaml").returncode == 0
+    first, second, *_ = command("show", "w.h5").stdout.splitlines()[1:]
+    assert first.startswith("the model does not apply at 6 of 6 points: inertia of the arm is up to")
+    assert second.startswith("if it applied: flutters from ")
 
 
 @pytest.mark.parametrize(
