@@ -86,8 +86,8 @@ def draw(
 ) -> str:
     """Draws the figure of a file, or of several, into `output`; returns a sentence about it.
 
-    shapes: solves cycles whose shapes a file lacks. keep: takes the figure instead of a file. Raises InputError
-    where there is nothing that a figure could show.
+    shapes: solves cycles whose shapes a file lacks. keep: takes the figure instead of a file. Raises
+    InputError where there is nothing that a figure could show.
     """
     views = [views] if isinstance(views, View) else views
     if look.width and choices.get("what") == "animation":
