@@ -16,7 +16,7 @@ from ...results.file.view import View
 from ...results.layouts import lacks_curves
 from ...results.layouts.arm import QUANTITY_UNITS
 from ...results.layouts.variables import DIMENSIONS, MISSING
-from ...wording import counted, is_or_are, plural
+from ...wording import counted, duration, is_or_are, plural
 from .arm import arm_lines
 from .arm_answer import arm_answer
 from .branch import branch_summary
@@ -97,11 +97,9 @@ def _times(view: View, done: np.ndarray, noun: str) -> list[str]:
         return []
     seconds = view.variables["seconds"][done]
     if done.sum() == 1:
-        return [f"time of the {noun}: {1e3 * float(seconds.max()):.3g} ms"]
-    return [
-        f"time a {noun}: median {1e3 * np.median(seconds):.3g} ms, longest {1e3 * seconds.max():.3g} ms, "
-        f"all together {seconds.sum():.3g} s"
-    ]
+        return [f"time of the {noun}: {duration(float(seconds.max()))}"]
+    median, longest = duration(float(np.median(seconds))), duration(float(seconds.max()))
+    return [f"time a {noun}: median {median}, longest {longest}, all together {seconds.sum():.3g} s"]
 
 
 def _origin(a: dict[str, Any]) -> list[str]:

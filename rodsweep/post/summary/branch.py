@@ -26,14 +26,15 @@ NAMED_RODS = 8
 """Rods whose coexistence is named."""
 FULL = "they have more special points than the list holds; raise branch.special"
 SPECIAL_WORDS = {
+    "hopf": "Hopf point",
     "fold": "fold",
     "torus": "torus point",
     "symmetry_breaking": "symmetry breaking",
     "left_the_model": "place where h1 = 0",
-    "end": "end of a branch",
+    "end": "branch end",
     "period_doubling": "period doubling",
 }
-"""What special points other than Hopf points are called."""
+"""What special points are called."""
 ENDS = {
     "range_end": "the end of the range",
     "crushed": "where F all but reaches k1",
@@ -51,7 +52,7 @@ def branch_summary(view: View, done: np.ndarray) -> Told:
     counts = v["branch_count"][done]
     branches = counted(int(counts.clip(min=0).sum()), "branch")
     cycles = counted(int(v["point_count"][done].clip(min=0).sum()), "cycle")
-    line = f"{branches} at {some_of((counts > 0).sum(), len(rods), 'rod')}, {cycles}"
+    line = f"{branches} at {some_of((counts > 0).sum(), len(rods), 'rod')}, {cycles}{_sizes(view, done)}"
     return Told([line, *_specials(view, rods), *_coexistence(view, rods)], [_searched(view, done)])
 
 
@@ -128,6 +129,16 @@ def ends_of(view: View) -> Range:
     return float(options["start"]), float(options["stop"])
 
 
+def _sizes(view: View, done: np.ndarray) -> str:
+    """The period and the size of all cycles of the points that are `done`; nothing where there are none."""
+    v = view.variables
+    period, y = v["period"][done], v["tip_y_max"][done]
+    if not np.isfinite(period).any():
+        return ""
+    told = f": period {span(period, period * v['period_error'][done])} tau2"
+    return f"{told}, largest tip y {span(y, y * v['amplitude_error'][done])} L"
+
+
 def _specials(view: View, rods: np.ndarray) -> Iterator[str]:
     """How many special points of each kind all rods have, and where."""
     along = followed_parameter(view)
@@ -137,9 +148,8 @@ def _specials(view: View, rods: np.ndarray) -> Iterator[str]:
             for special in curve.special:
                 found.setdefault(special.kind, []).append((special.at, special.error))
     for kind, located in found.items():
-        if kind != "hopf":
-            places, errors = np.array(located).T
-            yield f"{counted(len(places), SPECIAL_WORDS[kind])}: {along} = {span(places, errors)}"
+        places, errors = np.array(located).T
+        yield f"{counted(len(places), SPECIAL_WORDS[kind])}: {along} = {span(places, errors)}"
 
 
 def _coexistence(view: View, rods: np.ndarray) -> Iterator[str]:

@@ -1,6 +1,7 @@
 """The beating arm in motion: a GIF, or an MP4 where ffmpeg is installed."""
 
 from collections.abc import Sequence
+from math import floor, log10
 from pathlib import Path
 
 import matplotlib
@@ -23,6 +24,8 @@ FEWEST_SHAPES = 8
 """Frames below which nothing seems to move."""
 GHOSTS = 6
 """Earlier shapes that fade away behind the arm."""
+DIGITS_OF_TIME = 3
+"""Of the period, which the running time has too."""
 GHOSTS_BACK = 0.2
 """How far back in periods the last of them is."""
 
@@ -86,7 +89,7 @@ class MovingArm:
         self.arrow = force_arrow(axes, np.zeros(1), np.zeros(1), np.zeros(1), SECOND)
         self.text = axes.text(0.02, 0.02, "", transform=axes.transAxes, size=9)
         axes.set_xlabel("$x/L$")
-        axes.set_title(cycle.heading(rf"$T = {cycle.period:.6g}\,\tau_2$"))
+        axes.set_title(cycle.heading(cycle.period_text))
 
     def show(self, k: int) -> None:
         """Moves the arm to its k-th shape."""
@@ -99,4 +102,5 @@ class MovingArm:
         self.arrow.remove()
         self.arrow = force_arrow(self.axes, x, y, theta, SECOND)
         time = self.cycle.period * k / self.frames
-        self.text.set_text(rf"$t$ = {time:.4f} $\tau_2$ = {k / self.frames:.2f} $T$")
+        decimals = max(0, DIGITS_OF_TIME - 1 - floor(log10(self.cycle.period)))
+        self.text.set_text(rf"$t$ = {time:.{decimals}f} $\tau_2$ = {k / self.frames:.2f} $T$")

@@ -9,8 +9,10 @@ from matplotlib.ticker import MaxNLocator
 
 from ....discretization.periodic import derivative, resampled
 from ....results.file.view import View
+from ...summary.limit_cycle import power_error
+from ...summary.ranges import rounded
 from ..style import FIRST, SECOND, THIRD, legend_below
-from .selection import ENERGIES, StoredCycle, chosen_cycles
+from .selection import ENERGIES, StoredCycle, chosen_cycles, in_tex
 
 RATE_MARKS = 24
 """Times at which the derivative of U is marked on the difference of injection and dissipation."""
@@ -30,9 +32,7 @@ def draw_energy(view: View, points: Sequence[int], narrow: bool = False) -> tupl
     )
     for column, cycle in zip(rows.T, cycles, strict=True):
         _budget(column, cycle)
-        mean, imbalance = (float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance"))
-        numbers = rf"$T = {cycle.period:.6g}\,\tau_2$", f"mean power {mean:.6g}", f"imbalance {imbalance:.1e}"
-        column[0].set_title(cycle.heading(*numbers))
+        column[0].set_title(cycle.heading(cycle.period_text, *_budget_words(cycle)))
     rows[1, 0].set_ylim(bottom=min(0.0, rows[1, 0].get_ylim()[0]))
     rows[0, 0].set_ylabel("energy\n$U L/k_3$")
     rows[1, 0].set_ylabel("power\n" r"$\times\, L\tau_2/k_3$")
@@ -42,6 +42,14 @@ def draw_energy(view: View, points: Sequence[int], narrow: bool = False) -> tupl
     figure.align_ylabels(rows[:, 0])
     figure.suptitle(selection.title)
     return figure, "energy, injection and dissipation over a cycle" + selection.left_out
+
+
+def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
+    """(the mean power of the force to its error, the imbalance), in the units of the panels."""
+    v = {name: float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance")}
+    error = power_error(cycle.values)
+    mean = in_tex(rounded(v["injection_mean"], abs(v["injection_mean"]) * float(error)))
+    return f"mean power ${mean}$", f"imbalance {v['energy_imbalance']:.1e}"
 
 
 def _budget(column: Sequence[Axes], cycle: StoredCycle) -> None:

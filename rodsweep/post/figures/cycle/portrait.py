@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Rectangle
 from matplotlib.quiver import Quiver
 from matplotlib.ticker import FuncFormatter
@@ -32,6 +33,12 @@ TIP_PERIODS = 2
 """How long the tip is followed, in periods of the slowest cycle."""
 FEW_SAMPLES = 48
 """Below this number the samples themselves are marked on the curve through them."""
+SHAPES_WIDTH, TIP_HEIGHT = 3.2, 1.0
+"""Inches of a panel with shapes, across, and of one of the tip below it, down."""
+PADDING = 0.1
+"""Inches beside panels: the layout misjudges the labels of panels of one scale by half of it."""
+TEXTS, NARROW_TEXTS = 1.4, 2.0
+"""Inches of labels and headings above and below the panels; on a narrow page the bar of times too."""
 LIGHTEST = 0.14
 """The part of the colour map left out: yellow that does not show on white."""
 
@@ -43,7 +50,7 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
     """
     selection = chosen_cycles(view, points, SHAPES)
     cycles = selection.cycles
-    figure, shapes, tips = _panels(len(cycles), narrow)
+    figure, shapes, tips = _panels(cycles, narrow)
     emerging = all(cycle.has_trace for cycle in cycles)
     end = TIP_PERIODS * max(c.period for c in cycles)
     drawn, step = drawn_shapes(len(cycles[0].values["shape_x"]))
@@ -57,10 +64,7 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
             axes.plot(x, y, color=colours(k), lw=1.8, solid_capstyle="round", zorder=2 + k / 100)
             force_arrow(axes, x, y, theta, colours(k))
         axes.set_xlabel("$x/L$")
-        period = [rf"$T = {cycle.period:.6g}\,\tau_2$"]
-        if 0 < cycle.tau1 < np.inf:
-            period.append(rf"$= {cycle.period / cycle.tau1:.6g}\,\tau_1$")
-        axes.set_title(cycle.heading(*period))
+        axes.set_title(cycle.heading(cycle.period_text, cycle.period_in_tau1))
         if emerging:
             draw_emergence(upper, lower, cycle)
         else:
@@ -74,8 +78,15 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
     return figure, f"shapes through the cycle and {tip}{selection.left_out}"
 
 
-def _panels(count: int, narrow: bool) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
-    """(figure, a panel for each cycle's shapes, two for its tip: beside those of one, or below)."""
+def _panels(
+    cycles: Sequence[StoredCycle], narrow: bool
+) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
+    """(figure, a panel for each cycle's shapes, two for its tip: beside those of one, or below).
+
+    The shapes have the height that they need at the width that they have, so that no blank is left above.
+    """
+    count = len(cycles)
+    (left, right), (low, high) = region(cycles)
     if count == 1 and not narrow:
         figure = Figure(figsize=(8.6, 4.4), layout="constrained")
         table: dict[str, Axes] = figure.subplot_mosaic(
@@ -83,9 +94,14 @@ def _panels(count: int, narrow: bool) -> tuple[Figure, list[Axes], list[tuple[Ax
         )
         table["x"].sharex(table["y"])
         return figure, [table["shapes"]], [(table["x"], table["y"])]
-    figure = Figure(figsize=(3.2 * count + 1.2, 8.0 if narrow else 7.2), layout="constrained")
-    heights = (3.2, 1, 1)
-    rows = figure.subplots(3, count, squeeze=False, sharex="row", sharey="row", height_ratios=heights)
+    shapes = SHAPES_WIDTH * (high - low) / (right - left)
+    beside = NARROW_TEXTS if narrow else TEXTS
+    size = SHAPES_WIDTH * count + 1.2, shapes + 2 * TIP_HEIGHT + beside
+    figure = Figure(figsize=size, layout=ConstrainedLayoutEngine(w_pad=PADDING))
+    heights = (shapes, TIP_HEIGHT, TIP_HEIGHT)
+    rows = figure.subplots(3, count, squeeze=False, sharey="row", height_ratios=heights)
+    for x, y in rows[1:].T:
+        x.sharex(y)
     return figure, list(rows[0]), list(zip(rows[1], rows[2], strict=True))
 
 
@@ -135,7 +151,15 @@ def clamp(axes: Axes) -> None:
 
 
 def frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
-    """The same region in all panels: every shape and arrow, one length for x and y."""
+    """The same region in all panels, with one length for x and y."""
+    along_x, along_y = region(cycles)
+    for axes in panels:
+        axes.set_aspect("equal")
+        axes.set(xlim=along_x, ylim=along_y)
+
+
+def region(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[float, float]]:
+    """(from and to in x, the same in y) of every shape and arrow, in L."""
     wall = -0.05
     along_x, along_y = [np.array([wall])], []
     for cycle in cycles:
@@ -143,9 +167,7 @@ def frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
         along_x += [x.ravel(), x[:, -1] + ARROW * np.cos(theta[:, -1])]
         along_y += [y.ravel(), y[:, -1] + ARROW * np.sin(theta[:, -1])]
     x, y = np.concatenate(along_x), np.concatenate(along_y)
-    for axes in panels:
-        axes.set_aspect("equal")
-        axes.set(xlim=(x.min() - 0.04, x.max() + 0.04), ylim=(y.min() - 0.04, y.max() + 0.04))
+    return (x.min() - 0.04, x.max() + 0.04), (y.min() - 0.04, y.max() + 0.04)
 
 
 def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import View
+from ...summary.ranges import rounded
 from ..style import heading, parameter_text
 
 MOST_CYCLES = 3
@@ -46,6 +47,21 @@ class StoredCycle:
         return self.parameters["gamma3"] / self.parameters["k2"]
 
     @property
+    def period_text(self) -> str:
+        """The period in tau2, in TeX, with the digits that its error leaves; a line may end behind the T."""
+        return self._period(self.period, r"\tau_2", r"T\,")
+
+    @property
+    def period_in_tau1(self) -> str:
+        """The same in tau1, where the rod has that, as another line; else nothing."""
+        return self._period(self.period / self.tau1, r"\tau_1") if 0 < self.tau1 < np.inf else ""
+
+    def _period(self, value: float, unit: str, symbol: str = "") -> str:
+        """A period in a unit, in TeX."""
+        error = float(self.values["period_error"])
+        return rf"${symbol}{{=}}$ ${in_tex(rounded(value, abs(value) * error))}\,{unit}$"
+
+    @property
     def tip(self) -> tuple[Array, Array]:
         """x and y of the tip in L over a period: from the samples, or else from the shapes."""
         if "tip_x" in self.values:
@@ -60,6 +76,12 @@ class StoredCycle:
     def heading(self, *lines: str) -> str:
         """The label, where there is one, above lines about the cycle, which a narrow panel has room for."""
         return "\n".join(filter(None, (self.label, *lines)))
+
+
+def in_tex(number: str) -> str:
+    """A number as `rounded` writes it, with its power of ten in TeX."""
+    mantissa, _, power = number.partition("e")
+    return rf"{mantissa}\times10^{{{int(power)}}}" if power else mantissa
 
 
 @dataclass(frozen=True, slots=True)

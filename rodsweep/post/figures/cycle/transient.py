@@ -26,11 +26,11 @@ def draw_transients(view: View, points: Sequence[int], narrow: bool = False) -> 
     rows = figure.subplots(2, count, squeeze=False, sharex="col", sharey="row")
     for (upper, lower), cycle in zip(rows.T, selection.cycles, strict=True):
         draw_emergence(upper, lower, cycle)
-        ends = cycle.word.replace("_", " ")
+        ends = [cycle.word.replace("_", " ")]
         if cycle.word in CYCLE_WORDS:
-            ends += "" if narrow else " (extrema dashed)"
-            ends += rf", $T = {cycle.period:.6g}\,\tau_2$"
-        upper.set_title(cycle.heading(ends))
+            ends[0] += "" if narrow else " (extrema dashed)"
+            ends.append(cycle.period_text)
+        upper.set_title(cycle.heading(*ends))
     label_tip(rows[0, 0], rows[1, 0])
     figure.align_ylabels(rows[:, 0])
     figure.suptitle(selection.title)
