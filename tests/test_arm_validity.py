@@ -164,6 +164,24 @@ def test_show_answers_of_every_task(command, task, arm, more, told):
     assert any(line.startswith(told) for line in lines)
 
 
+@pytest.mark.parametrize(("height", "told"), [("8 mm", 1), ("5 mm", 0), ("[5 mm, 7 mm]", 1)])
+def test_a_rectangle_that_gives_way_first_in_the_other_plane_is_said_to(command, height, told):
+    quantities = f"length: 15 cm, width: 6 mm, height: {height}, young: 60 kPa, viscosity: 40 Pa s"
+    command.write("a.yaml", f"task: thresholds\nparameters: {{arm: {{{quantities}}}}}\n")
+    said = "the arm flutters first in the other plane, at a lower load"
+    assert command("check", "a.yaml").stdout.count(said) == told
+    assert command("run", "a.yaml").returncode == 0
+    assert command("show", "a.h5").stdout.splitlines()[1].count(said) == told
+
+
+def test_a_rectangle_in_python_is_said_to_give_way_first_in_the_other_plane():
+    flat = rs.Arm(length="15 cm", width="5 mm", height="8 mm", young="60 kPa", viscosity="40 Pa s")
+    first, second = flat.turned.thresholds(), flat.thresholds()
+    assert "it moves in the plane of its height, and flutters first in the other" in str(second)
+    assert "flutters first" not in str(first)
+    assert first.pressure_hopf < second.pressure_hopf
+
+
 def drawn(monkeypatch, path, output, **choice):
     """The figure of a file, not written, with its legend and labels."""
     figures = []
