@@ -41,6 +41,7 @@ def test_an_arm_beats_in_cm_and_s_under_its_quantities():
     assert lower.lines[0].get_xdata()[-1] == pytest.approx(2 * period)
     largest = 15 * np.abs(view.variables["tip_y"]).max()
     assert np.abs(lower.lines[0].get_ydata()).max() == pytest.approx(largest, rel=1e-2)
+    assert "viscosity\xa030\xa0Pa\xa0s," in figure.get_suptitle()
     assert figure.get_suptitle().replace("\xa0", " ").splitlines()[-1] == (
         "length 15 cm, radius 5 mm, Young's modulus 60 kPa, viscosity 30 Pa s, pressure 0.726 kPa"
     )
