@@ -237,7 +237,7 @@ def spectrum_sentences(view, sentences, _):
             (sentence, "" if int(match[1]) == true else f"{true} are {word}")
             for sentence, match in read(sentences, rf"(?<!\w){word} at NUMBER[ (,]")
         ]
-    for sentence, match in read(sentences, "straight rod: (stable|unstable) at all of NUMBER point"):
+    for sentence, match in read(sentences, "straight rod: (stable|unstable) at all NUMBER point"):
         right = all((n > 0) == (match[1] == "unstable") for n in numbers) and int(match[2]) == len(numbers)
         found.append((sentence, "" if right else f"unstable modes: {numbers}"))
     if view.variables["status"].size == 1:

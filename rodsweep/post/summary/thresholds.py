@@ -41,8 +41,8 @@ def event_line(view: View, done: np.ndarray, event: str) -> str:
     errors = crossing_errors(view, F, "crossing_F")
     places = [f"{rounded(F[i], errors[i])}{in_brackets(at_point(view, i))}" for i in (low, high)]
     forces = " to ".join(places if places[0] != places[1] else places[:1])
-    where = "at all" if there.sum() == rods else f"at {int(there.sum())}"
-    return f"{words}: F = {forces}, {where} of {counted(rods, 'rod')}; {noun} {span(v[rate][done])} {unit}"
+    where = f"all {counted(rods, 'rod')}" if there.sum() == rods else some_of(int(there.sum()), rods, "rod")
+    return f"{words}: F = {forces}, at {where}; {noun} {span(v[rate][done])} {unit}"
 
 
 def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
