@@ -164,6 +164,14 @@ def test_show_answers_of_every_task(command, task, arm, more, told):
     assert any(line.startswith(told) for line in lines)
 
 
+def test_lines_that_are_asked_for_over_an_arm_name_what_draws_them(command):
+    command.write("a.yaml", MAP)
+    assert command("run", "a.yaml").returncode == 0
+    refused = command("plot", "a.h5", "--what", "lines")
+    assert refused.returncode == 2
+    assert "--what lines is not for a grid over an arm's quantities; remove it, and --at" in refused.stderr
+
+
 @pytest.mark.parametrize(("height", "told"), [("8 mm", 1), ("5 mm", 0), ("[5 mm, 7 mm]", 1)])
 def test_a_rectangle_that_gives_way_first_in_the_other_plane_is_said_to(command, height, told):
     quantities = f"length: 15 cm, width: 6 mm, height: {height}, young: 60 kPa, viscosity: 40 Pa s"
@@ -213,7 +221,7 @@ def test_lines_over_one_quantity(command, monkeypatch):
     x, y = figure.axes[0].lines[0].get_data()
     assert x == pytest.approx(data.length.values * 100)
     assert y == pytest.approx(data.pressure_hopf.values / 1e3, nan_ok=True)
-    assert figure.axes[1].get_ylabel() == "frequency at flutter (Hz)"
+    assert [axes.get_ylabel() for axes in figure.axes] == ["pressure (kPa)", "frequency at flutter (Hz)"]
 
 
 def test_figures_over_F_are_hatched_where_the_model_does_not_apply(command, monkeypatch):

@@ -54,6 +54,8 @@ class Panel:
     values: Array
     lines: Mapping[str, Array] = field(default_factory=dict)
     turns: str = ""
+    of_lines: str = ""
+    """The label where several lines are drawn, if it is another one."""
     without: str = "nothing computed"
     """What the legend says of arms that have no number."""
 
@@ -150,7 +152,7 @@ def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[
     subplot = axes.get_subplotspec()
     if subplot is None or subplot.is_last_row():
         axes.set_xlabel(label)
-    axes.set_ylabel(panel.label)
+    axes.set_ylabel(panel.of_lines if len(handles) > 1 else panel.label)
     return handles
 
 
@@ -195,7 +197,9 @@ def _of_thresholds(view: View) -> list[Panel]:
         lines[EVENTS[event]], unit = in_typed(view, typed, view.variables[f"{load}_{event}"], si)
     flutter = lines[EVENTS["hopf"]]
     return [
-        Panel(f"{load} at flutter ({unit})", flutter, lines, without="no flutter"),
+        Panel(
+            f"{load} at flutter ({unit})", flutter, lines, of_lines=f"{load} ({unit})", without="no flutter"
+        ),
         Panel("frequency at flutter (Hz)", view.variables["frequency_hopf_hz"], without="no flutter"),
     ]
 
