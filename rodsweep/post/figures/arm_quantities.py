@@ -21,7 +21,7 @@ SAME_NUMBER = 1e-9
 
 
 def in_typed(view: View, name: str, values: Array, si: str = "") -> tuple[Array, str]:
-    """(values of a quantity in the unit in which it was typed, that unit)."""
+    """(values of a quantity, of any shape, in the unit in which it was typed, that unit)."""
     si = si or QUANTITY_UNITS[name]
     unit = view.typed.get(name, si)
     return (values, "") if si == "1" else (values * written_in(1.0, unit, si), unit)

@@ -67,7 +67,7 @@ class CycleUnits:
         return f"{power:.4g}{TOGETHER}{self.names[3]}" if self.in_si else f"{power:.6g}"
 
     def drawn(self, values: dict[str, Array]) -> dict[str, Array]:
-        """Variables of a point in these units."""
+        """Variables of a point, each of any shape, in these units."""
         factors = (
             dict.fromkeys((*LENGTHS, *LENGTHS_OF_CYCLES), self.length)
             | dict.fromkeys(TIMES, self.time)
