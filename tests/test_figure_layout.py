@@ -249,6 +249,10 @@ def test_words_of_mathematics_are_not_broken():
     ]  # fmt: skip
 
 
+def test_no_break_spaces_hold_a_number_and_its_unit_together():
+    assert WORDS.findall("viscosity\xa030\xa0Pa\xa0s, a b") == ["viscosity\xa030\xa0Pa\xa0s,", "a", "b"]
+
+
 def test_lines_are_broken_only_where_they_are_too_long():
     figure = Figure(figsize=(4, 2))
     text = figure.text(0, 0.5, "one two three four\nfive")

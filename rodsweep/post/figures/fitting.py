@@ -37,8 +37,9 @@ BLANK = 0.25
 """Space between the labels of two ticks beside each other, in units of their height."""
 SEEN = 1e-9
 """Length of an axis by which a tick at its end may lie outside by rounding."""
-WORDS = re.compile(r"(?:\\.|\$(?:\\.|[^$\\])*\$|[^\s$])+")
-"""Words of a text; mathematics between dollars is part of its word, with the blanks in it."""
+WORDS = re.compile(r"(?:\\.|\$(?:\\.|[^$\\])*\$|[^\s$]|\xa0)+")
+"""Words of a text; mathematics between dollars is part of its word, with the blanks in it, and a no-break
+space holds a number and its unit together."""
 
 
 def fit(figure: Figure, least_aspect: float = LEAST_ASPECT) -> None:

@@ -19,10 +19,28 @@ OF_PRESSURE = ("pressure", "young")
 """Whose unit a pressure is told in: the first that was typed."""
 
 
+OTHER_PLANE = (
+    "the motion is in the plane of the height; where that is above the width, the arm flutters first in the "
+    "other plane, at a lower load: exchange width and height to see it"
+)
+
+
 def arm_answer(view: View, done: np.ndarray) -> list[str]:
     """Lines about the points that are `done`, a mask of their shape; none without an arm."""
-    if not view.quantities:
-        return []
+    return [*plane_lines(view.quantities), *_applied(view, done)] if view.quantities else []
+
+
+def plane_lines(quantities: Mapping[str, np.ndarray]) -> list[str]:
+    """What is said of rectangles of which one gives way first in the plane that is not computed; else none.
+
+    quantities: those of an arm in SI, each a number or (n,).
+    """
+    height, width = (np.asarray(quantities.get(name, np.nan)) for name in ("height", "width"))
+    return [OTHER_PLANE] if np.max(height) > np.min(width) else []
+
+
+def _applied(view: View, done: np.ndarray) -> list[str]:
+    """Lines about points, with whether the model applies to them."""
     rods = done & (view.variables["status"] < NOT_SLENDER)
     if not rods.any():
         return ["no rod covers any of these arms"] if done.any() else []

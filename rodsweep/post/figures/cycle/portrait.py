@@ -29,6 +29,10 @@ MOST_SHAPES = 12
 """Shapes of one cycle that can still be told apart."""
 ARROW = 0.14
 """Length of the force's arrow in L."""
+WALL_DEPTH, WALL_HALF = 0.05, 0.13
+"""Thickness and half the height of the wall in L."""
+MARGIN = 0.04
+"""Free room around shapes and arrows in L."""
 TIP_PERIODS = 2
 """How long the tip is followed, in periods of the slowest cycle."""
 FEW_SAMPLES = 48
@@ -58,20 +62,20 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
     colours = ListedColormap(matplotlib.colormaps["viridis_r"](np.linspace(LIGHTEST, 1, len(drawn))))
     for axes, (upper, lower), cycle in zip(shapes, tips, cycles, strict=True):
         tip_path(axes, cycle)
-        clamp(axes)
+        clamp(axes, cycle.units.length)
         for k, place in enumerate(drawn):
             x, y, theta = (cycle.values[name][place] for name in SHAPES)
             axes.plot(x, y, color=colours(k), lw=1.8, solid_capstyle="round", zorder=2 + k / 100)
-            force_arrow(axes, x, y, theta, colours(k))
-        axes.set_xlabel("$x/L$")
+            force_arrow(axes, x, y, theta, colours(k), cycle.units.length)
+        axes.set_xlabel(cycle.units.along("x"))
         axes.set_title(cycle.heading(cycle.period_text, cycle.period_in_tau1))
         if emerging:
             draw_emergence(upper, lower, cycle)
         else:
             _tip(upper, lower, cycle, end)
     frame(shapes, cycles)
-    shapes[0].set_ylabel("$y/L$")
-    label_tip(*tips[0])
+    shapes[0].set_ylabel(cycles[0].units.along("y"))
+    label_tip(*tips[0], cycles[0].units)
     _phase_bar(figure, shapes, colours, step, narrow)
     figure.suptitle(selection.title)
     tip = "the tip from the start on" if emerging else "the tip in time"
@@ -134,20 +138,25 @@ def tip_path(axes: Axes, cycle: StoredCycle) -> None:
     axes.plot(*(resampled(v, phase) for v in cycle.tip), color="0.6", lw=0.8, ls=(0, (4, 2)), zorder=1)
 
 
-def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any) -> Quiver:
-    """The force, along -e1 = -(cos theta, sin theta) of the tip, as an arrow that presses on the tip."""
+def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, length: float) -> Quiver:
+    """The force, along -e1 = -(cos theta, sin theta) of the tip, as an arrow that presses on the tip.
+
+    length: L in the units of x and y.
+    """
     e1 = np.array([np.cos(theta[-1]), np.sin(theta[-1])])
+    along = -ARROW * length * e1
     return axes.quiver(
-        x[-1], y[-1], *(-ARROW * e1), angles="xy", scale_units="xy", scale=1, pivot="tip", color=colour,
+        x[-1], y[-1], *along, angles="xy", scale_units="xy", scale=1, pivot="tip", color=colour,
         width=0.011, headwidth=4, headlength=4.5, headaxislength=4, zorder=4,
     )  # fmt: skip
 
 
-def clamp(axes: Axes) -> None:
-    """The wall that holds the rod at u = 0."""
-    wall = Rectangle((-0.05, -0.13), 0.05, 0.26, facecolor="white", edgecolor="0.3", hatch="/////", lw=0)
+def clamp(axes: Axes, length: float) -> None:
+    """The wall that holds the rod at u = 0; length: L in the units of the axes."""
+    depth, half = WALL_DEPTH * length, WALL_HALF * length
+    wall = Rectangle((-depth, -half), depth, 2 * half, fc="white", ec="0.3", hatch="/////", lw=0)
     axes.add_patch(wall)
-    axes.plot([0, 0], [-0.13, 0.13], color="k", lw=1.4, zorder=5)
+    axes.plot([0, 0], [-half, half], color="k", lw=1.4, zorder=5)
 
 
 def frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
@@ -159,19 +168,21 @@ def frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
 
 
 def region(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[float, float]]:
-    """(from and to in x, the same in y) of every shape and arrow, in L."""
-    wall = -0.05
+    """(from and to in x, the same in y) of every shape and arrow, in the unit of length of the cycles."""
+    longest = max(cycle.units.length for cycle in cycles)
+    wall, margin = -WALL_DEPTH * longest, MARGIN * longest
     along_x, along_y = [np.array([wall])], []
     for cycle in cycles:
         x, y, theta = (cycle.values[name] for name in SHAPES)
-        along_x += [x.ravel(), x[:, -1] + ARROW * np.cos(theta[:, -1])]
-        along_y += [y.ravel(), y[:, -1] + ARROW * np.sin(theta[:, -1])]
+        arrow = ARROW * cycle.units.length
+        along_x += [x.ravel(), x[:, -1] + arrow * np.cos(theta[:, -1])]
+        along_y += [y.ravel(), y[:, -1] + arrow * np.sin(theta[:, -1])]
     x, y = np.concatenate(along_x), np.concatenate(along_y)
-    return (x.min() - 0.04, x.max() + 0.04), (y.min() - 0.04, y.max() + 0.04)
+    return (x.min() - margin, x.max() + margin), (y.min() - margin, y.max() + margin)
 
 
 def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
-    """x and y of the tip against time in tau2, and in the paper's tau1 where there is one."""
+    """x and y of the tip against time, and also in the paper's tau1 where there is one."""
     time = np.linspace(0, end, 801, dtype=np.float64)
     for axes, values, colour in zip((upper, lower), cycle.tip, (FIRST, SECOND), strict=True):
         axes.plot(time, resampled(values, time / cycle.period), color=colour, lw=1.4)
@@ -180,4 +191,4 @@ def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
             axes.plot(at * cycle.period / len(values), values[at % len(values)], "o", color=colour, ms=2.5)
         axes.axvline(cycle.period, color="0.7", lw=0.8, ls=":")
         axes.margins(x=0)
-    label_time(upper, lower, cycle.tau1)
+    label_time(upper, lower, cycle)
