@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ..wording import counted
+from ..wording import counted, seconds_text
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,8 +30,8 @@ class RunEnd:
         sentences, ranks = [], counted(self.ranks, "rank")
         if self.asked:
             points = self.asked - self.left
-            each = 1e3 * self.seconds * self.ranks / max(points, 1)
-            pace = f" ({each:.3g} ms a point and rank)" if points else ""
+            each = self.seconds * self.ranks / max(points, 1)
+            pace = f" ({seconds_text(each)} a point and rank)" if points else ""
             sentences.append(f"{counted(points, 'point')} in {self.seconds:.2f} s on {ranks}{pace}")
         if self.followed is not None:
             word = "curves in" if self.halves is None else "curves stopped after"
