@@ -83,7 +83,7 @@ def test_names_are_these():
 def test_arguments_are_these():
     assert list(inspect.signature(rs.sweep).parameters) == ["task", "ranks", "strict", "progress", "keywords"]
     drawn = list(inspect.signature(rs.plot).parameters)
-    assert drawn == ["data", "output", "roots", "what", "points", "look"]
+    assert drawn == ["data", "output", "roots", "what", "points", "at", "look"]
     assert list(inspect.signature(rs.open).parameters) == ["path"]
     arguments = inspect.signature(rs.Rod).parameters
     assert [name for name in arguments if name != "unknown"] == [*PARAMETERS, "arm"]

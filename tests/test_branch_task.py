@@ -226,7 +226,7 @@ def test_those_whose_special_points_are_stored_are_told_and_drawn_before_others(
     assert "branch 1, from the Hopf point at F = 27.427194126" in told
     assert "beside a stable straight rod" not in told
     drawn = " ".join(command("plot", "c.h5", "-o", "c.png").stdout.split())
-    assert "1 branches of cycles over F; 1 more have special points that are not stored" in drawn
+    assert "1 branch of cycles over F; 1 more have special points that are not stored" in drawn
 
 
 def test_longer_lists_are_computed_anew_only_where_they_were_full(command):
@@ -274,7 +274,7 @@ def test_other_parameters_are_followed_from_the_command_line(command):
     assert re.search(r"fold at k1 = 155\.37066\d* \(", told)
     assert "to the end of the range, k1 = 170" in told
     drawn = command("plot", "c.h5", "-o", "c.png")
-    assert "1 branches of cycles over k1" in drawn.stdout
+    assert "1 branch of cycles over k1" in drawn.stdout
 
 
 def test_list_of_rods_needs_no_column_of_what_is_followed(command):

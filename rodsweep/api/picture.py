@@ -68,7 +68,7 @@ def plot(
     data: Drawable | Sequence[Drawable],
     output: str | Path | None = None,
     *,
-    roots: Literal["rightmost", "smallest"] | None = None,
+    roots: Literal["rightmost", "smallest", "all"] | None = None,
     what: str | None = None,
     points: Sequence[int] | int = (),
     at: Mapping[str, float | str] = MappingProxyType({}),

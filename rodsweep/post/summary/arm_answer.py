@@ -13,6 +13,7 @@ from ...model.units import written_in
 from ...results.file.view import View
 from ...results.layouts.arm import EFFECTS, FORCES, VALIDITY
 from ...results.layouts.thresholds import CROSSING_KINDS
+from ...wording import some_of
 
 OF_PRESSURE = ("pressure", "young")
 """Whose unit a pressure is told in: the first that was typed."""
@@ -46,7 +47,8 @@ def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str
     if worst == Validity.applies:
         return f"the model applies{' at all points' * (len(applies) > 1)}{when}"
     there = applies == worst
-    at = f" at {int(there.sum())} of {len(applies)} points" if len(applies) > 1 else ""
+    some = f" at {some_of(int(there.sum()), len(applies), 'point')}"
+    at = "" if len(applies) == 1 else f" at all {len(applies)} points" if there.all() else some
     verb = "does not apply" if worst == Validity.does_not_apply else "is doubtful"
     place = int(np.flatnonzero(there)[np.argmax(excess[there])])
     name, size = EFFECTS[int(effect[place])].replace("_", " "), f"{excess[place]:.2g}"
