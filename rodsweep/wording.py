@@ -24,6 +24,11 @@ def is_or_are(count: int) -> str:
     return "is" if count == 1 else "are"
 
 
+def has_or_have(count: int) -> str:
+    """The verb of what a number of things have."""
+    return "has" if count == 1 else "have"
+
+
 def some_of(count: int, whole: int, noun: str) -> str:
     """So many of all things of a kind: "at " + some_of(2, 4, "row") is "at 2 of 4 rows"."""
     return f"{int(count)} of {counted(whole, noun)}"

@@ -289,7 +289,9 @@ class _Run:
             self._say(sentence)
         expected = {status.name for status in self.solver.statuses if status.succeeded} | {"missing"}
         amiss = not set(counts) <= expected
-        self._say(f"{self.output}: " + ", ".join(f"{n} {name}" for name, n in counts.items()), amiss)
+        words = {"missing": "of other shards"} if self.shard and not left else {}
+        told = (f"{n} {words.get(name, name)}" for name, n in counts.items())
+        self._say(f"{self.output}: {', '.join(told)}", amiss)
         self._say_failures(contributions, exceptions)
         if left or lacks_curves:
             how = f"stopped by {self.stop.name}" if self.stop else "not complete"

@@ -74,7 +74,12 @@ def show_summary(view: View, every_status: bool = False) -> None:
 def _unfinished(view: View, missing: int, noun: str) -> list[str]:
     """What is not in the file yet."""
     lines = []
-    if missing:
+    if missing and (shard := view.attributes.get("shard")):
+        lines.append(
+            f"{counted(missing, noun)} {is_or_are(missing)} not here: the file is shard {shard}, `rodsweep "
+            "merge` puts the shards together; where this one was interrupted, its own command continues"
+        )
+    elif missing:
         lines.append(
             f"{counted(missing, noun)} {is_or_are(missing)} missing; where no run goes on, the same command "
             "continues"
@@ -98,8 +103,10 @@ def _times(view: View, done: np.ndarray, noun: str) -> list[str]:
     seconds = view.variables["seconds"][done]
     if done.sum() == 1:
         return [f"time of the {noun}: {duration(float(seconds.max()))}"]
-    median, longest = duration(float(np.median(seconds))), duration(float(seconds.max()))
-    return [f"time a {noun}: median {median}, longest {longest}, all together {seconds.sum():.3g} s"]
+    return [
+        f"time a {noun}: median {duration(float(np.median(seconds)))}, longest "
+        f"{duration(float(seconds.max()))}, all together {duration(float(seconds.sum()))}"
+    ]
 
 
 def _origin(a: dict[str, Any]) -> list[str]:
