@@ -148,7 +148,7 @@ def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
 
 
 def power_error(v: Mapping[str, np.ndarray]) -> np.ndarray:
-    """The relative error of the mean power of the force: it goes with the square of the amplitude."""
+    """Relative error of the mean power of the force, of any shape: it goes with the amplitude's square."""
     return 2 * v["amplitude_error"] + v["period_error"] + np.abs(v["energy_imbalance"])
 
 

@@ -129,7 +129,7 @@ def share_lines(found: np.ndarray) -> list[str]:
 
 
 def start_lines(view: View, done: np.ndarray, line: str) -> list[str]:
-    """What rows do where they begin, unless all are monotone: what changed before is not in the diagram."""
+    """What rows do where they begin, unless all are monotone; done: which rows are there, (rows,)."""
     start = view.variables["class"][done][:, 0]
     words = [f"{word} on {int((start == n).sum())}" for n, word in CLASSES if (start == n).any()]
     if words == [f"monotone on {len(start)}"]:
