@@ -35,7 +35,8 @@ class RunEnd:
             sentences.append(f"{counted(points, 'point')} in {self.seconds:.2f} s on {ranks}{pace}")
         if self.followed is not None:
             word = "curves in" if self.halves is None else "curves stopped after"
-            done = f"; {self.followed} halves of curves of cycles followed" if self.followed else ""
+            halves = "half of a curve" if self.followed == 1 else "halves of curves"
+            done = f"; {self.followed} {halves} of cycles followed" if self.followed else ""
             sentences.append(f"{word} {self.curve_seconds:.2f} s on {ranks}{done}")
         return sentences
 
