@@ -1,5 +1,6 @@
 """Figures of the cycles of arms: in cm, s and W, under the arm's quantities as they were typed."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -84,4 +85,5 @@ def test_a_film_of_an_arm_counts_seconds():
     _, (moving,) = first_frame(chosen_cycles(view, (), ()))
     moving.show(4)
     seconds = float(view.variables["period"][0]) * arm.tau2 * 4 / moving.frames
-    assert moving.text.get_text().startswith(f"$t$ = {seconds:.3g} s = ")
+    shown = re.match(r"\$t\$ = ([\d.]+) s = ", moving.text.get_text())
+    assert float(shown[1]) == pytest.approx(seconds, rel=1e-2)

@@ -157,6 +157,8 @@ def test_infinite_axis_values_and_odd_titles_are_drawn_or_refused_in_a_sentence(
     both = ["--set", "parameters.k2=[50, 100, .inf]", "--set", "title=cost in $ and \\frac"]
     command("run", "c.yaml", *both, "-o", "map.h5")
     assert command("plot", "map.h5").returncode == 0
+    at = command("plot", "map.h5", "--at", "k2=inf", "-o", "at.png")
+    assert (at.returncode, "panel" in at.stdout) == (0, False)
     command("run", "c.yaml", *both, "--set", "parameters.F=3", "-o", "line.h5")
     assert command("plot", "line.h5").returncode == 0
     for output in ("map.h5", ".", "figure"):

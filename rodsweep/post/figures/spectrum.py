@@ -40,20 +40,21 @@ def draw_spectrum(request: FigureRequest) -> str:
         return request.write(draw_eigenvalues(view), "the stored eigenvalues in the complex plane")
     if not view.is_grid:
         return request.write(draw_list_of_spectra(view), "the stored eigenvalues of every point")
+    long = long_axes(view)
+    few = min(long, key=lambda name: len(view.axes[name]))
+    if len(long) > 1 and len(view.axes[few]) <= MOST_LINES:
+        return _lines(view, few, request)
     view = without_infinite(view)
     long = long_axes(view)
     if len(long) == 1:
         roots = roots_to_follow([view], request.roots)
         return request.write(draw_line(view, long[0], roots), FOLLOWED_ROOTS[roots])
-    few = min(long, key=lambda name: len(view.axes[name]))
-    if len(view.axes[few]) <= MOST_LINES:
-        return _lines(view, few, request)
     return request.write(_map(view, long), "the leading growth rate", MAP_ASPECT)
 
 
 def _lines(view: View, few: str, request: FigureRequest) -> str:
     """A panel for each value of a parameter with few of them: a map would show what is not known between."""
-    lines = [section(view, {few: float(value)}) for value in view.axes[few]]
+    lines = [without_infinite(section(view, {few: float(value)})) for value in view.axes[few]]
     views = [line for line in lines if np.isfinite(line.variables["growth_rate"]).any()]
     roots = roots_to_follow(views, request.roots)
     figure = draw_panels(views, roots, request.look.narrow)
@@ -96,9 +97,11 @@ def without_infinite(view: View) -> View:
     for place, (name, values) in enumerate(view.axes.items()):
         finite = np.isfinite(values)
         if len(values) > 1 and not finite.all():
-            variables[name] = values[finite]
-            for key in ("growth_rate", "frequency", "unstable_count"):
+            shape = variables["status"].shape
+            of_points = [key for key, data in variables.items() if data.shape[: len(shape)] == shape]
+            for key in of_points:
                 variables[key] = np.compress(finite, variables[key], axis=place)
+            variables[name] = values[finite]
     return replace(view, variables=variables)
 
 

@@ -177,8 +177,11 @@ def region(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[fl
         arrow = ARROW * cycle.units.length
         along_x += [x.ravel(), x[:, -1] + arrow * np.cos(theta[:, -1])]
         along_y += [y.ravel(), y[:, -1] + arrow * np.sin(theta[:, -1])]
-    x, y = np.concatenate(along_x), np.concatenate(along_y)
-    return (x.min() - margin, x.max() + margin), (y.min() - margin, y.max() + margin)
+    along = [np.concatenate(values) for values in (along_x, along_y)]
+    (left, right), (low, high) = ((x.min() - margin, x.max() + margin) for x in along)
+    if not (left < right and low < high):
+        raise ValueError("shapes are too large")
+    return (left, right), (low, high)
 
 
 def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
