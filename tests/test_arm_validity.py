@@ -149,7 +149,12 @@ def test_show_of_an_arm_in_water_says_nothing_without_reservation(command):
     ("task", "arm", "more", "told"),
     [
         ("limit_cycle", "pressure: [1 kPa, 2.5 kPa]", "accuracy: 1.0e-3", "beats at 2 of 4 points at"),
-        ("spectrum", "force: [80 mN, 200 mN]", "", "gives way at 2 of 4 points; its leading mode turns at"),
+        (
+            "spectrum",
+            "force: [80 mN, 200 mN]",
+            "",
+            "gives way at 2 of 4 points; its leading mode oscillates at",
+        ),
         ("criticality", "", "", "flutters from"),
         ("branch", "", "branch: {stop: 40, cycles: 40}\naccuracy: 1.0e-3", "beats at"),
         ("thresholds", "poisson: 0.4", "thresholds: {F_max: 32}", "does not flutter up to 1.81 to 2 kPa"),

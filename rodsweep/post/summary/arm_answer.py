@@ -132,7 +132,7 @@ def _of_modes(view: View, rods: np.ndarray) -> list[str]:
         return ["stays straight"]
     of = f" at {int(unstable.sum())} of {len(unstable)} points" if len(unstable) > 1 else ""
     leading = view.variables["frequency_hz"][rods][unstable][:, 0]
-    return [f"gives way{of}; its leading mode turns at {spanned(view, np.abs(leading), 'Hz')}"]
+    return [f"gives way{of}; its leading mode oscillates at {spanned(view, np.abs(leading), 'Hz')}"]
 
 
 def _of_branches(view: View, rods: np.ndarray) -> list[str]:
