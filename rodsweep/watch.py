@@ -10,16 +10,16 @@ from contextvars import ContextVar
 from typing import NamedTuple
 
 
-class Place(NamedTuple):
+class Whereabouts(NamedTuple):
     """Where a solve is, in words, and the share of its work that is done, from 0 to 1; None if unknown."""
 
     words: str = ""
     share: float | None = None
 
 
-MakePlace = Callable[[], Place]
+MakeWhereabouts = Callable[[], Whereabouts]
 """Makes the place of a report, which is only made where it is shown."""
-Listener = Callable[[MakePlace], None]
+Listener = Callable[[MakeWhereabouts], None]
 """Hears every report; raises `Stopped` to end the solve."""
 
 
@@ -33,13 +33,13 @@ class _Part(NamedTuple):
     name: str
     shares: tuple[float, float] | None
 
-    def of_whole(self, inner: Place) -> Place:
+    def of_whole(self, inner: Whereabouts) -> Whereabouts:
         """The place in the whole of a place in this part."""
         share = None
         if self.shares is not None:
             begin, end = self.shares
             share = begin + (end - begin) * (inner.share or 0.0)
-        return Place(": ".join(filter(None, (self.name, inner.words))), share)
+        return Whereabouts(": ".join(filter(None, (self.name, inner.words))), share)
 
 
 _listener: ContextVar[Listener | None] = ContextVar("listener", default=None)
@@ -51,7 +51,7 @@ def heard_by(listener: Listener) -> Iterator[None]:
     """Reports of solves in here go to the listener, after those that hear them already."""
     outer = _listener.get()
 
-    def both(place: MakePlace) -> None:
+    def both(place: MakeWhereabouts) -> None:
         if outer is not None:
             outer(place)
         listener(place)
@@ -76,14 +76,14 @@ def part(name: str, shares: tuple[float, float] | None = None) -> Iterator[None]
         _parts.reset(token)
 
 
-def report(place: MakePlace = Place) -> None:
+def report(place: MakeWhereabouts = Whereabouts) -> None:
     """Says where the solve is, at a safe place; without words only that the place is safe."""
     listener = _listener.get()
     if listener is not None:
         listener(lambda: _in_whole(place()))
 
 
-def _in_whole(place: Place) -> Place:
+def _in_whole(place: Whereabouts) -> Whereabouts:
     """The place in the whole of a place in the innermost part."""
     if not place.words:
         return place

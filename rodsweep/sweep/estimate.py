@@ -33,7 +33,8 @@ CYCLE_SECONDS, CHAINED_CYCLE_SECONDS = 0.1, 0.01
 BRANCH_SECONDS, BRANCH_ACCURACY, BRANCH_BENDING = 0.004, -0.17, 1.5
 """All branches of a rod take BRANCH_SECONDS F (accuracy/1e-7)^BRANCH_ACCURACY (1 + F/k2)^BRANCH_BENDING;
 F is the largest of the range, or k1. Fourteen random rods (F up to 60 to 200, k2 from 12 to 9000, accuracies
-from 1e-4 to 1e-9) took 0.3 to 21 s, all within a factor of three of it and most within two; four times as long where F nears k1."""
+from 1e-4 to 1e-9) took 0.3 to 21 s, all within a factor of three and most within two; some near F = k1 take
+four times as long."""
 MEMORY_PER_UNKNOWN = 40_000
 BASE_MEMORY = 200_000_000
 

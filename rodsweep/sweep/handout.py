@@ -15,7 +15,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..watch import Place
+from ..watch import Whereabouts
 from .ranges import IndexRange, total
 from .stop import StopRequest
 from .team import Team
@@ -145,7 +145,7 @@ class FirstRankClaims:
         """Ranks that have an answer to their next request already."""
         self.working = set(range(1, team.size))
         self.status = team.MPI.Status()
-        self.places: dict[int, Place] = {}
+        self.places: dict[int, Whereabouts] = {}
         """Where each rank is in a long point, as it has said last."""
         self.serving = threading.Lock()
         self.served = 0.0
@@ -173,7 +173,7 @@ class FirstRankClaims:
             self.thread.join()
             self._hear_places()
 
-    def tell_place(self, place: Place) -> None:
+    def tell_place(self, place: Whereabouts) -> None:
         """Where this rank is in a long point."""
         self.places[0] = place
         self.show(place.words, self._begun())
@@ -267,7 +267,7 @@ class OtherRankClaims:
             self.comm.send(Report(ahead=True), dest=0, tag=REQUEST_TAG)
         return chunk
 
-    def tell_place(self, place: Place) -> None:
+    def tell_place(self, place: Whereabouts) -> None:
         """Where this rank is in a long point."""
         self.comm.send(place, dest=0, tag=PLACE_TAG)
 

@@ -8,7 +8,7 @@ from math import nan
 import numpy as np
 from scipy.optimize import brentq
 
-from ...watch import Place, report
+from ...watch import Whereabouts, report
 from ..cycle.linearisation import coordinate
 from ..cycle.neighbour import value_at, value_of
 from ..cycle.orbit_mesh import mesh_of
@@ -113,13 +113,13 @@ def followed_from(curve: BranchCurve, first: ArcPoint, course: Course) -> Branch
     return curve
 
 
-def _place_on(curve: BranchCurve, here: ArcPoint, course: Course) -> Place:
+def _place_on(curve: BranchCurve, here: ArcPoint, course: Course) -> Whereabouts:
     """Where on a branch its last cycle is, and the share of the branch's work that is done there."""
     name = here.scale.name
     aim = course.ends[1 if here.ahead[-1] > 0 else 0]
     there, end = value_at(name, here.at), value_at(name, aim)
     words = f"{name} = {there:.5g} on the way to {end:.5g}, {len(curve.points)} cycles"
-    return Place(words, share_done(coordinate(name, curve.special[0].at), here.at, aim))
+    return Whereabouts(words, share_done(coordinate(name, curve.special[0].at), here.at, aim))
 
 
 def special_hopf(hopf: HopfBirth) -> SpecialPoint:

@@ -17,7 +17,7 @@ from ...determinant.boundary import Boundary, OnBoundary
 from ...determinant.curves import BoundaryCurve
 from ...determinant.parameter_path import determinant_along, direction_of
 from ...determinant.parameter_plane import Plane
-from ...watch import Place, report
+from ...watch import Whereabouts, report
 from ..changes.unstable_modes import Crossing, Kind
 from ..point import FAILURES, Unsolvable
 from .hopf_coefficients import HopfCoefficients, hopf_coefficients
@@ -106,7 +106,7 @@ class HopfCurve:
     def sign(self, i: int) -> float:
         """That of Re c at a point: -1, 1, 0 undecided, NaN where there is no normal form."""
         points = len(self.scaled)
-        report(lambda: Place(f"criticality of a Hopf curve, point {i + 1} of {points}", i / points))
+        report(lambda: Whereabouts(f"criticality of a Hopf curve, point {i + 1} of {points}", i / points))
         try:
             v = self.scaled[i]
             normal = self.boundary.tangent(v)
