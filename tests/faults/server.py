@@ -119,9 +119,9 @@ def load(solving: bool, configs: list[str]) -> None:
     import rodsweep.cli.running
     import rodsweep.post.figures
     import rodsweep.post.summary  # noqa: F401
-    from rodsweep.cli.job import make_job
     from rodsweep.errors import EnvironmentLacks
     from rodsweep.sweep.team import Team
+    from rodsweep.tasks.job import make_job
 
     for path in configs:
         job = make_job(Path(path), ())
