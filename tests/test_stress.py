@@ -55,8 +55,8 @@ phase_diagram: {cycles: true}
 LONG_BRANCHES = """
 task: branch
 parameters: {k1: [200, 1143.4], k2: 16.497, gamma3: 2.6e-4}
-branch: {stop: 90}
-accuracy: 1.0e-5
+branch: {stop: 60}
+accuracy: 1.0e-4
 """
 FAULTS = ("kill a rank", "kill all", "kill the launcher", "SIGTERM to a rank", "SIGUSR1 to the launcher")
 
