@@ -31,7 +31,7 @@ from rodsweep.results.file.seal import seal
 
 MORE = int(os.environ.get("RODSWEEP_CASES", "1"))
 FILES, PAGES, CYCLE_PAGES = 4 * MORE, 4 * MORE, 2 * MORE
-"""Damaged files of each config and state, and damaged journals of each config: of every kind over two configs."""
+"""Damaged files of each config and state, and damaged journals of each: of every kind over two configs."""
 LONG = 30
 """Seconds of processor time: a run with limit cycles takes two."""
 

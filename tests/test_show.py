@@ -22,7 +22,7 @@ _computed: dict[str, bytes] = {}
 
 
 def shown(command, config, *options):
-    """What `show` says of the results of a config, which are computed once for all tests that ask for them."""
+    """What `show` says of the results of a config, computed once for all tests that ask for them."""
     command.write("c.yaml", config)
     path = command.directory / "c.h5"
     if "points:" in config or config not in _computed:
