@@ -65,12 +65,13 @@ def fit(figure: Figure, least_aspect: float = LEAST_ASPECT) -> None:
 
 def _lay_out(figure: Figure) -> None:
     """Places panels and legends, and draws nothing else: what is drawn in them is not measured."""
-    if not isinstance(figure.canvas, FigureCanvasAgg):
-        FigureCanvasAgg(figure)  # without it each text makes one that measures it
+    canvas = figure.canvas
+    if not isinstance(canvas, FigureCanvasAgg):
+        canvas = FigureCanvasAgg(figure)  # without it each text makes one that measures it
     if engine := figure.get_layout_engine():
         engine.execute(figure)
     for legend in figure.legends:
-        legend.draw(figure.canvas.get_renderer())  # which places its entries
+        legend.draw(canvas.get_renderer())  # which places its entries
 
 
 def break_lines(text: Text, room: float, upright: bool = False) -> bool:
