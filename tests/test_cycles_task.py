@@ -662,8 +662,7 @@ def test_points_without_chains_start_from_the_mode(command):
         assert np.all(file["tip_y_max"][...] == 0.5)
 
 
-@pytest.mark.parametrize("ranks", [0, 2])
-@pytest.mark.parametrize("direction", ["up", "down"])
+@pytest.mark.parametrize(("ranks", "direction"), [(0, "up"), (2, "down")])
 def test_resume_in_the_middle_of_a_chain_gives_the_same_file(command, ranks, direction):
     command.write("c.yaml", CHAINS)
     words = ("--set", f"limit_cycle.direction={direction}")
@@ -716,8 +715,7 @@ def test_fresh_run_does_not_use_old_checkpoints(command):
     assert not (command.directory / "c.h5.journal").exists()
 
 
-@pytest.mark.parametrize("ranks", [1, 2, 3])
-@pytest.mark.parametrize("start", ["neighbour", "mode"])
+@pytest.mark.parametrize(("ranks", "start"), [(3, "neighbour"), (2, "mode")])
 def test_any_number_of_ranks_gives_the_same_file(command, ranks, start):
     command.write("c.yaml", CHAINS.replace("neighbour", start))
     assert run_fake(command, "-o", "alone.h5").returncode == 0
