@@ -112,7 +112,8 @@ def _spectrum(rod: Rod, request: SpectrumRequest, mesh: Resolution, found: _Foun
     if request.vector_nodes and enough:
         vectors = eigen_solver(mesh).vectors(len(w))[:, found.indices]
     unstable = int((w.real > 0).sum())
-    known = unstable < len(w) and not (np.abs(w.real) <= error).any()
+    decide = slice(max(modes, unstable + 1))  # what is sorted behind decays faster
+    known = unstable < len(w) and not (np.abs(w.real) <= error)[decide].any()
     return Spectrum(
         status=SpectrumStatus.ok if enough else SpectrumStatus.accuracy_not_reached,
         eigenvalues=w[:modes],
