@@ -67,6 +67,7 @@ class OfBranch(OfEveryTask, total=False):
 class OfLimitCycle(OfEveryTask, total=False):
     """Keys of the section `limit_cycle`."""
 
+    method: Literal["collocation", "integration"]
     amplitude: float
     start: Literal["mode", "neighbour", "hopf"]
     along: str

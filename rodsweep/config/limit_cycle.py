@@ -17,6 +17,8 @@ Along = Literal[(*NONLINEAR_PARAMETERS, *AXIS_OF, LONGEST)]  # type: ignore[vali
 class LimitCycleOptions(Strict):
     """From where each point starts, how long it may take, and what is stored of its cycle."""
 
+    method: Literal["collocation", "integration"] = "collocation"
+    """Cycles by collocation in time, with their multipliers, or by time integration alone, without."""
     amplitude: Annotated[Number, Field(gt=0, le=1, description="a number above 0, at most 1")] = 0.01
     """Tip deflection of the leading mode from which a point starts, in L."""
     start: Literal["mode", "neighbour", "hopf"] = "mode"
@@ -70,6 +72,9 @@ class LimitCycleConfig(Config):
         found: dict[str, str] = {}
         if options.start != "neighbour":
             found |= dict.fromkeys(("along", "direction"), "start: neighbour")
+        if options.method == "integration":
+            found |= dict.fromkeys(("start", "along", "direction", "transient"), "method: collocation")
+            return found if options.shapes else found | {"nodes": "shapes"}
         if options.start == "hopf":
             found |= dict.fromkeys(("amplitude", "most_periods", "transient"), "start: mode")
         return found if options.shapes else found | {"nodes": "shapes"}
