@@ -52,7 +52,7 @@ def injected_and_dissipated(beam, z):
     """-F v1(1), by the reaction v1(1) of the tip's stress, and <Gamma V, V>."""
     material, matrices = plane_material(beam.rod, beam.gamma1), beam.mesh.matrices
     stress = np.zeros((3, beam.mesh.nodes + 1))
-    stress[:, :-1] = z.reshape(3, -1) / beam.roots[:, None]
+    stress[:, :-1] = z.reshape(3, -1) / beam.roots[:, :-1]
     stress += material.tip_stress[:, None]
     V = material.velocity(stress, stress @ matrices.D.T)
     dissipated = material.dissipation(V) @ matrices.weights

@@ -12,9 +12,11 @@ from functools import cached_property
 import numpy as np
 
 from ..arrays import Array
+from ..model.balance import plane_material
 from ..model.rod import Rod
 from .mesh import Mesh, configuration
-from .stress_balance import BeamParameters, rate_jacobians, rates
+from .nodal_rod import NodalRod, nodal_rod
+from .stress_rates import rate_jacobians, rates
 
 TINY = 1e-30
 """Complex step of a velocity."""
@@ -32,21 +34,20 @@ class Beam:
     mesh: Mesh
 
     @cached_property
-    def parameters(self) -> BeamParameters:
-        """The parameters as the compiled functions take them."""
-        r = self.rod
-        return BeamParameters(*map(float, (r.F, r.nu, r.c1, r.c2, self.gamma1, r.gamma3)))
+    def nodal(self) -> NodalRod:
+        """The rod as the compiled functions take it."""
+        return nodal_rod(plane_material(self.rod, self.gamma1), self.mesh.matrices)
 
     @cached_property
     def roots(self) -> Array:
-        """Square roots of (c1, c2, 1), shape (3,): z = roots S, and the strains beyond rest are roots z."""
-        return np.sqrt([self.parameters.c1, self.parameters.c2, 1.0])
+        """Square roots of C, (3, nodes + 1): z = roots S, and the strains beyond rest are roots z."""
+        return np.sqrt(self.nodal.compliance)
 
     def rate(self, z: Array) -> Array:
         """dz/dt in 1/tau2 of one state or of many, shape (..., unknowns) as that of z."""
         out = np.empty(z.shape)
         size = self.mesh.unknowns
-        rates(z.reshape(-1, size), out.reshape(-1, size), self.roots, self.parameters, self.mesh.matrices)
+        rates(z.reshape(-1, size), out.reshape(-1, size), self.roots, self.nodal, self.mesh.matrices)
         return out
 
     def jacobian(self, z: Array) -> Array:
@@ -54,27 +55,28 @@ class Beam:
         size = self.mesh.unknowns
         out = np.empty((*z.shape, size))
         states, matrices = z.reshape(-1, size), out.reshape(-1, size, size)
-        rate_jacobians(states, matrices, self.roots, self.parameters, self.mesh.matrices)
+        rate_jacobians(states, matrices, self.roots, self.nodal, self.mesh.matrices)
         return out.swapaxes(-1, -2)
 
     def strains(self, z: Array) -> Array:
         """(h1, h2, Pi) at all nodes, the tip included, shape (3, ..., nodes + 1) for z (..., unknowns)."""
         E = np.zeros((3, *z.shape[:-1], self.mesh.nodes + 1), dtype=z.dtype)
         for a, (part, root) in enumerate(zip(np.split(z, 3, axis=-1), self.roots, strict=True)):
-            E[a, ..., :-1] = part * root
+            E[a, ..., :-1] = part * root[:-1]
         E[0] += self.rod.nu
         return E
 
     def unknown(self, strains: Array) -> Array:
         """z of (h1, h2, Pi) at all nodes, shape (3, nodes + 1); the tip's values are not free."""
         deviation = strains[:, :-1] - np.array([[self.rod.nu], [0.0], [0.0]])
-        return (deviation / self.roots[:, None]).ravel()
+        return (deviation / self.roots[:, :-1]).ravel()
 
     def energy(self, z: Array) -> Array:
         """U = 1/2 int k1 (h1 - 1)^2 + k2 h2^2 + Pi^2 in k3/L, shape (...)."""
         E = self.strains(z)
         E[0] -= 1.0
-        return 0.5 * np.tensordot(self.roots**-2, E * E @ self.mesh.quadrature, 1)
+        every = (3, *(1,) * (z.ndim - 1), self.mesh.nodes + 1)
+        return 0.5 * ((E / self.roots.reshape(every)) ** 2).sum(axis=0) @ self.mesh.quadrature
 
     def shape(self, z: Array) -> Array:
         """(x, y, theta) at all nodes in L and rad, shape (3, ..., nodes + 1), the clamp at 0 along e_x."""
@@ -91,5 +93,4 @@ class Beam:
 
     def least_stretch(self, z: Array) -> float:
         """min h1 over the nodes of all states; the model holds while it is positive."""
-        least = min(0.0, float(z[..., : self.mesh.nodes].min()))
-        return float(self.rod.nu + least * self.roots[0])
+        return float(self.strains(z)[0].min())

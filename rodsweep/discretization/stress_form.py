@@ -10,13 +10,16 @@ from functools import cached_property
 import numpy as np
 
 from ..arrays import Array
+from ..model.balance import Material, plane_change, plane_material
 from ..model.rod import Rod
 from .mesh import Mesh, configuration
-from .stress_balance import BeamParameters
+from .nodal_rod import NodalRod, nodal_change, nodal_rod
 
 LEAST_ELIMINATED_DRAG = 1e-5
 """gamma3 from which Omega is eliminated: below, the division by gamma3 costs multipliers their digits, 2e-9
 at 1e-6 and 2e-7 at 1e-8, and soft rods their cycles; as an unknown Omega costs 2.4 times the time."""
+OMEGA = (2,)
+"""Which component of V that is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,10 +35,18 @@ class StressForm:
     mesh: Mesh
 
     @cached_property
-    def parameters(self) -> BeamParameters:
-        """The parameters as the compiled functions take them."""
-        r = self.rod
-        return BeamParameters(*map(float, (r.F, r.nu, r.c1, r.c2, self.gamma1, r.gamma3)))
+    def material(self) -> Material:
+        """Compliances, drags and the force."""
+        return plane_material(self.rod, self.gamma1)
+
+    @cached_property
+    def nodal(self) -> NodalRod:
+        """The rod as the compiled functions take it."""
+        return nodal_rod(self.material, self.mesh.matrices, OMEGA if self.omega_unknown else ())
+
+    def change(self, name: str) -> NodalRod:
+        """The derivative of `nodal` by a parameter, by 1/k of a stiffness k."""
+        return nodal_change(plane_change(self.rod, name), self.nodal)
 
     @property
     def omega_unknown(self) -> bool:
@@ -48,19 +59,14 @@ class StressForm:
         return 4 * n + 1 if self.omega_unknown else 3 * n
 
     @cached_property
-    def compliances(self) -> Array:
-        """(c1, c2, 1), shape (3,)."""
-        return np.array([self.parameters.c1, self.parameters.c2, 1.0])
-
-    @cached_property
     def mass(self) -> Array:
         """The diagonal of W C, 0 for Omega, shape (unknowns,)."""
-        return self.mass_of(self.parameters.c1, self.parameters.c2)
+        return self.mass_of(self.nodal)
 
-    def mass_of(self, c1: float, c2: float) -> Array:
+    def mass_of(self, rod: NodalRod) -> Array:
         """`mass` for other compliances."""
         mass = np.zeros(self.unknowns)
-        mass[: 3 * self.mesh.nodes] = np.outer([c1, c2, 1.0], self.mesh.quadrature[:-1]).ravel()
+        mass[: 3 * self.mesh.nodes] = (rod.compliance * self.mesh.quadrature)[:, :-1].ravel()
         return mass
 
     @cached_property
@@ -80,9 +86,8 @@ class StressForm:
 
     def strains(self, x: Array) -> Array:
         """(h1, h2, Pi) at all nodes, the tip included, shape (3, ..., nodes + 1)."""
-        E = self.stresses(x) * self.compliances.reshape(3, *(1,) * x.ndim)
-        E[0] += self.rod.nu
-        return E
+        every = (3, *(1,) * (x.ndim - 1), self.mesh.nodes + 1)
+        return self.nodal.rest.reshape(every) + self.nodal.compliance.reshape(every) * self.stresses(x)
 
     def shape(self, x: Array) -> Array:
         """(x, y, theta) at all nodes in L and rad, shape (3, ..., nodes + 1), the clamp at 0 along e_x."""
@@ -96,7 +101,7 @@ class StressForm:
         """U = 1/2 int k1 (h1 - 1)^2 + k2 h2^2 + Pi^2 in k3/L, shape (...)."""
         S = self.stresses(x)
         S[0] -= self.rod.F
-        return 0.5 * np.tensordot(self.compliances, S * S @ self.mesh.quadrature, 1)
+        return self.material.energy(S) @ self.mesh.quadrature
 
     def size(self, x: Array) -> Array:
         """sqrt of the energy of the stresses beyond the straight rod's, an amplitude of the motion, (...)."""

@@ -28,7 +28,7 @@ def guess_at(orbit, m):
     form, V = orbit.form, np.empty((m, 3, orbit.form.mesh.nodes + 1))
     states, reaction = orbit.at(np.arange(m) / m), np.empty(V.shape[1:])
     for x, velocities in zip(states, V, strict=True):
-        balance(x, velocities, reaction, form.parameters, form.mesh.matrices)
+        balance(x, velocities, reaction, form.nodal, form.mesh.matrices)
     return np.concatenate([states[:, : 3 * form.mesh.nodes], V.reshape(m, -1)], axis=1)
 
 

@@ -85,8 +85,8 @@ def continued(program: Path, first: Orbit, setting: AutoSetting, step: float, cy
 
 def rod_file(form: StressForm) -> bytes:
     """What the equations read as `rod`."""
-    c, matrices = form.parameters, form.mesh.matrices
-    numbers = np.array([c.c1, c.c2, c.gamma1, c.gamma3])
+    rod, matrices = form.rod, form.mesh.matrices
+    numbers = np.array([rod.c1, rod.c2, form.gamma1, rod.gamma3])
     parts = (np.int32(form.mesh.nodes), matrices.D_transposed, matrices.weights, numbers)
     return b"".join(part.tobytes() for part in parts)
 
@@ -97,7 +97,7 @@ def start_file(orbit: Orbit, pieces: int) -> bytes:
     turns = np.arange(pieces + 1) / pieces * (2 if orbit.symmetric else 1)
     states = orbit.at(np.where(turns > 1, turns - 1, turns))
     states[turns > 1] *= orbit.return_signs
-    z = states * np.repeat(beam.roots, orbit.form.mesh.nodes)
+    z = states * beam.roots[:, :-1].ravel()
     return b"".join(part.tobytes() for part in (np.int32(pieces), np.array([beam.rod.F, orbit.period]), z))
 
 

@@ -15,7 +15,7 @@ import scipy.integrate
 
 from ...arrays import Array
 from ...discretization.beam import Beam
-from ...discretization.stress_balance import rate, rate_jacobian
+from ...discretization.stress_rates import rate, rate_jacobian
 from ...solve.motion.integrator import Ending, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
 from ..machine import installed
@@ -83,7 +83,7 @@ def by_scipy(method: str, beam: Beam, z: Array, duration: float, tolerance: floa
 
 def by_cvode(cvode: Any, beam: Beam, z: Array, duration: float, tolerance: float) -> Trajectory:
     """CVODE's BDF with its dense solver, through scikit-sundae, from z, (unknowns,)."""
-    arguments = beam.roots, beam.parameters, beam.mesh.matrices
+    arguments = beam.roots, beam.nodal, beam.mesh.matrices
     buffer = np.empty((len(z), len(z)))
 
     def right_side(_: float, x: Array, out: Array) -> None:

@@ -88,12 +88,12 @@ class BorderedMatrix:
         self._columns, self._workspace = np.empty((K, s, 3, n)), NewtonWorkspace(K, s, n)
         right_sides(orbit.points, orbit.duration, p, along, V, self._columns)
         ends = eliminate(orbit.points, V, orbit.duration, p, self._workspace.factors, self._columns)
-        shift = phase_change(orbit.start, along.change, p.parameters, p.matrices)
+        shift = phase_change(orbit.start, along.change, p.rod, p.matrices)
         self._matrix = np.zeros((n + 2, n + 2))
         self._matrix[:n, :n] = self._workspace.propagator - np.diag(p.signs)
         self._matrix[:n, n], self._matrix[:n, n + 1] = ends[0], ends[2]
         row = np.empty(n)
-        phase_row(orbit.start, p.parameters, p.matrices, row)
+        phase_row(orbit.start, p.rod, p.matrices, row)
         self._matrix[n, :n], self._matrix[n, n + 1] = row, -shift
         self._right = self._jump(orbit, ends[1])
 
@@ -137,7 +137,7 @@ class BorderedMatrix:
         """Right side for an orbit's start and phase, (n + 1,), and what its stages make of its end, (n,)."""
         p = orbit.semidiscrete
         jump = p.signs * orbit.start - orbit.points[-1] - end
-        return np.append(jump, -phase(orbit.start, p.parameters, p.matrices))
+        return np.append(jump, -phase(orbit.start, p.rod, p.matrices))
 
     def _solved(self, border: Array, right: Array, sides: Array, share: float) -> Array:
         """The change for right sides of the ends and a share of those of the stages, (K, s, n)."""

@@ -46,13 +46,13 @@ def asymmetry(beam: Beam, states: Array) -> float:
 
 def stressed(beam: Beam, form: StressForm, z: Array) -> Array:
     """States of `form`, (m, unknowns), of the time stepper's z, (m, 3 nodes), on the same mesh."""
-    S = (z.reshape(len(z), 3, -1) / beam.roots[:, None]).reshape(z.shape)
+    S = (z.reshape(len(z), 3, -1) / beam.roots[:, :-1]).reshape(z.shape)
     if not form.omega_unknown:
         return S
     size = form.mesh.nodes + 1
     V, G = np.empty((3, size)), np.empty((3, size))
     Omega = np.empty((len(z), size))
     for k, state in enumerate(S):
-        balance(np.ascontiguousarray(state), V, G, beam.parameters, beam.mesh.matrices)
+        balance(np.ascontiguousarray(state), V, G, beam.nodal, beam.mesh.matrices)
         Omega[k] = V[2]
     return np.hstack([S, Omega])

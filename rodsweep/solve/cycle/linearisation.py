@@ -9,14 +9,11 @@ from math import prod
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...discretization.stress_balance import (
-    BeamParameters,
-    NodeMatrices,
-    balance,
-    balance_change,
-    jacobian,
-)
+from ...discretization.mesh import NodeMatrices
+from ...discretization.nodal_rod import NodalRod
+from ...discretization.stress_balance import balance, balance_change
 from ...discretization.stress_form import StressForm
+from ...discretization.stress_jacobian import jacobian
 from ...model.compilation import compiled_for_vectors
 from ...model.parameters import PARAMETERS
 from .condensation import (
@@ -73,9 +70,11 @@ class Linearisation:
     def __init__(self, orbit: Orbit, parameter: str | None = None) -> None:
         self.orbit = orbit
         self._workspace = NewtonWorkspace(orbit.intervals, orbit.stages, orbit.form.unknowns)
-        along = None if parameter is None else change_along(orbit.form, parameter)
-        count, factors = 2 if along is None else 3, self._workspace.factors
-        steps, self._by_period = linearise(orbit.values, count, along or STILL, orbit.semidiscrete, factors)
+        p, factors = orbit.semidiscrete, self._workspace.factors
+        still = Along(p.rod, p.mass)  # what is not read
+        along = still if parameter is None else change_along(orbit.form, parameter)
+        count = 2 if parameter is None else 3
+        steps, self._by_period = linearise(orbit.values, count, along, p, factors)
         self.step, self.tangent = steps[0], None if parameter is None else steps[1]
 
     def correction(self, orbit: Orbit) -> Array:
@@ -113,22 +112,14 @@ def coordinate(name: str, value: float) -> float:
     return 1 / value if PARAMETERS[name].by_compliance else value
 
 
-STILL = Along(BeamParameters(*(0.0 for _ in BeamParameters._fields)), np.zeros(0))
-"""No change of the rod."""
-
-
 def change_along(form: StressForm, name: str) -> Along:
     """How a rod changes with a `coordinate`, the mass, (n,), among it."""
-    c, field = form.parameters, {"k1": "c1", "k2": "c2"}.get(name, name)
-    change = BeamParameters(*(float(field == other) for other in c._fields))
-    change = change._replace(nu=-change.F * c.c1 - c.F * change.c1)
-    mass = form.mass_of(change.c1, change.c2)
-    mass[2 * form.mesh.nodes :] = 0.0
-    return Along(change, mass)
+    change = form.change(name)
+    return Along(change, form.mass_of(change))
 
 
 @compiled_for_vectors
-def phase_change(start: Array, change: BeamParameters, c: BeamParameters, m: NodeMatrices) -> float:
+def phase_change(start: Array, change: NodalRod, c: NodalRod, m: NodeMatrices) -> float:
     """The derivative of `phase` at a start, (n,), by a change of the parameters, as a right side."""
     size = len(m.weights)
     V, G, changes = np.empty((3, size)), np.empty((3, size)), np.empty((2, 3, size))
@@ -138,7 +129,7 @@ def phase_change(start: Array, change: BeamParameters, c: BeamParameters, m: Nod
 
 
 @compiled_for_vectors
-def phase(start: Array, c: BeamParameters, m: NodeMatrices) -> float:
+def phase(start: Array, c: NodalRod, m: NodeMatrices) -> float:
     """The tip's dy/dt at the start, (n,), by the reaction there."""
     size = len(m.weights)
     V, G = np.empty((3, size)), np.empty((3, size))
@@ -162,7 +153,7 @@ def tip_angle(x: Array, m: NodeMatrices) -> float:
 
 
 @compiled_for_vectors
-def phase_row(start: Array, c: BeamParameters, m: NodeMatrices, row: Array) -> None:
+def phase_row(start: Array, c: NodalRod, m: NodeMatrices, row: Array) -> None:
     """The derivative of `phase` by the start into row, both (n,)."""
     n, size = len(start), len(m.weights)
     V, G, J, tip = np.empty((3, size)), np.empty((3, size)), np.empty((n, n)), np.empty((3, n))
@@ -196,16 +187,16 @@ def linearise(
     for i in range(n):
         inverse[i, i] -= p.signs[i]
         inverse[i, n] = ends[0, i]
-    phase_row(points[0], p.parameters, p.matrices, inverse[n, :n])
+    phase_row(points[0], p.rod, p.matrices, inverse[n, :n])
     invert(inverse, np.empty(n + 1, np.int64), np.empty((n + 1, PANEL)))
     rights = np.zeros((count - 1, n + 1))
     for m in range(1, count):
         for i in range(n):
             jump = p.signs[i] * points[0, i] - points[K * s, i] if m == 1 else 0.0
             rights[m - 1, i] = jump - ends[m, i]
-    rights[0, n] = -phase(points[0], p.parameters, p.matrices)
+    rights[0, n] = -phase(points[0], p.rod, p.matrices)
     if count > 2:
-        rights[1, n] = phase_change(points[0], along.change, p.parameters, p.matrices)
+        rights[1, n] = phase_change(points[0], along.change, p.rod, p.matrices)
     by_period = columns[:, :, 0].copy()
     return steps_of(rights, by_period, columns[:, :, 1:], p, factors), by_period
 
@@ -268,7 +259,7 @@ def correct(values: Array, by_period: Array, p: Semidiscrete, factors: Factors) 
     rights = np.empty((1, n + 1))
     for i in range(n):
         rights[0, i] = p.signs[i] * points[0, i] - points[K * s, i] - ends[0, i]
-    rights[0, n] = -phase(points[0], p.parameters, p.matrices)
+    rights[0, n] = -phase(points[0], p.rod, p.matrices)
     return steps_of(rights, by_period, columns, p, factors)[0]
 
 

@@ -119,7 +119,7 @@ def _semidiscrete(form: StressForm, symmetric: bool, intervals: int, stages: int
     """What all orbits of a form on one method have in common."""
     signs, parts = (form.reflection, 2.0) if symmetric else (np.ones(form.unknowns), 1.0)
     d, lengths = radau(stages).differentiation, interval_lengths(intervals)
-    return Semidiscrete(form.parameters, form.mesh.matrices, form.mass, d, lengths, signs, parts)
+    return Semidiscrete(form.nodal, form.mesh.matrices, form.mass, d, lengths, signs, parts)
 
 
 @lru_cache(maxsize=256)

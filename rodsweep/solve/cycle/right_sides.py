@@ -5,21 +5,16 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array
-from ...discretization.stress_balance import (
-    BeamParameters,
-    balance,
-    balance_change,
-    torque_balance,
-    torque_change,
-)
+from ...discretization.nodal_rod import NodalRod
+from ...discretization.stress_balance import balance, balance_change, velocity_balance, velocity_change
 from ...model.compilation import compiled_for_vectors
 from .condensation import Semidiscrete
 
 
 class Along(NamedTuple):
-    """How the rod changes along a parameter: its parameters, and the mass, (n,), per unit of it."""
+    """How the rod changes along a parameter: the rod itself, and the mass, (n,), per unit of it."""
 
-    change: BeamParameters
+    change: NodalRod
     mass: Array
 
 
@@ -27,29 +22,27 @@ class Along(NamedTuple):
 def equations(x: Array, F: Array, V: Array, G: Array, p: Semidiscrete) -> None:
     """F(x), shape (n,), with V and G, (3, nodes + 1), on the way."""
     nodes = G.shape[1] - 1
-    balance(x, V, G, p.parameters, p.matrices)
+    balance(x, V, G, p.rod, p.matrices)
     for a in range(3):
         for i in range(nodes):
             F[a * nodes + i] = G[a, i]
     if len(x) > 3 * nodes:
-        torque_balance(x, F[3 * nodes :], p.parameters, p.matrices)
+        velocity_balance(x, F[3 * nodes :], p.rod, p.matrices)
 
 
 @compiled_for_vectors
-def equations_change(
-    x: Array, F: Array, V: Array, out: Array, change: BeamParameters, p: Semidiscrete
-) -> None:
+def equations_change(x: Array, F: Array, V: Array, out: Array, change: NodalRod, p: Semidiscrete) -> None:
     """The derivative of `equations` along a change of the parameters into F, (n,).
 
     V at the state x is known; out, (2, 3, nodes + 1), is made on the way.
     """
     nodes = V.shape[1] - 1
-    balance_change(x, V, out, change, p.parameters, p.matrices)
+    balance_change(x, V, out, change, p.rod, p.matrices)
     for a in range(3):
         for i in range(nodes):
             F[a * nodes + i] = out[1, a, i]
     if len(x) > 3 * nodes:
-        torque_change(x, F[3 * nodes :], change, p.parameters, p.matrices)
+        velocity_change(x, V, F[3 * nodes :], change, p.rod, p.matrices)
 
 
 @compiled_for_vectors

@@ -7,26 +7,33 @@ from typing import Any
 
 import numpy as np
 
-from ...discretization.stress_balance import BeamParameters, NodeMatrices
+from ...arrays import Array
+from ...discretization.beam import Beam
+from ...discretization.mesh import NodeMatrices
+from ...discretization.nodal_rod import NodalRod
+from ...model.algebra import Algebra
 from ...model.compilation import compiled
-from ..backend.c_functions import floats
+from ..backend.c_functions import floats, integers
 
 MOST_STAGES, MOST_POINTS = 16, 8
 """Stages of a step that are remembered, and points through which the next is extrapolated."""
 
 REAL, WHOLE = "<f8", "<i8"
-ARRAYS = ("roots", "jacobian", "base", "times", "states", "points", "constant", "rates")
-"""Addresses of what a `Workspace` holds: the square roots of the compliances; the last Jacobian; the state at
-which a step's matrix is made; times, (2 MOST_STAGES,), and states, (2 MOST_STAGES, unknowns), of the stages
-of this step and the last; the points through which each is extrapolated, (MOST_STAGES, MOST_POINTS); a
-stage's equation and its rates."""
+ALGEBRA = Algebra._fields
+ROD = (*(name for name in NodalRod._fields if name not in {"algebra", "kept"}), "roots")
+"""Addresses of the rod that moves, and of the square roots of its compliances."""
+ARRAYS = ("jacobian", "base", "times", "states", "points", "constant", "rates")
+"""Addresses of what a `Workspace` holds: the last Jacobian; the state at which a step's matrix is made;
+times, (2 MOST_STAGES,), and states, (2 MOST_STAGES, unknowns), of the stages of this step and the last; the
+points through which each is extrapolated, (MOST_STAGES, MOST_POINTS); a stage's equation and its rates."""
 HANDLES = ("ts", "matrix", "ksp", "residual", "correction")
 """PETSc's objects."""
 CONTEXT = np.dtype(
     [
-        *((name, REAL) for name in BeamParameters._fields),
-        *((name, WHOLE) for name in (*NodeMatrices._fields, *ARRAYS, *HANDLES)),
+        *((name, WHOLE) for name in (*NodeMatrices._fields, *ALGEBRA, *ROD, *ARRAYS, *HANDLES)),
         ("nodes", WHOLE),  # the tip included
+        ("components", WHOLE),  # of a stress
+        ("products", WHOLE),  # terms of its algebra
         ("unknowns", WHOLE),
         ("matrix_due", WHOLE),  # UP_TO_DATE, AT_BASE or AT_ITERATE
         ("shift", REAL),  # with which the matrix was made
@@ -68,22 +75,34 @@ UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
 """Whether a new matrix is due, and where it is to be made."""
 
 
+def arrays_of(beam: Beam) -> dict[str, Array]:
+    """What `ALGEBRA` and `ROD` are the addresses of."""
+    nodal = beam.nodal
+    own = nodal._asdict() | {"roots": beam.roots}
+    return nodal.algebra._asdict() | {name: own[name] for name in ROD}
+
+
 @compiled
-def parameters_of(c: Any) -> BeamParameters:
-    return BeamParameters(c.F, c.nu, c.c1, c.c2, c.gamma1, c.gamma3)
+def rod_of(c: Any) -> NodalRod:
+    d, m, t = c.components, c.nodes, c.products
+    forward, backward = integers(c.forward, d * d).reshape(d, d), integers(c.backward, d * d).reshape(d, d)
+    algebra = Algebra(integers(c.terms, 3 * t).reshape(t, 3), floats(c.signs, t), forward, backward)
+    rest, compliance = floats(c.rest, d * m).reshape(d, m), floats(c.compliance, d * m).reshape(d, m)
+    drag, mobility = floats(c.drag, d * m).reshape(d, m), floats(c.mobility, d * m).reshape(d, m)
+    second, none = floats(c.second, d * m * m).reshape(d, m, m), np.empty(0, np.int64)
+    return NodalRod(algebra, floats(c.tip_stress, d), rest, compliance, drag, mobility, second, none)
 
 
 @compiled
 def matrices_of(c: Any) -> NodeMatrices:
     m = c.nodes
     D, D_transposed = floats(c.D, m * m).reshape(m, m), floats(c.D_transposed, m * m).reshape(m, m)
-    weak, second = floats(c.weak, m * m).reshape(m, m), floats(c.second, m * m).reshape(m, m)
-    return NodeMatrices(D, D_transposed, weak, second, floats(c.weights, m))
+    return NodeMatrices(D, D_transposed, floats(c.weak, m * m).reshape(m, m), floats(c.weights, m))
 
 
 @compiled
 def roots_of(c: Any) -> Any:
-    return floats(c.roots, 3)
+    return floats(c.roots, c.components * c.nodes).reshape(c.components, c.nodes)
 
 
 @compiled

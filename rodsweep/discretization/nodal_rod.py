@@ -1,0 +1,53 @@
+"""One rod at the nodes of a mesh: compliances and drags as arrays over these, for compiled functions."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arrays import Array
+from ..model.algebra import ALGEBRAS, Algebra, Integers
+from ..model.balance import Material
+from .mesh import NodeMatrices
+
+
+class NodalRod(NamedTuple):
+    """A rod at all nodes of a mesh, the tip included, as the compiled functions take it; of d components.
+
+    tip_stress: Sigma(1), (d,). rest: E0, with compliance and drag (d, nodes + 1); mobility: 1/drag, but 0
+    where V is unknown. second: -D^T W mobility D, (d, nodes + 1, nodes + 1). kept: which components of V are
+    unknowns.
+    """
+
+    algebra: Algebra
+    tip_stress: Array
+    rest: Array
+    compliance: Array
+    drag: Array
+    mobility: Array
+    second: Array
+    kept: Integers
+
+
+def nodal_rod(material: Material, m: NodeMatrices, kept: tuple[int, ...] = ()) -> NodalRod:
+    """A material on a mesh, of which these components of V are unknowns."""
+    fields = material.rest, material.compliance, material.drag
+    rest, compliance, drag = (_at_nodes(field, len(m.weights)) for field in fields)
+    mobility = np.zeros(drag.shape)
+    eliminated = [a for a in range(len(drag)) if a not in kept]
+    mobility[eliminated] = 1 / drag[eliminated]
+    second = m.weak @ (mobility[:, :, None] * m.D)
+    known = ALGEBRAS[len(drag)], material.tip_stress, rest, compliance, drag, mobility, second
+    return NodalRod(*known, np.array(kept, np.int64))
+
+
+def nodal_change(change: Material, rod: NodalRod) -> NodalRod:
+    """The derivative of a rod along a change of its material; of mobility and second there is none."""
+    fields = change.rest, change.compliance, change.drag
+    rest, compliance, drag = (_at_nodes(field, rod.drag.shape[1]) for field in fields)
+    return rod._replace(tip_stress=change.tip_stress, rest=rest, compliance=compliance, drag=drag)
+
+
+def _at_nodes(field: Array, size: int) -> Array:
+    """One number a component at every node, (d, size), from (d,) or (d, size)."""
+    columns = field.reshape(len(field), -1)
+    return np.array(np.broadcast_to(columns, (len(field), size)), float, order="C")
