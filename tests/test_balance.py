@@ -158,7 +158,7 @@ def collocated(beam, z):
 
 
 def rough(beam):
-    return np.random.default_rng(3).standard_normal(beam.mesh.unknowns)
+    return np.random.default_rng(3).standard_normal(beam.layout.unknowns)
 
 
 def test_compiled_rate_is_the_balance_at_the_nodes():

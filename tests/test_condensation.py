@@ -12,16 +12,12 @@ from rodsweep.model.parameters import NONLINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.bordered import BorderedMatrix, Scale
 from rodsweep.solve.cycle.condensation import PANEL, eliminate, invert, substitute
-from rodsweep.solve.cycle.linearisation import (
-    Linearisation,
-    NewtonWorkspace,
-    change_along,
-    phase,
-    phase_change,
-)
+from rodsweep.solve.cycle.linearisation import Linearisation, NewtonWorkspace, change_along
 from rodsweep.solve.cycle.neighbour import coordinate_of, with_coordinate
 from rodsweep.solve.cycle.orbit import Orbit
+from rodsweep.solve.cycle.phase import phase, phase_change
 from rodsweep.solve.cycle.right_sides import equations, residuals, right_sides
+from rodsweep.solve.cycle.symmetry import REFLECTION
 
 INTERVALS, PERIOD, COLUMNS = 4, 0.02, 2
 RODS = {
@@ -35,7 +31,7 @@ def orbit_with(rod, stages):
     """Any states: what is tested holds for orbits and for what is none."""
     form = StressForm(rod, 0.7, mesh(1, 8))
     states = np.random.default_rng(stages).normal(size=(1 + INTERVALS * stages, form.unknowns))
-    return Orbit.of(form, True, PERIOD, states, stages)
+    return Orbit.of(form, REFLECTION, PERIOD, states, stages)
 
 
 def velocities(orbit):

@@ -48,9 +48,9 @@ def balanced(x, rod, grid):
 def equations(x, rod, grid):
     """G at all nodes, (d, nodes + 1), and the balance of what is unknown of V, flat."""
     _, G = balanced(x, rod, grid)
-    out = np.empty(len(rod.kept) * (grid.nodes + 1))
+    out = np.empty(len(x))
     velocity_balance(x, out, rod, grid.matrices)
-    return np.append(G.ravel(), out)
+    return np.append(G.ravel(), out[len(G) * grid.nodes :])
 
 
 @MESHES

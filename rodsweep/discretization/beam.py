@@ -16,6 +16,7 @@ from ..model.balance import plane_material
 from ..model.rod import Rod
 from .mesh import Mesh, configuration
 from .nodal_rod import NodalRod, nodal_rod
+from .state_layout import StateLayout, plane_layout
 from .stress_rates import rate_jacobians, rates
 
 TINY = 1e-30
@@ -34,6 +35,11 @@ class Beam:
     mesh: Mesh
 
     @cached_property
+    def layout(self) -> StateLayout:
+        """Where each field of a state lies."""
+        return plane_layout(self.mesh.nodes)
+
+    @cached_property
     def nodal(self) -> NodalRod:
         """The rod as the compiled functions take it."""
         return nodal_rod(plane_material(self.rod, self.gamma1), self.mesh.matrices)
@@ -46,13 +52,13 @@ class Beam:
     def rate(self, z: Array) -> Array:
         """dz/dt in 1/tau2 of one state or of many, shape (..., unknowns) as that of z."""
         out = np.empty(z.shape)
-        size = self.mesh.unknowns
+        size = self.layout.unknowns
         rates(z.reshape(-1, size), out.reshape(-1, size), self.roots, self.nodal, self.mesh.matrices)
         return out
 
     def jacobian(self, z: Array) -> Array:
         """d(dz/dt)/dz of one state or of many, shape (..., unknowns, unknowns) for z (..., unknowns)."""
-        size = self.mesh.unknowns
+        size = self.layout.unknowns
         out = np.empty((*z.shape, size))
         states, matrices = z.reshape(-1, size), out.reshape(-1, size, size)
         rate_jacobians(states, matrices, self.roots, self.nodal, self.mesh.matrices)
@@ -60,16 +66,25 @@ class Beam:
 
     def strains(self, z: Array) -> Array:
         """(h1, h2, Pi) at all nodes, the tip included, shape (3, ..., nodes + 1) for z (..., unknowns)."""
-        E = np.zeros((3, *z.shape[:-1], self.mesh.nodes + 1), dtype=z.dtype)
-        for a, (part, root) in enumerate(zip(np.split(z, 3, axis=-1), self.roots, strict=True)):
-            E[a, ..., :-1] = part * root[:-1]
-        E[0] += self.rod.nu
-        return E
+        every = (3, *(1,) * (z.ndim - 1), self.mesh.nodes + 1)
+        return self.nodal.rest.reshape(every) + self.roots.reshape(every) * self.layout.stresses(z)
 
     def unknown(self, strains: Array) -> Array:
         """z of (h1, h2, Pi) at all nodes, shape (3, nodes + 1); the tip's values are not free."""
-        deviation = strains[:, :-1] - np.array([[self.rod.nu], [0.0], [0.0]])
-        return (deviation / self.roots[:, :-1]).ravel()
+        return self.layout.state((strains - self.nodal.rest) / self.roots, strains)
+
+    def scaled(self, S: Array) -> Array:
+        """z of stresses beyond the straight rod's at all nodes, (3, ..., nodes + 1)."""
+        return self.layout.state(S * self._along(S), S)
+
+    def stresses(self, z: Array) -> Array:
+        """(n1 + F, n2, m3) at all nodes, the tip included, shape (3, ..., nodes + 1)."""
+        S = self.layout.stresses(z)
+        return S / self._along(S)
+
+    def _along(self, field: Array) -> Array:
+        """The roots, to be combined with a field (3, ..., nodes + 1)."""
+        return self.roots.reshape(3, *(1,) * (field.ndim - 2), -1)
 
     def energy(self, z: Array) -> Array:
         """U = 1/2 int k1 (h1 - 1)^2 + k2 h2^2 + Pi^2 in k3/L, shape (...)."""

@@ -43,11 +43,6 @@ class Mesh:
         """Nodes without the tip."""
         return self.elements * self.order
 
-    @property
-    def unknowns(self) -> int:
-        """Stresses: three at each of the nodes."""
-        return 3 * self.nodes
-
     @cached_property
     def positions(self) -> Array:
         """u of all nodes, the tip included, shape (nodes + 1,)."""

@@ -30,11 +30,9 @@ class NodalRod(NamedTuple):
 
 def nodal_rod(material: Material, m: NodeMatrices, kept: tuple[int, ...] = ()) -> NodalRod:
     """A material on a mesh, of which these components of V are unknowns."""
-    fields = material.rest, material.compliance, material.drag
-    rest, compliance, drag = (_at_nodes(field, len(m.weights)) for field in fields)
-    mobility = np.zeros(drag.shape)
-    eliminated = [a for a in range(len(drag)) if a not in kept]
-    mobility[eliminated] = 1 / drag[eliminated]
+    rest, compliance, drag, mobility = _at_nodes(material, len(m.weights))
+    eliminated = [a not in kept for a in range(len(drag))]
+    np.divide(1.0, drag, out=mobility, where=np.array(eliminated)[:, None])
     second = m.weak @ (mobility[:, :, None] * m.D)
     known = ALGEBRAS[len(drag)], material.tip_stress, rest, compliance, drag, mobility, second
     return NodalRod(*known, np.array(kept, np.int64))
@@ -42,12 +40,13 @@ def nodal_rod(material: Material, m: NodeMatrices, kept: tuple[int, ...] = ()) -
 
 def nodal_change(change: Material, rod: NodalRod) -> NodalRod:
     """The derivative of a rod along a change of its material; of mobility and second there is none."""
-    fields = change.rest, change.compliance, change.drag
-    rest, compliance, drag = (_at_nodes(field, rod.drag.shape[1]) for field in fields)
+    rest, compliance, drag, _ = _at_nodes(change, rod.drag.shape[1])
     return rod._replace(tip_stress=change.tip_stress, rest=rest, compliance=compliance, drag=drag)
 
 
-def _at_nodes(field: Array, size: int) -> Array:
-    """One number a component at every node, (d, size), from (d,) or (d, size)."""
-    columns = field.reshape(len(field), -1)
-    return np.array(np.broadcast_to(columns, (len(field), size)), float, order="C")
+def _at_nodes(material: Material, size: int) -> Array:
+    """rest, compliance and drag of every component at every node, and zeros, (4, d, size)."""
+    out = np.zeros((4, len(material.drag), size))
+    for rows, field in zip(out, (material.rest, material.compliance, material.drag), strict=False):
+        rows[:] = field.reshape(len(field), -1)
+    return out

@@ -28,16 +28,18 @@ from ..model.algebra import add_ad, add_coad
 from ..model.compilation import compiled_for_vectors
 from .mesh import NodeMatrices
 from .nodal_rod import NodalRod
+from .state_layout import stresses_of, velocities_of
 
 
 @compiled_for_vectors
 def strains_and_stresses(x: Array, E: Array, Sigma: Array, c: NodalRod) -> None:
     """E and Sigma at all nodes of a state x, both (d, nodes + 1)."""
     d, n = E.shape[0], E.shape[1] - 1
+    S = stresses_of(x, d, n)
     for a in range(d):
         for i in range(n):
-            E[a, i] = c.rest[a, i] + c.compliance[a, i] * x[a * n + i]
-            Sigma[a, i] = c.tip_stress[a] + x[a * n + i]
+            E[a, i] = c.rest[a, i] + c.compliance[a, i] * S[a, i]
+            Sigma[a, i] = c.tip_stress[a] + S[a, i]
         E[a, n], Sigma[a, n] = c.rest[a, n], c.tip_stress[a]
 
 
@@ -45,10 +47,11 @@ def strains_and_stresses(x: Array, E: Array, Sigma: Array, c: NodalRod) -> None:
 def elastic_forces(x: Array, E: Array, Sigma: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
     """D*_E Sigma at all nodes of a state x into out, (d, nodes + 1), as are E and Sigma there."""
     d, size = out.shape
+    S = stresses_of(x, d, size - 1)
     out[:, :] = 0.0
     for a in range(d):
         for j in range(size - 1):
-            stress = x[a * (size - 1) + j]
+            stress = S[a, j]
             for i in range(size):
                 out[a, i] += m.D_transposed[j, i] * stress
     add_coad(E, Sigma, out, c.algebra)
@@ -77,10 +80,10 @@ def balance(x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatrices) -> None:
     for a in range(d):
         for i in range(size):
             V[a, i] *= c.mobility[a, i]
+    known = velocities_of(x, d, size - 1)
     for k in range(len(c.kept)):
-        first = d * (size - 1) + k * size
         for i in range(size):
-            V[c.kept[k], i] = x[first + i]
+            V[c.kept[k], i] = known[k, i]
     G[:, :] = 0.0
     add_ad(E, V, G, c.algebra)
     weigh(V, G, m)
@@ -88,16 +91,16 @@ def balance(x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatrices) -> None:
 
 @compiled_for_vectors
 def velocity_balance(x: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """W (D*_E Sigma - Gamma V) at all nodes for each V that is unknown into out, (kept (nodes + 1),)."""
+    """W (D*_E Sigma - Gamma V) at all nodes, for each unknown V, into its places in out, (unknowns,)."""
     d, size = c.drag.shape
+    known, rows = velocities_of(x, d, size - 1), velocities_of(out, d, size - 1)
     E, Sigma, force = np.empty((d, size)), np.empty((d, size)), np.empty((d, size))
     strains_and_stresses(x, E, Sigma, c)
     elastic_forces(x, E, Sigma, force, c, m)
     for k in range(len(c.kept)):
-        a, first = c.kept[k], d * (size - 1)
-        for i in range(k * size, (k + 1) * size):
-            node = i - k * size
-            out[i] = m.weights[node] * (force[a, node] - c.drag[a, node] * x[first + i])
+        a = c.kept[k]
+        for i in range(size):
+            rows[k, i] = m.weights[i] * (force[a, i] - c.drag[a, i] * known[k, i])
 
 
 @compiled_for_vectors
@@ -121,13 +124,14 @@ def balance_change(x: Array, V: Array, out: Array, change: NodalRod, c: NodalRod
 
 @compiled_for_vectors
 def velocity_change(x: Array, V: Array, out: Array, change: NodalRod, c: NodalRod, m: NodeMatrices) -> None:
-    """The derivative of `velocity_balance` along a change of the rod into out, (kept (nodes + 1),)."""
+    """The derivative of `velocity_balance` along a change of the rod into its places in out, (unknowns,)."""
     d, size = V.shape
+    rows = velocities_of(out, d, size - 1)
     strains, changed = np.empty((2, d, size)), np.empty((d, size))
     _changed_forces(x, V, strains, changed, change, c)
     for k in range(len(c.kept)):
         for i in range(size):
-            out[k * size + i] = m.weights[i] * changed[c.kept[k], i]
+            rows[k, i] = m.weights[i] * changed[c.kept[k], i]
 
 
 @compiled_for_vectors

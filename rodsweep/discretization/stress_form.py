@@ -14,6 +14,7 @@ from ..model.balance import Material, plane_change, plane_material
 from ..model.rod import Rod
 from .mesh import Mesh, configuration
 from .nodal_rod import NodalRod, nodal_change, nodal_rod
+from .state_layout import StateLayout, plane_layout
 
 LEAST_ELIMINATED_DRAG = 1e-5
 """gamma3 from which Omega is eliminated: below, the division by gamma3 costs multipliers their digits, 2e-9
@@ -42,7 +43,7 @@ class StressForm:
     @cached_property
     def nodal(self) -> NodalRod:
         """The rod as the compiled functions take it."""
-        return nodal_rod(self.material, self.mesh.matrices, OMEGA if self.omega_unknown else ())
+        return nodal_rod(self.material, self.mesh.matrices, self.layout.kept)
 
     def change(self, name: str) -> NodalRod:
         """The derivative of `nodal` by a parameter, by 1/k of a stiffness k."""
@@ -53,10 +54,14 @@ class StressForm:
         """Whether Omega is among the unknowns."""
         return self.rod.gamma3 < LEAST_ELIMINATED_DRAG
 
+    @cached_property
+    def layout(self) -> StateLayout:
+        """Where each field of a state lies."""
+        return plane_layout(self.mesh.nodes, OMEGA if self.omega_unknown else ())
+
     @property
     def unknowns(self) -> int:
-        n = self.mesh.nodes
-        return 4 * n + 1 if self.omega_unknown else 3 * n
+        return self.layout.unknowns
 
     @cached_property
     def mass(self) -> Array:
@@ -65,24 +70,12 @@ class StressForm:
 
     def mass_of(self, rod: NodalRod) -> Array:
         """`mass` for other compliances."""
-        mass = np.zeros(self.unknowns)
-        mass[: 3 * self.mesh.nodes] = (rod.compliance * self.mesh.quadrature)[:, :-1].ravel()
-        return mass
-
-    @cached_property
-    def reflection(self) -> Array:
-        """The signs that reflect a state on the line of the straight rod, shape (unknowns,)."""
-        signs = -np.ones(self.unknowns)
-        signs[: self.mesh.nodes] = 1.0
-        return signs
+        weighted = rod.compliance * self.mesh.quadrature
+        return self.layout.state(weighted, np.zeros(weighted.shape))
 
     def stresses(self, x: Array) -> Array:
         """(n1 + F, n2, m3) at all nodes, the tip included, shape (3, ..., nodes + 1)."""
-        n = self.mesh.nodes
-        S = np.zeros((3, *x.shape[:-1], n + 1))
-        for a in range(3):
-            S[a, ..., :-1] = x[..., a * n : (a + 1) * n]
-        return S
+        return self.layout.stresses(x)
 
     def strains(self, x: Array) -> Array:
         """(h1, h2, Pi) at all nodes, the tip included, shape (3, ..., nodes + 1)."""

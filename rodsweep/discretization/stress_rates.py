@@ -9,6 +9,7 @@ from ..arrays import Array
 from ..model.compilation import compiled_for_vectors
 from .mesh import NodeMatrices
 from .nodal_rod import NodalRod
+from .state_layout import stresses_of
 from .stress_balance import balance
 from .stress_jacobian import jacobian
 
@@ -17,36 +18,43 @@ from .stress_jacobian import jacobian
 def rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
     """dz/dt in 1/tau2 into out, both (unknowns,), of z = C^(1/2) S; roots: of C, (d, nodes + 1), above 0."""
     d, size = c.drag.shape
-    n = size - 1
-    V, G, x = np.empty((d, size)), np.empty((d, size)), np.empty(d * n)
-    for a in range(d):
-        for i in range(n):
-            x[a * n + i] = z[a * n + i] / roots[a, i]
+    V, G, x = np.empty((d, size)), np.empty((d, size)), np.empty(len(z))
+    _unscale(z, x, roots)
     balance(x, V, G, c, m)
+    slopes = stresses_of(out, d, size - 1)
+    for a in range(d):
+        for i in range(size - 1):
+            slopes[a, i] = G[a, i] / (m.weights[i] * roots[a, i])
+
+
+@compiled_for_vectors
+def _unscale(z: Array, x: Array, roots: Array) -> None:
+    """S of z = C^(1/2) S into x, both (unknowns,)."""
+    d, n = roots.shape[0], roots.shape[1] - 1
+    scaled, S = stresses_of(z, d, n), stresses_of(x, d, n)
     for a in range(d):
         for i in range(n):
-            out[a * n + i] = G[a, i] / (m.weights[i] * roots[a, i])
+            S[a, i] = scaled[a, i] / roots[a, i]
 
 
 @compiled_for_vectors
 def rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
     """d(dz/dt)/dz into out, (unknowns, unknowns), as LAPACK and PETSc store it: out[column, row]."""
-    d, size = c.drag.shape
-    n = size - 1
-    V, G, x = np.empty((d, size)), np.empty((d, size)), np.empty(d * n)
-    J, tip, inverse = np.empty((d * n, d * n)), np.empty((d, d * n)), np.empty((d, n))
-    for a in range(d):
-        for i in range(n):
-            inverse[a, i] = 1 / roots[a, i]
-            x[a * n + i] = z[a * n + i] / roots[a, i]
+    (d, size), unknowns = c.drag.shape, len(z)
+    V, G, x = np.empty((d, size)), np.empty((d, size)), np.empty(unknowns)
+    J, tip = np.empty((unknowns, unknowns)), np.empty((d, unknowns))
+    _unscale(z, x, roots)
     balance(x, V, G, c, m)
     jacobian(x, V, J, tip, c, m)
+    scale, inverse = np.empty(unknowns), np.empty(unknowns)
+    rows, columns = stresses_of(scale, d, size - 1), stresses_of(inverse, d, size - 1)
     for a in range(d):
-        for i in range(n):
-            f = inverse[a, i] / m.weights[i]
-            for b in range(d):
-                for j in range(n):
-                    out[b * n + j, a * n + i] = f * inverse[b, j] * J[a * n + i, b * n + j]
+        for i in range(size - 1):
+            columns[a, i] = 1 / roots[a, i]
+            rows[a, i] = columns[a, i] / m.weights[i]
+    for p in range(unknowns):
+        for q in range(unknowns):
+            out[q, p] = scale[p] * inverse[q] * J[p, q]
 
 
 @compiled_for_vectors

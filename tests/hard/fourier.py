@@ -29,7 +29,8 @@ def guess_at(orbit, m):
     states, reaction = orbit.at(np.arange(m) / m), np.empty(V.shape[1:])
     for x, velocities in zip(states, V, strict=True):
         balance(x, velocities, reaction, form.nodal, form.mesh.matrices)
-    return np.concatenate([states[:, : 3 * form.mesh.nodes], V.reshape(m, -1)], axis=1)
+    mixed = MixedForm(form.rod, form.gamma1, form.mesh)
+    return mixed.unknown(form.stresses(states), V.swapaxes(0, 1))
 
 
 def solved_cycle(form, X, frequency):

@@ -94,9 +94,9 @@ def rod_file(form: StressForm) -> bytes:
 def start_file(orbit: Orbit, pieces: int) -> bytes:
     """What the equations read as `start`: F, the period and the states z at equal times, ends included."""
     beam, _ = on_cycle(orbit)
-    turns = np.arange(pieces + 1) / pieces * (2 if orbit.symmetric else 1)
+    turns = np.arange(pieces + 1) / pieces * orbit.symmetry.parts
     states = orbit.at(np.where(turns > 1, turns - 1, turns))
-    states[turns > 1] *= orbit.return_signs
+    states[turns > 1] = orbit.symmetry.of(states[turns > 1], orbit.form.layout)
     z = states * beam.roots[:, :-1].ravel()
     return b"".join(part.tobytes() for part in (np.int32(pieces), np.array([beam.rod.F, orbit.period]), z))
 

@@ -36,8 +36,8 @@ ROWS = 8
 class Semidiscrete(NamedTuple):
     """The rod on its mesh, the method in time, and how an orbit closes.
 
-    mass (n,); differentiation (s, s + 1); lengths: of the intervals, of sum 1, (K,); signs: what the state is
-    multiplied with at the end, (n,); parts: of the period that are equal but for the signs, 1 or 2.
+    mass (n,); differentiation (s, s + 1); lengths: of the intervals, of sum 1, (K,); symmetry: S, by which
+    the state has changed at the end, (n, n); parts: of the period that are equal but for it, 1 or 2.
     """
 
     rod: NodalRod
@@ -45,7 +45,7 @@ class Semidiscrete(NamedTuple):
     mass: Array
     differentiation: Array
     lengths: Array
-    signs: Array
+    symmetry: Array
     parts: float
 
 

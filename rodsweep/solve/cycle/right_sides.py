@@ -6,6 +6,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...discretization.nodal_rod import NodalRod
+from ...discretization.state_layout import stresses_of
 from ...discretization.stress_balance import balance, balance_change, velocity_balance, velocity_change
 from ...model.compilation import compiled_for_vectors
 from .condensation import Semidiscrete
@@ -21,13 +22,19 @@ class Along(NamedTuple):
 @compiled_for_vectors
 def equations(x: Array, F: Array, V: Array, G: Array, p: Semidiscrete) -> None:
     """F(x), shape (n,), with V and G, (3, nodes + 1), on the way."""
-    nodes = G.shape[1] - 1
     balance(x, V, G, p.rod, p.matrices)
-    for a in range(3):
-        for i in range(nodes):
-            F[a * nodes + i] = G[a, i]
-    if len(x) > 3 * nodes:
-        velocity_balance(x, F[3 * nodes :], p.rod, p.matrices)
+    _take(G, F)
+    if len(p.rod.kept):
+        velocity_balance(x, F, p.rod, p.matrices)
+
+
+@compiled_for_vectors
+def _take(G: Array, F: Array) -> None:
+    """G at all nodes but the tip, (3, nodes + 1), into its places in F, (n,)."""
+    rows = stresses_of(F, G.shape[0], G.shape[1] - 1)
+    for a in range(G.shape[0]):
+        for i in range(G.shape[1] - 1):
+            rows[a, i] = G[a, i]
 
 
 @compiled_for_vectors
@@ -36,13 +43,10 @@ def equations_change(x: Array, F: Array, V: Array, out: Array, change: NodalRod,
 
     V at the state x is known; out, (2, 3, nodes + 1), is made on the way.
     """
-    nodes = V.shape[1] - 1
     balance_change(x, V, out, change, p.rod, p.matrices)
-    for a in range(3):
-        for i in range(nodes):
-            F[a * nodes + i] = out[1, a, i]
-    if len(x) > 3 * nodes:
-        velocity_change(x, V, F[3 * nodes :], change, p.rod, p.matrices)
+    _take(out[1], F)
+    if len(p.rod.kept):
+        velocity_change(x, V, F, change, p.rod, p.matrices)
 
 
 @compiled_for_vectors

@@ -16,6 +16,7 @@ from numba import types
 
 from ...discretization.beam import Beam
 from ...discretization.mesh import Mesh
+from ...discretization.state_layout import plane_layout
 from ...discretization.stress_rates import rate, rate_jacobian
 from ..backend.c_functions import POINTER, c_function, call, floats, integers, petsc_function, record_at
 from ..backend.petsc import PETSc
@@ -118,7 +119,7 @@ class Workspace:
     """The memory behind the callbacks of one TS; the rod in it may be changed, the mesh may not."""
 
     def __init__(self, mesh: Mesh) -> None:
-        n = mesh.unknowns
+        n = plane_layout(mesh.nodes).unknowns
         self.base = np.zeros(n)
         self._mesh = mesh  # PETSc's callbacks read its arrays by address: they must live as long
         self._arrays = mesh.matrices._asdict() | {
@@ -144,8 +145,7 @@ class Workspace:
         self._rod = arrays_of(beam)  # these, too, are read by address
         self._set({name: array.ctypes.data for name, array in self._rod.items()})
         self._set({"components": len(self._rod["tip_stress"]), "products": len(self._rod["signs"])})
-        root = beam.mesh.unknowns**0.5
-        rest = np.zeros(beam.mesh.unknowns)
+        root, rest = beam.layout.unknowns**0.5, np.zeros(beam.layout.unknowns)
         straight, pressed = beam.least_stretch(rest), beam.least_stretch(rest - 1)
         fresh = {"matrix_due": AT_BASE, "shift": 0.0, "last_step": 0.0, "contraction": 1.0, "measured": 0}
         self._set(fresh | dict.fromkeys(("growing", "stages", "steps", "left"), 0))

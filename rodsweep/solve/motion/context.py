@@ -76,7 +76,7 @@ UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
 
 
 def arrays_of(beam: Beam) -> dict[str, Array]:
-    """What `ALGEBRA` and `ROD` are the addresses of."""
+    """What `ALGEBRA` and `ROD` are the addresses of, arrays of any shapes."""
     nodal = beam.nodal
     own = nodal._asdict() | {"roots": beam.roots}
     return nodal.algebra._asdict() | {name: own[name] for name in ROD}
