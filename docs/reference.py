@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 from pydantic.fields import FieldInfo
 
+from rodsweep.cli.arm_points import NoRod
 from rodsweep.cli.job import Job, make_job
 from rodsweep.config.arm import ArmSection
 from rodsweep.config.json_schema import meanings_of
@@ -23,7 +24,7 @@ from rodsweep.config.phase_diagram import PhaseDiagramConfig
 from rodsweep.config.refusals import what_is_allowed
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import PARAMETERS
-from rodsweep.results.layouts.arm import MEANINGS, QUANTITY_UNITS
+from rodsweep.results.layouts.arm import MEANINGS, QUANTITY_UNITS, VALIDITY
 from rodsweep.results.layouts.phase_diagram import (
     CLASSES,
     CYCLE_CURVE_ENDS,
@@ -71,6 +72,7 @@ LENGTHS = {
     "u": "`spectrum.nodes`, `modes.nodes`, `limit_cycle.nodes`",
     "crossing": "`thresholds.crossings`, `phase_diagram.crossings`, `criticality.crossings`",
     "curve_point": "as found",
+    "hopf": "as found",
     "fold": "as found",
     "bautin": "as found",
     "cycle_special": "64",
@@ -111,7 +113,7 @@ ATTRIBUTES = {
     "config": "the text of the config, with what `--set` changed at its end",
     "config_resolved": "the config with all defaults, as JSON",
     "snapshot": "when `rodsweep snapshot` wrote the file; empty once a run has continued it",
-    "format": "5; see [which version reads what](#which-version-reads-what)",
+    "format": "6; see [which version reads what](#which-version-reads-what)",
     "seal": "a digest of every variable and attribute; see [the seal](#the-seal)",
     "fingerprint": "of what the config means, and of all points: what a continued file shares",
     "time_unit": "`tau2 = gamma2 L^4/k3`",
@@ -187,7 +189,7 @@ before HDF5 reads them. A program that opens the file for writing takes this che
 VERSIONS = """
 ### Which version reads what
 
-The attribute `format` is a whole number, now 5, that grows when a variable is added or changes its meaning.
+The attribute `format` is a whole number, now 6, that grows when a variable is added or changes its meaning.
 
 - A file of a higher format is refused in one sentence that names the version which wrote it.
 - A file of a lower format, or without the attribute, is refused in one sentence that names the version and
@@ -216,7 +218,7 @@ def text() -> str:
     ends = tuple(enumerate(CYCLE_CURVE_ENDS))
     parts += [words("Ends of curves of folds and torus points", CYCLE_CURVE_ENDS, ends)]
     parts += [task_variables(task) for task in CONFIGS]
-    parts += [ARM, quantities()]
+    parts += [ARM, quantities(), "\n", validity()]
     parts += [
         TAIL,
         table(("attribute", "meaning"), (([code(names), what]) for names, what in ATTRIBUTES.items())),
@@ -268,7 +270,8 @@ def task_keys(task: str) -> str:
 
 def key_row(name: str, field: FieldInfo, meaning: str) -> list[str]:
     """A key as a row of a table."""
-    return [f"`{name}`", what_is_allowed(field), yaml_of(field.default), meaning]
+    default = "" if field.is_required() else yaml_of(field.default)
+    return [f"`{name}`", what_is_allowed(field), default, meaning]
 
 
 def yaml_of(value: object) -> str:
@@ -297,15 +300,32 @@ def dimensions() -> str:
 ARM = """
 ### File of an arm
 
-With `parameters.arm` the file of any task has these coordinates too: a number each, or along F (the load) or
-k2 (Poisson's ratio) in a grid, along `point` in a list. What has the units tau2, 1/tau2, L, k3/L or
-k3/(L tau2), and forces whose name contains `F_` or along which branches are followed, stands in SI units
-beside, by the name with `_si` at its end: `period_si` in s, `growth_rate_si` in 1/s, `F_hopf_si` in Pa, or in
-N where the arm has a force. Tables over more than modes, crossings and branches are not stored twice, nor are
-the curves, crossings and cycles of a phase diagram: times `pressure_scale` or `force_scale` a force is in SI,
+Where only the load or Poisson's ratio of `parameters.arm` have several values, the points are a grid of
+parameters: `pressure` or `force` stands along F, `poisson` along k2. Where another quantity has several,
+the points are a grid over the arm's own quantities and the parameters beside it: every one with several
+values is a dimension, in SI with the unit that was typed as `typed_unit`, and F, k1, k2, gamma3, gamma1 and
+the units below are coordinates on that grid. What has one value is a number.
+
+What has the units tau2, rad/tau2, 1/tau2, L, k3/L or k3/(L tau2), and forces, stand in SI beside:
+`period_si` in s, `frequency_hz` in cycles per second, `growth_rate_si` in 1/s; a force F as the load,
+`pressure_hopf` of `F_hopf` in Pa, `force_hopf` in N where the arm has a force; and `frequency_hopf_hz` of
+`hopf_frequency`. Tables over more than modes, crossings and branches are not stored twice, nor are the
+curves, crossings and cycles of a phase diagram: times `pressure_scale` or `force_scale` a force is in SI,
 times `tau2` a time.
 
 """
+UNCOVERED = """
+A point of such a grid may be an arm that no rod covers. Then `status` is one of these, and nothing is
+computed:
+
+"""
+
+
+def validity() -> str:
+    """What a file says of whether the model applies, and the statuses of arms that no rod covers."""
+    statuses = [[str(int(status)), f"`{status.name}`", status.sentence] for status in NoRod]
+    variables = variable_table(variable_row(v, ["...", *v.extra], "") for v in VALIDITY)
+    return variables + UNCOVERED + table(("value", "word", "meaning"), statuses)
 
 
 def quantities() -> str:
@@ -379,6 +399,8 @@ def variables_of(job: Job) -> dict[str, tuple[Variable, list[str]]]:
 def variable_row(variable: Variable, dims: list[str], only: str) -> list[str]:
     """A variable as a row of a table."""
     meaning = variable.long_name
+    if variable.is_truth:
+        meaning += ": 1 yes, 0 no"
     if variable.flags:
         meaning += ": " + ", ".join(f"{value} {word}" for value, word in variable.flags)
     if only:

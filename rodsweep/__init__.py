@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .api.answer import Answer
+    from .api.arm import Arm
     from .api.axes import linspace, logspace
     from .api.dataset import open_result as open  # noqa: A004 - `rs.open`
     from .api.picture import Picture, plot
     from .api.rod import SoftRod as Rod
     from .api.sweeping import sweep
+    from .api.tabling import table
     from .errors import EnvironmentLacks, InputError
-    from .verdict.arm import Arm
 
 __version__ = "0.1.0"
 __all__ = [
@@ -30,11 +31,12 @@ __all__ = [
     "open",
     "plot",
     "sweep",
+    "table",
 ]
 
 _PLACES = {
     "Answer": "api.answer.Answer",
-    "Arm": "verdict.arm.Arm",
+    "Arm": "api.arm.Arm",
     "EnvironmentLacks": "errors.EnvironmentLacks",
     "InputError": "errors.InputError",
     "Picture": "api.picture.Picture",
@@ -44,6 +46,7 @@ _PLACES = {
     "open": "api.dataset.open_result",
     "plot": "api.picture.plot",
     "sweep": "sweep",
+    "table": "api.tabling.table",
 }
 """Where the public names come from; `sweep` is a package that can be called."""
 

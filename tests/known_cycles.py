@@ -9,6 +9,8 @@ from rodsweep.results.file.creation import Plan, create_file
 from rodsweep.results.file.seal import seal
 from rodsweep.results.file.view import View
 from rodsweep.results.layouts import layout_of
+from rodsweep.results.layouts.limit_cycle import HOPF_POINTS
+from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 from rodsweep.sweep.grid import Points
 
 NAMES = ("F", "k1", "k2", "gamma3", "gamma1")
@@ -57,6 +59,7 @@ def make_view(axes, statuses, *, stored=("shapes", "samples"), name="fake.h5", a
         threshold = np.minimum(hopf(*table), 1e3)
         v["linear_growth_rate"] = growth_rate(table[0] - threshold)
         size = np.sqrt(np.clip(table[0] / threshold - 1, 0, None)) / (1 + table[4])
+    v |= hopf_table(table, hopf)
     period = np.vectorize(lambda g: PERIODS.get(g, 0.03))(table[4])
     points = list(zip(size.ravel(), period.ravel(), strict=True))
     kept = np.where(np.isin(status, (0, UNSTABLE)), 1.0, np.nan)
@@ -78,6 +81,38 @@ def make_view(axes, statuses, *, stored=("shapes", "samples"), name="fake.h5", a
     return View(Path(name), {"task": "limit_cycle", "title": "two $ arms"}, v, NAMES, MORE_FLAGS, 0)
 
 
+def hopf_table(table, hopf, error=1e-12):
+    """The Hopf points along F of a view whose rods have one each, as the task stores them.
+
+    table: the five parameters at every point; hopf: F** of them, or None where there is none.
+    """
+    rods = np.unique(np.stack([column.ravel() for column in table[1:4]], axis=-1), axis=0)
+    gamma1 = float(table[4].ravel()[0])
+    F = (
+        np.array([hopf(*(np.asarray(value) for value in (1.0, *rod, gamma1))) for rod in rods])
+        if hopf
+        else []
+    )
+    return hopf_variables("F", [(float(at), *rod) for at, rod in zip(F, rods, strict=False)], error)
+
+
+def hopf_variables(along, rods, error=1e-12, kinds=None):
+    """The variables of Hopf points along a parameter; rods: F, k1, k2, gamma3 of each."""
+    count = len(rods)
+    kinds = kinds or ["hopf"] * count
+    columns = np.array(rods, float).reshape(count, 4).T
+    return {f"hopf_{name}": column for name, column in zip(NAMES[:4], columns, strict=True)} | {
+        "hopf_along": np.full(count, NAMES.index(along), "i1"),
+        "hopf_kind": np.array([CROSSING_KINDS.index(kind) for kind in kinds], "i1"),
+        "hopf_error": np.full(count, error),
+        "hopf_frequency": np.full(count, 110.0),
+        "hopf_frequency_error": np.full(count, 1e-10),
+        "hopf_unstable_after": np.array([2 if kind == "hopf" else 0 for kind in kinds], "i4"),
+        "hopf_lines": np.array(1, "i4"),
+        "hopf_lines_proved": np.array(1, "i4"),
+    }
+
+
 OPTIONS = {"harmonics": 8, "samples": SAMPLES, "shapes": SHAPES, "nodes": 21, "transient": 0, "time": "tau2"}
 
 
@@ -90,8 +125,10 @@ def store(view, path, **options):
     layout = layout_of(config)
     columns = tuple(np.asarray(view.variables[name], float) for name in layout.parameters)
     points = Points(layout.parameters, columns, view.is_grid)
-    create_file(path, Plan(points, layout, {}, (), config, {"task": "limit_cycle", "title": "arms"}, flags))
+    stored = tuple((v, view.variables[v.name]) for v in HOPF_POINTS)
+    attributes = {"task": "limit_cycle", "title": "arms"}
+    create_file(path, Plan(points, layout, {}, lambda: stored, config, attributes, flags))
     with h5py.File(path, "r+") as file:
-        for name in view.variables.keys() - {*NAMES, "point"}:
+        for name in view.variables.keys() - {*NAMES, "point", *(v.name for v in HOPF_POINTS)}:
             file[name][...] = view.variables[name]
     seal(path)

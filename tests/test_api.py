@@ -22,7 +22,7 @@ from rodsweep.cli import commands
 from rodsweep.config.schema import Config
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.parameters import PARAMETERS
-from rodsweep.post.figures.request import KINDS, ROOTS, WIDTHS
+from rodsweep.post.figures.request import KINDS, ROOTS
 
 NAMES = [
     "Answer",
@@ -36,6 +36,7 @@ NAMES = [
     "open",
     "plot",
     "sweep",
+    "table",
 ]
 METHODS = {
     "parameters",
@@ -85,7 +86,7 @@ def test_arguments_are_these():
     assert drawn == ["data", "output", "roots", "what", "points", "look"]
     assert list(inspect.signature(rs.open).parameters) == ["path"]
     arguments = inspect.signature(rs.Rod).parameters
-    assert [name for name in arguments if name != "unknown"] == list(PARAMETERS)
+    assert [name for name in arguments if name != "unknown"] == [*PARAMETERS, "arm"]
 
 
 def test_import_loads_nothing():
@@ -316,8 +317,21 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
         (lambda: rs.Arm(**LOADED | {"length": "1e300 km"}), "length = '1e300 km' makes numbers too large"),
         (lambda: rs.Arm(**LOADED | {"radius": "1e-300 m"}), "length = '10 cm' makes numbers too large or"),
         (lambda: rs.Arm(**LOADED | {"poisson": "0.5"}), "poisson = '0.5' is not a number above -1"),
+        (lambda: rs.Arm(**LOADED | {"poisson": 10**400}), "poisson = 1000000000"),
+        (
+            lambda: rs.Arm(**LOADED | {"poisson": 10**5000}),
+            "poisson = an integer too large to be shown is not",
+        ),
         (lambda: rs.Arm(**SILICONE | {"radius": "-5 mm"}), "radius = '-5 mm' is not above 0"),
-        (lambda: rs.Arm(**SILICONE), "pressure: give either a pressure"),
+        (lambda: rs.Arm(**LOADED, force="1 N"), "pressure = '2 kPa' and force = '1 N' are both given"),
+        (
+            lambda: rs.Arm(**SILICONE).spectrum(),
+            "spectrum needs a load; arm.replace(pressure='2 kPa') has one",
+        ),
+        (lambda: rs.Arm(**LOADED).cycle(young="1 MPa"), "young belongs to the arm: arm.replace(young=...)"),
+        (lambda: rs.Arm(**LOADED).thresholds(F_mx=3), "unknown key thresholds.F_mx; did you mean F_max?"),
+        (lambda: rs.Arm(**LOADED).replace(lenght=3), "unknown key lenght; did you mean length?"),
+        (lambda: rs.Rod(arm=3), "arm = 3 is no arm; write it as in rs.Rod(arm=rs.Arm("),
         (lambda: rs.linspace(0, 10), "num is missing; write it as in rs.linspace(0, 10, num=11)"),
         (lambda: rs.linspace(0, 10, 5, 6), "6 has no name; write it as in rs.linspace("),
         (lambda: rs.linspace(0, 10, n=5), "unknown key n; did you mean num?"),
@@ -334,48 +348,6 @@ def test_bad_input_of_a_rod_is_refused(call, sentence):
     with pytest.raises(rs.InputError) as refusal:
         call()
     assert str(refusal.value).startswith(sentence)
-
-
-def test_an_answer_prints_its_numbers_with_their_units():
-    answer = rs.Rod(**ROD).thresholds(crossings=2)
-    text, html = repr(answer), answer._repr_html_()
-    assert text.startswith("Rod(F=50, k1=10000, k2=100, gamma3=0.01, gamma1=1), thresholds: ")
-    for part in (
-        "F_hopf",
-        "27.427194",
-        "k3/L^2",
-        "smallest F at which a pair becomes unstable",
-        "onset, hopf",
-    ):
-        assert part in text
-        assert part in html
-    absent = {
-        "F_restabilization",
-        "restabilization_frequency",
-        "open_from",
-        "open_to",
-    }  # NaN, as the list is full
-    assert np.isnan([answer.data[name] for name in absent]).all()
-    told = set(answer.data.data_vars) - {"status", "seconds"} - absent
-    assert html.count("<tr>") == 1 + len(told)
-    assert [line.split()[0] for line in text.splitlines()[3:]] == [
-        name for name in answer.data if name in told
-    ]
-    assert "F_hopf" in dir(answer)
-    with pytest.raises(AttributeError, match="no 'F_hop'"):
-        _ = answer.F_hop
-
-
-def test_a_rod_at_rest_has_no_empty_rows():
-    answer = rs.Rod(**ROD).replace(F=5).cycle(accuracy=1e-3)
-    text, html = repr(answer), answer._repr_html_()
-    assert answer.status == "straight"
-    assert np.isnan(answer.period)
-    for told in (text, html):
-        assert "nan" not in told
-        assert answer.sentence in told
-        assert "linear_growth_rate" in told
-        assert "tip_y_max" not in told
 
 
 def test_a_sweep_is_written_read_and_drawn(tmp_path):
@@ -400,19 +372,31 @@ def test_an_answer_is_drawn():
     assert picture.shown.startswith("the leading mode")
 
 
-def test_no_variable_hides_behind_an_attribute_of_answers():
-    for task in ("spectrum", "thresholds", "modes", "limit_cycle"):
-        tree = tree_of(task, {name: ROD[name] for name in CONFIGS[task].taken_of_a_rod({}) if name in ROD})
-        names = {variable.name for variable in job_from(tree).layout.variables}
-        assert names & set(dir(rs.Answer)) == {"status"}
+def test_a_cycle_without_stored_shapes_is_drawn_with_the_shapes_that_it_would_have():
+    cycle = rs.Rod(F=50, k1=1e4, k2=100, gamma3=0.01).cycle(accuracy=1e-4)
+    assert "shape_x" not in cycle.data
+    assert rs.plot(cycle).shown.startswith("shapes through the cycle")
+    assert rs.plot(cycle, what="energy").shown.startswith("energy, injection and dissipation")
+    with pytest.raises(
+        rs.InputError, match=r"holds no cycle \(its points are: straight\) that could be drawn"
+    ):
+        rs.plot(rs.Rod(F=5, k1=1e4, k2=100, gamma3=0.01).cycle(accuracy=1e-4))
+
+
+def test_a_branch_and_the_criticality_of_one_rod_are_drawn():
+    rod = rs.Rod(k1=200, k2=1e4, gamma3=1e-4)
+    assert rs.plot(rod.criticality(F_max=60)).shown.startswith("the cycles that normal forms predict")
+    assert rs.plot(rod.branch(stop=60, accuracy=1e-4)).shown.startswith("1 branch of cycles over F")
 
 
 @pytest.mark.parametrize(
     ("choice", "sentence"),
     [
         ({"what": "heat"}, "what = 'heat' is not allowed; choose cycle, amplitude, maps"),
-        ({"width": "tiny"}, "width = 'tiny' is not allowed; choose single, double"),
-        ({"roots": "left"}, "roots = 'left' is not allowed; choose rightmost, smallest"),
+        ({"width": "tiny"}, "width = 'tiny' is not allowed; choose single, double, or a length as '89 mm'"),
+        ({"roots": "left"}, "roots = 'left' is not allowed; choose rightmost, smallest, all"),
+        ({"at": {"k1": 100}}, "has no point there; it has k1 = 200"),
+        ({"at": 3}, "at is not allowed; give numbers by parameter"),
         ({"points": 3}, "--point is for results of limit_cycle"),
     ],
 )
@@ -430,7 +414,6 @@ def test_choices_of_a_figure_are_those_of_the_command():
     assert {name: tuple(words) for name, words in choices.items()} == {
         "roots": ROOTS,
         "what": KINDS,
-        "width": tuple(WIDTHS),
     }
 
 

@@ -6,15 +6,17 @@ import sys
 
 import pytest
 
+from rodsweep import Arm
 from rodsweep.errors import InputError
 from rodsweep.model.drag import cox, gray_hancock, least_rotational, lighthill, most_rotational
-from rodsweep.model.section import Circle, Rectangle
+from rodsweep.model.section import Circle, Rectangle, Tube
 from rodsweep.solve.changes.along_path import Transitions
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdStatus, nothing_found
 from rodsweep.solve.changes.unstable_modes import Crossing, Kind
-from rodsweep.verdict.arm import Arm
 from rodsweep.verdict.flutter import FlutterForces, FlutterRange
+from rodsweep.verdict.planes import Plane, Planes
 from rodsweep.verdict.sentences import verdict_sentences
+from rodsweep.verdict.validity import Assessment
 
 OK = ThresholdStatus.ok
 
@@ -26,6 +28,10 @@ SILICONE = {
     "pressure": "2 kPa",
 }
 OPTIONS = [word for name, text in SILICONE.items() for word in (f"--{name}", text)]
+
+
+THICK = "50 Pa s"
+"""Viscosity of a fluid in which the silicone arm has no inertia to speak of."""
 
 
 def arm(**changes):
@@ -60,6 +66,29 @@ def test_sections_by_hand():
     assert (rectangle.area, rectangle.second_moment, rectangle.drag_radius) == pytest.approx((6, 2, 1.25))
     assert (circle.shear_coefficient(0), rectangle.shear_coefficient(0)) == pytest.approx((6 / 7, 5 / 6))
     assert rectangle.shear_coefficient(0.5) == pytest.approx(15 / 17.5)
+
+
+def test_tube_by_hand():
+    """a = 2, b = 1: A = 3 pi, I = 15 pi/4; Cowper's coefficient from m = 1/2, and a thin wall's."""
+    tube = Tube(2.0, 1.0)
+    numbers = (tube.area, tube.second_moment, tube.face_area, tube.bore_area)
+    assert numbers == pytest.approx((3 * math.pi, 15 * math.pi / 4, 4 * math.pi, math.pi))
+    assert tube.shear_coefficient(0.5) == pytest.approx(9 * 1.5625 / (10 * 1.5625 + 26 * 0.25))
+    assert Tube(1.0, 1 - 1e-9).shear_coefficient(0.3) == pytest.approx(2 * 1.3 / (4 + 0.9))
+    assert Tube(1.0, 1e-9).shear_coefficient(0.3) == pytest.approx(Circle(1.0).shear_coefficient(0.3))
+
+
+def test_pressure_on_a_tube_pushes_on_the_whole_face_of_its_closed_tip():
+    """a = 5 mm, b = 3 mm: E A L^2/k3 = 4 L^2/(a^2 + b^2), and the tip's force is p pi a^2."""
+    rod = arm(inner_radius="3 mm", density_difference="100 kg/m^3")
+    assert rod.k1 == pytest.approx(4 * 0.01 / 34e-6)
+    assert rod.tip_force == pytest.approx(2000 * math.pi * 25e-6)
+    assert rod.F * rod.pressure_scale == pytest.approx(2000)
+    assert rod.mass_per_length == pytest.approx(math.pi * (16e-6 * 1100 + 9e-6 * 1000))
+    crushing = 1e5 * 16 / 25
+    assert arm(inner_radius="3 mm", pressure=0.999 * crushing).k1 > 0
+    with pytest.raises(InputError, match=r"compresses the arm to nothing; it must be below 6\.4e.04 Pa"):
+        arm(inner_radius="3 mm", pressure=crushing)
 
 
 def test_least_rotational_drag_is_the_torque_of_its_flow():
@@ -106,6 +135,11 @@ def test_only_time_scales_with_viscosity():
         ({"length": "10 m**9**9**9**9"}, "length = .* not understood"),
         ({"radius": "-1 mm"}, "radius = '-1 mm' is not above 0"),
         ({"radius": None}, "radius: give either a radius, or width and height"),
+        ({"inner_radius": "5 mm"}, "inner_radius = '5 mm' is not below radius = '5 mm'"),
+        (
+            {"radius": None, "width": "1 cm", "height": "1 cm", "inner_radius": "1 mm"},
+            "inner_radius = '1 mm' needs a radius",
+        ),
         ({"width": "1 cm"}, "radius: give either"),
         ({"viscosity": "1400 mPas"}, "viscosity = '1400 mPas' is not measured in Pa"),
         ({"pressure": "100 kPa"}, "pressure = '100 kPa' compresses .* below 1e.05 Pa"),
@@ -123,14 +157,14 @@ def test_bad_quantities_are_refused_in_one_sentence(changes, sentence):
 
 
 def test_silicone_arm_is_just_below_flutter():
-    """The issue's arm; a filament's F** = 37.695 would be 2.356 kPa, shear and drag lower it."""
-    rod = arm()
+    """A filament's F** = 37.695 would be 2.356 kPa, shear and drag lower it; frequencies as 1/viscosity."""
+    rod = arm(viscosity=THICK)
     flutter = rod.flutter.force(Kind.hopf)
     assert rod.F < flutter.low < flutter.high < 37.695
     assert flutter.always
     verdict = rod.report().verdict
     assert verdict[0] == "2 kPa is 4 to 9 % below flutter, at 2.09 to 2.21 kPa: the arm stays straight."
-    assert verdict[1] == "Above, the straight arm gives way and begins to beat at 1.3 to 4.15 Hz."
+    assert verdict[1] == "Above, the straight arm gives way and begins to beat at 0.0365 to 0.116 Hz."
 
 
 def test_frequency_follows_from_tau2():
@@ -160,37 +194,18 @@ def test_thresholds_inside_the_range_of_drag_lie_in_that_of_forces():
     [
         ("2.15 kPa", "2.15 kPa lies in the range of flutter"),
         ("2.5 kPa", "2.5 kPa is 13 to 20 % above flutter"),
-        ("20 kPa", "20 kPa is 9.07 to 9.58 times flutter"),
+        ("9.9 kPa", "9.9 kPa is 4.49 to 4.74 times flutter"),
         ("-1 kPa", "Flutter is at 2.09 to 2.21 kPa; -1 kPa does not push"),
-        (
-            "70 kPa",
-            "Flutter is at 2.09 to 2.21 kPa; whether the arm beats at 70 kPa is not known: changes were "
-            "sought up to 62.5 kPa.",
-        ),
     ],
 )
 def test_verdict_says_where_the_load_lies(pressure, words):
-    assert arm(pressure=pressure).report().verdict[0].startswith(words)
-
-
-def test_warnings_are_of_what_the_model_leaves_out():
-    fine = arm(length="30 cm", viscosity="100 Pa s", pressure="0.1 kPa", density_difference="0.1 kg/m^3")
-    assert all(check.fine for check in fine.report().checks)
-    bad = arm(
-        length="12 cm", radius=None, width="1.6 cm", height="2.4 cm", pressure="30 kPa", viscosity="1 mPa s",
-        poisson=0.1, density_difference="300 kg/m^3",
-    )  # fmt: skip
-    assert not any(check.fine for check in bad.report().checks)
-    named = ("Slenderness", "Compression", "Inertia", "Reynolds", "Weight", "Poisson", "Plane")
-    assert [check.sentence.split()[0].strip(":").removesuffix("'s") for check in bad.report().checks] == list(
-        named
-    )
+    assert arm(pressure=pressure, viscosity=THICK).report().verdict[0].startswith(words)
 
 
 def test_command_prints_verdict_numbers_and_checks(command):
     end = command("arm", *OPTIONS)
     assert (end.returncode, end.stderr) == (0, "")
-    assert end.stdout.startswith("2 kPa is 4 to 9 % below flutter")
+    assert end.stdout.startswith("The model does not apply: inertia of the arm is 6.4 times what the model")
     for words in ("Cowper 1966", "Lighthill 1976", "warning: Inertia", "k1 ", "1600", "480"):
         assert words in end.stdout
     assert max(map(len, end.stdout.splitlines())) <= 80
@@ -231,6 +246,12 @@ def found(tau2, *changes, end=200.0):
     return FlutterForces(tau2=tau2, thresholds=Thresholds(status=OK, transitions=transitions, end=end))
 
 
+def verdict(rod, *forces):
+    """The verdict on an arm with changes that are given for each drag."""
+    plane = Plane(rod, FlutterRange(forces))
+    return verdict_sentences(Planes(plane), Assessment(plane.arm, plane.found))
+
+
 @pytest.mark.parametrize(
     ("second", "sentences"),
     [
@@ -244,22 +265,28 @@ def found(tau2, *changes, end=200.0):
 def test_return_is_told_for_all_or_part_of_the_range(second, sentences):
     window = found(1.0, (20.0, Kind.hopf, 2), (40.0, Kind.restabilization, 0))
     other = [(25.0, Kind.hopf, 2), (45.0, Kind.restabilization, 0)] if second else []
-    told = " ".join(verdict_sentences(arm(), FlutterRange((window, found(2.0, *other)))))
+    told = " ".join(verdict(arm(viscosity=1e3), window, found(2.0, *other)))
     assert all(words in told for words in sentences)
 
 
 def test_beyond_the_return_the_arm_is_straight_again():
     window = found(1.0, (20.0, Kind.hopf, 2), (30.0, Kind.restabilization, 0))
-    told = verdict_sentences(arm(), FlutterRange((window,)))
+    told = verdict(arm(viscosity=1e3), window)
     assert told[0] == "2 kPa is beyond flutter, at 1.25 kPa: the straight arm has returned."
 
 
 def test_arm_without_flutter_and_failed_search_are_told():
-    none = verdict_sentences(arm(), FlutterRange((found(1.0),)))
+    none = verdict(arm(), found(1.0))
     assert none == [
         "The arm does not flutter up to 12.5 kPa, where the search ends: it stays straight at 2 kPa."
     ]
     failed = FlutterForces(tau2=1.0, thresholds=nothing_found(ThresholdStatus.failed, 200.0, "no box"))
-    assert verdict_sentences(arm(), FlutterRange((failed,))) == [
-        "The thresholds could not be found with every drag: no box."
-    ]
+    assert verdict(arm(), failed) == ["The thresholds could not be found with every drag: no box."]
+
+
+def test_beyond_where_changes_were_sought_nothing_is_claimed():
+    window = found(1.0, (20.0, Kind.hopf, 2), end=25.0)
+    assert verdict(arm(viscosity=1e3), window)[0] == (
+        "Flutter is at 1.25 kPa; whether the arm beats at 2 kPa is not known: changes were sought up to "
+        "1.56 kPa."
+    )

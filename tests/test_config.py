@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from rodsweep.cli.job import make_job
+from rodsweep.config.refusals import nearest
 from rodsweep.errors import InputError
 
 GOOD = """
@@ -346,3 +347,25 @@ def test_file_that_is_no_text_is_refused(tmp_path):
     for bad in (path, tmp_path, tmp_path / "none.yaml"):
         with pytest.raises(InputError):
             make_job(bad, ())
+
+
+@pytest.mark.parametrize(
+    ("key", "known", "meant"),
+    [
+        ("taper", ("F", "k1", "arm", "points"), []),
+        ("k3", ("F", "k1", "k2"), []),
+        ("G", ("F", "k1"), []),
+        ("Fmax", ("certify", "F_max"), ["F_max"]),
+        ("gamma", ("k1", "gamma3", "gamma1"), ["gamma3", "gamma1"]),
+        ("n", ("start", "num"), ["num"]),
+        ("lenght", ("length", "height"), ["length"]),
+        ("density", ("viscosity", "fluid_density"), ["fluid_density"]),
+        ("presure", ("force", "pressure"), ["pressure"]),
+        ("tolerance", ("accuracy", "title"), []),
+        ("", ("F", "k1"), []),
+        ("k", ("F", "k1", "k2"), ["k1", "k2"]),
+        ("a", ("a1", "a2", "a3", "a4", "a5"), []),
+    ],
+)
+def test_only_near_keys_are_suggested(key, known, meant):
+    assert nearest(key, known) == meant

@@ -126,6 +126,16 @@ def test_points_without_a_known_amplitude_are_marked_and_named_but_missing_ones_
     assert crosses == [40.0]
 
 
+def test_period_and_power_are_drawn_where_there_are_cycles():
+    view = make_view(SWEEP, SWEPT)
+    figure = draw_amplitude([view])[0]
+    for axes, name in zip(figure.axes[2:], ("period", "injection_mean"), strict=True):
+        lines = [line for line in axes.lines if len(line.get_xdata()) > 2]
+        drawn = np.concatenate([line.get_ydata() for line in lines])
+        stored = view.variables[name].ravel()
+        assert sorted(drawn[np.isfinite(drawn)]) == sorted(stored[np.isfinite(stored)])
+
+
 def test_a_list_that_goes_up_and_down_stays_in_its_order():
     F = [20.0, 30.0, 40.0, 30.0, 20.0]
     columns = (F, [1e4] * 5, [1e2] * 5, [1e-2] * 5, [1.0] * 5)
@@ -252,7 +262,7 @@ GRID7 = (SWEEP[0], *SWEEP[1:4], list(np.arange(1, 8.0)))
         (make_view(TWO, [1, 4]), {}, "no cycle that could be drawn"),
         (make_view(SWEEP, [-1] * 8), {"what": "amplitude"}, "no amplitude that could be drawn"),
         (make_view((*TWO[:4], [1.0]), [0]), {"what": "amplitude"}, "holds one point"),
-        (make_view(GRID7, [0] * 28, **FEW), {"what": "amplitude"}, "makes 7 lines"),
+        (make_view(GRID7, [0] * 28, **FEW), {"what": "amplitude"}, "makes 7 lines .* choose by --at"),
         ([two_cycles(), two_cycles()], {"what": "cycle"}, "only amplitudes of several files"),
     ],
 )

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from known_cycles import TORUS, UNSTABLE, make_view, store
+from known_cycles import TORUS, UNSTABLE, hopf_variables, make_view, store
 from matplotlib.collections import PolyCollection, QuadMesh
 from matplotlib.colors import LogNorm
 
@@ -142,7 +142,7 @@ def test_the_line_of_hopf_points_is_where_the_rod_starts_to_beat(shape):
     off = np.abs(forces - rising(forces, 0, k2, 0, 0)) * (shape[0] - 1) / 40  # in steps of F
     on_row = np.isclose(k2[:, None], view.variables["k2"]).any(axis=1)
     assert on_row.sum() >= shape[1]
-    assert off[on_row].max() < (0.03 if shape[0] == 3 else 1e-3)
+    assert off[on_row].max() < 1e-9
     assert off.max() < 0.06
     assert (k2.min(), k2.max()) == (pytest.approx(2), pytest.approx(1000))
 
@@ -153,6 +153,14 @@ def test_a_line_of_hopf_points_that_turns_back_is_one_line():
     F, k2 = (view.variables[name] for name in ("F", "k2"))
     window = (k2 - 122) / 80 - ((F[:, None] - 101) / 60) ** 2
     view.variables["linear_growth_rate"] = 1e2 * window[:, None, :, None, None]
+    half = 60 * np.sqrt((k2[k2 > 122] - 122) / 80)
+    ends = [
+        (101 + side * width, 1e4, k, 1e-2)
+        for k, width in zip(k2[k2 > 122], half, strict=True)
+        for side in (-1, 1)
+    ]
+    kinds = ["hopf", "restabilization"] * len(half)
+    view.variables.update(hopf_variables("F", ends, kinds=kinds))
     (line,) = hopf_lines(point_map(view), view)
     at_end = line[:, line[1] == 200]
     assert np.sort(at_end[0]) == pytest.approx(101 + 60 * np.sqrt(78 / 80) * np.array([-1, 1]), abs=0.1)

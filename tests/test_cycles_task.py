@@ -284,7 +284,7 @@ def filled_file(directory, text=None):
     """The file of a run whose last point is straight."""
     job = job_of(directory, text or config(STORED))
     attributes = {"title": "t", "task": job.config.task}
-    plan = Plan(job.points, job.layout, job.task.coordinates(), (), job.resolved, attributes, FLAGS)
+    plan = Plan(job.points, job.layout, job.task.coordinates(), tuple, job.resolved, attributes, FLAGS)
     store = Store(directory / "c.h5", plan)
     journal = Journal(store.journals, 0, job.layout, plan.fingerprint)
     for index in range(job.points.count):
@@ -380,12 +380,12 @@ def test_show_tells_ranges_and_worst_errors(tmp_path, capsys):
     text = " ".join(capsys.readouterr().out.split())
     for words in (
         "gamma1 2 0.5 1 gamma2",
-        "of 8 points: 7 cycle, 1 straight, 0 not_settled",
-        "period: 2 to 8 tau2, 40 to 320 tau1",
-        "tip: largest y 7 L",
-        "multiplier: 0.25",
-        "worst relative errors: period 9.0e+00, amplitude 1.0e+01, other extrema 1.1e+01",
-        "energy balance 1.6e+01",
+        "of 8 points: beats at 7 (",
+        "period: 2 to 8 tau2; largest y of the tip: 7 L",
+        "period: 40 to 300 tau1",
+        "multiplier: 0.2; returns",
+        "worst errors: period 9e+00, amplitude 1e+01, other extrema 2e+01",
+        "energy balance 2e+01",
     ):
         assert words in text, words
 
@@ -393,9 +393,10 @@ def test_show_tells_ranges_and_worst_errors(tmp_path, capsys):
 def test_show_tells_the_multipliers_of_the_cycles_that_tori_surround():
     view = make_view(([50.0, 60.0], [1e4], [1e2], [1e-2], [1.0]), [1, TORUS])
     view.variables["multiplier"] = np.array([np.nan, 1.25]).reshape(view.variables["status"].shape)
-    text = "\n".join(limit_cycle_summary(view, view.variables["status"] >= 0))
-    assert "1 torus" in text
-    assert "tori: the cycles that they surround have multipliers 1.25" in text
+    view.variables["multiplier_error"] = np.full(view.variables["status"].shape, 1e-3)
+    told = limit_cycle_summary(view, view.variables["status"] >= 0)
+    assert told.answer[0] == "of 2 points: stays straight at 1 (F = 50), torus at 1 (F = 60)"
+    assert "tori: the cycles that they surround have multipliers 1.25" in told.details
 
 
 def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):

@@ -13,14 +13,14 @@ from rodsweep.cli.tasks import TASKS
 from rodsweep.errors import InputError
 from rodsweep.post.figures import FIGURES, draw
 from rodsweep.post.figures.class_bars import CLASS_COLOURS
-from rodsweep.post.figures.phase_diagram import _without_stairs
+from rodsweep.post.figures.regions import PIXELS, ClassedPlaces, coloured
 from rodsweep.post.figures.request import Look
+from rodsweep.post.figures.sections import section
 from rodsweep.post.figures.spectra.line import broken, followed_roots, mark_thresholds
 from rodsweep.post.figures.style import INVERSE_DRAG, LABELS, number, scale
-from rodsweep.post.figures.thresholds import _alike
+from rodsweep.post.figures.threshold_lines import _alike
 from rodsweep.post.summary import SUMMARIES
 from rodsweep.results.file.view import read_view
-from rodsweep.results.layouts.phase_diagram import CLASSES
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 
@@ -69,7 +69,7 @@ def test_map_is_drawn_and_other_shapes_are_refused(command):
     assert refused.returncode == 2
     assert "one or two" in refused.stderr
     with pytest.raises(InputError, match="must end in"):
-        draw(read_view(command.directory / "map.h5"), command.directory / "f.frob", "smallest")
+        draw(read_view(command.directory / "map.h5"), command.directory / "f.frob", roots="smallest")
 
 
 def test_colours_of_a_map_change_sign_on_its_line_of_zero_growth(command, monkeypatch):
@@ -352,10 +352,81 @@ def test_phase_diagram_has_its_edge_as_a_line_marks_apart_and_a_legend_inside(co
         assert {text.get_text() for text in axes.texts} == {r"$\tilde F_*$", r"$\tilde F_{**}$"}
 
 
-def test_crushed_cells_take_the_class_above_the_edge():
-    crushed = next(number for number, word in CLASSES if word == "crushed")
-    table = np.array([[0, crushed, crushed], [0, 1, crushed], [0, 1, 2]])
-    assert _without_stairs(table, crushed).tolist() == [[0, 1, 2], [0, 1, 2], [0, 1, 2]]
+def test_classes_are_bounded_by_a_curve_however_few_points_are_computed():
+    """Below the parabola y = x^2 class 1, above it class 2, from four points."""
+    x = np.linspace(0, 1, 200)
+    places = ClassedPlaces(
+        np.array([[0.1, 0.9], [0.05, 0.1], [0.9, 0.1], [0.95, 0.8]]), np.array([2, 2, 1, 1])
+    )
+    table = coloured(places, places, [np.column_stack([x, x**2])])
+    centres = (np.arange(PIXELS) + 0.5) / PIXELS
+    off = centres[:, None] - centres[None, :] ** 2
+    away = np.abs(off) > 3 / PIXELS
+    assert np.array_equal(table[away], np.where(off > 0, 2, 1)[away])
+
+
+def test_a_region_between_curves_without_a_computed_point_has_the_class_of_a_place_known_otherwise():
+    rails = [np.array([[0.0, y], [1.0, y]]) for y in (0.5, 0.52)]
+    computed = ClassedPlaces(np.array([[0.5, 0.2], [0.5, 0.8]]), np.array([1, 2]))
+    further = ClassedPlaces(np.array([[0.3, 0.51]]), np.array([3]))
+    assert coloured(computed, further, rails)[int(0.51 * PIXELS), ::100].tolist() == [3] * (PIXELS // 100)
+
+
+def test_all_stored_roots_are_drawn_where_asked(command, monkeypatch):
+    command.write("c.yaml", LINE + "spectrum: {modes: 5}\n")
+    command("run", "c.yaml")
+    drawn = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
+    view = read_view(command.directory / "c.h5")
+    assert "all stored roots" in draw(view, command.directory / "f.png", roots="all")
+    real = next(line for line in drawn[0].axes[0].lines if line.get_marker() == "o")
+    assert sorted(real.get_ydata()) == sorted(view.variables["growth_rate"].ravel())
+
+
+def test_a_section_of_a_grid_is_what_a_run_of_its_own_gives(command, monkeypatch):
+    command.write("c.yaml", LINE)
+    command("run", "c.yaml", "--set", "parameters.k2=[50, 100]", "--set", "spectrum.modes=3", "-o", "grid.h5")
+    command("run", "c.yaml", "--set", "spectrum.modes=3", "-o", "line.h5")
+    cut = section(read_view(command.directory / "grid.h5"), {"k2": 100.0})
+    line = read_view(command.directory / "line.h5")
+    assert cut.variables["status"].shape == line.variables["status"].shape
+    for name in ("F", "k2", "growth_rate", "frequency"):
+        assert cut.variables[name] == pytest.approx(line.variables[name], rel=1e-9, abs=1e-9)
+    for words, said in (
+        (("--at", "k2=70"), "no point there; it has k2 = 50, 100"),
+        (("--at", "k3=1"), "did you mean k2?"),
+        (("--at", "k2"), "is no parameter with a number"),
+        (("--width", "tall"), "width = 'tall' is not allowed; choose single, double, or a length as '89 mm'"),
+        (("--width", "1 km"), "from 64 to 508 mm"),
+        (("--what", "map"), "is for results of thresholds"),
+    ):
+        refused = command("plot", "grid.h5", *words)
+        assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
+        assert said in refused.stderr
+
+
+THRESHOLDS = """task: thresholds
+parameters: {k1: [150, 200, .inf], k2: {start: 100, stop: 1.0e4, num: 4, spacing: log}, gamma3: 1.0e-4}
+"""
+
+
+def test_thresholds_of_every_value_are_lines_or_cells_of_a_map(command, monkeypatch):
+    figure, shown = drawn_of(command, monkeypatch, THRESHOLDS)
+    assert "critical forces against k2 for every k1" in shown
+    view = read_view(command.directory / "c.h5")
+    stored = np.concatenate(
+        [view.variables[f"F_{name}"].ravel() for name in ("onset", "hopf", "restabilization")]
+    )
+    lines = np.concatenate([line.get_ydata() for line in figure.axes[0].lines])
+    assert sorted(lines[np.isfinite(lines)]) == sorted(stored[np.isfinite(stored)])
+    drawn = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
+    assert "k1 = inf has no place" in draw(view, command.directory / "f.png", what="map")
+    for axes, name in zip(drawn[0].axes, ("F_onset", "F_hopf"), strict=False):
+        (mesh,) = axes.collections
+        cells = np.ma.asarray(mesh.get_array()).reshape(4, 2)
+        values = view.variables[name][:2, :, 0].T
+        assert cells.filled(np.nan) == pytest.approx(values, nan_ok=True)
 
 
 @pytest.mark.parametrize(

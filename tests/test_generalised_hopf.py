@@ -16,7 +16,7 @@ from rodsweep.determinant.curves import trace
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
-from rodsweep.post.figures.phase_diagram import parts_of_one_side
+from rodsweep.post.figures.diagram_curves import parts_of_one_side
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.hopf import bautin_curves, generalised
 from rodsweep.solve.hopf.bautin_curves import BautinCurvePoint, BautinEnd, BautinSpace, bautin_curve, lies_on
@@ -172,7 +172,7 @@ def test_a_diagram_tells_shows_and_draws_it(command):
         sides = file["curve_criticality"][:]
         assert np.isnan(sides[~hopf]).all()
         assert set(sides[hopf]) == {-1, 1}
-        after = int(file["bautin_curve_point"][0])
+        after = int(file["bautin_curve_point"][0]) - 1
         assert sides[after] * sides[after + 1] == -1
         assert file["curve_number"][after] == file["bautin_curve"][0]
     told = command("show", "generalised_hopf.h5").stdout.replace("\n", " ")

@@ -4,89 +4,117 @@ import re
 
 import numpy as np
 import pytest
-from conftest import ROOT
-from known_cycles import UNSTABLE, growth_rate, make_view, store
+from known_cycles import UNSTABLE, hopf_variables, make_view, store
 
 from rodsweep.cli.job import make_job
-from rodsweep.model.rod import Rod
+from rodsweep.cli.tasks.protocol import alone
 from rodsweep.post.figures.cycle.amplitude import draw_amplitude
 from rodsweep.post.figures.cycle.square_root import square_root_laws
-from rodsweep.post.hopf_points import HopfPoint, ParameterLine, hopf_points, lines_over
+from rodsweep.post.hopf_points import Bracket, HopfPoint, StoredHopfPoints, lines_over
 from rodsweep.post.summary.stability import stability_lines
-from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 pytestmark = pytest.mark.filterwarnings("error::UserWarning")
 
 HOPF = 27.4271941267593
-"""Of configs/fig6.yaml, a 40-digit root of D."""
-BEATS = np.full(99, 110.0)
+"""Of the rod of configs/fig6.yaml, a 40-digit root of D."""
+WINDOW = 49.7580049161915, 155.600159298791
+"""Of the rod of configs/fig2c.yaml, 40-digit roots of D."""
 
 
-def found(step, start=0.0):
-    """The Hopf point of a smooth growth rate whose zero lies at 30, from points a step apart."""
-    x = 30 + step * (np.arange(-4, 5) + 0.3) + start
-    (point,) = hopf_points(x, growth_rate(x - 30), BEATS[: len(x)])
-    return point
+def config_of(F, k1, k2, gamma3):
+    return (
+        f"task: limit_cycle\nparameters: {{F: {F}, k1: {k1}, k2: {k2}, gamma3: {gamma3}, gamma1: 1}}\n"
+        "accuracy: 1.0e-2\n"
+    )
 
 
-def test_a_hopf_point_is_found_to_fourth_order():
-    errors = [abs(found(step).position - 30) for step in (2, 1, 0.5)]
-    assert np.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.3)
-    assert np.log2(errors[1] / errors[2]) == pytest.approx(4, abs=0.3)
+def searched(tmp_path, config, in_order=alone):
+    """The variables of the Hopf points of a config, by name."""
+    path = tmp_path / "c.yaml"
+    path.write_text(config)
+    return {v.name: values for v, values in make_job(path, ()).task.constants(in_order)}
 
 
-@pytest.mark.parametrize("step", [0.1, 0.5, 1, 2, 4])
-def test_the_error_of_a_hopf_point_is_not_larger_than_its_estimate(step):
-    for start in np.linspace(-0.5, 0.5, 21) * step:
-        point = found(step, start)
-        assert abs(point.position - 30) <= point.error <= 0.02 * step
+@pytest.mark.parametrize("F", ["[45, 55, 65, 75]", "[49, 50]", "{start: 1, stop: 150, num: 4}"])
+def test_the_hopf_points_of_a_line_do_not_depend_on_the_points(tmp_path, F):
+    found = searched(tmp_path, config_of(F, 200, "1.0e4", "1.0e-4"))
+    assert found["hopf_F"] == pytest.approx(WINDOW[:1], rel=1e-12)
+    assert found["hopf_error"].max() < 1e-13
+    assert (found["hopf_k1"], found["hopf_unstable_after"]) == (200, 2)
+    assert (int(found["hopf_lines"]), int(found["hopf_lines_proved"])) == (1, 1)
 
 
-def test_forces_of_fig6_give_its_hopf_point_to_nine_digits():
-    job = make_job(ROOT / "configs" / "fig6.yaml", ())
-    F, *others = (job.points.columns[i] for i in range(4))
-    rods = [Rod(force, *(float(values[0]) for values in others)) for force in F]
-    w = [solve_spectrum(rod, SpectrumRequest(4, 1e-10, False)).eigenvalues[0] for rod in rods]
-    (point,) = hopf_points(F, np.real(w), np.imag(w))
-    assert abs(point.position - HOPF) <= point.error < 1e-7
-    assert (point.text, point.destabilises) == ("27.4271941", True)
+def test_the_hopf_points_of_a_grid_are_those_of_its_lines_once_each(tmp_path):
+    """gamma1 moves none; along k1 the window of flutter of F = 100 closes at one place."""
+    text = config_of("[40, 100]", "[140, 200, .inf]", "1.0e4", "1.0e-4").replace(
+        "gamma1: 1", "gamma1: [0.5, 1]"
+    )
+    found = searched(tmp_path, text)
+    along = [("F", "k1", "k2", "gamma3")[i] for i in found["hopf_along"]]
+    assert int(found["hopf_lines"]) == 5  # three over F, two over k1
+    by_line = {
+        (name, k1 if name == "F" else F): at
+        for name, F, k1 in zip(along, found["hopf_F"], found["hopf_k1"], strict=True)
+        for at in [F if name == "F" else k1]
+    }
+    assert by_line["F", 200.0] == pytest.approx(WINDOW[0], rel=1e-12)
+    assert 140 < by_line["k1", 100.0] < 200
+    assert {key for key in by_line if key[0] == "k1"} == {("k1", 100.0)}
+
+
+def test_a_line_that_cannot_be_searched_is_counted_as_not_proved(tmp_path):
+    found = searched(
+        tmp_path, config_of("[45, 55]", 200, "1.0e4", "1.0e-4"), lambda items, work: [None for _ in items]
+    )
+    assert (int(found["hopf_lines"]), int(found["hopf_lines_proved"]), len(found["hopf_F"])) == (1, 0, 0)
+
+
+def test_points_that_are_listed_make_the_lines_that_a_grid_makes(tmp_path):
+    (tmp_path / "p.csv").write_text(
+        "F,k1,k2,gamma3,gamma1\n75,200,1e4,1e-4,1\n30,400,1e4,1e-4,1\n45,200,1e4,1e-4,0.5\n"
+    )
+    found = searched(tmp_path, "task: limit_cycle\nparameters: {points: p.csv}\n")
+    assert found["hopf_F"] == pytest.approx(WINDOW[:1], rel=1e-12)
+    assert int(found["hopf_lines"]) == 1
+
+
+def changes_on(view, name="F"):
+    (line,) = lines_over(view, name)
+    return StoredHopfPoints(view, name).on(line)
 
 
 def test_a_window_of_flutter_has_a_hopf_point_at_each_end():
-    x = np.arange(0.0, 200, 10)
-    points = hopf_points(x, (x - 51) * (153 - x), BEATS[: len(x)])
-    assert [(p.position, p.destabilises) for p in points] == [
-        (pytest.approx(51), True),
-        (pytest.approx(153), False),
-    ]
+    view = make_view(([20.0, 40, 60, 80], [1e4], [1e2], [1e-2], [1.0]), [1, 0, 0, 1], stored=())
+    rods = [(27.0, 1e4, 1e2, 1e-2), (33.0, 1e4, 1e2, 1e-2), (71.0, 1e4, 1e2, 1e-2)]
+    view.variables.update(hopf_variables("F", rods, kinds=["hopf", "hopf", "restabilization"]))
+    view.variables["hopf_unstable_after"][1] = 4
+    view.variables["linear_growth_rate"] = np.array([-1.0, 1, 1, -1]).reshape(-1, 1, 1, 1, 1)
+    assert [(p.position, p.destabilises) for p in changes_on(view)] == [(27.0, True), (71.0, False)]
 
 
-def test_the_bracket_is_the_error_where_an_end_does_not_oscillate():
-    x = np.array([0.0, 20, 40, 60])
-    (point,) = hopf_points(x, np.array([-100.0, -30, 90, 460]), np.array([0.0, 0, 160, 230]))
-    assert (point.position, point.error) == (pytest.approx(25), 20)
-    assert point.text == "25"
+def test_a_change_that_no_search_has_located_lies_between_two_points():
+    view = swept((100,), constant)
+    view.variables.update(hopf_variables("F", []))
+    assert changes_on(view) == [Bracket(27.0, 28.0, True)]
+    (line,) = stability_lines(view, "F", StoredHopfPoints(view, "F").on)
+    assert line == "F** (straight rod starts to beat): between 27 and 28"
 
 
-def test_unknown_and_repeated_points_change_no_hopf_point():
-    x = 30 + np.arange(-4, 5) + 0.3
-    y = growth_rate(x - 30)
-    (expected,) = hopf_points(x, y, BEATS[:9])
-    shuffled = np.random.default_rng(0).permutation(np.r_[np.arange(9), np.arange(9)])
-    x, y = np.append(x[shuffled], [30.0, np.inf]), np.append(y[shuffled], [np.nan, 1.0])
-    assert hopf_points(x, y, BEATS[: len(x)]) == [expected]
+def test_a_point_on_a_hopf_point_makes_no_second_change():
+    """Whichever sign rounding gives the growth rate there."""
+    for sign in (-1, 1):
+        view = swept((100,), constant)
+        view.variables["F"] = np.array([24.0, 26, 27.25 * (1 - 1e-10 * sign), 28, 29, 30, 32])
+        view.variables["linear_growth_rate"][2] = sign * 1e-13
+        (change,) = changes_on(view)
+        assert change.position == pytest.approx(27.25)
 
 
-@pytest.mark.parametrize(
-    ("position", "error", "text"),
-    [
-        (155.6055, 0.0236, "155.6"),
-        (29.1, 20, "29"),
-        (27.427194126, 3e-8, "27.4271941"),
-    ],
-)
-def test_a_hopf_point_is_written_to_the_digits_that_are_known(position, error, text):
-    assert HopfPoint(position, error, True).text == text
+def test_hopf_points_beyond_the_points_of_a_line_are_not_its_own():
+    view = swept((100,), constant)
+    view.variables["F"] = np.arange(28.0, 35)
+    view.variables["linear_growth_rate"][:] = 1
+    assert changes_on(view) == []
 
 
 THRESHOLD = HopfPoint(20.0, 1e-6, True)
@@ -209,7 +237,7 @@ def test_no_hopf_point_is_marked_over_another_parameter():
     view.variables["linear_growth_rate"][0, 0, 2] = -1
     figure = draw_amplitude([view])[0]
     assert dotted(figure.axes[1]) == []
-    assert stability_lines(view, ParameterLine.hopf_points) == []
+    assert stability_lines(view, "F", StoredHopfPoints(view, "F").on) == []
 
 
 def test_lines_over_a_parameter_hold_every_point_once_in_the_order_of_the_file():
@@ -227,36 +255,57 @@ def test_lines_over_a_parameter_hold_every_point_once_in_the_order_of_the_file()
 @pytest.mark.parametrize(
     ("view", "expected"),
     [
-        (swept((100,), constant), "F** (straight rod starts to beat): 27.25"),
-        (swept((100,), constant, (0.5, 1)), "F** (straight rod starts to beat): 27.25"),
-        (swept((100, 1000), rising), "starts to beat): 26.3 for k2 = 100, 27.3 for k2 = 1000 (+- "),
-        (swept(np.geomspace(10, 1e5, 9), rising), "F** (straight rod starts to beat): 25.3 to 29.3 (+- "),
-        (swept((100, 1e9), rising), "F** (straight rod starts to beat): 26.3 (+- "),
-        (swept((100, 1e9), rising), ", on 1 of 2 lines over F"),
+        (swept((100,), constant), "27.25000000000 (+- 3e-11), frequency 110 rad/tau2"),
+        (swept((100,), constant, (0.5, 1)), "27.25000000000 (+- 3e-11), frequency 110 rad/tau2"),
+        (
+            swept((100, 1000), rising),
+            "26.30000000000 for k2 = 100, 27.30000000000 for k2 = 1000 (+- 3e-11)",
+        ),
+        (swept(np.geomspace(10, 1e5, 9), rising), "25.30000000000 to 29.30000000000 (+- 3e-11)"),
+        (
+            swept((100, 1e9), rising),
+            "26.30000000000 (+- 3e-11), on 1 of 2 lines over F, frequency 110 rad/tau2",
+        ),
     ],
 )
 def test_the_summary_tells_hopf_points_one_by_one_or_their_range(view, expected):
-    (line,) = stability_lines(view, ParameterLine.hopf_points)
-    assert expected in re.sub(r"\d+\.\d+", lambda number: f"{float(number[0]):.4g}", line)
+    (line,) = stability_lines(view, "F", StoredHopfPoints(view, "F").on)
+    assert line == f"F** (straight rod starts to beat): {expected}"
 
 
 def test_the_summary_tells_every_window_of_flutter_on_a_line():
     axes = (np.arange(0.0, 100, 2.5), [1e4], [1e2], [1e-2], [1.0])
     view = make_view(axes, [0] * 40, stored=())
     view.variables["linear_growth_rate"] = -np.cos((axes[0] + 1) * np.pi / 20).reshape(-1, 1, 1, 1, 1)
-    for line, places in zip(
-        stability_lines(view, ParameterLine.hopf_points), ([9, 49, 89], [29, 69]), strict=True
-    ):
-        positions = line.split(": ")[1].split(" (+-")[0].split(" and ")
-        assert [float(text) for text in positions] == pytest.approx(places, abs=0.01)
+    places = [9.0, 29.0, 49.0, 69.0, 89.0]
+    kinds = ["hopf", "restabilization"] * 2 + ["hopf"]
+    view.variables.update(hopf_variables("F", [(F, 1e4, 1e2, 1e-2) for F in places], kinds=kinds))
+    beats, again = stability_lines(view, "F", StoredHopfPoints(view, "F").on)
+    assert re.findall(r"(\d+)\.0+", beats) == ["9", "49", "89"]
+    assert re.findall(r"(\d+)\.0+", again) == ["29", "69"]
 
 
-def test_show_tells_hopf_points_of_a_file(command):
+def test_show_tells_the_hopf_point_that_the_task_has_stored(command):
+    """Of a file whose last point is stable again, that is only known to lie between two points."""
     axes = (F, [1e4], [1e2], [1e-2], [1.0])
     view = make_view(axes, [1, 1, 1, 0, 0, 0, 0], hopf=constant)
     view.variables["linear_growth_rate"][-1] *= -1
     store(view, command.directory / "arms.h5")
     shown = command("show", "arms.h5").stdout
-    assert "F** (straight rod starts to beat): 27.2" in shown
-    assert "restabilization (straight rod is stable again): 3" in shown
-    assert "of 7 points: 4 cycle, 3 straight" in shown
+    assert "F** (straight rod starts to beat): 27.25000000000 (+- 3e-11)" in shown
+    assert "restabilization (straight rod is stable again): between 30 and 32" in shown
+    assert "of 7 points: beats at 4 (F = 28 to 32), stays straight at 3 (F = 24 to 27)" in shown
+    assert shown.index("beats at 4") < shown.index("status") < shown.index("parameter") < shown.index("BLAS")
+
+
+@pytest.mark.parametrize(("ranks", "gamma1"), [(1, "1"), (2, "[0.5, 1]")])
+def test_show_of_a_sweep_has_the_threshold_of_the_solver(command, ranks, gamma1):
+    """The cases of issue 31: forces 10 apart gave 49.764 +- 3e-4."""
+    text = config_of("[45, 55, 65, 75]", 200, "1.0e4", "1.0e-4").replace("gamma1: 1", f"gamma1: {gamma1}")
+    command.write("c.yaml", text)
+    assert command("run", "c.yaml", ranks=ranks).returncode == 0
+    shown = command("show", "c.h5").stdout
+    text, error = re.search(
+        r"F\*\* \(straight rod starts to beat\): ([\d.]+) \(\+- ([\de.-]+)\)", shown
+    ).groups()
+    assert abs(float(text) - WINDOW[0]) <= float(error) < 1e-11

@@ -5,9 +5,10 @@ import re
 import pytest
 from conftest import ROOT
 
-from rodsweep.post.hopf_points import lines_over
+from rodsweep.post.hopf_points import Bracket, lines_over
 from rodsweep.post.stability_changes import stability_changes
 from rodsweep.post.summary.ranges import to_error
+from rodsweep.post.summary.stability import stability_lines
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.thresholds import ThresholdStatus
 
@@ -31,7 +32,7 @@ def test_the_thresholds_of_the_demo_come_out_of_show(command):
     )
     assert hopf == pytest.approx(HOPF, abs=1e-12)
     assert again == pytest.approx(STABLE_AGAIN, abs=1e-12)
-    assert "frequency 334.321 1/tau2" in told
+    assert "frequency 334.321 rad/tau2" in told
     assert "zeros of the characteristic determinant" in told
 
 
@@ -56,8 +57,9 @@ def test_a_change_that_is_not_understood_is_a_bracket(command):
     view = read_view(command.directory / "c.h5")
     view.variables["unstable_count"][-1] = 4
     (line,) = lines_over(view, "F")
-    (point,) = stability_changes(line, view)
-    assert (point.position, point.error, point.destabilises) == (50, 10, True)
+    assert stability_changes(line, view) == [Bracket(40, 60, True)]
+    (told,) = stability_lines(view, "F", lambda one: stability_changes(one, view))
+    assert told == "F** (straight rod starts to beat): between 40 and 60"
 
 
 def test_thresholds_of_several_lines_are_named_by_what_differs(command):
@@ -69,16 +71,18 @@ def test_thresholds_of_several_lines_are_named_by_what_differs(command):
 def test_eigenvalues_of_a_single_point_are_told_with_errors_and_count(command):
     told = shown(command, f"task: spectrum\nparameters: {{F: 60, {ROD}}}\n")
     assert re.search(
-        r"mode 1: growth rate 72\.04009792307\d* \(\+- \de-1\d\), frequency 433\.79628096374\d*", told
+        r"mode 1: growth rate 72\.04009792307\d* \(\+- \de-1\d\) 1/tau2, frequency 433\.79628096374\d*", told
     )
-    assert re.search(r"mode 4: growth rate -19940\.00335896\d* \(\+- \de-1\d\), frequency 0 1/tau2", told)
+    assert re.search(
+        r"mode 4: growth rate -19940\.00335896\d* \(\+- \de-1\d\) 1/tau2, frequency 0 rad/tau2", told
+    )
     assert "unstable modes: 2, proved by a winding number" in told
 
 
 def test_modes_of_a_single_point_are_told_with_their_eigenvalues(command):
     told = shown(command, f"task: modes\nparameters: {{F: 30, {ROD}}}\n")
     assert re.search(
-        r"mode 1: growth rate -115\.51902382007\d* \(\+- \de-1\d\), frequency 151\.864644304\d*", told
+        r"mode 1: growth rate -115\.51902382007\d* \(\+- \de-1\d\) 1/tau2, frequency 151\.864644304\d*", told
     )
     assert "unstable modes: 0, proved" in told
     assert "largest transient growth: 1.26004 times" in told
@@ -91,9 +95,9 @@ def test_several_points_are_told_by_how_many_are_stable(command, task, listed):
     command.write("p.csv", "F,k1,k2,gamma3\n30,200,1e4,1e-4\n100,200,1e4,1e-4\n180,200,1e4,1e-4\n")
     points = "points: p.csv" if listed else f"F: [30, 100, 180], {ROD}"
     told = shown(command, f"task: {task}\nparameters: {{{points}}}\n{task}: {{modes: 1}}\n")
-    rates = r"leading growth rate (-[\d.]+) to ([\d.]+), frequency"
+    assert "straight rod, of 3 points: stable at 2 (F = 30 to 180), unstable at 1 (F = 100)" in told
     low, high = map(
-        float, re.search(rf"straight rod: stable at 2, unstable at 1 of 3 points; {rates}", told).groups()
+        float, re.search(r"leading growth rate (-[\d.]+) to ([\d.]+) 1/tau2, frequency", told).groups()
     )
     assert low < 0 < high
 
@@ -152,9 +156,11 @@ def test_all_statuses_are_listed_on_request(command):
 @pytest.mark.parametrize(
     ("value", "error", "text"),
     [
-        (49.7580049161915, 2e-13, "49.758004916192 (+- 2e-13)"),
-        (-0.034450429123, 3e-10, "-0.034450429 (+- 3e-10)"),
-        (1.25e-9, 1e-12, "1.25e-09 (+- 1e-12)"),
+        (49.7580049161915, 2e-13, "49.7580049161915 (+- 2e-13)"),
+        (49.75800491619153, 2e-13, "49.7580049161915 (+- 3e-13)"),
+        (-0.0344504291231, 3e-10, "-0.0344504291 (+- 4e-10)"),
+        (1.25e-9, 1e-12, "1.250e-09 (+- 1e-12)"),
+        (0.123, 9.5e-3, "0.123 (+- 1e-02)"),
         (123456.0, 20.0, "123456 (+- 2e+01)"),
         (0.5, float("nan"), "0.5 (error not known)"),
         (float("nan"), 1.0, "none"),

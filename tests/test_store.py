@@ -38,7 +38,7 @@ def plan(is_grid=True, **config):
         Points(LAYOUT.parameters, columns, is_grid),
         LAYOUT,
         {},
-        (),
+        tuple,
         CONFIG | config,
         {"title": "t"},
         ((0, "ok"), (5, "failed")),

@@ -30,12 +30,13 @@ parameters:
   k2: [50, 1.0e4]
   gamma3: [0, 1.0e-4]
 """
+EVERY = ("F", "k1", "k2", "gamma3")
 SHAPES = [(100, 3, 2, 2), (3, 130, 2, 1), (2, 2, 64, 5), (1, 1, 1, 9)]
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_every_point_is_in_one_stretch_of_neighbours(shape):
-    stretches = along_the_longest(shape)
+    stretches = along_the_longest(shape, EVERY[: len(shape)])
     parts = [stretches.indices(n) for n in range(stretches.count)]
     assert sorted(np.concatenate(parts).tolist()) == list(range(math.prod(shape)))
     for part in parts:
@@ -47,14 +48,16 @@ def test_every_point_is_in_one_stretch_of_neighbours(shape):
 
 
 def test_the_axis_with_most_values_is_followed_and_a_short_one_is_not():
-    assert along_the_longest((5, 9, 9, 2)).axis == 1
-    assert along_the_longest((1, 1, 1, SHORTEST_AXIS)).axis == 3
-    assert along_the_longest((1, SHORTEST_AXIS - 1, 1, 1)) is None
+    assert along_the_longest((5, 9, 9, 2), EVERY).axis == 1
+    assert along_the_longest((1, 1, 1, SHORTEST_AXIS), EVERY).axis == 3
+    assert along_the_longest((1, SHORTEST_AXIS - 1, 1, 1), EVERY) is None
+    assert along_the_longest((99, 9, 8), ("", "F", "k2")).axis == 1
+    assert along_the_longest((99, 99), ("", "")) is None
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_stretches_to_do_are_those_that_miss_a_point(shape):
-    stretches = along_the_longest(shape)
+    stretches = along_the_longest(shape, EVERY[: len(shape)])
     count = math.prod(shape)
     assert stretches.todo([(0, count)]) == [(0, stretches.count)]
     assert stretches.missing_in([(0, stretches.count)], [(0, count)]) == count

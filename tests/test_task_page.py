@@ -91,3 +91,11 @@ def test_a_line_that_does_not_come_is_seen():
     assert missing(["a...", "b 2.0...", "c"], come) is None
     assert missing(["a...", "b 3...", "c"], come) == "b 3..."
     assert missing(["a 1"], come) == "nothing, but there is 'b 2.0001'"
+
+
+def test_arm_page_says_what_comes(command):
+    text = (ROOT / "docs" / "arm.md").read_text()
+    said = [pair for language, block in BLOCK.findall(text) if language == "console" for pair in typed(block)]
+    assert len(said) >= 5
+    for line, lines in said:
+        assert missing(lines, output_of(command, line)) is None

@@ -13,7 +13,7 @@ from rodsweep.cli.job import make_job
 from rodsweep.cli.tasks import modes, spectrum, thresholds
 from rodsweep.cli.tasks.thresholds import search_record
 from rodsweep.discretization.resolution import Resolution
-from rodsweep.post.summary import show_summary
+from rodsweep.post.summary import NOUNS, show_summary
 from rodsweep.results.file.creation import Plan
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.view import read_view
@@ -56,7 +56,7 @@ def plan_of(job):
         job.points,
         job.layout,
         job.task.coordinates(),
-        job.task.constants(),
+        job.task.constants,
         job.resolved,
         {"title": "t", "task": job.config.task},
         ((0, "ok"), (5, "failed")),
@@ -270,21 +270,22 @@ def test_variables_added_when_a_run_ends_have_their_own_dimensions(tmp_path, cou
 @pytest.mark.parametrize(
     ("task", "words"),
     {
-        "spectrum": ["certified: 4 of 4", "unknowns a point: 60 to 60"],
+        "spectrum": ["stable at all of 4 points", "proved at 4 of 4 points", "unknowns a point: 60"],
         "thresholds": [
-            "onset: at 6 of 6 points: F = 1 to 6, growth rate -6 to -1",
-            "Hopf: at 6 of 6 points: F = 2 to 7, frequency 20 to 70",
-            "restabilization: at 6 of 6 points: F = 3 to 8",
-            "searched up to F = 200",
-            "certified: 6 of 6; a range stays undecided on 0",
+            "F** (straight rod starts to beat): F = 2 (",
+            "at all of 6 rods; frequency 20 to 70 rad/tau2",
+            "at all of 6 rods; growth rate -6 to -1 1/tau2",
+            "stable again: F = 3 (",
+            "searched up to F = 200 ",
+            "that no crossing is missing is proved on 6 of 6 rods",
         ],
         "phase_diagram": [
-            "of 6 points: 2 monotone, 2 oscillatory, 2 flutter",
-            "absolute error at most 1.0e-12",
+            "of 6 places on the rows: 2 monotone, 2 oscillatory, 2 flutter",
+            "absolute error at most 1e-12",
         ],
         "modes": [
             "condition of the leading eigenvalue: 3",
-            "abscissa: 4 largest transient growth: 1.5 times, at t = 0.5 tau2",
+            "abscissa: 4 1/tau2 largest transient growth: 1.5 times, at t = 0.5000 tau2",
         ],
     }.items(),
     ids=TASKS,
@@ -292,7 +293,7 @@ def test_variables_added_when_a_run_ends_have_their_own_dimensions(tmp_path, cou
 def test_show_tells_what_matters_of_every_task(tmp_path, capsys, task, words):
     show_summary(read_view(filled_file(tmp_path, task)))
     text = " ".join(capsys.readouterr().out.split())
-    for word in ["ok", "time a point: median 250 ms", *words]:
+    for word in ["ok", f"time a {NOUNS.get(task, 'point')}: median 250 ms", *words]:
         assert word in text
 
 

@@ -2,9 +2,10 @@
 
 from collections.abc import Collection, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from ..cli.job import Job, job_of, memory
+from ..config.arguments import unknown
 from ..config.arm import LOADS, ArmSection
 from ..config.reading import validated, yaml_of
 from ..config.refusals import nearest
@@ -15,6 +16,7 @@ from ..model.arm import SlenderArm
 from ..solve.exclusive import signals_held
 from .axes import plain
 
+ArmKind = TypeVar("ArmKind", bound=SlenderArm)
 Tree = dict[str, Any]
 """Keys and values as YAML would be read."""
 
@@ -32,7 +34,9 @@ def tree_of(task: str, keywords: Mapping[str, Any]) -> Tree:
         if name in sections and isinstance(value, Mapping):
             tree.setdefault(name, {}).update(_plain(name, dict(value)))
             continue
-        section = _section_of(name, sections) or _section_of(_meant(name, sections), sections)
+        section = _section_of(name, sections)
+        if section is None:
+            section = _section_of(_meant(name, sections), sections)
         place = tree.setdefault(section, {}) if section else tree
         place[name] = _plain(f"{section}.{name}" if section else name, value)
     _write_out_arm(task, tree)
@@ -54,8 +58,18 @@ def _write_out_arm(task: str, tree: Tree) -> None:
     if isinstance(arm, SlenderArm):
         loaded = "F" in CONFIGS[task].taken_of_a_rod(tree.get(task, {}))
         names = [name for name in ArmSection.model_fields if loaded or name not in LOADS]
-        given = {name: getattr(arm, name) for name in names}
+        known = known_load(arm) if loaded else arm
+        given = {name: getattr(known, name) for name in names}
         parameters["arm"] = {name: plain(value) for name, value in given.items() if value is not None}
+
+
+def known_load(arm: ArmKind) -> ArmKind:
+    """The arm with its load as a quantity; starts PETSc where it is given relative to flutter, and solves."""
+    if arm.share_of_flutter is None:
+        return arm
+    from ..verdict.planes import with_known_load
+
+    return with_known_load(arm)
 
 
 @signals_held
@@ -86,6 +100,9 @@ def _section_of(name: str, sections: Mapping[str, Collection[str]]) -> str | Non
 
 
 def _meant(name: str, sections: Mapping[str, Collection[str]]) -> str:
-    """The known key that an unknown one is most like; the first of the options where it is like none."""
+    """The known key that an unknown one is most like; InputError with all where it is like none."""
     known = [key for keys in sections.values() for key in keys]
-    return next(iter(nearest(name, known)), known[0])
+    close = nearest(name, known)
+    if not close and name not in ArmSection.model_fields:
+        raise unknown(name, known)
+    return close[0] if close else known[0]

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from ..config.arguments import in_sentences
+from ..config.arm import AXIS_OF
 from ..config.values import short
 from ..errors import InputError
 from ..results.file.content import SEAL, attribute_digests, variable_digest
@@ -17,8 +18,9 @@ from ..results.file.creation import Plan
 from ..results.file.recent import journalled_points, put_in, unfolded
 from ..results.file.validation import FORMAT, PROGRAM, Header, cleaned, open_whole, reading, reason_of
 from ..results.file.view import View
-from ..results.layouts import layout_of
-from ..results.layouts.variables import DIMENSIONS, MISSING, Filled, Variable
+from ..results.layouts import beside_points, layout_of
+from ..results.layouts.arm import MEANINGS
+from ..results.layouts.variables import DIMENSIONS, MISSING, TYPED, Filled, Layout, Variable
 from ..results.run.journal import journal_directory
 from ..solve.exclusive import one_at_a_time
 
@@ -53,12 +55,31 @@ def _opened(path: Path) -> xr.Dataset:
     for variable in data.variables.values():
         variable.attrs = {name: cleaned(value) for name, value in variable.attrs.items()}
     data.attrs = {name: cleaned(value) for name, value in data.attrs.items()}
+    data = _ordered(data, header.layout, header.config)
     if journal_directory(path).is_dir():
         recent = journalled_points(header, data["status"].values.ravel())
         for name in data.variables.keys() & recent.dtype.fields.keys():
             put_in(data[name].values, str(name), recent)
-        return _sealed(data)
+        data = _sealed(data)
+    return _selectable(data)
+
+
+def _selectable(data: xr.Dataset) -> xr.Dataset:
+    """The Dataset, in which what an arm has along a parameter can be selected by, as F by its pressure."""
+    for name in AXIS_OF:
+        if name in data.coords and data[name].dims == (AXIS_OF[name],) and name not in data.xindexes:
+            data = data.set_xindex(name)
     return data
+
+
+def _ordered(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dataset:
+    """The Dataset with its variables in the order in which they are declared; HDF5 has the alphabet's."""
+    declared = (*layout.variables, *beside_points(config, "point" not in data.dims))
+    places = {name: place for place, name in enumerate([*DIMENSIONS, *MEANINGS, *(v.name for v in declared)])}
+    names = sorted(data.variables, key=lambda name: places.get(str(name), len(places)))
+    variables = {name: data.variables[name] for name in names}
+    coords = {name: variables.pop(name) for name in names if name in data.coords}
+    return xr.Dataset(variables, coords, data.attrs)
 
 
 def _loaded(path: Path, header: Header) -> xr.Dataset:
@@ -115,7 +136,8 @@ def dataset_of(
         "fingerprint": plan.fingerprint,
         "config_resolved": json.dumps(plan.config),
     }
-    return _sealed(xr.Dataset(variables, coordinates, header | plan.attributes | dict(attributes)))
+    whole = xr.Dataset(variables, coordinates, header | plan.attributes | dict(attributes))
+    return _selectable(_sealed(_ordered(whole, plan.layout, plan.config)))
 
 
 def view_of(data: xr.Dataset, path: Path) -> View:
@@ -127,7 +149,7 @@ def view_of(data: xr.Dataset, path: Path) -> View:
         flags = dict(zip(map(int, np.atleast_1d(status.attrs["flag_values"])), words, strict=True))
     except (LookupError, ValueError, TypeError):
         raise InputError("the data are no result of rodsweep, of which all variables are needed") from None
-    points = ("point",) if "point" in data.dims else layout.parameters
+    points = layout.dimensions(is_list="point" in data.dims)
     for variable in layout.variables:
         dimensions = (*points, *variable.extra)
         if variable.name not in data or data[variable.name].dims != dimensions:
@@ -136,16 +158,17 @@ def view_of(data: xr.Dataset, path: Path) -> View:
                 f"{', '.join(dimensions)}; draw a selection by xarray's own plot"
             )
     variables = {str(name): array.values for name, array in data.variables.items()}
-    return View(path, dict(data.attrs), variables, layout.parameters, flags, journalled=0)
+    typed = {str(name): str(v.attrs[TYPED]) for name, v in data.variables.items() if TYPED in v.attrs}
+    return View(path, dict(data.attrs), variables, layout.parameters, flags, 0, layout.over, typed)
 
 
 def _coordinates(plan: Plan) -> dict[str, Any]:
     """The coordinates of points and of extra dimensions."""
     points = plan.points
     found: dict[str, Any] = {}
-    if not points.is_grid:
-        found["point"] = (("point",), np.arange(points.count, dtype="<i4"), _named("point"))
-    for name, column in zip(plan.layout.parameters, points.columns, strict=True):
+    if not points.axes:
+        found["point"] = (("point",), np.arange(1, points.count + 1, dtype="<i4"), _named("point"))
+    for name, column in () if points.over else points.by_name.items():
         found[name] = ((name if points.is_grid else "point",), column, _named(name))
     for variable, values in plan.quantities:
         found[variable.name] = (variable.extra, values, _described(variable))
@@ -162,6 +185,8 @@ def _named(name: str) -> dict[str, Any]:
 def _described(variable: Variable) -> dict[str, Any]:
     """The attributes of a variable."""
     described: dict[str, Any] = {"units": variable.units, "long_name": variable.long_name}
+    if variable.typed:
+        described[TYPED] = variable.typed
     return described | (_flags(variable.flags) if variable.flags else {})
 
 

@@ -1,22 +1,26 @@
 """`rs.plot`: the figures of `rodsweep plot`, shown in a notebook or written into a file."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from types import MappingProxyType
 from typing import Any, Literal, TypedDict, Unpack
 
 import xarray as xr
 
+from ..cli.cycle_shapes import with_shapes
 from ..config.arguments import in_sentences, unknown
 from ..config.values import short
 from ..errors import InputError
 from ..post.figures import draw
-from ..post.figures.request import KINDS, ROOTS, WIDTHS, Look
-from ..results.file.view import View, read_view
+from ..post.figures.request import KINDS, ROOTS, Look
+from ..post.figures.sections import choices_of, section
+from ..results.file.view import View
 from ..solve.exclusive import one_at_a_time
 from .answer import Answer
-from .dataset import file_path, view_of
+from .dataset import file_path
+from .tabling import view_for
 
 EXAMPLE = 'rs.plot(data, "figure.pdf", width="single")'
 Drawable = xr.Dataset | Answer | str | Path
@@ -26,7 +30,7 @@ class Looks(TypedDict, total=False):
     """How a figure looks, as the options of `rodsweep plot` say."""
 
     title: bool
-    width: Literal["single", "double"] | None
+    width: str | None
     style: str | None
 
 
@@ -67,6 +71,7 @@ def plot(
     roots: Literal["rightmost", "smallest"] | None = None,
     what: str | None = None,
     points: Sequence[int] | int = (),
+    at: Mapping[str, float] = MappingProxyType({}),
     **look: Unpack[Looks],
 ) -> Picture:
     """The figure that suits the task of `data`: a Dataset, an Answer, a file, or several of limit cycles
@@ -77,17 +82,18 @@ def plot(
     """
     for name in look:
         if name not in Looks.__annotations__:
-            raise unknown(name, ["output", "roots", "what", "points", *Looks.__annotations__])
-    _refuse_other_than(roots=(roots, ROOTS), what=(what, KINDS), width=(look.get("width"), WIDTHS))
+            raise unknown(name, ["output", "roots", "what", "points", "at", *Looks.__annotations__])
+    _refuse_other_than(roots=(roots, ROOTS), what=(what, KINDS))
     points = [points] if isinstance(points, int) else points
     if not isinstance(points, Sequence) or not all(isinstance(point, int) for point in points):
         raise InputError(f"points = {short(points)} is not allowed; give whole numbers, from 1")
     several = [data] if isinstance(data, Drawable) else list(data) if isinstance(data, Sequence) else []
     if not several:
         raise InputError("there is nothing to draw; give a Dataset, an answer or a file")
-    views = [_view(one) for one in several]
+    values = choices_of(at)
+    views = [section(view_for(one, EXAMPLE), values) for one in several]
     choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(points)}
-    choices["look"] = Look(**look)
+    choices |= {"look": Look(**look), "shapes": with_shapes}
     with TemporaryDirectory(prefix="rodsweep-") as place:
         path = Path(place, "figure.gif" if what == "animation" else "figure.png")
         shown = draw(views, path, **choices).partition(": ")[2]
@@ -95,12 +101,3 @@ def plot(
     if output is not None:
         picture.save(file_path(output, EXAMPLE))
     return picture
-
-
-def _view(data: Drawable) -> View:
-    if isinstance(data, str | Path):
-        return read_view(file_path(data, EXAMPLE))
-    if not isinstance(data, Answer | xr.Dataset):
-        raise InputError(f"{short(data)} is no result; draw a Dataset, an answer or a file")
-    whole = data.whole if isinstance(data, Answer) else data
-    return view_of(whole, Path(str(whole.attrs.get("title", "data"))))

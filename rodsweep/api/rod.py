@@ -5,22 +5,26 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
-from ..config.arguments import in_sentences
+from ..config.arguments import in_sentences, unknown
 from ..config.axes import words
-from ..config.refusals import nearest
+from ..config.refusals import hint_of, nearest
 from ..config.tasks import CONFIGS
-from ..config.values import as_number
+from ..config.values import as_number, short
 from ..errors import InputError
+from ..model.arm import SlenderArm
 from ..model.parameters import PARAMETERS
 from ..sweep.grid import refuse_axes
 from .answer import Answer
-from .asking import job_from, tree_of
+from .asking import job_from, known_load, tree_of
 from .axes import plain
 from .options import OfBranch, OfCriticality, OfLimitCycle, OfModes, OfSpectrum, OfThresholds
 from .solving import solve_here
 
 NOT_GIVEN = float("nan")
 """In place of a stiffness or a drag that is missing: so that a misspelt one is told first."""
+
+
+ARM_EXAMPLE = 'rs.Rod(arm=rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s"))'
 
 
 class SoftRod:
@@ -46,12 +50,16 @@ class SoftRod:
         k2: float = NOT_GIVEN,
         gamma3: float = NOT_GIVEN,
         gamma1: float | None = None,
+        arm: SlenderArm | None = None,
         **unknown: Any,
     ):
+        free = {"F": F, "k1": k1, "k2": k2, "gamma3": gamma3, "gamma1": gamma1, "arm": arm}
         for name in unknown:
-            close = nearest(name, list(PARAMETERS))
-            hint = f"did you mean {close[0]}?" if close else f"known keys are {', '.join(PARAMETERS)}"
+            left = [other for other, value in free.items() if value is None or value is NOT_GIVEN]
+            hint = hint_of(name, left if nearest(name, left) else (*PARAMETERS, "arm"))
             raise InputError(f"unknown key parameters.{name}; {hint}")
+        if arm is not None:
+            F, k1, k2, gamma3, gamma1 = _of_arm(arm, F=F, k1=k1, k2=k2, gamma3=gamma3, gamma1=gamma1).values()
         required = {"k1": k1, "k2": k2, "gamma3": gamma3}
         for name, value in required.items():
             if value is NOT_GIVEN:
@@ -119,6 +127,11 @@ class SoftRod:
         for name in options:
             if name in PARAMETERS:
                 raise InputError(f"{name} belongs to the rod: rod.replace({name}=...) is another one")
+        section: Any = CONFIGS[task].model_fields[task].annotation
+        known = [*section.model_fields, "accuracy", "title", "progress"]
+        for name in options:
+            if name not in known and not nearest(name, known):
+                raise unknown(name, known)
         options = dict(options)
         progress = options.pop("progress", None)
         taken = CONFIGS[task].taken_of_a_rod(options)
@@ -134,6 +147,16 @@ class SoftRod:
 
     def __hash__(self) -> int:
         return hash(tuple(self._values.items()))
+
+
+def _of_arm(arm: object, **given: Any) -> dict[str, Any]:
+    """The parameters that are given, and the arm's where they are not; no F of an arm without load."""
+    if not isinstance(arm, SlenderArm):
+        raise InputError(f"arm = {short(arm)} is no arm; write it as in {ARM_EXAMPLE}")
+    known = known_load(arm)
+    left_out = {name: value is None or value is NOT_GIVEN for name, value in given.items()}
+    of_arm = (name for name in given if left_out[name] and not (name == "F" and known.load is None))
+    return given | {name: getattr(known, name) for name in of_arm}
 
 
 def _number(name: str, value: Any) -> float:

@@ -61,7 +61,7 @@ def solve_here(
         finally:
             shown.close()
         attributes = {"ranks": 1, "hosts": socket.gethostname(), "started": started, "stopped": ""}
-        filled = (*plan.constants, *joint)
+        filled = (*plan.constants(), *joint)
     return dataset_of(plan, values, filled, attributes | {"finished": now()}), messages
 
 
@@ -122,11 +122,18 @@ def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int,
 
 def _view(job: Job, plan: Plan, values: dict[str, np.ndarray]) -> View:
     """The solved points as a file would show them."""
-    names = plan.layout.parameters if job.points.is_grid else ("point",)
-    columns = dict(zip(names, job.points.columns, strict=False)) | plan.coordinates
+    columns = dict(job.points.axes) if job.points.axes else {"point": job.points.columns[0]}
+    columns |= plan.coordinates
     columns |= {variable.name: array for variable, array in plan.quantities}
     return View(
-        Path(job.name), plan.attributes, columns | values, plan.layout.parameters, dict(plan.flags), 0
+        Path(job.name),
+        plan.attributes,
+        columns | values,
+        plan.layout.parameters,
+        dict(plan.flags),
+        journalled=0,
+        over=plan.layout.over,
+        typed={variable.name: variable.typed for variable, _ in plan.quantities if variable.typed},
     )
 
 

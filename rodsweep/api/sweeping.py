@@ -66,7 +66,9 @@ def sweep(
 
 def _warn(indices: Sequence[int], error: Exception) -> None:
     """Warns of an exception that no solver foresees."""
-    points = f"point {indices[0]}" if len(indices) == 1 else f"points {indices[0]} to {indices[-1]}"
+    points = (
+        f"point {indices[0] + 1}" if len(indices) == 1 else f"points {indices[0] + 1} to {indices[-1] + 1}"
+    )
     warnings.warn(
         f"{points}: {described(error)}\n{''.join(traceback.format_exception(error))}",
         RuntimeWarning,

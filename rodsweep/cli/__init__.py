@@ -27,6 +27,7 @@ from .. import __version__  # noqa: E402 - after the environment is set
 from ..config.values import printable  # noqa: E402 - after the environment is set
 from ..errors import BUG_STATUS, InputError, Refusal  # noqa: E402 - after the environment is set
 from .arm_options import arm_options  # noqa: E402 - after the environment is set
+from .file_names import beside, followed, result_file  # noqa: E402 - after the environment is set
 
 FILE = click.Path(path_type=Path)
 LONGEST_MESSAGE = 350
@@ -62,15 +63,14 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
     stop = StopRequest(speaks=not _rank_variables())
     stop.listen()  # before everything that takes time: a warning may come early
     from ..sweep.shards import shard_of
-    from .running import RunOptions, run_config
+    from .run_options import RunOptions
+    from .running import run_config
 
     if options["fresh"] and options["extend"]:
         raise InputError("--fresh and --extend are both given: one replaces the file, the other adds to it")
     part = shard_of(shard)
     suffix = f"-{part.number}-of-{part.of}.h5" if part.of > 1 else ".h5"
-    output = _followed(output or Path(config.stem + suffix))
-    if output.is_dir() or not output.name:
-        raise InputError(f"--output {output} is a directory; name a file")
+    output = result_file(output or Path(config.stem + suffix))
     asked = RunOptions(overrides=overrides, shard=part, **options)
     code = run_config(config, output, asked, stop)
     stop.ignore()  # the status is decided
@@ -85,10 +85,8 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
     from .merging import merge_files
     from .running import CONTINUE
 
-    if output.is_dir():
-        raise InputError(f"{output} is a directory; name the file to write first")
-    output = _followed(output)
-    merged = merge_files(output, tuple(map(_followed, shards)))
+    output = result_file(output)
+    merged = merge_files(output, tuple(map(followed, shards)))
     if merged.missing:
         click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing ones")
         sys.exit(CONTINUE)
@@ -103,10 +101,8 @@ def snapshot(file: Path, output: Path | None) -> None:
     """Write what is done of the result FILE so far, without disturbing the run that computes it."""
     from ..results.file.recent import take_snapshot
 
-    output = _followed(output or file.with_name(f"{file.stem}-snapshot{file.suffix}"))
-    if output.is_dir():
-        raise InputError(f"--output {output} is a directory; name a file")
-    done, points = take_snapshot(_followed(file), output)
+    output = result_file(output or beside(file, f"-snapshot{file.suffix}"))
+    done, points = take_snapshot(followed(file), output)
     click.echo(f"wrote {output}: {done} of {points} points are done")
 
 
@@ -131,7 +127,7 @@ def show(file: Path, statuses: bool) -> None:
     from ..post.summary import show_summary
     from ..results.file.view import read_view
 
-    show_summary(read_view(_followed(file)), statuses)
+    show_summary(read_view(followed(file)), statuses)
 
 
 @commands.command()
@@ -144,14 +140,14 @@ def show(file: Path, statuses: bool) -> None:
 )
 @click.option(
     "--roots",
-    type=click.Choice(["rightmost", "smallest"]),
-    help="Which two roots to follow: the smallest in magnitude, as the paper does, or the rightmost; by "
-    "default those that change places with others less often.",
+    type=click.Choice(["rightmost", "smallest", "all"]),
+    help="Which roots of spectra: all that are stored, or two to follow, the smallest in magnitude, as the "
+    "paper does, or the rightmost; by default those that change places with others less often.",
 )
 @click.option(
     "--what",
-    type=click.Choice(["cycle", "amplitude", "maps", "energy", "transient", "animation"]),
-    help="Which figure of limit_cycle; by default what the file's content suggests.",
+    type=click.Choice(["cycle", "amplitude", "maps", "energy", "transient", "animation", "lines", "map"]),
+    help="Which figure of limit_cycle, or, lines and map, of thresholds; by default what the file suggests.",
 )
 @click.option(
     "--point",
@@ -161,11 +157,18 @@ def show(file: Path, statuses: bool) -> None:
     metavar="N",
     help="Which points of limit_cycle, from 1; up to 3 times.",
 )
+@click.option(
+    "--at",
+    "at",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="Draw the points with this value of a parameter, e.g. k1=150; several times.",
+)
 @click.option("--title", is_flag=True, help="Put the title of the config above the figure.")
 @click.option(
     "--width",
-    type=click.Choice(["single", "double"]),
-    help="Of a journal's single (3.375 in) or double column (7 in), with type of 8 pt.",
+    metavar="WIDTH",
+    help="Of a journal's column, with type of 8 pt: single (3.375 in), double (7 in), or as '89 mm'.",
 )
 @click.option("--style", metavar="STYLE", help="A style of matplotlib's, by its name or file.")
 def plot(
@@ -174,39 +177,54 @@ def plot(
     roots: str | None,
     what: str | None,
     points: tuple[int, ...],
+    at: tuple[str, ...],
     **look: Any,
 ) -> None:
     """Draw the result FILE; or several: spectra in panels, amplitudes of limit cycles in one figure."""
     from ..post.figures import draw
     from ..post.figures.request import Look
+    from ..post.figures.sections import section
     from ..results.file.view import read_view
+    from .cycle_shapes import with_shapes
 
-    output = output or files[0].with_suffix(".gif" if what == "animation" else ".png")
-    click.echo(
-        draw(
-            [read_view(_followed(file)) for file in files],
-            output,
-            roots,
-            what,
-            points,
-            Look(**look),
-        )
-    )
+    output = output or beside(files[0], ".gif" if what == "animation" else ".png")
+    values = _values(at)
+    views = [section(read_view(followed(file)), values) for file in files]
+    drawn = draw(views, output, look=Look(**look), shapes=with_shapes, roots=roots, what=what, points=points)
+    click.echo(drawn)
+
+
+def _values(at: tuple[str, ...]) -> dict[str, float]:
+    """The values of `--at NAME=VALUE` by name; InputError for what is no number."""
+    found = {}
+    for text in at:
+        name, _, value = text.partition("=")
+        try:
+            found[name.strip()] = float(value)
+        except ValueError:
+            raise InputError(f"--at {printable(text)} is no parameter with a number, as k1=150 is") from None
+    return found
 
 
 @commands.command()
 @click.argument("file", type=FILE)
-@click.option("-o", "--output", type=FILE, help="CSV file; by default FILE's name with .csv.")
+@click.option("-o", "--output", type=FILE, help="A .csv or .tsv file; by default FILE's name with .csv.")
+@click.option("--table", metavar="NAME", help="Which table: points, or a list of the task's, as crossings.")
+@click.option("--columns", metavar="A,B,C", help="Which columns, in their order; by default all.")
 @click.option("--units", is_flag=True, help="Put units into the headings: F_onset [k3/L^2].")
 @click.option("--replace", is_flag=True, help="Write over a file that is there already.")
-def export(file: Path, output: Path | None, units: bool, replace: bool) -> None:
-    """Write the result FILE as CSV: a line a point, a column a parameter and a number."""
+def export(
+    file: Path, output: Path | None, table: str | None, columns: str | None, units: bool, replace: bool
+) -> None:
+    """Write a table of the result FILE as CSV: a row a point, or a row an item of a list."""
+    from ..post.export import Request
     from ..post.export import export as export_view
     from ..results.file.view import read_view
 
-    output = _followed(output or file.with_suffix(".csv"))
-    exported = export_view(read_view(_followed(file)), output, units, replace)
-    click.echo(f"wrote {output}: {exported.sentence}")
+    output = followed(output or beside(file, ".csv"))
+    names = tuple(name.strip() for name in columns.split(",")) if columns is not None else ()
+    request = Request(table=table, columns=names, units=units, replace=replace)
+    click.echo(f"wrote {output}: {export_view(read_view(followed(file)), output, request)}")
 
 
 @commands.command()
@@ -229,8 +247,8 @@ def bench(what: str | None, quick: bool, output: Path | None) -> None:
 
     output = output or Path("bench.md")
     unfit = output.exists() and not output.is_file()
-    if unfit or not output.parent.is_dir() or output.suffix in {".png", ".h5"}:
-        raise InputError(f"--output {output} is no name for Markdown in an existing directory")
+    if unfit or not output.parent.is_dir() or output.suffix != ".md":
+        raise InputError(f"--output {output}: the name must end in .md, in an existing directory")
     run_benchmarks(what, quick, output)
 
 
@@ -242,21 +260,6 @@ def arm(poisson: float, **quantities: str | None) -> None:
     from .arm_report import describe_arm
 
     describe_arm(quantities, poisson)
-
-
-def _followed(path: Path) -> Path:
-    """What a link leads to, which has the journal and the lock; another path as it is.
-
-    InputError for a link that leads to itself, in whose place nothing may be put.
-    """
-    if not path.is_symlink():
-        return path
-    try:
-        path.stat()
-    except OSError as error:
-        if error.errno == errno.ELOOP:
-            raise InputError(f"{path} is a link that leads to itself; name a file") from None
-    return Path(os.path.realpath(path))
 
 
 def _rank_variables() -> list[str]:

@@ -8,11 +8,12 @@ import click
 OPTIONS = {
     "length": "Length of the arm.",
     "radius": "Radius of a circular section; or give --width and --height.",
+    "inner_radius": "Radius of the bore of a tube, closed at its tip.",
     "width": "Width of a rectangular section, across the plane of motion.",
     "height": "Height of a rectangular section, in the plane of motion.",
     "young": "Young's modulus.",
     "viscosity": "Viscosity of the fluid.",
-    "pressure": "Pressure on the tip's cross section; or give --force.",
+    "pressure": "Pressure on the tip's face, also '1.2 of flutter'; or --force; or no load.",
     "force": "Follower force at the tip.",
     "fluid_density": "Density of the fluid, for the Reynolds number; by default 1000 kg/m^3.",
     "density_difference": "Density of the arm over that of the fluid, for its weight.",

@@ -5,23 +5,23 @@ from rich.console import Console
 from ..errors import InputError
 from .arm_options import OPTIONS
 
+STYLES = {"headline": "bold", "warning": "yellow"}
+"""How lines of a report look."""
+
 
 def describe_arm(given: dict[str, str | None], poisson: float) -> None:
-    """Prints verdict, numbers and checks. InputError, naming the option, where a quantity is none."""
-    from ..verdict.arm import OVER_DRAG, Arm, folded
+    """Prints the report on an arm. InputError, naming the option, where a quantity is none."""
+    from ..model.arm import SlenderArm
+    from ..verdict.arm import report_on
 
     quantities = {name: text for name, text in given.items() if text is not None}
     try:
-        arm = Arm(**quantities, poisson=poisson)
+        report = report_on(SlenderArm(**quantities, poisson=poisson))
     except InputError as error:
         raise InputError(f"--{_as_option(str(error))}") from None
-    report = arm.report()
     console = Console(highlight=False, soft_wrap=True)
-    for number, sentence in enumerate(report.verdict):
-        console.print(folded(sentence), markup=False, style="bold" if number == 0 else "")
-    console.print("", *report.table(), OVER_DRAG, "", sep="\n", markup=False)
-    for check in report.checks:
-        console.print(folded(check.told), markup=False, style="" if check.fine else "yellow")
+    for line, kind in report.lines():
+        console.print(line, markup=False, style=STYLES.get(kind, ""))
 
 
 def _as_option(sentence: str) -> str:

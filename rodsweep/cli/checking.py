@@ -4,8 +4,12 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from ..post.summary.arm_answer import validity_sentence
 from ..post.summary.ranges import span
 from ..sweep.estimate import SAMPLE
+from ..sweep.grid import Points
+from .arm_points import NoRod
+from .arm_validity import ArmValidity
 from .job import Job
 
 
@@ -14,8 +18,8 @@ def describe_job(job: Job) -> None:
     console = Console(highlight=False)
     console.print(f"{job.path}: valid. {job.config.title}".rstrip(), markup=False)
     console.print(job.task.headline())
-    if job.quantities:
-        console.print(_arm_line(job), markup=False)
+    for line in _arm_lines(job) if job.quantities else []:
+        console.print(line, markup=False, soft_wrap=True)
     table = Table("part", "modelled", "why", box=None, pad_edge=False)
     for part, is_modelled, why in job.task.parts():
         table.add_row(part, "yes" if is_modelled else "no", why)
@@ -36,8 +40,24 @@ def describe_job(job: Job) -> None:
         )
 
 
-def _arm_line(job: Job) -> str:
-    """The parameters that are made of an arm, and its unit of time."""
+def _arm_lines(job: Job) -> list[str]:
+    """The parameters that are made of an arm, its unit of time, and what is known of it before the run."""
     columns = job.points.by_name | {v.name: values for v, values in job.quantities if v.name == "tau2"}
-    told = (f"{name} = {span(np.asarray(values))}" for name, values in columns.items())
-    return f"the arm as a rod: {', '.join(told)} s"
+    made = (f"{name} = {span(np.asarray(values))}" for name, values in columns.items())
+    at_rest = ArmValidity(job.config, job.points).at_rest()
+    told = validity_sentence(at_rest, when=" before anything moves")
+    return [
+        f"the arm as a rod: {', '.join(made)} s",
+        *_uncovered_lines(job.points),
+        f"{told}; the run judges inertia by how fast the arm moves",
+    ]
+
+
+def _uncovered_lines(points: Points) -> list[str]:
+    """How many points no rod covers, and why."""
+    lines = []
+    for status in NoRod:
+        number = 0 if points.covered is None else int((points.covered == status).sum())
+        if number:
+            lines.append(f"{status.name} at {number} of {points.count} points: {status.sentence}")
+    return lines

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from .wording import counted
+from ..wording import counted
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,10 +12,12 @@ from ..config import Config, load_config
 from ..config.reading import canonical
 from ..errors import InputError
 from ..results.layouts import LAYOUTS, layout_of
-from ..results.layouts.arm import in_si, quantities_of
+from ..results.layouts.arm import at_points, in_si, quantities_of
 from ..results.layouts.variables import Filled, Layout
 from ..sweep.grid import Points, grid_size, points_of
 from ..sweep.stretches import Together
+from .arm_points import around
+from .arm_validity import ArmValidity
 from .tasks import TASKS
 from .tasks.protocol import Solver, Task
 
@@ -49,29 +51,37 @@ class Job:
     @property
     def quantities(self) -> tuple[Filled, ...]:
         """The quantities of the arm, where the config has one, as coordinates of the points."""
-        return quantities_of(self.config.parameters, self.points.is_grid)
+        return quantities_of(self.config.parameters, self.points)
 
     def solver(self) -> Solver:
         """The task's solver, whose records tell an arm's results in SI units too. Starts PETSc."""
         solver = self.task.solver()
         if self.config.parameters.arm is None:
             return solver
-        layout = LAYOUTS[self.config.task](self.resolved)
-        quantities = {variable.name: values for variable, values in self.quantities}
+        return around(self._in_si(solver), self.points, self.layout)
 
-        def record(index: int, outcome: Any) -> dict[str, Any]:
-            values = solver.record(index, outcome)
-            return values | in_si(values, index, layout, quantities)
+    def _in_si(self, solver: Solver) -> Solver:
+        """The solver whose records tell results in SI units too, and whether the model applies."""
+        layout = LAYOUTS[self.config.task](self.resolved)
+        quantities = at_points(self.quantities, self.points)
+        validity = ArmValidity(self.config, self.points)
+
+        def told(values: dict[str, Any], index: int | NDArray[np.int64]) -> dict[str, Any]:
+            return values | in_si(values, index, layout, quantities) | validity.of(values, index)
 
         if solver.stretched is None:
-            return replace(solver, record=record)
+            return replace(solver, record=lambda index, outcome: told(solver.record(index, outcome), index))
         stretches, solve_together = solver.stretched
 
         def together(indices: NDArray[np.int64]) -> Together:
             found = solve_together(indices)
-            return replace(found, values=found.values | in_si(found.values, indices, layout, quantities))
+            return replace(found, values=told(found.values, indices))
 
-        return replace(solver, record=record, stretched=(stretches, together))
+        return replace(
+            solver,
+            record=lambda index, outcome: told(solver.record(index, outcome), index),
+            stretched=(stretches, together),
+        )
 
     @property
     def layout(self) -> Layout:

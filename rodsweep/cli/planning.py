@@ -27,7 +27,7 @@ def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
         points=job.points,
         layout=job.layout,
         coordinates=job.task.coordinates(),
-        constants=job.task.constants(),
+        constants=job.task.constants,
         quantities=job.quantities,
         config=job.resolved,
         attributes=attributes | job.config.parameters.numbers | versions | provenance.provenance(),

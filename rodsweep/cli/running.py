@@ -4,7 +4,6 @@ import socket
 import time
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import closing
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -24,36 +23,21 @@ from ..sweep.handout import Handout
 from ..sweep.loop import Indices, Loop, Share, sweep
 from ..sweep.progress import Silent, Teller
 from ..sweep.ranges import IndexRange, IndexSet, total
-from ..sweep.shards import Shard
 from ..sweep.stop import StopRequest
 from ..sweep.stretches import StretchSolver, Together
 from ..sweep.team import Team
+from ..wording import counted
+from .beforehand import planned_beforehand
 from .closing import RunEnd
 from .contribution import FAILURES_TOLD, Contribution, failures_of, history_of, of_the_last_run
 from .job import Job, make_job
 from .joint import JointDue, JointWork
 from .planning import plan_of
+from .run_options import RunOptions
 from .unforeseen import Log, guarded
-from .wording import counted
 
 CONTINUE = 75
 """Exit status of a run that was asked to stop: the same command continues it (EX_TEMPFAIL of sysexits.h)."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RunOptions:
-    """What the user asks of a run beside the config."""
-
-    overrides: tuple[str, ...] = ()
-    fresh: bool = False
-    """Whether an existing file is replaced."""
-    extend: bool = False
-    """Whether an existing file of a smaller config is extended."""
-    shard: Shard
-    strict: bool = False
-    """Whether the run ends at the first exception that is a bug."""
-    quiet: bool = False
-    """Whether only what is amiss is told."""
 
 
 def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest) -> int:
@@ -90,6 +74,12 @@ class _Run:
 
     def run(self) -> int:
         """Solves what is missing and folds it into the file; returns the exit status."""
+        if self.team.on_first(self._creates):
+            plan = planned_beforehand(self.plan, self.job.task, self.team, self.stop)
+            if plan is None:
+                names = self.team.exchange(self.stop.name)
+                return self.team.on_first(lambda: self._stopped_beforehand(max(names)))
+            self.plan = plan
         missing = self.team.on_first(self._open)
         units, count = self._units(missing)
         if self.team.first:
@@ -109,6 +99,16 @@ class _Run:
             shares = self.team.gather(self.joint.solve(joint.units, self.prepare, title)) or []
         exceptions = sum(self.team.gather(self.log.count) or [])
         return self.team.on_first(lambda: self._finish(count, contributions, joint, shares, exceptions))
+
+    def _creates(self) -> bool:
+        """Whether a file is to be created, as far as can be seen before it is opened."""
+        return self.options.fresh or self.options.extend or not self.output.exists()
+
+    @staticmethod
+    def _stopped_beforehand(signal: str) -> int:
+        """Says that a stop came before the file was created; returns the exit status."""
+        click.echo(f"stopped by {signal}; no point is computed yet, the same command begins again")
+        return CONTINUE
 
     def _lacks_curves(self, missing: int) -> bool:
         """Whether the file is not finished although no point is missing; on the first rank."""

@@ -6,7 +6,7 @@ from inspect import Parameter, Signature, signature
 from typing import ParamSpec, TypeVar
 
 from ..errors import InputError
-from .refusals import nearest
+from .refusals import hint_of
 from .values import short
 
 P = ParamSpec("P")
@@ -55,6 +55,4 @@ def refuse_misfit(
 
 def unknown(name: str, known: list[str]) -> InputError:
     """What to say of an argument that is none of those known."""
-    close = nearest(name, known)
-    hint = f"did you mean {close[0]}?" if close else f"known keys are {', '.join(known)}"
-    return InputError(f"unknown key {name}; {hint}")
+    return InputError(f"unknown key {name}; {hint_of(name, known)}")

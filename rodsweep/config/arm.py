@@ -1,75 +1,70 @@
 """The section `parameters.arm` of a config: an arm in SI units, whose axes become those of parameters.
 
-An axis of the load is one of F, an axis of Poisson's ratio one of k2, and a grid of both stays a grid.
-Length, section and Young's modulus move several parameters at once: with an axis of these, all combinations
-are a list of points.
+An axis of the load is one of F, an axis of Poisson's ratio one of k2, and a grid of both stays a grid of
+parameters. Any other quantity moves several parameters at once, or none: with an axis of these the points
+are a grid over the arm's own quantities, on which every parameter has its own value.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
 from itertools import product
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BeforeValidator, Field, ValidationInfo, WithJsonSchema
+from numpy.typing import NDArray
+from pydantic import Field
 
 from ..arrays import Array
 from ..errors import InputError
-from ..model.arm import UNITS, SlenderArm
+from ..model.arm import SIGNED, UNITS, NotSlender, NoWall, SlenderArm
 from ..model.parameters import NONLINEAR_PARAMETERS
-from ..model.units import in_si
-from .values import AXIS_SCHEMA, Axis, Strict, Values, as_axis, as_number
+from .quantities import Quantities
+from .values import Axis, Strict, Values
 
 LOADS = ("pressure", "force")
 AXIS_OF = dict.fromkeys(LOADS, "F") | {"poisson": "k2"}
 """The one parameter that a quantity moves, where it moves one only."""
-UNSWEPT = "viscosity"
-"""What moves no parameter: every time is proportional to it."""
-SECTION = ("length", "young", "viscosity", "radius", "width", "height", "poisson")
+FLUID = ("viscosity", "fluid_density", "density_difference")
+"""What moves no parameter: units of time are proportional to viscosity, densities say whether the model
+applies."""
+SECTION = ("length", "young", "radius", "inner_radius", "width", "height", "poisson", *FLUID)
 """What makes an arm beside its load."""
-MOST_LISTED = 1_000_000
-"""Points that are made of the axes of an arm, one by one."""
+SIGNED_IN_SECTION = ("density_difference",)
+"""What of it may be negative."""
+MOST_POINTS = 1_000_000
+"""Points of a grid over an arm's quantities, whose parameters are all in memory."""
+SLENDER, NOT_SLENDER, CRUSHED, NO_WALL = 0, 100, 101, 102
+"""Whether a rod covers a point: it does; the arm is too short for the drag of slender bodies; F reaches k1;
+the bore is as wide as the arm. All but the first are statuses, which no task's own statuses reach."""
+UNCOVERED = {NotSlender: NOT_SLENDER, NoWall: NO_WALL}
+"""What refusals of an arm mean for a point."""
+UNIT_NAMES = ("tau2", "force_scale", "pressure_scale")
+"""Units of time, force and pressure that an arm makes."""
 
-
-def as_quantities(value: Any, info: ValidationInfo) -> Axis:
-    """A quantity, a list or a range of quantities as an Axis in SI units; ValueError otherwise."""
-    name = str(info.field_name)
-    if isinstance(value, Axis):
-        return value
-    if isinstance(value, dict):
-        ends = {end: _read(name, value[end]) for end in ("start", "stop") if end in value}
-        return as_axis(value | ends)
-    if isinstance(value, list | tuple):
-        return as_axis([_read(name, each) for each in value])
-    return as_axis(_read(name, value))
-
-
-def _read(name: str, value: Any) -> float:
-    """A quantity in SI units; ValueError where it is none."""
-    if not isinstance(value, str):
-        return as_number(value)
-    try:
-        return in_si(f"parameters.arm.{name}", value, *UNITS[name])
-    except InputError as error:
-        raise ValueError(str(error)) from None
-
-
-def _schema() -> dict[str, Any]:
-    """What `as_quantities` takes, as a JSON schema: an axis whose numbers may be text with a unit."""
-    each: dict[str, Any] = {"anyOf": [{"type": "number"}, {"type": "string"}]}
-    *_, values, span = AXIS_SCHEMA["anyOf"]
-    ends = {end: {"description": span["properties"][end]["description"], **each} for end in ("start", "stop")}
-    return {
-        "anyOf": [
-            *each["anyOf"],
-            values | {"items": each},
-            span | {"properties": span["properties"] | ends},
-        ]
-    }
-
-
-Quantities = Annotated[Axis, BeforeValidator(as_quantities), WithJsonSchema(_schema())]
 Allowed = Field(description="a quantity with its unit, a list or a range of quantities; SI without unit")
 RatioAllowed = Field(description="a number above -1 and up to 0.5, a list or a range")
+
+
+class _Uncovered(ValueError):
+    """What is said of an arm that no rod covers; `status` is that of its points."""
+
+    def __init__(self, error: NotSlender | NoWall):
+        super().__init__(f"parameters.arm.{error}")
+        self.status = UNCOVERED[type(error)]
+
+
+@dataclass(frozen=True, slots=True)
+class ArmGrid:
+    """The points of a grid over an arm's quantities.
+
+    axes: values of each quantity or parameter that has several, in SI, the last the fastest. All else at
+    every point, shape (points,): the parameters, the units of UNIT_NAMES, and whether a rod covers it.
+    """
+
+    axes: dict[str, Array]
+    parameters: dict[str, Array]
+    units: dict[str, Array]
+    covered: NDArray[np.int8]
 
 
 class ArmSection(Strict):
@@ -79,6 +74,8 @@ class ArmSection(Strict):
     """From the clamp to the tip."""
     radius: Annotated[Quantities | None, Allowed] = None
     """Of a circular section; or give width and height."""
+    inner_radius: Annotated[Quantities | None, Allowed] = None
+    """Of the bore of a tube, which is closed at its tip."""
     width: Annotated[Quantities | None, Allowed] = None
     """Of a rectangular section, across the plane of motion."""
     height: Annotated[Quantities | None, Allowed] = None
@@ -88,7 +85,11 @@ class ArmSection(Strict):
     poisson: Annotated[Values | None, RatioAllowed] = None
     """Poisson's ratio, 0.5 where it is not given."""
     viscosity: Annotated[Quantities, Allowed]
-    """Of the fluid; one value, because it scales the time only."""
+    """Of the fluid; it moves no parameter, but times are proportional to it."""
+    fluid_density: Annotated[Quantities | None, Allowed] = None
+    """Of the fluid, that of water where it is not given; for whether the model applies."""
+    density_difference: Annotated[Quantities | None, Allowed] = None
+    """The arm's density less the fluid's, for whether the model applies; weight is left out without it."""
     pressure: Annotated[Quantities | None, Allowed] = None
     """On the tip's cross section; or give force. Not where the task finds F itself."""
     force: Annotated[Quantities | None, Allowed] = None
@@ -102,138 +103,189 @@ class ArmSection(Strict):
     @property
     def several(self) -> tuple[str, ...]:
         """The quantities that have more than one value."""
-        return tuple(name for name, axis in self._given.items() if axis.size > 1)
+        return tuple(name for name, axis in self.given.items() if axis.size > 1)
 
     @property
     def meaning(self) -> dict[str, float | None]:
         """The quantities, and the values of those that the points do not tell, in SI."""
         told = AXIS_OF if self.is_grid else self.several
-        return {name: None if name in told else float(axis.array()[0]) for name, axis in self._given.items()}
+        return {name: None if name in told else float(axis.array()[0]) for name, axis in self.given.items()}
 
     @property
     def is_grid(self) -> bool:
-        """Whether every axis moves one parameter only."""
+        """Whether every axis moves one parameter only, so that the points are a grid of parameters."""
         return all(name in AXIS_OF for name in self.several)
 
     @property
-    def _given(self) -> dict[str, Axis]:
+    def given(self) -> dict[str, Axis]:
+        """The quantities that are given, those of the section first."""
         names = (*SECTION, *LOADS)
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
     def refuse_unfit(self) -> None:
-        """ValueError where a quantity is not allowed, or the first of the arms is not slender or crushed."""
-        for name, axis in self._given.items():
+        """ValueError where a value is not allowed, or a grid of parameters has arms that no rod covers."""
+        for name, axis in self.given.items():
             low = float(axis.array()[0])
-            if name in SECTION and name != "poisson" and not low > 0:
+            if name not in (*SIGNED, "poisson") and not low > 0:
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} {UNITS[name][0]} is not above 0")
-        next(self._arms())
+        if self.is_grid:
+            self._made(self._firsts, place=-1)
 
-    def refuse_misuse(self, forced: bool, F_given: bool) -> None:
+    def refuse_misuse(self, forced: bool, beside: Collection[str]) -> None:
         """ValueError unless there is one load where the task needs one, and no axis that changes nothing.
 
-        forced: whether F is a parameter of the task; F_given: whether it stands beside the arm.
+        forced: whether F is a parameter of the task; beside: the parameters that stand beside the arm.
         """
-        if UNSWEPT in self.several:
+        if self.pressure is not None and self.force is not None:
             raise ValueError(
-                f"parameters.arm.{UNSWEPT} has several values, and no dimensionless parameter depends on it; "
-                "give one: every time is proportional to it"
+                "parameters.arm.pressure and parameters.arm.force are both given; give one of them"
             )
-        if self.load and F_given:
+        if self.load and "F" in beside:
             raise ValueError(f"parameters.F and parameters.arm.{self.load} are both given; give one of them")
+        if "poisson" in self.several and "k2" in beside:
+            raise ValueError(
+                "parameters.arm.poisson has several values, and parameters.k2, which replaces all that it "
+                "moves, is given too; give one of them"
+            )
         if self.load and not forced:
             raise ValueError(
                 f"parameters.arm.{self.load} is given but the task finds the load itself; remove it and set "
                 "its option F_max, or stop"
             )
-        if forced and not (self.load or F_given):
+        if forced and not (self.load or "F" in beside):
             raise ValueError("parameters.arm.pressure is missing; give the pressure on the tip or a force")
 
     def grid_axes(self) -> dict[str, Axis]:
-        """The axes of the dimensionless parameters of a grid, by name; no F without load.
+        """The axes of the dimensionless parameters of a grid of these, by name; no F without load.
 
         ValueError for what is no slender arm, and for a load that crushes it.
         """
-        arm = self._heaviest({name: float(axis.array()[0]) for name, axis in self._given.items()})
+        arm = self._made(self._firsts, place=-1)
         axes = {name: Axis(values=(getattr(arm, name),)) for name in NONLINEAR_PARAMETERS if name != "F"}
         if self.poisson is not None:
-            axes["k2"] = Axis(values=tuple(sorted(arm.k2 for arm in self._arms())))
+            axes["k2"] = Axis(values=tuple(sorted(self._made(each).k2 for each in self._sections())))
         if self.load:
-            axes = {"F": _scaled(self._given[self.load], self._force_of(arm))} | axes
+            axes = {"F": _scaled(self.given[self.load], self._force_of(arm))} | axes
         return axes
 
-    def listed(self, beside: Mapping[str, Array]) -> dict[str, Array]:
-        """The parameters of all combinations, each (points,): of the section, then the load, then `beside`.
+    def grid_quantities(self) -> dict[str, Array]:
+        """The quantities and units of a grid of parameters: numbers, shape (), or along their parameter."""
+        values = {name: axis.array() for name, axis in self.given.items()}
+        if self.poisson is not None:  # k2 falls as it rises
+            values["poisson"] = values["poisson"][::-1]
+        units = {name: np.array([value]) for name, value in _units_of(self._made(self._firsts)).items()}
+        return {name: array[0] if len(array) == 1 else array for name, array in (values | units).items()}
 
-        beside: values of parameters that replace the arm's. ValueError as of `grid_axes`.
+    def own_grid(self, beside: Mapping[str, Array]) -> ArmGrid:
+        """The grid over the arm's quantities, and over those parameters of `beside` that have several values.
+
+        beside: values of parameters that replace the arm's, (n,). ValueError where no rod covers any point.
         """
-        inner = {"load": self._loads} | dict(beside)
-        table = {name: column.ravel() for name, column in _crossed(inner).items()}
-        each = len(table["load"])
-        arms = list(self._arms())
-        columns = {
-            name: np.repeat([getattr(arm, name) for arm in arms], each)
-            for name in NONLINEAR_PARAMETERS
-            if name != "F"
-        }
+        arms, statuses = zip(*self._arms(), strict=True)
+        loads = self.given[self.load].array() if self.load else np.zeros(1)
+        crossed = dict(zip(beside, np.meshgrid(*beside.values(), indexing="ij"), strict=True))
+        shape = (len(arms), len(loads), next(iter(crossed.values())).size if crossed else 1)
+        names = [name for name in NONLINEAR_PARAMETERS if name != "F"]
+        of_arms = {name: _along(0, [getattr(arm, name, np.nan) for arm in arms]) for name in names}
+        units = {name: _along(0, [_units_of(arm)[name] for arm in arms]) for name in UNIT_NAMES}
         if self.load:
-            scale = np.repeat([self._force_of(arm) for arm in arms], each)
-            columns = {"F": scale * np.tile(table["load"], len(arms))} | columns
-        return columns | {name: np.tile(table[name], len(arms)) for name in beside}
-
-    def quantities(self, beside: Mapping[str, Array]) -> dict[str, Array]:
-        """The quantities in SI, with the units of time, force and pressure that they make.
-
-        A number, shape (), or where there are several: along its parameter in a grid, shape (values,), in
-        the order of `grid_axes`; else along all points of `listed`, shape (points,).
-        """
-        values = {name: axis.array() for name, axis in self._given.items()}
-        arms = list(self._arms())
-        units = {
-            "tau2": [arm.tau2 for arm in arms],
-            "force_scale": [arm.force_scale for arm in arms],
-            "pressure_scale": [arm.force_scale / arm.section.area for arm in arms],
-        }
-        if self.is_grid:
-            if self.poisson is not None:  # k2 falls as it rises
-                values["poisson"] = values["poisson"][::-1]
-            found = values | {name: np.array(each[:1]) for name, each in units.items()}
-            return {name: array[0] if len(array) == 1 else array for name, array in found.items()}
-        sections = _crossed({name: values[name] for name in SECTION if name in values})
-        each = len(self._loads) * int(np.prod([len(column) for column in beside.values()]))
-        found = {name: np.repeat(column.ravel(), each) for name, column in sections.items()}
-        found |= {name: np.repeat(column, each) for name, column in units.items()}
-        if self.load:
-            loads = np.repeat(self._loads, each // len(self._loads))
-            found[self.load] = np.tile(loads, len(arms))
-        along = (*self.several, *units)
-        return {name: column if name in along else column[0] for name, column in found.items()}
+            scale = _along(0, [self._force_of(arm) if arm else np.nan for arm in arms])
+            of_arms["F"] = scale * _along(1, loads)
+        of_arms |= {name: _along(2, column.ravel()) for name, column in crossed.items()}
+        table = {name: np.broadcast_to(column, shape) for name, column in of_arms.items()}
+        covered = np.broadcast_to(_along(0, statuses), shape).copy()
+        if "F" in table:
+            covered[(covered == SLENDER) & (table["F"] >= table["k1"])] = CRUSHED
+        if (covered != SLENDER).all():
+            self._refuse_all(beside)
+        axes = {name: axis.array() for name, axis in self.given.items() if axis.size > 1}
+        return ArmGrid(
+            axes | {name: column for name, column in beside.items() if len(column) > 1},
+            {name: table[name].ravel() for name in NONLINEAR_PARAMETERS if name in table},
+            {name: np.broadcast_to(column, shape).ravel() for name, column in units.items()},
+            covered.astype(np.int8).ravel(),
+        )
 
     def count(self, beside: int) -> int:
-        """Points of a list, where `beside` the arm so many combinations of parameters are given."""
-        return int(np.prod([float(axis.size) for axis in self._given.values()])) * beside
+        """Points of a grid, where `beside` the arm so many combinations of parameters are given."""
+        return int(np.prod([float(axis.size) for axis in self.given.values()])) * beside
+
+    def _refuse_all(self, beside: Mapping[str, Array]) -> None:
+        """ValueError, with what is wrong at the first point."""
+        self._made(self._firsts, place=0)
+        k1 = float(beside["k1"][0])
+        raise ValueError(f"parameters.k1 is {k1:.15g} and every F is above; the rod is crushed where F >= k1")
 
     @property
-    def _loads(self) -> Array:
-        """The values of the load, shape (values,); one nan where there is none."""
-        return self._given[self.load].array() if self.load else np.array([np.nan])
+    def _firsts(self) -> dict[str, float]:
+        """The first value of every quantity."""
+        return {name: float(axis.array()[0]) for name, axis in self.given.items()}
 
-    def _arms(self) -> Iterator[SlenderArm]:
-        """The arms of all sections, in row-major order, each with the largest load."""
-        names = [name for name in SECTION if name in self._given]
-        for values in product(*(self._given[name].array() for name in names)):
-            yield self._heaviest(dict(zip(names, map(float, values), strict=True)))
+    def _sections(self) -> Iterator[dict[str, float]]:
+        """The quantities of all sections, in row-major order."""
+        names = [name for name in SECTION if name in self.given]
+        for values in product(*(self.given[name].array() for name in names)):
+            yield dict(zip(names, map(float, values), strict=True))
 
-    def _heaviest(self, values: Mapping[str, float]) -> SlenderArm:
-        """An arm with the largest load, or none; ValueError where it is no slender arm or crushed."""
-        loads = {name: float(self._given[name].array()[-1]) for name in LOADS if name in self._given}
+    def arm_at(self, number: int) -> SlenderArm:
+        """The arm of a section without load, numbered in row-major order of the section's axes."""
+        axes = {name: axis.array() for name, axis in self.given.items() if name in SECTION}
+        places = np.unravel_index(number, [len(column) for column in axes.values()])
+        values = {name: float(axes[name][place]) for name, place in zip(axes, places, strict=True)}
+        return self._made(values)
+
+    def _arms(self) -> Iterator[tuple[SlenderArm | None, int]]:
+        """The arms of all sections without load, None where no rod covers one, each with its status."""
+        for values in self._sections():
+            try:
+                yield self._made(values), SLENDER
+            except _Uncovered as error:
+                yield None, error.status
+
+    def _made(self, values: Mapping[str, float], place: int | None = None) -> SlenderArm:
+        """An arm with the load at a place of its axis, or without; ValueError where it cannot be."""
+        section = {name: value for name, value in values.items() if name in SECTION}
+        load = {"pressure": 0.0}
+        if place is not None and self.load:
+            load = {self.load: float(self.given[self.load].array()[place])}
         try:
-            return SlenderArm(**{**values, **(loads or {"pressure": 0.0})})
+            return SlenderArm(**{**section, **load})
+        except (NotSlender, NoWall) as error:
+            raise _Uncovered(error) from None
         except InputError as error:
             raise ValueError(f"parameters.arm.{error}") from None
 
     def _force_of(self, arm: SlenderArm) -> float:
         """F of a load of 1 in SI on an arm."""
-        return (arm.section.area if self.load == "pressure" else 1.0) / arm.force_scale
+        return 1.0 / (arm.pressure_scale if self.load == "pressure" else arm.force_scale)
+
+
+def names_over(sizes: Mapping[str, int]) -> tuple[str, ...]:
+    """The axes of a grid over an arm's quantities; none where the points are a grid of parameters.
+
+    sizes: how many values each quantity and each parameter beside the arm has.
+    """
+    quantities = [name for name in (*SECTION, *LOADS) if sizes.get(name, 1) > 1]
+    if all(name in AXIS_OF for name in quantities):
+        return ()
+    return (*quantities, *(name for name in NONLINEAR_PARAMETERS if sizes.get(name, 1) > 1))
+
+
+def moved_by(axis: str) -> str:
+    """The one parameter that an axis of an arm's grid moves; empty where it moves several or none."""
+    return axis if axis in NONLINEAR_PARAMETERS else AXIS_OF.get(axis, "")
+
+
+def _units_of(arm: SlenderArm | None) -> dict[str, float]:
+    """The units that an arm makes; nan for none."""
+    if arm is None:
+        return dict.fromkeys(UNIT_NAMES, np.nan)
+    return dict(zip(UNIT_NAMES, (arm.tau2, arm.force_scale, arm.pressure_scale), strict=True))
+
+
+def _along(dimension: int, values: Any) -> Array:
+    """Values, (n,), along one of three dimensions."""
+    return np.asarray(values).reshape([-1 if i == dimension else 1 for i in range(3)])
 
 
 def _scaled(axis: Axis, scale: float) -> Axis:
@@ -242,8 +294,3 @@ def _scaled(axis: Axis, scale: float) -> Axis:
         return Axis(values=tuple(scale * value for value in axis.values))
     factor = scale * axis.factor  # kept apart, so that a longer range has the same values
     return axis.model_copy(update={"factor": factor})
-
-
-def _crossed(columns: Mapping[str, Array]) -> dict[str, Array]:
-    """All combinations of the values, each (n,), as tables of one shape, the last name the fastest."""
-    return dict(zip(columns, np.meshgrid(*columns.values(), indexing="ij"), strict=True))

@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field, create_model, model_validator
 
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, PARAMETERS
-from .arm import MOST_LISTED, ArmSection
+from .arm import MOST_POINTS, ArmSection, moved_by, names_over
 from .values import Axis, Number, Strict, Text, Values
 
 BEYOND_LINEAR = tuple(name for name in NONLINEAR_PARAMETERS if name not in LINEAR_PARAMETERS)
@@ -35,8 +35,8 @@ class Axes(LinearAxes):
 
     @property
     def axes(self) -> dict[str, Axis]:
-        """The axes of a grid, by name: those that are given, and those of the arm; of a list the given."""
-        if self.arm is None or self.is_list:
+        """The axes of a grid of parameters, by name, those of the arm among them; of others the given."""
+        if self.arm is None or self.over:
             return self.given_axes
         axes = self.arm.grid_axes() | self.given_axes
         return {name: axes[name] for name in self.of_arm if name in axes}
@@ -48,8 +48,24 @@ class Axes(LinearAxes):
 
     @property
     def is_list(self) -> bool:
-        """Whether the points are a list: from a file, or of an arm whose axes move several parameters."""
-        return self.points is not None or not (self.arm is None or self.arm.is_grid)
+        """Whether the points are a list from a file."""
+        return self.points is not None
+
+    @property
+    def over(self) -> tuple[str, ...]:
+        """The axes of a grid over an arm's own quantities; none where the points are of another kind."""
+        if self.arm is None:
+            return ()
+        given = self.arm.given | self.given_axes
+        return names_over({name: axis.size for name, axis in given.items()})
+
+    @property
+    def alone(self) -> dict[str, int]:
+        """How many values each parameter has along an axis that moves no other."""
+        if self.arm is None or not self.over:
+            return {name: axis.size for name, axis in self.axes.items()}
+        given = self.arm.given | self.given_axes
+        return {name: given[axis].size for axis in self.over if (name := moved_by(axis))}
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -62,11 +78,11 @@ class Axes(LinearAxes):
 
     def require(self, names: tuple[str, ...], or_points: bool = True) -> None:
         """ValueError unless all axes `names` are given or, where that is allowed, a file of points."""
+        if self.points is not None and self.arm is not None:
+            raise ValueError("parameters.points and parameters.arm are both given; give one of them")
         if self.points is not None and self.axes:
             both = f"parameters.points and parameters.{next(iter(self.axes))}"
             raise ValueError(f"{both} are both given; give the axes or the file, not both")
-        if self.points is not None and self.arm is not None:
-            raise ValueError("parameters.points and parameters.arm are both given; give one of them")
         if self.arm is not None:
             self._require_arm(self.arm, "F" in names)
             return
@@ -78,14 +94,12 @@ class Axes(LinearAxes):
     def _require_arm(self, arm: ArmSection, forced: bool) -> None:
         """ValueError unless the arm, with what is given beside it, makes points."""
         arm.refuse_unfit()
-        arm.refuse_misuse(forced, "F" in self.given_axes)
+        arm.refuse_misuse(forced, self.given_axes)
         beside = {name: axis for name, axis in self.given_axes.items() if axis.size > 1}
         count = arm.count(math.prod(axis.size for axis in beside.values()))
-        if self.is_list and count > MOST_LISTED:
-            raise ValueError(
-                f"parameters.arm makes a list of {count} points; at most {MOST_LISTED} are listed"
-            )
-        if not self.is_list:
+        if self.over and count > MOST_POINTS:
+            raise ValueError(f"parameters.arm makes a grid of {count} points; it may have {MOST_POINTS}")
+        if not self.over:
             arm.grid_axes()
 
 
@@ -112,5 +126,5 @@ class NonlinearParameters(AllAxes):
 
 
 def words(names: tuple[str, ...], last: str) -> str:
-    """The names as a list in a sentence."""
-    return f"{', '.join(names[:-1])} {last} {names[-1]}"
+    """The names, one or more, as a list in a sentence."""
+    return f"{', '.join(names[:-1])} {last} {names[-1]}" if names[1:] else names[0]

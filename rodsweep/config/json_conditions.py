@@ -8,13 +8,13 @@ from copy import deepcopy
 from typing import Any
 
 from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS
-from .arm import LOADS, SECTION
+from .arm import LOADS, SECTION, SIGNED_IN_SECTION
 
 Schema = dict[str, Any]
 QUANTITY_TEXT = r"^\s*{sign}(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[A-Za-z\u00b5\u03bc]"
 """A number and the beginning of a unit."""
 BOUNDS_OF_ARM: dict[str, Schema] = {
-    **{name: {"exclusiveMinimum": 0} for name in SECTION if name != "poisson"},
+    **{name: {"exclusiveMinimum": 0} for name in SECTION if name not in ("poisson", *SIGNED_IN_SECTION)},
     "poisson": {"exclusiveMinimum": -1, "maximum": 0.5},
 }
 """Of the quantities of an arm that may not be any number."""
@@ -73,7 +73,7 @@ def restrict_arm(section: Schema, axis: Schema) -> None:
                 node["pattern"] = pattern
     circle, rectangle = all_of(["radius"], none_of(["width", "height"])), ["width", "height"]
     section["allOf"] = [
-        {"oneOf": [circle, all_of(rectangle, none_of(["radius"]))]},
+        {"oneOf": [circle, all_of(rectangle, none_of(["radius", "inner_radius"]))]},
         {"not": all_of(LOADS)},
     ]
 

@@ -76,9 +76,10 @@ class LimitCycleConfig(Config):
     @property
     def along(self) -> str:
         """The parameter along which neighbours follow each other: the first of those with most points."""
-        axes = self.parameters.axes
-        given = self.limit_cycle.along
-        return max(axes, key=lambda name: axes[name].size) if given == LONGEST else AXIS_OF.get(given, given)
+        sizes, given = self.parameters.alone, self.limit_cycle.along
+        if given == LONGEST:
+            return max(sizes, key=lambda name: sizes[name], default=given)
+        return AXIS_OF.get(given, given)
 
     @property
     def unused(self) -> dict[str, str]:
@@ -107,11 +108,15 @@ class LimitCycleConfig(Config):
                 f"{words(NONLINEAR_PARAMETERS, 'or')}"
             )
         if self.limit_cycle.start == "neighbour" and self.parameters.is_list:
-            remedy = "give axes instead of parameters.points"
-            if self.parameters.arm is not None:
-                remedy = "give one arm, whose pressure or force has several values"
             raise ValueError(
                 "limit_cycle.start: neighbour needs a grid, in which a point has neighbours; remove it, or "
-                + remedy
+                "give axes instead of parameters.points"
+            )
+        if self.limit_cycle.start == "neighbour" and self.along not in self.parameters.alone:
+            raise ValueError(
+                f"limit_cycle.start: neighbour needs several values of what moves one parameter only, along "
+                f"which neighbours follow each other, and parameters.arm has axes over "
+                f"{' and '.join(self.parameters.over)}; give several of "
+                f"{words((*AXIS_OF, *NONLINEAR_PARAMETERS), 'or')}, or remove it"
             )
         return self

@@ -19,6 +19,10 @@ LARGEST_FILE = 100_000
 """Bytes: some 15,000 numbers, which are read in a second; longer lists of points are CSV files."""
 LONGEST = 1000
 """Characters of a value or a key."""
+RESULT = b"\x89HDF"
+"""How result files begin, which are HDF5."""
+TABLES = (".csv", ".tsv")
+"""Endings of lists of points, and of what `rodsweep export` writes."""
 DEEPEST = 20
 """Levels of lists and mappings in each other."""
 
@@ -33,6 +37,12 @@ def read_text(path: Path) -> str:
             data = file.read(LARGEST_FILE + 1)
     except OSError as error:
         raise InputError(f"{where} cannot be read: {error.strerror}") from error
+    if data.startswith(RESULT):
+        raise InputError(f"{where} is a result file and no config; `rodsweep show` says what it holds")
+    if path.suffix in TABLES:
+        raise InputError(
+            f"{where} is no config but a table; a config names a list of points, parameters.points"
+        )
     if len(data) > LARGEST_FILE:
         raise InputError(
             f"{where} is larger than {LARGEST_FILE} bytes, which no config is; many points go into a CSV "

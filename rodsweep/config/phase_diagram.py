@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS, all_but
-from .arm import AXIS_OF
+from .arm import AXIS_OF, FLUID
 from .axes import DEFAULTS, LinearAxes, words
 from .schema import Crossings, LinearConfig
 from .values import Axis, Strict
@@ -132,11 +132,12 @@ class PhaseDiagramConfig(LinearConfig):
                 f"{every}"
             )
         self.parameters.require(LINEAR_PARAMETERS, or_points=False)
-        if self.parameters.arm is not None and self.parameters.is_list:
-            several = next(name for name in self.parameters.arm.several if name not in AXIS_OF)
+        if self.parameters.over:
+            several = next(name for name in self.parameters.over if name not in AXIS_OF)
+            moves = "no parameter" if several in FLUID else "several parameters at once"
             raise ValueError(
-                f"parameters.arm.{several} has several values, which move several parameters at once; a "
-                f"phase diagram of an arm is over {words(tuple(AXIS_OF), 'or')}, or parameters beside the arm"
+                f"parameters.arm.{several} has several values, which move {moves}; a phase diagram of an arm "
+                f"is over {words(tuple(AXIS_OF), 'or')}, or parameters beside the arm"
             )
         long = self.plane
         if len(long) != 2:

@@ -158,5 +158,8 @@ def _task(tree: dict) -> str:
         raise InputError(f"task = {short(task)} is not allowed; it should be {known}")
     for name in CONFIGS:
         if name in tree and name != task:
+            section: Any = CONFIGS[task].model_fields[task].annotation
+            if not isinstance(tree[name], dict) and name in section.model_fields:  # both, as modes
+                raise InputError(f"unknown key {name}; did you mean {task}.{name}?")
             raise InputError(f"{name} is given but the task is {task}; remove it")
     return task

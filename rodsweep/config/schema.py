@@ -70,7 +70,13 @@ class Config(Strict, ABC):
         options = getattr(self, self.task).model_dump(mode="json", exclude=set(self.unused))
         numbers = dict(self.parameters.numbers)
         meant = {"task": self.task, "parameters": numbers, "accuracy": self.accuracy, self.task: options}
-        return meant if self.parameters.arm is None else meant | {"arm": self.parameters.arm.meaning}
+        if self.parameters.arm is None:
+            return meant
+        if self.parameters.over:  # whose axes do not tell what has one value
+            given = self.parameters.given_axes
+            beside = {name: float(given[name].array()[0]) if name in given else None for name in self.names}
+            meant["parameters"] |= {k: v for k, v in beside.items() if k not in self.parameters.over}
+        return meant | {"arm": self.parameters.arm.meaning}
 
 
 class LinearConfig(Config, ABC):

@@ -117,6 +117,8 @@ class Axis(Strict):
     spacing: Literal["linear", "log"] = "linear"
     factor: Annotated[float, Field(exclude=True)] = 1.0
     """What the values of a range are multiplied by: of a quantity in SI, what it makes of a parameter."""
+    written: Annotated[Any, Field(exclude=True)] = None
+    """What the user wrote, where that has units."""
 
     @property
     def size(self) -> int:

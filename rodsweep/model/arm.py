@@ -4,6 +4,7 @@ Stiffness is of the paper's Sec. III, the force of Sec. IV, scales and dimension
 Knows no mesh and no solver. Quantities are given as text with a unit, or as numbers in SI.
 """
 
+import re
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import inf, isnan
@@ -12,12 +13,13 @@ from typing import Any
 
 from ..errors import InputError
 from .drag import LEAST_SLENDERNESS, Drag, range_of_drag
-from .section import Circle, Rectangle, Section
+from .section import Circle, Rectangle, Section, Tube
 from .units import Given, in_si
 
 UNITS = {
     "length": ("m", "10 cm"),
     "radius": ("m", "5 mm"),
+    "inner_radius": ("m", "3 mm"),
     "width": ("m", "10 mm"),
     "height": ("m", "8 mm"),
     "young": ("Pa", "100 kPa"),
@@ -33,12 +35,31 @@ LOADS = ("pressure", "force")
 SIGNED = (*LOADS, "density_difference")
 
 
+class NotSlender(InputError):
+    """The refusal of an arm that is too short for the drag of slender bodies."""
+
+
+class NoWall(InputError):
+    """The refusal of an arm whose bore is as wide as itself."""
+
+
+OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*of\s+flutter\s*", re.ASCII)
+"""A load relative to the threshold of flutter, as "1.2 of flutter" or "120 % of flutter"."""
+
+
+def share_of_flutter(given: Given) -> float | None:
+    """The load over that at which an arm flutters, of a text that says so; None of any other."""
+    found = OF_FLUTTER.fullmatch(given) if isinstance(given, str) else None
+    return float(found[1]) / (100.0 if found[2] else 1.0) if found else None
+
+
 @dataclass(frozen=True, slots=True)
 class InSI:
     """What is given of an arm, in SI units; what is not given is nan."""
 
     length: float
     radius: float
+    inner_radius: float
     width: float
     height: float
     young: float
@@ -53,8 +74,10 @@ class InSI:
 class SlenderArm:
     """An arm, clamped at one end, in a viscous fluid, with a pressure on its tip's section or a force there.
 
-    Either a radius or width and height, of which the height lies in the plane of motion; a pressure or a
-    force, of which positive ones push, or no load. density_difference: of the arm over the fluid. Raises
+    Either a radius, or width and height, of which the height lies in the plane of motion. inner_radius: of
+    the bore of a tube, which is closed at the tip and filled with the fluid at the pressure around. A
+    pressure on the tip or a force there, of which positive ones push, or no load; "1.2 of flutter" is a load
+    that is known once the threshold is. density_difference: of the arm's material over the fluid. Raises
     InputError, naming the quantity.
     """
 
@@ -62,6 +85,7 @@ class SlenderArm:
     young: Given
     viscosity: Given
     radius: Given | None = None
+    inner_radius: Given | None = None
     width: Given | None = None
     height: Given | None = None
     pressure: Given | None = None
@@ -75,8 +99,12 @@ class SlenderArm:
         """Reads the units, and refuses what is no slender arm."""
         object.__setattr__(self, "si", InSI(**{name: self._read(name) for name in UNITS}))
         ratio: Any = self.poisson
-        if isinstance(ratio, bool) or not isinstance(ratio, Real) or not -1 < float(ratio) <= 0.5:
-            told = repr(ratio) if isinstance(ratio, str) else str(ratio)
+        is_number = isinstance(ratio, Real) and not isinstance(ratio, bool)
+        if not is_number or not -1 < ratio <= 0.5:
+            try:
+                told = repr(ratio) if isinstance(ratio, str) else str(ratio)
+            except ValueError:  # an integer of thousands of digits
+                told = "an integer too large to be shown"
             raise InputError(f"poisson = {told:.60} is not a number above -1 and up to 0.5")
         self._refuse_other_sets()
         if self.si.density_difference <= -self.si.fluid_density:
@@ -94,7 +122,7 @@ class SlenderArm:
                 "modulus; check their units"
             )
         if slenderness < LEAST_SLENDERNESS:
-            raise InputError(
+            raise NotSlender(
                 f"{self._told('length')} is {slenderness:.3g} radii; the drag of a slender arm needs at "
                 f"least {LEAST_SLENDERNESS:g}"
             )
@@ -103,9 +131,9 @@ class SlenderArm:
     def _refuse_crushed(self) -> None:
         """InputError where F is not below k1."""
         loaded = self.load
-        if loaded is None or self.k1 > self.F:
+        if loaded is None or self.share_of_flutter is not None or self.k1 > self.F:
             return
-        limit = self.si.young * (self.section.area if loaded == "force" else 1.0)
+        limit = self.si.young * self.section.area / self._loaded_area
         raise InputError(
             f"{self._told(loaded)} compresses the arm to nothing; it must be below "
             f"{limit:.4g} {UNITS[loaded][0]}, where a linear material is crushed"
@@ -119,6 +147,10 @@ class SlenderArm:
         sides = (self.width, self.height)
         if (self.radius is None) == (sides == (None, None)) or (self.radius is None and None in sides):
             raise InputError("radius: give either a radius, or width and height")
+        if self.inner_radius is not None and self.radius is None:
+            raise InputError(f"{self._told('inner_radius')} needs a radius; a rectangle has no bore here")
+        if self.si.inner_radius >= self.si.radius:
+            raise NoWall(f"{self._told('inner_radius')} is not below {self._told('radius')}")
         if self.pressure is not None and self.force is not None:
             raise InputError(
                 f"{self._told('pressure')} and {self._told('force')} are both given; give one of them: the "
@@ -126,9 +158,9 @@ class SlenderArm:
             )
 
     def _read(self, name: str) -> float:
-        """A quantity in SI; nan where it is not given."""
+        """A quantity in SI; nan where it is not given, or relative to the threshold of flutter."""
         given = getattr(self, name)
-        if given is None:
+        if given is None or (name in LOADS and share_of_flutter(given) is not None):
             return float("nan")
         value = in_si(name, given, *UNITS[name])
         if name not in SIGNED and not value > 0:
@@ -146,7 +178,11 @@ class SlenderArm:
     @property
     def section(self) -> Section:
         """The cross section."""
-        return Circle(self.si.radius) if self.radius is not None else Rectangle(self.si.width, self.si.height)
+        if self.radius is None:
+            return Rectangle(self.si.width, self.si.height)
+        if self.inner_radius is None:
+            return Circle(self.si.radius)
+        return Tube(self.si.radius, self.si.inner_radius)
 
     @property
     def load(self) -> str | None:
@@ -154,21 +190,46 @@ class SlenderArm:
         return next((name for name in LOADS if getattr(self, name) is not None), None)
 
     @property
+    def share_of_flutter(self) -> float | None:
+        """The load over that at which the arm flutters, where it is given so."""
+        return None if self.load is None else share_of_flutter(getattr(self, self.load))
+
+    @property
     def mass_per_length(self) -> float:
-        """Density times area, in kg/m; the density of the fluid where no difference is given."""
-        difference = self.si.density_difference
-        density = self.si.fluid_density + (0.0 if isnan(difference) else difference)
-        return density * self.section.area
+        """Mass of the material and of the fluid in its bore, in kg/m.
+
+        The material is as dense as the fluid where no difference is given.
+        """
+        difference, fluid = self.si.density_difference, self.si.fluid_density
+        density = fluid + (0.0 if isnan(difference) else difference)
+        return density * self.section.area + fluid * self.section.bore_area
 
     @property
     def tip_force(self) -> float:
-        """The resultant of the pressure over the tip's cross section, p A, in N (Sec. IV).
+        """The resultant of the pressure over the tip's face, p A, in N (Sec. IV).
 
-        Raises InputError for an arm without load, as `F` does.
+        Raises InputError for an arm without load, or with one relative to flutter, as `F` does.
         """
         if self.load is None:
             raise InputError("pressure is missing; give the pressure on the tip's cross section, or a force")
-        return self.si.force if self.load == "force" else self.si.pressure * self.section.area
+        if self.share_of_flutter is not None:
+            raise InputError(f"{self._told(self.load)} is no number yet; it takes the threshold of flutter")
+        return float(getattr(self.si, self.load)) * self._loaded_area
+
+    @property
+    def _loaded_area(self) -> float:
+        """Resultant over load: the area of the tip's face for a pressure, 1 for a force."""
+        return 1.0 if self.load == "force" else self.section.face_area
+
+    @property
+    def pressure_scale(self) -> float:
+        """Pressure on the tip's face that makes F = 1, in Pa."""
+        return self.force_scale / self.section.face_area
+
+    @property
+    def load_scale(self) -> float:
+        """The load that makes F = 1: in N where the arm has a force, else a pressure, in Pa."""
+        return self.force_scale if self.load == "force" else self.pressure_scale
 
     @property
     def bending_stiffness(self) -> float:
@@ -198,7 +259,7 @@ class SlenderArm:
 
     @property
     def F(self) -> float:
-        """p A L^2/k3 (Sec. IV and VI); InputError for an arm without load."""
+        """p A L^2/k3 (Sec. IV and VI); InputError where the load is not known."""
         return self.tip_force / self.force_scale
 
     @cached_property

@@ -12,6 +12,7 @@ class Circle:
     radius: float
     formula: ClassVar[str] = "A = pi a^2, I = pi a^4/4"
     shear_formula: ClassVar[str] = "kappa = 6 (1 + nu)/(7 + 6 nu)"
+    face_formula: ClassVar[str] = "p A"
 
     @property
     def area(self) -> float:
@@ -22,6 +23,16 @@ class Circle:
     def second_moment(self) -> float:
         """I = pi a^4/4, in m^4."""
         return pi * self.radius**4 / 4
+
+    @property
+    def face_area(self) -> float:
+        """Area on which a pressure pushes, A, in m^2."""
+        return self.area
+
+    @property
+    def bore_area(self) -> float:
+        """Area of the fluid inside, in m^2: the section is solid."""
+        return 0.0
 
     @property
     def half_height(self) -> float:
@@ -39,6 +50,55 @@ class Circle:
 
 
 @dataclass(frozen=True, slots=True)
+class Tube:
+    """A circular section of radius a with a bore of radius b, in m. The tip is closed."""
+
+    radius: float
+    inner_radius: float
+    formula: ClassVar[str] = "A = pi (a^2 - b^2), I = pi (a^4 - b^4)/4"
+    shear_formula: ClassVar[str] = (
+        "kappa = 6 (1 + nu) (1 + m^2)^2/((7 + 6 nu) (1 + m^2)^2 + (20 + 12 nu) m^2), m = b/a"
+    )
+    face_formula: ClassVar[str] = "p pi a^2: the whole face of the closed tip"
+
+    @property
+    def area(self) -> float:
+        """A = pi (a^2 - b^2), of the material, in m^2."""
+        return pi * (self.radius - self.inner_radius) * (self.radius + self.inner_radius)
+
+    @property
+    def second_moment(self) -> float:
+        """I = pi (a^4 - b^4)/4, in m^4."""
+        return self.area * (self.radius**2 + self.inner_radius**2) / 4
+
+    @property
+    def face_area(self) -> float:
+        """Area on which a pressure pushes, pi a^2, in m^2: the tip is closed."""
+        return pi * self.radius**2
+
+    @property
+    def bore_area(self) -> float:
+        """Area of the fluid inside, pi b^2, in m^2."""
+        return pi * self.inner_radius**2
+
+    @property
+    def half_height(self) -> float:
+        """Half the extent in the plane of motion, in m."""
+        return self.radius
+
+    @property
+    def drag_radius(self) -> float:
+        """Radius of the circular cylinder of equal drag, in m."""
+        return self.radius
+
+    def shear_coefficient(self, poisson: float) -> float:
+        """kappa of a hollow circle, `shear_formula` (Cowper 1966); 2 (1 + nu)/(4 + 3 nu) for a thin wall."""
+        squared = (self.inner_radius / self.radius) ** 2
+        solid = (7 + 6 * poisson) * (1 + squared) ** 2
+        return 6 * (1 + poisson) * (1 + squared) ** 2 / (solid + (20 + 12 * poisson) * squared)
+
+
+@dataclass(frozen=True, slots=True)
 class Rectangle:
     """A rectangular section, in m: height in the plane of motion, width across it."""
 
@@ -46,6 +106,7 @@ class Rectangle:
     height: float
     formula: ClassVar[str] = "A = w h, I = w h^3/12"
     shear_formula: ClassVar[str] = "kappa = 10 (1 + nu)/(12 + 11 nu)"
+    face_formula: ClassVar[str] = "p A"
 
     @property
     def area(self) -> float:
@@ -56,6 +117,16 @@ class Rectangle:
     def second_moment(self) -> float:
         """I = w h^3/12, in m^4."""
         return self.width * self.height**3 / 12
+
+    @property
+    def face_area(self) -> float:
+        """Area on which a pressure pushes, A, in m^2."""
+        return self.area
+
+    @property
+    def bore_area(self) -> float:
+        """Area of the fluid inside, in m^2: the section is solid."""
+        return 0.0
 
     @property
     def half_height(self) -> float:
@@ -72,4 +143,4 @@ class Rectangle:
         return 10 * (1 + poisson) / (12 + 11 * poisson)
 
 
-Section = Circle | Rectangle
+Section = Circle | Tube | Rectangle

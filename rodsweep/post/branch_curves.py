@@ -105,11 +105,11 @@ def curves_of(view: View, rod: int) -> list[CurveOfCycles]:
     for number in range(1, _told(v) + 1):
         cycles = np.flatnonzero(v["branch"] == number)
         special = np.flatnonzero(v["special_branch"] == number)
-        before = special[v["special_point"][special] < 0]
+        before = special[v["special_point"][special] == 0]
         order: list[tuple[bool, int]] = [(False, int(i)) for i in before]
         for place in cycles:
             order.append((True, int(place)))
-            order += [(False, int(i)) for i in special[v["special_point"][special] == place]]
+            order += [(False, int(i)) for i in special[v["special_point"][special] == place + 1]]
         values = [
             (v[f"branch_{along}"][i], v["tip_y_max"][i], v["period"][i])
             if is_cycle

@@ -1,24 +1,28 @@
-"""Where the straight rod starts to beat, F**, from the growth rates that a file of limit cycles holds.
+"""Where the straight rod changes along a line of points of a file: located, or between two points.
 
-A Hopf point lies wherever the leading growth rate changes sign from a point to the next: D(0) = 1, so no
-eigenvalue passes through 0 and those that reach the imaginary axis are a pair. Nothing is solved here.
+Of limit cycles the file holds the Hopf points of its lines, found by the task. Nothing is solved here, and
+nothing is interpolated: a change that no solver has located lies between two points, and no more is said.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
-from math import floor, log10, nan
+from itertools import pairwise
+from math import nan
 
 import numpy as np
 
 from ..arrays import Array
+from ..model.parameters import LINEAR_PARAMETERS
 from ..results.file.view import View
+from ..results.layouts.limit_cycle import HOPF_ALONG
+from ..results.layouts.thresholds import CROSSING_KINDS
 
-NODES = 4
-"""Growth rates through which a polynomial is laid."""
-HALVINGS = 60
-"""Of the bracket around a zero: as many as a number has digits."""
-MOST_DIGITS = 9
-"""Digits to which a Hopf point is ever given."""
+SAME_PLACE = 1e-9
+"""Relative distance below which a point of a file lies on a Hopf point: the growth rate there is rounding."""
+STABILITY_CHANGES = {("hopf", 2): True, ("restabilization", 0): False}
+"""Whether the straight rod is unstable beyond a Hopf point, by its kind and the number of modes that grow
+there; at all others further modes join those that grow, or leave them."""
+HOPF_FIELDS = ("along", "kind", "error", "frequency", "unstable_after", *LINEAR_PARAMETERS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,11 +41,6 @@ class Located:
         """Whether the two may be one: of a kind, and within their errors."""
         return self.kind == other.kind and abs(self.position - other.position) <= self.error + other.error
 
-    @property
-    def text(self) -> str:
-        """The position to the last decimal that is larger than the error."""
-        return f"{self.position:.{max(0, floor(-log10(self.error)))}f}"
-
 
 @dataclass(frozen=True, slots=True)
 class OscillationOnset(Located):
@@ -54,7 +53,7 @@ class OscillationOnset(Located):
 
 @dataclass(frozen=True, slots=True)
 class HopfPoint(Located):
-    """A zero of the leading growth rate."""
+    """A place where a pair crosses the imaginary axis, and the straight rod changes its stability."""
 
     destabilises: bool
     """Whether the rod is unstable above it; below it otherwise, and above it stable again."""
@@ -63,83 +62,48 @@ class HopfPoint(Located):
 
     @property
     def kind(self) -> str:
-        return "hopf" if self.destabilises else "restabilization"
+        return kind_of_change(self.destabilises)
 
 
-def hopf_points(x: Array, growth: Array, frequency: Array) -> list[HopfPoint]:
-    """The zeros of the growth rate along a parameter, in increasing order; all arrays have the shape (n,).
+@dataclass(frozen=True, slots=True)
+class Bracket:
+    """Two neighbouring points of a line between which the straight rod changes its stability, somewhere."""
 
-    Each is the zero of the cubic through the growth rates of the bracketing points and the next two where the
-    leading root oscillates. Its error falls like h^4 for points h apart: F** = 27.43 of the paper's rod is
-    found to 5e-6 from forces in steps of 1, to 4e-3 in steps of 5. It is estimated, some ten times too large,
-    by what leaving one of them out changes. Where an end of the bracket does not oscillate, its growth rate
-    is another root's: then the zero of the chord is given, and the whole bracket as its error.
-    """
-    x, first = np.unique(x, return_index=True)
-    growth, frequency = growth[first], frequency[first]
-    known = np.isfinite(x) & np.isfinite(growth)
-    x, growth, frequency = x[known], growth[known], frequency[known]
-    return [_between(x, growth, frequency > 0, int(i)) for i in np.flatnonzero(np.diff(growth > 0))]
+    low: float
+    high: float
+    destabilises: bool
+
+    @property
+    def kind(self) -> str:
+        return kind_of_change(self.destabilises)
 
 
-def _between(x: Array, growth: Array, oscillates: np.ndarray, i: int) -> HopfPoint:
-    """The Hopf point between the points i and i + 1."""
-    destabilises = bool(growth[i + 1] > 0)
-    ends = slice(i, i + 2)
-    chord = _zero(x[ends], growth[ends], (x[i], x[i + 1]))
-    if not oscillates[ends].all():
-        return HopfPoint(chord, float(x[i + 1] - x[i]), destabilises)
-    low, high = i, i + 1
-    while low > max(0, i - 2) and oscillates[low - 1]:
-        low -= 1
-    while high < min(len(x) - 1, i + 3) and oscillates[high + 1]:
-        high += 1
-    others = [k for k in range(low, high + 1) if k not in (i, i + 1)]
-    nearest = sorted(others, key=lambda k: abs(x[k] - chord))[: NODES - 2]
-    sets = [sorted((i, i + 1, *nearest[:count])) for count in range(len(nearest) + 1)]
-    zeros = [_zero(x[nodes], growth[nodes], (x[i], x[i + 1])) for nodes in sets]
-    error = abs(zeros[-1] - zeros[-2]) if nearest else float(x[i + 1] - x[i]) / 2
-    # Growth rates are not known to the last digit, and two neighbours may agree by chance.
-    known = 10.0**-MOST_DIGITS * max(abs(zeros[-1]), float(x[i + 1] - x[i]))
-    return HopfPoint(zeros[-1], max(error, known), destabilises)
+Change = HopfPoint | Bracket
+"""A change of stability of the straight rod along a line, in the direction in which the parameter grows."""
 
 
-def _zero(x: Array, growth: Array, bracket: Sequence[float]) -> float:
-    """A zero in the bracket, whose ends are nodes, of the polynomial through the nodes, shape (n,)."""
-    low, high = map(float, bracket)
-    differences = growth.astype(float)
-    for order in range(1, len(x)):  # Newton's divided differences
-        differences[order:] = (differences[order:] - differences[order - 1 : -1]) / (x[order:] - x[:-order])
+def kind_of_change(destabilises: bool) -> str:
+    """What a change of stability is called."""
+    return "hopf" if destabilises else "restabilization"
 
-    def positive(at: float) -> bool:
-        value = 0.0
-        for node, difference in zip(x[::-1], differences[::-1], strict=True):
-            value = value * (at - node) + difference
-        return bool(value > 0)
 
-    end = float(growth[x == high][0]) > 0
-    for _ in range(HALVINGS):
-        middle = (low + high) / 2
-        low, high = (low, middle) if positive(middle) == end else (middle, high)
-    return (low + high) / 2
+def place_of(change: Located | Bracket) -> float:
+    """By which changes along a line are ordered."""
+    return change.position if isinstance(change, Located) else change.low
 
 
 @dataclass(frozen=True, slots=True)
 class ParameterLine:
     """The points of a file that differ in one parameter only, in the order of the file."""
 
+    name: str
+    """The parameter."""
     parameters: dict[str, float]
     """The other ones, by name."""
     x: Array
     """The values of the one, shape (n,)."""
     at: np.ndarray
     """The indices of the points, shape (n,)."""
-
-    def hopf_points(self, view: View) -> list[HopfPoint]:
-        """The Hopf points along the line in the file from which it is."""
-        names = ("linear_growth_rate", "linear_frequency")
-        growth, frequency = (view.variables[name].ravel()[self.at] for name in names)
-        return hopf_points(self.x, growth, frequency)
 
 
 def lines_over(view: View, name: str) -> Iterator[ParameterLine]:
@@ -153,4 +117,51 @@ def lines_over(view: View, name: str) -> Iterator[ParameterLine]:
     for number in np.argsort(first):
         at = by_line[ends[number - 1] if number else 0 : ends[number]]
         at = at[np.isfinite(x[at])]
-        yield ParameterLine(dict(zip(columns, table[first[number]].tolist(), strict=True)), x[at], at)
+        others = dict(zip(columns, table[first[number]].tolist(), strict=True))
+        yield ParameterLine(name, others, x[at], at)
+
+
+class StoredHopfPoints:
+    """The changes of stability that a file of limit cycles holds of its lines over a parameter."""
+
+    def __init__(self, view: View, name: str):
+        self.growth = view.variables["linear_growth_rate"].ravel()
+        self.others = [other for other in LINEAR_PARAMETERS if other != name]
+        self.by_rod: dict[tuple[float, ...], list[HopfPoint]] = {}
+        if "hopf_along" in view.variables:  # which a user may have dropped from a Dataset
+            self._read(view, name)
+
+    def _read(self, view: View, name: str) -> None:
+        v = {field: view.variables[f"hopf_{field}"] for field in HOPF_FIELDS}
+        rods = np.stack([v[other] for other in self.others], axis=-1)
+        for i in np.flatnonzero(v["along"] == HOPF_ALONG.index(name)):
+            change = STABILITY_CHANGES.get((CROSSING_KINDS[int(v["kind"][i])], int(v["unstable_after"][i])))
+            if change is not None:
+                at = float(v[name][i])
+                point = HopfPoint(at, float(v["error"][i]) * abs(at), change, float(v["frequency"][i]))
+                self.by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)
+
+    def on(self, line: ParameterLine) -> list[Change]:
+        """The changes of stability on a line in increasing order.
+
+        Where the stored growth rates of two neighbours differ in sign and no Hopf point between them explains
+        it, as where a search failed, the change is only known to lie between the two.
+        """
+        if not len(line.x):
+            return []
+        stored = self.by_rod.get(tuple(line.parameters[other] for other in self.others), [])
+        found: list[Change] = [point for point in stored if _within(point, line.x.min(), line.x.max())]
+        known = np.flatnonzero(np.isfinite(self.growth[line.at]))
+        ordered = known[np.argsort(line.x[known], kind="stable")]
+        for i, j in pairwise(ordered):
+            low, high = float(line.x[i]), float(line.x[j])
+            before, after = self.growth[line.at[[i, j]]] > 0
+            if before != after and sum(_within(point, low, high) for point in stored) % 2 == 0:
+                found.append(Bracket(low, high, bool(after)))
+        return sorted(found, key=place_of)
+
+
+def _within(point: HopfPoint, low: float, high: float) -> bool:
+    """Whether a Hopf point lies between two values, or on one of them within rounding."""
+    margin = max(point.error, SAME_PLACE * abs(point.position))
+    return bool(low - margin <= point.position <= high + margin)

@@ -17,7 +17,7 @@ from ..arrays import Array
 from ..model.parameters import LINEAR_PARAMETERS
 from ..model.rod import Rod
 from ..results.file.view import View
-from .hopf_points import HopfPoint, Located, OscillationOnset, ParameterLine
+from .hopf_points import Bracket, Change, HopfPoint, Located, OscillationOnset, ParameterLine
 
 if TYPE_CHECKING:
     from ..determinant.parameter_path import Path
@@ -26,7 +26,7 @@ SAME_CROSSING = 1e-8
 """Relative distance within which two zeros are one: Newton's method repeats itself to rounding."""
 
 
-def thresholds_on(line: ParameterLine, view: View) -> list[Located]:
+def thresholds_on(line: ParameterLine, view: View) -> list[Located | Bracket]:
     """The first onset of oscillation, if there is one, and the changes of stability on a line over F."""
     first = onset(line, view)
     return [*([first] if first else []), *stability_changes(line, view)]
@@ -68,17 +68,17 @@ def _double_between(
     return OscillationOnset(zero.p, zero.error_of_p) if low <= zero.p <= high else None
 
 
-def stability_changes(line: ParameterLine, view: View) -> list[HopfPoint]:
+def stability_changes(line: ParameterLine, view: View) -> list[Change]:
     """The forces on a line over F where the leading growth rate changes sign, in increasing order.
 
     Where the zeros of D found between two neighbours are not exactly those that the numbers of unstable modes
-    ask for, the middle between the two is given, and half of their distance as its error.
+    ask for, the change is only known to lie between the two.
     """
     growth, frequency = _eigenvalues(line, view)
     unstable = view.variables["unstable_count"].ravel()[line.at]
     unstable = np.where(unstable < 0, (growth > 0).sum(axis=-1), unstable)
     known = np.flatnonzero(np.isfinite(growth[:, 0]))
-    found = []
+    found: list[Change] = []
     for i, j in pairwise(known[np.argsort(line.x[known], kind="stable")]):
         if (growth[i, 0] > 0) != (growth[j, 0] > 0):
             ends = [(float(line.x[k]), growth[k] + 1j * frequency[k]) for k in (i, j)]
@@ -103,15 +103,13 @@ def _path_over_force(parameters: dict[str, float], F: float) -> "Path":
     return Path(Rod(**{name: parameters.get(name, F) for name in LINEAR_PARAMETERS}), "F")
 
 
-def _change_between(
-    parameters: dict[str, float], ends: list[tuple[float, Array]], unstable: int
-) -> HopfPoint:
+def _change_between(parameters: dict[str, float], ends: list[tuple[float, Array]], unstable: int) -> Change:
     """The change between two forces, each with its leading eigenvalues; `unstable` modes on one side."""
     (low, before), (high, after) = ends
     destabilises = bool(after[0].real > 0)
     zeros = sorted(_zeros_between(parameters, ends))
     if not zeros or 2 * len(zeros) != unstable:
-        return HopfPoint((low + high) / 2, (high - low) / 2, destabilises)
+        return Bracket(low, high, destabilises)
     F, eta, error = zeros[0 if destabilises else -1]
     return HopfPoint(F, error, destabilises, eta)
 

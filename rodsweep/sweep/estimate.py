@@ -80,9 +80,11 @@ def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool)
     """The cost of a sweep from points spread evenly over it."""
     indices = np.unique(np.linspace(0, points.count - 1, min(SAMPLE, points.count)).astype(np.int64))
     sizes = []
-    for index in indices:
+    for index in filter(points.has_rod, indices):
         _, wave = most_amplified_wave(points.rod(int(index)))
         sizes.append(resolution_for(expected_wave_number(modes, wave), accuracy).unknowns)
+    if not sizes:  # no rod covers any point of the sample
+        return Estimate(0.0)
     n = np.minimum(np.array(sizes, dtype=float), MOST_UNKNOWNS)
     dense = FIXED_MS + LINEAR_MS * n + CUBIC_MS * n**3
     each = np.where(n <= SPARSE_FROM, dense, SPARSE_MS * n) + (CERTIFICATE_MS if certify else 0)

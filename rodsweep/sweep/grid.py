@@ -1,10 +1,10 @@
-"""The points of a sweep, by index and never all at once: a grid of axes or an explicit list."""
+"""The points of a sweep, by index and never all at once: a grid, of axes or of an arm, or a list."""
 
 import csv
 import math
 from array import array
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import inf
 from pathlib import Path
 from typing import TextIO
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..config.arm import ArmSection
+from ..config.arm import SLENDER, ArmGrid, ArmSection, moved_by
 from ..config.axes import words
 from ..config.schema import Config
 from ..config.values import as_number, overflows, short
@@ -29,17 +29,53 @@ STAND_INS = {"F": 0.0, "k1": inf, "k2": inf, "gamma3": 0.0}
 
 @dataclass(frozen=True, slots=True)
 class Points:
-    """Values of some parameters: a grid's axes (row-major order, the last fastest) or equal columns."""
+    """Values of some parameters: a grid's axes (row-major order, the last fastest) or equal columns.
+
+    Columns are of the points of a list, or of a grid over the quantities of an arm.
+    """
 
     names: tuple[str, ...]
     """The parameter of each column."""
     columns: tuple[Array, ...]
     is_grid: bool
+    """Whether the columns are the axes of a grid."""
+    over: dict[str, Array] = field(default_factory=dict)
+    """The axes of a grid over an arm's quantities, in SI."""
+    units: dict[str, Array] = field(default_factory=dict)
+    """The units that the arm makes at every point of such a grid, (points,)."""
+    covered: NDArray[np.int8] | None = None
+    """Whether a rod covers each point of such a grid, as `rodsweep.config.arm` numbers it, (points,)."""
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Shape of a result variable: one dimension per column, or (point,)."""
-        return tuple(len(c) for c in self.columns) if self.is_grid else (len(self.columns[0]),)
+        """Shape of a result variable: one dimension per axis, or (point,)."""
+        return tuple(map(len, self.axes.values())) or (len(self.columns[0]),)
+
+    @property
+    def axes(self) -> dict[str, Array]:
+        """The axes of a grid of either kind by name; none of a list."""
+        return self.by_name if self.is_grid else self.over
+
+    @property
+    def moved(self) -> tuple[str, ...]:
+        """The one parameter that each axis moves; empty where it moves several or none."""
+        return self.names if self.is_grid else tuple(map(moved_by, self.over))
+
+    @property
+    def identity(self) -> list[Array]:
+        """What tells these points from all others of a config: values of axes and columns, each (n,)."""
+        return [*self.over.values(), *self.columns]
+
+    @property
+    def of_rods(self) -> dict[str, Array]:
+        """The columns by their parameters, without points that no rod covers."""
+        if self.covered is None:
+            return self.by_name
+        return {name: column[self.covered == SLENDER] for name, column in self.by_name.items()}
+
+    def has_rod(self, index: int) -> bool:
+        """Whether a rod covers a point."""
+        return self.covered is None or self.covered[index] == SLENDER
 
     @property
     def by_name(self) -> dict[str, Array]:
@@ -73,8 +109,8 @@ class Points:
 
 
 def grid_size(config: Config) -> int:
-    """Number of points of a grid, known before its axes are made; 0 for a list."""
-    if config.parameters.is_list:
+    """Number of points of a grid of parameters, known before its axes are made; 0 for others."""
+    if config.parameters.is_list or config.parameters.over:
         return 0
     return math.prod(config.parameters.axes[name].size for name in config.names)
 
@@ -88,24 +124,22 @@ def points_of(config: Config, directory: Path) -> Points:
         columns = _read_csv(directory / parameters.points, config.names)
         return Points(config.names, columns, is_grid=False)
     axes = {name: axis.array() for name, axis in parameters.axes.items()}
-    if parameters.arm is not None and parameters.is_list:
-        return _arms_listed(parameters.arm, axes, config.names)
+    if parameters.arm is not None and parameters.over:
+        return _own_grid(parameters.arm, axes, config.names)
     refuse_axes(axes, config.into_crushed)
     return Points(config.names, tuple(axes[name] for name in config.names), is_grid=True)
 
 
-def _arms_listed(arm: ArmSection, beside: dict[str, Array], names: tuple[str, ...]) -> Points:
-    """All combinations of an arm's axes with the parameters beside it, each (n,), as a list."""
+def _own_grid(arm: ArmSection, beside: dict[str, Array], names: tuple[str, ...]) -> Points:
+    """The grid over an arm's quantities and the parameters beside it, each (n,)."""
     for name, column in beside.items():
         refuse_outside(PARAMETERS[name].allowed, name, column)
     try:
-        columns = arm.listed(beside)
+        grid: ArmGrid = arm.own_grid(beside)
     except ValueError as error:
         raise InputError(str(error)) from None
-    if "F" in names and (columns["F"] >= columns["k1"]).any():
-        at = int(np.argmax(columns["F"] - columns["k1"]))
-        _refuse_crushed(columns["F"][at : at + 1], columns["k1"][at : at + 1], some=False)
-    return Points(names, tuple(columns[name] for name in names), is_grid=False)
+    columns = tuple(grid.parameters[name] for name in names)
+    return Points(names, columns, False, grid.axes, grid.units, grid.covered)
 
 
 def refuse_outside(

@@ -97,10 +97,14 @@ class Stretches:
         return number
 
 
-def along_the_longest(shape: tuple[int, ...]) -> Stretches | None:
-    """The stretches of a grid along the first of its longest axes; None where it is too short."""
-    axis = max(range(len(shape)), key=lambda i: shape[i])
-    return Stretches(shape, axis) if shape[axis] >= SHORTEST_AXIS else None
+def along_the_longest(shape: tuple[int, ...], moved: Sequence[str]) -> Stretches | None:
+    """The stretches of a grid along the first of its longest axes; None where it is too short.
+
+    moved: the one parameter that each axis moves; empty where it moves several, along which none is followed.
+    """
+    able = [axis for axis, name in enumerate(moved) if name]
+    axis = max(able, key=lambda i: shape[i], default=None)
+    return Stretches(shape, axis) if axis is not None and shape[axis] >= SHORTEST_AXIS else None
 
 
 @dataclass(frozen=True, slots=True)

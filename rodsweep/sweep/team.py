@@ -3,13 +3,14 @@
 import sys
 import time
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import Any, TypeVar
 
 from ..errors import BUG_STATUS, EnvironmentLacks, Refusal
 
 T = TypeVar("T")
+S = TypeVar("S")
 SHORTEST_PAUSE, LONGEST_PAUSE = 1e-4, 1e-2
 """Seconds between two looks at whether the others have come, at first and after a while."""
 
@@ -79,6 +80,11 @@ class Team:
         """The values of all ranks on every rank."""
         self.meet()
         return self.comm.allgather(value)
+
+    def in_order(self, items: Sequence[T], work: Callable[[T], S]) -> list[S]:
+        """The work on all items, each done by one of the ranks, on every rank and in their order."""
+        parts = self.exchange([work(item) for item in items[self.rank :: self.size]])
+        return [parts[i % self.size][i // self.size] for i in range(len(items))]
 
     @contextmanager
     def together(self) -> Iterator[None]:

@@ -1,69 +1,85 @@
-"""An arm and its verdict: what a Python session and the command line ask of it."""
+"""The report on an arm: warnings, verdict, numbers with their formulas, and what the model leaves out."""
 
-import textwrap
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from html import escape
 
-from ..config.arguments import in_sentences
 from ..model.arm import SlenderArm
+from ..model.neglected import Validity
 from .checks import Check, checks_of
-from .flutter import FlutterRange, flutter_range
+from .folding import folded
+from .load import Load
+from .planes import planes_of, with_load
 from .sentences import verdict_sentences
 from .table import NumberRow, number_rows
+from .validity import Assessment
 
-WIDTH = 80
-"""Columns of a line of a report."""
 OVER_DRAG = "In brackets: the range over drag, which is known by factors only."
 NUMBERS_BEGIN = 18
 """Column of the numbers, behind their names."""
 
 
-EXAMPLE = 'rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s", pressure="2 kPa")'
-
-
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ArmReport:
-    """All that is said of an arm; as text, the same without colours."""
+    """All that is said of an arm; as text, the same without colours, and as a table in a notebook."""
 
-    rows: tuple[NumberRow, ...]
+    validity: Validity
+    """Whether the model applies at the threshold and under the load."""
+    warnings: tuple[Check, ...]
+    """What makes the verdict doubtful; it stands above the verdict."""
     verdict: tuple[str, ...]
+    """Sentences, of which the first is the headline."""
+    rows: tuple[NumberRow, ...]
     checks: tuple[Check, ...]
+    """What else the model leaves out."""
 
     def __str__(self) -> str:
-        """Verdict, numbers and checks, in lines of at most 80 columns."""
-        checks = [folded(check.told) for check in self.checks]
-        return "\n".join([*map(folded, self.verdict), "", *self.table(), OVER_DRAG, "", *checks])
+        return "\n".join(line for line, _ in self.lines())
 
-    def table(self) -> list[str]:
-        """Every number in a line, and below it its formula and its source."""
-        lines, place = [], " " * NUMBERS_BEGIN
+    __repr__ = __str__
+
+    def lines(self) -> Iterator[tuple[str, str]]:
+        """(line of at most 80 columns, what it is: "warning", "headline" or "")."""
+        for check in self.warnings:
+            yield folded(check.told), "warning"
+        for number, sentence in enumerate(self.verdict):
+            yield folded(sentence), "" if number else "headline"
+        yield "", ""
         for name, value, formula, source in self.rows:
-            lines += [f"{name:{NUMBERS_BEGIN}}{value}", folded(f"{formula}; {source}", place, place + "  ")]
-        return lines
+            place = " " * NUMBERS_BEGIN
+            yield f"{name:{NUMBERS_BEGIN}}{value}", ""
+            yield folded(f"{formula}; {source}", place, place + "  "), ""
+        yield OVER_DRAG, ""
+        yield "", ""
+        for check in self.checks:
+            yield folded(check.told), "" if check.fine else "warning"
+
+    def _repr_html_(self) -> str:
+        warnings = "".join(f"<p>{escape(check.told)}</p>" for check in self.warnings)
+        headline, *others = map(escape, self.verdict)
+        verdict = f"<p><b>{headline}</b> {' '.join(others)}</p>"
+        head = "".join(f"<th>{name}</th>" for name in ("quantity", "value", "formula", "source"))
+        cells = ("".join(f"<td>{escape(cell)}</td>" for cell in row) for row in self.rows)
+        table = f"<table><tr>{head}</tr>{''.join(f'<tr>{row}</tr>' for row in cells)}</table>"
+        checks = "".join(f"<li>{escape(check.told)}</li>" for check in self.checks)
+        return f"{warnings}{verdict}{table}<p>{OVER_DRAG}</p><ul>{checks}</ul>"
 
 
-def folded(text: str, first: str = "", further: str = "  ") -> str:
-    """A text in lines of at most 80 columns, with what they begin with."""
-    return textwrap.fill(text, WIDTH, initial_indent=first, subsequent_indent=further)
-
-
-@dataclass(frozen=True, kw_only=True, init=False)
-class Arm(SlenderArm):
-    """An arm that tells when it flutters. Asking for that starts PETSc; the rest does not.
-
-    Quantities are text with a unit, pint's, or numbers in SI. Raises InputError for what is no slender arm.
-    """
-
-    __init__ = in_sentences(EXAMPLE)(SlenderArm.__init__)
-
-    @cached_property
-    def flutter(self) -> FlutterRange:
-        """Where it flutters and how fast, over the range of its drag."""
-        return flutter_range(self)
-
-    def report(self) -> ArmReport:
-        """Numbers with formulas and sources, verdict, and what the model leaves out."""
-        found = self.flutter
-        return ArmReport(
-            tuple(number_rows(self)), tuple(verdict_sentences(self, found)), tuple(checks_of(self, found))
-        )
+def report_on(arm: SlenderArm) -> ArmReport:
+    """The report, for which thresholds are solved. InputError where a load is relative to no flutter."""
+    planes = with_load(planes_of(arm))
+    first = planes.first
+    assessment = Assessment(first.arm, first.found)
+    checks, applies = checks_of(assessment), assessment.of_verdict < Validity.does_not_apply
+    above = tuple(check for check in checks if applies and check.doubts_the_verdict)
+    headline, *others = verdict_sentences(planes, assessment)
+    if arm.share_of_flutter is not None:
+        told = str(getattr(arm, str(arm.load))).strip()
+        others.insert(0, f"{Load(first.arm).given} is {told} with the likeliest drag.")
+    return ArmReport(
+        validity=assessment.of_verdict,
+        warnings=above,
+        verdict=(headline, *others),
+        rows=tuple(number_rows(first)),
+        checks=tuple(check for check in checks if check not in above),
+    )

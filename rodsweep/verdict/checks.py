@@ -1,31 +1,42 @@
 """What the model leaves out, held against an arm's numbers: plain sentences, some of them warnings."""
 
 from dataclasses import dataclass
-from math import isnan, pi
+from math import isnan
 
 from ..model.arm import SlenderArm
-from ..solve.changes.unstable_modes import Kind
-from .flutter import FlutterRange
-from .sentences import rounded
+from ..model.neglected import SELF_BUCKLING, Effect, Validity
+from .validity import Assessment
 
-GRAVITY = 9.81
-"""In m/s^2."""
-SMALL = 0.1
-"""Ratios below it are left out by the model with reason."""
-LARGE_COMPRESSION = 0.1
-"""Share of its length that a rubber may lose before a linear material misleads."""
 SLENDER = 20.0
 """Lengths a radius from which the logarithms of slender-body theory are good to some ten percent."""
-SELF_BUCKLING = 7.837
-"""Weight in k3/L^2 at which an upright rod buckles under itself (Greenhill 1881)."""
+LOWERED_BY_INERTIA = 0.64
+"""Relative fall of the flutter threshold over the phase by which inertia turns the drag, for small phases."""
+SAG_OF_BUCKLING = SELF_BUCKLING / 8
+"""Sag of a level arm over its length, for a weight of 1 of what buckles an upright one: w L^4/(8 E I)."""
+LARGEST_SAG = 0.25
+"""Sag over length up to which the linear formula is good to some percent."""
+USUAL_POISSON = (0.3, 0.5)
+"""Poisson's ratios of rubbers and gels."""
 
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One thing that the model leaves out; `fine` where it may."""
+    """One thing that the model leaves out; `validity` of the model under it."""
 
-    fine: bool
+    validity: Validity
     sentence: str
+    of_verdict: bool = False
+    """Whether the verdict depends on it, rather than wide beating or how far the range of drag reaches."""
+
+    @property
+    def doubts_the_verdict(self) -> bool:
+        """Whether it is said above the verdict; beyond the limit the verdict itself says so."""
+        return self.of_verdict and self.validity == Validity.doubtful
+
+    @property
+    def fine(self) -> bool:
+        """Whether the model leaves it out with reason."""
+        return self.validity == Validity.applies
 
     @property
     def told(self) -> str:
@@ -33,9 +44,17 @@ class Check:
         return self.sentence if self.fine else f"warning: {self.sentence}"
 
 
-def checks_of(arm: SlenderArm, found: FlutterRange) -> list[Check]:
+def checks_of(assessment: Assessment) -> list[Check]:
     """All of them."""
-    return [slenderness(arm), compression(arm), *motion(arm, found), weight(arm), poisson(arm), *plane(arm)]
+    arm, effects = assessment.arm, {effect.name: effect for effect in assessment.at_flutter}
+    return [
+        slenderness(arm),
+        compression(assessment, effects["compression"]),
+        *inertia(effects["inertia of the arm"], effects["inertia of the fluid"]),
+        *reynolds(effects["Reynolds number"]),
+        weight(effects.get("weight")),
+        poisson(arm),
+    ]
 
 
 def slenderness(arm: SlenderArm) -> Check:
@@ -47,82 +66,96 @@ def slenderness(arm: SlenderArm) -> Check:
         if fine
         else f"below {SLENDER:g} local drag is rough, and the range of drag wide"
     )
-    return Check(fine, f"Slenderness: the arm is {ratio:.3g} radii long; {why}.")
+    return Check(_doubt(not fine), f"Slenderness: the arm is {ratio:.3g} radii long; {why}.")
 
 
-def compression(arm: SlenderArm) -> Check:
+def compression(assessment: Assessment, at_flutter: Effect) -> Check:
     """F/k1, the share of its length that the straight arm loses."""
-    share = arm.F / arm.k1
-    fine = abs(share) <= LARGE_COMPRESSION
-    why = "a linear material will do" if fine else "real materials are no longer linear there"
-    verb = "shortens" if share >= 0 else "lengthens"
-    return Check(fine, f"Compression: the load {verb} the arm by {abs(share):.2%} (F/k1); {why}.")
+    says, effects = [], [at_flutter, *assessment.under_load]
+    if assessment.under_load:
+        verb = "shortens" if assessment.arm.F >= 0 else "lengthens"
+        says.append(f"the load {verb} the arm by {_percent(assessment.under_load[0])}")
+    if not isnan(at_flutter.value):
+        says.append(f"{'that of flutter' if says else 'flutter shortens the arm'} by {_percent(at_flutter)}")
+    validity = max(map(_validity, effects))
+    largest = max(float(effect.value) for effect in effects if not isnan(effect.value)) if says else 0.0
+    ending = (
+        "a linear material will do",
+        f"rubber is some {100 * stiffening(largest):.1g} % stiffer there",
+        "real materials are no longer linear there",
+    )[validity]
+    shares = " and ".join(says) or "there is no load"
+    return Check(validity, f"Compression: {shares} (F/k1); {ending}.", of_verdict=True)
 
 
-def motion(arm: SlenderArm, found: FlutterRange) -> list[Check]:
-    """Inertia of arm and fluid at the threshold, and of the fluid in a motion as wide as half the arm."""
-    rate = found.frequency(Kind.hopf)
-    if rate is None:
+def stiffening(share: float) -> float:
+    """Relative rise of the tangent modulus of neo-Hookean rubber, E (1 + 2/stretch^3)/3, by compression."""
+    return float(2 * ((1 - share) ** -3 - 1) / 3)
+
+
+def inertia(of_arm: Effect, of_fluid: Effect) -> list[Check]:
+    """Inertia of the arm and of the fluid beside it at the threshold; nothing where nothing flutters."""
+    if isnan(of_arm.value):
         return []
-    si, radius = arm.si, arm.section.drag_radius
-    own = si.fluid_density + (0.0 if isnan(si.density_difference) else si.density_difference)
-    fastest = 2 * pi * rate.high
-    inertia = own * arm.section.area * fastest / min(drag.gamma2 for drag in arm.drags)
-    unsteady = si.fluid_density * fastest * radius**2 / si.viscosity
-    reynolds = si.fluid_density * fastest * (si.length / 2) * 2 * radius / si.viscosity
-    slow = max(inertia, unsteady) <= SMALL
-    calm = reynolds <= 1
-    at = f"at {rounded(rate.high, rate.high)} Hz"
-    says = (
-        "so neither inertia matters" if slow else "inertia, which the model has not, may shift the thresholds"
+    validity = max(map(_validity, (of_arm, of_fluid)))
+    lowered = 100 * LOWERED_BY_INERTIA * float(of_arm.value + of_fluid.value)
+    ending = (
+        "neither matters",
+        f"they lower the threshold of flutter by some {lowered:.1g} %",
+        f"the model leaves both out, and allows {of_arm.limit:g}",
+    )[validity]
+    sentence = (
+        f"Inertia: at flutter mass times rate over drag is {float(of_arm.value):.2g} for the arm and "
+        f"{float(of_fluid.value):.2g} for the fluid beside it; {ending}."
     )
-    wide = (
-        "the drag stays that of slow flow"
-        if calm
-        else "wide beating meets more drag than the model's, and is slower"
-    )
-    return [
-        Check(
-            slow,
-            f"Inertia: {at}, the fastest of the range, mass times rate over drag is {inertia:.2g} for the "
-            f"arm and {unsteady:.2g} for the fluid beside it; {says}.",
-        ),
-        Check(calm, f"Reynolds number: {reynolds:.2g} {at} if the tip moves by half the length; {wide}."),
-    ]
+    return [Check(validity, sentence, of_verdict=True)]
 
 
-def weight(arm: SlenderArm) -> Check:
+def reynolds(number: Effect) -> list[Check]:
+    """Reynolds number of beating as wide as half the length, as fast as at the threshold."""
+    if isnan(number.value):
+        return []
+    validity = _validity(number)
+    ending = (
+        "the drag stays that of slow flow",
+        "wide beating meets somewhat more drag than the model's",
+        "wide beating meets more drag than the model's, and is slower",
+    )[validity]
+    value = f"{float(number.value):.2g}"
+    return [Check(validity, f"Reynolds number: {value} if the tip moves by half the length; {ending}.")]
+
+
+def weight(effect: Effect | None) -> Check:
     """Weight less buoyancy against bending stiffness."""
-    difference = arm.si.density_difference
-    if isnan(difference):
-        return Check(
-            True, "Weight: left out, as if the arm floated; give a density difference to have it checked."
-        )
-    heavy = abs(difference) * GRAVITY * arm.section.area * arm.si.length / arm.force_scale
-    fine = heavy <= SMALL * SELF_BUCKLING
-    why = "left out with reason" if fine else "it bends the arm, which the model leaves out"
-    sag = f"a level arm sags by {heavy / 8:.2g} of its length" if heavy < 2 else "a level arm hangs down"
-    return Check(
-        fine,
-        f"Weight: weight less buoyancy is {heavy:.2g} k3/L^2, {heavy / SELF_BUCKLING:.2g} of what buckles an "
-        f"upright arm; {sag}; {why}.",
-    )
+    if effect is None:
+        says = "Weight: left out, as if the arm floated; give a density difference to have it checked."
+        return Check(Validity.applies, says)
+    share, validity = float(effect.value), _validity(effect)
+    sag = SAG_OF_BUCKLING * share
+    level = f"a level arm sags by {sag:.2g} of its length" if sag < LARGEST_SAG else "a level arm hangs down"
+    ending = (
+        "left out with reason",
+        "it bends the arm a little, which the model leaves out",
+        "it bends the arm, which the model leaves out",
+    )[validity]
+    upright = f"weight less buoyancy is {share:.2g} of what buckles an upright arm"
+    return Check(validity, f"Weight: {upright}; {level}; {ending}.", of_verdict=True)
 
 
 def poisson(arm: SlenderArm) -> Check:
     """Poisson's ratio of soft materials."""
-    fine = 0.3 <= arm.poisson <= 0.5
+    fine = USUAL_POISSON[0] <= arm.poisson <= USUAL_POISSON[1]
     why = "usual for soft materials" if fine else "unusual: rubbers and gels are near 0.5"
-    return Check(fine, f"Poisson's ratio: {arm.poisson:g}, {why}; it enters through shear only.")
+    return Check(_doubt(not fine), f"Poisson's ratio: {arm.poisson:g}, {why}; it enters through shear only.")
 
 
-def plane(arm: SlenderArm) -> list[Check]:
-    """Whether a rectangle bends more easily across the plane of motion."""
-    if arm.radius is not None or not arm.si.height > arm.si.width:
-        return []
-    return [
-        Check(
-            False,
-            "Plane: the height exceeds the width, so that the arm bends first out of the plane computed.",
-        )
-    ]
+def _validity(effect: Effect) -> Validity:
+    return Validity(int(effect.validity))
+
+
+def _doubt(doubtful: bool) -> Validity:
+    return Validity.doubtful if doubtful else Validity.applies
+
+
+def _percent(effect: Effect) -> str:
+    return f"{100 * float(effect.value):.2g} %"

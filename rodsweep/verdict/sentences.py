@@ -1,61 +1,66 @@
-"""The verdict on an arm in plain sentences: whether it flutters, how fast it beats, whether it returns."""
+"""The verdict on an arm in plain sentences: whether it flutters, how fast it beats, whether it returns.
 
-from ..model.arm import UNITS, SlenderArm
-from ..model.units import unit_of, written_in
+The first sentence is the headline. Where the model does not apply the headline says so, and what follows is
+said under the condition that what the model leaves out did not matter.
+"""
+
+from ..model.neglected import Validity
 from ..solve.changes.unstable_modes import Kind
 from .flutter import FlutterRange, Span
+from .load import Load, rounded, rounded_percent
+from .planes import Plane, Planes
+from .remedies import does_not_apply, words_of
+from .validity import Assessment
 
 
-def rounded(low: float, high: float) -> str:
-    """A range to three digits; one number where its ends look alike."""
-    ends = [f"{value:.3g}" if abs(value) < 1000 else f"{value:.0f}" for value in (low, high)]
-    return ends[0] if ends[0] == ends[1] else " to ".join(ends)
+def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
+    """What becomes of the arm in the plane in which it flutters first, over the range of its drag."""
+    plane = planes.first
+    if plane.found.failures:
+        return ["The thresholds could not be found with every drag: " + "; ".join(plane.found.failures) + "."]
+    beyond = assessment.those(Validity.does_not_apply)
+    if not beyond:
+        return [*_verdict(plane), *_other_plane(planes, "is")]
+    headline = does_not_apply(plane.arm, assessment)
+    if assessment.of_thresholds == Validity.does_not_apply:
+        return [*headline, *_without(plane, words_of(beyond)), *_other_plane(planes, "would be")]
+    flutter = plane.found.force(Kind.hopf)
+    known = "No flutter was found" if flutter is None else f"Flutter, at {_where(plane, flutter)},"
+    return [*headline, f"{known} is within the model; {Load(plane.arm).given} is not."]
 
 
-class Load:
-    """What pushes the arm, in the words and the unit in which it was given."""
-
-    def __init__(self, arm: SlenderArm):
-        self.name = "force" if arm.pressure is None else "pressure"
-        given, si = getattr(arm, self.name), UNITS[self.name][0]
-        self.unit = unit_of(given, si)
-        self.given = given.strip() if isinstance(given, str) else f"{given:g} {si}"
-        area = arm.section.area if self.name == "pressure" else 1.0
-        self.scale = written_in(arm.force_scale / area, self.unit, si)
-        """How much of it F = 1 is."""
-
-    def of(self, forces: Span) -> str:
-        """A range of forces in k3/L^2, as this load."""
-        return f"{rounded(forces.low * self.scale, forces.high * self.scale)} {self.unit}"
-
-
-def verdict_sentences(arm: SlenderArm, found: FlutterRange) -> list[str]:
-    """What becomes of the arm, over the range of its drag."""
-    load = Load(arm)
-    if found.failures:
-        return ["The thresholds could not be found with every drag: " + "; ".join(found.failures) + "."]
+def _verdict(plane: Plane) -> list[str]:
+    """The sentences where the model applies, or may."""
+    arm, found, load = plane.arm, plane.found, Load(plane.arm)
     flutter, back = found.force(Kind.hopf), found.force(Kind.restabilization)
     if flutter is None:
-        return [no_flutter(arm, found, load)]
+        stays = f": it stays straight at {load.given}" if load.given else ""
+        return [f"The arm does not flutter {_until(plane, load)}{stays}."]
     rate = found.frequency(Kind.hopf)
-    says = [place_of(arm, found, flutter, load)]
-    if rate is not None:
-        says.append(
-            f"Above, the straight arm gives way and begins to beat at {rounded(rate.low, rate.high)} Hz."
-        )
+    beats = "" if rate is None else f" begins to beat at {rounded(rate.low, rate.high)} Hz"
+    if arm.load is None:
+        says = [f"The arm flutters at {_where(plane, flutter)}: above, it gives way and{beats}."]
+    else:
+        says = [_place(plane, flutter, load), f"Above, the straight arm gives way and{beats}."]
     if not flutter.always:
         says.append("Part of the range of drag has no flutter at all.")
     if back is not None:
         some = "" if back.always else ", with part of the range of drag"
         says.append(f"The straight arm returns at {load.of(back)}{some}.")
     else:
-        says.append(f"The straight arm does not return {until(arm, found, load)}.")
-    return says + swinging(found, load)
+        says.append(f"The straight arm does not return {_until(plane, load)}.")
+    return says + _swinging(found, load)
 
 
-def place_of(arm: SlenderArm, found: FlutterRange, flutter: Span, load: Load) -> str:
+def _where(plane: Plane, flutter: Span) -> str:
+    """The load of flutter, and the plane of a rectangle."""
+    where = Load(plane.arm).of(flutter)
+    return f"{where} in {plane.name}" if plane.name else where
+
+
+def _place(plane: Plane, flutter: Span, load: Load) -> str:
     """Where the load lies beside the range of flutter."""
-    F, where = arm.F, load.of(flutter)
+    F, found, where = plane.arm.F, plane.found, _where(plane, flutter)
     if F <= 0:
         return f"Flutter is at {where}; {load.given} does not push, and the arm stays straight."
     if flutter.low > F:
@@ -70,32 +75,57 @@ def place_of(arm: SlenderArm, found: FlutterRange, flutter: Span, load: Load) ->
         return f"{load.given} is beyond flutter, at {where}: the straight arm has returned."
     if not all(unstable):
         return f"{load.given} lies in the range of flutter, {where}: drag decides whether the arm beats."
+    return f"{load.given} is {_above(F, flutter)} flutter, at {where}: the arm beats."
+
+
+def _above(F: float, flutter: Span) -> str:
+    """How far a force is above the range of flutter: in percent, or as a multiple."""
     low, high = (F / edge for edge in (flutter.high, flutter.low))
-    above = f"{rounded(low, high)} times" if low > 2 else f"{rounded_percent(low - 1, high - 1)} % above"
-    return f"{load.given} is {above} flutter, at {where}: the arm beats."
+    return f"{rounded(low, high)} times" if low > 2 else f"{rounded_percent(low - 1, high - 1)} % above"
 
 
-def rounded_percent(low: float, high: float) -> str:
-    """A range of shares in percent, without decimals but for small ones."""
-    percents = [100 * value for value in sorted((low, high))]
-    ends = [f"{value:.0f}" if value >= 1 else f"{value:.1g}" for value in percents]
-    return ends[0] if ends[0] == ends[1] else " to ".join(ends)
+def _without(plane: Plane, neglected: str) -> list[str]:
+    """What the model gives for an arm to which it does not apply."""
+    arm, found, load = plane.arm, plane.found, Load(plane.arm)
+    flutter, rate = found.force(Kind.hopf), found.frequency(Kind.hopf)
+    if flutter is None:
+        return [f"Without {neglected} it would not flutter {_until(plane, load)}."]
+    beats = "" if rate is None else f", where it would begin to beat at {rounded(rate.low, rate.high)} Hz"
+    says = [f"Without {neglected} it would flutter at {_where(plane, flutter)}{beats}."]
+    if arm.load is None or arm.F <= 0:
+        return says
+    if flutter.low > arm.F:
+        place = f"{rounded_percent(1 - arm.F / flutter.low, 1 - arm.F / flutter.high)} % below"
+    elif flutter.high < arm.F:
+        place = _above(arm.F, flutter)
+    else:
+        place = "inside the range of"
+    return [*says, f"{load.given} would be {place} that threshold."]
 
 
-def no_flutter(arm: SlenderArm, found: FlutterRange, load: Load) -> str:
-    """Where nothing becomes unstable."""
-    return f"The arm does not flutter {until(arm, found, load)}: it stays straight at {load.given}."
+def _other_plane(planes: Planes, verb: str) -> list[str]:
+    """When a rectangle flutters in the plane in which it does not flutter first."""
+    second = planes.second
+    if second is None:
+        return []
+    if second.found.failures:
+        return [f"The threshold in {second.name} could not be found."]
+    flutter = second.found.force(Kind.hopf)
+    if flutter is None:
+        return [f"In {second.name} there {verb} no flutter {_until(second, Load(second.arm))}."]
+    decides = "" if planes.always else "; with part of the range of drag this plane goes first"
+    return [f"In {second.name} flutter {verb} at {Load(second.arm).of(flutter)}{decides}."]
 
 
-def until(arm: SlenderArm, found: FlutterRange, load: Load) -> str:
+def _until(plane: Plane, load: Load) -> str:
     """How far changes were sought."""
-    end = load.of(Span(found.end, found.end))
-    if found.end > 0.999 * arm.k1:
+    end = load.of(Span(plane.found.end, plane.found.end))
+    if plane.found.end > 0.999 * plane.arm.k1:
         return f"before it is crushed at {end}"
     return f"up to {end}, where the search ends"
 
 
-def swinging(found: FlutterRange, load: Load) -> list[str]:
+def _swinging(found: FlutterRange, load: Load) -> list[str]:
     """From where on a disturbance swings while it dies away."""
     onset = found.force(Kind.onset)
     return [] if onset is None else [f"From {load.of(onset)} on a disturbance swings as it dies away."]

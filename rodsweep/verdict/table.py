@@ -3,7 +3,8 @@
 from typing import NamedTuple
 
 from ..model.arm import SlenderArm
-from .sentences import rounded
+from .load import rounded
+from .planes import Plane
 
 
 class NumberRow(NamedTuple):
@@ -15,9 +16,18 @@ class NumberRow(NamedTuple):
     source: str
 
 
-def number_rows(arm: SlenderArm) -> list[NumberRow]:
-    """Every number that the arm becomes, dimensional ones first."""
-    return [*dimensional(arm), *drag_rows(arm), *dimensionless(arm)]
+def number_rows(plane: Plane) -> list[NumberRow]:
+    """Every number that an arm becomes in the plane of its verdict, dimensional ones first."""
+    arm = plane.arm
+    return [*plane_row(plane), *dimensional(arm), *drag_rows(arm), *dimensionless(arm)]
+
+
+def plane_row(plane: Plane) -> list[NumberRow]:
+    """The sides of a rectangle, of which h lies in the plane of motion; nothing of other sections."""
+    if not plane.name:
+        return []
+    sides = f"w = {plane.arm.si.width:.4g} m, h = {plane.arm.si.height:.4g} m"
+    return [NumberRow("motion", f"in {plane.name}", sides, "where the arm flutters first")]
 
 
 def dimensional(arm: SlenderArm) -> list[NumberRow]:
@@ -30,8 +40,16 @@ def dimensional(arm: SlenderArm) -> list[NumberRow]:
         NumberRow("kappa", f"{kappa:.4g}", section.shear_formula, "Cowper 1966"),
         NumberRow("k3", f"{arm.bending_stiffness:.4g} N m^2", "E I", "paper, Sec. III"),
         NumberRow("k3/L^2", f"{arm.force_scale:.4g} N", "unit of force", "paper, Sec. VI"),
-        NumberRow("tip force", f"{arm.tip_force:.4g} N", "p A, or as given", "paper, Sec. IV"),
+        *load_row(arm),
     ]
+
+
+def load_row(arm: SlenderArm) -> list[NumberRow]:
+    """The resultant of the load; nothing of an arm without load."""
+    if arm.load is None:
+        return []
+    formula = arm.section.face_formula if arm.load == "pressure" else "as given"
+    return [NumberRow("tip force", f"{arm.tip_force:.4g} N", formula, "paper, Sec. IV")]
 
 
 def over(arm: SlenderArm, values: list[float], unit: str = "") -> str:
@@ -71,6 +89,7 @@ def drag_rows(arm: SlenderArm) -> list[NumberRow]:
 def dimensionless(arm: SlenderArm) -> list[NumberRow]:
     """What the other commands take as parameters."""
     drags = arm.drags
+    force = NumberRow("F", f"{arm.F:.5g}", "tip force L^2/k3", "paper, Sec. IV, VI") if arm.load else None
     return [
         NumberRow("k1", f"{arm.k1:.5g}", "E A L^2/k3", "paper, Sec. III, VI"),
         NumberRow("k2", f"{arm.k2:.5g}", "kappa G A L^2/k3, G = E/(2 (1 + nu))", "paper, Sec. III, VI"),
@@ -86,5 +105,5 @@ def dimensionless(arm: SlenderArm) -> list[NumberRow]:
             "axial drag/drag across",
             "paper, Sec. VI",
         ),
-        NumberRow("F", f"{arm.F:.5g}", "tip force L^2/k3", "paper, Sec. IV, VI"),
+        *([force] if force else []),
     ]

@@ -36,7 +36,7 @@ class BranchTask(Task):
         why = "winding number of D" if options.certify else "branch.certify: false; Hopf points may be missed"
         kept = f"at most {options.cycles} cycles and {options.special} special points of a rod are stored"
         return [
-            *rod_parts(self.points.by_name | {options.along: np.array([options.start, options.stop])}),
+            *rod_parts(self.points.of_rods | {options.along: np.array([options.start, options.stop])}),
             ("axial drag", True, "parameters.gamma1; it moves no Hopf point, and every cycle"),
             ("branches born at Hopf points", True, kept),
             ("unstable cycles", True, "with all their Floquet multipliers"),
@@ -83,7 +83,7 @@ def record(result: "BranchesOfRod", along: str, points: int, special: int) -> di
     others = meetings(result.curves)
     specials = [
         _special(one, starts[number - 1], after.get(one.at))
-        | {"special_branch": number, "special_meets": others.get((number, place), 0)}
+        | {"special_branch": number, "special_meets": others.get((number, place), -1)}
         for number, curve in enumerate(result.curves, 1)
         for place, one in enumerate(curve.special)
     ]
@@ -136,7 +136,7 @@ def _special(point: "SpecialPoint", start: int, hopf: "Crossing | None") -> dict
         "special_period": point.period,
         "special_tip_y_max": point.tip_y_max,
         "special_amplitude_coefficient": point.amplitude_coefficient,
-        "special_point": start + point.after if point.after >= 0 else -1,
+        "special_point": start + point.after + 1 if point.after >= 0 else 0,
         "special_reason": int(point.reason or 0),
         "special_unstable_after": hopf.unstable_after if hopf else -1,
     }

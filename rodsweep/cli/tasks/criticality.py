@@ -33,7 +33,7 @@ class CriticalityTask(Task):
             else "criticality.certify: false; Hopf points may be missed"
         )
         return [
-            *rod_parts(self.points.by_name),
+            *rod_parts(self.points.of_rods),
             ("axial drag", True, "parameters.gamma1; it moves no Hopf point, and every cycle"),
             (
                 "Hopf points and their normal forms",

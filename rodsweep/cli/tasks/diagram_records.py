@@ -52,7 +52,7 @@ def criticality_record(told: Sequence["CurveCriticality"], along: tuple[str, ...
     values: dict[str, Any] = {
         "curve_criticality": np.concatenate([np.empty(0), *(curve.criticality for curve in told)]),
         "bautin_curve": [number for number, _, _ in found],
-        "bautin_curve_point": [start + point.after for _, start, point in found],
+        "bautin_curve_point": [start + point.after + 1 for _, start, point in found],
         "bautin_frequency": [point.frequency for _, _, point in found],
         "bautin_growth_slope_real": [point.growth_slope.real for _, _, point in found],
         "bautin_growth_slope_imag": [point.growth_slope.imag for _, _, point in found],

@@ -18,13 +18,15 @@ from ...results.layouts.limit_cycle import (
     TIP,
     TRANSIENT,
 )
-from ...results.layouts.variables import Variable
+from ...results.layouts.variables import Filled, Variable
+from ...solve.backend.availability import require_solvers
 from ...sweep.chains import Chains, State
 from ...sweep.estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, Estimate
 from ...sweep.grid import refuse_outside
-from ..wording import counted
+from ...wording import counted
+from .hopf_lines import HopfLine, hopf_lines_of, hopf_variables
 from .parts import count_of, rod_parts
-from .protocol import Part, Solver, Task
+from .protocol import InOrder, Part, Solver, Task, alone
 
 if TYPE_CHECKING:
     from ...solve.cycle.limit_cycle import Cycle
@@ -44,8 +46,8 @@ class LimitCycleTask(Task):
     def __post_init__(self) -> None:
         if self.config.limit_cycle.time == "tau1":
             why = ", because tau1 = gamma3/k2 is the unit of time that limit_cycle.time asks for"
-            refuse_outside(FINITE_STIFFNESS, "k2", self.points.by_name["k2"], "", why)
-            refuse_outside(POSITIVE_DRAG, "gamma3", self.points.by_name["gamma3"], "", why)
+            refuse_outside(FINITE_STIFFNESS, "k2", self.points.of_rods["k2"], "", why)
+            refuse_outside(POSITIVE_DRAG, "gamma3", self.points.of_rods["gamma3"], "", why)
 
     @property
     def chains(self) -> Chains | None:
@@ -53,7 +55,7 @@ class LimitCycleTask(Task):
         options = self.config.limit_cycle
         if options.start != "neighbour":
             return None
-        axis = self.points.names.index(self.config.along)
+        axis = self.points.moved.index(self.config.along)
         return Chains(self.points.shape, axis, options.direction == "up")
 
     def coordinates(self) -> dict[str, np.ndarray]:
@@ -64,6 +66,13 @@ class LimitCycleTask(Task):
         if options.transient:
             times["transient"] = np.linspace(0.0, 1.0, options.transient)
         return times | ({"u": lobatto_points(options.nodes)} if options.shapes else {})
+
+    def constants(self, in_order: InOrder = alone) -> tuple[Filled, ...]:
+        """The Hopf points of the lines on which the points lie."""
+        lines = hopf_lines_of(self.points)
+        if lines:
+            require_solvers()
+        return hopf_variables(lines, in_order(lines, HopfLine.search))
 
     def headline(self) -> str:
         options, chains = self.config.limit_cycle, self.chains
@@ -81,9 +90,9 @@ class LimitCycleTask(Task):
 
     def parts(self) -> list[Part]:
         options = self.config.limit_cycle
-        gamma1 = np.unique(self.points.by_name["gamma1"])[:5]
+        gamma1 = np.unique(self.points.of_rods["gamma1"])[:5]
         return [
-            *rod_parts(self.points.by_name),
+            *rod_parts(self.points.of_rods),
             ("axial drag", True, f"gamma1 = {', '.join(f'{value:g}' for value in gamma1)}"),
             ("nonlinear motion", True, "task: limit_cycle; in the plane, geometrically exact"),
             ("energy budget", True, "means and fluctuations over a cycle"),

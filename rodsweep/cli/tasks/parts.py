@@ -9,7 +9,7 @@ import numpy as np
 
 from ...model.parameters import PARAMETERS, Parameter
 from ...sweep.grid import Points
-from ..wording import counted
+from ...wording import counted
 from .protocol import Part, Task
 
 
@@ -29,7 +29,7 @@ class LinearTask(Task):
         certify = getattr(self.config, task).certify
         why = "winding number of D" if certify else f"{task}.certify: false; {self.not_proved}"
         return [
-            *rod_parts(self.points.by_name | self.coordinates()),
+            *rod_parts(self.points.of_rods | self.coordinates()),
             *self.asked(),
             ("certificate", certify, why),
             ("gravity, inertia, nonlinear motion", False, "not part of the linear overdamped problem"),
@@ -38,7 +38,9 @@ class LinearTask(Task):
 
 def count_of(points: Points) -> str:
     """The number of points and the shape of their grid."""
-    shape = " x ".join(str(n) for n in points.shape) if points.is_grid else "a list"
+    shape = " x ".join(str(n) for n in points.shape) if points.axes else "a list"
+    if points.over:
+        shape = f"{shape}: {' x '.join(points.over)}"
     return f"{counted(points.count, 'point')} ({shape})"
 
 

@@ -18,6 +18,8 @@ from ...sweep.stretches import Stretches, Together
 
 Arrays = dict[str, np.ndarray]
 """The result of a unit of work."""
+InOrder = Callable[[Sequence[Any], Callable[[Any], Any]], list[Any]]
+"""From items and a function to its values in their order: how work is shared among ranks."""
 Part = tuple[str, bool, str]
 """(what, whether it is modelled, why): a row of what `check` prints."""
 
@@ -72,6 +74,11 @@ class Solver:
     """Where neighbours are solved together: how, from their flat indices, instead of by `solve`."""
 
 
+def alone(items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
+    """The work on all items, on this rank."""
+    return [work(item) for item in items]
+
+
 @dataclass(frozen=True, slots=True)
 class Task(ABC):
     """One task on its points: sent to all ranks, and without PETSc until its solver is asked for."""
@@ -94,8 +101,8 @@ class Task(ABC):
         """Values of the layout's extra dimensions that have some, shape (extent,)."""
         return {}
 
-    def constants(self) -> tuple[Filled, ...]:
-        """Variables that are known without solving."""
+    def constants(self, in_order: InOrder = alone) -> tuple[Filled, ...]:
+        """Variables that are known before any point is solved. in_order: shares what takes time."""
         return ()
 
     @abstractmethod

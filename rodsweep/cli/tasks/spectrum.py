@@ -11,11 +11,12 @@ from ...discretization.quadrature import lobatto_points
 from ...discretization.resolution import mesh_accuracy
 from ...errors import InputError
 from ...model.longitudinal import longitudinal_rates
-from ...results.layouts.variables import Filled, Variable
+from ...results.layouts.spectrum import longitudinal
+from ...results.layouts.variables import Filled
 from ...sweep.estimate import Estimate, estimate_followed, estimate_spectra
 from ...sweep.stretches import Stretches, Together, along_the_longest
 from .parts import LinearTask, count_of
-from .protocol import Part, Solver
+from .protocol import InOrder, Part, Solver, alone
 
 if TYPE_CHECKING:
     from ...solve.spectrum.search import Spectrum, SpectrumRequest
@@ -41,22 +42,22 @@ class SpectrumTask(LinearTask):
     @property
     def stretches(self) -> Stretches | None:
         """The stretches along which eigenvalues are followed, where they are."""
-        return along_the_longest(self.points.shape) if self.config.follows else None
+        return along_the_longest(self.points.shape, self.points.moved) if self.config.follows else None
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """The material coordinate of the vectors' nodes, shape (nodes,), where there are vectors."""
         return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
 
-    def constants(self) -> tuple[Filled, ...]:
+    def constants(self, in_order: InOrder = alone) -> tuple[Filled, ...]:
         """The longitudinal rates, where they are asked for: along k1 on a grid, along the points else."""
         gamma1 = self.config.parameters.numbers.get("gamma1")
         if gamma1 is None:
             return ()
         k1, modes = self.points.by_name["k1"], self.config.spectrum.modes
+        shape = self.points.shape if self.points.over else k1.shape
         rates = np.array([longitudinal_rates(float(k), gamma1, modes) for k in k1])
-        dims = ("k1" if self.points.is_grid else "point", "mode")
-        meaning = f"longitudinal eigenvalue, real, for gamma1 = {gamma1:g}"
-        return ((Variable("longitudinal_rate", "<f8", np.nan, "1/tau2", meaning, dims), rates),)
+        along = tuple(self.points.over) or ("k1" if self.points.is_grid else "point",)
+        return ((longitudinal(gamma1, *along), rates.reshape(*shape, modes)),)
 
     def headline(self) -> str:
         return f"{count_of(self.points)}, {self.config.spectrum.modes} leading modes each"
@@ -102,7 +103,7 @@ class SpectrumTask(LinearTask):
 
         stretches = self.stretches
         assert stretches is not None
-        varied = self.points.names[stretches.axis]
+        varied = self.points.moved[stretches.axis]
         found = solve_stretch(Stretch(varied, self.points.values_of(indices)), request)
         return Together(record_all(found), found.succeeded, found.told)
 

@@ -3,14 +3,16 @@
 Below, how their amplitude grows from the Hopf points beside what the normal form predicts.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
 
-from ...errors import InputError
 from ...results.file.view import View
+from ...wording import counted
 from ..branch_curves import (
     CurveOfCycles,
     Range,
@@ -21,6 +23,7 @@ from ..branch_curves import (
 )
 from ..summary.branch import ends_of
 from . import style
+from .cycle.selection import told_apart
 from .request import FigureRequest
 
 LINES = {1: ("-", "stable"), 0: ("--", "unstable"), -1: (":", "not known")}
@@ -39,19 +42,19 @@ MARKS = {
 PREDICTED, PREDICTED_WORD = (0, (4, 1, 1, 1)), "by the normal form"
 """Line and word of the amplitude that it predicts next to every Hopf point."""
 COLOURS = (style.FIRST, style.SECOND, "#6A3D9A", "#2E7D32", "#8D6E63", "#00838F", "#C2185B", "#9E9D24")
-"""Of the branches, one after another."""
+"""Of the branches of one rod, or of several rods, one after another."""
 
 
 def draw_branch(request: FigureRequest) -> str:
-    """The largest tip y and the period over the parameter that is followed, of a file with one rod."""
+    """The largest tip y and the period over the parameter that is followed, of a rod or of several."""
     view = request.only_view()
-    if view.variables["status"].size != 1:
-        rods = view.variables["status"].size
-        raise InputError(
-            f"{view.path} holds {rods} rods; a bifurcation diagram is of one: give one value a parameter"
-        )
-    curves = curves_of(view, 0)
-    style.need(view, any(curve.cycles.any() for curve in curves), "branch with cycles")
+    branches = [curves_of(view, rod) for rod in range(view.variables["status"].size)]
+    beating = [rod for rod, own in enumerate(branches) if any(curve.cycles.any() for curve in own)]
+    style.need(view, beating, "branch with cycles")
+    drawn = beating[: len(COLOURS)]
+    curves = [curve for rod in drawn for curve in branches[rod]]
+    alone = len(branches) == 1
+    colours = COLOURS if alone else [COLOURS[k] for k, rod in enumerate(drawn) for _ in branches[rod]]
     along = followed_parameter(view)
     beside = any(curve.beside_hopf_points() for curve in curves)
     figure = Figure(figsize=(5.6, 7.6 if beside else 5.6), layout="constrained")
@@ -60,24 +63,45 @@ def draw_branch(request: FigureRequest) -> str:
     upper.tick_params(labelbottom=False)
     marked: dict[str, Line2D] = {}
     for number, curve in enumerate(curves):
-        colour = COLOURS[number % len(COLOURS)]
+        colour = colours[number % len(colours)]
         _pieces(upper, curve.at, curve.y, curve.stable, colour)
         _pieces(lower, curve.at, curve.period, curve.stable, colour)
         _mark(upper, lower, curve, marked)
-    for stable, ranges in zip((1, 0), straight_ranges(view, 0, _shown(view, curves)), strict=True):
+    straight = straight_ranges(view, drawn[0], _shown(view, curves)) if alone else ([], [])
+    for stable, ranges in zip((1, 0), straight, strict=True):
         for low, high in ranges:
             upper.plot([low, high], [0, 0], LINES[stable][0], color="k", lw=1.4)
     upper.set_ylabel("largest $y/L$ of the tip")
     lower.set(ylabel=r"period$/\tau_2$", xlabel=style.LABELS[along], yscale="log")
     for axes in third:
-        marked["predicted"] = _beside_prediction(axes, curves, along)
+        marked["predicted"] = _beside_prediction(axes, curves, colours, along)
     there = {int(s) for curve in curves for s in curve.stable} | {1, 0}
     handles = [Line2D([], [], color="k", ls=LINES[s][0], label=LINES[s][1]) for s in sorted(there)[::-1]]
+    shared, own = _told_apart(view, drawn)
+    handles += [
+        Line2D([], [], color=c, lw=2, label=text) for c, text in zip(COLOURS, own, strict=False) if text
+    ]
     style.legend_below(figure, [*handles, *marked.values()], columns=3)
-    figure.suptitle(style.heading(view, style.fixed_text(view)), fontsize=9)
-    hidden = branches_not_told(view, 0)
+    figure.suptitle(style.heading(view, shared))
+    return request.write(
+        figure, f"{counted(len(curves), 'branch')} of cycles over {along}{_left_out(view, drawn, beating)}"
+    )
+
+
+def _told_apart(view: View, rods: list[int]) -> tuple[str, list[str]]:
+    """(the parameters that all rods share, what tells each from the others), as text."""
+    columns = view.point_columns
+    return told_apart([{name: float(columns[name][rod]) for name in columns} for rod in rods])
+
+
+def _left_out(view: View, drawn: list[int], beating: list[int]) -> str:
+    """What is said of branches and rods that are not drawn."""
+    hidden = sum(branches_not_told(view, rod) for rod in range(view.variables["status"].size))
     more = f"; {hidden} more have special points that are not stored" if hidden else ""
-    return request.write(figure, f"{len(curves)} branches of cycles over {along}{more}")
+    rods = view.variables["status"].size
+    if len(drawn) < len(beating):
+        more += f"; of the first {len(drawn)} of {len(beating)} rods with branches (--at chooses others)"
+    return more + (f"; {rods - len(beating)} of {rods} rods have none" if len(beating) < rods else "")
 
 
 def _shown(view: View, curves: list[CurveOfCycles]) -> Range:
@@ -111,7 +135,7 @@ def _mark(upper: Axes, lower: Axes, curve: CurveOfCycles, marked: dict[str, Line
         marked.setdefault(kind, drawn)
 
 
-def _beside_prediction(axes: Axes, curves: list[CurveOfCycles], along: str) -> Line2D:
+def _beside_prediction(axes: Axes, curves: list[CurveOfCycles], colours: Sequence[str], along: str) -> Line2D:
     """The cycles next to the Hopf points in units of a, and what the normal form says: one line for all.
 
     Up to where a branch turns back: beyond, its cycles are no longer those that the law speaks of.
@@ -119,7 +143,7 @@ def _beside_prediction(axes: Axes, curves: list[CurveOfCycles], along: str) -> L
     nearest, farthest = [], []
     for number, curve in enumerate(curves):
         for at, y, stable in curve.beside_hopf_points():
-            _pieces(axes, at, y, stable, COLOURS[number % len(COLOURS)], marker=".")
+            _pieces(axes, at, y, stable, colours[number % len(colours)], marker=".")
             nearest.append(float(at[0]))
             farthest.append(float(at[-1]))
     ends = np.array([min(nearest), max(farthest)])

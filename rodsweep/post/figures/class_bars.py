@@ -1,14 +1,19 @@
 """What single rods do over F: a bar of classes for each, with its thresholds marked."""
 
 from collections.abc import Iterator
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...results.file.view import View
+from ...results.layouts.phase_diagram import CLASSES
 from ...results.layouts.thresholds import CROSSING_KINDS
 from .lists import number_points, shared_parameters
 from .style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, need, parameter_text
@@ -30,14 +35,19 @@ STABLE_CLASS = {
     "pair_leads": "oscillatory",
 }
 """What a rod does beyond a crossing where no mode grows, by the kind of the crossing."""
+LATER = "later"
+"""Hopf points at which the rod is unstable already, and further modes begin to grow."""
 MARKS = {
     "onset": (FIRST, "o", rf"onset ${SYMBOLS['F']}_*$"),
     "hopf": (SECOND, "s", rf"Hopf ${SYMBOLS['F']}_{{**}}$"),
+    LATER: (SECOND, "D", "further Hopf points"),
     "restabilization": (THIRD, "^", "restabilization"),
 }
 """Colour, marker and word of the crossings that are marked."""
 FILL = 0.8
 """Part of its place that the bar of a rod takes."""
+BAR_ASPECT = 0.12
+"""Height of the panel with one bar in units of its width."""
 DIGITS = 6
 """To which the thresholds of a single rod are written."""
 
@@ -66,7 +76,7 @@ def draw_class_bars(view: View) -> Figure:
         axes.set(ylim=(0, end), ylabel=LABELS["F"])
         number_points(axes, view, count)
     legend_below(figure, handles, columns=2)
-    figure.suptitle(heading(view, parameter_text(shared_parameters(view))), fontsize=9)
+    figure.suptitle(heading(view, parameter_text(shared_parameters(view))))
     return figure
 
 
@@ -83,12 +93,43 @@ def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str
     for place in np.flatnonzero(kinds > 0):
         yield start, float(F[place]), word
         start = float(F[place])
-        stable = STABLE_CLASS.get(CROSSING_KINDS[int(kinds[place])], "undecided")
-        word = "flutter" if after[place] > 0 else stable if after[place] == 0 else "undecided"
+        word = _class_behind(int(kinds[place]), int(after[place]))
     if found > np.count_nonzero(kinds > 0):  # more than the file has room for
         word = "undecided"
     if np.isfinite(end):
         yield start, end, word
+
+
+def classes_behind_crossings(view: View, row: str) -> tuple[Array, Array, NDArray[np.intp]]:
+    """(value along the line, value of the row, number of the class) half way between crossings of a diagram.
+
+    They are known however close two crossings are. Rows at infinity are left out.
+    """
+    numbers = {word: number for number, word in CLASSES}
+    kinds, after = (_by_row(view, name) for name in ("crossing_kind", "unstable_after"))
+    at = _by_row(view, "crossing_at")
+    values = view.point_columns[row]
+    found: list[tuple[float, float, int]] = []
+    for place in np.flatnonzero(np.isfinite(values)):
+        known = np.flatnonzero(kinds[place] > 0)
+        for this, following in pairwise(known):
+            word = _class_behind(int(kinds[place, this]), int(after[place, this]))
+            middle = (at[place, this] + at[place, following]) / 2
+            found.append((float(middle), float(values[place]), numbers[word]))
+    x, y, classes = np.array(found, dtype=float).reshape(-1, 3).T
+    return x, y, classes.astype(np.intp)
+
+
+def _by_row(view: View, name: str) -> NDArray[Any]:
+    """A variable along `crossing`, (rods or rows, crossings)."""
+    values = view.variables[name]
+    return values.reshape(-1, values.shape[-1])
+
+
+def _class_behind(kind: int, unstable: int) -> str:
+    """What a rod does behind a crossing of a kind, with so many unstable modes there, -1 where not known."""
+    stable = STABLE_CLASS.get(CROSSING_KINDS[kind], "undecided")
+    return "flutter" if unstable > 0 else stable if unstable == 0 else "undecided"
 
 
 def _bar(axes: Axes, view: View, rod: int, upright: bool) -> set[str]:
@@ -108,10 +149,14 @@ def _bar(axes: Axes, view: View, rod: int, upright: bool) -> set[str]:
 def _mark(axes: Axes, view: View, upright: bool) -> list[Line2D]:
     """Marks the thresholds; returns what the legend says of them, with the numbers of a single rod."""
     crossings = view.variables["crossing_F"].shape[-1]
-    kinds, F = (view.variables[name].reshape(-1, crossings) for name in ("crossing_kind", "crossing_F"))
+    names = ("crossing_kind", "crossing_F", "unstable_after")
+    kinds, F, after = (view.variables[name].reshape(-1, crossings) for name in names)
+    hopf = kinds == CROSSING_KINDS.index("hopf")
+    chosen = {kind: kinds == CROSSING_KINDS.index(kind) for kind in MARKS if kind != LATER}
+    chosen |= {"hopf": hopf & (after <= 2), LATER: hopf & (after > 2)}
     handles = []
     for kind, (colour, marker, word) in MARKS.items():
-        rods, places = np.nonzero(kinds == CROSSING_KINDS.index(kind))
+        rods, places = np.nonzero(chosen[kind])
         if not rods.size:
             continue
         force = F[rods, places]

@@ -13,7 +13,10 @@ from ...arrays import Array
 from ...errors import InputError
 from ...results.file.view import View
 from . import style
+from .cycle.maps import label_maps, map_panels
 from .cycle.point_map import PointMap, cell_edges, point_map, varied_parameters
+from .fitting import MAP_ASPECT
+from .normal_forms import draw_predictions
 from .request import FigureRequest
 
 MARKS = {
@@ -37,18 +40,17 @@ FEW = 0.1
 
 
 def draw_criticality(request: FigureRequest) -> str:
-    """A map of the first Hopf points over two parameters; over one, a and Re c of all."""
+    """First Hopf points over two parameters; a and Re c of all over one; else the cycles predicted."""
     view = request.only_view()
     style.need(view, np.isfinite(view.variables["criticality"]).any(), "Hopf point with a normal form")
     varied = varied_parameters(view)
     if len(varied) == 1:
         return request.write(_along(view, varied[0]), f"the normal forms of Hopf points along {varied[0]}")
     if len(varied) != 2:
-        names = ", ".join(varied) or "none"
-        raise InputError(f"{view.path} varies {len(varied)} parameters ({names}); a figure needs one or two")
+        return request.write(*draw_predictions(view))
     points = point_map(view)
     shown = f"the normal form of the first Hopf point over {' and '.join(points.names)}{points.left_out}"
-    return request.write(_map(view, points), shown)
+    return request.write(_map(view, points, request.look.narrow), shown, MAP_ASPECT)
 
 
 def _by_point(view: View, name: str) -> Array:
@@ -77,7 +79,7 @@ def _along(view: View, name: str) -> Figure:
     upper.set_ylabel("amplitude coefficient $a/L$")
     lower.set(ylabel=r"$\mathrm{Re}\,c$ in $1/(\tau_2 L^2)$", xlabel=style.LABELS[name])
     style.legend_below(figure, handles, columns=3)
-    figure.suptitle(style.heading(view, style.fixed_text(view, name)), fontsize=9)
+    figure.suptitle(style.heading(view, style.fixed_text(view, name)))
     return figure
 
 
@@ -93,13 +95,15 @@ def _mark(axes: Axes, x: Array, values: Array, side: Array) -> list[Line2D]:
     return handles
 
 
-def _map(view: View, points: PointMap) -> Figure:
-    """The criticality of the first Hopf points, and how fast their cycles grow."""
+def _map(view: View, points: PointMap, narrow: bool) -> Figure:
+    """The criticality of the first Hopf points, and how fast their cycles grow.
+
+    narrow: whether the two maps have no room beside each other.
+    """
     side = _by_point(view, "criticality")[points.at]
     a = np.abs(_by_point(view, "amplitude_coefficient")[:, 0][points.at])
     style.need(view, np.isfinite(a).any(), "first Hopf point with a normal form")
-    figure = Figure(figsize=(9.4, 4.5), layout="constrained")
-    panels = figure.subplots(1, 2, sharex=True, sharey=True)
+    figure, panels = map_panels(2, narrow)
     edges = cell_edges(points.x), cell_edges(points.y)
     classes = _classes(side)
     norm = BoundaryNorm(np.arange(len(CLASSES) + 1) - 0.5, len(CLASSES))
@@ -112,14 +116,10 @@ def _map(view: View, points: PointMap) -> Figure:
     bar = figure.colorbar(mesh, ax=panels[1], label="amplitude coefficient $|a|/L$")
     if isinstance(mesh.norm, LogNorm):
         style.label_few_decades(bar.ax.yaxis, low, high)
-    for axes in panels:
-        style.scale(axes, "x", points.x)
-        style.scale(axes, "y", points.y)
-        axes.set_xlabel(style.LABELS[points.names[0]])
-    panels[0].set_ylabel(style.LABELS[points.names[1]])
+    label_maps(panels, points)
     there = [Patch(facecolor=c, label=word) for i, (word, c) in enumerate(CLASSES) if (classes == i).any()]
     style.legend_below(figure, there, columns=3)
-    figure.suptitle(style.heading(view, style.parameter_text(points.shared)), fontsize=9)
+    figure.suptitle(style.heading(view, style.parameter_text(points.shared)))
     return figure
 
 

@@ -13,6 +13,8 @@ SPREAD = 100.0
 """Largest eigenvalue in units of the smallest from which on their axes are logarithmic but near 0."""
 LEAST_OF_LARGEST = 1e-6
 """In units of the largest eigenvalue: what is nearer to 0 is not spread out."""
+FEW = 0.1
+"""Share of the numbers that is on the linear part of such an axis."""
 LOOKS = {True: (SECOND, "s", "growing mode"), False: (FIRST, "o", "decaying mode")}
 """Colour, marker and word of modes, by whether they grow."""
 MOST_NUMBERED = 8
@@ -27,17 +29,17 @@ def draw_eigenvalues(view: View) -> Figure:
     figure = Figure(figsize=(5.2, 4.0), layout="constrained")
     axes = figure.subplots()
     handles = _mark(axes, growth, frequency, growth > 0)
-    _spread(axes, growth, frequency)
+    spread(axes, growth, frequency)
     for place in range(min(modes, MOST_NUMBERED)):
         if np.isfinite(growth[place]):
             at = growth[place], frequency[place]
-            axes.annotate(str(place + 1), at, (5, 5), textcoords="offset points", fontsize=8)
+            axes.annotate(str(place + 1), at, (5, 5), textcoords="offset points", size=8)
     axes.axvline(0, color="0.5", lw=0.6)
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.margins(0.12)
     axes.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
     legend_below(figure, handles, columns=2)
-    figure.suptitle(heading(view, parameter_text(shared_parameters(view))), fontsize=9)
+    figure.suptitle(heading(view, parameter_text(shared_parameters(view))))
     return figure
 
 
@@ -49,12 +51,12 @@ def draw_list_of_spectra(view: View) -> Figure:
     number = np.broadcast_to(np.arange(1, len(growth) + 1)[:, None], growth.shape)
     for axes, values, part in zip(panels, (growth, frequency), ("Re", "Im"), strict=True):
         handles = _mark(axes, number, values, growth > 0)
-        _spread(axes, None, values)
+        spread(axes, None, values)
         axes.axhline(0, color="0.5", lw=0.6, zorder=0)
         axes.set_ylabel(rf"$\mathrm{{{part}}}\,\omega\,\tau_2$")
     number_points(panels[1], view, len(growth))
     legend_below(figure, handles, columns=2)
-    figure.suptitle(heading(view, parameter_text(shared_parameters(view))), fontsize=9)
+    figure.suptitle(heading(view, parameter_text(shared_parameters(view))))
     return figure
 
 
@@ -68,10 +70,10 @@ def _mark(axes: Axes, x: np.ndarray, y: np.ndarray, grows: np.ndarray) -> list[L
     return handles
 
 
-def _spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
+def spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
     """Makes those axes logarithmic but near 0 whose numbers are of very different size."""
     for set_scale, values in ((axes.set_xscale, x), (axes.set_yscale, y)):
         sizes = np.abs(values[np.isfinite(values) & (values != 0)]) if values is not None else np.zeros(0)
         if sizes.size and sizes.max() > SPREAD * sizes.min():
-            smallest = max(sizes.min(), sizes.max() * LEAST_OF_LARGEST)
+            smallest = max(float(np.quantile(sizes, FEW)), sizes.max() * LEAST_OF_LARGEST)
             set_scale("symlog", linthresh=10 ** np.floor(np.log10(smallest)))

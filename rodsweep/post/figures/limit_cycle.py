@@ -10,28 +10,42 @@ from .cycle.energy import draw_energy
 from .cycle.maps import draw_maps
 from .cycle.point_map import point_map, varied_parameters
 from .cycle.portrait import draw_portrait
-from .cycle.selection import MOST_CYCLES, SHAPES, TRACE, outcomes
+from .cycle.selection import ENERGIES, MOST_CYCLES, SHAPES, TRACE, chosen_cycles, outcomes
 from .cycle.transient import draw_transients
-from .request import FigureRequest
+from .fitting import MAP_ASPECT, STRIP_ASPECT
+from .request import KINDS_OF_TASK, FigureRequest
 
 ALL_POINTS = {"amplitude": "amplitudes", "maps": "maps"}
 """Figures that show every point of a file."""
+NEEDS = {"cycle": SHAPES, "animation": SHAPES, "energy": ENERGIES}
+"""What a figure draws of a cycle."""
 OF_POINTS = {"cycle": draw_portrait, "energy": draw_energy, "transient": draw_transients}
 """Figures that show a few points, those that are chosen or the first."""
 
 
 def draw_limit_cycle(request: FigureRequest) -> str:
     """Draws one file, or the amplitudes of several; InputError where the choices do not fit."""
-    view, points, name = request.views[0], request.points, figure_name(request)
+    points, name = request.points, figure_name(request)
+    view = _with_needs(request, name)
     if name == "animation":
         request.check_output(*FILMS)
         return write_animation(view, points, request.output)
     request.check_output()
     if name == "amplitude":
-        return request.write(*draw_amplitude(request.views))
+        return request.write(*draw_amplitude(request.views, request.look.narrow))
     if name == "maps":
-        return request.write(*draw_maps(view))
-    return request.write(*OF_POINTS[name](view, points))
+        return request.write(*draw_maps(view, request.look.narrow), MAP_ASPECT)
+    return request.write(*OF_POINTS[name](view, points, request.look.narrow), STRIP_ASPECT)
+
+
+def _with_needs(request: FigureRequest, name: str) -> View:
+    """The file with what the figure needs of its cycles: solved, where that is possible, if not stored."""
+    view, needs = request.views[0], NEEDS.get(name, ())
+    if request.shapes is None or all(need in view.variables for need in needs):
+        return view
+    numbers = request.points or [int(index) + 1 for index in np.flatnonzero(outcomes(view) == "cycle")]
+    chosen_cycles(view, request.points, ())  # refuses points that have no cycle
+    return request.shapes(view, numbers[:MOST_CYCLES])
 
 
 def figure_name(request: FigureRequest) -> str:
@@ -41,6 +55,8 @@ def figure_name(request: FigureRequest) -> str:
         if view.task != first.task:
             request.refuse_choices(view)
     name = request.what or _suggested(request)
+    if name not in KINDS_OF_TASK["limit_cycle"]:
+        request.refuse_points(first)
     if others and name != "amplitude":
         raise InputError(f"--what {name} draws one file; only amplitudes of several files make one figure")
     if request.points and name in ALL_POINTS:
@@ -66,7 +82,8 @@ def _suggested(request: FigureRequest) -> str:
         return "cycle"
     if _has_many_lines(first):
         return "maps"
-    return "amplitude" if "F" in varied_parameters(first) else "cycle"
+    many = beats.size > MOST_CYCLES and len(varied_parameters(first)) > 0
+    return "amplitude" if many or "F" in varied_parameters(first) else "cycle"
 
 
 def _has_many_lines(view: View) -> bool:

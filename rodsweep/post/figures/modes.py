@@ -10,7 +10,7 @@ from .request import FigureRequest
 from .style import FIRST, SECOND, heading, legend_below, need, number, parameter_text
 
 MOST_RODS = 4
-"""Points for which one figure has room."""
+"""Points for which one figure has room; one whose panels are below each other has room for one."""
 PANELS = (
     ("mode", (("Y", r"$Y_1$"), ("Theta", r"$\Theta_1$"))),
     ("deformations", (("h2", r"$h_2$"), ("Pi", r"$\Pi$"))),
@@ -25,8 +25,8 @@ def draw_modes(request: FigureRequest) -> str:
     growth = v["growth_rate"][..., 0].ravel()
     points = np.flatnonzero(np.isfinite(growth))
     need(view, points.size, "computed point")
-    drawn = points[:MOST_RODS]
     narrow = request.look.narrow
+    drawn = points[: 1 if narrow else MOST_RODS]
     rows, columns = (len(drawn) * len(PANELS), 1) if narrow else (len(drawn), len(PANELS))
     size = (4.6, 2.4 * rows + 0.4) if narrow else (10.0, 2.8 * rows + 0.4)
     figure = Figure(figsize=size, layout="constrained")
@@ -34,15 +34,18 @@ def draw_modes(request: FigureRequest) -> str:
     for row, point in zip(panels.reshape(len(drawn), len(PANELS)), drawn, strict=True):
         for panel, (word, fields) in zip(row, PANELS, strict=True):
             _panel(panel, view, int(point), fields)
-            panel.set_title(word, fontsize=9)
+            panel.set_title(word)
         place = 0 if narrow else 1
         where = ("\n" if narrow else ": ").join(_where(view, int(point)))
-        row[place].set_title(f"{where}\n{PANELS[place][0]}", fontsize=9)
+        row[place].set_title(f"{where}\n{PANELS[place][0]}")
     for panel in panels[-1]:
         panel.set_xlabel("material coordinate $u/L$")
-    figure.suptitle(heading(view), fontsize=9)
+    figure.suptitle(heading(view))
     legend_below(figure, _parts(view, drawn), columns=2)
-    left = f" of the first {len(drawn)} of {points.size} points" if points.size > len(drawn) else ""
+    left = f" of the first of {points.size} points" if len(drawn) == 1 < points.size else ""
+    if points.size > len(drawn) > 1:
+        left = f" of the first {len(drawn)} of {points.size} points"
+    left += " (--at chooses others)" if left else ""
     return request.write(figure, f"the leading mode{left}: real part solid, imaginary part dotted")
 
 
@@ -65,7 +68,7 @@ def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], .
         axes.plot(u, real, color=colour, lw=1.5)
         if np.abs(imag).max() > 0:
             axes.plot(u, imag, ":", color=colour, lw=1.5)
-        axes.tick_params(axis="y", colors=colour, labelsize=8)
+        axes.tick_params(axis="y", colors=colour)
         axes.set_ylabel(label, color=colour)
         spans.append((min(real.min(), imag.min(), 0.0), max(real.max(), imag.max(), 0.0)))
     zero = max(-low / (high - low) if high > low else 0.5 for low, high in spans)

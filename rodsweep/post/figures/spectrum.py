@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from ...errors import InputError
 from ...results.file.view import View
 from .eigenvalues import draw_eigenvalues, draw_list_of_spectra
+from .fitting import MAP_ASPECT
 from .lists import as_grid
 from .request import FigureRequest
 from .spectra.line import FOLLOWED_ROOTS, draw_line, roots_to_follow
@@ -41,7 +42,7 @@ def draw_spectrum(request: FigureRequest) -> str:
     if len(long) == 1:
         roots = roots_to_follow([view], request.roots)
         return request.write(draw_line(view, long[0], roots), FOLLOWED_ROOTS[roots])
-    return request.write(_map(view, long), "the leading growth rate")
+    return request.write(_map(view, long), "the leading growth rate", MAP_ASPECT)
 
 
 def _several(request: FigureRequest) -> str:
@@ -108,5 +109,5 @@ def _map(view: View, names: list[str]) -> Figure:
     axes.set(xlabel=LABELS[horizontal], ylabel=LABELS[vertical])
     colours = matplotlib.cm.ScalarMappable(norm, MAP_COLOURS)
     figure.colorbar(colours, ax=axes, label=r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$")
-    axes.set_title(heading(view, fixed_text(view, *names), "black: zero growth"), fontsize=9)
+    figure.suptitle(heading(view, fixed_text(view, *names), "black: zero growth"))
     return figure

@@ -1,6 +1,5 @@
 """What all figures share: symbols, labels, colours, titles, how an axis is scaled, what cannot be drawn."""
 
-import textwrap
 from collections.abc import Mapping
 from math import isinf
 from typing import Any, Literal
@@ -22,14 +21,15 @@ CRITICAL_FORCE = f"critical force ${SYMBOLS['F']}$"
 INVERSE_DRAG = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$"
 FIRST, SECOND, THIRD = "#0072B2", "#D55E00", "#009E73"
 """Blue, vermilion and green of Okabe and Ito: told apart by the colour-blind."""
-TITLE_CHARACTERS = 70
-"""Characters of a title in one line of a figure."""
 FEW_DECADES = 50
 """Ratio of the ends of a logarithmic axis below which 1, 2 and 5 of each decade are labelled."""
 LEAST_POWER, PLAIN_BELOW = 2, 4
 """From which exponent on powers of ten are written as such; below which other numbers are written out."""
 STYLE = {
     "font.size": 10,
+    "axes.titlesize": 9,
+    "figure.titlesize": 9,
+    "legend.fontsize": 8,
     "axes.grid": False,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -41,15 +41,21 @@ STYLE = {
 }
 
 
+OF_TYPE = ("font.size", "axes.titlesize", "axes.labelsize", "figure.titlesize", "legend.fontsize",
+           "xtick.labelsize", "ytick.labelsize")  # fmt: skip
+PRINT_STYLE = STYLE | dict.fromkeys(OF_TYPE, 8)
+"""Of a figure with the width of a column: all of its type has 8 points."""
+
+
 def plain(text: object) -> str:
     """A user's text, in which a dollar is a dollar and not mathematics."""
     return str(text).replace("$", r"\$")
 
 
 def heading(view: View, *lines: str) -> str:
-    """The title of a user's file, broken where it is long, above other lines."""
-    title = plain(view.attributes.get("title", ""))
-    return "\n".join([*textwrap.wrap(title, TITLE_CHARACTERS), *filter(None, lines)])
+    """The title of a user's file above other lines."""
+    title = " ".join(plain(view.attributes.get("title", "")).split())
+    return "\n".join(filter(None, (title, *lines)))
 
 
 def number(value: float, digits: int = 6) -> str:
@@ -83,7 +89,7 @@ def long_axes(view: View) -> list[str]:
     if not 1 <= len(long) <= 2:
         raise InputError(
             f"{view.path} has {len(long)} axes with more than one value ({', '.join(long) or 'none'}); a "
-            "figure needs one or two"
+            "figure needs one or two, and --at, as --at k1=150, takes one value of an axis"
         )
     return long
 
@@ -94,9 +100,9 @@ def need(view: View, there: object, what: str) -> None:
         raise InputError(f"{view.path} holds no {what} that could be drawn")
 
 
-def legend_below(figure: Figure, handles: list[Any], columns: int, size: float = 8) -> None:
+def legend_below(figure: Figure, handles: list[Any], columns: int) -> None:
     """The legend of a whole figure, below its panels."""
-    figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False, fontsize=size)
+    figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False)
 
 
 def is_logarithmic(values: np.ndarray) -> bool:

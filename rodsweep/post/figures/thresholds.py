@@ -1,114 +1,86 @@
-"""Critical forces against the parameters of the rod, as the paper's Fig. 3 draws them."""
+"""Critical forces against parameters: lines, a map over two of them, or bars of single rods."""
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
-from ...arrays import Array
+from ...errors import InputError
 from ...results.file.view import View
 from . import style
-from .class_bars import draw_class_bars
+from .class_bars import BAR_ASPECT, draw_class_bars
+from .cycle.maps import label_maps, map_panels
+from .cycle.point_map import cell_edges, point_map
+from .fitting import LEAST_ASPECT, MAP_ASPECT
 from .lists import as_grid
 from .request import FigureRequest
+from .threshold_lines import CRITICAL_FORCES, MOST_LINES, draw_all_lines, draw_lines_of_some
 
-CRITICAL_FORCES = (
-    ("F_onset", r"onset $\tilde F_*$", style.FIRST, "o"),
-    ("F_hopf", r"Hopf $\tilde F_{**}$", style.SECOND, "s"),
-    ("F_restabilization", "restabilization", style.THIRD, "^"),
-)
-LINE_STYLES = ("-", "--", ":")
-"""For the values of the other parameter for which lines are drawn in one panel."""
-UNSEEN = 0.01
-"""Distance of two lines, in units of the largest force, below which one of them is drawn."""
+NO_THRESHOLD = "#DDDDDD"
+"""Colour of rods without the threshold."""
+SEARCH_DIGITS = 4
+"""To which the end of the search is written."""
+DECADE = 10
+"""Ratio of the largest to the smallest force above which their colours are logarithmic."""
 
 
 def draw_thresholds(request: FigureRequest) -> str:
-    """One panel for each long axis, the first thresholds along it; else a bar of classes for each rod."""
-    view = as_grid(request.only_view())
+    """The first thresholds over one parameter or two; else a bar of classes for each rod."""
+    given = request.only_view("lines", "map")
+    view = as_grid(given)
     if not view.is_grid or view.variables["status"].size == 1:
-        return request.write(draw_class_bars(view), "what each rod does over F")
+        if request.what:
+            raise InputError(
+                f"{view.path}: --what {request.what} needs rods that vary in one parameter or two; remove it"
+            )
+        least_aspect = BAR_ASPECT if view.variables["status"].size == 1 else LEAST_ASPECT
+        return request.write(draw_class_bars(view), "what each rod does over F", least_aspect)
     long = style.long_axes(view)
-    style.need(
-        view, any(np.isfinite(view.variables[name]).any() for name, *_ in CRITICAL_FORCES), "threshold"
-    )
-    rows, columns = (len(long), 1) if request.look.narrow else (1, len(long))
-    figure = Figure(figsize=(4.6 * columns + 0.4, 4.0 * rows), layout="constrained")
-    panels = figure.subplots(rows, columns, sharey=True, squeeze=False).ravel()
-    for panel, name in zip(panels, long, strict=True):
-        _panel(panel, view, name, [other for other in long if other != name])
-        if columns == 1 or panel is panels[0]:
-            panel.set_ylabel(style.CRITICAL_FORCE)
-    there = [
-        Line2D([], [], color=colour, marker=marker, ms=2.5, lw=1.2, label=word)
-        for variable, word, colour, marker in CRITICAL_FORCES
-        if np.isfinite(view.variables[variable]).any()
-    ]
-    style.legend_below(figure, there, columns=3)
-    figure.suptitle(style.heading(view, style.fixed_text(view, *long), _searched(view)), fontsize=9)
-    left_out = [name for name in long if not np.isfinite(view.axes[name]).all()]
-    without = f"; {' and '.join(left_out)} = inf has no place on an axis and is left out" if left_out else ""
-    return request.write(figure, "critical forces against " + " and ".join(long) + without)
+    there = [name for name, *_ in CRITICAL_FORCES if np.isfinite(view.variables[name]).any()]
+    style.need(view, there, "threshold")
+    few = min(len(view.axes[name]) for name in long) <= MOST_LINES
+    if request.what == "map" or (len(long) == 2 and not few and request.what != "lines"):
+        figure, left_out = _map(view, there, request.look.narrow)
+        return request.write(figure, f"critical forces over {' and '.join(long)}{left_out}", MAP_ASPECT)
+    if len(long) == 1 or few:
+        return request.write(*draw_all_lines(view, long, searched(view)))
+    return request.write(*draw_lines_of_some(view, long, request.look.narrow, searched(view)))
 
 
-def _searched(view: View) -> str:
+def searched(view: View) -> str:
     """Up to which force thresholds were sought: a curve that is missing may lie beyond."""
     ends = view.variables["F_end"]
-    low, high = (style.number(float(end(ends))) for end in (np.nanmin, np.nanmax))
+    low, high = (style.number(float(end(ends)), SEARCH_DIGITS) for end in (np.nanmin, np.nanmax))
     return rf"searched up to $\tilde F = {low}$" + (f" to ${high}$" if low != high else "")
 
 
-def _panel(panel: Axes, view: View, name: str, others: list[str]) -> None:
-    """The critical forces against one parameter, for some values of the other one."""
-    axes = list(view.axes)
-    x, label = view.axes[name], style.LABELS[name]
-    if name == "gamma3":  # as the paper: against 1/gamma3
-        x, label = 1 / x, style.INVERSE_DRAG
-    place = others[0] if others else None
-    every = {}
-    for at in range(len(view.axes[place]) if place else 1):
-        index = tuple(slice(None) if n == name else (at if n == place else 0) for n in axes)
-        every[at] = np.array([view.variables[variable][index] for variable, *_ in CRITICAL_FORCES])
-    lines = {at: every[at] for at in _far_apart(every)}
-    for look, alike in zip(LINE_STYLES, _alike(lines), strict=False):
-        for values, (_, _, colour, marker) in zip(lines[alike[0]], CRITICAL_FORCES, strict=True):
-            keep = np.isfinite(x) & np.isfinite(values)
-            panel.plot(x[keep], values[keep], look, color=colour, marker=marker, ms=2, lw=1.2)
-        if place:
-            said = ", ".join(style.number(float(view.axes[place][at]), 3) for at in alike)
-            text = f"${style.SYMBOLS[place]} = {said}$" + (" (one line)" if len(alike) > 1 else "")
-            panel.plot([], [], look, color="0.3", label=text)
-    style.scale(panel, "x", np.sort(x[np.isfinite(x)]))
-    panel.set_xlabel(label)
-    panel.set_ylim(bottom=0)
-    if place:
-        panel.legend(frameon=False, fontsize=8, loc="lower left", bbox_to_anchor=(0.0, 1.0))
+def _map(view: View, names: list[str], narrow: bool) -> tuple[Figure, str]:
+    """(a panel in colours for each threshold, what is said of values without a place) over two parameters."""
+    points = point_map(view)
+    figure, panels = map_panels(len(names), narrow)
+    lacking = False
+    for axes, (name, word, *_) in zip(
+        panels, [force for force in CRITICAL_FORCES if force[0] in names], strict=True
+    ):
+        values = view.variables[name].ravel()[points.at]
+        style.need(view, np.isfinite(values).any(), f"{name} of rods with finite parameters")
+        _coloured(axes, (cell_edges(points.x), cell_edges(points.y)), values, f"{word} in $k_3/L^2$")
+        lacking |= bool(np.isnan(values).any())
+    label_maps(panels, points)
+    if lacking:
+        style.legend_below(figure, [Patch(facecolor=NO_THRESHOLD, label="none found")], columns=1)
+    heading = style.heading(view, style.parameter_text(points.shared), searched(view))
+    figure.suptitle(heading)
+    return figure, points.left_out
 
 
-def _far_apart(lines: dict[int, Array]) -> list[int]:
-    """Of the numbers of lines, (3, points) each, the first, the last, and the one that lies most between."""
-    last = len(lines) - 1
-    if last < 2:
-        return sorted(lines)
-    heights = np.array(
-        [np.nanmean(values) if np.isfinite(values).any() else np.inf for values in lines.values()]
-    )
-    between = np.abs(heights - (heights[0] + heights[last]) / 2)
-    middle = 1 + int(np.argmin(between[1:last])) if np.isfinite(between[1:last]).any() else last // 2
-    return [0, middle, last]
-
-
-def _alike(lines: dict[int, Array]) -> list[list[int]]:
-    """The numbers of lines, (3, points) each, in groups of those that cannot be told apart."""
-    size = max(float(np.nanmax(values, initial=0.0)) for values in lines.values())
-    groups: list[list[int]] = []
-    for number, values in lines.items():
-        for group in groups:
-            other = lines[group[0]]
-            same = np.isnan(values) == np.isnan(other)
-            if same.all() and np.nanmax(np.abs(values - other), initial=0.0) < UNSEEN * size:
-                group.append(number)
-                break
-        else:
-            groups.append([number])
-    return groups
+def _coloured(axes: Axes, edges: tuple[np.ndarray, np.ndarray], values: np.ndarray, label: str) -> None:
+    """Cells in the colours of their forces, shape (ny, nx), with a bar."""
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    norm = LogNorm(low, high) if high > DECADE * low > 0 else Normalize(low, high)
+    mesh = axes.pcolormesh(*edges, np.ma.masked_invalid(values), norm=norm, rasterized=True)
+    axes.set_facecolor(NO_THRESHOLD)
+    bar = axes.figure.colorbar(mesh, ax=axes, label=label)
+    if isinstance(norm, LogNorm):
+        style.label_few_decades(bar.ax.yaxis, low, high)

@@ -1,4 +1,4 @@
-"""What `rodsweep show` prints: axes, statuses with their meaning, cost, and what the task has to tell."""
+"""What `rodsweep show` prints: the answer, how far it is to be trusted, all else, and the bookkeeping."""
 
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -14,16 +14,20 @@ from ...results.file.view import View
 from ...results.layouts import lacks_curves
 from ...results.layouts.arm import QUANTITY_UNITS
 from ...results.layouts.variables import DIMENSIONS, MISSING
+from ...wording import counted, is_or_are, plural
 from .arm import arm_lines
+from .arm_answer import arm_answer
 from .branch import branch_summary
 from .criticality import criticality_summary
 from .limit_cycle import limit_cycle_summary
 from .modes import modes_summary
 from .phase_diagram import phase_diagram_summary
+from .ranges import span
 from .spectrum import spectrum_summary
 from .thresholds import thresholds_summary
+from .told import Told
 
-SUMMARIES: dict[str, Callable[[View, np.ndarray], list[str]]] = {
+SUMMARIES: dict[str, Callable[[View, np.ndarray], Told]] = {
     "spectrum": spectrum_summary,
     "thresholds": thresholds_summary,
     "phase_diagram": phase_diagram_summary,
@@ -33,57 +37,96 @@ SUMMARIES: dict[str, Callable[[View, np.ndarray], list[str]]] = {
     "branch": branch_summary,
 }
 """What each task has to tell of its computed points, from (view, which points are computed)."""
+NOUNS = {"thresholds": "rod", "criticality": "rod", "branch": "rod", "phase_diagram": "row"}
+"""What a point of a file is called, where it is not one of a force."""
 
 
 def show_summary(view: View, every_status: bool = False) -> None:
-    """Prints a summary of a result file; `every_status` lists those of no point, too."""
-    console = Console(highlight=False, markup=False)
+    """Prints a summary of a result file; `every_status` lists those of no point, too.
+
+    First the answer in words, of an arm in its units too; then what is needed to trust it, what else the file
+    says, and last by what it was computed.
+    """
+    view, console = view.listed, Console(highlight=False, markup=False)
     a, status = view.attributes, view.variables["status"]
-    done = status != MISSING
-    console.print(f"{printable(str(view.path))}: {a.get('title', '')}, task {view.task}")
-    console.print(_table(("parameter", "values", "from", "to", "unit"), _axes(view)))
-    console.print(_table(("status", "points", "meaning"), _statuses(view, status, every_status)))
-    if not done.all():
-        console.print(
-            f"{int((~done).sum())} points are missing; where no run goes on, the same command continues"
-        )
-    elif lacks_curves(a):
-        console.print("all points are there; the curves through them are missing, the same command adds them")
-    if view.journalled:
-        console.print(
-            f"{view.journalled} of the points that are done wait in the journal for the end of the run"
-        )
-    if done.any():
-        seconds = view.variables["seconds"][done]
-        console.print(
-            f"time a point: median {1e3 * np.median(seconds):.3g} ms, longest {1e3 * seconds.max():.3g} ms, "
-            f"all together {seconds.sum():.3g} s"
-        )
-        for line in [*SUMMARIES[view.task](view, done), *arm_lines(view, done)]:
-            console.print(line, soft_wrap=True)
-    for line in _ranks(a):
+    done, noun = status != MISSING, NOUNS.get(view.task, "point")
+    told = SUMMARIES[view.task](view, done) if done.any() else Told([f"no {noun} is computed yet"])
+    console.print(f"{printable(str(view.path))}: {a.get('title', '')}, task {view.task}", soft_wrap=True)
+    for line in [*arm_answer(view, done), *told.answer, *(arm_lines(view, done) if done.any() else [])]:
         console.print(line, soft_wrap=True)
+    console.print()
+    for line in [*_unfinished(view, int((~done).sum()), noun), *told.trust]:
+        console.print(line, soft_wrap=True)
+    console.print(_table(("status", plural(noun), "meaning"), _statuses(view, status, every_status)))
+    console.print()
+    for line in told.details:
+        console.print(line, soft_wrap=True)
+    console.print(_table(("parameter", "values", "from", "to", "unit"), _axes(view)))
+    console.print()
+    for line in [*_times(view, done, noun), *_ranks(a, noun), *_origin(a)]:
+        console.print(line, soft_wrap=True)
+
+
+def _unfinished(view: View, missing: int, noun: str) -> list[str]:
+    """What is not in the file yet."""
+    lines = []
+    if missing:
+        lines.append(
+            f"{counted(missing, noun)} {is_or_are(missing)} missing; where no run goes on, the same command "
+            "continues"
+        )
+    elif lacks_curves(view.attributes):
+        lines.append(
+            f"all {plural(noun)} are there; the curves through them are missing, the same command adds them"
+        )
+    if waiting := view.journalled:
+        verb = "waits" if waiting == 1 else "wait"
+        lines.append(
+            f"{waiting} of the {plural(noun)} that are done {verb} in the journal for the end of the run"
+        )
+    return lines
+
+
+def _times(view: View, done: np.ndarray, noun: str) -> list[str]:
+    """How long the points took; none where none is computed."""
+    if not done.any():
+        return []
+    seconds = view.variables["seconds"][done]
+    if done.sum() == 1:
+        return [f"time of the {noun}: {1e3 * float(seconds.max()):.3g} ms"]
+    return [
+        f"time a {noun}: median {1e3 * np.median(seconds):.3g} ms, longest {1e3 * seconds.max():.3g} ms, "
+        f"all together {seconds.sum():.3g} s"
+    ]
+
+
+def _origin(a: dict[str, Any]) -> list[str]:
+    """When and by what a file was computed."""
     ran = f"{a['started']} to {a['finished']}" if "finished" in a and "started" in a else "not finished yet"
-    console.print(
+    return [
         f"computed {ran}; rodsweep {a.get('rodsweep_version')}, PETSc {a.get('petsc_version')}, "
-        f"SLEPc {a.get('slepc_version')}, commit {str(a.get('git_commit'))[:12]}"
-    )
-    console.print(f"BLAS: {'; '.join(kernels_of(a))}", soft_wrap=True)
+        f"SLEPc {a.get('slepc_version')}, commit {str(a.get('git_commit'))[:12]}",
+        f"BLAS: {'; '.join(kernels_of(a))}",
+    ]
 
 
-def _ranks(a: dict[str, Any]) -> list[str]:
+def _ranks(a: dict[str, Any], noun: str) -> list[str]:
     """What the ranks of the last run did: how much of the time they solved, and how many points."""
     if RANK_SHARES[0] not in a:
         return []
     points, busy, idle = (np.atleast_1d(a[name]) for name in RANK_SHARES)
-    hosts = len(str(a["hosts"]).split())
     share = 100 * busy / np.maximum(busy + idle, 1e-9)
     least = int(share.argmin())
-    text = f"last run: {a['ranks']} ranks on {hosts} host{'s' * (hosts != 1)}, {points.sum()} points"
+    ranks, hosts = counted(int(a["ranks"]), "rank"), counted(len(str(a["hosts"]).split()), "host")
+    text = f"last run: {ranks} on {hosts}, {counted(int(points.sum()), noun)}"
     text += f"; shard {a['shard']}" if a.get("shard") else ""
     text += f"; stopped by {a['stopped']}" if a.get("stopped") else ""
+    if int(a["ranks"]) == 1:
+        return [text, f"the rank was busy {share[0]:.1f} % of its time"]
     solved = f"{np.median(share):.1f} % of its time (median; least {share[least]:.1f} %, rank {least})"
-    return [text, f"a rank was busy {solved} and finished {points.min()} to {points.max()} points"]
+    each = span(points)
+    things = noun if each == "1" else plural(noun)
+    return [text, f"a rank was busy {solved} and finished {each} {things}"]
 
 
 def _table(headings: Iterable[str], rows: Iterable[tuple[str, ...]]) -> Table:

@@ -12,7 +12,7 @@ import numpy as np
 from ...model.units import compact
 from ...results.file.view import View
 from ...results.layouts import LAYOUTS
-from ...results.layouts.arm import FORCES, twins_of
+from ...results.layouts.arm import FORCES, HERTZ, twins_of
 from ..hopf_points import Located
 from .ranges import span
 
@@ -20,8 +20,7 @@ WIDTH = 80
 """Columns of a line in SI units."""
 ITEMS_FEW = 4
 """Values of a table of one rod that are told one by one."""
-ANGULAR, CYCLIC = "rad/s", "Hz"
-PREFIXED = ("Pa", "N", "s", "m", "J", "W", CYCLIC)
+PREFIXED = ("Pa", "N", "s", "m", "J", "W", HERTZ)
 """Units that are told with a prefix, as kPa."""
 
 
@@ -33,7 +32,7 @@ def arm_lines(view: View, done: np.ndarray) -> list[str]:
     told = []
     for variable in twins_of(LAYOUTS[view.task](config), config):
         values = view.variables[variable.name][done]
-        name = variable.name.removesuffix("_si")
+        name = variable.name.removesuffix("_si").removesuffix("_hz")
         told_here = variable.extra != ("crossing",) if done.size == 1 else not variable.extra
         if told_here and np.isfinite(values).any():
             told.append(f"{name} = {in_unit(values, variable.units)}")
@@ -56,8 +55,6 @@ def wrapped(text: str) -> list[str]:
 def in_unit(values: np.ndarray, unit: str) -> str:
     """Values in an SI unit, of any shape, as words: one by one where they are few, else their range."""
     finite = values[np.isfinite(values)]
-    if unit == ANGULAR:
-        finite, unit = finite / (2 * np.pi), CYCLIC
     if unit in PREFIXED and finite.size:
         factor, unit = compact(float(np.abs(finite).max()), unit)
         finite = finite * factor
@@ -80,8 +77,7 @@ def crossing_line_in_si(view: View, i: int) -> list[str]:
     rod = np.zeros(1, int)
     text = loads_at(view, np.array([F]), rod)
     if frequency:
-        rate = np.atleast_1d(frequency / _at(view.quantities["tau2"], rod))
-        text += f", frequency {in_unit(rate, ANGULAR)}"
+        text += f", frequency {_in_hertz(view, np.array([frequency]), rod)}"
     return [f"  in SI units: {text}"]
 
 
@@ -94,8 +90,13 @@ def threshold_lines_in_si(view: View, found: Sequence[tuple[Located, np.ndarray]
     text = loads_at(view, np.repeat([place.position for place, _ in found], each), points)
     frequency = np.repeat([getattr(place, "frequency", np.nan) for place, _ in found], each)
     if np.isfinite(frequency).any():
-        text += f", frequency {in_unit(frequency / _at(view.quantities['tau2'], points), ANGULAR)}"
+        text += f", frequency {_in_hertz(view, frequency, points)}"
     return [f"  in SI units: {text}"]
+
+
+def _in_hertz(view: View, frequency: np.ndarray, points: np.ndarray) -> str:
+    """Angular frequencies in rad/tau2, (n,), at points of a file with an arm, (n,) indices, in Hz."""
+    return in_unit(frequency / (2 * np.pi * _at(view.quantities["tau2"], points)), HERTZ)
 
 
 def _at(values: np.ndarray, points: np.ndarray) -> np.ndarray:

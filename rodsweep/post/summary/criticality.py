@@ -1,13 +1,16 @@
 """What `rodsweep show` says of Hopf points and the cycles born there: on which side, how large, how sure."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from ...results.file.view import View
 from ...results.layouts.thresholds import CROSSING_KINDS
+from ...wording import counted, some_of
 from .arm import crossing_line_in_si
-from .ranges import span, to_error
+from .ranges import rounded, span, to_error
+from .thresholds import not_stored
+from .told import Told, in_brackets, region
 
 SIDES = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
 """What a Hopf point is called, by its criticality."""
@@ -15,28 +18,41 @@ NAMED_RODS = 8
 """Rods with subcritical Hopf points that are named."""
 
 
-def criticality_summary(view: View, done: np.ndarray) -> list[str]:
-    """The task's lines about the points that are `done`, a mask of the points' shape."""
+def criticality_summary(view: View, done: np.ndarray) -> Told:
+    """The task's sentences about the points that are `done`, a mask of the points' shape."""
     v = view.variables
     if done.size == 1:
-        return [*_hopf_lines(view), _searched(view, done)]
+        none = "nothing is known of its Hopf points"
+        if v["crossing_count"].max() >= 0:
+            none = f"no Hopf point up to F = {span(v['F_end'])}"
+        return Told(list(_hopf_lines(view)) or [none], [_searched(view, done)])
     side = v["criticality"][done]
     first, known = side[:, 0], np.isfinite(side)
-    with_hopf = int((v["crossing_count"][done] > 0).sum())
-    lines = [f"Hopf points at {with_hopf} of {int(done.sum())} rods"]
+    with_hopf = v["crossing_count"] > 0
+    where = in_brackets(region(view, done & with_hopf)) if (done & with_hopf).any() else ""
+    lines = [f"Hopf points at {some_of(with_hopf[done].sum(), done.sum(), 'rod')}{where}"]
     if not known.any():
-        return [*lines, _searched(view, done)]
+        return Told(lines, [_searched(view, done)])
+    a, b = (_relative(v, name, done) for name in ("amplitude_coefficient", "frequency_slope"))
+    F = span(v["crossing_F"][done][:, 0], v["crossing_error"][done][:, 0])
     lines += [
-        f"first Hopf point: {_counts(first)}; F = {span(v['crossing_F'][done][:, 0])}, a = "
-        f"{span(v['amplitude_coefficient'][done][:, 0])} L",
-        f"all Hopf points: {_counts(side)}; a = {span(v['amplitude_coefficient'][done])} L, b = "
-        f"{span(v['frequency_slope'][done])} L^2/(k3 tau2)",
+        f"first Hopf point: {_counts(first)}; F = {F}, a = {span(*(table[:, 0] for table in a))} L",
         *_subcritical_lines(view),
+    ]
+    trust = [
+        _searched(view, done),
         f"worst relative errors: c {_worst(v['landau_error'][done])}, dw/dF "
         f"{_worst(v['growth_slope_error'][done])}, a {_worst(v['amplitude_coefficient_error'][done])}, b "
         f"{_worst(v['frequency_slope_error'][done])}",
     ]
-    return [*lines, _searched(view, done)]
+    every = f"all Hopf points: {_counts(side)}; a = {span(*a)} L, b = {span(*b)} L^2/(k3 tau2)"
+    return Told(lines, trust, [every])
+
+
+def _relative(v: Mapping[str, np.ndarray], name: str, done: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A coefficient of all Hopf points and its absolute error, each (points, crossings)."""
+    values = v[name][done]
+    return values, np.abs(values) * v[f"{name}_error"][done]
 
 
 def _hopf_lines(view: View) -> Iterator[str]:
@@ -48,7 +64,7 @@ def _hopf_lines(view: View) -> Iterator[str]:
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
         after = int(v["unstable_after"][i])
         yield (
-            f"{kind} at F = {F}, frequency {frequency} 1/tau2; unstable modes above: "
+            f"{kind} at F = {F}, frequency {frequency} rad/tau2; unstable modes above: "
             f"{after if after >= 0 else 'not known'}"
         )
         yield from crossing_line_in_si(view, int(i))
@@ -102,14 +118,15 @@ def _subcritical_lines(view: View) -> Iterator[str]:
         name = ", ".join(f"{key} = {column[rod]:.6g}" for key, column in columns.items())
         places = np.flatnonzero(side[rod] == 1)
         forces = v["crossing_F"].reshape(-1, extent)[rod][places]
-        a = v["amplitude_coefficient"].reshape(-1, extent)[rod][places]
+        names = ("amplitude_coefficient", "amplitude_coefficient_error", "crossing_error")
+        a, relative, absolute = (v[name].reshape(-1, extent)[rod][places] for name in names)
         each = ", ".join(
-            f"F = {F:.9g} (Hopf point {i + 1}, a = {x:.6g})"
-            for F, i, x in zip(forces, places, a, strict=True)
+            f"F = {rounded(F, dF)} (Hopf point {i + 1}, a = {rounded(x, abs(x) * dx)} L)"
+            for F, dF, i, x, dx in zip(forces, absolute, places, a, relative, strict=True)
         )
         yield f"subcritical for {name}: {each}"
     if len(rods) > NAMED_RODS:
-        yield f"and subcritical for {len(rods) - NAMED_RODS} rods more"
+        yield f"and subcritical for {counted(len(rods) - NAMED_RODS, 'rod')} more"
 
 
 def _counts(side: np.ndarray) -> str:
@@ -122,11 +139,10 @@ def _searched(view: View, done: np.ndarray) -> str:
     """How far was searched, and whether all is found."""
     v = view.variables
     certified, rods = int(v["certified"][done].sum()), int(done.sum())
-    found, stored = int(v["crossing_count"][done].sum()), int((v["crossing_kind"][done] > 0).sum())
-    more = f"; {found - stored} more are not stored, raise the option crossings" * (found > stored)
+    hidden = int(v["crossing_count"][done].clip(min=0).sum() - (v["crossing_kind"][done] > 0).sum())
     return (
         f"searched up to F = {span(v['F_end'][done])}; that no Hopf point is missing is proved at "
-        f"{certified} of {rods} rods{more}"
+        f"{some_of(certified, rods, 'rod')}{not_stored(hidden)}"
     )
 
 

@@ -1,37 +1,81 @@
-"""What `rodsweep show` says of limit cycles: their period and size, and how far they can be relied on."""
+"""What `rodsweep show` says of limit cycles: where the rod beats, how, and how far that can be relied on."""
 
 from collections.abc import Mapping
 
 import numpy as np
 
+from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.limit_cycle import SECOND_STATES
-from ..hopf_points import ParameterLine
-from .ranges import span, to_error
+from ...wording import counted, some_of
+from ..hopf_points import StoredHopfPoints
+from .ranges import error_text, span, to_error
 from .stability import stability_lines
+from .told import Told, in_brackets, region, varied
+
+ACCURATE = 1e-9
+"""Relative error of the eigenvalue of a straight rod: what its solver is asked for."""
+OUTCOMES = {"cycle": "beats", "straight": "stays straight"}
+"""How a point that ended so is called; the other statuses speak for themselves."""
 
 
-def limit_cycle_summary(view: View, done: np.ndarray) -> list[str]:
-    """The task's lines about the points that are `done`, a mask of the points' shape."""
+def limit_cycle_summary(view: View, done: np.ndarray) -> Told:
+    """The task's sentences about the points that are `done`, a mask of the points' shape."""
     v = view.variables
-    status = v["status"][done]
-    counts = [f"{int((status == value).sum())} {word}" for value, word in view.flags.items() if value >= 0]
-    lines = [f"of {status.size} points: {', '.join(counts)}"]
-    rate, frequency = v["linear_growth_rate"][done], v["linear_frequency"][done]
-    lines.append(f"straight rod: leading growth rate {span(rate)}, frequency {span(frequency)}")
-    lines += stability_lines(view, ParameterLine.hopf_points)
     values = {word: value for value, word in view.flags.items()}
-    on_torus = done & (v["status"] == values.get("torus"))
-    if on_torus.any():
-        lines.append(
-            f"tori: the cycles that they surround have multipliers {span(v['multiplier'][on_torus])}"
-        )
     beats = done & (v["status"] == values.get("cycle"))
     orbit = done & np.isin(v["status"], [values[word] for word in ("cycle", "unstable") if word in values])
+    answer = [_outcome_line(view, done), *_stability(view), *_second_state_lines(v, done)]
+    trust, details = _proof_lines(v), [_straight_line(v, done)]
+    on_torus = done & (v["status"] == values.get("torus"))
+    if on_torus.any():
+        multipliers = span(v["multiplier"][on_torus], v["multiplier_error"][on_torus])
+        details.append(f"tori: the cycles that they surround have multipliers {multipliers}")
     if done.size == 1 and orbit.any():
-        lines += orbit_lines(v, stable=bool(beats.any()))
-    lines += _second_state_lines(v, done)
-    return [*lines, *_cycle_lines(v, beats)] if beats.any() else lines
+        answer[1:1] = orbit_lines(v, stable=bool(beats.any()))
+    elif beats.any():
+        answer[1:1] = _size_lines(v, beats)
+        trust.insert(0, _error_line(v, beats))
+    return Told(answer, trust, [*details, *(_cycle_lines(v, beats) if beats.any() else [])])
+
+
+def _outcome_line(view: View, done: np.ndarray) -> str:
+    """What became of how many points, and where these lie."""
+    status, whole = view.variables["status"], counted(int(done.sum()), "point")
+    masks = {word: done & (status == value) for value, word in view.flags.items() if value >= 0}
+    there = {OUTCOMES.get(word, word.replace("_", " ")): mask for word, mask in masks.items() if mask.any()}
+    if len(there) == 1:
+        word = next(iter(there))
+        alone = done.size == 1 and word in OUTCOMES.values()
+        return f"the rod {word}" if alone else f"{word} at all of {whole}"
+    told = (f"{word} at {int(mask.sum())}{in_brackets(region(view, mask))}" for word, mask in there.items())
+    return f"of {whole}: {', '.join(told)}"
+
+
+def _stability(view: View) -> list[str]:
+    """Where the straight rod changes along F, or along the other parameters where F is no axis."""
+    names = [name for name in LINEAR_PARAMETERS if name in varied(view)]
+    lines = []
+    for name in names[:1] if "F" in names else names:
+        lines += stability_lines(view, name, StoredHopfPoints(view, name).on)
+    return lines
+
+
+def _proof_lines(v: Mapping[str, np.ndarray]) -> list[str]:
+    """Whether it is proved that no Hopf point is missing; none where no line was searched."""
+    lines = int(v["hopf_lines"]) if "hopf_lines" in v else 0
+    if not lines:
+        return []
+    proved = some_of(int(v["hopf_lines_proved"]), lines, "line")
+    return [f"that no Hopf point is missing between the points is proved on {proved}"]
+
+
+def _straight_line(v: Mapping[str, np.ndarray], done: np.ndarray) -> str:
+    """The leading eigenvalue of the straight rods."""
+    rate, frequency = v["linear_growth_rate"][done], v["linear_frequency"][done]
+    error = ACCURATE * np.hypot(rate, frequency)
+    told = f"leading growth rate {span(rate, error)} 1/tau2, frequency {span(frequency, error)} rad/tau2"
+    return f"straight rod: {told}"
 
 
 def orbit_lines(v: Mapping[str, np.ndarray], stable: bool) -> list[str]:
@@ -56,42 +100,67 @@ def _second_state_lines(v: Mapping[str, np.ndarray], done: np.ndarray) -> list[s
     if straight.any():
         lines.append(f"two states{_at(straight, done)}: the straight rod is stable too")
     if cycle.any():
-        F = v["subcritical_F"][cycle]
-        place = f"{F[0]:.9g}" if F.min() == F.max() else span(F)
         lines.append(
             f"a second state is possible{_at(cycle, done)}: the rod is straight, and its Hopf point at "
-            f"F = {place} is subcritical, so that a larger start may lead to a cycle; the task branch "
-            "follows it"
+            f"F = {span(v['subcritical_F'][cycle])} is subcritical, so that a larger start may lead to a "
+            "cycle; the task branch follows it"
         )
     return lines
 
 
 def _at(some: np.ndarray, done: np.ndarray) -> str:
     """At how many of the points that are `done`, masks of one shape; nothing where that is one."""
-    return "" if done.sum() == 1 else f" at {int(some.sum())} of {int(done.sum())} points"
+    return "" if done.sum() == 1 else f" at {some_of(some.sum(), done.sum(), 'point')}"
+
+
+def _size_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
+    """The period and the size of the cycles of several points."""
+    period, y = v["period"][beats], v["tip_y_max"][beats]
+    told = f"period: {span(period, period * v['period_error'][beats])} tau2"
+    return [f"{told}; largest y of the tip: {span(y, y * v['amplitude_error'][beats])} L"]
 
 
 def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
-    """Ranges over the points that end in a cycle, and the worst of their errors."""
-    period = f"period: {span(v['period'][beats])} tau2"
+    """What else is known of the cycles, over the points that end in one."""
+    extrema = v["extrema_error"][beats] * v["tip_y_max"][beats]
+    of_period, frequency = v["period_error"][beats], v["frequency"][beats]
+    ratio = frequency / v["linear_frequency"][beats]
+    tips = (
+        f"{what} {span(v[f'tip_{name}'][beats], extrema)} {unit}"
+        for what, name, unit in (
+            ("least x", "x_min", "L"), ("largest x", "x_max", "L"), ("largest theta", "theta_max", "rad"),
+        )
+    )  # fmt: skip
+    power = v["injection_mean"][beats]
+    of_power = 2 * v["amplitude_error"][beats] + of_period + np.abs(v["energy_imbalance"][beats])
+    lines = [f"frequency {span(frequency, frequency * of_period)} rad/tau2, "
+             f"over that of the leading mode {span(ratio, ratio * of_period)}"]  # fmt: skip
     if "period_tau1" in v:
-        period += f", {span(v['period_tau1'][beats])} tau1"
-    ratio = v["frequency"][beats] / v["linear_frequency"][beats]
+        tau1 = v["period_tau1"][beats]
+        lines.append(f"period: {span(tau1, tau1 * of_period)} tau1")
     return [
-        f"{period}; frequency over the linear one: {span(ratio)}",
-        f"tip: largest y {span(v['tip_y_max'][beats])} L, theta {span(v['tip_theta_max'][beats])} rad",
-        f"tip: least x {span(v['tip_x_min'][beats])} L, largest x {span(v['tip_x_max'][beats])} L",
-        f"energy injected: {span(v['injection_mean'][beats])} k3/(L tau2)",
-        f"multiplier: {span(v['multiplier'][beats])}; returns waited for: "
-        f"{span(v['periods'][beats].astype(float))}; least stretch: {span(v['least_stretch'][beats])}",
-        f"worst relative errors: period {_worst(v['period_error'][beats])}, amplitude "
-        f"{_worst(v['amplitude_error'][beats])}, other extrema "
-        f"{_worst(v['extrema_error'][beats])}, energy balance {_worst(v['energy_imbalance'][beats])}, "
-        f"multiplier {_worst(v['multiplier_error'][beats])}",
+        *lines,
+        f"tip: {', '.join(tips)}",
+        f"power of the force, mean: {span(power, np.abs(power) * of_power)} k3/(L tau2)",
+        f"multiplier: {span(v['multiplier'][beats], v['multiplier_error'][beats])}; returns waited for: "
+        f"{span(v['periods'][beats])}; least stretch: {span(v['least_stretch'][beats], extrema)}",
     ]
+
+
+def _error_line(v: Mapping[str, np.ndarray], beats: np.ndarray) -> str:
+    """The worst errors of the cycles."""
+    names = {
+        "period": "period_error",
+        "amplitude": "amplitude_error",
+        "other extrema": "extrema_error",
+        "energy balance": "energy_imbalance",
+        "multiplier": "multiplier_error",
+    }
+    told = (f"{word} {_worst(v[name][beats])}" for word, name in names.items())
+    return f"worst errors: {', '.join(told)}; that of multipliers is absolute, the others are relative"
 
 
 def _worst(values: np.ndarray) -> str:
     """The largest modulus of the finite values."""
     finite = np.abs(values[np.isfinite(values)])
-    return f"{finite.max():.1e}" if finite.size else "not known"
+    return error_text(float(finite.max())) if finite.size else "not known"

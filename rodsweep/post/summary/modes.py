@@ -1,34 +1,56 @@
-"""What `rodsweep show` says of modes: accuracy, stability and non-normality."""
+"""What `rodsweep show` says of modes: stability, non-normality and accuracy."""
 
 import numpy as np
 
 from ...results.file.view import View
+from ...wording import counted
 from .ranges import span
-from .spectrum import accuracy_lines, eigenvalue_lines, leading_line, stability_line, threshold_lines
+from .spectrum import (
+    eigenvalue_lines,
+    error_lines,
+    leading_line,
+    stability_line,
+    stable_line,
+    threshold_lines,
+    unknowns_lines,
+)
+from .told import Told
 
 
-def modes_summary(view: View, done: np.ndarray) -> list[str]:
-    """The task's lines about the points that are `done`, a mask of the points' shape."""
-    v = view.variables
+def modes_summary(view: View, done: np.ndarray) -> Told:
+    """The task's sentences about the points that are `done`, a mask of the points' shape."""
+    unknowns = unknowns_lines(view, done)
     if done.size == 1:
-        lines = [*eigenvalue_lines(view), accuracy_lines(view, done)[-1]]
+        answer, trust, details = eigenvalue_lines(view), [], unknowns
     else:
-        lines = [
-            leading_line(view, done),
-            *threshold_lines(view),
-            *accuracy_lines(view, done),
-            stability_line(view, done),
-        ]
-    errors = v["mode_error"][done]
+        lines, how = threshold_lines(view)
+        answer = [stable_line(view, done), *lines]
+        trust = [*error_lines(view, done), stability_line(view, done), *how]
+        details = [leading_line(view, done), *unknowns]
+    errors = view.variables["mode_error"][done]
     if np.isfinite(errors).any():
-        lines.append(f"error of the modes, relative: worst {np.nanmax(errors):.1e}")
-    lines.append(f"condition of the leading eigenvalue: {span(v['condition'][done][:, 0])}")
-    if "transient_growth" in v:
-        growth = v["transient_growth"][done]
-        lines.append(f"numerical abscissa: {span(v['numerical_abscissa'][done])}")
-        if np.isfinite(growth).any():
-            time = span(v["transient_time"][done])
-            lines.append(f"largest transient growth: {span(growth)} times, at t = {time} tau2")
-        if np.isinf(growth).any():
-            lines.append(f"growth without bound at {int(np.isinf(growth).sum())} points: a mode is unstable")
+        trust.append(f"error of the modes, relative: worst {np.nanmax(errors):.1e}")
+    return Told([*answer, *growth_lines(view, done)], trust, details)
+
+
+def growth_lines(view: View, done: np.ndarray) -> list[str]:
+    """How far the modes are from being normal, and what that makes of small motions."""
+    v = view.variables
+    condition = v["condition"][done][:, 0]
+    lines = [
+        "condition of the leading eigenvalue: "
+        + span(condition, condition * v["condition_error"][done][:, 0])
+    ]
+    if "transient_growth" not in v:
+        return lines
+    growth, abscissa = v["transient_growth"][done], v["numerical_abscissa"][done]
+    lines.append(f"numerical abscissa: {span(abscissa, v['abscissa_error'][done])} 1/tau2")
+    if np.isfinite(growth).any():
+        finite, error = np.where(np.isfinite(growth), growth, np.nan), v["growth_error"][done]
+        time = np.where(np.isfinite(growth), v["transient_time"][done], np.nan)
+        when = span(time, time * np.sqrt(error))  # next to its flat maximum the growth falls quadratically
+        lines.append(f"largest transient growth: {span(finite, finite * error)} times, at t = {when} tau2")
+    if np.isinf(growth).any():
+        points = counted(int(np.isinf(growth).sum()), "point")
+        lines.append(f"growth without bound at {points}: a mode is unstable")
     return lines

@@ -7,9 +7,11 @@ from ...results.file.view import View
 from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import BAUTIN_ENDS, CLASSES, CYCLE_CURVE_ENDS, STABLE_STATES
 from ...results.layouts.thresholds import CROSSING_KINDS
+from ...wording import counted, some_of
 from .arm import loads_at
-from .ranges import span
-from .thresholds import search_lines
+from .ranges import error_text, span, to_error
+from .thresholds import cost_lines, search_lines
+from .told import Told
 
 FLUTTER = next(value for value, word in CLASSES if word == "flutter")
 BOTH = next(value for value, word in STABLE_STATES if word == "both")
@@ -34,29 +36,45 @@ SHARP = 1e-8
 """Resolution of a boundary, in units of the parameter, for which the uniform grid is counted."""
 
 
-def phase_diagram_summary(view: View, done: np.ndarray) -> list[str]:
-    """The task's lines about the rows that are `done`, a mask of the rows' shape."""
+def phase_diagram_summary(view: View, done: np.ndarray) -> Told:
+    """The task's sentences about the rows that are `done`, a mask of the rows' shape."""
     v = view.variables
-    found = v["class"][done]
-    counts = [f"{int((found == value).sum())} {word}" for value, word in CLASSES if (found == value).any()]
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
     row = next(name for name in view.parameters if len(view.axes[name]) > 1)
-    lines = [
-        f"of {found.size} points: {', '.join(counts)}",
-        *share_lines(found),
-        *row_lines(view, done, line, row),
-    ]
+    answer = [*share_lines(v["class"][done]), *row_lines(view, done, line, row)]
     if "stable_states" in v:
-        lines += state_lines(view, done, line, row)
-    lines += search_lines(view, done, int(done.sum()))
+        answer += state_lines(view, done, line, row)
+    trust = search_lines(view, done, "row")
+    details = [*count_lines(v["class"][done]), *cost_lines(view, done), saving_line(view, done, line)]
+    if "curve_number" in v:
+        answer += fold_lines(view, line, row)
+        trust += agreement_lines(view, line)
+    if "curve_criticality" in v:
+        answer += bautin_lines(view, line, row)
+        details += criticality_lines(view)
+    if "bautin_along_curve" in v:
+        answer += bautin_curve_lines(view)
+    if "cycle_curve_number" in v:
+        answer += cycle_curve_lines(view, line, row)
+    return Told(answer, trust, details)
+
+
+def count_lines(found: np.ndarray) -> list[str]:
+    """How many places of the grid are of each class; `found` has those of all, of any shape."""
+    counts = [f"{int((found == value).sum())} {word}" for value, word in CLASSES if (found == value).any()]
+    return [f"of {counted(found.size, 'place')} on the rows: {', '.join(counts)}"]
+
+
+def saving_line(view: View, done: np.ndarray, line: str) -> str:
+    """What the rows cost in all, beside a uniform grid."""
+    v, rows = view.variables, int(done.sum())
     solves, boxes = int(v["solves"][done].sum()), int(v["boxes"][done].sum())
-    uniform = float(np.ptp(v[line])) / SHARP * int(done.sum())
-    lines.append(
-        f"solves: {solves} eigenproblems and {boxes} evaluations of D in all; a uniform grid that resolves "
-        f"{line} to {SHARP:g} on these rows has {uniform:.2g} points, {uniform / max(solves + boxes, 1):.1g} "
-        "times as many"
+    uniform = float(np.ptp(v[line])) / SHARP * rows
+    return (
+        f"in all {counted(solves, 'eigenproblem')} and {counted(boxes, 'evaluation')} of D; a uniform grid "
+        f"that resolves {line} to {SHARP:g} on these rows has {uniform:.2g} places, "
+        f"{uniform / max(solves + boxes, 1):.1g} times as many"
     )
-    return lines + (curve_lines(view, line, row) if "curve_number" in v else [])
 
 
 def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
@@ -79,34 +97,28 @@ def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     for words, (rows, where) in found_on.items():
         if rows.any():
             lines.append(
-                f"{words}: on {int(rows.sum())} of {int(done.sum())} rows, {line} = {span(where)}, "
+                f"{words}: on {some_of(rows.sum(), done.sum(), 'row')}, {line} = {span(where)}, "
                 f"{row} = {span(of_row[rows])}"
             )
     return lines
 
 
 def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
-    """The curves of folds and torus points of cycles, where they end, and how they agree with the rows."""
-    v = view.variables
-    numbers = np.unique(v["cycle_curve_number"])
-    lines = []
-    if len(numbers) or v["cycle_curves_untraced"]:
-        lines.append(
-            f"curves of cycles: {len(numbers)}; folds and torus points of rows lie within "
-            f"{float(v['cycle_curve_agreement']):.1e} of them, over {line}; "
-            f"{int(v['cycle_curves_untraced'])} lie on none"
-        )
-    for number in numbers:
+    """The curves of folds and torus points of cycles, and where they end."""
+    v, lines = view.variables, []
+    for number in np.unique(v["cycle_curve_number"]):
         on = np.flatnonzero(v["cycle_curve_number"] == number)
         kind = SPECIAL_KINDS[int(v["cycle_curve_kind"][on[0]])]
         ends = " to ".join(
-            f"{row} = {v[f'cycle_curve_{row}'][i]:.9g}, {line} = {v[f'cycle_curve_{line}'][i]:.9g} "
+            f"{row} = {v[f'cycle_curve_{row}'][i]:.9g}, {line} = "
+            f"{to_error(v[f'cycle_curve_{line}'][i], v['cycle_curve_error'][i])} "
             f"({CURVE_END_WORDS[tuple(CYCLE_CURVE_ENDS)[int(v['cycle_curve_end'][i])]]})"
             for i in on[[0, -1]]
         )
         what = "folds" if kind == "fold" else "torus points"
-        error = float(v["cycle_curve_error"][on].max())
-        lines.append(f"curve of {what}: from {ends}; {len(on)} points, largest error of {line} {error:.0e}")
+        error = error_text(float(v["cycle_curve_error"][on].max()))
+        points = counted(len(on), "point")
+        lines.append(f"curve of {what}: from {ends}; {points}, largest error of {line} {error}")
     return lines
 
 
@@ -124,9 +136,9 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
         there = (v["crossing_kind"] == number) & done[..., np.newaxis]
         on_row = there.any(axis=-1)
         if number and on_row.any():
-            at, rows = span(v["crossing_at"][there]), span(of_row[on_row])
+            at, rows = span(v["crossing_at"][there], v["crossing_error"][there]), span(of_row[on_row])
             lines.append(
-                f"{word}: on {int(on_row.sum())} of {int(done.sum())} rows, {line} = {at}, {row} = {rows}"
+                f"{word}: on {some_of(on_row.sum(), done.sum(), 'row')}, {line} = {at}, {row} = {rows}"
             )
             if line == "F" and view.quantities:
                 forces = v["crossing_at"][there]
@@ -138,33 +150,58 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     return lines
 
 
-def curve_lines(view: View, line: str, row: str) -> list[str]:
-    """The curves, how they agree with the rows, and their folds."""
+def agreement_lines(view: View, line: str) -> list[str]:
+    """How the curves agree with the rows."""
     v = view.variables
     hopf = len(np.unique(v["curve_number"][v["curve_kind"] == 1]))
     double = len(np.unique(v["curve_number"])) - hopf
+    within = error_text(float(v["curve_agreement"]))
     lines = [
         f"curves: {hopf} of Hopf points, {double} of double eigenvalues; crossings on rows lie within "
-        f"{float(v['curve_agreement']):.1e} of them, over {line}; {int(v['curves_untraced'])} lie on none"
+        f"{within} of them, over {line}; {_on_none(int(v['curves_untraced']))}"
     ]
-    for i, (kind, of) in enumerate(zip(v["fold_kind"], v["fold_of"], strict=True)):
-        where = ", ".join(
-            f"{name} = {v[f'fold_{name}'][i]:.13g} (+- {v[f'fold_{name}_error'][i]:.0e})"
-            for name in (row, line)
+    if "cycle_curve_number" in v and (len(v["cycle_curve_number"]) or v["cycle_curves_untraced"]):
+        curves, within = (
+            len(np.unique(v["cycle_curve_number"])),
+            error_text(float(v["cycle_curve_agreement"])),
         )
+        lines.append(
+            f"curves of cycles: {curves}; folds and torus points of rows lie within {within} of "
+            f"them, over {line}; {_on_none(int(v['cycle_curves_untraced']))}"
+        )
+    return lines
+
+
+def _on_none(count: int) -> str:
+    """How many points of rows lie on no curve."""
+    return f"{count} lies on none" if count == 1 else f"{count} lie on none"
+
+
+def fold_lines(view: View, line: str, row: str) -> list[str]:
+    """Where curves turn back, and where that of the partial beam does."""
+    v, lines = view.variables, []
+    for i, (kind, of) in enumerate(zip(v["fold_kind"], v["fold_of"], strict=True)):
         what = "Hopf points" if kind else "double eigenvalues"
+        where = _place(view, "fold", i, (row, line))
         lines.append(f"fold of the curve of {what}, where {(line, row)[int(of)]} is extremal: {where}")
     if "partial_beam_k1" in v:
         lines.append(
             f"partial beam limit: the Hopf curve folds at k1 = 4 Fc = {float(v['partial_beam_k1']):.13g}, "
             f"F = 2 Fc = {float(v['partial_beam_F']):.13g}"
         )
-    lines += criticality_lines(view, line, row) if "curve_criticality" in v else []
-    return lines + (cycle_curve_lines(view, line, row) if "cycle_curve_number" in v else [])
+    return lines
 
 
-def criticality_lines(view: View, line: str, row: str) -> list[str]:
-    """On which side of the Hopf curves cycles are born, and the generalised Hopf points on them."""
+def _place(view: View, what: str, i: int, names: tuple[str, str]) -> str:
+    """The i-th fold or generalised Hopf point with its errors."""
+    v = view.variables
+    return ", ".join(
+        f"{name} = {to_error(v[f'{what}_{name}'][i], v[f'{what}_{name}_error'][i])}" for name in names
+    )
+
+
+def criticality_lines(view: View) -> list[str]:
+    """On which side of the Hopf curves cycles are born."""
     v = view.variables
     side = v["curve_criticality"][v["curve_kind"] == 1]
     kinds = {
@@ -174,21 +211,25 @@ def criticality_lines(view: View, line: str, row: str) -> list[str]:
         "without a normal form": np.isnan(side),
     }
     told = [f"{int(there.sum())} {word}" for word, there in kinds.items() if there.any()]
-    lines = [
-        f"criticality, gamma1 = {float(v['curve_gamma1']):g}: of {len(side)} points of the Hopf curves "
+    points = counted(len(side), "point")
+    return [
+        f"criticality, gamma1 = {float(v['curve_gamma1']):g}: of {points} of the Hopf curves "
         f"{', '.join(told) or 'none'}"
     ]
-    for i in range(len(v["bautin_curve"])):
-        where = ", ".join(
-            f"{name} = {v[f'bautin_{name}'][i]:.13g} (+- {v[f'bautin_{name}_error'][i]:.0e})"
-            for name in (row, line)
-        )
-        lines.append(f"generalised Hopf point (Re c = 0) on curve {int(v['bautin_curve'][i])}: {where}")
-    if v["bautin_unlocated"]:
-        lines.append(
-            f"{int(v['bautin_unlocated'])} changes of criticality were seen whose place could not be found"
-        )
-    return lines + (bautin_curve_lines(view) if "bautin_along_curve" in v else [])
+
+
+def bautin_lines(view: View, line: str, row: str) -> list[str]:
+    """The generalised Hopf points, where the side on which cycles are born changes."""
+    v = view.variables
+    lines = [
+        f"generalised Hopf point (Re c = 0) on curve {int(v['bautin_curve'][i])}: "
+        + _place(view, "bautin", i, (row, line))
+        for i in range(len(v["bautin_curve"]))
+    ]
+    if unlocated := int(v["bautin_unlocated"]):
+        changes = counted(unlocated, "change")
+        lines.append(f"{changes} of criticality seen whose place could not be found")
+    return lines
 
 
 def bautin_curve_lines(view: View) -> list[str]:
@@ -200,7 +241,7 @@ def bautin_curve_lines(view: View) -> list[str]:
         where = ", ".join(f"{name} = {span(v[f'bautin_along_{name}'][on])}" for name in names)
         ends = [BAUTIN_ENDS[int(end)] for end in v["bautin_along_end"][on][[0, -1]]]
         lines.append(
-            f"curve {int(number)} of generalised Hopf points: {int(on.sum())} points, {where}; "
+            f"curve {int(number)} of generalised Hopf points: {counted(int(on.sum()), 'point')}, {where}; "
             f"ends: {ends[0]} and {ends[1]}"
         )
     return lines

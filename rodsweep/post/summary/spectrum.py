@@ -1,11 +1,13 @@
-"""What `rodsweep show` says of spectra: accuracy, cost and stability."""
+"""What `rodsweep show` says of spectra: stability, accuracy and cost."""
 
 import numpy as np
 
 from ...results.file.view import View
+from ...wording import counted, some_of
 from ..stability_changes import thresholds_on
 from .ranges import span, to_error
 from .stability import stability_lines
+from .told import Told, in_brackets, region
 
 HOW_FOUND = (
     "zeros of the characteristic determinant D(i eta; F), and double ones for F*, where the leading "
@@ -16,35 +18,43 @@ PROOFS = {True: "proved by a winding number", False: "not proved"}
 """What is said of the number of unstable modes at a single point."""
 
 
-def spectrum_summary(view: View, done: np.ndarray) -> list[str]:
-    """The task's lines about the points that are `done`, a mask of the points' shape."""
+def spectrum_summary(view: View, done: np.ndarray) -> Told:
+    """The task's sentences about the points that are `done`, a mask of the points' shape."""
     if done.size == 1:
-        return [*eigenvalue_lines(view), accuracy_lines(view, done)[-1]]
-    lines = [leading_line(view, done), *threshold_lines(view)]
-    return [*lines, *accuracy_lines(view, done), stability_line(view, done)]
-
-
-def leading_line(view: View, done: np.ndarray) -> str:
-    """How the straight rod fares over the points that are `done`, a mask of their shape."""
-    v = view.variables
-    unstable = v["unstable_count"][done]
-    counts = {
-        "stable": (unstable == 0).sum(),
-        "unstable": (unstable > 0).sum(),
-        "not known": (unstable < 0).sum(),
-    }
-    told = ", ".join(f"{word} at {int(count)}" for word, count in counts.items() if count)
-    rate, frequency = (span(v[name][done][:, 0]) for name in ("growth_rate", "frequency"))
-    return (
-        f"straight rod: {told} of {unstable.size} points; leading growth rate {rate}, frequency {frequency} "
-        "1/tau2"
+        return Told(eigenvalue_lines(view), details=unknowns_lines(view, done))
+    lines, how = threshold_lines(view)
+    return Told(
+        [stable_line(view, done), *lines],
+        [*error_lines(view, done), stability_line(view, done), *how],
+        [leading_line(view, done), *unknowns_lines(view, done)],
     )
 
 
-def threshold_lines(view: View) -> list[str]:
-    """The forces from which the rod oscillates, is unstable or stable; none where F is no axis."""
-    lines = stability_lines(view, thresholds_on)
-    return [*lines, f"  ({HOW_FOUND})"] if lines else []
+def stable_line(view: View, done: np.ndarray) -> str:
+    """At how many of the points that are `done`, a mask of their shape, the rod is stable, and where."""
+    unstable = view.variables["unstable_count"]
+    masks = {"stable": unstable == 0, "unstable": unstable > 0, "not known": unstable < 0}
+    there = {word: done & mask for word, mask in masks.items() if (done & mask).any()}
+    whole = counted(int(done.sum()), "point")
+    if len(there) == 1:
+        return f"straight rod: {next(iter(there))} at all of {whole}"
+    told = (f"{word} at {int(mask.sum())}{in_brackets(region(view, mask))}" for word, mask in there.items())
+    return f"straight rod, of {whole}: {', '.join(told)}"
+
+
+def leading_line(view: View, done: np.ndarray) -> str:
+    """The leading eigenvalue over the points that are `done`, a mask of their shape."""
+    v = view.variables
+    rate, frequency = (
+        span(v[name][done][:, 0], v["error_estimate"][done][:, 0]) for name in ("growth_rate", "frequency")
+    )
+    return f"leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"
+
+
+def threshold_lines(view: View) -> tuple[list[str], list[str]]:
+    """(where the rod changes along F; how that was found), both empty where F is no axis."""
+    lines = stability_lines(view, "F", lambda line: thresholds_on(line, view))
+    return lines, [f"thresholds: {HOW_FOUND}"] if lines else []
 
 
 def eigenvalue_lines(view: View) -> list[str]:
@@ -52,38 +62,41 @@ def eigenvalue_lines(view: View) -> list[str]:
     v = view.variables
     columns = (v[name].ravel() for name in ("growth_rate", "frequency", "error_estimate"))
     lines = [
-        f"mode {number}: growth rate {to_error(growth, error)}, frequency {to_error(frequency, error)} 1/tau2"
+        f"mode {number}: growth rate {to_error(growth, error)} 1/tau2, "
+        f"frequency {to_error(frequency, error)} rad/tau2"
         for number, (growth, frequency, error) in enumerate(zip(*columns, strict=True), 1)
         if np.isfinite(growth)
     ]
     unstable, proof = int(v["unstable_count"].max()), PROOFS[bool(v["certified"].all())]
     count = f"unstable modes: {unstable}, {proof}" if unstable >= 0 else "unstable modes: not known"
-    return [*lines, count]
+    return [count, *lines]
 
 
-def accuracy_lines(view: View, done: np.ndarray) -> list[str]:
-    """How accurate the eigenvalues are, and on how many unknowns; `done` has the points' shape."""
+def error_lines(view: View, done: np.ndarray) -> list[str]:
+    """How accurate the eigenvalues are; `done` has the points' shape."""
     v = view.variables
-    lines = []
     size = np.hypot(v["growth_rate"][done], v["frequency"][done])
     relative = v["error_estimate"][done] / size
-    if np.isfinite(relative).any():
-        lines.append(
-            f"error estimate, relative: worst {np.nanmax(relative):.1e}, median {np.nanmedian(relative):.1e}"
-        )
+    if not np.isfinite(relative).any():
+        return []
+    return [f"error estimate, relative: worst {np.nanmax(relative):.1e}, median {np.nanmedian(relative):.1e}"]
+
+
+def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
+    """On how many unknowns the points that are `done`, a mask of their shape, were solved."""
+    v = view.variables
     unknowns = 3 * v["elements"][done].astype(int) * v["order"][done]
     if (followed := int((unknowns == 0).sum())) == unknowns.size:
-        return [*lines, "unknowns a point: none, all followed from neighbours or failed"]
-    meshes = unknowns[unknowns > 0]
+        return ["unknowns a point: none, all followed from neighbours or failed"]
     without = f"; none at {followed} that were followed or failed" if followed else ""
-    return [*lines, f"unknowns a point: {meshes.min()} to {meshes.max()}{without}"]
+    return [f"unknowns a point: {span(unknowns[unknowns > 0])}{without}"]
 
 
 def stability_line(view: View, done: np.ndarray) -> str:
-    """How many points are certified, and how many unstable; `done` has the points' shape."""
-    unstable = view.variables["unstable_count"][done]
-    return (
-        f"certified: {int(view.variables['certified'][done].sum())} of {int(done.sum())}; unstable modes: at "
-        f"most {max(int(unstable.max()), 0)}, at {int((unstable > 0).sum())} points; not known at "
-        f"{int((unstable < 0).sum())}"
-    )
+    """How many points are certified, and how many unstable modes there are; `done` has the points' shape."""
+    unstable, points = view.variables["unstable_count"][done], int(done.sum())
+    certified = int(view.variables["certified"][done].sum())
+    text = f"number of unstable modes: at most {max(int(unstable.max()), 0)}, proved at "
+    text += some_of(certified, points, "point")
+    unknown = int((unstable < 0).sum())
+    return text + (f", not known at {unknown}" if unknown else "")

@@ -1,57 +1,95 @@
-"""What `rodsweep show` says of the forces at which the straight rod becomes unstable, or stable again."""
+"""What `rodsweep show` says of where the straight rod becomes unstable along a parameter, or stable again."""
 
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
 from ...results.file.view import View
-from ..hopf_points import HopfPoint, Located, ParameterLine, lines_over
+from ...wording import counted, some_of
+from ..hopf_points import Bracket, HopfPoint, Located, ParameterLine, lines_over
 from .arm import threshold_lines_in_si
+from .ranges import error_text, stated_error
 
 FEW_LINES = 3
-"""Lines over F whose thresholds are named one by one."""
-THRESHOLDS = {
+"""Lines whose thresholds are named one by one."""
+OVER_FORCE = {
     "onset": "F* (straight rod starts to oscillate)",
     "hopf": "F** (straight rod starts to beat)",
     "restabilization": "restabilization (straight rod is stable again)",
 }
-"""What a threshold is called, by its kind."""
+"""What a threshold is called along F, by its kind."""
+OVER_OTHERS = {
+    "hopf": "the straight rod starts to beat, as {name} grows, at {name}",
+    "restabilization": "the straight rod is stable again, as {name} grows, at {name}",
+}
+"""What a change of stability is called along another parameter."""
+
+Threshold = Located | Bracket
 
 
-def stability_lines(view: View, found_on: Callable[[ParameterLine, View], Sequence[Located]]) -> list[str]:
-    """Where the straight rod changes along F, one line for each kind of threshold; none where F is no axis.
+def stability_lines(
+    view: View, name: str, found_on: Callable[[ParameterLine], Sequence[Threshold]]
+) -> list[str]:
+    """Where the straight rod changes along a parameter, a sentence for each kind of threshold.
 
-    Of an arm a second line follows, in SI units.
+    None where the parameter is no axis. Of an arm a line in SI units follows for thresholds along F.
 
-    found_on: gives the thresholds on a line over F.
+    found_on: gives the thresholds on a line over the parameter.
     """
-    if len(np.unique(view.point_columns["F"])) < 2:
+    column = view.point_columns[name]
+    if len(np.unique(column[np.isfinite(column)])) < 2:
         return []
-    lines = list(lines_over(view, "F"))
-    varied = [n for n in lines[0].parameters if len({line.parameters[n] for line in lines}) > 1]
-    names = [", ".join(f"{name} = {line.parameters[name]:.6g}" for name in varied) for line in lines]
-    along = [found_on(line, view) for line in lines]
+    lines = list(lines_over(view, name))
+    names, along = names_of(lines), [found_on(line) for line in lines]
     texts = []
-    for kind, words in THRESHOLDS.items():
+    for kind, words in (OVER_FORCE if name == "F" else OVER_OTHERS).items():
         of_kind = [[point for point in points if point.kind == kind] for points in along]
         if found := {i: points for i, points in enumerate(of_kind) if points}:
-            texts.append(f"{words}: {_positions(found, names)}")
-            in_load = [(point, lines[i].at) for i, points in found.items() for point in points]
-            texts += threshold_lines_in_si(view, in_load)
+            texts.append(f"{words.format(name=name)}: {_positions(found, names, name)}")
+            every = [(point, lines[i].at) for i, points in found.items() for point in points]
+            located = [(point, at) for point, at in every if isinstance(point, Located)]
+            texts += threshold_lines_in_si(view, located) if name == "F" else []
     return texts
 
 
-def _positions(found: Mapping[int, list[Located]], names: list[str]) -> str:
+def names_of(lines: Sequence[ParameterLine]) -> list[str]:
+    """What tells each line from the others, in words; empty for a single line."""
+    varied = [n for n in lines[0].parameters if len({line.parameters[n] for line in lines}) > 1]
+    return [", ".join(f"{name} = {line.parameters[name]:.6g}" for name in varied) for line in lines]
+
+
+def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: str) -> str:
     """The thresholds on those of the named lines that have any: one by one where few, else their range."""
     points = [point for line in found.values() for point in line]
-    error = f" (+- {max(point.error for point in points):.0e})"
-    some = f", on {len(found)} of {len(names)} lines over F" if len(found) < len(names) else ""
-    if all(point.agrees(points[0]) for point in points):
-        frequency = points[0].frequency if isinstance(points[0], HopfPoint) else np.nan
-        beats = f", frequency {frequency:.6g} 1/tau2" if np.isfinite(frequency) else ""
-        return points[0].text + error + some + beats
-    if len(found) > FEW_LINES:
-        first, *_, last = sorted(points, key=lambda point: point.position)
-        return f"{first.text} to {last.text}{error}{some}"
-    each = (" for ".join(filter(None, (" and ".join(p.text for p in found[i]), names[i]))) for i in found)
-    return f"{', '.join(each)}{error}"
+    located = [point for point in points if isinstance(point, Located)]
+    stated = [stated_error(point.position, point.error)[1] for point in located]
+    error = f" (+- {error_text(max(stated))})" if stated else ""
+    some = f", on {some_of(len(found), len(names), 'line')} over {along}" if len(found) < len(names) else ""
+    if len(located) == len(points) and all(point.agrees(located[0]) for point in located):
+        frequency = located[0].frequency if isinstance(located[0], HopfPoint) else np.nan
+        beats = f", frequency {frequency:.6g} rad/tau2" if np.isfinite(frequency) else ""
+        return _text(located[0]) + error + some + beats
+    if len(found) <= FEW_LINES:
+        texts = (_together(found[i], names[i]) for i in found)
+        return f"{', '.join(texts)}{error}"
+    if not located:
+        ends = [(point.low, point.high) for point in points if isinstance(point, Bracket)]
+        low, high = min(low for low, _ in ends), max(high for _, high in ends)
+        return f"between {low:.6g} and {high:.6g}{some}"
+    first = min(located, key=lambda point: point.position)
+    last = max(located, key=lambda point: point.position)
+    rest = len(points) - len(located)
+    more = f"; at {counted(rest, 'other place')} known only to lie between two points" if rest else ""
+    return f"{_text(first)} to {_text(last)}{error}{some}{more}"
+
+
+def _together(points: Sequence[Threshold], name: str) -> str:
+    """The thresholds of a line, and which line it is."""
+    return " for ".join(filter(None, (" and ".join(map(_text, points)), name)))
+
+
+def _text(threshold: Threshold) -> str:
+    """Where a threshold lies, to the first digit that its error reaches, or between which points."""
+    if isinstance(threshold, Bracket):
+        return f"between {threshold.low:.6g} and {threshold.high:.6g}"
+    return stated_error(threshold.position, threshold.error)[0]

@@ -6,30 +6,49 @@ import numpy as np
 
 from ...results.file.view import View
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
+from ...results.layouts.variables import ANGULAR
+from ...wording import counted, plural, some_of
 from .arm import crossing_line_in_si
-from .ranges import span, to_error
+from .ranges import error_text, rounded, span, to_error
+from .told import Told, at_point, in_brackets
 
-FORCES_AND_RATES = {
-    "onset": ("F_onset", "growth rate", "onset_growth_rate"),
-    "Hopf": ("F_hopf", "frequency", "hopf_frequency"),
-    "restabilization": ("F_restabilization", "frequency", "restabilization_frequency"),
+EVENTS = {
+    "hopf": ("F** (straight rod starts to beat)", "hopf_frequency", "frequency", ANGULAR),
+    "restabilization": ("stable again", "restabilization_frequency", "frequency", ANGULAR),
+    "onset": ("F* (straight rod starts to oscillate)", "onset_growth_rate", "growth rate", "1/tau2"),
 }
+"""What the first crossing of each kind is called, and what is told of it beside the force."""
 
 
-def thresholds_summary(view: View, done: np.ndarray) -> list[str]:
-    """The task's lines about the points that are `done`, a mask of the points' shape."""
-    v = view.variables
-    points = int(done.sum())
+def thresholds_summary(view: View, done: np.ndarray) -> Told:
+    """The task's sentences about the points that are `done`, a mask of the points' shape."""
     if done.size == 1:
-        return [*crossing_lines(view), search_lines(view, done, 1)[-1]]
-    lines = []
-    for event, (force, word, number) in FORCES_AND_RATES.items():
-        F = v[force][done]
-        there = int(np.isfinite(F).sum())
-        where = f": F = {span(F)}, {word} {span(v[number][done])}" if there else ""
-        lines.append(f"{event}: at {there} of {points} points{where}")
-    lines.append(f"searched up to F = {span(v['F_end'][done])}")
-    return [*lines, *monotony_lines(view), *search_lines(view, done, points)]
+        return Told(crossing_lines(view), trust_of_one(view), cost_lines(view, done))
+    answer = [event_line(view, done, event) for event in EVENTS]
+    trust = [*search_lines(view, done, "rod"), f"searched up to F = {span(view.variables['F_end'][done])}"]
+    return Told(answer, trust, [*monotony_lines(view), *cost_lines(view, done)])
+
+
+def event_line(view: View, done: np.ndarray, event: str) -> str:
+    """At which forces the rods that are `done` have their first crossing of a kind, and at which rods."""
+    words, rate, noun, unit = EVENTS[event]
+    v = view.variables
+    F = np.where(done, v[f"F_{event}"], np.nan).ravel()
+    there, rods = np.isfinite(F), int(done.sum())
+    if not there.any():
+        return f"{words}: at none of {counted(rods, 'rod')}"
+    low, high = int(np.nanargmin(F)), int(np.nanargmax(F))
+    errors = crossing_errors(view, F, "crossing_F")
+    places = [f"{rounded(F[i], errors[i])}{in_brackets(at_point(view, i))}" for i in (low, high)]
+    forces = " to ".join(places if places[0] != places[1] else places[:1])
+    where = "at all" if there.sum() == rods else f"at {int(there.sum())}"
+    return f"{words}: F = {forces}, {where} of {counted(rods, 'rod')}; {noun} {span(v[rate][done])} {unit}"
+
+
+def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
+    """The absolute errors of crossings, one of each point, (points,), from the list of crossings."""
+    table, errors = (view.variables[name].reshape(len(F), -1) for name in (at, "crossing_error"))
+    return np.where(table == F[:, None], errors, 0.0).max(axis=1)
 
 
 def crossing_lines(view: View) -> list[str]:
@@ -40,18 +59,32 @@ def crossing_lines(view: View) -> list[str]:
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
         F = to_error(v["crossing_F"][i], v["crossing_error"][i])
         growth, frequency = v["crossing_growth_rate"][i], v["crossing_frequency"][i]
-        rates = f"growth rate {growth:.6g}, frequency {frequency:.6g} 1/tau2"
+        rates = f"growth rate {growth:.6g} 1/tau2, frequency {frequency:.6g} {ANGULAR}"
         after = int(v["unstable_after"][i])
         above = f"; unstable modes above: {after if after >= 0 else 'not known'}"
         lines.append(f"{kind} at F = {F}: {CROSSING_MEANINGS[kind]}; {rates}{above}")
         lines += crossing_line_in_si(view, int(i))
-    found, stored = int(v["crossing_count"][0]), int((v["crossing_kind"] > 0).sum())
-    more = f"; {found - stored} more are not stored, raise the option crossings" * (found > stored)
+    if not lines and v["crossing_count"][0] < 0:
+        return ["nothing is known of its thresholds"]
+    return lines or [f"no threshold up to F = {v['F_end'][0]:.15g}"]
+
+
+def trust_of_one(view: View) -> list[str]:
+    """How far the one rod of a file was searched, and whether all is found."""
+    v = {name: view.variables[name].ravel() for name in ("crossing_count", "crossing_kind", "certified")}
+    end, open_from, open_to = (float(view.variables[n].ravel()[0]) for n in ("F_end", "open_from", "open_to"))
+    hidden = int(v["crossing_count"][0]) - int((v["crossing_kind"] > 0).sum())
     proof = "proved" if v["certified"].all() else "not proved"
-    lines.append(f"searched up to F = {v['F_end'][0]:.15g}; that no crossing is missing is {proof}{more}")
-    if np.isfinite(v["open_from"][0]):
-        lines.append(f"undecided: F = {v['open_from'][0]:.9g} to {v['open_to'][0]:.9g}")
+    lines = [f"searched up to F = {end:.15g}; that no crossing is missing is {proof}{not_stored(hidden)}"]
+    if np.isfinite(open_from):
+        lines.append(f"undecided: F = {open_from:.9g} to {open_to:.9g}")
     return lines
+
+
+def not_stored(hidden: int) -> str:
+    """What is said of crossings that a list has no room for."""
+    verb = "is" if hidden == 1 else "are"
+    return f"; {hidden} more {verb} not stored, raise the option crossings" if hidden > 0 else ""
 
 
 def monotony_lines(view: View) -> list[str]:
@@ -67,7 +100,7 @@ def monotony_lines(view: View) -> list[str]:
         if not there.any():
             continue
         rising = np.apply_along_axis(lambda F: (np.diff(F[np.isfinite(F)]) > 0).all(), -1, along) & there
-        text = f"{force} rises with {label} on {int(rising.sum())} of {int(there.sum())} lines"
+        text = f"{force} rises with {label} on {some_of(rising.sum(), there.sum(), 'line')}"
         others = [n for n in view.axes if n != name]
         for other, places in zip(others, np.argwhere(there & ~rising).T, strict=True):
             if len(view.axes[other]) > 1 and places.size:
@@ -78,17 +111,33 @@ def monotony_lines(view: View) -> list[str]:
     return lines
 
 
-def search_lines(view: View, done: np.ndarray, lines: int) -> list[str]:
-    """How far the searches can be trusted, and what they cost; `done` has the points' shape."""
-    v = view.variables
+def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
+    """How far the searches can be trusted; `done` has the points' shape, noun: what a point is."""
+    v, searches = view.variables, int(done.sum())
     there = v["crossing_kind"][done] > 0
     stored = there.sum(axis=-1)
     errors = v["crossing_error"][done][there]
-    worst = f"; absolute error at most {np.nanmax(errors):.1e}" if np.isfinite(errors).any() else ""
+    known = errors[np.isfinite(errors)]
+    worst = f"; absolute error at most {error_text(float(known.max()))}" if known.size else ""
     undecided = int(np.isfinite(v["open_from"][done]).sum())
+    proved = some_of(int(v["certified"][done].sum()), searches, noun)
+    window = f"; a range stays undecided on {counted(undecided, noun)}" if undecided else ""
+    hidden = int((v["crossing_count"][done] - stored).clip(min=0).sum())
     return [
-        f"crossings stored: {int(stored.sum())}, at most {int(stored.max())} on a line{worst}",
-        f"certified: {int(v['certified'][done].sum())} of {lines}; a range stays undecided on {undecided}",
-        f"cost of a line: {span(v['boxes'][done].astype(float))} evaluations of D, "
-        f"{span(v['solves'][done].astype(float))} eigenproblems",
+        f"that no crossing is missing is proved on {proved}{window}",
+        f"crossings stored: {int(stored.sum())}, at most {int(stored.max())} on a {noun}{worst}"
+        f"{not_stored(hidden)}",
     ]
+
+
+def cost_lines(view: View, done: np.ndarray) -> list[str]:
+    """What the searches cost; `done` has the points' shape."""
+    v = view.variables
+    boxes, solves = (v[name][done] for name in ("boxes", "solves"))
+    return [f"cost of a search: {spans(boxes, 'evaluation')} of D, {spans(solves, 'eigenproblem')}"]
+
+
+def spans(values: np.ndarray, noun: str) -> str:
+    """A range of whole numbers of things, (n,)."""
+    text = span(values)
+    return f"{text} {noun if text == '1' else plural(noun)}"

@@ -1,7 +1,7 @@
 """A new result file: netCDF-4-compatible HDF5 with every variable in its place; and what is added later."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ from ...arrays import Array
 from ...sweep.chains import Chains
 from ...sweep.grid import Points
 from ...sweep.stretches import Stretches
-from ..layouts.variables import DIMENSIONS, MISSING, Filled, Layout, Variable
+from ..layouts.variables import DIMENSIONS, MISSING, TYPED, Filled, Layout, Variable
 from .identity import fingerprint_of
 from .validation import FORMAT, PROGRAM
 
@@ -27,15 +27,15 @@ class Plan:
     layout: Layout
     coordinates: dict[str, Array]
     """Values of extra dimensions that have some, such as u."""
-    constants: tuple[Filled, ...]
-    """Variables known without solving, such as those along (k1, mode) on a grid, (point, mode) else."""
+    constants: Callable[[], tuple[Filled, ...]]
+    """Variables that are known before any point is solved; asked for once, where a file is created."""
     config: dict[str, Any]
     """The resolved config."""
     attributes: dict[str, Any]
     flags: tuple[tuple[int, str], ...]
     """Values and meanings of `status`, beside MISSING."""
     quantities: tuple[Filled, ...] = ()
-    """Those of an arm, which are coordinates of the points beside the parameters."""
+    """Those of an arm, which are coordinates of the points beside the parameters; or their dimensions."""
     chains: Chains | None = None
     """The chains in which points start one from the other, where they do."""
     stretches: Stretches | None = None
@@ -44,12 +44,12 @@ class Plan:
     @property
     def dimensions(self) -> tuple[str, ...]:
         """Names of the dimensions of the points."""
-        return self.layout.parameters if self.points.is_grid else ("point",)
+        return self.layout.dimensions(is_list=not self.points.axes)
 
     @property
     def fingerprint(self) -> str:
         """What two files must share for the one to continue the other."""
-        return fingerprint_of(self.config, self.points.columns)
+        return fingerprint_of(self.config, self.points.identity)
 
 
 def create_file(path: Path, plan: Plan) -> None:
@@ -61,8 +61,8 @@ def create_file(path: Path, plan: Plan) -> None:
         for variable in plan.layout.variables:
             data = _contiguous(file, variable, plan.points.shape + plan.layout.inner(variable))
             _describe(file, data, variable, (*plan.dimensions, *variable.extra))
-        add_variables(file, plan.constants)
-        add_variables(file, plan.quantities)
+        add_variables(file, plan.constants())
+        add_variables(file, [filled for filled in plan.quantities if not is_axis(filled[0])])
         _describe_flags(file["status"], ((MISSING, "missing"), *plan.flags))
         file.attrs["program"] = PROGRAM
         file.attrs["format"] = FORMAT
@@ -82,10 +82,18 @@ def add_variables(file: h5py.File, filled: Sequence[Filled]) -> None:
 
 
 def _write_parameters(file: h5py.File, plan: Plan) -> None:
-    """The parameters, each a dimension of its own or all along `point`."""
+    """What makes a point: dimensions of a grid, or all parameters along `point`."""
     names, points = plan.layout.parameters, plan.points
+    for variable, values in plan.quantities:
+        if is_axis(variable):
+            _write_scale(file, variable.name, values, variable)
+    beside = [variable.name for variable, _ in plan.quantities if not is_axis(variable)]
+    if beside or not points.axes:
+        file.attrs["coordinates"] = " ".join([*(() if points.axes else names), *beside])
+    if points.over:
+        return
     if not points.is_grid:
-        _write_scale(file, "point", np.arange(points.count, dtype="<i4"))
+        _write_scale(file, "point", np.arange(1, points.count + 1, dtype="<i4"))
     for name, column in zip(names, points.columns, strict=True):
         if points.is_grid:
             _write_scale(file, name, column)
@@ -93,16 +101,21 @@ def _write_parameters(file: h5py.File, plan: Plan) -> None:
             data = file.create_dataset(name, data=column)
             _name(data, name)
             data.dims[0].attach_scale(file["point"])
-    beside = [variable.name for variable, _ in plan.quantities]
-    if beside or not points.is_grid:
-        file.attrs["coordinates"] = " ".join([*(() if points.is_grid else names), *beside])
 
 
-def _write_scale(file: h5py.File, name: str, values: NDArray[Any]) -> None:
-    """A dimension with its coordinate."""
+def is_axis(variable: Variable) -> bool:
+    """Whether a variable is the coordinate of a dimension of its name."""
+    return variable.extra == (variable.name,)
+
+
+def _write_scale(file: h5py.File, name: str, values: NDArray[Any], variable: Variable | None = None) -> None:
+    """A dimension with its coordinate; variable: where that is in no table of dimensions."""
     data = file.create_dataset(name, data=values)
     data.make_scale(name)
-    _name(data, name)
+    if variable is None:
+        _name(data, name)
+    else:
+        _describe(file, data, variable, ())
 
 
 def _name(data: h5py.Dataset, name: str) -> None:
@@ -125,6 +138,8 @@ def _contiguous(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> 
 def _describe(file: h5py.File, data: h5py.Dataset, variable: Variable, dimensions: Sequence[str]) -> None:
     """What the table says of a variable, and its dimensions."""
     data.attrs.update(units=variable.units, long_name=variable.long_name)
+    if variable.typed:
+        data.attrs[TYPED] = variable.typed
     if variable.flags:
         _describe_flags(data, variable.flags)
     for axis, name in enumerate(dimensions):

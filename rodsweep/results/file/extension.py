@@ -132,18 +132,20 @@ def _refuse(header: Header, difference: str) -> None:
 def _places(header: Header, old: Points, plan: Plan) -> Places:
     """Where the stored points are among those of the plan; InputError if one is not among them."""
     new = plan.points
-    if old.is_grid != new.is_grid or old.names != new.names:
-        kinds = [f"a {'grid' if p.is_grid else 'list'} of {words(p.names, 'and')}" for p in (old, new)]
+    if tuple(old.axes) != tuple(new.axes) or old.names != new.names:
+        kinds = [
+            f"a grid of {words(tuple(p.axes), 'and')}" if p.axes else f"a list of {words(p.names, 'and')}"
+            for p in (old, new)
+        ]
         _refuse(header, config_difference(kinds[0], kinds[1], "parameters"))
-    if not old.is_grid:
+    if not old.axes:
         return Places(old.shape, new.shape, (_places_in_list(header, old, new),))
-    pairs = zip(old.names, old.columns, new.columns, strict=True)
-    places = [_places_on_axis(header, *pair) for pair in pairs]
+    places = [_places_on_axis(header, name, axis, new.axes[name]) for name, axis in old.axes.items()]
     if plan.chains:
         axis = plan.chains.axis
-        places[axis] = _same_from_the_start(places[axis], len(new.columns[axis]), plan.chains.upward)
+        places[axis] = _same_from_the_start(places[axis], new.shape[axis], plan.chains.upward)
     if plan.stretches:
-        axis, before = plan.stretches.axis, along_the_longest(old.shape)
+        axis, before = plan.stretches.axis, along_the_longest(old.shape, old.moved)
         same = _same_stretches(places[axis], new.shape[axis])
         places[axis] = np.where(same & (before is not None and before.axis == axis), places[axis], -1)
     return Places(old.shape, new.shape, tuple(places))

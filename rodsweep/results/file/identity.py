@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array
+from ...config.axes import Axes
 from ...config.reading import config_of
 from ...config.values import Axis
 
@@ -23,10 +24,12 @@ LONGEST_VALUE = 80
 def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
     """What two files must share for the one to continue the other: of a resolved config and its points.
 
-    columns: the axes of a grid or the parameters of a list, each (n,). ValueError for a config of no use.
+    columns: the `identity` of the points, each (n,). ValueError for a config of no use.
     """
     asked = config_of(config)
     meant = {"meaning": asked.meaning, "grid": not asked.parameters.is_list}
+    if asked.parameters.over:
+        meant["over"] = asked.parameters.over
     digest = sha256(json.dumps(meant, sort_keys=True).encode())
     for column in columns:
         digest.update(len(column).to_bytes(8, "little"))
@@ -45,13 +48,20 @@ def change_between(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
         {name: value for name, value in config["parameters"].items() if name not in same and name != "points"}
         for config in (theirs, ours)
     ]
-    kinds = ["a list of points" if config.parameters.is_list else "a grid" for config in configs]
+    kinds = [_kind(config.parameters) for config in configs]
     return (
         config_difference(kinds[0], kinds[1], "parameters")
         or config_difference(written[0], written[1], "parameters")
         or config_difference(configs[0].meaning, configs[1].meaning)
         or "the points listed in parameters.points differ"
     )
+
+
+def _kind(parameters: Axes) -> str:
+    """What kind of points a config has, in words."""
+    if parameters.over:
+        return f"a grid over {' and '.join(parameters.over)}"
+    return "a list of points" if parameters.is_list else "a grid"
 
 
 def _same_axis(first: Axis, second: Axis) -> bool:

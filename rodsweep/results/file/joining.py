@@ -105,7 +105,7 @@ def joint_of(sources: Sequence[Header], planner: Planner) -> Joint:
     """How files of different points become one; InputError, which says why, where they do not."""
     first, *others = sources
     meant = config_of(first.config).meaning
-    grids = [parameters_of(source.path, source.layout.parameters) for source in sources]
+    grids = [parameters_of(source.path, source.layout) for source in sources]
     for other, points in zip(others, grids[1:], strict=True):
         theirs = config_of(other.config).meaning
         apart = config_difference(

@@ -4,10 +4,11 @@ Not through HDF5, whose blocks follow the axes of a grid: along the first, which
 Nothing is mapped: pages that are touched would count as this process's memory, in the end the whole file.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import pairwise
 from math import prod
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -94,10 +95,27 @@ def points_at(path: Path, index: np.ndarray, layout: Layout) -> np.ndarray:
     return records
 
 
-def parameters_of(path: Path, names: tuple[str, ...]) -> Points:
-    """The points of a file, made or not: the axes or columns of these names."""
+def parameters_of(path: Path, layout: Layout) -> Points:
+    """The points of a file of that layout, made or not."""
     with h5py.File(path, "r") as file:
+        return points_in(file, layout)
+
+
+def points_in(file: h5py.File, layout: Layout) -> Points:
+    """The points of an open file: the axes of a grid, or the parameters of all points."""
+    names, over = layout.parameters, {name: file[name][...] for name in layout.over}
+    if not over:
         return Points(names, tuple(file[name][...] for name in names), is_grid="point" not in file)
+    columns = tuple(np.broadcast_to(table, file["status"].shape).ravel() for table in on_grid(file, layout))
+    return Points(names, columns, is_grid=False, over=over)
+
+
+def on_grid(variables: Mapping[str, Any], layout: Layout) -> Iterator[np.ndarray]:
+    """Every parameter on a grid over an arm's quantities, of its shape or along its own axis."""
+    for name in layout.parameters:
+        along = [-1 if axis == name else 1 for axis in layout.over]
+        table = variables[name][...]
+        yield table.reshape(along) if name in layout.over else table
 
 
 def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> bool:

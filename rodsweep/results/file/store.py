@@ -103,7 +103,7 @@ class Store:
 
     def _extend(self, header: Header) -> None:
         """Exchanges the file of a smaller config for that of the plan, with all points that stay."""
-        points = parameters_of(self.path, header.layout.parameters)
+        points = parameters_of(self.path, header.layout)
         extension = extension_of(header, points, self.plan)
         self._need_room()
         self._fold(header, {})
@@ -265,7 +265,7 @@ class Store:
     def _hint(self, header: Header) -> str:
         """What else may be done about a file of another config, where its config is contained in ours."""
         try:
-            extension_of(header, parameters_of(self.path, header.layout.parameters), self.plan)
+            extension_of(header, parameters_of(self.path, header.layout), self.plan)
         except InputError:
             return ""
         return "; --extend computes what it lacks"

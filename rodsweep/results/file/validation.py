@@ -17,13 +17,17 @@ from ..layouts import layout_of
 from ..layouts.variables import Layout
 from .content import refuse_changed
 from .identity import fingerprint_of
+from .points import points_in
 from .seal import HDF5_SIGNATURE, check_frame
 
 PROGRAM = "rodsweep"
 """The attribute `program` of our files."""
-FORMAT = 5
+FORMAT = 6
 """The attribute `format` of our files: grows when a variable is added or changes its meaning. Only files of
-this format are read; 5 is the first whose content is sealed."""
+this format are read: 5 was the first whose content is sealed, 6 has frequencies in Hz, counts from 1,
+the Hopf points of the lines of limit cycles, and grids over an arm's quantities."""
+CONFIGS = (".yaml", ".yml")
+"""Endings of configs."""
 LONGEST_REASON = 150
 """Characters of what a library says."""
 DAMAGES = (OSError, LookupError, ValueError, TypeError, RuntimeError, OverflowError, MemoryError)
@@ -73,6 +77,8 @@ def open_whole(path: Path, values: bool = True) -> tuple[h5py.File, Header]:
     InputError unless the file is a whole result that says what rodsweep wrote.
     """
     refuse_absent(path)
+    if path.suffix in CONFIGS:
+        raise NotWhole(f"{path} is a config and no result file; `rodsweep run` makes one of it")
     with reading(path):
         is_framed = check_frame(path)
         file = h5py.File(path, "r")
@@ -111,7 +117,7 @@ def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Header
     attributes.setdefault("task", config["task"])
     layout = layout_of(config)
     refuse_misfit(file, layout)
-    asked = fingerprint_of(config, [file[name][...] for name in layout.parameters])
+    asked = fingerprint_of(config, points_in(file, layout).identity)
     points = file["status"].size
     return Header(path, attributes, config, str(attributes["fingerprint"]), layout, points, asked)
 
@@ -143,8 +149,7 @@ def _refuse_other_format(path: Path, attributes: Mapping[str, Any]) -> None:
 
 def refuse_misfit(file: h5py.File, layout: Layout) -> None:
     """One of DAMAGES unless every variable of the layout is there, with its type, its shape and its place."""
-    names = ("point",) if "point" in file else layout.parameters
-    shape = tuple(len(file[name]) for name in names)
+    shape = tuple(len(file[name]) for name in layout.dimensions(is_list="point" in file))
     expected = {v.name: (shape + layout.inner(v), np.dtype(v.dtype)) for v in layout.variables}
     expected |= {name: ((extent,), file[name].dtype) for name, extent in layout.extents.items()}
     for name, (extents, kind) in expected.items():

@@ -1,7 +1,7 @@
 """A result file with what its journals add to it, read only: what `show` and `plot` work on."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ..layouts.arm import QUANTITY_UNITS
+from ..layouts.variables import TYPED
 from .content import is_users
 from .recent import journalled_points, put_in, unfolded
 from .validation import cleaned, open_whole, reading, refuse_absent
@@ -58,6 +59,10 @@ class View:
     flags: dict[int, str]
     journalled: int
     """Finished points that are shown and still in the journal: of a run that goes on, or was interrupted."""
+    over: tuple[str, ...] = ()
+    """The dimensions of a grid over an arm's quantities."""
+    typed: dict[str, str] = field(default_factory=dict)
+    """The units in which an arm's quantities were typed."""
 
     @property
     def task(self) -> str:
@@ -66,7 +71,8 @@ class View:
 
     @property
     def is_grid(self) -> bool:
-        return "point" not in self.variables
+        """Whether the points are a grid of parameters."""
+        return "point" not in self.variables and not self.over
 
     @property
     def axes(self) -> dict[str, np.ndarray]:
@@ -75,8 +81,30 @@ class View:
 
     @property
     def quantities(self) -> dict[str, np.ndarray]:
-        """Those of an arm in SI units, each of shape () or along a parameter or `point`; none without one."""
+        """Those of an arm in SI units; none without one.
+
+        Each is of shape () or along a parameter, along `point`, or of a grid over them along their own.
+        """
         return {name: self.variables[name] for name in QUANTITY_UNITS if name in self.variables}
+
+    @property
+    def listed(self) -> "View":
+        """A grid over an arm's quantities as the list of its points; itself where it is of another kind."""
+        if not self.over:
+            return self
+        shape = self.variables["status"].shape
+        found = {name: self._listed(name, shape) for name in self.variables}
+        found["point"] = np.arange(1, self.variables["status"].size + 1)
+        return replace(self, variables=found, over=())
+
+    def _listed(self, name: str, shape: tuple[int, ...]) -> np.ndarray:
+        """A variable along the list of points, where it is along axes of their grid."""
+        values = self.variables[name]
+        if name in self.over:
+            along = [-1 if axis == name else 1 for axis in self.over]
+            return np.broadcast_to(values.reshape(along), shape).ravel()
+        n = len(shape)
+        return values.reshape(-1, *values.shape[n:]) if values.shape[:n] == shape else values
 
     @property
     def point_columns(self) -> dict[str, np.ndarray]:
@@ -102,4 +130,11 @@ def _view(path: Path) -> View:
         flags = dict(zip((int(v) for v in status.attrs["flag_values"]), words, strict=True))
         recent = journalled_points(header, status[...].ravel())
         variables = Variables(path, file, recent)
-    return View(path, header.attributes, variables, header.layout.parameters, flags, len(recent))
+        typed = {name: str(file[name].attrs[TYPED]) for name in QUANTITY_UNITS if is_typed(file, name)}
+    layout = header.layout
+    return View(path, header.attributes, variables, layout.parameters, flags, len(recent), layout.over, typed)
+
+
+def is_typed(file: h5py.File, name: str) -> bool:
+    """Whether a file says in which unit a quantity was typed."""
+    return name in file and TYPED in file[name].attrs

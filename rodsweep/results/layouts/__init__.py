@@ -6,7 +6,7 @@ from typing import Any
 
 from . import branch, criticality, limit_cycle, modes, phase_diagram, spectrum, thresholds
 from .arm import with_si
-from .variables import Increase, Layout
+from .variables import Increase, Layout, Variable
 
 LAYOUTS: dict[str, Callable[[dict[str, Any]], Layout]] = {
     "spectrum": spectrum.layout,
@@ -30,6 +30,13 @@ INCREASES: dict[str, dict[str, Increase]] = {
 }
 """The options of every task that ask for more of a point; another value of any other makes another file."""
 
+BESIDE_POINTS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
+    "spectrum": spectrum.beside_points,
+    "phase_diagram": phase_diagram.beside_points,
+    "limit_cycle": lambda config, is_grid: limit_cycle.HOPF_POINTS,
+}
+"""What tasks store that all points share or together give, from (resolved config, whether a grid)."""
+
 
 def layout_of(config: dict[str, Any]) -> Layout:
     """The layout that the resolved config of any task asks for."""
@@ -37,6 +44,12 @@ def layout_of(config: dict[str, Any]) -> Layout:
     if task not in LAYOUTS:
         raise KeyError(f"unknown task {task}")
     return with_si(LAYOUTS[task](config), config)
+
+
+def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
+    """What the file of a resolved config may hold beside its points; `extra` has all dimensions."""
+    found = BESIDE_POINTS.get(config["task"])
+    return found(config, is_grid) if found else ()
 
 
 def lacks_curves(attributes: Mapping[str, Any]) -> bool:

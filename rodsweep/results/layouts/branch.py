@@ -3,7 +3,7 @@
 from typing import Any
 
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS
-from .variables import ANEW, SECONDS, STATUS, Increase, Layout, Variable, real, whole
+from .variables import ANEW, SECONDS, STATUS, Increase, Layout, Variable, real, truth, whole
 
 ALONG, SPECIAL = "branch_point", "special"
 
@@ -80,13 +80,13 @@ def special_variables(along: str) -> tuple[Variable, ...]:
         whole("special_branch", "number of the branch, from 1", SPECIAL),
         whole(
             "special_point",
-            "branch_point, from 0, behind which it lies on its branch; -1: before the first cycle of it",
+            "branch_point, from 1, behind which it lies on its branch; 0: before the first cycle of it",
             SPECIAL,
         ),
         Variable("special_reason", "|i1", 0, "1", "why the branch ends there", (SPECIAL,), reasons),
         whole(
             "special_meets",
-            "at a symmetry breaking, number of the other branch that begins or ends there; 0: none",
+            "at a symmetry breaking, number of the other branch that begins or ends there; -1: none",
             SPECIAL,
         ),
         whole(
@@ -115,7 +115,7 @@ def layout(config: dict[str, Any]) -> Layout:
         whole("point_count", "cycles of all branches"),
         whole("special_count", "special points of all branches, stored or not"),
         whole("unstable_at_start", "unstable modes of the straight rod at start; -1: not known"),
-        Variable("certified", "|i1", 0, "1", "1 where it is proved that no Hopf point is missing"),
+        truth("certified", "whether it is proved that no Hopf point is missing"),
         *followed_variables(along),
         *special_variables(along),
         SECONDS,

@@ -1,10 +1,11 @@
 """What the file of the task criticality holds: the Hopf points of every rod and their normal forms."""
 
+from math import nan
 from typing import Any
 
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS
 from .thresholds import CROSSINGS, search_variables
-from .variables import ANEW, Layout, Variable, real, whole
+from .variables import ANEW, ANGULAR, Layout, Variable, real, whole
 
 FORCE = PARAMETERS["F"].unit
 SLOPE = "L^2/(k3 tau2)"
@@ -12,8 +13,21 @@ LANDAU = "1/(tau2 L^2)"
 ALONG = "crossing"
 OF_NO_HOPF_POINT = ("crossing_growth_rate", "solves")
 """Variables of a search that a search for Hopf points has not: 0 at all of them."""
+SIDES = ((-1, "supercritical"), (0, "undecided"), (1, "subcritical"))
+"""On which side of a Hopf point its cycles are; the number is the sign of Re c, NaN where there is no c."""
+
+
+def side(name: str, decided_by: str, along: str) -> Variable:
+    """On which side cycles are born; decided_by: the number whose sign within its error says so."""
+    meaning = (
+        "on which side cycles are born: supercritical, where the pair grows, and stable unless other modes "
+        f"grow; subcritical; undecided, where the sign of {decided_by} is within its error"
+    )
+    return Variable(name, "<f8", nan, "1", meaning, (along,), SIDES)
+
+
 NORMAL_FORM = (
-    real("crossing_frequency_error", "1/tau2", "estimate of the absolute error of crossing_frequency", ALONG),
+    real("crossing_frequency_error", ANGULAR, "estimate of the absolute error of crossing_frequency", ALONG),
     real("growth_slope_real", SLOPE, "d(growth rate)/dF of the pair at the crossing", ALONG),
     real("growth_slope_imag", SLOPE, "d(frequency)/dF of the pair at the crossing", ALONG),
     real("growth_slope_error", "1", "estimate of the error of the complex slope, relative to it", ALONG),
@@ -39,13 +53,7 @@ NORMAL_FORM = (
         ALONG,
     ),
     real("frequency_slope_error", "1", "estimate of the relative error of frequency_slope", ALONG),
-    real(
-        "criticality",
-        "1",
-        "-1: supercritical, cycles where the pair grows, stable unless other modes grow; 1: subcritical; "
-        "0: the sign of landau_real is within its error",
-        ALONG,
-    ),
+    side("criticality", "landau_real", ALONG),
     Variable("elements", "<i2", 0, "1", "spectral elements used", (ALONG,)),
     Variable("order", "<i2", 0, "1", "polynomial order used", (ALONG,)),
 )

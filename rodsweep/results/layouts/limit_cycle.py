@@ -4,8 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from ...model.parameters import NONLINEAR_PARAMETERS
-from .variables import ANEW, MESH, SECONDS, STATUS, Increase, Layout, Variable, real, whole
+from ...model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, PARAMETERS
+from .thresholds import CROSSING_KINDS
+from .variables import ANEW, ANGULAR, MESH, SECONDS, STATUS, Increase, Layout, Variable, real, whole
 
 POWER = "k3/(L tau2)"
 STORED_MULTIPLIERS = 6
@@ -14,9 +15,13 @@ SECOND_STATES = ((-1, "not_told"), (0, "none_known"), (1, "straight"), (2, "cycl
 """What is known of a stable state beside the one in which a point ended."""
 CYCLE = (
     real("period", "tau2", "period of the limit cycle"),
-    real("frequency", "1/tau2", "angular frequency of the limit cycle, 2 pi/period"),
+    real("frequency", ANGULAR, "angular frequency of the limit cycle, 2 pi/period"),
     real("linear_growth_rate", "1/tau2", "real part of the leading eigenvalue of the straight rod"),
-    real("linear_frequency", "1/tau2", "imaginary part of the leading eigenvalue of the straight rod"),
+    real(
+        "linear_frequency",
+        ANGULAR,
+        "angular frequency of the leading mode of the straight rod, imaginary part of its eigenvalue",
+    ),
     Variable(
         "second_state",
         "|i1",
@@ -76,6 +81,41 @@ TRANSIENT = (
         for name, units in PLACE.items()
     ),
 )
+
+HOPF = "hopf"
+"""Dimension of the Hopf points that lie on the lines between the points of a file."""
+HOPF_ALONG = LINEAR_PARAMETERS
+"""Parameters along which Hopf points are searched; gamma1 moves none."""
+OF_PAIRS = ("none", "hopf", "hopf_reverse", "restabilization")
+"""What changes where a pair crosses the imaginary axis."""
+HOPF_POINTS = (
+    Variable(
+        "hopf_along",
+        "|i1",
+        0,
+        "1",
+        "parameter along which the Hopf point was searched, between the points of a line",
+        (HOPF,),
+        tuple(enumerate(HOPF_ALONG)),
+    ),
+    Variable(
+        "hopf_kind",
+        "|i1",
+        0,
+        "1",
+        "what changes at the Hopf point as that parameter grows",
+        (HOPF,),
+        tuple((CROSSING_KINDS.index(kind), kind) for kind in OF_PAIRS),
+    ),
+    *(real(f"hopf_{name}", PARAMETERS[name].unit, f"{name} at the Hopf point", HOPF) for name in HOPF_ALONG),
+    real("hopf_error", "1", "estimate of the relative error of the parameter along which was searched", HOPF),
+    real("hopf_frequency", ANGULAR, "angular frequency of the pair that crosses", HOPF),
+    real("hopf_frequency_error", ANGULAR, "estimate of the absolute error of hopf_frequency", HOPF),
+    whole("hopf_unstable_after", "number of modes with positive growth rate beyond it; -1: not known", HOPF),
+    whole("hopf_lines", "lines of points that differ in one of F, k1, k2 and gamma3, which were searched"),
+    whole("hopf_lines_proved", "those of them on which it is proved that no Hopf point is missing"),
+)
+"""Hopf points of the straight rods between the points of a file: known before any of these is solved."""
 
 NO_CYCLE = Increase(lambda records, before: np.isnan(records["period"]))
 """More of a cycle, which a rod that does not beat has none of."""

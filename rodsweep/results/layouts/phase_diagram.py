@@ -4,10 +4,10 @@ from typing import Any
 
 from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS, all_but
 from .branch import SPECIAL_KINDS
-from .criticality import LANDAU, SLOPE
+from .criticality import LANDAU, SLOPE, side
 from .spectrum import UNSTABLE_COUNT
 from .thresholds import CROSSINGS, search_variables
-from .variables import ANEW, BESIDE, MISSING, Layout, Variable, real, whole
+from .variables import ANEW, ANGULAR, BESIDE, MISSING, Layout, Variable, real, whole
 
 CLASSES = (
     (-1, "missing"),
@@ -52,11 +52,28 @@ CYCLE_CURVE_ENDS = {
 INCREASES = {"crossings": CROSSINGS, "certify": ANEW, "curves": BESIDE, "cycles": ANEW}
 
 
+def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
+    """((parameter along a row, parameter across the rows), number of values of every parameter)."""
+    axes = config["parameters"]
+    sizes = {name: len(axes[name].get("values", ())) or axes[name]["num"] for name in LINEAR_PARAMETERS}
+    line, row = (name for name, size in sizes.items() if size > 1)
+    return (line, row), sizes
+
+
+def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
+    """Variables of the file that all rows together give, whatever the options ask of them."""
+    (line, row), _ = plane_of(config)
+    variables = curve_variables(line, row) | criticality_variables(line, row)
+    variables |= cycle_curve_variables(line, row)
+    for third in config["phase_diagram"].get("bautin_along") or ():
+        variables |= bautin_curve_variables(line, row, third)
+    return tuple(variables.values())
+
+
 def layout(config: dict[str, Any]) -> Layout:
     """The layout that a resolved config asks for: rows, each a line of values of one parameter."""
-    axes, options = config["parameters"], config["phase_diagram"]
-    sizes = {name: len(axes[name].get("values", ())) or axes[name]["num"] for name in LINEAR_PARAMETERS}
-    line = next(name for name, size in sizes.items() if size > 1)
+    options = config["phase_diagram"]
+    (line, _), sizes = plane_of(config)
     variables: tuple[Variable, ...] = (
         Variable("class", "|i1", MISSING, "1", "what the rod does", (line,), CLASSES),
         whole("unstable_count", UNSTABLE_COUNT.long_name, line),
@@ -117,7 +134,7 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
         whole("curve_number", "number of the curve, from 1", "curve_point"),
         Variable("curve_kind", "|i1", 0, "1", kind, ("curve_point",), CURVE_KINDS),
         *(real(f"curve_{name}", units[name], f"{name} on the curve", "curve_point") for name in along),
-        real("curve_frequency", "1/tau2", "frequency of the modes on the curve", "curve_point"),
+        real("curve_frequency", ANGULAR, "angular frequency of the modes on the curve", "curve_point"),
         real("curve_growth_rate", "1/tau2", "growth rate of the modes on the curve", "curve_point"),
         whole("fold_curve", "number of the curve on which the fold lies", "fold"),
         Variable("fold_kind", "|i1", 0, "1", kind, ("fold",), CURVE_KINDS),
@@ -127,7 +144,7 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
         ),
         *(real(f"fold_{name}", units[name], f"{name} at the fold", "fold") for name in along),
         *(real(f"fold_{name}_error", units[name], f"{error}{name}", "fold") for name in along),
-        real("fold_frequency", "1/tau2", "frequency of the modes at the fold", "fold"),
+        real("fold_frequency", ANGULAR, "angular frequency of the modes at the fold", "fold"),
         real("fold_growth_rate", "1/tau2", "growth rate of the modes at the fold", "fold"),
         real("curve_agreement", "1", f"largest distance of a crossing on a row from its curve, over {line}"),
         whole("curves_untraced", "crossings on rows through which no curve could be followed"),
@@ -144,19 +161,13 @@ def criticality_variables(line: str, row: str) -> dict[str, Variable]:
     units = {name: PARAMETERS[name].unit for name in along}
     error = "estimate of the error of bautin_"
     variables = (
-        real(
-            "curve_criticality",
-            "1",
-            "-1: supercritical, cycles where the pair grows, stable unless other modes grow; 1: "
-            "subcritical; 0: undecided within the error; NaN: no Hopf point, or no normal form there",
-            "curve_point",
-        ),
+        side("curve_criticality", "Re c", "curve_point"),
         real("curve_gamma1", PARAMETERS["gamma1"].unit, "axial drag of curve_criticality and bautin_*"),
         whole("bautin_curve", "number of the curve on which the generalised Hopf point lies", "bautin"),
-        whole("bautin_curve_point", "curve_point, from 0, behind which it lies on the curve", "bautin"),
+        whole("bautin_curve_point", "curve_point, from 1, behind which it lies on the curve", "bautin"),
         *(real(f"bautin_{name}", units[name], f"{name} where Re c = 0", "bautin") for name in along),
         *(real(f"bautin_{name}_error", units[name], f"{error}{name}", "bautin") for name in along),
-        real("bautin_frequency", "1/tau2", "frequency of the pair there", "bautin"),
+        real("bautin_frequency", ANGULAR, "angular frequency of the pair there", "bautin"),
         real("bautin_growth_slope_real", SLOPE, "d(growth rate)/dF of the pair there", "bautin"),
         real("bautin_growth_slope_imag", SLOPE, "d(frequency)/dF of the pair there", "bautin"),
         real("bautin_landau_imag", LANDAU, "imaginary part of the Landau coefficient c there", "bautin"),
@@ -175,7 +186,7 @@ def bautin_curve_variables(line: str, row: str, third: str) -> dict[str, Variabl
         whole("bautin_along_curve", "number of the curve of generalised Hopf points, from 1", at),
         *(real(f"bautin_along_{name}", unit[name], f"{name} where Re c = 0", at) for name in names),
         *(real(f"bautin_along_{name}_error", unit[name], f"{error}{name}", at) for name in names),
-        real("bautin_along_frequency", "1/tau2", "frequency of the pair there", at),
+        real("bautin_along_frequency", ANGULAR, "angular frequency of the pair there", at),
         real("bautin_along_landau_imag", LANDAU, "imaginary part of the Landau coefficient c there", at),
         Variable("bautin_along_end", "|i1", 0, "1", why, (at,), tuple(enumerate(BAUTIN_ENDS))),
     )

@@ -3,7 +3,7 @@
 from math import nan
 from typing import Any
 
-from .variables import ANEW, BESIDE, MESH, SECONDS, STATUS, Layout, Variable, real, whole
+from .variables import ANEW, ANGULAR, BESIDE, MESH, SECONDS, STATUS, Layout, Variable, real, truth, whole
 
 
 def complex_pair(name: str, units: str, long_name: str) -> tuple[Variable, Variable]:
@@ -17,7 +17,7 @@ def complex_pair(name: str, units: str, long_name: str) -> tuple[Variable, Varia
 UNSTABLE_COUNT = whole("unstable_count", "number of modes with positive growth rate; -1: not known")
 EACH_MODE = (
     real("growth_rate", "1/tau2", "real part of the transverse eigenvalue", "mode"),
-    real("frequency", "1/tau2", "imaginary part of the transverse eigenvalue", "mode"),
+    real("frequency", ANGULAR, "angular frequency of the mode, imaginary part of its eigenvalue", "mode"),
     real(
         "error_estimate",
         "1/tau2",
@@ -25,9 +25,7 @@ EACH_MODE = (
         "mode",
     ),
 )
-CERTIFIED = Variable(
-    "certified", "|i1", 0, "1", "1 where the winding number of D proves that no leading mode is missing"
-)
+CERTIFIED = truth("certified", "whether the winding number of D proves that no leading mode is missing")
 EACH_POINT = (UNSTABLE_COUNT, CERTIFIED, *MESH, SECONDS, STATUS)
 EACH_FOLLOWED_POINT = (
     UNSTABLE_COUNT,
@@ -43,6 +41,18 @@ VECTORS = (
     *complex_pair("Theta", "1", "the eigenmode's angle, scaled as Y"),
 )
 
+
+def longitudinal(gamma1: float, *along: str) -> Variable:
+    """The longitudinal rates, which depend on k1 only; along: k1, or all points where k1 is no axis."""
+    return real(
+        "longitudinal_rate",
+        "1/tau2",
+        f"longitudinal eigenvalue, real, for gamma1 = {gamma1:g}",
+        *along,
+        "mode",
+    )
+
+
 INCREASES = {
     "modes": ANEW,
     "certify": ANEW,
@@ -51,6 +61,12 @@ INCREASES = {
     "follow": ANEW,
     "longitudinal": BESIDE,
 }
+
+
+def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
+    """Variables of the file that are no variables of a point."""
+    gamma1 = config["parameters"].get("gamma1")
+    return () if gamma1 is None else (longitudinal(float(gamma1), "k1" if is_grid else "point"),)
 
 
 def layout(config: dict[str, Any]) -> Layout:

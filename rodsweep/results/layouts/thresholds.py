@@ -3,16 +3,16 @@
 from typing import Any
 
 from ...model.parameters import PARAMETERS, all_but
-from .variables import ANEW, SECONDS, STATUS, Increase, Layout, Variable, real, whole
+from .variables import ANEW, ANGULAR, SECONDS, STATUS, Increase, Layout, Variable, real, truth, whole
 
 FORCE = PARAMETERS["F"].unit
 THRESHOLDS = (
     real("F_onset", FORCE, "smallest F at which two real leading eigenvalues meet and become a pair"),
     real("onset_growth_rate", "1/tau2", "growth rate of the double eigenvalue at F_onset"),
     real("F_hopf", FORCE, "smallest F at which a pair becomes unstable"),
-    real("hopf_frequency", "1/tau2", "frequency of the pair at F_hopf"),
+    real("hopf_frequency", ANGULAR, "angular frequency of the pair at F_hopf"),
     real("F_restabilization", FORCE, "smallest F at which the last unstable pair becomes stable again"),
-    real("restabilization_frequency", "1/tau2", "frequency of the pair at F_restabilization"),
+    real("restabilization_frequency", ANGULAR, "angular frequency of the pair at F_restabilization"),
     real("F_end", FORCE, "F up to which was searched"),
     whole("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
 )
@@ -41,13 +41,13 @@ def search_variables(line: str, at: str) -> tuple[Variable, ...]:
         whole("crossing_count", "number of crossings found, stored or not"),
         real(at, units, f"{line} at the crossing", "crossing"),
         Variable("crossing_kind", "|i1", 0, "1", "what changes at the crossing", ("crossing",), kinds),
-        real("crossing_frequency", "1/tau2", "frequency of the modes that cross", "crossing"),
+        real("crossing_frequency", ANGULAR, "angular frequency of the modes that cross", "crossing"),
         real("crossing_growth_rate", "1/tau2", "growth rate of the modes that cross", "crossing"),
         real("crossing_error", units, f"estimate of the absolute error of {at}", "crossing"),
         whole("unstable_after", "number of modes with positive growth rate beyond the crossing", "crossing"),
         real("open_from", units, f"start {undecided}"),
         real("open_to", units, f"end {undecided}"),
-        Variable("certified", "|i1", 0, "1", "1 where it is proved that no crossing is missing"),
+        truth("certified", "whether it is proved that no crossing is missing"),
         whole("boxes", "evaluations of D over a box"),
         whole("solves", "eigenproblems solved"),
         SECONDS,

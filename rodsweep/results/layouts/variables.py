@@ -14,11 +14,17 @@ from numpy.typing import NDArray
 
 from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
 
+TYPED = "typed_unit"
+"""The attribute of a variable with the unit in which the user typed it."""
 MISSING = -1
 """Status of a point that has not been computed."""
 
+ANGULAR = "rad/tau2"
+"""Unit of every frequency, which is angular: imaginary part of an eigenvalue, or 2 pi/period. Of an arm it
+stands in cycles per second beside, under a name that ends in `_hz`; rad/s is nowhere."""
+
 DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
-    "point": ("1", "row of the point list, from 0"),
+    "point": ("1", "row of the point list, from 1"),
     "mode": ("1", "leading first: descending growth rate, of a pair the positive frequency first"),
     "u": ("1", "material coordinate along the rod"),
     "crossing": ("1", "in increasing order of the parameter that is varied"),
@@ -30,6 +36,7 @@ DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
     "cycle_curve_point": ("1", "points of all curves of folds and torus points, one curve after another"),
     "bautin": ("1", "generalised Hopf points, of each Hopf curve one after another"),
     "bautin_step": ("1", "points of curves of generalised Hopf points, each curve's one after another"),
+    "hopf": ("1", "Hopf points on the lines between the points, each line's in increasing order"),
     "harmonic": ("1", "multiple of the cycle's frequency"),
     "multiplier_number": ("1", "Floquet multipliers by descending modulus, without the trivial one"),
     "sample": ("1", "time in periods, from where y of the tip rises through its mean"),
@@ -51,6 +58,13 @@ class Variable:
     extra: tuple[str, ...] = ()
     flags: tuple[tuple[int, str], ...] = ()
     """Values and meanings, where the variable is a word; those of `status` come from the task's solver."""
+    typed: str = ""
+    """The unit in which the user typed it, where that is known; the values are in `units`."""
+
+    @property
+    def is_truth(self) -> bool:
+        """Whether the variable says yes or no."""
+        return self.dtype == "|i1" and not self.flags and self.name != STATUS.name
 
 
 def real(name: str, units: str, long_name: str, *extra: str) -> Variable:
@@ -58,9 +72,18 @@ def real(name: str, units: str, long_name: str, *extra: str) -> Variable:
     return Variable(name, "<f8", np.nan, units, long_name, extra)
 
 
+NOT_KNOWN = "; -1: not known"
+"""What the file says of a count that may be missing; tables have nothing there."""
+
+
 def whole(name: str, long_name: str, *extra: str) -> Variable:
     """A variable of counts, -1 where it is not known."""
     return Variable(name, "<i4", -1, "1", long_name, extra)
+
+
+def truth(name: str, long_name: str) -> Variable:
+    """A variable that is 1 where something is so, and 0 elsewhere."""
+    return Variable(name, "|i1", 0, "1", long_name)
 
 
 SECONDS = Variable("seconds", "<f4", np.nan, "s", "time spent on the point")
@@ -106,8 +129,14 @@ class Layout:
     """Lengths of the extra dimensions."""
     parameters: tuple[str, ...] = LINEAR_PARAMETERS
     """What makes a point: the dimensions of a grid, or what is given along `point`."""
+    over: tuple[str, ...] = ()
+    """The dimensions of the points where these are a grid over an arm's quantities."""
     needs_all_points: bool = False
     """Whether the file is whole only with variables that all points together give."""
+
+    def dimensions(self, is_list: bool) -> tuple[str, ...]:
+        """Names of the dimensions of the points; is_list: whether these are from a file of points."""
+        return self.over or (("point",) if is_list else self.parameters)
 
     @property
     def record(self) -> np.dtype:

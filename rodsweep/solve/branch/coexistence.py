@@ -81,9 +81,13 @@ def solve_coexistence(
     row = solve_row(fixed, request)
     branches = row_branches(fixed, gamma1, request, special)
     status, message = _judged(row, branches, special)
+    cycles = cycles_at(request.values, branches, request.certify)
+    forces = request.values if request.name == "F" else np.full(len(request.values), fixed["F"])
+    # Without a force nothing feeds a motion: the elastic energy of the rod falls until it is straight.
+    cycles[forces == 0] = 0
     return CoexistenceRow(
         row=row,
-        stable_states=stable_states(row.motion, cycles_at(request.values, branches, request.certify)),
+        stable_states=stable_states(row.motion, cycles),
         special=special_of(branches),
         status=status,
         message=message,

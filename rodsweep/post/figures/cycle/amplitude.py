@@ -1,4 +1,4 @@
-"""Amplitudes of the tip against the force, as the paper's Fig. 6: beyond F** the straight arm beats."""
+"""Cycles over a parameter: amplitudes of the tip, as in the paper's Fig. 6, the period and the power."""
 
 import json
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ from ....arrays import Array
 from ....config.limit_cycle import LONGEST
 from ....errors import InputError
 from ....results.file.view import View
-from ...hopf_points import HopfPoint, lines_over
+from ...hopf_points import HopfPoint, StoredHopfPoints, lines_over
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, need, plain, scale
 from .hopf_marks import draw_laws, mark_hopf_points
 from .selection import CYCLE_WORDS, outcomes, told_apart
@@ -26,6 +26,13 @@ BRANCH_LOOKS = tuple(
     zip((FIRST, SECOND, THIRD, "#CC79A7", "#56B4E9", "#000000"), ("o", "s", "^", "D", "v", "P"), strict=True)
 )
 """Colour, of Okabe and Ito, and marker of each branch."""
+PANEL_LABELS = (
+    r"tip $(x_{\max} - x_{\min})/2L$",
+    r"tip $y_{\max}/L$",
+    r"period $T/\tau_2$",
+    r"mean power $\times\,L\tau_2/k_3$",
+)
+"""What each panel shows, the upper left first, downwards."""
 LEAST_FOR_ARROW = 4
 """Points of a line that has an arrow."""
 UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 3}
@@ -36,8 +43,9 @@ UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 
 class AmplitudeBranch:
     """Points in the order of the file that differ in one parameter only; amplitudes in L, NaN where unknown.
 
-    parameters: the other ones, by name; words: of the status; all arrays have the shape (points,); hopf: the
-    Hopf points along the branch, none where it is not over F.
+    parameters: the other ones, by name; period: in tau2; power: of the force, the mean over a period, in
+    k3/(L tau2); words: of the status; all arrays have the shape (points,); hopf: the Hopf points along the
+    branch, none where it is not over F.
     """
 
     view: View
@@ -45,8 +53,15 @@ class AmplitudeBranch:
     x: Array
     amplitude_x: Array
     amplitude_y: Array
+    period: Array
+    power: Array
     words: NDArray[np.str_]
     hopf: list[HopfPoint]
+
+    @property
+    def measures(self) -> tuple[Array, ...]:
+        """What each panel shows, in the order of the panels."""
+        return self.amplitude_x, self.amplitude_y, self.period, self.power
 
     @property
     def laws(self) -> list[SquareRootLaw]:
@@ -60,20 +75,23 @@ class AmplitudeBranch:
         return np.insert(self.x, change, np.nan), np.insert(values, change, np.nan)
 
 
-def draw_amplitude(views: Sequence[View]) -> tuple[Figure, str]:
-    """Half the reach of the tip's x, and the largest y, against F; a straight arm has the amplitude 0."""
+def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure, str]:
+    """Half the reach of the tip's x, its largest y, the period and the power against F.
+
+    A straight arm has the amplitude 0 and no period. narrow: whether the panels are below each other.
+    """
     first = views[0]
     name = abscissa(first)
     branches = [branch for view in views for branch in branches_of(view, name)]
     if len(branches) > len(BRANCH_LOOKS):
         raise InputError(
             f"{first.path} makes {len(branches)} lines over {name}, for which a figure has no room; "
-            f"run with at most {len(BRANCH_LOOKS)} combinations of the other parameters; "
-            "two parameters alone, each combination once, are drawn as maps (--what maps)"
+            f"it has room for {len(BRANCH_LOOKS)}: choose by --at k1=150, or draw two parameters, each"
+            " combination once, as maps (--what maps)"
         )
     need(first, any(np.isfinite(branch.amplitude_y).any() for branch in branches), "amplitude")
-    figure = Figure(figsize=(5.4, 6.0), layout="constrained")
-    panels = figure.subplots(2, 1, sharex=True)
+    figure = Figure(figsize=(4.4, 8.4) if narrow else (8.6, 5.6), layout="constrained")
+    panels = figure.subplots(*((4, 1) if narrow else (2, 2)), sharex=True).T.ravel()
     shared, own = told_apart([branch.parameters for branch in branches])
     handles = _draw_branches(panels, branches, own, _file_words(views, name))
     colours = (colour for colour, _ in BRANCH_LOOKS)
@@ -83,11 +101,12 @@ def draw_amplitude(views: Sequence[View]) -> tuple[Figure, str]:
     handles += mark_hopf_points(panels, marks)
     handles += draw_laws(panels[1], [law for branch in branches for law in branch.laws])
     _label(panels, name)
-    scale(panels[1], "x", np.unique(branches[0].x))
+    for panel in panels:
+        scale(panel, "x", np.unique(branches[0].x))
     if legend := [handle for handle in handles if handle.get_label()]:
         legend_below(figure, legend, columns=min(2, len(legend)))
-    figure.suptitle(heading(first, shared), fontsize=10)
-    return figure, f"amplitudes of the tip against {name}"
+    figure.suptitle(heading(first, shared))
+    return figure, f"amplitudes of the tip, period and power against {name}"
 
 
 def _draw_branches(
@@ -141,7 +160,7 @@ def _file_words(views: Sequence[View], name: str) -> dict[Path, tuple[str, bool 
 
 def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: bool, colour: str) -> None:
     """An arrow beside each line, the way it was followed."""
-    for axes, values in zip(panels, (branch.amplitude_x, branch.amplitude_y), strict=True):
+    for axes, values in zip(panels, branch.measures, strict=True):
         known = np.flatnonzero(np.isfinite(values))
         if len(known) < LEAST_FOR_ARROW:
             continue
@@ -158,19 +177,21 @@ def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: boo
 
 def _label(panels: Sequence[Axes], name: str) -> None:
     """Axes and their labels: 0, of straight arms, is drawn, and a little below it shown."""
-    for axes in panels:
-        height = axes.dataLim.y1 or 1.0
+    for axes, label in zip(panels, PANEL_LABELS, strict=True):
+        height = axes.dataLim.y1 if np.isfinite(axes.dataLim.y1) and axes.dataLim.y1 > 0 else 1.0
         axes.set_ylim(-0.04 * height, 1.1 * height)
         axes.axhline(0, color="0.8", lw=0.6, zorder=0)
-    panels[0].set_ylabel(r"tip $(x_{\max} - x_{\min})/2L$")
-    panels[1].set(ylabel=r"tip $y_{\max}/L$", xlabel=LABELS[name])
+        axes.set_ylabel(label)
+        place = axes.get_subplotspec()
+        if place is not None and place.is_last_row():
+            axes.set_xlabel(LABELS[name])
 
 
 def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, look: dict[str, Any]) -> set[str]:
     """A branch in both panels, unstable cycles open; returns what became of points without an amplitude."""
     unstable = branch.words == "unstable"
     lost: set[str] = set()
-    for axes, values in zip(panels, (branch.amplitude_x, branch.amplitude_y), strict=True):
+    for axes, values in zip(panels, branch.measures, strict=True):
         axes.plot(*branch.broken_at_onset(values), **look)
         if unstable.any():
             axes.plot(branch.x[unstable], values[unstable], **look | UNSTABLE_LOOK)
@@ -203,10 +224,23 @@ def branches_of(view: View, name: str) -> list[AmplitudeBranch]:
     along_x, along_y = (
         np.where(straight, 0.0, np.where(cycle, values, np.nan)) for values in (reach, v["tip_y_max"].ravel())
     )
+    period, power = (np.where(cycle, v[key].ravel(), np.nan) for key in ("period", "injection_mean"))
     branches = []
+    stored = StoredHopfPoints(view, "F")
     for line in lines_over(view, name):
-        at, hopf = line.at, line.hopf_points(view) if name == "F" else []
+        changes = stored.on(line) if name == "F" else []
+        at, hopf = line.at, [change for change in changes if isinstance(change, HopfPoint)]
         branches.append(
-            AmplitudeBranch(view, line.parameters, line.x, along_x[at], along_y[at], words[at], hopf)
+            AmplitudeBranch(
+                view=view,
+                parameters=line.parameters,
+                x=line.x,
+                amplitude_x=along_x[at],
+                amplitude_y=along_y[at],
+                period=period[at],
+                power=power[at],
+                words=words[at],
+                hopf=hopf,
+            )
         )
     return branches

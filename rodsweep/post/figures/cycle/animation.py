@@ -11,9 +11,10 @@ from matplotlib.figure import Figure
 
 from ....errors import EnvironmentLacks, InputError
 from ....results.file.view import View
+from ..fitting import fit
 from ..style import FIRST, SECOND
 from .portrait import clamp, force_arrow, frame, tip_path
-from .selection import SHAPES, StoredCycle, chosen_cycles
+from .selection import SHAPES, Selection, StoredCycle, chosen_cycles
 
 FILMS = (".gif", ".mp4")
 PERIOD_SECONDS = 2.4
@@ -37,19 +38,29 @@ def write_animation(view: View, points: Sequence[int], output: Path) -> str:
             "run with limit_cycle.shapes: 48"
         )
     writer = _writer(output, max(1, round(frames / PERIOD_SECONDS)))
-    figure = Figure(figsize=(2.7 * len(cycles) + 0.9, 4.4), layout="constrained")
-    panels = figure.subplots(1, len(cycles), squeeze=False, sharey=True)[0]
-    figure.suptitle(selection.title, fontsize=10)
-    panels[0].set_ylabel("$y/L$")
-    arms = [MovingArm(axes, cycle) for axes, cycle in zip(panels, cycles, strict=True)]
-    frame(panels, cycles)
+    figure, arms = first_frame(selection)
     with writer.saving(figure, str(output), dpi=100):
         for k in range(frames):
             for arm in arms:
                 arm.show(k)
             writer.grab_frame()
-            figure.set_layout_engine("none")  # laid out once: nothing else may move
     return f"one period in {frames} frames" + selection.left_out
+
+
+def first_frame(selection: Selection) -> tuple[Figure, list["MovingArm"]]:
+    """The figure of a film, laid out for good, with its arms at the beginning of their periods."""
+    cycles = selection.cycles
+    figure = Figure(figsize=(2.7 * len(cycles) + 0.9, 4.4), layout="constrained")
+    panels = figure.subplots(1, len(cycles), squeeze=False, sharey=True)[0]
+    figure.suptitle(selection.title)
+    panels[0].set_ylabel("$y/L$")
+    arms = [MovingArm(axes, cycle) for axes, cycle in zip(panels, cycles, strict=True)]
+    frame(panels, cycles)
+    for arm in arms:
+        arm.show(0)
+    fit(figure)
+    figure.set_layout_engine("none")  # laid out once: nothing else may move
+    return figure, arms
 
 
 def _writer(output: Path, rate: int) -> AbstractMovieWriter:
@@ -73,9 +84,9 @@ class MovingArm:
         self.ghosts = [axes.plot([], [], color=str(grey), lw=1.2, zorder=1.5)[0] for grey in fading]
         (self.rod,) = axes.plot([], [], color=FIRST, lw=3.0, solid_capstyle="round", zorder=3)
         self.arrow = force_arrow(axes, np.zeros(1), np.zeros(1), np.zeros(1), SECOND)
-        self.text = axes.text(0.02, 0.02, "", transform=axes.transAxes, fontsize=9)
+        self.text = axes.text(0.02, 0.02, "", transform=axes.transAxes, size=9)
         axes.set_xlabel("$x/L$")
-        axes.set_title(cycle.heading(rf"$T$ = {cycle.period:.6g} $\tau_2$"), fontsize=9)
+        axes.set_title(cycle.heading(rf"$T = {cycle.period:.6g}\,\tau_2$"))
 
     def show(self, k: int) -> None:
         """Moves the arm to its k-th shape."""

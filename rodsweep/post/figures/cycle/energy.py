@@ -16,10 +16,11 @@ RATE_MARKS = 24
 """Times at which the derivative of U is marked on the difference of injection and dissipation."""
 
 
-def draw_energy(view: View, points: Sequence[int]) -> tuple[Figure, str]:
+def draw_energy(view: View, points: Sequence[int], narrow: bool = False) -> tuple[Figure, str]:
     """A column for each cycle: the energy U, injection and dissipation, and dU/dt as their difference.
 
-    The marks are the derivative of the stored U: an independent number that must lie on the line.
+    The marks are the derivative of the stored U: an independent number that must lie on the line. narrow:
+    whether the columns have little room.
     """
     selection = chosen_cycles(view, points, ENERGIES)
     cycles = selection.cycles
@@ -31,15 +32,15 @@ def draw_energy(view: View, points: Sequence[int]) -> tuple[Figure, str]:
         _budget(column, cycle)
         mean, imbalance = (float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance"))
         numbers = rf"$T = {cycle.period:.6g}\,\tau_2$", f"mean power {mean:.6g}", f"imbalance {imbalance:.1e}"
-        column[0].set_title(cycle.heading(*numbers), fontsize=8.5)
+        column[0].set_title(cycle.heading(*numbers))
     rows[1, 0].set_ylim(bottom=min(0.0, rows[1, 0].get_ylim()[0]))
     rows[0, 0].set_ylabel("energy\n$U L/k_3$")
     rows[1, 0].set_ylabel("power\n" r"$\times\, L\tau_2/k_3$")
     rows[2, 0].set_ylabel(r"$\dot U L\tau_2/k_3$")
     handles = [handle for axes in rows[1:, 0] for handle in axes.get_legend_handles_labels()[0]]
-    legend_below(figure, handles, columns=min(3, 1 + len(cycles)), size=8.5)
+    legend_below(figure, handles, columns=2 if narrow else min(3, 1 + len(cycles)))
     figure.align_ylabels(rows[:, 0])
-    figure.suptitle(selection.title, fontsize=10)
+    figure.suptitle(selection.title)
     return figure, "energy, injection and dissipation over a cycle" + selection.left_out
 
 

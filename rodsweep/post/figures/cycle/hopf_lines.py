@@ -1,11 +1,14 @@
-"""The lines of Hopf points over two parameters, from the growth rates that a file holds."""
+"""The lines of Hopf points over two parameters, from the growth rates and Hopf points that a file holds."""
+
+from collections.abc import Iterator
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from ....arrays import Array
 from ....results.file.view import View
-from ...hopf_points import hopf_points
+from ...hopf_points import HopfPoint, ParameterLine, StoredHopfPoints
+from ..style import is_logarithmic
 from .point_map import PointMap, in_its_scale
 
 
@@ -13,15 +16,12 @@ def hopf_lines(points: PointMap, view: View) -> list[Array]:
     """The contours on which the leading growth rate is 0, each of shape (2, n): x, y.
 
     Rows are linear between their points and zeros, and between rows the growth rate is linear in the scale of
-    y: so a contour passes through the zeros of every row, which `hopf_points` finds far better than the chord
-    between two points does.
+    y: so a contour passes through the Hopf points of every row, which the task has located.
     """
     (x, x_back), (y, y_back) = (in_its_scale(values) for values in (points.x, points.y))
-    growth, frequency = (
-        view.variables[name].ravel()[points.at] for name in ("linear_growth_rate", "linear_frequency")
-    )
-    found = [hopf_points(x, *row) for row in zip(growth, frequency, strict=True)]
-    zeros = [np.array([hopf.position for hopf in row]) for row in found]
+    to_scale = np.log if is_logarithmic(points.x) else np.asarray
+    growth = view.variables["linear_growth_rate"].ravel()[points.at]
+    zeros = [to_scale(places) for places in _hopf_points(points, view)]
     refined = np.unique(np.concatenate([x, *zeros]))
     rows = []
     for row, own in zip(growth, zeros, strict=True):
@@ -32,3 +32,12 @@ def hopf_lines(points: PointMap, view: View) -> list[Array]:
     contours = Figure().subplots().contour(refined, y, np.ma.masked_invalid(rows), levels=[0.0])
     lines = (line for line in contours.allsegs[0] if len(line) > 1)
     return [np.array([x_back(line[:, 0]), y_back(line[:, 1])]) for line in lines]
+
+
+def _hopf_points(points: PointMap, view: View) -> Iterator[Array]:
+    """The Hopf points of every row of a map, each row's of shape (n,)."""
+    name, other = points.names
+    stored = StoredHopfPoints(view, name)
+    for value, at in zip(points.y, points.at, strict=True):
+        row = ParameterLine(name, points.shared | {other: float(value)}, points.x, at)
+        yield np.array([change.position for change in stored.on(row) if isinstance(change, HopfPoint)])

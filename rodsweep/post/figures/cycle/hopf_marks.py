@@ -15,6 +15,8 @@ from .square_root import SquareRootLaw
 HOPF_SYMBOL = rf"{SYMBOLS['F']}_{{**}}"
 HOPF_WORDS = {True: f"${HOPF_SYMBOL}$", False: "restabilization"}
 """What the legend calls a Hopf point above which the rod is unstable, and one above which it is stable."""
+HOPF_DIGITS = 6
+"""To which a Hopf point is written in a legend."""
 DOTTED: dict[str, Any] = {"ls": ":", "lw": 1.1}
 SHARED_GREY, LAW_GREY = "0.3", "0.45"
 MOST_COEFFICIENTS = 3
@@ -42,7 +44,11 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[HopfPoint, st
                 axes.axvline(point.position, color=colour, zorder=0.5, **DOTTED)
         if len(places) == 1:
             equals = f"{word} = " if kind else rf"{word} at $\tilde F$ = "
-            handles.append(Line2D([], [], color=colour, label=equals + places[0][0].text, **DOTTED))
+            handles.append(
+                Line2D(
+                    [], [], color=colour, label=f"{equals}{places[0][0].position:.{HOPF_DIGITS}g}", **DOTTED
+                )
+            )
         elif places:
             handles.append(Line2D([], [], color=SHARED_GREY, label=word, **DOTTED))
     return handles

@@ -62,15 +62,16 @@ DECADE = 10
 """Ratio of the longest to the shortest period above which their colours are logarithmic."""
 
 
-def draw_maps(view: View) -> tuple[Figure, str]:
-    """Period and largest y of the tip side by side, with the line of Hopf points over both."""
+def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
+    """Period and largest y of the tip, with the line of Hopf points over both.
+
+    narrow: whether the panels have no room beside each other.
+    """
     points = point_map(view)
     words = outcomes(view)[points.at]
     cycles = np.isin(words, CYCLE_WORDS)
     need(view, cycles.any(), "cycle")
-    wide = ConstrainedLayoutEngine(wspace=0.06)  # the first bar's label is not the second panel's
-    figure = Figure(figsize=(9.6, 4.5), layout=wide)
-    panels = figure.subplots(1, 2, sharex=True, sharey=True)
+    figure, panels = map_panels(2, narrow)
     lines = hopf_lines(points, view)
     for axes, (name, label, colours, ratios) in zip(panels, QUANTITIES, strict=True):
         values = np.where(cycles, view.variables[name].ravel()[points.at], np.nan)
@@ -82,15 +83,32 @@ def draw_maps(view: View) -> tuple[Figure, str]:
         handles = _draw_hopf_lines(axes, points, lines)
         handles += _draw_statuses(axes, points, words)
         handles += _mark_unstable(axes, points, words == "unstable")
-        scale(axes, "x", points.x)
-        scale(axes, "y", points.y)
-        axes.set_xlabel(LABELS[points.names[0]])
-    panels[0].set_ylabel(LABELS[points.names[1]])
+    label_maps(panels, points)
     if handles:
         rows = -(-len(handles) // ONE_ROW)
         legend_below(figure, handles, columns=-(-len(handles) // rows))
-    figure.suptitle(heading(view, parameter_text(points.shared)), fontsize=10)
+    figure.suptitle(heading(view, parameter_text(points.shared)))
     return figure, f"period and amplitude over {' and '.join(points.names)}{points.left_out}"
+
+
+def map_panels(count: int, narrow: bool) -> tuple[Figure, list[Axes]]:
+    """A figure with panels that share their axes: side by side, or if narrow one above the other."""
+    apart = ConstrainedLayoutEngine(wspace=0.0 if narrow else 0.06)  # the first bar's label is its own
+    figure = Figure(figsize=(4.2, 3.2 * count) if narrow else (4.8 * count, 4.5), layout=apart)
+    shape = (count, 1) if narrow else (1, count)
+    return figure, list(figure.subplots(*shape, sharex=True, sharey=True, squeeze=False).ravel())
+
+
+def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
+    """Scales and labels of panels that share their axes: each once where they are in a row or a column."""
+    for axes in panels:
+        scale(axes, "x", points.x)
+        scale(axes, "y", points.y)
+        place = axes.get_subplotspec()
+        if place is None or place.is_last_row():
+            axes.set_xlabel(LABELS[points.names[0]])
+        if place is None or place.is_first_col():
+            axes.set_ylabel(LABELS[points.names[1]])
 
 
 def _heat_map(axes: Axes, points: PointMap, values: Array, ratios: bool) -> QuadMesh:

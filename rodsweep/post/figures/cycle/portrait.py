@@ -15,6 +15,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.quiver import Quiver
+from matplotlib.ticker import FuncFormatter
 
 from ....arrays import Array
 from ....discretization.periodic import resampled
@@ -35,11 +36,14 @@ LIGHTEST = 0.14
 """The part of the colour map left out: yellow that does not show on white."""
 
 
-def draw_portrait(view: View, points: Sequence[int]) -> tuple[Figure, str]:
-    """A column for each cycle: the shapes, later ones darker, above x and y of the tip against time."""
+def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tuple[Figure, str]:
+    """A column for each cycle: the shapes, later ones darker, above x and y of the tip against time.
+
+    narrow: whether panels have no room beside each other.
+    """
     selection = chosen_cycles(view, points, SHAPES)
     cycles = selection.cycles
-    figure, shapes, tips = _panels(len(cycles))
+    figure, shapes, tips = _panels(len(cycles), narrow)
     emerging = all(cycle.has_trace for cycle in cycles)
     end = TIP_PERIODS * max(c.period for c in cycles)
     drawn, step = drawn_shapes(len(cycles[0].values["shape_x"]))
@@ -56,7 +60,7 @@ def draw_portrait(view: View, points: Sequence[int]) -> tuple[Figure, str]:
         period = [rf"$T = {cycle.period:.6g}\,\tau_2$"]
         if 0 < cycle.tau1 < np.inf:
             period.append(rf"$= {cycle.period / cycle.tau1:.6g}\,\tau_1$")
-        axes.set_title(cycle.heading(*period), fontsize=9)
+        axes.set_title(cycle.heading(*period))
         if emerging:
             draw_emergence(upper, lower, cycle)
         else:
@@ -64,24 +68,24 @@ def draw_portrait(view: View, points: Sequence[int]) -> tuple[Figure, str]:
     frame(shapes, cycles)
     shapes[0].set_ylabel("$y/L$")
     label_tip(*tips[0])
-    _phase_bar(figure, shapes, colours, step)
-    figure.suptitle(selection.title, fontsize=10)
+    _phase_bar(figure, shapes, colours, step, narrow)
+    figure.suptitle(selection.title)
     tip = "the tip from the start on" if emerging else "the tip in time"
     return figure, f"shapes through the cycle and {tip}{selection.left_out}"
 
 
-def _panels(count: int) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
-    """(figure, a panel for each cycle's shapes, two for its tip: beside those of one, else below them)."""
-    if count == 1:
+def _panels(count: int, narrow: bool) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
+    """(figure, a panel for each cycle's shapes, two for its tip: beside those of one, or below)."""
+    if count == 1 and not narrow:
         figure = Figure(figsize=(8.6, 4.4), layout="constrained")
         table: dict[str, Axes] = figure.subplot_mosaic(
             [["shapes", "x"], ["shapes", "y"]], width_ratios=(1, 1.25)
         )
         table["x"].sharex(table["y"])
         return figure, [table["shapes"]], [(table["x"], table["y"])]
-    figure = Figure(figsize=(3.2 * count + 1.2, 7.2), layout="constrained")
+    figure = Figure(figsize=(3.2 * count + 1.2, 8.0 if narrow else 7.2), layout="constrained")
     heights = (3.2, 1, 1)
-    rows = figure.subplots(3, count, sharex="row", sharey="row", height_ratios=heights)
+    rows = figure.subplots(3, count, squeeze=False, sharex="row", sharey="row", height_ratios=heights)
     return figure, list(rows[0]), list(zip(rows[1], rows[2], strict=True))
 
 
@@ -91,15 +95,20 @@ def drawn_shapes(stored: int) -> tuple[range, float]:
     return range(0, stored, stride), stride / stored
 
 
-def _phase_bar(figure: Figure, panels: list[Axes], colours: ListedColormap, step: float) -> None:
-    """The times of the shapes beside their colours; `step` is the time between two in periods."""
+def _phase_bar(figure: Figure, panels: list[Axes], colours: ListedColormap, step: float, below: bool) -> None:
+    """The times of the shapes beside their colours, or below; `step` is the time between two in periods."""
     n = colours.N
     norm = BoundaryNorm((np.arange(n + 1) - 0.5) * step, n)
     ticks = [k * step for k in range(0, n, max(1, n // 4))]
     bar = figure.colorbar(
-        ScalarMappable(norm, colours), ax=panels, label="time of the shape $t/T$", shrink=0.8, ticks=ticks
+        ScalarMappable(norm, colours),
+        ax=panels,
+        label="time of the shape $t/T$",
+        location="bottom" if below else "right",
+        shrink=0.8,
+        ticks=ticks,
+        format=FuncFormatter(lambda tick, _: f"{tick:.3g}"),
     )
-    bar.ax.set_yticklabels([f"{tick:.3g}" for tick in ticks])
     bar.ax.minorticks_off()
 
 

@@ -112,7 +112,8 @@ def _refuse_missing(view: View, needs: Sequence[str]) -> None:
 def _selection(view: View, points: Sequence[int], drawable: NDArray[np.bool_], what: str) -> Selection:
     """The points by number, else the first of those that are drawable, shape (points,)."""
     there, words = np.flatnonzero(drawable), outcomes(view)
-    need(view, there.size, what)
+    states = ", ".join(sorted({word.replace("_", " ") for word in words.tolist()}))
+    need(view, there.size, f"{what} (its points are: {states})")
     numbers = list(points) or [int(index) + 1 for index in there[:MOST_CYCLES]]
     columns = view.point_columns
     parameters = [{name: float(columns[name][n - 1]) for name in columns} for n in numbers]

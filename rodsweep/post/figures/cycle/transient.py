@@ -15,8 +15,11 @@ LEVEL: dict[str, Any] = {"color": "0.55", "lw": 0.8, "ls": (0, (4, 2)), "zorder"
 """The look of the extrema of the cycle that the motion comes to."""
 
 
-def draw_transients(view: View, points: Sequence[int]) -> tuple[Figure, str]:
-    """A column for each point, cycle or not: x and y of the tip against time, and the cycle's extrema."""
+def draw_transients(view: View, points: Sequence[int], narrow: bool = False) -> tuple[Figure, str]:
+    """A column for each point, cycle or not: x and y of the tip against time, and the cycle's extrema.
+
+    narrow: whether the columns have no room for the words about extrema.
+    """
     selection = chosen_traces(view, points)
     count = len(selection.cycles)
     figure = Figure(figsize=(4.2 * count + 1.6, 5.0), layout="constrained")
@@ -25,11 +28,12 @@ def draw_transients(view: View, points: Sequence[int]) -> tuple[Figure, str]:
         draw_emergence(upper, lower, cycle)
         ends = cycle.word.replace("_", " ")
         if cycle.word in CYCLE_WORDS:
-            ends += rf" (extrema dashed), $T$ = {cycle.period:.6g} $\tau_2$"
-        upper.set_title(cycle.heading(ends), fontsize=9)
+            ends += "" if narrow else " (extrema dashed)"
+            ends += rf", $T = {cycle.period:.6g}\,\tau_2$"
+        upper.set_title(cycle.heading(ends))
     label_tip(rows[0, 0], rows[1, 0])
     figure.align_ylabels(rows[:, 0])
-    figure.suptitle(selection.title, fontsize=10)
+    figure.suptitle(selection.title)
     return figure, "the tip from the start on" + selection.left_out
 
 
@@ -61,5 +65,4 @@ def label_time(upper: Axes, lower: Axes, tau1: float) -> None:
         top = upper.secondary_xaxis(
             "top", functions=(lambda t: np.asarray(t) / tau1, lambda t: np.asarray(t) * tau1)
         )
-        top.set_xlabel(r"time $t/\tau_1$", fontsize=9)
-        top.tick_params(labelsize=8)
+        top.set_xlabel(r"time $t/\tau_1$")

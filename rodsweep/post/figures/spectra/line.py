@@ -8,17 +8,20 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator, SymmetricalLogLocator
 
-from ....arrays import Complex
-from ....errors import InputError
+from ....arrays import Array, Complex
 from ....results.file.view import View
-from ...hopf_points import HopfPoint, Located, lines_over
+from ...hopf_points import Bracket, HopfPoint, Located, lines_over
 from ...stability_changes import thresholds_on
+from ..eigenvalues import spread
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, fixed_text, heading, legend_below, scale
 
 FOLLOWED_ROOTS = {
     "rightmost": "the two rightmost roots",
     "smallest": "of the stored roots, the two smallest in magnitude",
+    "all": "all stored roots",
 }
+FOLLOWED = 2
+"""Roots of a line that are followed."""
 LARGE = 10.0
 """Largest root in units of the median one from which on the axis of the roots is logarithmic but near 0."""
 THRESHOLD_DIGITS = 6
@@ -35,11 +38,13 @@ SHADE: dict[str, Any] = {"color": "0.92", "lw": 0, "zorder": 0}
 
 
 def followed_roots(growth: np.ndarray, frequency: np.ndarray, roots: str) -> np.ndarray:
-    """Two roots of each point, complex, shape (points, 2), from all stored ones, shape (points, modes).
+    """Two roots of each point, complex, shape (points, 2), or all stored ones, shape (points, modes).
 
     Of a pair the positive frequency is first; two real roots are ordered as `roots` says.
     """
     w = growth + 1j * frequency
+    if roots == "all":
+        return w
     if roots == "smallest":
         order = np.lexsort((-frequency, np.round(np.abs(w), 9)), axis=1)
         w = np.take_along_axis(w, order, axis=1)
@@ -58,8 +63,10 @@ def broken(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def roots_to_follow(views: Sequence[View], asked: str | None) -> str:
     """Which roots are followed along lines of spectra, if none are asked for: those that break less often.
 
-    The smallest, as the paper does, where both break alike.
+    The smallest, as the paper does, where both break alike; all where a file holds one.
     """
+    if any(len(view.variables["mode"]) < FOLLOWED for view in views):
+        return "all"
     if asked:
         return asked
 
@@ -71,14 +78,18 @@ def roots_to_follow(views: Sequence[View], asked: str | None) -> str:
 
 
 def _followed(view: View, roots: str) -> Complex:
-    """The two roots that are followed of every point of a line, (points, 2); InputError for one mode."""
+    """The roots that are shown of every point of a line, (points, 2), or of all that are stored."""
     modes = len(view.variables["mode"])
-    if modes < 2:
-        raise InputError(
-            f"{view.path} holds one mode; the figure follows two, so run with spectrum.modes >= 2"
-        )
     growth = view.variables["growth_rate"].reshape(-1, modes)
     return followed_roots(growth, view.variables["frequency"].reshape(-1, modes), roots)
+
+
+def _scatter_all(axes: Axes, x: Array, w: Complex, label: str) -> None:
+    """All roots, (n, modes), in the complex plane, coloured by the parameter, (n,)."""
+    across = np.broadcast_to(x[:, None], w.shape)
+    dots = axes.scatter(w.real.ravel(), w.imag.ravel(), s=6, c=across.ravel(), cmap="viridis_r")
+    spread(axes, w.real, w.imag)
+    axes.figure.colorbar(dots, ax=axes, label=label)
 
 
 def draw_line(view: View, name: str, roots: str) -> Figure:
@@ -87,24 +98,36 @@ def draw_line(view: View, name: str, roots: str) -> Figure:
     top, bottom = figure.subplots(2, 1)
     w = draw_roots(top, view, name, roots)
     mark_thresholds(top, view, name)
-    for i, colour in enumerate((FIRST, SECOND)):
-        bottom.plot(w[:, i].real, w[:, i].imag, ".-", color=colour, lw=0.8, ms=3)
-        _point_along(bottom, w[:, i], colour)
+    if roots != "all":
+        for i, colour in enumerate((FIRST, SECOND)):
+            bottom.plot(w[:, i].real, w[:, i].imag, ".-", color=colour, lw=0.8, ms=3)
+            _point_along(bottom, w[:, i], colour)
+    else:
+        _scatter_all(bottom, view.axes[name], w, LABELS[name])
     bottom.axvline(0, color="0.5", lw=0.6)
     bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
     legend_below(figure, top.get_legend_handles_labels()[0], 2)
-    figure.suptitle(heading(view, fixed_text(view, name), FOLLOWED_ROOTS[roots]), fontsize=9)
+    figure.suptitle(heading(view, fixed_text(view, name), FOLLOWED_ROOTS[roots]))
     return figure
 
 
 def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
-    """Draws the two roots that are followed over a parameter; returns them, (n, 2), NaN where they break."""
+    """Draws two roots over a parameter, (n, 2), NaN where they break, or all; returns them."""
     x = view.axes[name]
-    x_broken, w = broken(x, _followed(view, roots))
-    for i, (colour, width) in enumerate(((FIRST, 3.0), (SECOND, 1.2))):  # the thin one on the thick
-        look: dict[str, Any] = {"color": colour, "lw": width}
-        axes.plot(x_broken, w[:, i].real, label=rf"$\mathrm{{Re}}\,\omega_{i + 1}$", **look)
-        axes.plot(x_broken, w[:, i].imag, ":", label=rf"$\mathrm{{Im}}\,\omega_{i + 1}$", **look)
+    w = _followed(view, roots)
+    if roots != "all":
+        x_broken, w = broken(x, w)
+        for i, (colour, width) in enumerate(((FIRST, 3.0), (SECOND, 1.2))):  # the thin one on the thick
+            look: dict[str, Any] = {"color": colour, "lw": width}
+            axes.plot(x_broken, w[:, i].real, label=rf"$\mathrm{{Re}}\,\omega_{i + 1}$", **look)
+            axes.plot(x_broken, w[:, i].imag, ":", label=rf"$\mathrm{{Im}}\,\omega_{i + 1}$", **look)
+    else:
+        across = np.broadcast_to(x[:, None], w.shape)
+        for part, colour, marker in ((w.real, FIRST, "o"), (w.imag, SECOND, "s")):
+            word = rf"$\mathrm{{{'Re' if marker == 'o' else 'Im'}}}\,\omega$"
+            axes.plot(
+                across.ravel(), part.ravel(), marker, color=colour, mfc="none", ms=2, mew=0.6, label=word
+            )
     axes.axhline(0, color="0.5", lw=0.6)
     scale(axes, "x", x)
     axes.set(xlabel=LABELS[name], ylabel=r"$\omega\,\tau_2$", xlim=(x[0], x[-1]))
@@ -137,6 +160,13 @@ def threshold_text(threshold: Located) -> str:
     return f"{word} = {threshold.position:#.{THRESHOLD_DIGITS}g}"
 
 
+def edge_of_flutter(change: HopfPoint | Bracket) -> float:
+    """The force to which the rod is known to be unstable beside a change of its stability."""
+    if isinstance(change, HopfPoint):
+        return change.position
+    return change.high if change.destabilises else change.low
+
+
 def mark_thresholds(axes: Axes, view: View, name: str) -> list[Located]:
     """Shades where the rod is unstable, over F up to the thresholds, which get a line; returns these.
 
@@ -149,13 +179,14 @@ def mark_thresholds(axes: Axes, view: View, name: str) -> list[Located]:
             axes.fill_between(x, 0, 1, where=unstable, transform=across, label="flutter", **SHADE)
         return []
     (line,) = lines_over(view, name)
-    thresholds = thresholds_on(line, view)
+    found = thresholds_on(line, view)
+    thresholds = [threshold for threshold in found if isinstance(threshold, Located)]
     for threshold in thresholds:
         _, style = THRESHOLD_LOOKS[threshold.kind]
         axes.axvline(threshold.position, ls=style, label=threshold_text(threshold), **THRESHOLD_LINE)
-    changes = [threshold for threshold in thresholds if isinstance(threshold, HopfPoint)]
-    starts = [change.position for change in changes if change.destabilises]
-    ends = [change.position for change in changes if not change.destabilises]
+    changes = [change for change in found if isinstance(change, HopfPoint | Bracket)]
+    starts = [edge_of_flutter(change) for change in changes if change.destabilises]
+    ends = [edge_of_flutter(change) for change in changes if not change.destabilises]
     if ends and (not starts or ends[0] < starts[0]):
         starts.insert(0, float(x[0]))
     if len(starts) > len(ends):

@@ -45,9 +45,9 @@ def draw_panels(views: Sequence[View], roots: str, narrow: bool) -> Figure:
             word, (_, style) = THRESHOLD_WORDS[threshold.kind], THRESHOLD_LOOKS[threshold.kind]
             handles[word] = Line2D([], [], ls=style, label=word, **THRESHOLD_LINE)
         text = heading(view, fixed_text(view, name), ", ".join(map(threshold_text, thresholds)))
-        panel.set_title(f"({letter})  {text}", fontsize=8, loc="left")
+        panel.set_title(f"({letter})  {text}", loc="left")
     for panel in panels[len(views) :]:
         panel.remove()
     legend_below(figure, list(handles.values()), 2 if narrow else 3)
-    figure.suptitle(FOLLOWED_ROOTS[roots], fontsize=9)
+    figure.suptitle(FOLLOWED_ROOTS[roots])
     return figure

@@ -1,0 +1,75 @@
+"""Shapes and samples of cycles that a file holds without them: solved once more, for a figure."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..config.reading import validated, yaml_of
+from ..errors import EnvironmentLacks, InputError
+from ..results.file.view import View
+from ..results.layouts.limit_cycle import ENERGY, SHAPE, TIP
+from .job import Job, job_of
+
+SHAPES, SAMPLES = 48, 256
+"""Times over a period at which the shapes are solved, as an animation needs them, and the energies."""
+SAME_PERIOD = 100
+"""Estimated errors by which the periods of one cycle, solved twice, may differ."""
+
+
+def with_shapes(view: View, numbers: Sequence[int]) -> View:
+    """The file with shapes and samples of the cycles of points, numbered from 1; NaN at all other points.
+
+    InputError where a point, solved again, comes to another cycle, as from another start it may.
+    """
+    shape = view.variables["status"].shape
+    added: dict[str, np.ndarray] = {}
+    for number in numbers:
+        job, record = _solved(view, number)
+        for name in (variable.name for variable in SHAPE + TIP + ENERGY):
+            values = np.asarray(record[name])
+            table = added.setdefault(name, np.full((*shape, *values.shape), np.nan))
+            table.reshape(-1, *values.shape)[number - 1] = values
+        added |= job.task.coordinates()
+    return replace(view, variables=dict(view.variables) | added)
+
+
+def _solved(view: View, number: int) -> tuple[Job, dict[str, Any]]:
+    """The job of one point and the variables of its cycle."""
+    job = _job(view, number)
+    try:
+        solver = job.solver()
+        solver.warm_up()
+        record = solver.record(0, solver.solve(0))
+    except EnvironmentLacks as lack:
+        raise InputError(
+            f"{view.path} holds no shapes of cycles, and none can be solved here: {lack}; run with "
+            "limit_cycle.shapes > 0, which stores them"
+        ) from None
+    stored, error = (float(view.variables[name].ravel()[number - 1]) for name in ("period", "period_error"))
+    allowed = SAME_PERIOD * stored * (error + float(record["period_error"]))
+    if not abs(float(record["period"]) - stored) <= allowed:
+        raise InputError(
+            f"{view.path} holds no shapes of cycles, and point {number}, started on its own, comes to "
+            "another state than the one stored; run with limit_cycle.shapes > 0, which stores them"
+        )
+    return job, record
+
+
+def _job(view: View, number: int) -> Job:
+    """One point of the file by the file's own config, but started on its own."""
+    config = json.loads(view.attributes["config_resolved"])
+    stored = config["limit_cycle"]
+    options = {"shapes": SHAPES, "samples": SAMPLES, "harmonics": stored["harmonics"], "start": "hopf"}
+    if stored["start"] != "hopf":
+        options |= {"start": "mode", "amplitude": stored["amplitude"], "most_periods": stored["most_periods"]}
+    tree = {
+        "task": "limit_cycle",
+        "parameters": {name: float(column[number - 1]) for name, column in view.point_columns.items()},
+        "accuracy": config["accuracy"],
+        "limit_cycle": options,
+    }
+    return job_of(Path(view.path.name), validated(tree), yaml_of(tree))

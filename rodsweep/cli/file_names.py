@@ -1,0 +1,42 @@
+"""Names of files on the command line: what links lead to, default names, and endings."""
+
+import errno
+import os
+from pathlib import Path
+
+from ..errors import InputError
+
+RESULTS = (".h5", ".hdf5", ".nc")
+"""Endings of result files."""
+
+
+def result_file(path: Path) -> Path:
+    """The file for results that a name means; InputError for a directory or another ending."""
+    endings = ", ".join(RESULTS)
+    if path.is_dir() or not path.name:
+        raise InputError(f"{path} is a directory; name a file for results, which ends in {endings}")
+    if path.suffix not in RESULTS:
+        raise InputError(f"{path} is no name for results, which are HDF5: it must end in {endings}")
+    return followed(path)
+
+
+def beside(file: Path, ending: str) -> Path:
+    """The name of a file with another ending; InputError for a directory, which has none."""
+    if file.is_dir():
+        raise InputError(f"{file} is a directory; name a file")
+    return file.with_name(file.stem + ending)
+
+
+def followed(path: Path) -> Path:
+    """What a link leads to, which has the journal and the lock; another path as it is.
+
+    InputError for a link that leads to itself, in whose place nothing may be put.
+    """
+    if not path.is_symlink():
+        return path
+    try:
+        path.stat()
+    except OSError as error:
+        if error.errno == errno.ELOOP:
+            raise InputError(f"{path} is a link that leads to itself; name a file") from None
+    return Path(os.path.realpath(path))

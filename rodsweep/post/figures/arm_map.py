@@ -1,0 +1,243 @@
+"""Results over an arm's own quantities, in the units that were typed: lines over one, maps over two.
+
+The points of the file are the centres of cells. Where the model does not apply, or no rod covers the arm, a
+cell is hatched.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm, Normalize
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from ...arrays import Array
+from ...config.arm import CRUSHED, NO_WALL, NOT_SLENDER
+from ...model.neglected import Validity
+from ...model.units import written_in
+from ...results.file.view import View
+from ...results.layouts.arm import QUANTITY_UNITS
+from . import style
+from .cycle.point_map import cell_edges
+from .request import FigureRequest
+
+WORDS = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
+"""What quantities are called along an axis, where that is not their name."""
+MAPS = ("map", "maps")
+"""What may be asked for of a task that has several figures."""
+DECADE = 10
+"""Ratio of the largest to the smallest value above which colours are logarithmic."""
+HATCHES: tuple[tuple[str, int, str, dict[str, Any]], ...] = (
+    ("model_applies", Validity.doubtful, "model doubtful", {"fc": "none", "hatch": "..."}),
+    ("model_applies", Validity.does_not_apply, "model does not apply", {"fc": "none", "hatch": "////"}),
+    ("status", NOT_SLENDER, "shorter than 10 radii", {"fc": "0.85", "hatch": ""}),
+    ("status", CRUSHED, "crushed", {"fc": "0.65", "hatch": ""}),
+    ("status", NO_WALL, "no wall", {"fc": "0.45", "hatch": ""}),
+)
+"""Which cells are covered: the variable, its value, what the legend says, and how; later ones lie above."""
+WITHOUT: dict[str, Any] = {"fc": "#E8EDF2"}
+HATCHING = "0.35"
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """A number at every point in some unit.
+
+    lines: what is drawn of it over one axis, by what the legend says, where that is more than the values.
+    turns: what the legend says of the line of a map where the number is 0; empty where it has none.
+    """
+
+    label: str
+    values: Array
+    lines: Mapping[str, Array] = field(default_factory=dict)
+    turns: str = ""
+    without: str = "nothing computed"
+    """What the legend says of arms that have no number."""
+
+
+def draw_arm_map(request: FigureRequest) -> str:
+    """The main numbers of a task over the axes of an arm: two panels, of lines or of maps."""
+    view = replace(request, what=None).only_view()
+    long = [name for name in view.over if len(view.variables[name]) > 1] or list(view.over[:1])
+    axes = sorted(long, key=lambda name: -len(view.variables[name]))[:2]
+    x = next(name for name in view.over if name in axes)
+    y = next((name for name in view.over if name in axes and name != x), "")
+    place = tuple(slice(None) if name in axes else 0 for name in view.over)
+    panels = PANELS[view.task](view)
+    style.need(view, any(np.isfinite(panel.values[place]).any() for panel in panels), "number")
+    figure, drawn = _panels(len(panels), request.look.narrow, bool(y))
+    handles: list[Artist] = []
+    for subplot, panel in zip(drawn, panels, strict=True):
+        if y:
+            handles = [*handles, *_map(figure, subplot, panel, view, (x, y), place)]
+        else:
+            handles = [*handles, *_lines(subplot, panel, view, x, place)]
+    covers = [
+        _cover(subplot, view, panel, (x, y), place) for subplot, panel in zip(drawn, panels, strict=True)
+    ]
+    style.legend_below(figure, [*handles, *covers[0]], columns=3)
+    figure.suptitle(style.heading(view, _fixed(view, axes)))
+    return request.write(figure, f"{' and '.join(p.label for p in panels)} over {' and '.join(axes)}")
+
+
+def can_draw(request: FigureRequest) -> bool:
+    """Whether a figure is one over an arm's quantities: of its tasks, and nothing else is asked for."""
+    view = request.views[0]
+    chosen = request.what not in (None, *MAPS) or request.points or request.roots
+    return bool(view.over) and view.task in PANELS and not chosen
+
+
+def in_typed(view: View, name: str, values: Array, si: str = "") -> tuple[Array, str]:
+    """(values of a quantity in the unit in which it was typed, that unit)."""
+    si = si or QUANTITY_UNITS[name]
+    unit = view.typed.get(name, si)
+    return (values, "") if si == "1" else (values * written_in(1.0, unit, si), unit)
+
+
+def _axis(view: View, name: str) -> tuple[Array, str]:
+    """(values along an axis, its label)."""
+    values = view.variables[name]
+    if name in style.LABELS:
+        return values, style.LABELS[name]
+    values, unit = in_typed(view, name, values)
+    return values, WORDS.get(name, name.replace("_", " ")) + (f" ({unit})" if unit else "")
+
+
+def _panels(count: int, narrow: bool, maps: bool) -> tuple[Figure, list[Axes]]:
+    """Panels side by side, or one above the other."""
+    across = maps and not narrow
+    size = (4.8 * count, 4.4) if across else (4.6, 2.9 * count)
+    apart = ConstrainedLayoutEngine(wspace=0.06 if across else 0.0)  # a bar's label is that of its own panel
+    figure = Figure(figsize=size, layout=apart)
+    shape = (1, count) if across else (count, 1)
+    return figure, list(figure.subplots(*shape, sharex=True, sharey=maps, squeeze=False).ravel())
+
+
+def _map(
+    figure: Figure, axes: Axes, panel: Panel, view: View, names: tuple[str, str], place: Any
+) -> list[Artist]:
+    """A panel as colours over two axes; returns what the legend says of its line."""
+    (x, x_label), (y, y_label) = (_axis(view, name) for name in names)
+    values = np.ma.masked_invalid(panel.values[place].T)
+    low, high = float(values.min()), float(values.max())
+    norm = LogNorm(low, high) if high > DECADE * low > 0 else Normalize(low, high)
+    mesh = axes.pcolormesh(cell_edges(x), cell_edges(y), values, norm=norm, rasterized=True)
+    bar = figure.colorbar(mesh, ax=axes, label=panel.label)
+    if isinstance(norm, LogNorm):
+        style.label_few_decades(bar.ax.yaxis, low, high)
+    handles: list[Artist] = []
+    if panel.turns and low < 0 < high:
+        axes.contour(x, y, values, [0.0], colors="k", linewidths=1.4)
+        handles.append(Line2D([], [], color="k", lw=1.4, label=panel.turns))
+    style.scale(axes, "x", x)
+    style.scale(axes, "y", y)
+    subplot = axes.get_subplotspec()
+    if subplot is None or subplot.is_last_row():
+        axes.set_xlabel(x_label)
+    if subplot is None or subplot.is_first_col():
+        axes.set_ylabel(y_label)
+    return handles
+
+
+def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[Artist]:
+    """A panel as lines over one axis; returns what the legend says of them."""
+    x, label = _axis(view, name)
+    colours = (style.SECOND, style.FIRST, style.THIRD)
+    handles: list[Artist] = []
+    for colour, (word, values) in zip(colours, (panel.lines or {"": panel.values}).items(), strict=False):
+        axes.plot(x, values[place], "-o", ms=2.5, lw=1.2, color=colour)
+        if word and np.isfinite(values[place]).any():
+            handles.append(Line2D([], [], color=colour, marker="o", ms=2.5, lw=1.2, label=word))
+    style.scale(axes, "x", x)
+    subplot = axes.get_subplotspec()
+    if subplot is None or subplot.is_last_row():
+        axes.set_xlabel(label)
+    axes.set_ylabel(panel.label)
+    return handles
+
+
+def _cover(axes: Axes, view: View, panel: Panel, names: tuple[str, str], place: Any) -> list[Artist]:
+    """Hatches cells in which the model does not apply, or no rod covers the arm; returns legend entries."""
+    x, y = names
+    rods = view.variables["status"][place] < NOT_SLENDER
+    empty = [(rods & np.isnan(panel.values[place]), panel.without, WITHOUT)] if y else []
+    across = cell_edges(_axis(view, x)[0])
+    limits = axes.get_ylim()
+    up = cell_edges(_axis(view, y)[0]) if y else np.array(limits)
+    handles: list[Artist] = []
+    for variable, value, word, look in HATCHES:
+        there = view.variables[variable][place] == value
+        empty.append((there if variable == "status" else there & rods, word, look))
+    for there, word, look in empty:
+        for i, j in np.argwhere(there if y else there[:, None]):
+            corner = across[[i, i + 1]], up[[j, j + 1]]
+            axes.fill_between(corner[0], *corner[1], ec=HATCHING, lw=0, zorder=3 if y else 0, **look)
+        if there.any():
+            handles.append(Patch(label=word, ec=HATCHING, lw=0.5, **look))
+    axes.set_xlim(across[0], across[-1])
+    axes.set_ylim(up[0], up[-1]) if y else axes.set_ylim(limits)
+    return handles
+
+
+def _fixed(view: View, drawn: list[str]) -> str:
+    """The quantities that are not along an axis of the figure, with their values."""
+    told = []
+    for name, values in view.quantities.items():
+        if name in drawn or name in MADE:
+            continue
+        value = np.ravel(values)[:1]
+        shown, unit = in_typed(view, name, value)
+        unit = unit.replace("^3", "$^3$")
+        more = f" (of {len(values)} values)" if np.size(values) > 1 else ""
+        told.append(f"{WORDS.get(name, name.replace('_', ' '))} {shown[0]:.4g} {unit}".rstrip() + more)
+    return ", ".join(told)
+
+
+MADE = ("tau2", "force_scale", "pressure_scale")
+"""Units that follow from the quantities."""
+
+
+def _of_thresholds(view: View) -> list[Panel]:
+    load, si, typed = ("force", "N", "force") if "force" in view.quantities else ("pressure", "Pa", "young")
+    lines = {}
+    for event in ("hopf", "onset", "restabilization"):
+        lines[EVENTS[event]], unit = in_typed(view, typed, view.variables[f"{load}_{event}"], si)
+    flutter = lines[EVENTS["hopf"]]
+    return [
+        Panel(f"{load} at flutter ({unit})", flutter, lines, without="no flutter"),
+        Panel("frequency at flutter (Hz)", view.variables["frequency_hopf_hz"], without="no flutter"),
+    ]
+
+
+EVENTS = {"hopf": "flutter", "onset": "onset of oscillations", "restabilization": "return"}
+"""What thresholds are called."""
+
+
+def _of_modes(view: View) -> list[Panel]:
+    return [
+        Panel("growth rate (1/s)", view.variables["growth_rate_si"][..., 0], turns="growth rate 0"),
+        Panel("frequency (Hz)", np.abs(view.variables["frequency_hz"][..., 0])),
+    ]
+
+
+def _of_cycles(view: View) -> list[Panel]:
+    amplitude, unit = in_typed(view, "length", view.variables["tip_y_max_si"])
+    return [
+        Panel("frequency (Hz)", view.variables["frequency_hz"], without="no cycle"),
+        Panel(f"largest deflection of the tip ({unit})", amplitude, without="no cycle"),
+    ]
+
+
+PANELS: dict[str, Callable[[View], list[Panel]]] = {
+    "thresholds": _of_thresholds,
+    "spectrum": _of_modes,
+    "modes": _of_modes,
+    "limit_cycle": _of_cycles,
+}
+"""What is drawn of each task; other tasks are drawn as lists of points."""

@@ -1,0 +1,155 @@
+"""What `rodsweep show` says first of an arm: whether the model applies, and when and how fast it beats.
+
+In the units in which the arm was typed, frequencies in Hz.
+"""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from ...config.arm import NOT_SLENDER
+from ...model.neglected import Validity
+from ...model.units import written_in
+from ...results.file.view import View
+from ...results.layouts.arm import EFFECTS, FORCES, VALIDITY
+from ...results.layouts.thresholds import CROSSING_KINDS
+
+OF_PRESSURE = ("pressure", "young")
+"""Whose unit a pressure is told in: the first that was typed."""
+
+
+def arm_answer(view: View, done: np.ndarray) -> list[str]:
+    """Lines about the points that are `done`, a mask of their shape; none without an arm."""
+    if not view.quantities:
+        return []
+    rods = done & (view.variables["status"] < NOT_SLENDER)
+    if not rods.any():
+        return ["no rod covers any of these arms"] if done.any() else []
+    validity = {variable.name: view.variables[variable.name][rods] for variable in VALIDITY}
+    caveat, answer = validity_sentence(validity), ANSWERS[view.task](view, rods)
+    return [caveat, *answer] if validity["model_applies"].any() else [*answer, caveat]
+
+
+def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str:
+    """Whether the model applies at points, and what it leaves out there.
+
+    validity: the variables of VALIDITY, (n,); when: they are judged so.
+    """
+    applies, effect, excess = (validity[variable.name] for variable in VALIDITY)
+    worst = Validity(int(applies.max()))
+    if worst == Validity.applies:
+        return f"the model applies{' at all points' * (len(applies) > 1)}{when}"
+    there = applies == worst
+    at = f" at {int(there.sum())} of {len(applies)} points" if len(applies) > 1 else ""
+    verb = "does not apply" if worst == Validity.does_not_apply else "is doubtful"
+    place = int(np.flatnonzero(there)[np.argmax(excess[there])])
+    name, size = EFFECTS[int(effect[place])].replace("_", " "), f"{excess[place]:.2g}"
+    return f"the model {verb}{at}{when}: {name} is {'up to ' * (there.sum() > 1)}{size} times its limit"
+
+
+def spanned(view: View, values: np.ndarray, si: str, *typed: str) -> str:
+    """The range of values in an SI unit, of any shape, in the unit in which the first quantity was typed."""
+    unit = next((view.typed[name] for name in typed if name in view.typed), si)
+    finite = values[np.isfinite(values)]
+    low, high = (f"{written_in(float(end), unit, si):.3g}" for end in (finite.min(), finite.max()))
+    return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
+
+
+def load_spanned(view: View, loads: np.ndarray) -> str:
+    """The range of loads in SI, (n,), as the load of the arm is told."""
+    if "force" in view.quantities:
+        return spanned(view, loads, "N", "force")
+    return spanned(view, loads, "Pa", *OF_PRESSURE)
+
+
+def _of_thresholds(view: View, rods: np.ndarray) -> list[str]:
+    load = load_of(view)
+    v = {name: view.variables[name][rods] for name in (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz")}
+    return _flutter(view, *v.values())
+
+
+def _of_crossings(view: View, rods: np.ndarray) -> list[str]:
+    v = view.variables
+    first = _first_hopf(view, rods)
+    load = load_of(view)
+    end = v[f"{load}_end"][rods] if f"{load}_end" in v else np.full(len(first), np.nan)
+    frequency = _at(v["crossing_frequency_hz"][rods], first)
+    return _flutter(view, _at(v[f"crossing_{load}"][rods], first), end, frequency)
+
+
+def _flutter(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarray) -> list[str]:
+    """Lines about loads at which points flutter, up to where was searched, and frequencies there, (n,)."""
+    there = np.isfinite(hopf)
+    searched = f"up to {load_spanned(view, end)}" if np.isfinite(end).any() else ""
+    if not there.any():
+        return [f"does not flutter {searched}".rstrip()]
+    of = f" at {int(there.sum())} of {len(hopf)} points" if not there.all() else ""
+    lines = [f"flutters{of} from {load_spanned(view, hopf)}; beats at {spanned(view, frequency, 'Hz')}"]
+    if not there.all():
+        lines.append(f"does not flutter at {int((~there).sum())} of {len(hopf)} points {searched}".rstrip())
+    return lines
+
+
+def _of_cycles(view: View, rods: np.ndarray) -> list[str]:
+    v = {name: view.variables[name][rods] for name in ("frequency_hz", "tip_y_max_si")}
+    there = np.isfinite(v["frequency_hz"])
+    if not there.any():
+        return ["does not beat"]
+    of = f" at {int(there.sum())} of {len(there)} points" if len(there) > 1 else ""
+    wide = spanned(view, v["tip_y_max_si"][there], "m", "length")
+    return [f"beats{of} at {spanned(view, v['frequency_hz'], 'Hz')}, its tip by {wide} to either side"]
+
+
+def _of_modes(view: View, rods: np.ndarray) -> list[str]:
+    unstable = view.variables["unstable_count"][rods] > 0
+    if not unstable.any():
+        return ["stays straight"]
+    of = f" at {int(unstable.sum())} of {len(unstable)} points" if len(unstable) > 1 else ""
+    leading = view.variables["frequency_hz"][rods][unstable][:, 0]
+    return [f"gives way{of}; its leading mode turns at {spanned(view, np.abs(leading), 'Hz')}"]
+
+
+def _of_branches(view: View, rods: np.ndarray) -> list[str]:
+    loads = view.variables[f"branch_{load_of(view)}"][rods]
+    if not np.isfinite(loads).any():
+        return ["does not beat"]
+    frequency = 1 / view.variables["period_si"][rods]
+    return [f"beats at {load_spanned(view, loads)}, at {spanned(view, frequency, 'Hz')}"]
+
+
+def _of_diagram(view: View, rods: np.ndarray) -> list[str]:
+    if "F" in view.parameters:  # the rows cross another parameter
+        return []
+    first, v = _first_hopf(view, rods), view.variables
+    _, (scale,), _ = FORCES[load_of(view)]
+    loads = _at(v["crossing_at"][rods], first) * np.broadcast_to(v[scale], rods.shape)[rods]
+    nowhere = np.full(len(first), np.nan)
+    return _flutter(view, loads, nowhere, _at(v["crossing_frequency_hz"][rods], first))
+
+
+def load_of(view: View) -> str:
+    """What a follower force is told in."""
+    return "force" if "force" in view.quantities else "pressure"
+
+
+def _first_hopf(view: View, rods: np.ndarray) -> np.ndarray:
+    """The place of the first Hopf point among the crossings of each point, (n,); -1 without one."""
+    hopf = view.variables["crossing_kind"][rods] == CROSSING_KINDS.index("hopf")
+    return np.where(hopf.any(axis=-1), np.argmax(hopf, axis=-1), -1)
+
+
+def _at(values: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Of tables, (n, crossings), the value at a place of each, (n,); nan at place -1."""
+    return np.where(places < 0, np.nan, values[np.arange(len(places)), np.maximum(places, 0)])
+
+
+ANSWERS: dict[str, Callable[[View, np.ndarray], list[str]]] = {
+    "spectrum": _of_modes,
+    "modes": _of_modes,
+    "thresholds": _of_thresholds,
+    "criticality": _of_crossings,
+    "limit_cycle": _of_cycles,
+    "branch": _of_branches,
+    "phase_diagram": _of_diagram,
+}
+"""What each task has to say, from (view, which points have a rod and are computed)."""

@@ -1,0 +1,62 @@
+"""The table of a branch: its cycles in order, and between them the special points, marked in a column."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...results.file.view import View
+from ...results.layouts.arm import OF_HERTZ, SUFFIX
+from .columns import Column
+from .rows import Rows
+
+
+def merged_rows(view: View, cycles: Rows, special: Rows) -> tuple[NDArray, NDArray, NDArray]:
+    """Order of the table: (point, row of the cycles or -1, row of the special points or -1), each (rows,).
+
+    A special point comes behind the cycle behind which it lies, or before the first of its branch.
+    """
+    shape = view.variables["status"].size
+    branch = np.concatenate([_of(view, "branch", shape, cycles), _of(view, "special_branch", shape, special)])
+    place = np.concatenate([cycles[1] + 1, _of(view, "special_point", shape, special)])
+    point = np.concatenate([cycles[0], special[0]])
+    kind = np.repeat([0, 1], [len(cycles[0]), len(special[0])])
+    order = np.lexsort((np.concatenate([cycles[1], special[1]]), kind, place, branch, point))
+    row = np.concatenate([np.arange(len(cycles[0])), np.arange(len(special[0]))])
+    of_cycle, of_special = np.where(kind == 0, row, -1), np.where(kind == 1, row, -1)
+    return point[order], of_cycle[order], of_special[order]
+
+
+def merged_columns(
+    cycles: list[Column], special: list[Column], of_cycle: NDArray, of_special: NDArray, along: str
+) -> list[Column]:
+    """Columns of the cycles with the values of special points in between, and last what happens at these.
+
+    of_cycle, of_special: rows of the columns, (rows,), -1 where a row is no cycle or no special point.
+    """
+    named = {column.name: column for column in special}
+    merged = []
+    for column in cycles:
+        values, twin = column.rows(of_cycle), named.get(_special_of(column.name, along))
+        if twin is not None:
+            values = _filled(values, twin.rows(of_special))
+        merged.append(values)
+    return [*merged, named["special_kind"].rows(of_special)]
+
+
+def _filled(values: Column, others: Column) -> Column:
+    """A column whose missing values are those of another."""
+    both = np.where(values.absent, others.values, values.values)
+    return replace(values, values=both, absent=values.absent & others.absent)
+
+
+def _special_of(name: str, along: str) -> str:
+    """The name that a variable of cycles has at special points."""
+    base = name.removesuffix(SUFFIX).removesuffix(OF_HERTZ)
+    end = name[len(base) :]
+    return f"special_{'at' if base == f'branch_{along}' else base}{end}"
+
+
+def _of(view: View, name: str, count: int, rows: Rows) -> NDArray:
+    """A variable at the items of a list, (rows,)."""
+    return view.variables[name].reshape(count, -1)[rows]

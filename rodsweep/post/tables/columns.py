@@ -1,0 +1,118 @@
+"""Columns of a table: numbers or words with their unit, and where there is none of them.
+
+A file has room for a fixed number of items and fills what is not needed; a column knows no fill.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...results.layouts.variables import NOT_KNOWN, SECONDS, Variable
+
+NO_WORD = ("none", "missing")
+"""Words of a list that stand for no item."""
+TRUTHS = {0: "false", 1: "true"}
+"""What CSV has for variables that say yes or no."""
+ERROR_DIGITS = 3
+"""Significant digits of an error or a time: estimates have no more."""
+ROUNDING = 4 * np.finfo(float).eps
+"""Relative error of a coordinate that a conversion of units or the making of a range leaves."""
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column: name, unit, meaning, values (rows,), and which rows have none, (rows,)."""
+
+    name: str
+    unit: str
+    meaning: str
+    values: NDArray
+    absent: NDArray[np.bool_]
+    words: Mapping[int, str] = field(default_factory=dict)
+    """What the values mean, where they are words."""
+    given: bool = False
+    """Whether the values are what was asked for, not what was found."""
+    is_truth: bool = False
+    """Whether the values say yes or no."""
+
+    @property
+    def is_estimate(self) -> bool:
+        """Whether the values are estimates: errors, or times that a machine took."""
+        return "error" in self.name or self.name == SECONDS.name
+
+    def rows(self, which: NDArray[np.int64] | slice) -> "Column":
+        """Some rows of the column, in the order of their indices; -1 is a row without a value."""
+        if isinstance(which, slice):
+            return replace(self, values=self.values[which], absent=self.absent[which])
+        nothing = np.zeros(1, self.values.dtype)
+        values, absent = np.append(self.values, nothing)[which], np.append(self.absent, True)[which]
+        return replace(self, values=values, absent=absent)
+
+    def text(self) -> list[str]:
+        """The values as CSV has them: words, or the shortest decimal number that reads back the same."""
+        if self.is_truth:
+            texts = [TRUTHS[int(value)] for value in self.values]
+        elif self.words:
+            texts = [self.words.get(int(v), "") for v in np.nan_to_num(self.values)]
+        elif self.values.dtype.kind == "f":
+            texts = self._numbers()
+        else:
+            texts = self.values.astype(str).tolist()
+        return ["" if none else text for text, none in zip(texts, self.absent, strict=True)]
+
+    def _numbers(self) -> list[str]:
+        """Real numbers as text: errors and times rounded, coordinates without what rounding added."""
+        if self.is_estimate:
+            return [f"{value:.{ERROR_DIGITS}g}" for value in self.values]
+        values = self.values + self.values.dtype.type(0)  # no -0
+        texts = [text.removesuffix(".0") for text in values.astype(str).tolist()]
+        return (
+            [_typed(value, text) for value, text in zip(self.values, texts, strict=True)]
+            if self.given
+            else texts
+        )
+
+
+def column_of(variable: Variable, values: NDArray, words: Mapping[int, str] | None = None) -> Column:
+    """The column of a variable, whose values have the shape (rows,). words: by value, if not its own."""
+    known = dict(variable.flags) if words is None else words
+    return Column(
+        variable.name,
+        variable.units,
+        variable.long_name.removesuffix(NOT_KNOWN),
+        values,
+        absent_in(variable, values),
+        known,
+        is_truth=variable.is_truth,
+    )
+
+
+def coordinate(name: str, unit: str, meaning: str, values: NDArray) -> Column:
+    """The column of a coordinate, (rows,), which every row has."""
+    return Column(name, unit, meaning, values, np.zeros(len(values), bool), given=True)
+
+
+def _typed(value: float, text: str) -> str:
+    """The text of a coordinate, or a shorter one that rounding has changed: 2500 of 2500.0000000000005."""
+    if not np.isfinite(value):
+        return text
+    short = f"{value:.15g}"
+    is_close = abs(float(short) - value) <= ROUNDING * abs(value)
+    return short if is_close and len(short) + 2 < len(text) else text
+
+
+def absent_in(variable: Variable, values: NDArray) -> NDArray[np.bool_]:
+    """Where a variable has no value, of the shape of the values: NaN, an unknown count, or no word."""
+    if values.dtype.kind == "f":
+        return np.isnan(values)
+    if variable.flags:
+        none = [value for value, word in variable.flags if word in NO_WORD]
+        return np.isin(values, none)
+    return values == variable.fill if variable.fill == -1 else np.zeros(values.shape, bool)
+
+
+def tells_of_items(variable: Variable) -> bool:
+    """Whether a value of a variable shows that there is an item: not where its fill is a count or a no."""
+    return variable.dtype.startswith("<f") or bool(variable.flags) or variable.fill == -1

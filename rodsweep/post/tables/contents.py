@@ -1,0 +1,136 @@
+"""Which tables a result has: its points, and one for each of its lists, found from the dimensions.
+
+A table has a row for each item that was found, and the columns of its point beside it: its parameters and
+its status. `grid` is a diagram's grid, whose rows are points of the file.
+"""
+
+import json
+from dataclasses import dataclass
+
+from ...config.refusals import hint_of
+from ...errors import InputError
+from ...model.parameters import PARAMETERS
+from ...results.file.view import View
+from ...results.layouts import beside_points, layout_of
+from ...results.layouts.variables import Variable
+
+THERE_ARE = "there are"
+POINTS, GRID, BRANCHES = "points", "grid", "branches"
+PARTS_OF_BRANCHES = {"cycles", "special_points"}
+"""What `branches` puts together."""
+NAMES = {
+    ("mode",): "modes",
+    ("mode", "u"): "mode_shapes",
+    ("crossing",): "crossings",
+    ("branch_point",): "cycles",
+    ("special",): "special_points",
+    ("cycle_special",): "cycle_special_points",
+    ("curve_point",): "curves",
+    ("fold",): "folds",
+    ("hopf",): "hopf_points",
+    ("cycle_curve_point",): "cycle_curves",
+    ("bautin",): "generalised_hopf_points",
+    ("bautin_step",): "generalised_hopf_curves",
+    ("harmonic",): "harmonics",
+    ("multiplier_number",): "multipliers",
+    ("sample",): "samples",
+    ("shape", "u"): "shapes",
+    ("transient",): "motion",
+}
+"""Names of tables by the dimensions of what they hold, beside those of the points."""
+FIRST = {
+    "spectrum": "modes",
+    "modes": "modes",
+    "thresholds": POINTS,
+    "criticality": "crossings",
+    "phase_diagram": GRID,
+    "limit_cycle": POINTS,
+    "branch": BRANCHES,
+}
+"""The table of every task that is meant where none is named."""
+
+
+@dataclass(frozen=True, slots=True)
+class Contents:
+    """The variables of a result, by the table that holds them.
+
+    of_points: `points` has those of a point, which all tables of its lists may have beside their own;
+    joint: names of the tables that all points together give, in which no row has a point.
+    """
+
+    of_points: tuple[Variable, ...]
+    lists: dict[str, tuple[Variable, ...]]
+    joint: frozenset[str]
+
+    @property
+    def tables(self) -> tuple[str, ...]:
+        """Names of all tables."""
+        branches = (BRANCHES,) if self.lists.keys() >= PARTS_OF_BRANCHES else ()
+        return (POINTS, *branches, *self.lists)
+
+    def dimensions(self, table: str) -> tuple[str, ...]:
+        """The dimensions of a table beside those of the points."""
+        return self.lists[table][0].extra if table in self.lists else ()
+
+
+def contents_of(view: View) -> Contents:
+    """The tables of a result."""
+    config = json.loads(view.attributes["config_resolved"])
+    own: list[Variable] = []
+    lists: dict[str, list[Variable]] = {}
+    for variable in layout_of(config).variables:
+        if variable.extra:
+            lists.setdefault(name_of(variable.extra), []).append(variable)
+        else:
+            own.append(variable)
+    with_points = set(lists)
+    for variable in beside_points(config, view.is_grid):
+        if variable.name not in view.variables:
+            continue
+        if variable.extra[:1] in (("point",), *((name,) for name in view.parameters)):
+            lists[name_of(variable.extra[1:])].append(variable)
+        elif variable.extra:
+            lists.setdefault(name_of(variable.extra), []).append(variable)
+    own.sort(key=lambda variable: variable.name != "status")
+    found = {name: tuple(variables) for name, variables in lists.items()}
+    return Contents(tuple(own), found, frozenset(found.keys() - with_points))
+
+
+def name_of(dimensions: tuple[str, ...]) -> str:
+    """The name of the table with these dimensions beside those of the points."""
+    return GRID if dimensions[0] in PARAMETERS else NAMES[dimensions]
+
+
+def chosen(view: View, contents: Contents, table: str | None, columns: tuple[str, ...]) -> str:
+    """The table that is asked for: by name, by its columns, or the first of the task; else InputError."""
+    if table is not None:
+        if table not in contents.tables:
+            raise InputError(
+                f"{view.path} has no table {table!r}; {hint_of(table, contents.tables, THERE_ARE)}"
+            )
+        return table
+    holding = {v.name: name for name, variables in contents.lists.items() for v in variables}
+    holding |= {name: each for each in contents.lists for name in contents.dimensions(each)}
+    lists = list(dict.fromkeys(holding[name] for name in columns if name in holding))
+    if set(lists) == PARTS_OF_BRANCHES:
+        return BRANCHES
+    if len(lists) > 1:
+        pair = [next(name for name in columns if holding.get(name) == each) for each in lists[:2]]
+        raise InputError(
+            f"{pair[0]} and {pair[1]} are in two tables, {lists[0]} and {lists[1]}; ask for one at a time"
+        )
+    every = (*(v.name for v in contents.of_points), *holding, *view.point_columns, *view.quantities)
+    refuse_unknown(view.path, columns, every, "")
+    if lists:
+        return lists[0]
+    return POINTS if columns else FIRST[view.task]
+
+
+def refuse_unknown(path: object, columns: tuple[str, ...], known: tuple[str, ...], table: str) -> None:
+    """InputError for the first column that a table, any where none is named, has not, or that comes twice."""
+    for place, name in enumerate(columns):
+        if name not in known:
+            what = f"the table {table} has" if table else "its tables have"
+            raise InputError(f"{path}: {what} no column {name!r}; {hint_of(name, known, THERE_ARE)}")
+        if name in columns[:place]:
+            raise InputError(f"{path}: the column {name} is named twice")

@@ -1,0 +1,88 @@
+"""Rows of the tables of a result: one for each item that was found, with the coordinates of its point."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...config.arm import AXIS_OF
+from ...results.file.view import View
+from ...results.layouts.arm import MEANINGS, QUANTITY_UNITS
+from ...results.layouts.variables import DIMENSIONS, MISSING, STATUS, Variable
+from .columns import Column, absent_in, column_of, coordinate, tells_of_items
+
+Rows = tuple[NDArray[np.int64], ...]
+"""The point of every row, then its place along each dimension of the list, each (rows,)."""
+
+
+def item_rows(view: View, variables: Sequence[Variable], joint: bool) -> Rows:
+    """The rows of a list: its items at every point, or at none where all points together give them.
+
+    An item is there if one of its variables has a value.
+    """
+    points = 1 if joint else view.variables["status"].size
+    there: NDArray[np.bool_] = np.zeros((), bool)
+    for variable in variables:
+        if tells_of_items(variable) and (_is_of_points(view, variable) or joint):
+            values = view.variables[variable.name]
+            inner = len(variable.extra)
+            values = values.reshape(points, *values.shape[values.ndim - inner :])
+            there = there | ~absent_in(variable, values)
+    return np.nonzero(there)
+
+
+def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]) -> Iterator[Column]:
+    """What belongs to the points of rows: their parameters, an arm's quantities, and their own variables."""
+    for name, values in view.point_columns.items():
+        yield coordinate(name, *DIMENSIONS[name], values[points])
+    for name, values in _quantities_at_points(view).items():
+        yield coordinate(name, QUANTITY_UNITS[name], MEANINGS[name], values[points])
+    missing = view.variables[STATUS.name].reshape(-1)[points] == MISSING
+    for variable in own:
+        values = view.variables[variable.name].reshape(-1)[points]
+        if variable.name == STATUS.name:
+            yield replace(column_of(variable, values, view.flags), absent=np.zeros(len(points), bool))
+        else:
+            column = column_of(variable, values)
+            yield replace(column, absent=column.absent | missing)
+
+
+def list_columns(view: View, variables: Sequence[Variable], rows: Rows, joint: bool) -> Iterator[Column]:
+    """What belongs to the items of a list: their places, then their variables."""
+    names = variables[0].extra
+    for name, places in zip(names, rows[1:], strict=True):
+        yield coordinate(name, *DIMENSIONS[name], view.variables[name][places])
+    for variable in variables:
+        values = view.variables[variable.name]
+        if joint:
+            yield column_of(variable, values[rows[1:]])
+        elif _is_of_points(view, variable):
+            inner = values.shape[values.ndim - len(names) :]
+            yield column_of(variable, values.reshape(-1, *inner)[rows])
+        else:  # of one parameter of the points, or of each point, stored once
+            along = variable.extra[0]
+            place = rows[0] if along == "point" else _places(view, along)[rows[0]]
+            yield column_of(variable, values[place, *rows[1:]])
+
+
+def _is_of_points(view: View, variable: Variable) -> bool:
+    """Whether a variable of a list has the dimensions of the points, which its declaration leaves out."""
+    return variable.extra[0] not in ("point", *view.parameters)
+
+
+def _places(view: View, parameter: str) -> NDArray[np.int64]:
+    """The place of every point along the axis of a parameter, (points,)."""
+    return np.searchsorted(view.axes[parameter], view.point_columns[parameter])
+
+
+def _quantities_at_points(view: View) -> dict[str, NDArray]:
+    """The quantities of an arm at every point, each (points,); those along a row of a diagram left out."""
+    count, found = view.variables["status"].size, {}
+    for name, values in view.quantities.items():
+        along = AXIS_OF.get(name, "")
+        if values.size == 1 or not view.is_grid:
+            found[name] = np.broadcast_to(values, count)
+        elif along in view.parameters:
+            found[name] = values[_places(view, along)]
+    return found

@@ -1,0 +1,93 @@
+"""The planes in which an arm may move, and which of them it leaves first as the load grows."""
+
+from dataclasses import dataclass, replace
+from math import inf
+from typing import Any, TypeVar
+
+from ..errors import InputError
+from ..model.arm import UNITS, SlenderArm
+from ..model.units import compact
+from ..solve.changes.unstable_modes import Kind
+from .flutter import FlutterRange, flutter_range
+
+A = TypeVar("A", bound=SlenderArm)
+
+
+@dataclass(frozen=True, slots=True)
+class Plane:
+    """An arm as it moves in one plane, with its changes there."""
+
+    arm: SlenderArm
+    """Its height lies in the plane."""
+    found: FlutterRange
+    name: str = ""
+    """Which plane, after "in"; empty where the section is the same in all."""
+
+    @property
+    def flutter_loads(self) -> list[float]:
+        """Force of the first flutter with each drag, in N; inf where there is none."""
+        forces = [each.force(Kind.hopf) for each in self.found.forces]
+        return [inf if force is None else force * self.arm.force_scale for force in forces]
+
+
+@dataclass(frozen=True, slots=True)
+class Planes:
+    """The planes of an arm, of which it leaves `first` first: with the likeliest drag where drag decides."""
+
+    first: Plane
+    second: Plane | None = None
+
+    @property
+    def always(self) -> bool:
+        """Whether the first plane is the first with every drag."""
+        if self.second is None:
+            return True
+        loads = zip(self.first.flutter_loads, self.second.flutter_loads, strict=True)
+        return all(ours <= other for ours, other in loads)
+
+
+def planes_of(arm: SlenderArm) -> Planes:
+    """Both planes of a rectangle, or the only one of a section that is the same in all. Solves for them."""
+    if arm.radius is not None or arm.si.width == arm.si.height:
+        return Planes(Plane(arm, flutter_range(arm)))
+    other = turned(arm)
+    own = Plane(arm, flutter_range(arm), "the plane of its height")
+    across = Plane(other, flutter_range(other), "the plane of its width")
+    if across.flutter_loads[0] < own.flutter_loads[0]:
+        return Planes(across, own)
+    return Planes(own, across)
+
+
+def turned(arm: A) -> A:
+    """The arm that moves in the other plane of its rectangular section."""
+    return replace(arm, width=arm.height, height=arm.width)
+
+
+def with_load(planes: Planes) -> Planes:
+    """The planes with a load as a quantity where it is given relative to flutter.
+
+    Relative to the first flutter of all planes with the likeliest drag. InputError where nothing flutters.
+    """
+    first = planes.first
+    share, load = first.arm.share_of_flutter, first.arm.load
+    if share is None or load is None:
+        return planes
+    flutter, scale = first.flutter_loads[0] / first.arm.force_scale, first.arm.load_scale
+    if flutter == inf:
+        end = f"{first.found.end * scale:.3g} {UNITS[load][0]}"
+        raise InputError(
+            f"{load} = '{getattr(first.arm, load)}' is nothing: with the likeliest drag the arm does not "
+            f"flutter up to {end}"
+        )
+    factor, unit = compact(share * flutter * scale, UNITS[load][0])
+    given: dict[str, Any] = {load: f"{share * flutter * scale * factor:.15g} {unit}"}
+    second = planes.second and replace(planes.second, arm=replace(planes.second.arm, **given))
+    return Planes(replace(first, arm=replace(first.arm, **given)), second)
+
+
+def with_known_load(arm: A) -> A:
+    """The arm with its load as a quantity; solves where it is given relative to flutter."""
+    load = arm.load
+    if load is None or arm.share_of_flutter is None:
+        return arm
+    return replace(arm, **{load: getattr(with_load(planes_of(arm)).first.arm, load)})

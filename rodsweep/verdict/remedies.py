@@ -1,0 +1,76 @@
+"""That the model does not apply to an arm, by how much, and what would have to change."""
+
+from collections.abc import Iterable
+from math import isnan
+
+from ..model.arm import UNITS, SlenderArm
+from ..model.neglected import Effect, Validity
+from ..model.units import unit_of, written_in
+from .load import Load
+from .validity import Assessment, rounded_down, rounded_up, thickness_factor, viscosity_factor
+
+LEAST_EXCESS = 1.1
+"""Value over limit below which two digits would not tell the difference from 1."""
+
+
+def does_not_apply(arm: SlenderArm, assessment: Assessment) -> list[str]:
+    """The headline where an effect is beyond its limit, and a sentence on each other kind of effect."""
+    first, *others = _one_of_a_kind(assessment.those(Validity.does_not_apply))
+    remedy = _remedy(first, arm, assessment)
+    at = f" at {Load(arm).given}" if assessment.of_thresholds != Validity.does_not_apply else ""
+    says = [f"The model does not apply{at}: {first.name} is {times(first)} what the model allows; {remedy}."]
+    for effect in others:
+        name = effect.name.capitalize()
+        says.append(
+            f"{name} is {times(effect)} what the model allows, too; {_remedy(effect, arm, assessment)}."
+        )
+    return says
+
+
+def words_of(effects: Iterable[Effect]) -> str:
+    """The kinds of neglected effects, in words."""
+    return " and ".join(dict.fromkeys(map(kind_of, effects)))
+
+
+def kind_of(effect: Effect) -> str:
+    """The first word of an effect's name: inertia is one kind, of the arm and of the fluid."""
+    return effect.name.split()[0]
+
+
+def times(effect: Effect) -> str:
+    """How far an effect is beyond its limit."""
+    excess = float(effect.excess)
+    return f"{excess:.2g} times" if excess >= LEAST_EXCESS else f"{excess:.4g} times"
+
+
+def _one_of_a_kind(effects: list[Effect]) -> list[Effect]:
+    """The largest effect of each kind, the largest first."""
+    return list({kind_of(effect): effect for effect in reversed(effects)}.values())[::-1]
+
+
+def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
+    """What would bring an effect to its limit, rounded to the safe side."""
+    share = float(1 / effect.excess)
+    if kind_of(effect) == "inertia":
+        return _thicker_fluid_or_thinner_arm(arm, assessment)
+    if kind_of(effect) == "weight":
+        si = UNITS["density_difference"][0]
+        unit = unit_of(arm.density_difference, si)  # type: ignore[arg-type]
+        most = rounded_down(written_in(abs(arm.si.density_difference) * share, unit, si))
+        return f"an arm whose density is within {most:g} {unit} of the fluid's would do"
+    if any(effect is each for each in assessment.under_load):
+        pulls = "a pull" if arm.F < 0 else "a load"
+        return f"{pulls} of at most {Load(arm).at_most(abs(arm.F) * share)} would do"
+    return "a longer or a thinner arm would do"
+
+
+def _thicker_fluid_or_thinner_arm(arm: SlenderArm, assessment: Assessment) -> str:
+    """By how much the fluid would have to be more viscous, or the arm thinner."""
+    si = UNITS["viscosity"][0]
+    unit, factor = unit_of(arm.viscosity, si), viscosity_factor(assessment.at_flutter)
+    viscosity = f"{rounded_up(written_in(arm.si.viscosity * factor, unit, si)):g} {unit}"
+    says = f"a fluid at least {rounded_up(factor):g} times as viscous ({viscosity}) would do"
+    thickness = thickness_factor(arm)
+    if isnan(thickness):
+        return says
+    return f"{says}, or an arm at most {rounded_down(thickness):g} times as thick"

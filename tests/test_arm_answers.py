@@ -1,0 +1,81 @@
+"""`rs.Arm` answers the tasks of a rod, in SI units too."""
+
+import math
+import subprocess
+import sys
+
+import pytest
+
+import rodsweep as rs
+from rodsweep.solve.changes.unstable_modes import Kind
+
+THICK = {"length": "15 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "100 Pa s"}
+
+
+def test_thresholds_of_an_arm_need_no_load_and_ignore_one():
+    arm = rs.Arm(**THICK)
+    answer = arm.thresholds()
+    flutter = arm.flutter.forces[0].first(Kind.hopf)
+    assert answer.F_hopf == pytest.approx(flutter.at, rel=1e-6)
+    assert answer.data["F_hopf"].size == 1
+    loaded = rs.Arm(**THICK, pressure="1 kPa").thresholds()
+    assert loaded.F_hopf == answer.F_hopf
+    assert str(answer).startswith("Arm(length='15 cm', young='100 kPa'")
+
+
+def test_spectrum_and_cycle_of_an_arm_are_those_of_its_rod():
+    arm = rs.Arm(**THICK, pressure="1.3 of flutter")
+    rod = rs.Rod(arm=arm)
+    assert rod.parameters == {
+        name: pytest.approx(getattr(arm.loaded, name)) for name in ("F", "k1", "k2", "gamma3", "gamma1")
+    }
+    assert arm.spectrum(modes=1).growth_rate == pytest.approx(rod.spectrum(modes=1).growth_rate)
+    one, other = arm.cycle(accuracy=1e-4), rod.cycle(accuracy=1e-4)
+    assert one.status == "cycle"
+    assert one.period == pytest.approx(other.period, rel=1e-9)
+    in_seconds = [v for v in one.data.data_vars if str(v).startswith("period") and one.units[str(v)] == "s"]
+    assert float(one.data[in_seconds[0]]) == pytest.approx(one.period * arm.tau2, rel=1e-12)
+
+
+def test_a_rod_made_of_an_arm_keeps_what_is_given():
+    arm = rs.Arm(**THICK)
+    rod = rs.Rod(arm=arm, gamma3=0.5)
+    assert "F" not in rod.parameters
+    assert rod.parameters["gamma3"] == 0.5
+    assert rod.parameters["k2"] == arm.k2
+
+
+def test_making_an_arm_starts_no_solver():
+    """Nor does a rod of it, unless its load is relative to flutter."""
+    code = (
+        f"import sys, rodsweep as rs; arm = rs.Arm(**{THICK}, pressure='2 kPa'); rs.Rod(arm=arm.turned)\n"
+        "assert 'petsc4py' not in sys.modules; rs.Rod(arm=arm.replace(pressure='1.2 of flutter'))\n"
+        "assert 'petsc4py' in sys.modules"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_replace_changes_quantities_and_lets_one_load_or_section_take_the_place_of_the_other():
+    arm = rs.Arm(**THICK, pressure="2 kPa", inner_radius="2 mm")
+    assert arm.replace(length="30 cm").k1 == pytest.approx(4 * arm.k1)
+    assert arm.replace(force="0.1 N").pressure is None
+    flat = arm.replace(width="2 cm", height="1 cm")
+    assert (flat.radius, flat.inner_radius, flat.load) == (None, None, "pressure")
+    assert flat.replace(radius="4 mm").width is None
+    assert arm.replace(pressure=None).load is None
+    assert isinstance(flat, rs.Arm)
+    assert math.isnan(arm.replace(pressure=None).si.pressure)
+
+
+def test_an_arm_is_written_as_it_is_made_and_equal_ones_are_equal():
+    arm = rs.Arm(**THICK, pressure="1.2 of flutter")
+    given = "length='15 cm', young='100 kPa', viscosity='100 Pa s', radius='5 mm', pressure='1.2 of flutter'"
+    assert repr(arm) == f"Arm({given})"
+    assert eval(repr(arm), {"Arm": rs.Arm}) == arm
+    assert hash(arm) == hash(rs.Arm(**THICK, pressure="1.2 of flutter"))
+
+
+def test_a_relative_load_is_resolved_for_sweeps_too():
+    arm = rs.Arm(**THICK, pressure="1.3 of flutter")
+    data = rs.sweep("spectrum", arm=arm, modes=1)
+    assert data.F.item() == pytest.approx(arm.loaded.F, rel=1e-12)

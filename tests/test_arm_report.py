@@ -1,0 +1,260 @@
+"""What is said of an arm: that the model does not apply, which plane goes first, no or relative loads."""
+
+import math
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import rodsweep as rs
+from rodsweep.model.arm import SlenderArm
+from rodsweep.model.neglected import Validity, effects_of, fastest_rate, worst_validity
+from rodsweep.solve.changes.thresholds import ThresholdStatus, nothing_found
+from rodsweep.solve.changes.unstable_modes import Kind
+from rodsweep.verdict.arm import report_on
+from rodsweep.verdict.checks import LOWERED_BY_INERTIA, stiffening
+from rodsweep.verdict.flutter import FlutterForces, FlutterRange
+from rodsweep.verdict.planes import Plane, Planes, with_load
+
+WATER = {"length": "12 cm", "radius": "6 mm", "young": "80 kPa", "poisson": 0.49, "viscosity": "1 mPa s"}
+THICK = {"length": "15 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "100 Pa s"}
+"""An arm of 30 radii in a fluid so viscous that the model applies."""
+TALL = {"length": "12 cm", "width": "8 mm", "height": "12 mm", "young": "100 kPa", "viscosity": "100 Pa s"}
+
+
+def headline(arm):
+    return report_on(arm).verdict[0]
+
+
+def numbers_in(text):
+    return [float(number) for number in re.findall(r"(?<![\w.])-?\d+\.?\d*(?:e[+-]\d+)?", text)]
+
+
+def test_the_arm_in_water_is_no_case_for_the_model():
+    report = rs.Arm(**WATER, pressure="2 kPa").report()
+    assert report.validity == Validity.does_not_apply
+    assert report.warnings == ()
+    assert report.verdict[0] == (
+        "The model does not apply: inertia of the arm is 1.5e+07 times what the model allows; a fluid at "
+        "least 4600 times as viscous (4600 mPa s) would do, or an arm at most 0.018 times as thick."
+    )
+    assert report.verdict[1:] == (
+        "Without inertia it would flutter at 1.67 to 1.76 kPa, where it would begin to beat at 1460 to 4650 "
+        "Hz.",
+        "2 kPa would be 13 to 20 % above that threshold.",
+    )
+    assert str(report).startswith("The model does not apply")
+
+
+def test_the_fluid_and_the_thickness_that_are_stated_would_do_and_less_would_not():
+    """4600 times the viscosity, or 0.018 times the radius: rounded to the safe side in the second digit."""
+    for factor, fine in ((4600, True), (4450, False)):
+        report = report_on(SlenderArm(**WATER | {"viscosity": factor * 1e-3}))
+        assert (report.validity == Validity.does_not_apply) != fine
+    for factor, fine in ((0.018, True), (0.0195, False)):
+        report = report_on(SlenderArm(**WATER | {"radius": factor * 6e-3}))
+        assert (report.validity == Validity.does_not_apply) != fine
+
+
+def test_near_a_limit_a_warning_stands_above_the_verdict():
+    """Inertia goes as 1/viscosity^2: 0.64 at 1.4 Pa s."""
+    arm = SlenderArm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="7 Pa s", pressure="2 kPa")
+    report = report_on(arm)
+    assert report.validity == Validity.doubtful
+    first, second, *_ = str(report).splitlines()
+    assert first.startswith("warning: Compression: the load shortens the arm by 2 %")
+    assert [check.sentence.split(":")[0] for check in report.warnings] == ["Compression", "Inertia"]
+    assert "2 kPa is 4 to 9 % below flutter" in report.verdict[0]
+    assert not any(check.sentence.startswith(("Compression", "Inertia")) for check in report.checks)
+
+
+@pytest.mark.parametrize(
+    "rod", [(math.inf, math.inf, 0.0), (1600.0, 480.0, 0.004), (4e4, 1e4, 1e-4), (3e3, 150.0, 0.02)]
+)
+def test_warnings_state_by_how_much_inertia_lowers_flutter(rod):
+    """Flutter with a phase r is where the eigenvalue without inertia is on the ray Re = -r |Im|."""
+    k1, k2, gamma3 = rod
+    one = rs.Rod(k1=k1, k2=k2, gamma3=gamma3)
+    flutter = one.thresholds(F_max=60).F_hopf
+    F = np.linspace(0.85, 1.0, 31) * flutter
+    data = rs.sweep("spectrum", F=list(F), k1=k1, k2=k2, gamma3=gamma3, modes=1)
+    phases = (-data.growth_rate / abs(data.frequency)).values.ravel()
+    for phase in (0.02, 0.1, 0.2):
+        lowered = 1 - np.interp(phase, phases[::-1], F[::-1]) / flutter
+        assert lowered == pytest.approx(LOWERED_BY_INERTIA * phase, rel=0.15)
+
+
+def test_rubber_is_stiffer_under_compression_as_stated():
+    """Neo-Hookean: engineering stress E (x - 1/x^2)/3 at the stretch x."""
+    x, step = 0.9, 1e-6
+    slope = ((x + step - 1 / (x + step) ** 2) - (x - step - 1 / (x - step) ** 2)) / (2 * step) / 3
+    assert 1 + stiffening(0.1) == pytest.approx(slope, rel=1e-6)
+
+
+def test_a_load_that_crushes_the_material_is_beyond_the_model_while_flutter_is_not():
+    report = report_on(SlenderArm(**THICK, pressure="20 kPa"))
+    assert report.verdict[0] == (
+        "The model does not apply at 20 kPa: compression is 2 times what the model allows; a load of at most "
+        "10 kPa would do."
+    )
+    assert re.fullmatch(
+        r"Flutter, at [\d.]+ to [\d.]+ kPa, is within the model; 20 kPa is not.", report.verdict[1]
+    )
+    assert report_on(SlenderArm(**THICK, pressure="9.99 kPa")).validity == Validity.doubtful
+
+
+def test_weight_beyond_its_limit_says_which_density_would_do():
+    report = report_on(SlenderArm(**THICK, density_difference="-200 kg/m^3"))
+    (excess, most) = numbers_in(report.verdict[0])[:2]
+    assert report.verdict[0].startswith("The model does not apply: weight is ")
+    assert excess == pytest.approx(200 / most, rel=0.1)
+    assert report_on(SlenderArm(**THICK, density_difference=most)).validity < Validity.does_not_apply
+    assert report_on(SlenderArm(**THICK, density_difference=1.1 * most)).validity == Validity.does_not_apply
+
+
+def random_arm(rng):
+    """An arm of 10 to 60 radii, of any softness, in water or honey, round, hollow or rectangular."""
+    radius = 10 ** rng.uniform(-4, -2)
+    sections = (
+        {"radius": radius},
+        {"radius": radius, "inner_radius": radius * rng.uniform(0.1, 0.9)},
+        {"width": 2 * radius, "height": 2 * radius * rng.uniform(0.5, 2.0)},
+    )
+    given = sections[rng.integers(3)] | {
+        "length": radius * 10 ** rng.uniform(1.2, 1.8),
+        "young": 10 ** rng.uniform(4, 6),
+        "viscosity": 10 ** rng.uniform(-3, 2.5),
+        "poisson": rng.uniform(0.2, 0.5),
+    }
+    load = (None, "0.7 of flutter", "1.2 of flutter", "130 % of flutter")[rng.integers(4)]
+    if rng.random() < 0.3:
+        given["density_difference"] = rng.uniform(-300, 300)
+    return SlenderArm(**given, **({} if load is None else {"pressure": load}))
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_headline_agrees_with_the_neglected_effects_of_random_arms(seed):
+    arm = random_arm(np.random.default_rng(seed))
+    report = report_on(arm)
+    plane = min(
+        (
+            (rod, rs.Arm(**{n: getattr(rod, n) for n in QUANTITIES if getattr(rod, n) is not None}))
+            for rod in planes(arm)
+        ),
+        key=lambda each: each[1].flutter.forces[0].force(Kind.hopf) * each[0].force_scale,
+    )
+    first, found = plane[0], plane[1].flutter
+    hopf = found.forces[0].first(Kind.hopf)
+    effects = effects_of(first, fastest_rate(first, abs(hopf.frequency)), hopf.at)
+    worst = int(worst_validity(effects, of_cycles=False))
+    if arm.share_of_flutter is not None:
+        share = arm.share_of_flutter * hopf.at / first.k1
+        worst = max(worst, 2 if share > 0.1 else 1 if share > 0.01 else 0)
+    assert report.validity == worst
+    assert report.verdict[0].startswith("The model does not apply") == (worst == 2)
+    assert bool(report.warnings) == (worst == 1)
+    if worst < 2 and arm.share_of_flutter is not None:
+        spans = found.force(Kind.hopf)
+        at = arm.share_of_flutter * hopf.at
+        words = "stays straight" if at < spans.low else "drag decides" if at < spans.high else "the arm beats"
+        assert words in report.verdict[0]
+
+
+QUANTITIES = ("length", "radius", "inner_radius", "width", "height", "young", "viscosity", "poisson")
+
+
+def planes(arm):
+    return [arm] if arm.radius is not None else [arm, replace(arm, width=arm.height, height=arm.width)]
+
+
+def test_a_tall_rectangle_flutters_first_in_the_plane_of_its_width():
+    """Its verdict is that of the same arm turned, and the other plane is mentioned."""
+    tall = rs.Arm(**TALL, pressure="2 kPa")
+    flat = tall.turned
+    assert (flat.width, flat.height) == ("12 mm", "8 mm")
+    found, other = flat.flutter.force(Kind.hopf), tall.flutter.force(Kind.hopf)
+    low, high = (F * flat.pressure_scale / 1000 for F in (found.low, found.high))
+    report = tall.report()
+    assert report.verdict[0] == headline(flat).replace("plane of its height", "plane of its width")
+    assert "above flutter" in report.verdict[0]
+    assert "in the plane of its width: the arm beats." in report.verdict[0]
+    assert [low, high] == pytest.approx(numbers_in(report.verdict[0])[3:5], rel=5e-3)
+    last = numbers_in(report.verdict[-1])
+    assert report.verdict[-1].startswith("In the plane of its height flutter is at")
+    assert last == pytest.approx([F * tall.pressure_scale / 1000 for F in (other.low, other.high)], rel=5e-3)
+    assert min(last) > high
+    assert dict((row.name, row.value) for row in report.rows)["k1"] == f"{flat.k1:.5g}"
+
+
+def test_a_square_has_one_plane():
+    assert "plane" not in str(report_on(SlenderArm(**TALL | {"width": "12 mm"})))
+
+
+def test_a_tall_arm_that_is_stiff_in_its_plane_of_motion_beats_in_the_other():
+    """Below flutter in the plane that was meant, and above in the one that goes first."""
+    tall = rs.Arm(**TALL, pressure="2 kPa")
+    assert tall.flutter.force(Kind.hopf).low > tall.F
+    assert tall.turned.flutter.force(Kind.hopf).high < tall.turned.F
+
+
+def test_no_load_is_needed_to_ask_when_an_arm_flutters(command):
+    arm = rs.Arm(**THICK)
+    flutter, rate = arm.flutter.force(Kind.hopf), arm.flutter.frequency(Kind.hopf)
+    said = headline(arm)
+    stated = numbers_in(said)
+    assert said.startswith("The arm flutters at ")
+    assert stated[:2] == pytest.approx(
+        [F * arm.pressure_scale / 1000 for F in (flutter.low, flutter.high)], rel=5e-3
+    )
+    assert stated[2:] == pytest.approx([rate.low, rate.high], rel=5e-3)
+    assert "tip force" not in str(arm.report())
+    words = [word for name, text in THICK.items() for word in (f"--{name}", text)]
+    assert command("arm", *words).stdout == f"{arm.report()}\n"
+
+
+@pytest.mark.parametrize("load", ["pressure", "force"])
+def test_a_load_may_be_relative_to_flutter(load):
+    arm = rs.Arm(**THICK, **{load: "1.25 of flutter"})
+    same = rs.Arm(**THICK, **{load: "125% of flutter"})
+    likeliest = arm.flutter.forces[0].force(Kind.hopf)
+    assert pytest.approx(1.25 * likeliest, rel=1e-12) == arm.loaded.F
+    assert same.loaded == arm.loaded
+    report = arm.report()
+    assert (
+        report.verdict[1]
+        == f"{report.verdict[0].split(' is ')[0]} is 1.25 of flutter with the likeliest drag."
+    )
+    with pytest.raises(rs.InputError, match=f"^{load} = '1.25 of flutter' is no number yet"):
+        _ = arm.F
+
+
+def test_a_load_relative_to_the_flutter_of_a_rectangle_is_so_in_the_plane_that_goes_first():
+    tall = rs.Arm(**TALL, pressure="1.5 of flutter")
+    flutter = tall.turned.flutter.forces[0].force(Kind.hopf) * tall.turned.pressure_scale
+    assert tall.loaded.si.pressure == pytest.approx(1.5 * flutter)
+    assert tall.loaded.height == tall.height
+
+
+@pytest.mark.parametrize("given", ["of flutter", "-1 of flutter", "1.2 of onset", "nan of flutter"])
+def test_other_relative_loads_are_refused(given):
+    with pytest.raises(
+        rs.InputError, match=f"^pressure = '{given}' .*write a number with a unit|is not a number"
+    ):
+        SlenderArm(**THICK, pressure=given)
+
+
+def test_a_load_relative_to_no_flutter_is_refused():
+    arm = SlenderArm(**THICK, pressure="1.2 of flutter")
+    none = FlutterForces(tau2=1.0, thresholds=nothing_found(ThresholdStatus.ok, 200.0))
+    with pytest.raises(rs.InputError, match="^pressure = '1.2 of flutter' is nothing: .* up to 5.56e.03 Pa"):
+        with_load(Planes(Plane(arm, FlutterRange((none,)))))
+
+
+def test_the_report_is_a_table_in_a_notebook():
+    report = rs.Arm(**THICK, pressure="2 kPa").report()
+    page = report._repr_html_()
+    assert page.count("<tr>") == len(report.rows) + 1
+    assert f"<b>{report.verdict[0]}</b>" in page
+    assert repr(report) == str(report)
+    assert "<td>gamma3</td>" in page

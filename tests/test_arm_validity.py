@@ -1,0 +1,208 @@
+"""Whether the model applies, point by point: in files, in what `check` and `show` say first, in figures."""
+
+import re
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import rodsweep as rs
+from rodsweep.model.arm import SlenderArm
+from rodsweep.model.neglected import Validity, effects_of, fastest_rate, worst_validity
+from rodsweep.post.figures import draw
+from rodsweep.results.file.view import read_view
+
+SILICONE = {"radius": "5 mm", "young": "100 kPa", "viscosity": "4 Pa s"}
+LENGTHS = ["4 cm", "6 cm", "10 cm", "14 cm"]
+MAP = """
+task: thresholds
+parameters:
+  arm: {length: [4 cm, 6 cm, 10 cm, 14 cm], radius: 5 mm, young: [50 kPa, 100 kPa], viscosity: 4 Pa s}
+thresholds: {crossings: 8}
+"""
+HEAVY = MAP.replace("viscosity: 4 Pa s", "viscosity: 400 Pa s, density_difference: 200 kg/m^3")
+
+
+def arm_at(data, **more):
+    """The arm of one point of a Dataset."""
+    names = [name for name in ("length", "radius", "young", "viscosity") if name in data.coords]
+    return SlenderArm(**{name: data[name].item() for name in names}, pressure=0, **more)
+
+
+def test_each_point_has_the_worst_of_what_is_left_out():
+    data = rs.sweep("thresholds", arm=SILICONE | {"length": LENGTHS}, crossings=8)
+    assert data.model_applies[0] == Validity.does_not_apply  # shorter than ten radii
+    for point in (data.isel(length=i) for i in (1, 2, 3)):
+        arm = arm_at(point)
+        effects = effects_of(arm, fastest_rate(arm, point.hopf_frequency), point.F_hopf)
+        counted = [effect for effect in effects if not effect.of_cycles_only]
+        assert point.model_applies == worst_validity(effects, of_cycles=False)
+        largest = max(counted, key=lambda effect: effect.excess)
+        assert point.neglected_excess.item() == pytest.approx(float(largest.excess), rel=1e-12)
+        words = data.neglected_effect.flag_meanings.split()
+        assert words[1 + int(point.neglected_effect)] == largest.name.replace(" ", "_")
+    assert set(data.model_applies.values.tolist()) == {Validity.doubtful, Validity.does_not_apply}
+
+
+@pytest.mark.parametrize(
+    ("task", "more"),
+    [("spectrum", {"modes": 4}), ("modes", {"nodes": 9}), ("limit_cycle", {"accuracy": 1e-3})],
+)
+def test_the_motion_is_that_of_the_task(task, more):
+    arm = SILICONE | {"length": "10 cm", "pressure": ["0.1 kPa", "3 kPa"], "density_difference": "1 kg/m^3"}
+    data = rs.sweep(task, arm=arm, **more)
+    for i in (0, 1):
+        point = data.isel(F=i).squeeze(drop=True)
+        frequency = np.abs(np.atleast_1d(point.frequency.values))
+        rate = next((w for w in frequency if w > 0), np.nan)
+        arm_here = arm_at(point, density_difference=1.0)
+        amplitude = np.nan_to_num(point.tip_y_max.item()) if task == "limit_cycle" else 0.5
+        effects = effects_of(arm_here, fastest_rate(arm_here, rate), data.F[i].item(), amplitude=amplitude)
+        assert point.model_applies == worst_validity(effects, of_cycles=task == "limit_cycle")
+        counted = [e for e in effects if task == "limit_cycle" or not e.of_cycles_only]
+        expected = np.nanmax([float(effect.excess) for effect in counted])
+        assert point.neglected_excess.item() == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_stiffness_beside_the_arm_is_what_is_compressed():
+    arm = SILICONE | {"length": "10 cm", "viscosity": "1 kPa s", "pressure": "1 kPa"}
+    data = rs.sweep("spectrum", arm=arm, k1=[100, 1600], modes=1)
+    compression = data.F.item() / data.k1.values / 0.1
+    assert data.neglected_excess.values.ravel() == pytest.approx(compression, rel=1e-12)
+    assert data.model_applies.values.ravel().tolist() == [Validity.does_not_apply, Validity.doubtful]
+
+
+def test_branches_and_diagrams_are_judged_too():
+    arm = SILICONE | {"length": "10 cm"}
+    branch = rs.sweep("branch", arm=arm, stop=45, cycles=60, accuracy=1e-4)
+    fastest = np.nanmax(2 * np.pi / branch.period.values)
+    here = arm_at(branch)
+    effect = effects_of(here, fastest_rate(here, fastest), 0.0)[0]
+    assert branch.neglected_excess.item() >= float(effect.excess) * (1 - 1e-12)
+    diagram = rs.sweep(
+        "phase_diagram", arm=arm | {"pressure": rs.linspace("1 kPa", "3 kPa", 5)}, gamma3=[0.002, 0.004],
+        curves=False,
+    )  # fmt: skip
+    single = rs.sweep("thresholds", arm=arm, gamma3=[0.002, 0.004])
+    assert diagram.neglected_excess.values.ravel() == pytest.approx(
+        single.neglected_excess.values.ravel(), rel=1e-6
+    )
+
+
+def test_check_tells_before_the_run_what_can_be_known(command):
+    command.write("a.yaml", HEAVY)
+    told = " ".join(command("check", "a.yaml").stdout.split())
+    found = re.search(r"the model does not apply at (\d) of 6 points before anything moves: weight is", told)
+    assert "not_slender at 2 of 8 points: the arm is shorter than 10 radii" in told
+    assert "does not apply" not in command("check", command.write("b.yaml", MAP)).stdout
+    assert command("run", "a.yaml").returncode == 0
+    data = rs.open(command.directory / "a.h5")
+    outside = (data.model_applies == Validity.does_not_apply) & (data.status == 0)
+    assert int(found[1]) == outside.sum()
+
+
+def span(text, data):
+    """(low, high) of what a sentence says, compared with data to its three digits."""
+    low, high = (float(number) for number in text)
+    assert low == pytest.approx(float(data.min()), rel=6e-3)
+    assert high == pytest.approx(float(data.max()), rel=6e-3)
+
+
+def test_show_begins_with_the_answer_in_the_units_that_were_typed(command):
+    command.write("a.yaml", MAP)
+    assert command("run", "a.yaml").returncode == 0
+    first, second, *_ = command("show", "a.h5").stdout.splitlines()[1:]
+    data = rs.open(command.directory / "a.h5")
+    rods = data.status == 0
+    outside = int((rods & (data.model_applies == Validity.does_not_apply)).sum())
+    number = r"([\d.]+)"
+    worst = re.fullmatch(
+        rf"the model does not apply at {outside} of 6 points: inertia of the arm is up to {number} times its "
+        "limit",
+        first,
+    )
+    assert float(worst[1]) == pytest.approx(float(data.neglected_excess.max()), rel=6e-2)
+    found = re.fullmatch(
+        rf"flutters from {number} to {number} kPa; beats at {number} to {number} Hz", second
+    ).groups()
+    span(found[:2], data.pressure_hopf / 1e3)
+    span(found[2:], data.frequency_hopf_hz)
+
+
+@pytest.mark.parametrize(
+    ("task", "arm", "more", "told"),
+    [
+        ("limit_cycle", "pressure: [1 kPa, 2.5 kPa]", "accuracy: 1.0e-3", "beats at 2 of 4 points at"),
+        ("spectrum", "force: [80 mN, 200 mN]", "", "gives way at 2 of 4 points; its leading mode turns at"),
+        ("criticality", "", "", "flutters from"),
+        ("branch", "", "branch: {stop: 40, cycles: 40}\naccuracy: 1.0e-3", "beats at"),
+        ("thresholds", "poisson: 0.4", "thresholds: {F_max: 32}", "does not flutter up to 1.81 to 2 kPa"),
+    ],
+)
+def test_show_answers_of_every_task(command, task, arm, more, told):
+    quantities = f"length: [10 cm, 10.5 cm], radius: 5 mm, young: 100 kPa, viscosity: 40 Pa s, {arm}"
+    command.write("a.yaml", f"task: {task}\nparameters: {{arm: {{{quantities}}}}}\n{more}\n")
+    assert command("run", "a.yaml").returncode == 0
+    lines = command("show", "a.h5").stdout.splitlines()[1:3]
+    assert any(line.startswith("the model ") for line in lines)
+    assert any(line.startswith(told) for line in lines)
+
+
+def drawn(monkeypatch, path, output, **choice):
+    """The figure of a file, not written, with its legend and labels."""
+    figures = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: figures.append(figure))
+    draw(read_view(path), output, **choice)
+    figures[-1].draw_without_rendering()
+    return figures[-1]
+
+
+def test_a_map_of_arms_has_typed_units_and_hatches(command, monkeypatch):
+    command.write("a.yaml", MAP)
+    assert command("run", "a.yaml").returncode == 0
+    figure = drawn(monkeypatch, command.directory / "a.h5", command.directory / "f.png")
+    labels = {axes.get_xlabel() for axes in figure.axes} | {axes.get_ylabel() for axes in figure.axes}
+    assert {"length (cm)", "Young's modulus (kPa)", "pressure at flutter (kPa)"} <= labels
+    words = {text.get_text() for text in figure.legends[0].get_texts()}
+    assert words == {"model doubtful", "model does not apply", "shorter than 10 radii"}
+    mesh = figure.axes[0].collections[0]
+    data = rs.open(command.directory / "a.h5")
+    values = np.ma.masked_invalid(data.pressure_hopf.values.T / 1e3)
+    assert np.ma.allclose(mesh.get_array().reshape(values.shape), values)
+
+
+def test_lines_over_one_quantity(command, monkeypatch):
+    command.write("a.yaml", MAP.replace("[50 kPa, 100 kPa]", "50 kPa"))
+    assert command("run", "a.yaml").returncode == 0
+    figure = drawn(monkeypatch, command.directory / "a.h5", command.directory / "f.png")
+    data = rs.open(command.directory / "a.h5")
+    x, y = figure.axes[0].lines[0].get_data()
+    assert x == pytest.approx(data.length.values * 100)
+    assert y == pytest.approx(data.pressure_hopf.values / 1e3, nan_ok=True)
+    assert figure.axes[1].get_ylabel() == "frequency at flutter (Hz)"
+
+
+def test_figures_over_F_are_hatched_where_the_model_does_not_apply(command, monkeypatch):
+    arm = "length: 10 cm, radius: 5 mm, young: 100 kPa, viscosity: 4 Pa s"
+    load = "pressure: {start: 0 kPa, stop: 4 kPa, num: 21}"
+    command.write("a.yaml", f"task: spectrum\nparameters: {{arm: {{{arm}, {load}}}}}\n")
+    assert command("run", "a.yaml").returncode == 0
+    figure = drawn(monkeypatch, command.directory / "a.h5", command.directory / "f.png")
+    data = rs.open(command.directory / "a.h5")
+    outside = data.F.values[(data.model_applies == Validity.does_not_apply).values.ravel()]
+    hatched = [patch for patch in figure.axes[0].patches if patch.get_hatch()]
+    assert len(hatched) == len(outside) > 0
+    for patch, F in zip(hatched, outside, strict=True):
+        assert patch.get_x() < F <= patch.get_x() + patch.get_width()
+    assert "hatched: the model does not apply" in figure.get_suptitle()
+
+
+def test_roots_are_drawn_over_the_points_of_a_grid_with_what_varies(command, monkeypatch):
+    arm = "length: [10 cm, 12 cm], radius: [4 mm, 5 mm], young: 100 kPa, viscosity: 4 Pa s, pressure: 1 kPa"
+    command.write("a.yaml", f"task: spectrum\nparameters: {{arm: {{{arm}}}}}\n")
+    assert command("run", "a.yaml").returncode == 0
+    figure = drawn(monkeypatch, command.directory / "a.h5", command.directory / "f.png", roots="smallest")
+    (axes,) = (axes for axes in figure.axes if "radius" in axes.get_xlabel())
+    assert axes.get_xlabel() == "length (mm)\nradius (mm)"
+    places = [label.get_text() for label in axes.xaxis.get_ticklabels()]
+    assert places == ["100\n4", "100\n5", "120\n4", "120\n5"]

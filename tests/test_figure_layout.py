@@ -1,0 +1,235 @@
+"""Figures at the widths of a page: nothing cut, no text over another, every value within its axes."""
+
+from dataclasses import replace
+from functools import cache
+from itertools import combinations
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import pytest
+from known_cycles import make_view
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+import rodsweep as rs
+from rodsweep.api.dataset import view_of
+from rodsweep.post.figures import draw
+from rodsweep.post.figures.cycle.animation import first_frame
+from rodsweep.post.figures.cycle.selection import chosen_cycles
+from rodsweep.post.figures.fitting import WORDS, break_lines, fit, labels_in_sight
+from rodsweep.post.figures.request import Look
+from rodsweep.post.figures.style import STYLE
+
+WIDTHS = ("89 mm", "183 mm", None)
+LONG = "An arm of silicone whose length is to be chosen for the laboratory, a title too long for a line"
+ROD = {"k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
+DIGITS = {"k1": 16234.567, "k2": 482.897384, "gamma3": 0.00398609931}
+"""A rod as an arm makes it, whose numbers have all their digits."""
+LEAST_HEIGHT = 0.3
+"""Inches of a panel below which nothing is read off it."""
+TOUCH = 1.0
+"""Pixels by which the boxes of two texts may lie over each other: they have blank edges."""
+
+
+def drawn(view, tmp_path, monkeypatch, width, **words):
+    """The figure as it is written."""
+    figures = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: figures.append(figure))
+    draw(view, tmp_path / "f.png", look=Look(title=True, width=width), **words)
+    figures[0].draw_without_rendering()
+    return figures[0]
+
+
+def texts_of(figure):
+    """Every text that is seen, with its box in pixels; that of two panels at one place is there once."""
+    found = list(figure.texts)
+    for legend in figure.legends:
+        found += legend.get_texts()
+    for axes in [*figure.axes, *(child for panel in figure.axes for child in panel.child_axes)]:
+        if axes.get_visible() and axes.axison:
+            found += [text for text in axes.get_children() if isinstance(text, Text)]
+            found += axes.get_legend().get_texts() if axes.get_legend() else []
+            for axis in (axes.xaxis, axes.yaxis):
+                found += [axis.label, axis.get_offset_text(), *labels_in_sight(axis)]
+    seen = [text for text in found if text.get_visible() and text.get_text().strip()]
+    boxes = {(text.get_text(), tuple(text.get_window_extent().extents.round())): text for text in seen}
+    return [(name, text.get_window_extent()) for (name, _), text in boxes.items()]
+
+
+def faults(figure):
+    """What is wrong with the layout of a figure, in words."""
+    texts, page = texts_of(figure), figure.bbox
+    boxes = [*texts, *(("the legend", legend.get_window_extent()) for legend in figure.legends)]
+    wrong = [
+        f"{name!r} is cut"
+        for name, box in boxes
+        if min(box.x0, box.y0, page.x1 - box.x1, page.y1 - box.y1) < -TOUCH
+    ]
+    for legend in figure.legends:
+        box = legend.get_window_extent()
+        wrong += ["the legend is over a panel"] * any(box.overlaps(axes.bbox) for axes in figure.axes)
+    for (name, one), (other, two) in combinations(texts, 2):
+        across = min(one.x1, two.x1) - max(one.x0, two.x0)
+        down = min(one.y1, two.y1) - max(one.y0, two.y0)
+        if min(across, down) > TOUCH:
+            wrong.append(f"{name!r} and {other!r} are over each other")
+    flat = [axes for axes in figure.axes if axes.bbox.height < LEAST_HEIGHT * figure.dpi]
+    wrong += ["a panel is too flat" for axes in flat if not is_bar(axes)]
+    return wrong + [f"{count} values lie beyond {axes.get_ylabel()!r}" for axes, count in beyond(figure)]
+
+
+def is_bar(axes):
+    """Whether a panel holds colours alone, along which nothing is read but its ends."""
+    return axes.get_subplotspec() is None or not axes.get_yticks().size or hasattr(axes, "_colorbar")
+
+
+def beyond(figure):
+    """(axes, number of values that are drawn outside of them) of a figure."""
+    for axes in figure.axes:
+        limits = [sorted(axes.get_xlim()), sorted(axes.get_ylim())]
+        lines = [line for line in axes.lines if line.get_transform() == axes.transData]
+        dots = [some for some in axes.collections if some.get_offset_transform() == axes.transData]
+        places = [np.column_stack([np.asarray(a, float) for a in line.get_data()]) for line in lines]
+        outside = 0
+        for given in [*places, *(np.asarray(some.get_offsets(), float) for some in dots)]:
+            known = given[np.isfinite(given).all(axis=1)]
+            for column, (low, high) in zip(known.T, limits, strict=True):
+                slack = 1e-9 * max(abs(low), abs(high))
+                outside += np.count_nonzero((column < low - slack) | (column > high + slack))
+        if outside:
+            yield axes, outside
+
+
+@cache
+def solved(name):
+    """Results of every task that solves, coarse."""
+    task, words = SOLVED[name]
+    data = rs.sweep(task, title=LONG, **words)
+    return view_of(data, Path(f"{name}.h5"))
+
+
+DIAGRAM = {"F": rs.linspace(0, 250, 11), "k1": rs.logspace(30, 1000, 7)}
+SOFT = {"k1": rs.logspace(100, 400, 4)}
+SOLVED = {
+    "line": ("spectrum", {"F": rs.linspace(0, 60, 31), **DIGITS, "modes": 4}),
+    "one_mode": ("spectrum", {"F": rs.linspace(0, 60, 7), **ROD, "modes": 1}),
+    "point": ("spectrum", {"F": 50, **DIGITS, "modes": 6}),
+    "map": ("spectrum", {"F": rs.linspace(0, 60, 13), **ROD, "k2": rs.logspace(10, 1e4, 7)}),
+    "rod": ("thresholds", {"k1": 200, "k2": 1e4, "gamma3": 1e-4}),
+    "readme": ("thresholds", {"k1": [200, 1e4, np.inf], "k2": rs.logspace(10, 1e6, 17), "gamma3": 1e-4}),
+    "forces": ("thresholds", {"k1": 1e4, "k2": rs.logspace(5, 1e6, 9), "gamma3": rs.logspace(1e-6, 10, 8)}),
+    "diagram": ("phase_diagram", {**DIAGRAM, "k2": 1e4, "gamma3": 1e-4, "curves": True}),
+    "modes": ("modes", {"F": [10, 20], **DIGITS, "nodes": 9, "growth": False}),
+    "branch": ("branch", {"k1": [150, 200], "k2": 1e4, "gamma3": 1e-4, "stop": 100, "accuracy": 1e-4}),
+    "criticality": ("criticality", {**SOFT, "k2": 1e4, "gamma3": [1e-4, 1e-2], "F_max": 100}),
+}  # fmt: skip
+CASES = {
+    "line": ({}, {"roots": "all"}, {"roots": "rightmost"}),
+    "one_mode": ({},),
+    "point": ({},),
+    "map": ({},),
+    "rod": ({},),
+    "readme": ({}, {"what": "map"}),
+    "forces": ({}, {"what": "lines"}),
+    "diagram": ({},),
+    "modes": ({},),
+    "branch": ({},),
+    "criticality": ({},),
+}
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize(("name", "words"), [(name, words) for name in CASES for words in CASES[name]])
+def test_nothing_is_cut_or_over_anything_else(name, words, width, tmp_path, monkeypatch):
+    assert faults(drawn(solved(name), tmp_path, monkeypatch, width, **words)) == []
+
+
+def of_cycles(forces, gamma1, seed, **words):
+    """Cycles known in closed form of a rod whose numbers have all their digits, under a long title."""
+    rng = np.random.default_rng(seed)
+    axes = (forces, [DIGITS["k1"]], [DIGITS["k2"]], [DIGITS["gamma3"]], gamma1)
+    count = len(forces) * len(gamma1)
+    status = np.where(rng.random(count) < words.pop("others", 0.0), rng.integers(-1, 6, count), 0)
+    view = make_view(axes, status, **words)
+    return replace(view, attributes=view.attributes | {"title": LONG})
+
+
+CYCLES = {
+    "one": (([50.0], [0.728427380530]), ("cycle", "energy")),
+    "two": (([50.0], [0.728427380530, 1.0]), ("cycle", "energy")),
+    "three": (([50.0, 123.456789, 200.0], [1.0]), ("cycle", "energy", "amplitude")),
+    "few lines": ((list(np.linspace(20, 120, 9)), [0.5, 0.75, 1.0]), ("amplitude", "maps")),
+    "six lines": ((list(np.linspace(20, 120, 9)), list(np.linspace(0.5, 1.0, 6))), ("amplitude", "maps")),
+    "many lines": ((list(np.linspace(20, 120, 9)), list(np.geomspace(0.1, 10.0, 20))), ("maps",)),
+    "a row": (([20.0, 60.0], list(np.geomspace(0.5, 1.0, 8))), ("maps",)),
+}
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize(
+    ("name", "what"), [(name, what) for name, (_, kinds) in CYCLES.items() for what in kinds]
+)
+def test_nothing_of_cycles_is_cut_or_over_anything_else(name, what, width, tmp_path, monkeypatch):
+    (axes, _), some = CYCLES[name], 0.0 if what in ("cycle", "energy") else 0.3
+    view = of_cycles(*axes, seed=1, others=some)
+    assert faults(drawn(view, tmp_path, monkeypatch, width, what=what)) == []
+
+
+@pytest.mark.parametrize("name", ["one", "two", "three"])
+def test_the_frames_of_a_film_are_whole(name):
+    selection = chosen_cycles(of_cycles(*CYCLES[name][0], seed=1), (), ())
+    with matplotlib.rc_context(STYLE):
+        figure, arms = first_frame(selection)
+        for arm in arms:
+            arm.show(7)
+        assert faults(figure) == []
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_random_figures_of_cycles_are_whole(seed, tmp_path, monkeypatch):
+    rng = np.random.default_rng(seed)
+    forces = list(np.sort(rng.uniform(10, 10 ** rng.uniform(2, 4), rng.integers(2, 30))))
+    gamma1 = list(np.sort(rng.uniform(0.3, 2, rng.integers(1, 7))))
+    what = ["amplitude", "maps", "cycle", "energy"][seed % 4] if len(gamma1) > 1 else "amplitude"
+    view = of_cycles(forces, gamma1, seed, others=0.0 if what in ("cycle", "energy") else 0.4)
+    for width in WIDTHS:
+        assert faults(drawn(view, tmp_path, monkeypatch, width, what=what)) == []
+
+
+def test_every_threshold_of_the_first_config_of_the_readme_is_within_its_axes(tmp_path, monkeypatch):
+    view = solved("readme")
+    stored = sum(
+        np.isfinite(view.variables[f"F_{name}"]).sum() for name in ("onset", "hopf", "restabilization")
+    )
+    figure = drawn(view, tmp_path, monkeypatch, "89 mm")
+    axes = figure.axes[0]
+    heights = np.concatenate([line.get_ydata() for line in axes.lines])
+    low, high = axes.get_ylim()
+    assert np.count_nonzero((heights >= low) & (heights <= high)) == stored
+
+
+def test_words_of_mathematics_are_not_broken():
+    assert WORDS.findall(r"$\tilde k_1 = 200$, cost in \$ and $a$ b") == [
+        r"$\tilde k_1 = 200$,", "cost", "in", r"\$", "and", "$a$", "b",
+    ]  # fmt: skip
+
+
+def test_lines_are_broken_only_where_they_are_too_long():
+    figure = Figure(figsize=(4, 2))
+    text = figure.text(0, 0.5, "one two three four\nfive")
+    assert not break_lines(text, 1000)
+    assert text.get_text() == "one two three four\nfive"
+    assert break_lines(text, 60)
+    assert text.get_text().split() == ["one", "two", "three", "four", "five"]
+    assert text.get_window_extent().width <= 60
+
+
+def test_a_figure_whose_text_leaves_no_room_for_its_panel_grows():
+    figure = Figure(figsize=(3, 1), layout="constrained")
+    axes = figure.subplots()
+    figure.suptitle("\n".join(["a line"] * 8))
+    fit(figure, 0.5)
+    figure.draw_without_rendering()
+    assert axes.bbox.height >= 0.45 * axes.bbox.width
+    assert figure.get_size_inches()[0] == 3
