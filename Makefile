@@ -45,7 +45,7 @@ figures: .venv/installed  ## compute every config on two ranks and draw its figu
 	  $(BIN)/mpiexec -n 2 $(BIN)/rodsweep run $$config -o results/$$name.h5
 	done
 	draw="$(BIN)/rodsweep plot"
-	for name in fig2a fig2b fig2c fig2d fig4 fig5 fig6 fig7 fig8 fig9 beating_map criticality generalised_hopf branches lopsided bistability; do
+	for name in fig2a fig2b fig2c fig2d fig4 fig5 fig6 fig7 fig8 fig9 beating_map arm_map criticality generalised_hopf branches lopsided bistability; do
 	  $$draw results/$$name.h5 -o results/$$name.pdf
 	  $$draw results/$$name.h5 -o docs/$$name.png
 	done
@@ -76,7 +76,7 @@ survey: .venv/installed  ## spectra along lines and limit cycles of RODS (300) r
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(VERDICTS),50) $(BIN)/python -m pytest -n auto tests/hard/test_time_marched_verdicts.py
 stress: .venv/installed  ## kill runs at random 120 times and more, interrupt Python 1300 times, and compare what comes of them (half an hour)
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_KILLS=$${RODSWEEP_KILLS:-40} RODSWEEP_INTERRUPTS=$${RODSWEEP_INTERRUPTS:-100} $(BIN)/python -m pytest tests/test_stress.py tests/test_interrupts.py
-bench: .venv/installed  ## run the benchmarks: docs/performance.md and its figures; the numbers are in results/bench.h5
+bench: .venv/installed  ## run the benchmarks, with the peers of benchmarks/: docs/performance.md and its figures; the numbers are in results/bench.h5
 	mkdir -p results
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/rodsweep bench -o results/bench.md
 	cp results/bench.md docs/performance.md

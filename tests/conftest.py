@@ -35,7 +35,7 @@ LONGEST = (
     "test_modes",
     "test_cycle_figures",
     "test_stretches",
-    "test_bench_limit_cycle",
+    "test_peers_limit_cycle",
     "test_cycles_task",
     "test_figures",
     "test_arm_sweeps",

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from rodsweep.bench.lapack import inverse_spectrum, whole_matrices
+from benchmarks.lapack import inverse_spectrum, whole_matrices
 from rodsweep.determinant.box import eigenvalue_box
 from rodsweep.discretization.resolution import expected_wave_number, resolution_for
 from rodsweep.model.dispersion import most_amplified_wave

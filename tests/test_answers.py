@@ -107,6 +107,14 @@ def test_what_a_rod_has_not_is_nan_or_none_and_not_printed():
         assert "tip_y_max" not in told
 
 
+def test_a_count_that_is_not_known_is_none_and_named_below():
+    whole = rs.Rod(**ROD).spectrum().whole.copy(deep=True)
+    whole["unstable_count"][...] = -1
+    answer = rs.Answer("rod", whole, "")
+    assert answer.unstable_count is None
+    assert repr(answer).endswith("\n\nnone: unstable_count")
+
+
 def test_an_unknown_attribute_is_told_with_those_that_there_are():
     answer = rs.Rod(**ROD).spectrum()
     with pytest.raises(

@@ -14,7 +14,7 @@ from rodsweep.solve.changes.along_path import Transitions
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdStatus, nothing_found
 from rodsweep.solve.changes.unstable_modes import Crossing, Kind
 from rodsweep.verdict.flutter import FlutterForces, FlutterRange
-from rodsweep.verdict.planes import Plane, Planes
+from rodsweep.verdict.planes import PlaneOfMotion, Planes
 from rodsweep.verdict.sentences import verdict_sentences
 from rodsweep.verdict.validity import Assessment
 
@@ -248,7 +248,7 @@ def found(tau2, *changes, end=200.0):
 
 def verdict(rod, *forces):
     """The verdict on an arm with changes that are given for each drag."""
-    plane = Plane(rod, FlutterRange(forces))
+    plane = PlaneOfMotion(rod, FlutterRange(forces))
     return verdict_sentences(Planes(plane), Assessment(plane.arm, plane.found))
 
 

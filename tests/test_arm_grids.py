@@ -10,9 +10,11 @@ from contents import content, same
 
 import rodsweep as rs
 from rodsweep.api.asking import job_from, tree_of
+from rodsweep.api.dataset import view_of
 from rodsweep.config.arm import CRUSHED, NO_WALL, NOT_SLENDER
 from rodsweep.model.arm import SlenderArm
 from rodsweep.model.neglected import Validity
+from rodsweep.post.figures.sections import section
 from rodsweep.results.file.view import read_view
 
 ROOT = Path(__file__).parents[1]
@@ -70,6 +72,15 @@ def test_values_are_selected_by_the_quantities_in_si(thresholds):
     assert data.young.typed_unit == "kPa"
 
 
+def test_a_section_has_the_points_of_a_quantity_in_any_unit(thresholds):
+    view = view_of(thresholds, Path("arm.h5"))
+    for length in ("10 cm", "100 mm", 0.1):
+        cut = section(view, {"length": length, "young": "0.1 MPa"})
+        assert cut.variables["F_hopf"].tolist() == [[thresholds.F_hopf.sel(length=0.1, young=1e5).item()]]
+    with pytest.raises(rs.InputError, match=r"has no point there; it has length = 0\.04, 0\.1, 0\.12"):
+        section(view, {"length": "11 cm"})
+
+
 def test_a_force_is_told_as_a_force():
     variables = {v.name for v in job("thresholds", arm=TALL).layout.variables}
     assert {"pressure_hopf", "pressure_end", "frequency_restabilization_hz"} <= variables
@@ -81,6 +92,7 @@ def test_a_force_is_told_as_a_force():
 
 def test_a_load_along_F_is_selected_by_itself():
     data = rs.sweep("spectrum", arm=GLYCEROL | {"length": "10 cm", "pressure": ["1 kPa", "2 kPa"]}, modes=1)
+    assert "pressure" in data.xindexes  # without an index only some versions of xarray select
     chosen = data.growth_rate.sel(pressure=1900, method="nearest")
     assert chosen.values.ravel() == data.growth_rate.sel(F=data.F[1]).values.ravel()
 
@@ -89,6 +101,7 @@ def test_points_that_no_rod_covers_have_a_status_and_the_others_their_numbers(co
     command.write("a.yaml", CONFIG)
     done = command("run", "a.yaml")
     assert done.returncode == 0, done.stdout + done.stderr
+    assert not (command.directory / "a.h5.log").exists()  # no solver was asked for what cannot be
     data = rs.open(command.directory / "a.h5")
     short = data.status.sel(length=0.04)
     assert (short == NOT_SLENDER).all()

@@ -15,7 +15,7 @@ from rodsweep.solve.changes.unstable_modes import Kind
 from rodsweep.verdict.arm import report_on
 from rodsweep.verdict.checks import LOWERED_BY_INERTIA, stiffening
 from rodsweep.verdict.flutter import FlutterForces, FlutterRange
-from rodsweep.verdict.planes import Plane, Planes, with_load
+from rodsweep.verdict.planes import PlaneOfMotion, Planes, with_load
 
 WATER = {"length": "12 cm", "radius": "6 mm", "young": "80 kPa", "poisson": 0.49, "viscosity": "1 mPa s"}
 THICK = {"length": "15 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "100 Pa s"}
@@ -55,6 +55,21 @@ def test_the_fluid_and_the_thickness_that_are_stated_would_do_and_less_would_not
     for factor, fine in ((0.018, True), (0.0195, False)):
         report = report_on(SlenderArm(**WATER | {"radius": factor * 6e-3}))
         assert (report.validity == Validity.does_not_apply) != fine
+
+
+def test_a_thinner_arm_is_no_way_out_where_it_would_hang_down():
+    """Weight over stiffness goes as 1/radius^2."""
+    stiff = {"length": 0.19, "radius": 9e-3, "young": 1.33e6, "poisson": 0.3, "viscosity": 0.39}
+    assert "or an arm at most 0.1" in headline(SlenderArm(**stiff))
+    heavy = headline(SlenderArm(**stiff, density_difference=-188.0))
+    assert "times as viscous" in heavy
+    assert "thick" not in heavy
+
+
+def test_large_numbers_and_units_are_written_as_people_do():
+    """Of an arm in SI: 6800, not 6.8e+03, and Pa s, not Pa*s."""
+    said = headline(SlenderArm(length=1.76e-3, radius=1.2e-4, young=5.5e4, poisson=0.41, viscosity=1.1e-3))
+    assert re.search(r"is \d{4,5} times what the model allows; .* \(0\.\d+ Pa s\) would do", said)
 
 
 def test_near_a_limit_a_warning_stands_above_the_verdict():
@@ -248,7 +263,7 @@ def test_a_load_relative_to_no_flutter_is_refused():
     arm = SlenderArm(**THICK, pressure="1.2 of flutter")
     none = FlutterForces(tau2=1.0, thresholds=nothing_found(ThresholdStatus.ok, 200.0))
     with pytest.raises(rs.InputError, match="^pressure = '1.2 of flutter' is nothing: .* up to 5.56e.03 Pa"):
-        with_load(Planes(Plane(arm, FlutterRange((none,)))))
+        with_load(Planes(PlaneOfMotion(arm, FlutterRange((none,)))))
 
 
 def test_the_report_is_a_table_in_a_notebook():

@@ -1,25 +1,24 @@
-"""The command bench: what it writes, what it refuses; timing in turns; the errors of the spectrum's peers."""
+"""The command bench: what it writes, what it refuses, where its peers are; timing in turns; the spectrum."""
 
+import re
 import subprocess
 import sys
+from functools import partial
+from importlib.metadata import version
 
 import h5py
 import mpmath as mp
 import numpy as np
 import pytest
+from conftest import ROOT
 
+from rodsweep.bench import peers as bench_peers
+from rodsweep.bench.peers import LEFT_OUT, NO_PEERS, Peers, left_out, peer_package, peers_of
 from rodsweep.bench.spectrum import study as spectrum
-from rodsweep.bench.spectrum.eigensolvers import (
-    PEERS,
-    WANTED_MODES,
-    chebyshev_first_order,
-    dense_inverse,
-    displacement_elements,
-    own_spectrum,
-)
 from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
-from rodsweep.bench.spectrum.study import HARD_RODS, every_size, hard_table, spectrum_study
-from rodsweep.bench.study import Contender, Measurement, Study, contest, race
+from rodsweep.bench.spectrum.own_solvers import KRYLOV_SCHUR, ORDERS, WANTED_MODES, krylov_schur, own_spectrum
+from rodsweep.bench.spectrum.study import HARD_RODS, RACE, every_size, hard_table, spectrum_study
+from rodsweep.bench.study import Contender, Measurement, Study, contest, every_nth_setting, race
 from rodsweep.model.rod import Rod
 from rodsweep.results.file.measurements import write_measurements
 
@@ -49,22 +48,13 @@ def test_error_is_that_of_the_worst_eigenvalue_and_infinite_for_none():
     assert relative_error(np.empty(0), roots) == np.inf
 
 
-@pytest.mark.parametrize("peer", PEERS, ids=lambda peer: peer.name)
-def test_every_peer_converges_to_the_exact_eigenvalues(peer):
+def test_the_solver_alone_converges_to_the_exact_eigenvalues():
     """Spectrally: two sizes farther the error is a hundredth, until rounding; at its best below 1e-9."""
     roots = exact_spectrum(EASY, WANTED_MODES)
-    errors = [relative_error(peer.solve(EASY, size), roots) for size in peer.sizes]
+    errors = [relative_error(krylov_schur(EASY, size), roots) for size in ORDERS]
     assert min(errors) < 1e-9
     coarse = [error for error in errors if error > 1e-8]
     assert all(later < earlier / 10 for earlier, later in zip(coarse[:-1], coarse[1:], strict=True))
-
-
-def test_forms_without_stiffness_keep_their_digits_where_the_plain_ones_lose_them():
-    stiff = HARD_RODS[next(name for name in HARD_RODS if name.startswith("stiff"))]
-    roots = exact_spectrum(stiff, WANTED_MODES)
-    assert relative_error(dense_inverse(stiff, 18), roots) < 1e-12
-    assert relative_error(chebyshev_first_order(stiff, 24), roots) < 1e-11
-    assert relative_error(displacement_elements(stiff, 18), roots) > 1e-8
 
 
 def test_own_error_on_the_hard_rods_is_rounding():
@@ -120,12 +110,20 @@ def test_time_of_other_programs_is_counted():
 def test_study_of_the_spectrum_has_a_row_for_every_method(monkeypatch, tmp_path):
     monkeypatch.setattr(spectrum, "HARD_RODS", {"easy": EASY})
     monkeypatch.setattr(spectrum, "FORCES", 1)
-    study = spectrum_study(quick=True)
-    for peer in PEERS:
-        assert study.text.count(f"| {peer.name} |") == 2
-    assert "| rodsweep, certificate on | 4 |" in study.text
+    exact = Contender("a peer", "7", "g", partial(own_spectrum, certify=False))
+    study = spectrum_study(quick=True, peers=Peers({RACE: [exact]}, skipped=["Another is skipped."]))
+    for name in ("rodsweep, certificate on", "rodsweep, certificate off", KRYLOV_SCHUR, "a peer"):
+        assert study.text.count(f"| {name} |") == 2
+        assert f"| {name} | 4 |" in study.text
+    assert study.text.endswith("\n\nAnother is skipped.")
     study.draw(tmp_path / "a.png")
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_quick_run_takes_every_nth_setting_of_each_method():
+    every = [Contender(method, str(k), "", print) for method in "ab" for k in range(4)]
+    taken = [(c.method, c.setting) for c in every_nth_setting(every, 3)]
+    assert taken == [("a", "0"), ("a", "3"), ("b", "0"), ("b", "3")]
 
 
 def test_numbers_of_a_study_are_in_the_file(tmp_path):
@@ -153,15 +151,93 @@ def test_a_name_that_cannot_take_the_markdown_is_refused_at_once(command, name):
     assert done.stderr.startswith("rodsweep: --output")
 
 
-def test_command_writes_markdown_numbers_and_figure(command, tmp_path):
+def test_command_times_the_peers_of_its_checkout(command, tmp_path):
     done = command("bench", "spectrum", "--quick", "-o", "b.md")
     assert done.returncode == 0, done.stderr
     text = (tmp_path / "b.md").read_text()
     assert "## spectrum" in done.stdout
+    assert "are left out" not in text
     assert text.startswith("# Performance\n")
     assert "| rodsweep, certificate on | 20 |" in text
+    assert "| Chebyshev, first-order system, QZ | 20 |" in text
+    assert f"scipy {version('scipy')}" in text
     assert "![Errors against time, spectrum](b_spectrum.png)" in text
     assert (tmp_path / "b_spectrum.png").exists()
     with h5py.File(tmp_path / "b.h5") as file:
         assert np.isfinite(file["spectrum/error"][:]).sum() > 100
         assert file.attrs["petsc"]
+
+
+def test_command_without_the_folder_times_rodsweep_alone_and_says_who_is_left_out(command, tmp_path):
+    """As installed: the package without what is beside it."""
+    (tmp_path / "site").mkdir()
+    (tmp_path / "site" / "rodsweep").symlink_to(ROOT / "rodsweep")
+    done = command.afresh("bench", "spectrum", "--quick", "-o", "b.md", PYTHONPATH=str(tmp_path / "site"))
+    assert done.returncode == 0, done.stderr
+    text = (tmp_path / "b.md").read_text()
+    sentence = left_out(["spectrum"])
+    assert f"\n\n{sentence}\n\n## spectrum" in text
+    assert sentence in done.stdout
+    assert sentence.count(". ") == 0
+    assert "Chebyshev" in sentence
+    assert "--peers CHECKOUT/benchmarks" in sentence
+    methods = re.findall(r"^\| ([^|]*) \| 20 \|", text, re.MULTILINE)
+    assert methods == ["rodsweep, certificate off", "rodsweep, certificate on", KRYLOV_SCHUR]
+
+
+def test_command_takes_peers_from_a_folder_that_is_named(command, tmp_path):
+    write_peers(tmp_path / "mine")
+    done = command("bench", "spectrum", "--quick", "-o", "b.md", "--peers", "mine")
+    assert done.returncode == 0, done.stderr
+    text = (tmp_path / "b.md").read_text()
+    assert "mine 1.2" in text
+    assert "| zero |" in text
+    assert "Chebyshev" not in text
+
+
+@pytest.mark.parametrize("name", ["nowhere", "empty", "other"])
+def test_a_folder_without_peers_is_refused_at_once(command, tmp_path, name):
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "__init__.py").touch()
+    done = command("bench", "spectrum", "--peers", name)
+    assert done.returncode == 2
+    wanted = "must be the folder `benchmarks` of a checkout of rodsweep"
+    assert done.stderr == f"rodsweep: --peers {name} {wanted}\n"
+    assert not (tmp_path / "bench.md").exists()
+
+
+def write_peers(directory):
+    """A folder of peers, with one for the spectrum that says zero."""
+    directory.mkdir()
+    (directory / "__init__.py").write_text("def versions():\n    return {'mine': '1.2'}\n")
+    (directory / "spectrum.py").write_text(
+        "import numpy as np\n"
+        "from rodsweep.bench.peers import Peers\n"
+        "from rodsweep.bench.study import Contender\n"
+        "def peers(quick, place):\n"
+        "    return Peers({'spectrum': [Contender('zero', '1', 'g', lambda rod: np.zeros(5))]})\n"
+    )
+
+
+def test_a_study_without_peers_in_the_folder_has_none(tmp_path):
+    package = peer_package(None)
+    assert package.__file__ == str(ROOT / "benchmarks" / "__init__.py")
+    assert peers_of(package, "sweep", True, tmp_path) is NO_PEERS
+    assert peers_of(None, "spectrum", True, tmp_path) is NO_PEERS
+    assert left_out(["sweep"]) == ""
+
+
+@pytest.mark.parametrize("missing", ["pyproject.toml", "benchmarks/__init__.py"])
+def test_a_folder_of_this_name_that_is_no_checkouts_is_left_alone(monkeypatch, tmp_path, missing):
+    """Other packages too bring a folder `benchmarks` to where packages are installed."""
+    (tmp_path / "benchmarks").mkdir()
+    for name in {"pyproject.toml", "benchmarks/__init__.py"} - {missing}:
+        (tmp_path / name).touch()
+    monkeypatch.setattr(bench_peers, "CHECKOUT", tmp_path)
+    assert peer_package(None) is None
+
+
+def test_who_is_left_out_is_said_for_every_study_with_peers():
+    rooms = [path.parent.name for path in (ROOT / "benchmarks").glob("*/__init__.py")]
+    assert sorted(LEFT_OUT) == sorted(rooms)

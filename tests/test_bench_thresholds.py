@@ -1,57 +1,18 @@
-"""The benchmark of thresholds: every peer finds what it claims to find, and what is missed is said."""
+"""The benchmark of thresholds: its exact numbers, and what it says of what is missed."""
 
 import json
-import shutil
-from dataclasses import replace
-from functools import partial
 from math import inf, isnan, nan
-from types import SimpleNamespace
 
-import numpy as np
 import pytest
 from conftest import ROOT
-from scipy.optimize import brentq
 
-from rodsweep.bench import auto as auto_peer
-from rodsweep.bench.auto import auto_program
-from rodsweep.bench.machine import installed, peer_versions
+from rodsweep.bench.peers import NO_PEERS, Peers
 from rodsweep.bench.study import Contender
-from rodsweep.bench.thresholds import continuation
 from rodsweep.bench.thresholds import study as thresholds
 from rodsweep.bench.thresholds.cases import CASES, HOPF, ONSET, FirstThreshold, ThresholdCase
-from rodsweep.bench.thresholds.continuation import (
-    CONTINUATION,
-    PYCONT_MODULE,
-    continuation_codes,
-    hopf_by_auto,
-    hopf_by_pycont,
-    reduced,
-)
-from rodsweep.bench.thresholds.spectra_by_force import (
-    BY_STEPS,
-    LeadingPair,
-    between,
-    by_steps,
-    growth,
-    interpolated_growth,
-    on_grid,
-    square_root_law,
-)
 from rodsweep.bench.thresholds.study import threshold_table, thresholds_study, timed_on
 
 CASE = {case.name: case for case in CASES}
-FLUTTERING = [case for case in CASES if not isnan(case.hopf)]
-FLOOR = 3e-12
-"""Relative error of a threshold that the mesh of MESH_ACCURACY leaves, and M(F) by its rounding ten times."""
-needs_pycont = pytest.mark.skipif(installed(PYCONT_MODULE) is None, reason="PyCont-Lite is not installed")
-
-
-@pytest.fixture(scope="module")
-def auto(tmp_path_factory):
-    program = auto_program(tmp_path_factory.mktemp("auto"), continuation.EQUATIONS)
-    if program is None:
-        pytest.skip("AUTO-07p or gfortran is not installed")
-    return program
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
@@ -61,97 +22,6 @@ def test_numbers_of_the_cases_are_those_of_the_reference(case):
     for kind in (ONSET, HOPF):
         first = next((float(event["F"]) for event in rod["events"] if event["kind"] == kind), nan)
         assert getattr(case, kind) == pytest.approx(first, rel=1e-15, abs=0, nan_ok=True)
-
-
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-12])
-@pytest.mark.parametrize("name", ["Fig. 2b", "filament", "soft"])
-def test_root_finding_reaches_its_tolerance(name, tolerance):
-    case = CASE[name]
-    for kind, searches in BY_STEPS.items():
-        for search in searches.values():
-            found = search(tolerance, case)
-            assert case.error_of(kind, found.force) < tolerance + FLOOR
-            assert found.solves < 60
-
-
-@pytest.mark.parametrize(
-    "estimate, exact, order", [(interpolated_growth, "hopf", 2), (square_root_law, "onset", 2)]
-)
-def test_order_of_interpolation(estimate, exact, order):
-    """Twice the points: the error falls by 2^order, if the threshold lies alike between two forces."""
-    case = CASE["filament"]
-    truth = getattr(case, exact)
-    errors = []
-    for intervals in (16, 32, 64):
-        top = truth * intervals / (0.625 * intervals + 0.5)  # the threshold is halfway between two forces
-        found = on_grid(estimate, intervals + 1, replace(case, top=top))
-        assert found.solves == intervals + 1
-        errors.append(abs(found.force - truth))
-    assert np.log2(np.divide(errors[:-1], errors[1:])) == pytest.approx([order, order], abs=0.25)
-
-
-def test_onset_between_two_forces_is_within_half_a_step():
-    case = CASE["filament"]
-    for points in (20, 40, 80):
-        found = on_grid(between, points, case)
-        assert abs(found.force - case.onset) <= case.top / (points - 1) / 2
-
-
-def test_a_grid_too_coarse_for_the_window_misses_it():
-    case = CASE["narrow"]
-    assert isnan(on_grid(interpolated_growth, 50, case).force)
-    assert case.error_of(HOPF, on_grid(interpolated_growth, 200, case).force) < 1e-2
-    assert isnan(by_steps(brentq, growth, 1e-6, case).force)
-
-
-@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_the_ordinary_differential_equation_has_the_spectrum_of_the_pencil(case):
-    M0, M1, M2 = reduced(case)
-    for F in (0.0, case.onset + 1, 0.9 * case.top):
-        w = LeadingPair(case)(F)
-        own = np.linalg.eigvals(M0 + F * M1 + F**2 * M2)
-        distance = np.abs(own[:, None] - w).min(axis=0) / np.abs(w)
-        assert distance.max() < 1e-8
-
-
-@pytest.mark.parametrize("k1, k2, gamma3", [(1e3, np.inf, 0.0), (np.inf, 1e3, 0.0), (1e3, np.inf, 0.1)])
-def test_rods_that_do_not_reduce_are_refused(k1, k2, gamma3):
-    with pytest.raises(ArithmeticError):
-        reduced(ThresholdCase("", k1, k2, gamma3, 20.0, nan))
-
-
-@pytest.mark.parametrize("case", FLUTTERING, ids=lambda case: case.name)
-def test_auto_finds_the_hopf_point_and_gains_from_its_tolerance(auto, case):
-    loose, tight = (hopf_by_auto(auto, 1.0, tolerance, case) for tolerance in (1e-3, 1e-10))
-    assert case.error_of(HOPF, loose.force) < 1e-3
-    assert case.error_of(HOPF, tight.force) < 1e-9  # AUTO ends when F moves by less than the tolerance, 1e-10
-    assert case.hopf - 1 < loose.solves <= tight.solves < case.hopf + 20
-
-
-def test_auto_finds_nothing_where_nothing_is(auto):
-    found = hopf_by_auto(auto, 1.0, 1e-6, CASE["Fig. 2d"])
-    assert isnan(found.force)
-    assert "auto-07p" not in peer_versions() or "0.9" in peer_versions()["auto-07p"]
-
-
-@needs_pycont
-def test_pycont_finds_the_hopf_point_in_silence(capsys):
-    for name in ("filament", "Fig. 2b"):
-        found = hopf_by_pycont(installed(PYCONT_MODULE), 0.25, CASE[name])
-        assert CASE[name].error_of(HOPF, found.force) < 1e-7
-        assert found.products > 1000
-    assert capsys.readouterr().out == ""
-
-
-def test_a_continuation_code_that_fails_is_shown_as_failed():
-    def give_up(*_):
-        raise RuntimeError("no convergence")
-
-    run = partial(hopf_by_pycont, SimpleNamespace(arclengthContinuation=give_up), 1.0)
-    for case in (CASE["filament"], CASE["Fig. 2d"]):
-        (result,) = timed_on(HOPF, [case], [Contender("a", "", CONTINUATION, run, slow=True)], 1)
-        assert result.error == inf
-        assert "| failed (RuntimeError) |" in threshold_table(HOPF, [result])
 
 
 def test_what_is_missed_or_invented_has_no_finite_error():
@@ -174,38 +44,26 @@ def test_tables_say_what_was_missed():
         assert f"| {cells} |" in threshold_table(HOPF, timed_on(HOPF, cases, [method], 1))
 
 
-def test_peers_that_are_not_installed_are_skipped_with_a_line(monkeypatch, tmp_path):
-    monkeypatch.setattr(continuation, "installed", lambda _: None)
-    monkeypatch.setattr(shutil, "which", lambda _: None)
-    found, skipped = continuation_codes(tmp_path, quick=True)
-    assert [line.split(" is skipped")[0] for line in skipped] == ["AUTO-07p", "PyCont-Lite"]
-    assert not found
-
-
-def test_a_program_that_crashes_is_a_failure(tmp_path):
-    program = tmp_path / "rod"
-    program.write_text("#!/bin/sh\nexit 3\n")
-    program.chmod(0o755)
-    with pytest.raises(RuntimeError, match="status 3"):
-        hopf_by_auto(program, 1.0, 1e-6, CASE["filament"])
-
-
-def test_auto_without_its_library_is_not_there(monkeypatch, tmp_path):
-    monkeypatch.setattr(auto_peer, "AUTO_LIBRARY", tmp_path / "nowhere")
-    assert auto_program(tmp_path, continuation.EQUATIONS) is None
-
-
 def test_the_study_writes_its_text_and_its_figure(monkeypatch, tmp_path):
     monkeypatch.setattr(thresholds, "QUICK_CASES", (CASE["filament"], CASE["Fig. 2d"]))
-    monkeypatch.setattr(thresholds, "GRIDS", (20, 40))
-    monkeypatch.setattr(continuation, "installed", lambda _: None)
-    study = thresholds_study(quick=True)
+    study = thresholds_study(quick=True, peers=NO_PEERS)
     rows = [line.split(" | ") for line in study.text.splitlines() if line.startswith("| rodsweep")]
     assert len(rows) == 4
     assert all(float(row[5].strip(" |")) < 1e-14 for row in rows)
     assert all(row[6].strip(" |") == "none" for row in rows[2:])
-    assert "PyCont-Lite is skipped" in study.text
-    assert {m.group for m in study.measurements} >= {"rodsweep", "grid and interpolation"}
+    assert {m.group for m in study.measurements} == {"rodsweep"}
     assert len(study.table()["eigenproblems"]) == len(study.measurements)
     study.draw(tmp_path / "a.png")
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_peers_take_part_in_the_race_of_their_threshold(monkeypatch):
+    monkeypatch.setattr(thresholds, "QUICK_CASES", (CASE["filament"],))
+    found = Contender("of Hopf points", "a", "g", lambda case: FirstThreshold(case.hopf, 1))
+    peers = Peers({HOPF: [found]}, notes=["A note."], skipped=["Another is skipped."])
+    text = thresholds_study(quick=True, peers=peers).text
+    introduction, onsets, hopf_points, skipped = text.split("\n\n")
+    assert introduction.endswith(" A note.")
+    assert "of Hopf points" not in onsets
+    assert "| of Hopf points | a |" in hopf_points
+    assert skipped == "Another is skipped."

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from surveyed import survey_only
 
-from rodsweep.bench.auto import auto_program, run_auto, table_lines
-from rodsweep.bench.limit_cycle.auto_cycles import rod_file, start_file
-from rodsweep.bench.limit_cycle.auto_equations import EQUATIONS
+from benchmarks.auto import auto_program, run_auto, table_lines
+from benchmarks.limit_cycle.auto_cycles import rod_file, start_file
+from benchmarks.limit_cycle.auto_equations import EQUATIONS
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.discretization.mesh import mesh
 from rodsweep.discretization.stress_form import StressForm

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import rodsweep
 
-ROOT = Path(rodsweep.__file__).parent
-SOURCES = {path.relative_to(ROOT): path.read_text() for path in sorted(ROOT.rglob("*.py"))}
+ROOT = Path(rodsweep.__file__).parents[1]
+FILES = [path for folder in ("rodsweep", "benchmarks") for path in sorted((ROOT / folder).rglob("*.py"))]
+SOURCES = {path.relative_to(ROOT): path.read_text() for path in FILES}
 TREES = {path: ast.parse(text) for path, text in SOURCES.items()}
 LONGEST_FUNCTION = 40
 """Lines of code, without its docstring, comments and empty lines."""

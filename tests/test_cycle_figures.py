@@ -129,7 +129,7 @@ def test_points_without_a_known_amplitude_are_marked_and_named_but_missing_ones_
 def test_period_and_power_are_drawn_where_there_are_cycles():
     view = make_view(SWEEP, SWEPT)
     figure = draw_amplitude([view])[0]
-    for axes, name in zip(figure.axes[2:], ("period", "injection_mean"), strict=True):
+    for axes, name in zip(figure.axes[1::2], ("period", "injection_mean"), strict=True):
         lines = [line for line in axes.lines if len(line.get_xdata()) > 2]
         drawn = np.concatenate([line.get_ydata() for line in lines])
         stored = view.variables[name].ravel()
@@ -164,7 +164,7 @@ def test_sweeps_up_and_down_are_told_apart_by_words_and_arrows():
     figure, _ = draw_amplitude(views)
     texts = [text.get_text() for text in figure.legends[0].get_texts()]
     assert [text.rsplit(" ")[-1] for text in texts[:2]] == ["rising", "falling"]
-    for panel in figure.axes:
+    for panel in figure.axes[::2]:
         arrows = [text for text in panel.texts if isinstance(text, Annotation)]
         assert [arrow.xy[0] > arrow.xyann[0] for arrow in arrows] == [True, False]
     assert not draw_amplitude(both)[0].axes[0].texts

@@ -136,6 +136,8 @@ def test_a_branch_is_a_table_of_cycles_with_its_special_points_marked(command):
     assert F[fold] == F.max() == pytest.approx(85.6055765, abs=1e-6)
     places = [int(text) for text in columns["branch_point"] if text]
     assert places == list(range(1, len(rows) - 2))
+    chosen = command("export", "c.h5", "--columns", "branch_F,special_kind", "--replace")
+    assert f"{len(rows)} rows of branches in 2 columns" in chosen.stdout
 
 
 def test_longitudinal_rates_stand_beside_the_modes(command):
@@ -155,6 +157,36 @@ def test_an_arm_has_its_quantities_as_they_were_typed_and_results_in_si(command)
     assert columns["pressure_scale [Pa]"] == ("40", "62.5")
     assert "frequency_hopf_hz [Hz]" in head
     assert not any("rad/s" in name for name in head)
+
+
+def test_tables_of_an_arm_are_in_si_too_where_the_file_tells_them_once(command):
+    """F = 1 is 62.5 Pa; the curves, rows and grid of a diagram are stored without units only."""
+    arm = "length: 10 cm, radius: 5 mm, young: 100 kPa, viscosity: 1.4 Pa s"
+    load = "pressure: [0 kPa, 2.5 kPa, 5 kPa]"
+    config = f"task: phase_diagram\nparameters: {{arm: {{{arm}, {load}}}, gamma3: [0.001, 0.01]}}\n"
+    tables = {
+        name: table_of(*exported(command, config, "--table", name, "--replace")[:2])
+        for name in ("grid", "crossings", "curves")
+    }
+    assert tables["grid"]["pressure"] == ("0", "2500", "5000") * 2
+    for name, force, load in (
+        ("crossings", "crossing_at", "crossing_pressure"),
+        ("curves", "curve_F", "curve_pressure"),
+    ):
+        columns = {key: np.array(tables[name][key], float) for key in (force, load)}
+        assert columns[load] == pytest.approx(62.5 * columns[force], rel=1e-12)
+    tau2 = float(tables["grid"]["tau2"][0])
+    angular, cycles = (np.array(tables["curves"][f"curve_frequency{end}"], float) for end in ("", "_hz"))
+    assert 2 * np.pi * cycles * tau2 == pytest.approx(angular, rel=1e-12)
+
+
+def test_a_branch_of_an_arm_has_loads_of_special_points_in_si(command):
+    arm = "arm: {length: 10 cm, radius: 5 mm, young: 100 kPa, viscosity: 1.4 Pa s}"
+    config = f"task: branch\naccuracy: 1.0e-3\nparameters: {{{arm}}}\nbranch: {{stop: 40}}\n"
+    columns = table_of(*exported(command, config)[:2])
+    assert columns["special_kind"][0] == "hopf"
+    F, pressure = (np.array(columns[name], float) for name in ("branch_F", "branch_pressure"))
+    assert pressure == pytest.approx(62.5 * F, rel=1e-12)
 
 
 @pytest.mark.parametrize("task", ["modes", "limit_cycle", "list"])

@@ -394,7 +394,7 @@ def test_a_section_of_a_grid_is_what_a_run_of_its_own_gives(command, monkeypatch
         assert cut.variables[name] == pytest.approx(line.variables[name], rel=1e-9, abs=1e-9)
     for words, said in (
         (("--at", "k2=70"), "no point there; it has k2 = 50, 100"),
-        (("--at", "k3=1"), "did you mean k2?"),
+        (("--at", "k3=1"), "has no such axis"),
         (("--at", "k2"), "is no parameter with a number"),
         (("--width", "tall"), "width = 'tall' is not allowed; choose single, double, or a length as '89 mm'"),
         (("--width", "1 km"), "from 64 to 508 mm"),

@@ -270,11 +270,11 @@ def test_variables_added_when_a_run_ends_have_their_own_dimensions(tmp_path, cou
 @pytest.mark.parametrize(
     ("task", "words"),
     {
-        "spectrum": ["stable at all of 4 points", "proved at 4 of 4 points", "unknowns a point: 60"],
+        "spectrum": ["stable at all 4 points", "proved at 4 of 4 points", "unknowns a point: 60"],
         "thresholds": [
             "F** (straight rod starts to beat): F = 2 (",
-            "at all of 6 rods; frequency 20 to 70 rad/tau2",
-            "at all of 6 rods; growth rate -6 to -1 1/tau2",
+            "at all 6 rods; frequency 20 to 70 rad/tau2",
+            "at all 6 rods; growth rate -6 to -1 1/tau2",
             "stable again: F = 3 (",
             "searched up to F = 200 ",
             "that no crossing is missing is proved on 6 of 6 rods",

@@ -87,7 +87,7 @@ class Answer:
                 return self._along(each, name)
         if name == "eigenvalues" and EIGENVALUE[0] in self.data:
             return self.growth_rate + 1j * self.frequency
-        if name in self.data.coords:
+        if name in self.data.variables:  # a coordinate, or a number of the whole file
             values = self.data[name].values
             return values if values.ndim else values.item()
         raise AttributeError(f"this answer has no {name!r}; it has {', '.join(self._names())}")

@@ -71,7 +71,7 @@ def plot(
     roots: Literal["rightmost", "smallest"] | None = None,
     what: str | None = None,
     points: Sequence[int] | int = (),
-    at: Mapping[str, float] = MappingProxyType({}),
+    at: Mapping[str, float | str] = MappingProxyType({}),
     **look: Unpack[Looks],
 ) -> Picture:
     """The figure that suits the task of `data`: a Dataset, an Answer, a file, or several of limit cycles

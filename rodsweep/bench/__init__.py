@@ -1,4 +1,4 @@
-"""Speed against error: this tool beside what its users would otherwise write, timed in one run.
+"""Speed against error of rodsweep itself, all methods timed in turn in one run.
 
-The only importer of SciPy, which is an optional extra (`bench`).
+What rodsweep is timed beside is not here: `rodsweep.bench.peers` takes it from a folder outside the package.
 """

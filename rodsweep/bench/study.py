@@ -183,6 +183,19 @@ def grouped(measurements: Iterable[Measurement], *names: str) -> dict[tuple[str,
     return groups
 
 
+def every_nth_setting(contenders: Iterable[Contender], stride: int) -> list[Contender]:
+    """Of each method the first of so many settings, the first of the next, ..., as a quick run takes them."""
+    return [contender for settings in by_method(contenders).values() for contender in settings[::stride]]
+
+
+def by_method(contenders: Iterable[Contender]) -> dict[str, list[Contender]]:
+    """The settings of each method, in their order."""
+    methods: dict[str, list[Contender]] = {}
+    for contender in contenders:
+        methods.setdefault(contender.method, []).append(contender)
+    return methods
+
+
 def middle(values: Iterable[float]) -> float:
     """The median of those that are numbers; nan if none is."""
     numbers = [value for value in values if not isnan(value)]

@@ -162,7 +162,7 @@ def show(file: Path, statuses: bool) -> None:
     "at",
     multiple=True,
     metavar="NAME=VALUE",
-    help="Draw the points with this value of a parameter, e.g. k1=150; several times.",
+    help="Draw the points with this value of a parameter, as k1=150, or of a listed arm, as 'length=12 cm'.",
 )
 @click.option("--title", is_flag=True, help="Put the title of the config above the figure.")
 @click.option(
@@ -194,15 +194,14 @@ def plot(
     click.echo(drawn)
 
 
-def _values(at: tuple[str, ...]) -> dict[str, float]:
-    """The values of `--at NAME=VALUE` by name; InputError for what is no number."""
+def _values(at: tuple[str, ...]) -> dict[str, str]:
+    """The values of `--at NAME=VALUE` by name; InputError for what has not this form."""
     found = {}
     for text in at:
-        name, _, value = text.partition("=")
-        try:
-            found[name.strip()] = float(value)
-        except ValueError:
-            raise InputError(f"--at {printable(text)} is no parameter with a number, as k1=150 is") from None
+        name, equals, value = text.partition("=")
+        if not equals:
+            raise InputError(f"--at {printable(text)} is no parameter with a number, as k1=150 is")
+        found[name.strip()] = value.strip()
     return found
 
 
@@ -241,15 +240,21 @@ def schema() -> None:
 @click.argument("what", type=click.Choice(["spectrum", "thresholds", "limit_cycle", "sweep"]), required=False)
 @click.option("--quick", is_flag=True, help="Fewer rounds, for a first impression.")
 @click.option("-o", "--output", type=FILE, help="Markdown file; the numbers (.h5) and figures go beside it.")
-def bench(what: str | None, quick: bool, output: Path | None) -> None:
-    """Time WHAT (by default all) beside what one would otherwise use, and state every error."""
+@click.option(
+    "--peers",
+    "directory",
+    type=FILE,
+    help="Folder of what is timed beside rodsweep; by default `benchmarks` of the checkout that is run.",
+)
+def bench(what: str | None, quick: bool, output: Path | None, directory: Path | None) -> None:
+    """Time WHAT (by default all), its peers beside it where they are there, and state every error."""
     from .benching import run_benchmarks
 
     output = output or Path("bench.md")
     unfit = output.exists() and not output.is_file()
     if unfit or not output.parent.is_dir() or output.suffix != ".md":
         raise InputError(f"--output {output}: the name must end in .md, in an existing directory")
-    run_benchmarks(what, quick, output)
+    run_benchmarks(what, quick, output, directory)
 
 
 @commands.command()

@@ -2,8 +2,8 @@
 
 import sys
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import click
 
@@ -13,18 +13,23 @@ MEASURED = (sys.executable, "-m", f"{__package__}.measured")
 """What starts the command that the benchmark of the sweep measures."""
 HEADING = """# Performance
 
-Speed against error: what this tool takes beside what one would otherwise use, on one machine, in one run of
-`rodsweep bench`. Times are of the processor, those of `sweep` of the clock; every method is run in turn with
-all others, round after round, and the medians are shown. So compare methods within a table rather than
-times between machines, and look at the error beside each time: a method is faster only where it is as
-accurate. Every number is in an HDF5 file beside the text, with all settings."""
+Speed against error: what this tool takes, on one machine, in one run of `rodsweep bench`, beside its peers,
+which one would use otherwise; they are in the folder `benchmarks` of a checkout. Times are of the processor,
+those of `sweep` of the clock; every method is run in turn with all others, round after round, and the
+medians are shown. So compare methods within a table rather than times between machines, and look at the
+error beside each time: a method is faster only where it is as accurate. Every number is in an HDF5 file
+beside the text, with all settings."""
 
 
-def run_benchmarks(what: str | None, quick: bool, output: Path) -> None:
-    """Runs one benchmark, or all; writes OUTPUT (Markdown), OUTPUT.h5 and OUTPUT_STUDY.png."""
+def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path | None) -> None:
+    """Runs one benchmark, or all; writes OUTPUT (Markdown), OUTPUT.h5 and OUTPUT_STUDY.png.
+
+    directory: the folder of peers, None for that of the checkout that rodsweep runs from.
+    """
     try:
         from ..bench.limit_cycle.study import limit_cycle_study
         from ..bench.machine import machine, where_and_when
+        from ..bench.peers import Peers, left_out, peer_package, peers_of
         from ..bench.spectrum.study import spectrum_study
         from ..bench.study import Study
         from ..bench.sweep.study import sweep_study
@@ -33,17 +38,21 @@ def run_benchmarks(what: str | None, quick: bool, output: Path) -> None:
         raise EnvironmentLacks(f"the benchmark needs {error.name}: pip install 'rodsweep[bench]'") from None
     from ..results.file.measurements import write_measurements
 
-    studies: dict[str, Callable[[bool], Study]] = {
+    studies: dict[str, Callable[[bool, Peers], Study]] = {
         "spectrum": spectrum_study,
         "thresholds": thresholds_study,
         "limit_cycle": limit_cycle_study,
-        "sweep": partial(sweep_study, command=MEASURED),
+        "sweep": lambda quick, _: sweep_study(quick, MEASURED),
     }
+    package, names = peer_package(directory), [what] if what else list(studies)
     tables = {}
-    blocks = [HEADING, where_and_when()]
-    click.echo(blocks[-1])
-    for name in [what] if what else list(studies):
-        study = studies[name](quick)
+    blocks = [HEADING, where_and_when(package.versions() if package else {})]
+    if package is None and (sentence := left_out(names)):
+        blocks.append(sentence)
+    click.echo("\n\n".join(blocks[1:]))
+    for name in names:
+        with TemporaryDirectory(prefix="rodsweep-bench-") as place:
+            study = studies[name](quick, peers_of(package, name, quick, Path(place)))
         tables[name] = study.table()
         blocks += [f"## {name}", study.text]
         click.echo("\n" + "\n\n".join(blocks[-2:]))

@@ -54,7 +54,10 @@ class Validity(IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Effect:
-    """One neglected effect: `value` beside the `limit` beyond which the model does not apply."""
+    """One neglected effect: `value` beside the `limit` beyond which the model does not apply.
+
+    Arrays have the common shape of the rates, forces and amplitudes that they belong to.
+    """
 
     name: str
     value: Array
@@ -67,12 +70,12 @@ class Effect:
 
     @property
     def excess(self) -> Array:
-        """Value over limit; above 1 the model does not apply."""
+        """Value over limit, of any shape; above 1 the model does not apply."""
         return self.value / self.limit
 
     @property
     def validity(self) -> NDArray[np.int8]:
-        """`Validity` of the model under this effect alone, as integers; nan applies: nothing moves."""
+        """`Validity` of the model under this effect alone, integers of any shape; applies at rest."""
         return (self.excess > DOUBTFUL_FROM).astype(np.int8) + (self.excess > 1.0)
 
 
@@ -106,7 +109,7 @@ def effects_of(
 
 
 def worst_validity(effects: Iterable[Effect], *, of_cycles: bool) -> NDArray[np.int8]:
-    """`Validity` of thresholds and linear motion under all effects, or of cycles: as integers."""
+    """`Validity` of thresholds and linear motion under all effects, or of cycles; integers of their shape."""
     counted = (effect.validity for effect in effects if of_cycles or not effect.of_cycles_only)
     return np.maximum.reduce(list(counted))
 
@@ -117,12 +120,12 @@ def least_drag(arm: SlenderArm) -> Drag:
 
 
 def fastest_rate(arm: SlenderArm, frequency: ArrayLike) -> Array:
-    """Rate in rad/s of a frequency in 1/tau2, with the least drag of the arm's range."""
+    """Rate in rad/s of a frequency in rad/tau2 of any shape, with the least drag of the arm's range."""
     return np.asarray(frequency, float) / arm.tau2_with(least_drag(arm))
 
 
 def inertia_of_arm(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
-    """Phase m omega/gamma2 by which the arm's mass turns its drag."""
+    """Phase m omega/gamma2, of the shape of the rate, by which the arm's mass turns its drag."""
     value = arm.mass_per_length * rate / drag.gamma2
     # The rate itself falls with viscosity, and so does its ratio to the drag.
     factor = np.sqrt(value / INERTIA_LIMIT)
@@ -130,7 +133,7 @@ def inertia_of_arm(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
 
 
 def inertia_of_fluid(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
-    """Phase by which the drag lags behind the motion: the fluid beside the arm has to be set moving."""
+    """Phase, of the shape of the rate, by which the drag lags: the fluid has to be set moving."""
     logarithm = 4 * pi * arm.si.viscosity / drag.gamma2
     k = FLUTTER_WAVENUMBER / arm.si.length
     s = arm.si.fluid_density * rate / (arm.si.viscosity * k**2)
@@ -151,7 +154,7 @@ def unsteady_phase(s: ArrayLike, logarithm: float) -> Array:
             = (Lambda - 1/2 - (1 - 1/(i s)) ln(1 + i s)/2)/(4 pi eta)
 
     where the steady one is Lambda/(4 pi eta), Lambda = 4 pi eta/gamma2 being the logarithm of the drag. The
-    phase is 3 s/(4 Lambda) for small s.
+    phase is 3 s/(4 Lambda) for small s, and has the shape of s.
     """
     z = 1j * np.maximum(np.asarray(s, float), LEAST_S)
     with np.errstate(invalid="ignore"):  # nan where nothing moves
@@ -172,7 +175,7 @@ def _frequency_of_phase(phase: float, logarithm: float) -> float:
 
 
 def compression(arm: SlenderArm, F: Array) -> Effect:
-    """F/k1, the fraction of its length that the straight arm loses, or gains where it is pulled."""
+    """F/k1 of the shape of F, the fraction of its length that the arm loses, or gains where it is pulled."""
     return _whatever_the_fluid("compression", abs(F) / arm.k1, COMPRESSION_LIMIT)
 
 
@@ -184,7 +187,7 @@ def weight(arm: SlenderArm, F: Array) -> Effect:
 
 
 def reynolds_number(arm: SlenderArm, rate: Array, amplitude: Array) -> Effect:
-    """rho U (2 a)/eta of a tip that moves by amplitude times L at the rate."""
+    """rho U (2 a)/eta of a tip that moves by amplitude times L at the rate, of their shape."""
     speed = rate * amplitude * arm.si.length
     value = arm.si.fluid_density * speed * 2 * arm.section.drag_radius / arm.si.viscosity
     return Effect(

@@ -11,7 +11,7 @@ from math import inf, isfinite
 
 @dataclass(frozen=True, slots=True)
 class Range:
-    """What a value may be, for the program and, as a phrase, for the user; NaN lies in none but ANYTHING."""
+    """What a value may be, for the program and, as a phrase, for the user; NaN lies in none."""
 
     contains: Callable[[float], bool]
     phrase: str
@@ -21,9 +21,6 @@ class Range:
     def first_outside(self, values: Iterable[float]) -> float | None:
         """The first of the values that may not be; None where all may."""
         return next((value for value in map(float, values) if not self.contains(value)), None)
-
-
-ANYTHING = Range(lambda value: True, "any number")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,8 +12,6 @@ from .pace import Pace, in_words, rate_in_words
 FIRST_SECONDS, LINE_SECONDS = 1.0, 10.0
 """Seconds after which something is shown, and between lines in a log."""
 BAR_SECONDS = 0.1
-FIELDS = ("count", "rate", "left", "where")
-"""What stands beside the bar."""
 
 
 def on_terminal() -> bool:

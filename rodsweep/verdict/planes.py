@@ -14,7 +14,7 @@ A = TypeVar("A", bound=SlenderArm)
 
 
 @dataclass(frozen=True, slots=True)
-class Plane:
+class PlaneOfMotion:
     """An arm as it moves in one plane, with its changes there."""
 
     arm: SlenderArm
@@ -34,8 +34,8 @@ class Plane:
 class Planes:
     """The planes of an arm, of which it leaves `first` first: with the likeliest drag where drag decides."""
 
-    first: Plane
-    second: Plane | None = None
+    first: PlaneOfMotion
+    second: PlaneOfMotion | None = None
 
     @property
     def always(self) -> bool:
@@ -49,10 +49,10 @@ class Planes:
 def planes_of(arm: SlenderArm) -> Planes:
     """Both planes of a rectangle, or the only one of a section that is the same in all. Solves for them."""
     if arm.radius is not None or arm.si.width == arm.si.height:
-        return Planes(Plane(arm, flutter_range(arm)))
+        return Planes(PlaneOfMotion(arm, flutter_range(arm)))
     other = turned(arm)
-    own = Plane(arm, flutter_range(arm), "the plane of its height")
-    across = Plane(other, flutter_range(other), "the plane of its width")
+    own = PlaneOfMotion(arm, flutter_range(arm), "the plane of its height")
+    across = PlaneOfMotion(other, flutter_range(other), "the plane of its width")
     if across.flutter_loads[0] < own.flutter_loads[0]:
         return Planes(across, own)
     return Planes(own, across)

@@ -40,7 +40,7 @@ def kind_of(effect: Effect) -> str:
 def times(effect: Effect) -> str:
     """How far an effect is beyond its limit."""
     excess = float(effect.excess)
-    return f"{excess:.2g} times" if excess >= LEAST_EXCESS else f"{excess:.4g} times"
+    return f"{float(f'{excess:.2g}'):g} times" if excess >= LEAST_EXCESS else f"{excess:.4g} times"
 
 
 def _one_of_a_kind(effects: list[Effect]) -> list[Effect]:
@@ -68,7 +68,7 @@ def _thicker_fluid_or_thinner_arm(arm: SlenderArm, assessment: Assessment) -> st
     """By how much the fluid would have to be more viscous, or the arm thinner."""
     si = UNITS["viscosity"][0]
     unit, factor = unit_of(arm.viscosity, si), viscosity_factor(assessment.at_flutter)
-    viscosity = f"{rounded_up(written_in(arm.si.viscosity * factor, unit, si)):g} {unit}"
+    viscosity = f"{rounded_up(written_in(arm.si.viscosity * factor, unit, si)):g} {unit.replace('*', ' ')}"
     says = f"a fluid at least {rounded_up(factor):g} times as viscous ({viscosity}) would do"
     thickness = thickness_factor(arm)
     if isnan(thickness):

@@ -8,7 +8,7 @@ from ..model.neglected import Validity
 from ..solve.changes.unstable_modes import Kind
 from .flutter import FlutterRange, Span
 from .load import Load, rounded, rounded_percent
-from .planes import Plane, Planes
+from .planes import PlaneOfMotion, Planes
 from .remedies import does_not_apply, words_of
 from .validity import Assessment
 
@@ -29,7 +29,7 @@ def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
     return [*headline, f"{known} is within the model; {Load(plane.arm).given} is not."]
 
 
-def _verdict(plane: Plane) -> list[str]:
+def _verdict(plane: PlaneOfMotion) -> list[str]:
     """The sentences where the model applies, or may."""
     arm, found, load = plane.arm, plane.found, Load(plane.arm)
     flutter, back = found.force(Kind.hopf), found.force(Kind.restabilization)
@@ -52,13 +52,13 @@ def _verdict(plane: Plane) -> list[str]:
     return says + _swinging(found, load)
 
 
-def _where(plane: Plane, flutter: Span) -> str:
+def _where(plane: PlaneOfMotion, flutter: Span) -> str:
     """The load of flutter, and the plane of a rectangle."""
     where = Load(plane.arm).of(flutter)
     return f"{where} in {plane.name}" if plane.name else where
 
 
-def _place(plane: Plane, flutter: Span, load: Load) -> str:
+def _place(plane: PlaneOfMotion, flutter: Span, load: Load) -> str:
     """Where the load lies beside the range of flutter."""
     F, found, where = plane.arm.F, plane.found, _where(plane, flutter)
     if F <= 0:
@@ -84,7 +84,7 @@ def _above(F: float, flutter: Span) -> str:
     return f"{rounded(low, high)} times" if low > 2 else f"{rounded_percent(low - 1, high - 1)} % above"
 
 
-def _without(plane: Plane, neglected: str) -> list[str]:
+def _without(plane: PlaneOfMotion, neglected: str) -> list[str]:
     """What the model gives for an arm to which it does not apply."""
     arm, found, load = plane.arm, plane.found, Load(plane.arm)
     flutter, rate = found.force(Kind.hopf), found.frequency(Kind.hopf)
@@ -117,7 +117,7 @@ def _other_plane(planes: Planes, verb: str) -> list[str]:
     return [f"In {second.name} flutter {verb} at {Load(second.arm).of(flutter)}{decides}."]
 
 
-def _until(plane: Plane, load: Load) -> str:
+def _until(plane: PlaneOfMotion, load: Load) -> str:
     """How far changes were sought."""
     end = load.of(Span(plane.found.end, plane.found.end))
     if plane.found.end > 0.999 * plane.arm.k1:

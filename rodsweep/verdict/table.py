@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from ..model.arm import SlenderArm
 from .load import rounded
-from .planes import Plane
+from .planes import PlaneOfMotion
 
 
 class NumberRow(NamedTuple):
@@ -16,13 +16,13 @@ class NumberRow(NamedTuple):
     source: str
 
 
-def number_rows(plane: Plane) -> list[NumberRow]:
+def number_rows(plane: PlaneOfMotion) -> list[NumberRow]:
     """Every number that an arm becomes in the plane of its verdict, dimensional ones first."""
     arm = plane.arm
     return [*plane_row(plane), *dimensional(arm), *drag_rows(arm), *dimensionless(arm)]
 
 
-def plane_row(plane: Plane) -> list[NumberRow]:
+def plane_row(plane: PlaneOfMotion) -> list[NumberRow]:
     """The sides of a rectangle, of which h lies in the plane of motion; nothing of other sections."""
     if not plane.name:
         return []

@@ -78,15 +78,17 @@ def thickness_factor(arm: SlenderArm) -> float:
     """How many times as thick an arm may be at most for inertia to be within its limit in the same fluid.
 
     All sides of the section are multiplied by it. Thresholds of the thinner arms are solved for; nan where
-    these have none.
+    these have none, and where the thinner arm would bend too much under its weight.
     """
     factor = 1.0
     for _ in range(THINNING_STEPS):
         thinner = _scaled(arm, factor)
         found = FlutterRange((flutter_forces(thinner, thinner.drags[0]),))
-        excess = viscosity_factor(effects_at_flutter(thinner, found))
+        effects = effects_at_flutter(thinner, found)
+        excess = viscosity_factor(effects)
         if CLOSE_TO_LIMIT < excess <= 1.0:
-            return factor
+            applies = worst_validity(effects, of_cycles=False) < Validity.does_not_apply
+            return factor if applies else nan
         # Mass times rate over drag has the sixth power of the thickness, and the square of the viscosity.
         factor *= (excess / AIM) ** (-1 / 3)
     return nan

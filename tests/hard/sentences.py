@@ -237,7 +237,7 @@ def spectrum_sentences(view, sentences, _):
             (sentence, "" if int(match[1]) == true else f"{true} are {word}")
             for sentence, match in read(sentences, rf"(?<!\w){word} at NUMBER[ (,]")
         ]
-    for sentence, match in read(sentences, "straight rod: (stable|unstable) at all of NUMBER point"):
+    for sentence, match in read(sentences, "straight rod: (stable|unstable) at all NUMBER point"):
         right = all((n > 0) == (match[1] == "unstable") for n in numbers) and int(match[2]) == len(numbers)
         found.append((sentence, "" if right else f"unstable modes: {numbers}"))
     if view.variables["status"].size == 1:
@@ -401,14 +401,18 @@ def diagram_sentences(view, sentences, keywords):
     true, classes = {}, []
     for value in rows:
         rod = Rod(0.0, **(fixed | {row: float(value)}))
-        crossings = transitions(ParameterPath(rod, "F"), float(values[0]), float(values[-1])).crossings
+        stop = min(float(values[-1]), rod.k1 * (1 - 1e-6))  # beyond it the rod is crushed
+        crossings = transitions(ParameterPath(rod, "F"), float(values[0]), stop).crossings
         for crossing in crossings:
             true.setdefault(crossing.kind.name, []).append((crossing.at, float(value)))
         for F in values:
+            if rod.k1 <= F:
+                classes.append("crushed")
+                continue
             w = leading(replace(rod, F=float(F)))[0]
             classes.append("flutter" if w.real > 0 else "oscillatory" if w.imag else "monotone")
     found = []
-    for word in ("monotone", "oscillatory", "flutter"):
+    for word in ("monotone", "oscillatory", "flutter", "crushed"):
         share = 100 * classes.count(word) / len(classes)
         found += [
             (sentence, as_stated(match[1], share))

@@ -1,4 +1,8 @@
-"""The limit-cycle benchmark: a settled cycle followed, waited for, and solved."""
+"""The limit-cycle benchmark: a settled cycle followed, waited for, and solved.
+
+Its races FOLLOWING and WAITING are run on a `Leg` and give a `Trajectory`; each method's settings are
+tolerances, from the loosest.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -9,9 +13,20 @@ import numpy as np
 
 from ...solve.cycle.limit_cycle import warm_up
 from ...solve.motion.leading_mode import leading_mode
-from ..study import Measurement, Study, Timed, grouped, plural, race, table
-from .continuation import beside_auto
-from .integrators import CVODE, DEFAULT, Family, families
+from ..peers import Peers
+from ..study import (
+    Contender,
+    Measurement,
+    Study,
+    Timed,
+    by_method,
+    every_nth_setting,
+    grouped,
+    plural,
+    race,
+    table,
+)
+from .integrators import DEFAULT, Leg
 from .sweeping import QUICK_RODS, RODS, sweep_introduction, sweep_points, sweep_table
 from .tracking import (
     AMPLITUDE,
@@ -31,35 +46,36 @@ from .tracking import (
 )
 
 ROUNDS, QUICK_ROUNDS = 9, 1
-CONTINUATION_ROUNDS = 3
-"""Of AUTO-07p, whose runs take seconds."""
+FOLLOWING, WAITING = "following", "waiting"
 DRAWN_ERRORS = {"error of the period": "period_error", "error of the largest tip y": "amplitude_error"}
 NEAR_HOPF = 27.43
 """A force 0.003 above the Hopf point."""
-SOLVE, WAITING = "solve_cycle", "waiting, "
+SOLVE, WAITS = "solve_cycle", "waiting, "
 PERIODS_OF_WAIT = 15
 """Of one who only waits."""
 
 
-def limit_cycle_study(quick: bool) -> Study:
-    """Runs the benchmark: work and precision, and the ways to a settled cycle."""
+def limit_cycle_study(quick: bool, peers: Peers) -> Study:
+    """Runs the benchmark: work and precision, the ways to a settled cycle, and what peers add."""
     warm_up()
     rounds, stride = (QUICK_ROUNDS, 2) if quick else (ROUNDS, 1)
-    at, every = reference(), families()
-    found = work_precision(at, every, rounds, stride)
-    blocks = [introduction(rounds), work_table(found), target_table(found)]
-    if CVODE not in [family.name for family in every]:
-        blocks.append(f"{CVODE} is skipped: scikit-sundae is not installed (extra `cvode`).")
-    blocks.append(settling(at, every, rounds))
-    points = sweep_points(QUICK_RODS if quick else RODS, rounds)
-    beside, cycles = beside_auto(min(rounds, CONTINUATION_ROUNDS), quick)
-    blocks += [sweep_introduction(), sweep_table(points), *beside]
+    at = reference()
+    followers = every_nth_setting([*DEFAULT.followers(), *peers.of(FOLLOWING)], stride)
+    found = work_precision(at, followers, rounds)
+    blocks = [introduction(rounds), *peers.notes, work_table(found), target_table(found)]
+    blocks.append(settling(at, [*DEFAULT.waiters(), *peers.of(WAITING)], rounds))
+    undrawn = sweep_points(QUICK_RODS if quick else RODS, rounds)
+    blocks += [sweep_introduction(), sweep_table(undrawn)]
+    for section in peers.sections:
+        text, further = section(rounds)
+        blocks += text
+        undrawn += further
     drawn = [
         replace(m, case=case, error=m.extra.get(error, m.error))
         for case, error in DRAWN_ERRORS.items()
         for m in found
     ]
-    return Study("limit_cycle", "\n\n".join(blocks), drawn, "period", TARGET, points + cycles)
+    return Study("limit_cycle", "\n\n".join([*blocks, *peers.skipped]), drawn, "period", TARGET, undrawn)
 
 
 def introduction(rounds: int) -> str:
@@ -96,7 +112,7 @@ def target_table(measurements: Sequence[Measurement]) -> str:
         errors = [m.error for m in own]
         median, least = [m.seconds for m in own], [m.least_seconds for m in own]
         at[method] = time_at(TARGET, errors, median), time_at(TARGET, errors, least)
-    default, by_least = at[DEFAULT]
+    default, by_least = at[DEFAULT.name]
     rows = [
         {"method": method, "ms": 1e3 * median, "ratio": median / default, "by_least": least / by_least}
         for method, (median, least) in at.items()
@@ -128,41 +144,45 @@ def time_at(target: float, errors: Sequence[float], times: Sequence[float]) -> f
 class Wait:
     """One way to a settled cycle: returns waited for, and the error of what it gives.
 
-    run: what takes the time, or a part of it, of which the whole is `times` as much. failed: looser
-    tolerances at which the integration itself failed.
+    setting: the tolerance. run: what takes the time, or a part of it, of which the whole is `times` as much.
+    failed: looser tolerances at which the integration itself failed.
     """
 
     force: float
     way: str
-    tolerance: float
+    setting: str
     returns: float
     error: float
     run: Callable[[], object]
     times: float = 1.0
-    failed: tuple[float, ...] = ()
+    failed: tuple[str, ...] = ()
+
+    @property
+    def settled(self) -> bool:
+        """Whether the way led to the cycle."""
+        return isfinite(self.returns)
 
     def row(self, timed: Timed) -> dict[str, str | float]:
         """A line of the table."""
-        failures = ", ".join(f"{tolerance:.0e}" for tolerance in self.failed)
-        settled, about = isfinite(self.returns), "about " if self.times != 1 else ""
+        about = "about " if self.times != 1 else ""
         return {
             "force": self.force,
-            "way": self.way + (f" (fails at {failures})" if failures else ""),
-            "tolerance": self.tolerance,
-            "returns": f"{about}{self.returns:.0f}" if settled else f"not settled in {PERIODS_OF_WAIT}",
-            "milliseconds": f"{about}{1e3 * self.times * timed.median:.0f}" if settled else "",
-            "error": self.error if settled else nan,
+            "way": self.way + (f" (fails at {', '.join(self.failed)})" if self.failed else ""),
+            "tolerance": self.setting,
+            "returns": f"{about}{self.returns:.0f}" if self.settled else f"not settled in {PERIODS_OF_WAIT}",
+            "milliseconds": f"{about}{1e3 * self.times * timed.median:.0f}" if self.settled else "",
+            "error": self.error if self.settled else nan,
         }
 
 
-def settling(at: Reference, every: Sequence[Family], rounds: int) -> str:
+def settling(at: Reference, every: Sequence[Contender], rounds: int) -> str:
     """All ways at F = 50 and next to the Hopf point; a table."""
-    waiting = {family: _waited(at, family) for family in every if family.settling}
+    waiting = {method: _waited(at, settings) for method, settings in by_method(every).items()}
     cycle = cycle_at(CYCLE_FORCE)
     left = _error(at, cycle.measures.period, cycle.measures.tip_y_max)
-    waits = [Wait(CYCLE_FORCE, SOLVE, nan, cycle.periods, left, partial(cycle_at, CYCLE_FORCE))]
+    waits = [Wait(CYCLE_FORCE, SOLVE, "", cycle.periods, left, partial(cycle_at, CYCLE_FORCE))]
     waits += waiting.values()
-    waits += _near_hopf({f: wait.tolerance for f, wait in waiting.items() if isfinite(wait.tolerance)})
+    waits += _near_hopf([c for c in every if waiting[c.method].setting == c.setting])
     return settling_table(waits, race([wait.run for wait in waits], [rounds] * len(waits)))
 
 
@@ -177,7 +197,7 @@ def settling_table(waits: Sequence[Wait], raced: Sequence[Timed]) -> str:
         "the errors are then solve_cycle's estimate and the aim.\n\n"
     ) + table(
         "F | way | tolerance | returns | ms | error left",
-        "{force:g} | {way} | {tolerance:.0e} | {returns} | {milliseconds} | {error:.0e}",
+        "{force:g} | {way} | {tolerance} | {returns} | {milliseconds} | {error:.0e}",
         [wait.row(timed) for wait, timed in zip(waits, raced, strict=True)],
     )
 
@@ -186,15 +206,16 @@ def _error(at: Reference, period: float, height: float) -> float:
     return max(abs(period / at.period - 1), abs(height / at.tip_y_max - 1))
 
 
-def _waited(at: Reference, family: Family) -> Wait:
+def _waited(at: Reference, settings: Sequence[Contender]) -> Wait:
     """Waiting at the loosest tolerance at which two successive returns come to agree and are right."""
-    run = partial(family.integrate, at.beam, AMPLITUDE * leading_mode(at.beam).z.real)
-    failed: tuple[float, ...] = ()
-    for tolerance in family.settling:
+    leg = Leg(at.beam, AMPLITUDE * leading_mode(at.beam).z.real, PERIODS_OF_WAIT * at.period)
+    way = WAITS + settings[0].method
+    failed: tuple[str, ...] = ()
+    for contender in settings:
         try:
-            found = returns_of(at.beam, run(PERIODS_OF_WAIT * at.period, tolerance))
+            found = returns_of(at.beam, contender.run(leg))
         except ArithmeticError:
-            failed += (tolerance,)
+            failed += (contender.setting,)
             continue
         sizes = np.linalg.norm(found.states[1:], axis=1)
         distances = np.linalg.norm(np.diff(found.states, axis=0), axis=1) / sizes
@@ -202,20 +223,20 @@ def _waited(at: Reference, family: Family) -> Wait:
         for k in settled[:1]:
             left = _error(at, float(found.times[k + 1] - found.times[k]), float(found.heights[k]))
             if left <= SETTLED_WITHIN:
-                again = partial(run, float(found.times[k + 1]), tolerance)
-                return Wait(CYCLE_FORCE, WAITING + family.name, tolerance, k + 2, left, again, failed=failed)
-    return Wait(CYCLE_FORCE, WAITING + family.name, nan, nan, inf, lambda: None, failed=failed)
+                again = partial(contender.run, leg._replace(duration=float(found.times[k + 1])))
+                return Wait(CYCLE_FORCE, way, contender.setting, k + 2, left, again, failed=failed)
+    return Wait(CYCLE_FORCE, way, "", nan, inf, lambda: None, failed=failed)
 
 
-def _near_hopf(tolerances: dict[Family, float]) -> list[Wait]:
+def _near_hopf(settled: Sequence[Contender]) -> list[Wait]:
     """Next to the Hopf point, where waiting is estimated from the largest multiplier."""
     cycle = cycle_at(NEAR_HOPF)
-    beam, z = on_cycle(orbit_of(cycle))
+    leg = Leg(*on_cycle(orbit_of(cycle)), FOLLOWED_PERIODS * cycle.measures.period)
     count = log(SETTLED_WITHIN) / log(cycle.multiplier)
     error = max(cycle.errors.period_error, cycle.errors.amplitude_error)
-    waits = [Wait(NEAR_HOPF, SOLVE, nan, cycle.periods, error, partial(cycle_at, NEAR_HOPF))]
-    for family, tolerance in tolerances.items():
-        run = partial(family.integrate, beam, z, FOLLOWED_PERIODS * cycle.measures.period, tolerance)
-        times = count / FOLLOWED_PERIODS
-        waits.append(Wait(NEAR_HOPF, WAITING + family.name, tolerance, count, SETTLED_WITHIN, run, times))
+    waits = [Wait(NEAR_HOPF, SOLVE, "", cycle.periods, error, partial(cycle_at, NEAR_HOPF))]
+    for contender in settled:
+        run, times = partial(contender.run, leg), count / FOLLOWED_PERIODS
+        way = WAITS + contender.method
+        waits.append(Wait(NEAR_HOPF, way, contender.setting, count, SETTLED_WITHIN, run, times))
     return waits

@@ -6,7 +6,7 @@ return of the tip and next to the largest y are made again in small steps, so th
 integration and not of an interpolant.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
@@ -28,7 +28,7 @@ from ...solve.cycle.transient import angle_weights
 from ...solve.motion.integrator import RunLimit, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
 from ..study import Contender, Measurement, contest
-from .integrators import Family, Integration
+from .integrators import Leg
 
 FIG5_ROD = (1e4, 1e2, 1e-2, 1.0)
 """k1, k2, gamma3, gamma1 of the paper's Fig. 5."""
@@ -98,22 +98,12 @@ def reference() -> Reference:
     return Reference(*on_cycle(orbit), orbit.period, float(abs(orbit.form.tip(orbit.start)[1])))
 
 
-def follow(integrate: Integration, tolerance: float, at: Reference) -> Trajectory:
-    """A run along the cycle."""
-    return integrate(at.beam, at.state, FOLLOWED_PERIODS * at.period, tolerance)
-
-
-def work_precision(at: Reference, every: Sequence[Family], rounds: int, stride: int) -> list[Measurement]:
-    """All methods at each stride-th tolerance; seconds are those of a period."""
-    contenders = []
-    for family in every:
-        group = family.name.split()[0]
-        for tolerance in family.tolerances[::stride]:
-            run = partial(follow, family.integrate, tolerance)
-            contenders.append(Contender(family.name, f"{tolerance:.0e}", group, run))
+def work_precision(at: Reference, contenders: Iterable[Contender], rounds: int) -> list[Measurement]:
+    """All contenders along the cycle; seconds are those of a period."""
+    leg = Leg(at.beam, at.state, FOLLOWED_PERIODS * at.period)
     return [
         replace(m, seconds=m.seconds / FOLLOWED_PERIODS, least_seconds=m.least_seconds / FOLLOWED_PERIODS)
-        for m in contest(f"F = {CYCLE_FORCE:g}", at, contenders, rounds, partial(judged_run, at))
+        for m in contest(f"F = {CYCLE_FORCE:g}", leg, list(contenders), rounds, partial(judged_run, at))
     ]
 
 

@@ -6,10 +6,10 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 
+from ...arrays import Complex
 from ...model.rod import Rod
 from ...solve.spectrum.search import SpectrumRequest, solve_spectrum
 from ...solve.spectrum.status import SpectrumStatus
-from ..lapack import Eigenvalues
 
 DIGITS = 30
 GUARD = 25
@@ -60,8 +60,8 @@ def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
     return roots
 
 
-def relative_error(w: Eigenvalues | Exception, exact: list[Any]) -> float:
-    """Largest relative distance of an exact eigenvalue to the nearest computed one; inf for none."""
+def relative_error(w: Complex | Exception, exact: list[Any]) -> float:
+    """Largest relative distance of an exact eigenvalue to the nearest of w, shape (modes,); inf for none."""
     if isinstance(w, Exception) or not len(w):
         return float("inf")
     with mp.workdps(DIGITS):

@@ -1,4 +1,7 @@
-"""The spectrum benchmark: time and error of a point beside the peers, on the paper's and on hard rods."""
+"""The spectrum benchmark: time and error of a point, on the paper's and on hard rods.
+
+Its race RACE is run on a `Rod`, and gives the leading eigenvalues, WANTED_MODES or more, shape (modes,).
+"""
 
 from collections.abc import Sequence
 from functools import partial
@@ -7,12 +10,27 @@ from typing import Any
 
 import numpy as np
 
+from ...arrays import Complex
 from ...model.rod import Rod
 from ...solve.spectrum.search import warm_up
-from ..lapack import Eigenvalues
-from ..study import Contender, Measurement, Study, contest, failsafe, grouped, middle, plural, race, table
-from .eigensolvers import PLAIN, WANTED_MODES, contenders
+from ..peers import Peers
+from ..study import (
+    Contender,
+    Measurement,
+    Study,
+    contest,
+    every_nth_setting,
+    failsafe,
+    grouped,
+    middle,
+    plural,
+    race,
+    table,
+)
 from .exact import exact_spectrum, relative_error
+from .own_solvers import PLAIN, WANTED_MODES, contenders
+
+RACE = "spectrum"
 
 PAPER_RODS = {
     "Fig. 2a": (1e4, 1e4, 1e-4, 60.0),
@@ -35,7 +53,7 @@ QUICK_STRIDE = 3
 """A quick run measures every third size on the hard rods."""
 
 
-def spectrum_study(quick: bool) -> Study:
+def spectrum_study(quick: bool, peers: Peers) -> Study:
     """Runs the benchmark: the paper's rods at equal errors, then every method at every size on hard rods."""
     warm_up()
     rounds = QUICK_ROUNDS if quick else ROUNDS
@@ -45,26 +63,30 @@ def spectrum_study(quick: bool) -> Study:
         for F in np.linspace(0.1 * top, top, FORCES)
     ]
     exact = [exact_spectrum(rod, WANTED_MODES) for rod in rods]
-    blocks = [equal_errors(rods, exact, target, rounds) for target in TARGETS[: 1 if quick else None]]
-    measurements = every_size(contenders(QUICK_STRIDE if quick else 1), rounds)
-    blocks.append(hard_table(measurements))
+    every = contenders() + peers.of(RACE)
+    targets = TARGETS[: 1 if quick else None]
+    blocks = [equal_errors(every, rods, exact, target, rounds) for target in targets]
+    measurements = every_size(every_nth_setting(every, QUICK_STRIDE if quick else 1), rounds)
+    blocks += [*peers.notes, hard_table(measurements), *peers.skipped]
     return Study("spectrum", "\n\n".join(blocks), measurements, "point", TARGETS[0])
 
 
-def cheapest(rod: Rod, exact: list[Any], target: float) -> dict[str, Contender]:
+def cheapest(every: Sequence[Contender], rod: Rod, exact: list[Any], target: float) -> dict[str, Contender]:
     """Of every method that gets within the target the smallest size that does."""
     found: dict[str, Contender] = {}
-    for contender in contenders():
+    for contender in every:
         if contender.method not in found:
             error = relative_error(failsafe(contender.run, rod), exact)
             found |= {contender.method: contender} if error <= target else {}
     return found
 
 
-def equal_errors(rods: Sequence[Rod], exact: Sequence[list[Any]], target: float, rounds: int) -> str:
+def equal_errors(
+    every: Sequence[Contender], rods: Sequence[Rod], exact: Sequence[list[Any]], target: float, rounds: int
+) -> str:
     """All methods at the cheapest size that reaches the target, point by point; a table."""
-    fit = [cheapest(rod, roots, target) for rod, roots in zip(rods, exact, strict=True)]
-    names = list(dict.fromkeys(contender.method for contender in contenders()))
+    fit = [cheapest(every, rod, roots, target) for rod, roots in zip(rods, exact, strict=True)]
+    names = list(dict.fromkeys(contender.method for contender in every))
     runs = {
         (name, i): partial(failsafe, fit[i][name].run, rod)
         for name in names
@@ -102,7 +124,7 @@ def every_size(every: Sequence[Contender], rounds: int) -> list[Measurement]:
     return measurements
 
 
-def _judge(exact: list[Any], w: Eigenvalues) -> dict[str, float]:
+def _judge(exact: list[Any], w: Complex) -> dict[str, float]:
     return {"error": relative_error(w, exact)}
 
 

@@ -1,17 +1,12 @@
 """The rods of the thresholds benchmark, what a method is given, and what it gives."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from math import inf, isnan, nan
 
-from ...discretization.resolution import Resolution, expected_wave_number, resolution_for
-from ...model.dispersion import most_amplified_wave
 from ...model.rod import Rod
 
 ONSET, HOPF = "onset", "hopf"
 """Kinds of thresholds, by their names in ThresholdCase and in rodsweep's results."""
-MESH_MODES, MESH_ACCURACY = 2, 1e-12
-"""Leading eigenvalues for which the mesh is chosen, and their relative error on it."""
 ANOTHER = 0.3
 """Relative distance beyond which what was found is not the first change."""
 
@@ -33,12 +28,6 @@ class ThresholdCase:
 
     def rod(self, F: float) -> Rod:
         return Rod(F, self.k1, self.k2, self.gamma3)
-
-    @cached_property
-    def mesh(self) -> Resolution:
-        """Fine enough at the thresholds."""
-        wave = most_amplified_wave(self.rod(self.onset if isnan(self.hopf) else self.hopf))[1]
-        return resolution_for(expected_wave_number(MESH_MODES, wave), MESH_ACCURACY)
 
     def error_of(self, kind: str, found: float) -> float:
         """Relative; nan where there is nothing to be found, inf where that is missed or invented."""

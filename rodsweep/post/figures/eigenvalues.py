@@ -71,7 +71,7 @@ def _mark(axes: Axes, x: np.ndarray, y: np.ndarray, grows: np.ndarray) -> list[L
 
 
 def spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
-    """Makes those axes logarithmic but near 0 whose numbers are of very different size."""
+    """Makes those axes logarithmic but near 0 whose numbers, of any shape, are of very different size."""
     for set_scale, values in ((axes.set_xscale, x), (axes.set_yscale, y)):
         sizes = np.abs(values[np.isfinite(values) & (values != 0)]) if values is not None else np.zeros(0)
         if sizes.size and sizes.max() > SPREAD * sizes.min():

@@ -24,6 +24,8 @@ TALLEST = 9.5
 """Height in inches beyond which no figure grows: that of a page between its margins."""
 MOST_PASSES = 6
 """Layouts until all fits: each change of the figure moves what was measured before."""
+LEAST_HEIGHT = 0.45
+"""Inches of a panel below which the labels of two ticks have no room above each other."""
 SPARE = 4.0
 """Inches by which a figure is higher while its text is measured, so that its panels do not vanish."""
 MARGIN = 0.04
@@ -232,6 +234,6 @@ def _spare_height(figure: Figure, least_aspect: float) -> float:
         ratios = np.asarray(place.get_gridspec().get_height_ratios())
         part = ratios[place.rowspan.start : place.rowspan.stop].sum() / ratios.sum()
         label = axes.yaxis.label.get_window_extent().height / figure.dpi
-        least = max(least_aspect * room.width * width, label + MARGIN)
+        least = max(least_aspect * room.width * width, label + MARGIN, LEAST_HEIGHT)
         spare.append((room.height * height - least) / part)
     return min(spare)

@@ -15,7 +15,7 @@ LINES = {-1: ("-", "supercritical"), 1: ("--", "subcritical"), 0: (":", "side un
 """Line and word of the cycles of a Hopf point, by its criticality."""
 COLOURS = (style.FIRST, style.SECOND, style.THIRD, "#CC79A7", "#56B4E9", "#000000")
 """Of the rods, one after another."""
-CLOSE = 60
+POINTS_OF_PREDICTION = 60
 """Places at which a curve is drawn, close together where it is steep."""
 
 
@@ -60,5 +60,5 @@ def _by_rod(view: View, name: str) -> Array:
 
 def _law(at: float, a: float) -> tuple[Array, Array]:
     """(F, largest y) next to a Hopf point, where its cycles are: above it for a > 0, below for a < 0."""
-    distance = NEAR * np.linspace(0, 1, CLOSE) ** 2
+    distance = NEAR * np.linspace(0, 1, POINTS_OF_PREDICTION) ** 2
     return at * (1 + np.sign(a) * distance), abs(a) * np.sqrt(distance)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -17,7 +18,7 @@ from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from .class_bars import BAR_ASPECT, CLASS_COLOURS, classes_behind_crossings
 from .diagram_curves import draw_curves, draw_cycle_curves, mark_cycles_on_rows
 from .fitting import MAP_ASPECT
-from .regions import ClassedPlaces, Plane, coloured
+from .regions import ClassedPlaces, DrawnPlane, coloured
 from .request import FigureRequest
 from .style import LABELS, SYMBOLS, fixed_text, heading, legend_below, need, scale
 from .style import number as number_text
@@ -94,24 +95,12 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     y = y[keep]
     figure = Figure(figsize=(5.8, 4.6), layout="constrained")
     axes = figure.subplots()
-    crushing = (line, row) == CRUSHING
     pixels = _class_of_pixels(view, palette, line, row, table)
-    unit: dict[str, Any] = {
-        "extent": (0, 1, 0, 1),
-        "transform": axes.transAxes,
-        "origin": "lower",
-        "aspect": "auto",
-    }
-    axes.imshow(pixels, interpolation="nearest", **unit, **palette.colours_of_numbers)
+    unit: dict[str, Any] = {"extent": (0, 1, 0, 1), "transform": axes.transAxes, "aspect": "auto"}
+    axes.imshow(pixels, interpolation="nearest", origin="lower", **unit, **palette.colours_of_numbers)
     scale(axes, "x", x)
     scale(axes, "y", y)
-    edge: list[Line2D] = []
-    if crushing:
-        ends = np.linspace(max(x[0], y[0]), min(x[-1], y[-1]), 1000)
-        below = np.append(ends, x[-1])
-        axes.fill_between(below, np.minimum(below, y[-1]), y[0], color=CLASS_COLOURS["crushed"], lw=0)
-        word = f"${SYMBOLS[row]} = {SYMBOLS[line]}$"
-        edge = axes.plot(ends, ends, color="0.4", lw=1.2, label=word)
+    edge = _draw_crushing(axes, x, y) if (line, row) == CRUSHING else []
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=LABELS[line], ylabel=LABELS[row])
     handles: list = palette.patches(table)
     if "curve_number" in view.variables:
@@ -125,6 +114,15 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     figure.suptitle(heading(view, fixed_text(view, line, row)))
     missing = "; curves are missing, the file is not finished" if lacks_curves(view.attributes) else ""
     return request.write(figure, f"what the rod does over {line} and {row}{missing}", MAP_ASPECT)
+
+
+def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
+    """Covers rods that the force x crushes, x > y, and draws the edge x = y; returns it for the legend."""
+    ends = np.linspace(max(x[0], y[0]), min(x[-1], y[-1]), 1000)
+    below = np.append(ends, x[-1])
+    axes.fill_between(below, np.minimum(below, y[-1]), y[0], color=CLASS_COLOURS["crushed"], lw=0)
+    force, stiffness = (SYMBOLS[name] for name in CRUSHING)
+    return axes.plot(ends, ends, color="0.4", lw=1.2, label=f"${stiffness} = {force}$")
 
 
 def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
@@ -152,7 +150,7 @@ def _class_of_pixels(view: View, palette: Palette, line: str, row: str, table: A
     table: the classes of the computed points, (rows with a finite value, columns).
     """
     y = view.axes[row]
-    plane = Plane(view.variables[line], y[np.isfinite(y)])
+    plane = DrawnPlane(view.variables[line], y[np.isfinite(y)])
     columns, rows = np.meshgrid(plane.x, plane.y)
     there = (table != palette.crushed) | ((line, row) != CRUSHING)
     computed = ClassedPlaces(plane.unit(columns[there], rows[there]), table[there])

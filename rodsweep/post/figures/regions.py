@@ -20,7 +20,7 @@ STEP = 0.4
 
 
 @dataclass(frozen=True, slots=True)
-class Plane:
+class DrawnPlane:
     """A rectangle of two parameters from the first value of each to the last, in the scales of their axes."""
 
     x: Array

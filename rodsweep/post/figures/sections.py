@@ -9,7 +9,9 @@ from ...config.arm import AXIS_OF
 from ...config.refusals import nearest
 from ...errors import InputError
 from ...model.parameters import NONLINEAR_PARAMETERS
+from ...model.units import in_si
 from ...results.file.view import View
+from ...results.layouts.arm import QUANTITY_UNITS
 from .lists import BESIDE_POINTS
 
 SAME_VALUE = 1e-6
@@ -18,15 +20,29 @@ MOST_NAMED = 8
 """Values that a refusal names."""
 
 
-def section(view: View, at: Mapping[str, float]) -> View:
-    """The points of a file with these values of parameters; InputError, with those there are, for others."""
+def section(view: View, at: Mapping[str, float | str]) -> View:
+    """The points of a file with these values of parameters, or with these quantities of an arm.
+
+    Quantities are numbers in SI, or text with a unit. InputError, with the values there are, for others.
+    """
     for name, value in at.items():
-        view = _cut(view, name, value)
+        view = _cut(view, name, _number(name, value))
     return view
 
 
+def _number(name: str, value: float | str) -> float:
+    """A value as a number, in SI where it is a quantity."""
+    try:
+        return float(value)
+    except ValueError:
+        if name in QUANTITY_UNITS:
+            return in_si(f"--at {name}", value, QUANTITY_UNITS[name], "12 cm")
+        raise InputError(f"--at {name}={value} is no parameter with a number, as k1=150 is") from None
+
+
 def _cut(view: View, name: str, value: float) -> View:
-    axes = view.over or view.parameters
+    listed = {} if view.is_grid else {n: v for n, v in view.quantities.items() if np.ndim(v)}
+    axes = view.over or (*view.parameters, *listed)
     if name not in axes:
         known = ", ".join(axes)
         close = nearest(name, list(axes))
@@ -72,9 +88,9 @@ def _list_at(view: View, there: np.ndarray) -> View:
     return replace(view, variables=variables)
 
 
-def choices_of(given: Mapping[str, float]) -> dict[str, float]:
-    """Values by parameter as Python gives them; InputError where one is no number."""
+def choices_of(given: Mapping[str, float | str]) -> dict[str, float | str]:
+    """Values by parameter as Python gives them; InputError where one is neither a number nor text."""
     try:
-        return {str(name): float(value) for name, value in given.items()}
+        return {str(n): value if isinstance(value, str) else float(value) for n, value in given.items()}
     except (AttributeError, TypeError, ValueError):
         raise InputError("at is not allowed; give numbers by parameter, as at={'k1': 150}") from None

@@ -8,7 +8,9 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from ...config.arm import NOT_SLENDER
 from ...config.values import printable
+from ...model.units import written_in
 from ...results.file.provenance import RANK_SHARES, kernels_of
 from ...results.file.view import View
 from ...results.layouts import lacks_curves
@@ -50,7 +52,9 @@ def show_summary(view: View, every_status: bool = False) -> None:
     view, console = view.listed, Console(highlight=False, markup=False)
     a, status = view.attributes, view.variables["status"]
     done, noun = status != MISSING, NOUNS.get(view.task, "point")
-    told = SUMMARIES[view.task](view, done) if done.any() else Told([f"no {noun} is computed yet"])
+    rods = done & (status < NOT_SLENDER)
+    nothing = Told([] if done.any() else [f"no {noun} is computed yet"])
+    told = SUMMARIES[view.task](view, rods) if rods.any() else nothing
     console.print(f"{printable(str(view.path))}: {a.get('title', '')}, task {view.task}", soft_wrap=True)
     for line in [*arm_answer(view, done), *told.answer, *(arm_lines(view, done) if done.any() else [])]:
         console.print(line, soft_wrap=True)
@@ -137,11 +141,20 @@ def _table(headings: Iterable[str], rows: Iterable[tuple[str, ...]]) -> Table:
 
 
 def _axes(view: View) -> Iterable[tuple[str, ...]]:
-    for name, values in view.axes.items():
-        low, high = values.min(), values.max()
-        yield name, str(len(values)), f"{low:.6g}", f"{high:.6g}", DIMENSIONS[name][0]
+    """(name, different values, from, to, unit) of an arm's quantities, as typed, and of every parameter."""
     for name, values in view.quantities.items():
-        yield name, str(values.size), f"{values.min():.6g}", f"{values.max():.6g}", QUANTITY_UNITS[name]
+        si = QUANTITY_UNITS[name]
+        unit = view.typed.get(name, si)
+        yield name, *_extent(np.vectorize(lambda x, to=unit, of=si: written_in(x, to, of))(values)), unit
+    for name, values in view.axes.items():
+        yield name, *_extent(values), DIMENSIONS[name][0]
+
+
+def _extent(values: np.ndarray) -> tuple[str, str, str]:
+    """How many different values there are, of any shape, the smallest and the largest; NaN is none."""
+    there = {f"{value:.12g}" for value in values[~np.isnan(values)]}  # scales differ by rounding only
+    ends = sorted(map(float, there))
+    return (str(len(ends)), f"{ends[0]:.6g}", f"{ends[-1]:.6g}") if ends else ("0", "", "")
 
 
 def _statuses(view: View, status: np.ndarray, every: bool) -> Iterable[tuple[str, ...]]:

@@ -26,7 +26,13 @@ def arm_answer(view: View, done: np.ndarray) -> list[str]:
     if not rods.any():
         return ["no rod covers any of these arms"] if done.any() else []
     validity = {variable.name: view.variables[variable.name][rods] for variable in VALIDITY}
-    caveat, answer = validity_sentence(validity), ANSWERS[view.task](view, rods)
+    caveat = validity_sentence(validity)
+    inside = rods & (view.variables["model_applies"] != Validity.does_not_apply)
+    if not inside.any():
+        return [caveat, *(f"if it applied: {line}" for line in ANSWERS[view.task](view, rods))]
+    if (inside != rods).any():
+        return [caveat, *(f"where it applies: {line}" for line in ANSWERS[view.task](view, inside))]
+    answer = ANSWERS[view.task](view, rods)
     return [caveat, *answer] if validity["model_applies"].any() else [*answer, caveat]
 
 

@@ -47,7 +47,7 @@ def _outcome_line(view: View, done: np.ndarray) -> str:
     if len(there) == 1:
         word = next(iter(there))
         alone = done.size == 1 and word in OUTCOMES.values()
-        return f"the rod {word}" if alone else f"{word} at all of {whole}"
+        return f"the rod {word}" if alone else f"{word} at all {whole}"
     told = (f"{word} at {int(mask.sum())}{in_brackets(region(view, mask))}" for word, mask in there.items())
     return f"of {whole}: {', '.join(told)}"
 

@@ -34,7 +34,7 @@ def modes_summary(view: View, done: np.ndarray) -> Told:
 
 
 def growth_lines(view: View, done: np.ndarray) -> list[str]:
-    """How far the modes are from being normal, and what that makes of small motions."""
+    """How far the modes are from being normal, and what that makes of small motions; done: (points,)."""
     v = view.variables
     condition = v["condition"][done][:, 0]
     lines = [

@@ -66,7 +66,7 @@ def count_lines(found: np.ndarray) -> list[str]:
 
 
 def saving_line(view: View, done: np.ndarray, line: str) -> str:
-    """What the rows cost in all, beside a uniform grid."""
+    """What the rows cost in all, beside a uniform grid; done: which rows are there, of the shape of rows."""
     v, rows = view.variables, int(done.sum())
     solves, boxes = int(v["solves"][done].sum()), int(v["boxes"][done].sum())
     uniform = float(np.ptp(v[line])) / SHARP * rows

@@ -37,7 +37,7 @@ def stable_line(view: View, done: np.ndarray) -> str:
     there = {word: done & mask for word, mask in masks.items() if (done & mask).any()}
     whole = counted(int(done.sum()), "point")
     if len(there) == 1:
-        return f"straight rod: {next(iter(there))} at all of {whole}"
+        return f"straight rod: {next(iter(there))} at all {whole}"
     told = (f"{word} at {int(mask.sum())}{in_brackets(region(view, mask))}" for word, mask in there.items())
     return f"straight rod, of {whole}: {', '.join(told)}"
 

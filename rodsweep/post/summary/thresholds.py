@@ -30,7 +30,7 @@ def thresholds_summary(view: View, done: np.ndarray) -> Told:
 
 
 def event_line(view: View, done: np.ndarray, event: str) -> str:
-    """At which forces the rods that are `done` have their first crossing of a kind, and at which rods."""
+    """Forces at which rods first have a crossing of a kind, and which rods; done: of the grid's shape."""
     words, rate, noun, unit = EVENTS[event]
     v = view.variables
     F = np.where(done, v[f"F_{event}"], np.nan).ravel()
@@ -41,8 +41,8 @@ def event_line(view: View, done: np.ndarray, event: str) -> str:
     errors = crossing_errors(view, F, "crossing_F")
     places = [f"{rounded(F[i], errors[i])}{in_brackets(at_point(view, i))}" for i in (low, high)]
     forces = " to ".join(places if places[0] != places[1] else places[:1])
-    where = "at all" if there.sum() == rods else f"at {int(there.sum())}"
-    return f"{words}: F = {forces}, {where} of {counted(rods, 'rod')}; {noun} {span(v[rate][done])} {unit}"
+    where = f"all {counted(rods, 'rod')}" if there.sum() == rods else some_of(int(there.sum()), rods, "rod")
+    return f"{words}: F = {forces}, at {where}; {noun} {span(v[rate][done])} {unit}"
 
 
 def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:

@@ -13,7 +13,7 @@ from ..branch_curves import followed_parameter
 from .branches import merged_columns, merged_rows
 from .columns import Column
 from .contents import BRANCHES, GRID, POINTS, Contents, chosen, contents_of, refuse_unknown
-from .rows import Rows, item_rows, list_columns, point_columns
+from .rows import Rows, item_rows, line_columns, list_columns, point_columns, si_columns
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +83,10 @@ class Tables:
     def _list(self, name: str) -> tuple[Rows, list[Column]]:
         joint, variables = name in self.contents.joint, self.contents.lists[name]
         rows = item_rows(self.view, variables, joint)
-        return rows, list(list_columns(self.view, variables, rows, joint))
+        columns = list(list_columns(self.view, variables, rows, joint))
+        columns += line_columns(self.view, rows) if name == GRID else ()
+        points = None if joint else rows[0]
+        return rows, [*columns, *si_columns(self.view, variables, columns, points)]
 
     def _branches(self) -> tuple[NDArray[np.int64], list[Column]]:
         """The cycles of branches with the special points between them."""

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...results.file.view import View
-from ...results.layouts.arm import OF_HERTZ, SUFFIX
+from ...results.layouts.arm import FORCES
 from .columns import Column
 from .rows import Rows
 
@@ -52,9 +52,11 @@ def _filled(values: Column, others: Column) -> Column:
 
 def _special_of(name: str, along: str) -> str:
     """The name that a variable of cycles has at special points."""
-    base = name.removesuffix(SUFFIX).removesuffix(OF_HERTZ)
-    end = name[len(base) :]
-    return f"special_{'at' if base == f'branch_{along}' else base}{end}"
+    if name == f"branch_{along}":
+        return "special_at"
+    if along == "F" and name in {f"branch_{load}" for load in FORCES}:
+        return "special_at_si"
+    return f"special_{name}"
 
 
 def _of(view: View, name: str, count: int, rows: Rows) -> NDArray:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ...config.arm import AXIS_OF
 from ...results.file.view import View
-from ...results.layouts.arm import MEANINGS, QUANTITY_UNITS
+from ...results.layouts.arm import MEANINGS, QUANTITY_UNITS, any_unit_of, converted, twin_of
 from ...results.layouts.variables import DIMENSIONS, MISSING, STATUS, Variable
 from .columns import Column, absent_in, column_of, coordinate, tells_of_items
 
@@ -33,7 +33,7 @@ def item_rows(view: View, variables: Sequence[Variable], joint: bool) -> Rows:
 
 
 def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]) -> Iterator[Column]:
-    """What belongs to the points of rows: their parameters, an arm's quantities, and their own variables."""
+    """Columns of the points of rows, (rows,): parameters, an arm's quantities, their own variables."""
     for name, values in view.point_columns.items():
         yield coordinate(name, *DIMENSIONS[name], values[points])
     for name, values in _quantities_at_points(view).items():
@@ -64,6 +64,40 @@ def list_columns(view: View, variables: Sequence[Variable], rows: Rows, joint: b
             along = variable.extra[0]
             place = rows[0] if along == "point" else _places(view, along)[rows[0]]
             yield column_of(variable, values[place, *rows[1:]])
+
+
+def si_columns(
+    view: View, variables: Sequence[Variable], columns: Sequence[Column], points: NDArray[np.int64] | None
+) -> Iterator[Column]:
+    """What an arm's file tells once of a list, in SI units too.
+
+    points: of the rows, (rows,); None where rows have none, which are then of one arm or left out.
+    """
+    if not view.quantities:
+        return
+    at = _quantities_at_points(view)
+    if points is not None:
+        at = {name: values[points] for name, values in at.items()}
+    else:
+        at = {name: values[0] for name, values in at.items() if np.ptp(values) == 0}
+    by_name = {column.name: column for column in columns}
+    for declared in variables:
+        column = by_name[declared.name]
+        # At a crossing along a row of forces lies a force.
+        is_force = declared.name == "crossing_at" and "F" not in view.parameters
+        variable = replace(declared, name="crossing_F") if is_force else declared
+        unit, factors, divisors = any_unit_of(variable, "force" in view.quantities)
+        known = {*factors, *divisors} <= at.keys()
+        if unit and known and twin_of(variable.name, unit) not in view.variables:
+            twin, values = converted(variable, column.values, at)
+            yield replace(column_of(twin, values), absent=column.absent)
+
+
+def line_columns(view: View, rows: Rows) -> Iterator[Column]:
+    """The quantities of an arm along the rows of a diagram, as the pressure of F."""
+    for name, values in view.quantities.items():
+        if values.size > 1 and view.is_grid and AXIS_OF.get(name, "") not in view.parameters:
+            yield coordinate(name, QUANTITY_UNITS[name], MEANINGS[name], values[rows[1]])
 
 
 def _is_of_points(view: View, variable: Variable) -> bool:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...config.arm import AXIS_OF, ArmSection, names_over
 from ...config.axes import Axes
 from ...config.quantities import typed_unit
@@ -135,13 +136,29 @@ def _meaning(variable: Variable, unit: str) -> str:
 
 def _unit_of(variable: Variable, as_force: bool) -> tuple[str, tuple[str, ...], tuple[str, ...]]:
     """The SI unit of a variable, what to multiply and to divide by; an empty unit where it is told once."""
-    if variable.dtype != "<f8" or variable.extra not in WITHIN:
+    return any_unit_of(variable, as_force) if variable.extra in WITHIN else ("", (), ())
+
+
+def any_unit_of(variable: Variable, as_force: bool) -> tuple[str, tuple[str, ...], tuple[str, ...]]:
+    """The same of variables that the file tells once too; an empty unit where there is no SI unit."""
+    if variable.dtype != "<f8":
         return "", (), ()
     if variable.units == PARAMETERS["F"].unit and (
         "F" in variable.name.split("_") or variable.name in OF_BRANCHES
     ):
         return FORCES["force" if as_force else "pressure"]
     return OF_TIME_AND_LENGTH.get(variable.units, ("", (), ()))
+
+
+def converted(variable: Variable, values: Array, quantities: Mapping[str, Array]) -> tuple[Variable, Array]:
+    """A variable and its values, (n,), in the SI unit that `any_unit_of` says.
+
+    quantities: those of the arm, each of shape () or (n,).
+    """
+    unit, factors, divisors = any_unit_of(variable, "force" in quantities)
+    up, down = (np.prod([quantities[name] for name in names], axis=0) for names in (factors, divisors))
+    scale = up / (2 * np.pi * down if unit == HERTZ else down)
+    return real(twin_of(variable.name, unit), unit, _meaning(variable, unit)), values * scale
 
 
 def over_of(config: Mapping[str, Any]) -> tuple[str, ...]:

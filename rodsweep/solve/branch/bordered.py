@@ -23,7 +23,7 @@ from ..cycle.linearisation import (
 )
 from ..cycle.multipliers import nonzero_eigenvalues
 from ..cycle.neighbour import coordinate_of, with_coordinate
-from ..cycle.newton import Converged, relative_change
+from ..cycle.newton import MOST_ITERATIONS, Converged, relative_change
 from ..cycle.orbit import Orbit
 from ..cycle.orbit_mesh import OrbitMesh
 from ..cycle.phase import phase, phase_change, phase_row
@@ -32,7 +32,6 @@ from ..point import Unsolvable
 
 LONGEST_STEP = 0.5
 """Largest relative change of an orbit in one iteration."""
-MOST_ITERATIONS = 12
 SLUGGISH = 0.1
 """Ratio of a correction to the one before from which the matrix is made anew."""
 

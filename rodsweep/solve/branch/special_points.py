@@ -205,8 +205,8 @@ class Segment:
         self._known = length, found.orbit, tangent / rate
         return found
 
-    def rises(self, found: Converged) -> float:
-        """How fast the parameter grows at a cycle that was just found."""
+    def rises(self) -> float:
+        """How fast the parameter grows at the cycle that was found last."""
         if self._known is None:
             raise ValueError("nothing is found yet")
         return float(self._known[2][-1]) / self.here.scale.coordinate
@@ -215,7 +215,7 @@ class Segment:
 def test_function(kind: SpecialKind, segment: Segment, found: Converged) -> float:
     """What is zero at a special point of a kind, at a cycle that was just found; raises Unsolvable."""
     if kind == SpecialKind.fold:
-        return segment.rises(found)
+        return segment.rises()
     if kind == SpecialKind.left_the_model:
         return least_stretch(CyclePath(found.orbit))
     h = BorderedMatrix(found.orbit, segment.here.scale).returns

@@ -6,7 +6,7 @@ parameter, and the winding number confirms how many modes are unstable at both e
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ...determinant.covering import Box, cover, first_boxes, slabs
 from ...determinant.newton import Zero
@@ -65,18 +65,8 @@ def transitions(path: Path, start: float, stop: float, certify: bool = True) -> 
         counts.doubts.append("the leading eigenvalue is not the pair that crosses the axis")
     if certify and not tracer.proved:
         counts.doubts.append("it is not proved which eigenvalue leads everywhere")
-    known = all(number >= 0 for number in (unstable, at_end, *(c.unstable_after for c in crossings)))
-    return Transitions(
-        crossings=crossings,
-        open_range=_range_of(gaps),
-        unstable_at_start=unstable,
-        unstable_at_end=at_end,
-        oscillates_at_start=oscillates,
-        proved=certify and not gaps and not counts.doubts and known,
-        boxes=examined,
-        solves=tracer.solves,
-        why_not="; ".join(counts.doubts),
-    )
+    counted = _counted(counts, unstable, crossings, at_end, examined)
+    return replace(counted, oscillates_at_start=oscillates, solves=tracer.solves)
 
 
 def pair_crossings(path: Path, start: float, stop: float, certify: bool = True) -> Transitions:
@@ -91,13 +81,23 @@ def pair_crossings(path: Path, start: float, stop: float, certify: bool = True) 
     ordered = sorted(hopfs, key=lambda c: c.at)
     unstable = 0 if path.name == "F" and start == 0 else counts.first(start, stop, ordered)
     crossings, at_end = counts.along(ordered, (start, stop), unstable)
+    return _counted(counts, unstable, crossings, at_end, examined)
+
+
+def _counted(
+    counts: Counts, unstable: int, crossings: tuple[Crossing, ...], at_end: int, examined: int
+) -> Transitions:
+    """What the counts say of the crossings; nothing of who leads at the start.
+
+    unstable, at_end: unstable modes at both ends of the path; examined: evaluations of D.
+    """
     known = all(number >= 0 for number in (unstable, at_end, *(c.unstable_after for c in crossings)))
     return Transitions(
         crossings=crossings,
-        open_range=_range_of(gaps),
+        open_range=_range_of(counts.gaps),
         unstable_at_start=unstable,
         unstable_at_end=at_end,
-        proved=certify and not gaps and not counts.doubts and known,
+        proved=counts.certify and not counts.gaps and not counts.doubts and known,
         boxes=examined,
         why_not="; ".join(counts.doubts),
     )

@@ -7,7 +7,6 @@ that were measured. Where many cycles follow on one mesh, its errors are measure
 the others both parts are larger by as much as the orbit's tails make them.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import ceil, inf
@@ -204,21 +203,17 @@ def at_its_parameters(mesh: OrbitMesh, orbit: Orbit, tolerance: float) -> Conver
     return newton(mesh.carry(orbit), tolerance)
 
 
-def calibrated(
-    found: Converged,
-    accuracy: float,
-    before: Calibration | None = None,
-    on: Callable[[OrbitMesh, Orbit, float], Converged] = at_its_parameters,
-) -> Calibration:
+def calibrated(found: Converged, accuracy: float, before: Calibration | None = None) -> Calibration:
     """The calibration of the mesh of an orbit; raises Unsolvable.
 
     before: of an orbit near by, on this mesh or another, which tells how fast errors fall; without it the
-    orbit does. on: the same cycle on another mesh, to a tolerance, whatever is held fixed.
+    orbit does.
     """
     here, least = mesh_of(found.orbit), found.orbit.stages + 1
     seen, longer = Seen(found), ceil(MORE_INTERVALS * here.intervals)
     meshes = (replace(here, order=here.order + MORE_ORDERS), replace(here, intervals=longer))
-    space, time = (seen.difference(Seen(on(mesh, found.orbit, TOLERANCE * accuracy))) for mesh in meshes)
+    others = (at_its_parameters(mesh, found.orbit, TOLERANCE * accuracy) for mesh in meshes)
+    space, time = (seen.difference(Seen(other)) for other in others)
     # The finer mesh has an error in time itself.
     time = time / (1 - ((here.intervals - 1) / (longer - 1)) ** least)
     if before is not None and before.mesh == here:

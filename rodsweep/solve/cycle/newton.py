@@ -15,6 +15,8 @@ SLUGGISH = 0.1
 """Decrease of the steps in one iteration from which Newton's matrix is made anew."""
 LONGEST_STEP = 0.5
 """Largest change of state or period in one iteration, relative; what asks for more is far from any orbit."""
+MOST_ITERATIONS = 12
+"""What takes longer than that converges too slowly to be near its orbit."""
 QUADRATIC = 1e5
 """What Newton's method leaves, in units of the square of its step, where the orbit is nearly neutral."""
 
@@ -40,7 +42,7 @@ class Converged:
     distance: float
 
 
-def newton(orbit: Orbit, tolerance: float, parameter: str | None = None, most: int = 12) -> Converged:
+def newton(orbit: Orbit, tolerance: float, parameter: str | None = None) -> Converged:
     """The orbit near this one; raises Unsolvable.
 
     tolerance: relative, of states and period. parameter: along which the matrix has the tangent. The matrix
@@ -48,7 +50,7 @@ def newton(orbit: Orbit, tolerance: float, parameter: str | None = None, most: i
     """
     matrix, distance, last = Linearisation(orbit, parameter), 0.0, np.inf
     step = matrix.step
-    for iteration in range(1, most + 1):
+    for iteration in range(1, MOST_ITERATIONS + 1):
         report()
         change = relative_change(orbit, step)
         if not np.isfinite(change):
@@ -69,7 +71,7 @@ def newton(orbit: Orbit, tolerance: float, parameter: str | None = None, most: i
         else:
             step = matrix.correction(orbit)
         last = change
-    raise Unsolvable(f"Newton's method for the orbit is at {change:.0e} after {most} iterations")
+    raise Unsolvable(f"Newton's method for the orbit is at {change:.0e} after {MOST_ITERATIONS} iterations")
 
 
 def at_orbit(found: Converged, distance: float, parameter: str | None = None) -> Converged:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import View
-from ..style import heading, need, parameter_text
+from ..style import heading, parameter_text
 
 MOST_CYCLES = 3
 """Cycles for which one figure has room, side by side."""
@@ -112,8 +112,9 @@ def _refuse_missing(view: View, needs: Sequence[str]) -> None:
 def _selection(view: View, points: Sequence[int], drawable: NDArray[np.bool_], what: str) -> Selection:
     """The points by number, else the first of those that are drawable, shape (points,)."""
     there, words = np.flatnonzero(drawable), outcomes(view)
-    states = ", ".join(sorted({word.replace("_", " ") for word in words.tolist()}))
-    need(view, there.size, f"{what} (its points are: {states})")
+    if not there.size:
+        states = ", ".join(sorted({word.replace("_", " ") for word in words.tolist()}))
+        raise InputError(f"{view.path} holds no {what} that could be drawn; its points are: {states}")
     numbers = list(points) or [int(index) + 1 for index in there[:MOST_CYCLES]]
     columns = view.point_columns
     parameters = [{name: float(columns[name][n - 1]) for name in columns} for n in numbers]

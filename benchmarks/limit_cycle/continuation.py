@@ -4,7 +4,6 @@ AUTO's time of a cycle is the difference of two runs of different length by thei
 start of its program, and the first cycle, cancel.
 """
 
-import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
@@ -14,17 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from ...discretization.mesh import mesh
-from ...solve.cycle.limit_cycle import CyclePoint, solve_cycle
-from ...solve.cycle.linearisation import Linearisation
-from ...solve.cycle.newton import newton
-from ...solve.cycle.orbit import Orbit
-from ..auto import AUTO, SKIPPED, auto_program
-from ..study import Measurement, Timed, failsafe, race, table
-from .auto_cycles import AutoSetting, Branch, continued
-from .auto_equations import EQUATIONS
-from .sweeping import RODS, STRETCH, ExactCycle, from_neighbour, name_of, swept
-from .tracking import (
+from rodsweep.bench.limit_cycle.sweeping import RODS, STRETCH, ExactCycle, from_neighbour, name_of, swept
+from rodsweep.bench.limit_cycle.tracking import (
     EXACT,
     REFERENCE_INTERVALS,
     REFERENCE_STAGES,
@@ -32,9 +22,20 @@ from .tracking import (
     asked,
     orbit_of,
 )
+from rodsweep.bench.study import Measurement, Timed, failsafe, race, table
+from rodsweep.discretization.mesh import mesh
+from rodsweep.solve.cycle.limit_cycle import CyclePoint, solve_cycle
+from rodsweep.solve.cycle.linearisation import Linearisation
+from rodsweep.solve.cycle.newton import newton
+from rodsweep.solve.cycle.orbit import Orbit
+
+from ..auto import AUTO
+from .auto_cycles import AutoSetting, Branch, continued
 
 STEP, FEW, MANY = 0.01, 3, 23
 """AUTO's step in units of the force at which it ends, and cycles of its two runs."""
+MOST_ROUNDS = 3
+"""Of runs that take seconds."""
 LARGE = 0.5
 """Modulus of a multiplier from which it is counted: next to 1 one is looked at."""
 OWN = "rodsweep"
@@ -60,13 +61,10 @@ QUICK_SETTINGS = SETTINGS[1:6:4]
 """One for each target."""
 
 
-def beside_auto(rounds: int, quick: bool) -> tuple[list[str], list[Measurement]]:
-    """Blocks of text, and the measurements; a sentence where AUTO is not installed."""
-    with tempfile.TemporaryDirectory() as directory:
-        program = auto_program(Path(directory), EQUATIONS)
-        if program is None:
-            return [SKIPPED], []
-        found = compared(program, RODS[0], QUICK_SETTINGS if quick else SETTINGS, rounds)
+def beside_auto(program: Path, quick: bool, rounds: int) -> tuple[list[str], list[Measurement]]:
+    """Blocks of text, and the measurements, by the program that was compiled with the equations."""
+    settings = QUICK_SETTINGS if quick else SETTINGS
+    found = compared(program, RODS[0], settings, min(rounds, MOST_ROUNDS))
     return [introduction(RODS[0]), cycle_table(found), ratio_table(found)], found
 
 

@@ -5,27 +5,46 @@ for the first onset or the first Hopf point above F = 0 and prove nothing.
 """
 
 from collections.abc import Callable
-from functools import partial
-from math import nan
+from functools import lru_cache, partial
+from math import isnan, nan
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import bisect, brentq
 
-from ...arrays import Array
-from ..lapack import Eigenvalues, inverse_spectrum, leading, whole_matrices
-from .cases import HOPF, ONSET, FirstThreshold, ThresholdCase
+from rodsweep.arrays import Array
+from rodsweep.bench.spectrum.own_solvers import leading
+from rodsweep.bench.study import Contender
+from rodsweep.bench.thresholds.cases import HOPF, ONSET, FirstThreshold, ThresholdCase
+from rodsweep.discretization.resolution import Resolution, expected_wave_number, resolution_for
+from rodsweep.model.dispersion import most_amplified_wave
 
+from ..lapack import Eigenvalues, inverse_spectrum, whole_matrices
+
+MESH_MODES, MESH_ACCURACY = 2, 1e-12
+"""Leading eigenvalues for which the mesh is chosen, and their relative error on it."""
+GRIDS, LARGE_GRID = (50, 200), 800
+TOLERANCES = (1e-3, 1e-6, 1e-12)
+SWEEP = "grid and interpolation"
+"""Group of a figure."""
 MARCH = 2.0
 """Step in F at which a sign is looked for before a root is."""
 SCIPY_ROUNDING = 8.9e-16
 """The least relative tolerance that SciPy's searches take: four units of rounding."""
 
 
+@lru_cache(maxsize=64)
+def mesh_of(case: ThresholdCase) -> Resolution:
+    """Fine enough at the thresholds of a rod."""
+    wave = most_amplified_wave(case.rod(case.onset if isnan(case.hopf) else case.hopf))[1]
+    return resolution_for(expected_wave_number(MESH_MODES, wave), MESH_ACCURACY)
+
+
 def affine(case: ThresholdCase) -> tuple[Array, Array, Array]:
     """A0, A1 and the diagonal of B, shapes (n, n), (n, n), (n,): A = A0 + F A1 at F."""
-    A0, B = whole_matrices(case.rod(0.0), case.mesh)
-    return A0, whole_matrices(case.rod(1.0), case.mesh)[0] - A0, B
+    mesh = mesh_of(case)
+    A0, B = whole_matrices(case.rod(0.0), mesh)
+    return A0, whole_matrices(case.rod(1.0), mesh)[0] - A0, B
 
 
 class LeadingPair:
@@ -116,3 +135,19 @@ BY_STEPS = {
     HOPF: {"steps, Brent on Re w": partial(by_steps, brentq, growth)},
 }
 """The estimates on a grid and the searches by steps, by what they are for."""
+
+
+def contenders(kind: str, quick: bool) -> list[Contender]:
+    """All grids and searches for one kind of threshold; who is quick does without the largest grid."""
+    grids = GRIDS if quick else (*GRIDS, LARGE_GRID)
+    by_grid = [
+        Contender(name, f"{n} forces", SWEEP, partial(on_grid, estimate, n), slow=n == LARGE_GRID)
+        for name, estimate in BY_GRID[kind].items()
+        for n in grids
+    ]
+    by_search = [
+        Contender(name, f"tolerance {tolerance:.0e}", SWEEP, partial(search, tolerance))
+        for name, search in BY_STEPS[kind].items()
+        for tolerance in TOLERANCES
+    ]
+    return by_grid + by_search

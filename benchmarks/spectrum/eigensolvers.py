@@ -1,54 +1,25 @@
-"""The methods of the spectrum benchmark: rodsweep, others' eigensolvers on its pencil, other discretisations.
+"""Eigensolvers and discretisations of others: on rodsweep's pencil, and on meshes of their own.
 
-Each takes a rod and a size, the order of the elements or the intervals of a collocation, and returns the
+Each takes a rod and a size, the order of the elements or the intervals of a collocation, and gives the
 leading eigenvalues, WANTED_MODES and one more, for a pair may straddle the end, largest real part first.
 """
 
 from collections.abc import Callable
 from functools import lru_cache, partial
-from math import ceil
 from typing import NamedTuple
 
 import numpy as np
 import scipy.linalg
 import scipy.sparse.linalg
 
-from ...arrays import Array
-from ...determinant.newton import refined
-from ...discretization.pencil import SHEAR_WEIGHT, assemble
-from ...discretization.resolution import LARGEST_ORDER, Resolution
-from ...model.dispersion import most_amplified_wave
-from ...model.rod import Rod
-from ...solve.spectrum.krylov_schur import eigen_solver
-from ...solve.spectrum.search import SHIFT_ABOVE_GROWTH, SpectrumRequest, solve_spectrum
-from ..lapack import Eigenvalues, inverse_spectrum, leading, qz, whole_matrices
-from ..study import Contender
+from rodsweep.arrays import Array
+from rodsweep.bench.spectrum.own_solvers import ORDERS, PENCIL, WANTED_MODES, leading, mesh_of, shift_of
+from rodsweep.bench.study import Contender
+from rodsweep.determinant.newton import refined
+from rodsweep.discretization.pencil import SHEAR_WEIGHT, assemble
+from rodsweep.model.rod import Rod
 
-WANTED_MODES = 4
-ACCURACY = 1e-12
-"""Asked of rodsweep, whose error does not depend on it."""
-
-
-def own_spectrum(rod: Rod, certify: bool) -> Eigenvalues:
-    """This tool as its task uses it; it chooses the size itself."""
-    return solve_spectrum(rod, SpectrumRequest(WANTED_MODES, ACCURACY, certify)).eigenvalues
-
-
-def mesh_of(order: int) -> Resolution:
-    """One element of this order, or as many equal ones as keep to LARGEST_ORDER."""
-    elements = ceil(order / LARGEST_ORDER)
-    return Resolution(elements, ceil(order / elements))
-
-
-def shift_of(rod: Rod) -> float:
-    """The shift of rodsweep's own shift-and-invert."""
-    return SHIFT_ABOVE_GROWTH * most_amplified_wave(rod)[0]
-
-
-def krylov_schur(rod: Rod, size: int) -> Eigenvalues:
-    """SLEPc's Krylov-Schur to its last digit, without refinement on D."""
-    w = eigen_solver(mesh_of(size)).solve(rod, shift_of(rod), WANTED_MODES, tight=True)
-    return leading(w, WANTED_MODES + 1)
+from ..lapack import Eigenvalues, inverse_spectrum, qz, whole_matrices
 
 
 def dense_qz(rod: Rod, size: int) -> Eigenvalues:
@@ -150,12 +121,10 @@ def chebyshev_first_order(rod: Rod, size: int) -> Eigenvalues:
     return leading(qz(A, B), WANTED_MODES + 1)
 
 
-ORDERS = (8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 40, 56, 80)
 INTERVALS = (10, 12, 14, 16, 18, 20, 22, 24, 28, 32, 40, 56, 80)
 START_ORDERS = (8, 10, 11, 12, 14, 18, 24, 32, 40)
 """Of meshes whose eigenvalues are refined on D."""
-PLAIN, PROVED = "rodsweep, certificate off", "rodsweep, certificate on"
-THIS_TOOL, PENCIL, OTHER_MESH = "this tool", "the same pencil", "other discretisations"
+OTHER_MESH = "other discretisations"
 
 
 class Peer(NamedTuple):
@@ -168,7 +137,6 @@ class Peer(NamedTuple):
 
 
 PEERS = (
-    Peer("Krylov-Schur alone, same pencil", PENCIL, krylov_schur, ORDERS),
     Peer("dense LAPACK QZ, same pencil", PENCIL, dense_qz, ORDERS),
     Peer("dense LAPACK LU and geev, same pencil", PENCIL, dense_inverse, ORDERS),
     Peer("SciPy eigs (ARPACK), same pencil", PENCIL, scipy_eigs, ORDERS),
@@ -179,14 +147,10 @@ PEERS = (
 )
 
 
-def contenders(stride: int = 1) -> list[Contender]:
-    """This tool, and the peers at each stride-th of their sizes."""
+def contenders() -> list[Contender]:
+    """All peers at all of their sizes."""
     return [
-        Contender(PLAIN, "", THIS_TOOL, partial(own_spectrum, certify=False)),
-        Contender(PROVED, "", THIS_TOOL, partial(own_spectrum, certify=True)),
-        *(
-            Contender(peer.name, str(size), peer.group, partial(peer.solve, size=size))
-            for peer in PEERS
-            for size in peer.sizes[::stride]
-        ),
+        Contender(peer.name, str(size), peer.group, partial(peer.solve, size=size))
+        for peer in PEERS
+        for size in peer.sizes
     ]

@@ -3,10 +3,10 @@
 import numpy as np
 import scipy.linalg
 
-from ..arrays import Array, Complex
-from ..discretization.pencil import assemble
-from ..discretization.resolution import Resolution
-from ..model.rod import Rod
+from rodsweep.arrays import Array, Complex
+from rodsweep.discretization.pencil import assemble
+from rodsweep.discretization.resolution import Resolution
+from rodsweep.model.rod import Rod
 
 Eigenvalues = Complex
 
@@ -32,8 +32,3 @@ def qz(A: Array, B: Array) -> Eigenvalues:
     alpha, beta = scipy.linalg.eigvals(A, B, check_finite=False, homogeneous_eigvals=True)
     finite = np.abs(beta) > INFINITE_BELOW * np.abs(beta).max()
     return alpha[finite] / beta[finite]
-
-
-def leading(w: Eigenvalues, count: int) -> Eigenvalues:
-    """The eigenvalues with the largest real parts, largest first."""
-    return w[np.argsort(-w.real, kind="stable")][:count]

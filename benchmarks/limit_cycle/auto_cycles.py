@@ -11,13 +11,14 @@ from pathlib import Path
 
 import numpy as np
 
-from ...arrays import Array, Complex
-from ...discretization.beam import Beam
-from ...discretization.stress_form import StressForm
-from ...solve.cycle.orbit import Orbit
-from ...solve.motion.integrator import Ending, Trajectory
+from rodsweep.arrays import Array, Complex
+from rodsweep.bench.limit_cycle.tracking import height_near, on_cycle
+from rodsweep.discretization.beam import Beam
+from rodsweep.discretization.stress_form import StressForm
+from rodsweep.solve.cycle.orbit import Orbit
+from rodsweep.solve.motion.integrator import Ending, Trajectory
+
 from ..auto import AUTO, run_auto, table_lines
-from .tracking import height_near, on_cycle
 
 NO_CONVERGENCE = "-9"
 """Third word of a line of fort.7."""

@@ -13,11 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Array
+from rodsweep.arrays import Array
+from rodsweep.bench.study import Contender
+from rodsweep.bench.thresholds.cases import FirstThreshold, ThresholdCase
+
 from ..auto import AUTO, SKIPPED, auto_program, run_auto, table_lines
-from ..machine import installed
-from ..study import Contender
-from .cases import FirstThreshold, ThresholdCase
+from ..installed import installed
 from .spectra_by_force import affine
 
 AUTO_SETTINGS = ((5.0, 1e-7), (1.0, 1e-4), (1.0, 1e-10))

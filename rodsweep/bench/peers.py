@@ -1,0 +1,107 @@
+"""The peers: other codes that a study times beside rodsweep, from the folder `benchmarks` of a checkout.
+
+The folder is a Python package that is not installed with rodsweep. It offers
+
+    versions() -> dict[str, str]
+
+the versions of the peers that are installed, and, for each study with peers, a module of its name with
+
+    peers(quick: bool, place: Path) -> Peers
+
+where `place` is an empty directory for the programs that peers compile.
+"""
+
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib import import_module
+from importlib.util import find_spec, module_from_spec, spec_from_file_location
+from pathlib import Path
+from types import ModuleType
+
+from ..errors import InputError
+from .study import Contender, Measurement
+
+PACKAGE = "benchmarks"
+"""The folder's name in a checkout, and its name as a Python package wherever it lies."""
+CHECKOUT = Path(__file__).parents[2]
+"""Beside pyproject.toml, where rodsweep runs from a checkout."""
+LEFT_OUT = {
+    "spectrum": "LAPACK, ARPACK and Chebyshev collocation",
+    "thresholds": "grids and root finding with SciPy, AUTO-07p and PyCont-Lite",
+    "limit_cycle": "further integrators of PETSc, those of SciPy, CVODE and AUTO-07p",
+}
+"""The peers by the study in which they take part, for those who have no folder of peers."""
+
+Section = Callable[[int], tuple[list[str], list[Measurement]]]
+"""A comparison with tables of its own: from the number of rounds to blocks of text and measurements."""
+
+
+@dataclass(frozen=True, slots=True)
+class Peers:
+    """The peers of one study.
+
+    contenders: by the name of the race, each method's settings from the coarsest to the finest; the study
+    says which races it has, and what the contenders of each are run on. sections: further comparisons.
+    notes: sentences on the contenders, for the introduction. skipped: a sentence for each peer that is not
+    installed.
+    """
+
+    contenders: Mapping[str, Sequence[Contender]] = field(default_factory=dict)
+    sections: Sequence[Section] = ()
+    notes: Sequence[str] = ()
+    skipped: Sequence[str] = ()
+
+    def of(self, race: str) -> list[Contender]:
+        """The contenders of one race; none where no peer takes part."""
+        return list(self.contenders.get(race, ()))
+
+
+NO_PEERS = Peers()
+
+
+def peer_package(directory: Path | None) -> ModuleType | None:
+    """The package in a folder of peers; of a checkout without one named, its own; None where there is none.
+
+    Raises InputError where a directory that is named holds no peers.
+    """
+    if directory is not None:
+        return _loaded(directory)
+    own = CHECKOUT / PACKAGE
+    there = (CHECKOUT / "pyproject.toml").is_file() and (own / "__init__.py").is_file()
+    return _loaded(own) if there else None
+
+
+def _loaded(directory: Path) -> ModuleType:
+    refusal = InputError(f"--peers {directory} must be the folder `{PACKAGE}` of a checkout of rodsweep")
+    start = directory.resolve() / "__init__.py"
+    known = sys.modules.get(PACKAGE)
+    if known is not None and known.__file__ and Path(known.__file__).resolve() == start:
+        return known
+    spec = spec_from_file_location(PACKAGE, start, submodule_search_locations=[str(start.parent)])
+    if not start.is_file() or spec is None or spec.loader is None:
+        raise refusal
+    package = module_from_spec(spec)
+    sys.modules[PACKAGE] = package  # before its modules are imported, which look for it there
+    spec.loader.exec_module(package)
+    if not hasattr(package, "versions"):
+        raise refusal
+    return package
+
+
+def peers_of(package: ModuleType | None, study: str, quick: bool, place: Path) -> Peers:
+    """The peers of a study that are installed; programs are compiled in the directory `place`."""
+    module = f"{PACKAGE}.{study}"
+    if package is None or find_spec(module) is None:
+        return NO_PEERS
+    found: Peers = import_module(module).peers(quick, place)
+    return found
+
+
+def left_out(studies: Sequence[str]) -> str:
+    """One sentence: the peers that studies do without, and how to get them; empty where they have none."""
+    missing = "; ".join(f"{name}: {LEFT_OUT[name]}" for name in studies if name in LEFT_OUT)
+    return missing and (
+        f"The peers are left out ({missing}): they are in the folder `{PACKAGE}` of a checkout of rodsweep, "
+        f"which `--peers CHECKOUT/{PACKAGE}` names."
+    )

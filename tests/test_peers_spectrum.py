@@ -1,0 +1,41 @@
+"""The peers of the spectrum: each converges to the exact eigenvalues, and loses what its form loses."""
+
+import pytest
+
+from benchmarks.spectrum import peers
+from benchmarks.spectrum.eigensolvers import (
+    PEERS,
+    chebyshev_first_order,
+    dense_inverse,
+    displacement_elements,
+)
+from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
+from rodsweep.bench.spectrum.own_solvers import WANTED_MODES
+from rodsweep.bench.spectrum.study import HARD_RODS, RACE
+from rodsweep.model.rod import Rod
+
+EASY = Rod(30.0, 1e4, 1e4, 1e-4)
+
+
+@pytest.mark.parametrize("peer", PEERS, ids=lambda peer: peer.name)
+def test_every_peer_converges_to_the_exact_eigenvalues(peer):
+    """Spectrally: two sizes farther the error is a hundredth, until rounding; at its best below 1e-9."""
+    roots = exact_spectrum(EASY, WANTED_MODES)
+    errors = [relative_error(peer.solve(EASY, size), roots) for size in peer.sizes]
+    assert min(errors) < 1e-9
+    coarse = [error for error in errors if error > 1e-8]
+    assert all(later < earlier / 10 for earlier, later in zip(coarse[:-1], coarse[1:], strict=True))
+
+
+def test_forms_without_stiffness_keep_their_digits_where_the_plain_ones_lose_them():
+    stiff = HARD_RODS[next(name for name in HARD_RODS if name.startswith("stiff"))]
+    roots = exact_spectrum(stiff, WANTED_MODES)
+    assert relative_error(dense_inverse(stiff, 18), roots) < 1e-12
+    assert relative_error(chebyshev_first_order(stiff, 24), roots) < 1e-11
+    assert relative_error(displacement_elements(stiff, 18), roots) > 1e-8
+
+
+def test_every_peer_takes_part_at_all_of_its_sizes(tmp_path):
+    found = peers(quick=True, place=tmp_path).of(RACE)
+    for peer in PEERS:
+        assert [int(c.setting) for c in found if c.method == peer.name] == list(peer.sizes)
