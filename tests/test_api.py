@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -83,7 +84,7 @@ def test_names_are_these():
 def test_arguments_are_these():
     assert list(inspect.signature(rs.sweep).parameters) == ["task", "ranks", "strict", "progress", "keywords"]
     drawn = list(inspect.signature(rs.plot).parameters)
-    assert drawn == ["data", "output", "roots", "what", "points", "look"]
+    assert drawn == ["data", "output", "roots", "what", "points", "at", "look"]
     assert list(inspect.signature(rs.open).parameters) == ["path"]
     arguments = inspect.signature(rs.Rod).parameters
     assert [name for name in arguments if name != "unknown"] == [*PARAMETERS, "arm"]
@@ -365,6 +366,20 @@ def test_a_sweep_is_written_read_and_drawn(tmp_path):
         rs.plot(data.isel(k2=0))
     with pytest.raises(rs.InputError, match="no result of rodsweep"):
         rs.plot(xr.Dataset())
+
+
+def test_own_data_go_into_a_figure(tmp_path):
+    data = rs.sweep("thresholds", k1=200, k2=rs.logspace(10, 1e4, 4), gamma3=1e-4, F_max=60)
+    picture = rs.plot(data, width="89 mm")
+    figure = picture.figure()
+    (axes,) = figure.axes
+    before = len(axes.lines)
+    axes.plot([100], [30], "ks")
+    figure.savefig(tmp_path / "own.pdf")
+    assert (tmp_path / "own.pdf").read_bytes().startswith(b"%PDF")
+    assert len(picture.figure().axes[0].lines) == before, "each figure is a new one"
+    assert figure.get_size_inches()[0] == pytest.approx(89 / 25.4)
+    assert not Path("figure.png").exists()
 
 
 def test_an_answer_is_drawn():

@@ -8,6 +8,7 @@ import pytest
 
 from rodsweep import Arm
 from rodsweep.errors import InputError
+from rodsweep.model.arm import share_of_flutter
 from rodsweep.model.drag import cox, gray_hancock, least_rotational, lighthill, most_rotational
 from rodsweep.model.section import Circle, Rectangle, Tube
 from rodsweep.solve.changes.along_path import Transitions
@@ -125,10 +126,41 @@ def test_only_time_scales_with_viscosity():
 
 
 @pytest.mark.parametrize(
+    ("given", "share"),
+    [
+        ("1.2 of flutter", 1.2),
+        ("1.2 times flutter", 1.2),
+        ("120% of flutter", 1.2),
+        ("20 % above flutter", 1.2),
+        ("20 % below flutter", 0.8),
+        ("0.2 above flutter", None),
+        ("100 % below flutter", None),
+    ],
+)
+def test_a_load_relative_to_flutter_is_read_as_people_write_it(given, share):
+    assert share_of_flutter(given) == (None if share is None else pytest.approx(share, rel=1e-15))
+
+
+@pytest.mark.parametrize(
     ("changes", "sentence"),
     [
         ({"length": "10 foo"}, "length = '10 foo' has the unknown unit 'foo'; write .* '10 cm'"),
         ({"length": "10"}, "length = '10' has no unit"),
+        ({"length": "15,5 cm"}, "length = '15,5 cm' has a decimal comma; write a point"),
+        (
+            {"young": "60 kpa"},
+            "young = '60 kpa' has the unknown unit 'kpa'; did you mean 'kPa'\\? write a number",
+        ),
+        (
+            {"viscosity": "30 Pas"},
+            "viscosity = '30 Pas' is not measured in Pa.s; did you mean 'Pa s'\\? write",
+        ),
+        ({"viscosity": "30 kPa"}, "viscosity = '30 kPa' is not measured in Pa.s; write"),
+        (
+            {"viscosity": "30 cSt"},
+            ".* is a kinematic viscosity, which is to be multiplied by",
+        ),
+        ({"pressure": "100 % below flutter"}, "pressure = '100 % below flutter' has the unit"),
         ({"length": ""}, "length = '' is not a number with a unit"),
         ({"length": "1e400 m"}, "length = '1e400 m' is not a finite number"),
         ({"length": "3 cm"}, "length = '3 cm' is 6 radii; .* at least 10"),
@@ -142,7 +174,7 @@ def test_only_time_scales_with_viscosity():
         ),
         ({"width": "1 cm"}, "radius: give either"),
         ({"viscosity": "1400 mPas"}, "viscosity = '1400 mPas' is not measured in Pa"),
-        ({"pressure": "100 kPa"}, "pressure = '100 kPa' compresses .* below 1e.05 Pa"),
+        ({"pressure": "100 kPa"}, "pressure = '100 kPa' compresses .* below 100 kPa, where"),
         (
             {"force": "1 N"},
             "pressure = '2 kPa' and force = '1 N' are both given; give one",

@@ -287,3 +287,19 @@ def test_map_of_configs_has_the_numbers_that_it_states(command):
     assert np.ptp(ratio.values[1:], axis=1) == pytest.approx(0, abs=1e-12)
     rods = data.model_applies.where(data.status == 0)
     assert np.argwhere((rods == Validity.does_not_apply).values).tolist() == [[1, 3]]
+
+
+def test_a_length_between_the_ends_of_a_range_is_found_as_it_is_typed():
+    data = rs.sweep("thresholds", arm=GLYCEROL | {"length": {"start": "4 cm", "stop": "12 cm", "num": 9}})
+    assert data.length.values.tolist() == [0.04, 0.05, 0.06, 0.07, 0.08, 0.09, 0.1, 0.11, 0.12]
+    assert data.F_hopf.sel(length=0.1) > 0
+
+
+def test_a_table_has_nothing_where_an_arm_has_no_rod(command):
+    command.write("a.yaml", CONFIG)
+    assert command("run", "a.yaml").returncode == 0
+    columns = ("--table", "points", "--columns", "length,k1,status,unstable_count")
+    assert command("export", "a.h5", *columns).returncode == 0
+    rows = [line.split(",") for line in (command.directory / "a.csv").read_text().splitlines()[1:]]
+    assert {tuple(row[1:]) for row in rows if row[2] == "not_slender"} == {("", "not_slender", "")}
+    assert all(float(row[1]) > 0 for row in rows if row[2] == "ok")

@@ -141,7 +141,7 @@ def test_show_of_an_arm_in_water_says_nothing_without_reservation(command):
     command.write("w.yaml", MAP.replace("viscosity: 4 Pa s", "viscosity: 1 mPa s"))
     assert command("run", "w.yaml").returncode == 0
     first, second, *_ = command("show", "w.h5").stdout.splitlines()[1:]
-    assert first.startswith("the model does not apply at 6 of 6 points: inertia of the arm is up to")
+    assert first.startswith("the model does not apply at all 6 points: inertia of the arm is up to")
     assert second.startswith("if it applied: flutters from ")
 
 
@@ -149,7 +149,12 @@ def test_show_of_an_arm_in_water_says_nothing_without_reservation(command):
     ("task", "arm", "more", "told"),
     [
         ("limit_cycle", "pressure: [1 kPa, 2.5 kPa]", "accuracy: 1.0e-3", "beats at 2 of 4 points at"),
-        ("spectrum", "force: [80 mN, 200 mN]", "", "gives way at 2 of 4 points; its leading mode turns at"),
+        (
+            "spectrum",
+            "force: [80 mN, 200 mN]",
+            "",
+            "gives way at 2 of 4 points; its leading mode oscillates at",
+        ),
         ("criticality", "", "", "flutters from"),
         ("branch", "", "branch: {stop: 40, cycles: 40}\naccuracy: 1.0e-3", "beats at"),
         ("thresholds", "poisson: 0.4", "thresholds: {F_max: 32}", "does not flutter up to 1.81 to 2 kPa"),
@@ -162,6 +167,32 @@ def test_show_answers_of_every_task(command, task, arm, more, told):
     lines = command("show", "a.h5").stdout.splitlines()[1:3]
     assert any(line.startswith("the model ") for line in lines)
     assert any(line.startswith(told) for line in lines)
+
+
+def test_lines_that_are_asked_for_over_an_arm_name_what_draws_them(command):
+    command.write("a.yaml", MAP)
+    assert command("run", "a.yaml").returncode == 0
+    refused = command("plot", "a.h5", "--what", "lines")
+    assert refused.returncode == 2
+    assert "--what lines is not for a grid over an arm's quantities; remove it, and --at" in refused.stderr
+
+
+@pytest.mark.parametrize(("height", "told"), [("8 mm", 1), ("5 mm", 0), ("[5 mm, 7 mm]", 1)])
+def test_a_rectangle_that_gives_way_first_in_the_other_plane_is_said_to(command, height, told):
+    quantities = f"length: 15 cm, width: 6 mm, height: {height}, young: 60 kPa, viscosity: 40 Pa s"
+    command.write("a.yaml", f"task: thresholds\nparameters: {{arm: {{{quantities}}}}}\n")
+    said = "the arm flutters first in the other plane, at a lower load"
+    assert command("check", "a.yaml").stdout.count(said) == told
+    assert command("run", "a.yaml").returncode == 0
+    assert command("show", "a.h5").stdout.splitlines()[1].count(said) == told
+
+
+def test_a_rectangle_in_python_is_said_to_give_way_first_in_the_other_plane():
+    flat = rs.Arm(length="15 cm", width="5 mm", height="8 mm", young="60 kPa", viscosity="40 Pa s")
+    first, second = flat.turned.thresholds(), flat.thresholds()
+    assert "it moves in the plane of its height, and flutters first in the other" in str(second)
+    assert "flutters first" not in str(first)
+    assert first.pressure_hopf < second.pressure_hopf
 
 
 def drawn(monkeypatch, path, output, **choice):
@@ -195,7 +226,7 @@ def test_lines_over_one_quantity(command, monkeypatch):
     x, y = figure.axes[0].lines[0].get_data()
     assert x == pytest.approx(data.length.values * 100)
     assert y == pytest.approx(data.pressure_hopf.values / 1e3, nan_ok=True)
-    assert figure.axes[1].get_ylabel() == "frequency at flutter (Hz)"
+    assert [axes.get_ylabel() for axes in figure.axes] == ["pressure (kPa)", "frequency at flutter (Hz)"]
 
 
 def test_figures_over_F_are_hatched_where_the_model_does_not_apply(command, monkeypatch):

@@ -1,9 +1,11 @@
 """The task branch as a user sees it: the file, `show`, the figure, Python."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from test_paper import run, stated
 from test_show import shown
 
@@ -11,9 +13,12 @@ import rodsweep as rs
 from rodsweep.cli.job import make_job
 from rodsweep.cli.tasks.branch import record
 from rodsweep.post.branch_curves import both, curves_of, stability_of_pieces, straight_ranges, union
+from rodsweep.post.figures import draw
+from rodsweep.post.summary import branch as summary
 from rodsweep.post.summary.branch import coexistence
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.branch import END_REASONS, SPECIAL_KINDS
+from rodsweep.results.layouts.variables import MISSING
 from rodsweep.solve.branch.branches import BranchRequest, BranchRod, solve_branches
 from rodsweep.solve.branch.special_points import EndReason, SpecialKind
 
@@ -40,9 +45,35 @@ def test_show_of_many_rods_names_those_with_two_stable_states(command):
     assert "1 branch at 1 of 2 rods" in told
     assert re.search(r"1 fold: F = 85\.6056", told)
     assert "stable cycles beside a stable straight rod at 1 of 2 rods" in told
-    assert re.search(
-        r"k1 = 150, k2 = 10000, gamma3 = 0.0001, gamma1 = 1: F = 85\.5693169 to 85\.605576", told
-    )
+    assert re.search(r"\n  k1 = 150: F = 85\.5693169 to 85\.605576", told)
+
+
+def test_show_of_many_rods_tells_where_branches_end_and_where_two_have_stable_cycles(command):
+    """Told once each: a symmetry breaking lies on both branches that meet there."""
+    shown(command, CONFIG.format(k1="[100, 150]", stop=80))
+    view = read_view(command.directory / "c.h5")
+    (branch,) = curves_of(view, 1)
+    (start, end), stable = (branch.special[0], branch.special[-1]), np.ones_like(branch.stable)
+    breaking = replace(end, kind="symmetry_breaking", reason="none", at=75.0)
+    one = replace(branch, special=(start, replace(breaking, meets=2), end), stable=stable)
+    other = replace(branch, special=(replace(breaking, meets=1), end), stable=stable)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(summary, "curves_of", lambda _, rod: [one, other] if rod else [])
+        told = summary.branch_summary(view, np.ones((2, 1, 1, 1), bool)).answer
+    assert "1 symmetry breaking: F = 75" in told
+    assert "2 branches lead to the end of the range: F = 80" in told
+    assert "stable cycles of two branches at 1 of 2 rods" in told
+    assert "  k1 = 150: F = 67.3869843 to 80" in told
+
+
+def test_show_names_the_branch_that_could_not_be_followed(command):
+    shown(command, CONFIG.format(k1="[100, 150]", stop=80))
+    view = read_view(command.directory / "c.h5")
+    reasons = view.variables["special_reason"]
+    reasons[reasons > 0] = END_REASONS.index("no_cycle_found")
+    told = summary.branch_summary(view, np.ones((2, 1, 1, 1), bool)).answer
+    assert "1 branch leads to where no further cycle is found: F = 80" in told
+    assert "  k1 = 150: branch 1, at F = 80" in told
 
 
 def test_file_has_the_branches_in_order_and_nothing_behind_them(command):
@@ -108,7 +139,7 @@ def test_figure_is_drawn(command, suffix):
     shown(command, CONFIG.format(k1=150, stop=200))
     drawn = command("plot", "c.h5", "-o", f"c.{suffix}")
     assert drawn.returncode == 0, drawn.stderr
-    assert "1 branches of cycles over F" in drawn.stdout
+    assert "1 branch of cycles over F" in drawn.stdout
     assert (command.directory / f"c.{suffix}").stat().st_size > 5000
 
 
@@ -142,10 +173,30 @@ def test_figure_that_shows_nothing_is_refused(command, k1, said):
 
 def test_branches_of_several_rods_are_drawn_together_and_one_of_them_by_at(command):
     shown(command, CONFIG.format(k1="[100, 150]", stop=90))
-    assert "1 of 2 rods have none" in " ".join(command("plot", "c.h5", "-o", "c.png").stdout.split())
+    assert "1 of 2 rods has none" in " ".join(command("plot", "c.h5", "-o", "c.png").stdout.split())
     alone = command("plot", "c.h5", "--at", "k1=150", "-o", "one.png")
     assert alone.returncode == 0, alone.stderr
-    assert "have none" not in alone.stdout
+    assert "none" not in alone.stdout
+
+
+def test_rods_that_are_missing_are_not_said_to_have_no_branch(command):
+    shown(command, CONFIG.format(k1="[100, 150]", stop=80))
+    view = read_view(command.directory / "c.h5")
+    view.variables["status"][0] = MISSING
+    assert "none" not in draw(view, command.directory / "c.png")
+
+
+def test_the_straight_rod_is_drawn_up_to_where_it_is_crushed(command, monkeypatch):
+    """At k1 = 100 the cycles reach F = 99.99, and the figure a tenth beyond them."""
+    command.write(
+        "c.yaml", CONFIG.format(k1=100, stop=200).replace("1.0e-4", "0.1").replace("1.0e-5", "1.0e-3")
+    )
+    command("run", "c.yaml")
+    drawn = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
+    draw(read_view(command.directory / "c.h5"), command.directory / "c.png")
+    black = [line.get_xdata() for line in drawn[0].axes[0].lines if line.get_color() == "k"]
+    assert max(map(np.max, black)) == 100
 
 
 def test_branches_without_room_for_their_special_points_are_told_of_and_not_drawn(command):
@@ -175,7 +226,7 @@ def test_those_whose_special_points_are_stored_are_told_and_drawn_before_others(
     assert "branch 1, from the Hopf point at F = 27.427194126" in told
     assert "beside a stable straight rod" not in told
     drawn = " ".join(command("plot", "c.h5", "-o", "c.png").stdout.split())
-    assert "1 branches of cycles over F; 1 more have special points that are not stored" in drawn
+    assert "1 branch of cycles over F; 1 more have special points that are not stored" in drawn
 
 
 def test_longer_lists_are_computed_anew_only_where_they_were_full(command):
@@ -223,7 +274,7 @@ def test_other_parameters_are_followed_from_the_command_line(command):
     assert re.search(r"fold at k1 = 155\.37066\d* \(", told)
     assert "to the end of the range, k1 = 170" in told
     drawn = command("plot", "c.h5", "-o", "c.png")
-    assert "1 branches of cycles over k1" in drawn.stdout
+    assert "1 branch of cycles over k1" in drawn.stdout
 
 
 def test_list_of_rods_needs_no_column_of_what_is_followed(command):

@@ -83,7 +83,7 @@ def test_tip_is_drawn_in_its_own_period_with_the_clock_of_the_slowest():
         assert lower.lines[0].get_ydata() == pytest.approx(y, abs=1e-9)
         assert "two \\$ arms" in figure.get_suptitle()
         title = figure.axes[number].get_title()
-        assert f"T = {period:g}\\,\\tau_2$\n$= {period * 1e4:g}\\,\\tau_1$" in title
+        assert f"{{=}}$ ${period:g}\\,\\tau_2$\n${{=}}$ ${period * 1e4:g}\\,\\tau_1$" in title
 
 
 def test_energy_marks_are_the_derivative_of_the_stored_energy_not_the_difference():

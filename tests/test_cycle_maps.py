@@ -249,9 +249,14 @@ THREE = (FORCES, [1e4, 1e5], [1e2], [1e-2], [1.0, 0.5])
         (
             make_view(THREE, [0] * 20, **WORDS),
             {},
-            r"varies 3 parameters \(F, k1, gamma1\) .* one value",
+            "over two parameters, and F, k1, gamma1 vary; --at gamma1=VALUE takes the points",
         ),
-        (make_view((FORCES, *THREE[2:3] * 4), [0] * 5, **WORDS), {}, r"varies 1 parameters \(F\)"),
+        (
+            make_view((FORCES, *THREE[2:3] * 4), [0] * 5, **WORDS),
+            {},
+            "and only F varies; leave out --what maps",
+        ),
+        (make_view(([50.0], *THREE[2:3] * 4), [0], **WORDS), {}, "and none varies"),
         (scattered(), {}, "no grid over F and k2"),
         (twice(), {}, "no grid over F and k2"),
         (swept([1.0, 2], [10.0, 20]), {}, "no cycle that could be drawn"),

@@ -28,6 +28,8 @@ DIGITS = {"k1": 16234.567, "k2": 482.897384, "gamma3": 0.00398609931}
 """A rod as an arm makes it, whose numbers have all their digits."""
 LEAST_HEIGHT = 0.3
 """Inches of a panel below which nothing is read off it."""
+MOST_BLANK = 0.7
+"""Inches between a heading and the panels: twice the height of a heading of three lines."""
 TOUCH = 1.0
 """Pixels by which the boxes of two texts may lie over each other: they have blank edges."""
 
@@ -176,6 +178,38 @@ def test_nothing_of_cycles_is_cut_or_over_anything_else(name, what, width, tmp_p
     assert faults(drawn(view, tmp_path, monkeypatch, width, what=what)) == []
 
 
+def known_to(error, forces=(50.0, 123.456789, 200.0)):
+    """Cycles whose periods, amplitudes and powers have all digits, and whose relative error this is."""
+    view = make_view((list(forces), [np.inf], [np.inf], [0.0], [0.5]), [0] * len(forces))
+    v = view.variables
+    scale = {"period": 1.0123456789, "injection_mean": 1.0123456789}
+    given = dict.fromkeys(("period_error", "amplitude_error"), np.full(v["period"].shape, error))
+    return replace(view, variables=v | given | {name: v[name] * by for name, by in scale.items()})
+
+
+@pytest.mark.parametrize("what", ["cycle", "energy"])
+@pytest.mark.parametrize("width", WIDTHS)
+def test_a_period_with_all_its_digits_is_not_cut(what, width, tmp_path, monkeypatch):
+    assert faults(drawn(known_to(1e-9), tmp_path, monkeypatch, width, what=what)) == []
+
+
+@pytest.mark.parametrize(("error", "period"), [(1e-9, "0.026321"), (1e-4, "0.02632"), (1e-2, "0.026")])
+def test_a_period_has_the_digits_that_its_error_leaves(error, period, tmp_path, monkeypatch):
+    figure = drawn(known_to(error, [50.0]), tmp_path, monkeypatch, None, what="energy")
+    words = figure.axes[0].get_title()
+    assert rf"$T\,{{=}}$ ${period}\,\tau_2$" in words
+    assert ("mean power $2024.69$" in words) == (error < 1e-6)
+
+
+@pytest.mark.parametrize("forces", [[0.5], [0.5, 0.6], [0.5, 0.6, 0.7], [50.0]])
+def test_no_blank_is_left_above_flat_shapes(forces, tmp_path, monkeypatch):
+    view = make_view((forces, [np.inf], [np.inf], [0.0], [1.0]), [0] * len(forces))
+    figure = drawn(view, tmp_path, monkeypatch, "89 mm", what="cycle")
+    heading = figure.texts[0].get_window_extent().y0
+    highest = max(axes.title.get_window_extent().y1 for axes in figure.axes)
+    assert heading - highest < MOST_BLANK * figure.dpi
+
+
 @pytest.mark.parametrize("name", ["one", "two", "three"])
 def test_the_frames_of_a_film_are_whole(name):
     selection = chosen_cycles(of_cycles(*CYCLES[name][0], seed=1), (), ())
@@ -213,6 +247,10 @@ def test_words_of_mathematics_are_not_broken():
     assert WORDS.findall(r"$\tilde k_1 = 200$, cost in \$ and $a$ b") == [
         r"$\tilde k_1 = 200$,", "cost", "in", r"\$", "and", "$a$", "b",
     ]  # fmt: skip
+
+
+def test_no_break_spaces_hold_a_number_and_its_unit_together():
+    assert WORDS.findall("viscosity\xa030\xa0Pa\xa0s, a b") == ["viscosity\xa030\xa0Pa\xa0s,", "a", "b"]
 
 
 def test_lines_are_broken_only_where_they_are_too_long():

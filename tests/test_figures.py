@@ -1,5 +1,7 @@
 """Figures: which roots are followed, what is drawn, what cannot be; and the configs' own numbers."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from conftest import ROOT
@@ -7,6 +9,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image
+from test_show import HOPF, STABLE_AGAIN
 
 from rodsweep.cli.job import make_job
 from rodsweep.cli.tasks import TASKS
@@ -15,6 +18,7 @@ from rodsweep.post.figures import FIGURES, draw
 from rodsweep.post.figures.class_bars import CLASS_COLOURS
 from rodsweep.post.figures.regions import PIXELS, ClassedPlaces, coloured
 from rodsweep.post.figures.request import Look
+from rodsweep.post.figures.row_classes import class_along_row
 from rodsweep.post.figures.sections import section
 from rodsweep.post.figures.spectra.line import broken, followed_roots, mark_thresholds
 from rodsweep.post.figures.style import INVERSE_DRAG, LABELS, number, scale
@@ -60,7 +64,7 @@ def test_line_of_spectra_is_drawn(command, suffix, roots):
 def test_map_is_drawn_and_other_shapes_are_refused(command):
     command.write("c.yaml", LINE)
     command(
-        "run", "c.yaml", "--set", "parameters.k2={start: 50, stop: 5e3, num: 5, spacing: log}", "-o", "map.h5"
+        "run", "c.yaml", "--set", "parameters.k2={start: 50, stop: 5e3, num: 7, spacing: log}", "-o", "map.h5"
     )
     assert "growth rate" in command("plot", "map.h5").stdout
     three = ["--set", "parameters.F=[1, 2]", "--set", "parameters.k1=[1e4, 2e4]"]
@@ -74,7 +78,7 @@ def test_map_is_drawn_and_other_shapes_are_refused(command):
 
 def test_colours_of_a_map_change_sign_on_its_line_of_zero_growth(command, monkeypatch):
     command.write("c.yaml", LINE)
-    command("run", "c.yaml", "--set", "parameters.k2=[50, 100, 200]")
+    command("run", "c.yaml", "--set", "parameters.k2={start: 50, stop: 200, num: 7}")
     drawn = []
     monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
     draw(read_view(command.directory / "c.h5"), command.directory / "f.png")
@@ -85,6 +89,54 @@ def test_colours_of_a_map_change_sign_on_its_line_of_zero_growth(command, monkey
     at = int(np.flatnonzero(filled.levels == 0.0)[0])
     edges = np.concatenate([filled.get_paths()[side].vertices for side in (at - 1, at)])
     assert all(np.abs(edges - vertex).sum(axis=1).min() < 1e-9 for vertex in line)
+
+
+def test_few_values_of_a_parameter_have_a_panel_each_with_its_own_thresholds(command, monkeypatch):
+    """A map would draw a line of zero growth between k1 = 200 and 1e4 where no rod was computed."""
+    command.write("c.yaml", LINE.replace("30, num: 16", "190, num: 20").replace("1e-2}", "1e-4}"))
+    command("run", "c.yaml", "--set", "parameters.k1=[200, 1e4]", "--set", "parameters.k2=1e4")
+    drawn = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
+    said = draw(read_view(command.directory / "c.h5"), command.directory / "f.png")
+    assert "in a panel for each k1" in said
+    titles = [" ".join(axes.get_title(loc="left").split()) for axes in drawn[0].axes]
+    assert len(titles) == 2
+    assert "= 49.7580" in titles[0]
+    assert "restabilization = 155.600" in titles[0]
+    assert "= 37.6560" in titles[1]
+    assert "restabilization" not in titles[1]
+
+
+def test_one_row_of_a_diagram_is_a_bar_bounded_by_its_changes(command, monkeypatch):
+    rod = "{F: {start: 0, stop: 240, num: 13}, k1: [150, 200], k2: 1.0e4, gamma3: 1.0e-4, gamma1: 0.7}"
+    command.write("c.yaml", f"task: phase_diagram\nparameters: {rod}\nphase_diagram: {{criticality: true}}\n")
+    command("run", "c.yaml")
+    drawn = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
+    row = section(read_view(command.directory / "c.h5"), {"k1": 200.0})
+    assert draw(row, command.directory / "f.png").endswith("f.png: what the rod does over F")
+    (bar,) = drawn[0].axes[0].collections
+    edges, found = np.array(bar.get_coordinates()[0, :, 0]), np.array(bar.get_array()).ravel()
+    changes = np.flatnonzero(np.diff(found)) + 1
+    expected = [22.4709774737663, HOPF, STABLE_AGAIN, 200]
+    assert edges[changes] == pytest.approx(expected, abs=240 / PIXELS)
+    assert [label.get_text().split("= ")[1] for label in drawn[0].axes[0].get_yticklabels()] == ["200$"]
+    assert "0.7" in drawn[0].get_suptitle()
+
+
+def test_a_stretch_of_a_row_without_a_computed_point_is_undecided():
+    """Between the fold of cycles and F = k1 no force is computed: no state of a neighbour holds there."""
+    changes = {"crossing_at": [[50.0]], "crossing_kind": [[2]], "cycle_special_F": [[199.0]]}
+    variables = {
+        "F": np.array([40.0, 100.0, 196.0, 200.0, 220.0]),
+        "stable_states": np.array([[1, 2, 2, 5, 5]]),
+        "status": np.zeros(1),
+        "k1": np.array([200.0]),
+    } | {name: np.array(values) for name, values in changes.items()}
+    k1 = {"k1": variables["k1"]}
+    view = SimpleNamespace(variables=variables, axes=k1, point_columns=k1)
+    edges = np.array([0.0, 50.0, 199.0, 200.0, 220.0])
+    assert class_along_row(view, "stable_states", "F", "k1", 0, edges).tolist() == [1, 2, 4, 5]
 
 
 def test_rows_that_make_no_plane_are_bars(command, monkeypatch):
@@ -105,6 +157,8 @@ def test_infinite_axis_values_and_odd_titles_are_drawn_or_refused_in_a_sentence(
     both = ["--set", "parameters.k2=[50, 100, .inf]", "--set", "title=cost in $ and \\frac"]
     command("run", "c.yaml", *both, "-o", "map.h5")
     assert command("plot", "map.h5").returncode == 0
+    at = command("plot", "map.h5", "--at", "k2=inf", "-o", "at.png")
+    assert (at.returncode, "panel" in at.stdout) == (0, False)
     command("run", "c.yaml", *both, "--set", "parameters.F=3", "-o", "line.h5")
     assert command("plot", "line.h5").returncode == 0
     for output in ("map.h5", ".", "figure"):

@@ -94,7 +94,7 @@ def test_joined_files_are_a_run_of_all_their_points(command, text, parts):
 def test_another_file_is_joined_to_one_that_is_there(command):
     names = computed(command, SPECTRA, [(RANGE, "[0, 10]")], [(RANGE, "[20, 30, 40]")])
     assert command("merge", "m.h5", names[0]).returncode == 0
-    assert "30 points from 1 files" in command("merge", "m.h5", names[1]).stdout
+    assert "30 points from 1 file," in command("merge", "m.h5", names[1]).stdout
     command.write("c.yaml", SPECTRA)
     assert "complete, nothing to do" in command("run", "c.yaml", "-o", "m.h5").stdout
 

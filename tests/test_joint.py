@@ -96,7 +96,7 @@ def test_curves_are_stopped_said_to_be_missing_and_resumed(whole, units, ranks, 
             in out
         )
     shown = " ".join(whole("show", name).stdout.split())
-    assert "all points are there; the curves through them are missing" in shown
+    assert "all rows are there; the curves through them are missing" in shown
     assert "curves are missing" in whole("plot", name, "-o", "c.png").stdout
     with h5py.File(whole.directory / name) as file:
         assert "cycle_curve_number" not in file
@@ -107,7 +107,8 @@ def test_curves_are_stopped_said_to_be_missing_and_resumed(whole, units, ranks, 
     assert again.returncode == 0, again.stderr
     assert "0 of 2 points to do, 2 kept, then curves through all" in again.stdout
     assert "nothing to do" not in again.stdout
-    assert f"{2 - units} halves of curves of cycles followed" in again.stdout or units == 2
+    halves = "1 half of a curve" if units == 1 else "2 halves of curves"
+    assert f"{halves} of cycles followed" in again.stdout
     assert same(content(whole.directory / name), content(whole.directory / "whole.h5"))
     assert not kept.directory.exists()
     assert "nothing to do" in whole("run", "c.yaml", "-o", name).stdout

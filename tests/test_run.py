@@ -197,10 +197,12 @@ def test_slow_points_are_shared_evenly(command, wait):
 
 def test_fresh_leaves_a_file_that_is_no_result(command):
     command.write("c.yaml", SMALL)
-    run = command("run", "c.yaml", "-o", "c.yaml", "--fresh")
-    assert run.returncode == 2
-    assert "no result file" in run.stderr
-    assert (command.directory / "c.yaml").read_text() == SMALL
+    for name, why in (("c.yaml", "must end in .h5"), ("notes.h5", "no result file")):
+        command.write(name, SMALL)
+        run = command("run", "c.yaml", "-o", name, "--fresh")
+        assert run.returncode == 2
+        assert why in run.stderr
+        assert (command.directory / name).read_text() == SMALL
     with h5py.File(command.directory / "theirs.h5", "w") as file:
         file["data"] = 1.0
     assert command("run", "c.yaml", "-o", "theirs.h5", "--fresh").returncode == 2

@@ -79,7 +79,10 @@ def test_merged_shards_are_the_undivided_run(command):
         assert done.returncode == 0, done.stderr
         assert f"164 of 492 points to do; shard {number}/3" in done.stdout
         names.append(f"c-{number}-of-3.h5")
-    assert "shard 2/3" in command("show", names[1]).stdout
+        assert "328 of other shards, 164 ok" in done.stdout
+    told = command("show", names[1]).stdout
+    assert "328 points are not here: the file is shard 2/3" in told
+    assert "missing; where no run goes on" not in told
     some = command("merge", "m.h5", *names[:2])
     assert (some.returncode, "164 missing" in some.stdout) == (75, True)
     rest = command("merge", "m.h5", names[2], names[1])  # one that is already there changes nothing

@@ -118,6 +118,28 @@ def test_phase_diagram_is_told_by_its_shares_and_where_it_flutters(command):
     assert high == pytest.approx(HOPF, abs=1e-4)
     assert low < high
     assert f"restabilization: on 1 of 4 rows, F = {STABLE_AGAIN:.6g}, k1 = 200" in told
+    assert "where the rows begin" not in told
+
+
+def test_rows_tell_first_changes_apart_from_later_ones_and_what_was_before_them(command):
+    """At k1 = 140 the rod stops oscillating at F = 120.5 and begins again at F = 137.57."""
+    config = (
+        "task: phase_diagram\nparameters: {{F: {{start: {start}, stop: 180, num: 4}}, k1: [140, 200],"
+        " k2: 1.0e4, gamma3: 1.0e-4}}\nphase_diagram: {{curves: false}}\n"
+    )
+    told = shown(command, config.format(start=0))
+    first = "onset: on 2 of 2 rows, F = 22.471 to 24.0686, k1 = 140 to 200"
+    assert f"\n{first}; again on 1, F = 137.568\n" in told
+    command.write("c.yaml", config.format(start=30))
+    command("run", "c.yaml", "--fresh")
+    told = command("show", "c.h5").stdout
+    assert "at F = 30, where the rows begin, of 2 rows: oscillatory on 2" in told
+    assert "onset: on 1 of 2 rows, F = 137.568, k1 = 140\n" in told
+
+
+def test_thresholds_tell_where_they_rise_and_fall(command):
+    told = shown(command, "task: thresholds\nparameters: {k1: [150, 200, 300], k2: 1.0e4, gamma3: 1.0e-4}\n")
+    assert "F_hopf rises with k1 on 0 of 1 line, falls on 1\n" in told
 
 
 def test_thresholds_of_a_single_rod_are_told_one_by_one(command):

@@ -21,7 +21,7 @@ from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.variables import MISSING
 from rodsweep.results.run.journal import JOURNAL_HEAD, journal_directory
 
-INCOMPLETE = re.compile(r"points are missing|curves through them are missing")
+INCOMPLETE = re.compile(r"\d (points?|rows?|rods?) (is|are) missing|curves through them are missing")
 """How `show` says that a run is not complete."""
 KILLS = int(os.environ.get("RODSWEEP_KILLS", "4"))
 HEADER = len(JOURNAL_HEAD) + 65

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rodsweep.post.summary.ranges import error_text, listed, rounded, span, stated_error, to_error
-from rodsweep.wording import counted, is_or_are, some_of
+from rodsweep.wording import counted, duration, is_or_are, some_of
 
 
 @pytest.mark.parametrize(
@@ -22,6 +22,14 @@ from rodsweep.wording import counted, is_or_are, some_of
 )
 def test_one_thing_is_not_several(count, noun, text):
     assert counted(count, noun) == text
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [(8.7e-5, "0.087 ms"), (0.99949, "999 ms"), (0.9996, "1 s"), (4.3, "4.3 s"), (123.4, "123 s")],
+)
+def test_a_time_needs_no_power_of_ten(seconds, text):
+    assert duration(seconds) == text
 
 
 def test_a_part_is_named_by_its_whole():

@@ -118,7 +118,17 @@ class Arm(SlenderArm):
                 f"{task} needs a load; arm.replace(pressure='2 kPa') has one, or '1.2 of flutter'"
             )
         data, messages = solve_here(job_from(tree_of(task, {"arm": self} | options)), progress=progress)
-        return Answer(repr(self), data, messages[0])
+        return Answer(repr(self), data, "; ".join(filter(None, (messages[0], self._plane))))
+
+    @property
+    def _plane(self) -> str:
+        """What is said of a rectangle that gives way first in the plane that is not computed; else empty."""
+        if not self.si.height > self.si.width:
+            return ""
+        return (
+            "it moves in the plane of its height, and flutters first in the other, at a lower load: "
+            "arm.turned"
+        )
 
     @property
     def _names(self) -> list[str]:

@@ -155,7 +155,8 @@ def view_of(data: xr.Dataset, path: Path) -> View:
         if variable.name not in data or data[variable.name].dims != dimensions:
             raise InputError(
                 f"the data are not whole: {variable.name} should be there with the dimensions "
-                f"{', '.join(dimensions)}; draw a selection by xarray's own plot"
+                f"{', '.join(dimensions)}; give all of them, with at={{...}} for one value, "
+                "or draw a selection by xarray's own plot"
             )
     variables = {str(name): array.values for name, array in data.variables.items()}
     typed = {str(name): str(v.attrs[TYPED]) for name, v in data.variables.items() if TYPED in v.attrs}

@@ -14,7 +14,7 @@ from ..config.arguments import in_sentences, unknown
 from ..config.values import short
 from ..errors import InputError
 from ..post.figures import draw
-from ..post.figures.request import KINDS, ROOTS, Look
+from ..post.figures.request import KINDS, ROOTS, Drawing, Look
 from ..post.figures.sections import choices_of, section
 from ..results.file.view import View
 from ..solve.exclusive import one_at_a_time
@@ -43,7 +43,10 @@ def _refuse_other_than(**choices: tuple[str | None, Iterable[str]]) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A figure, which a notebook shows; `save` draws it into a file of any format that `plot` knows."""
+    """A figure, which a notebook shows; `save` draws it into a file of any format that `plot` knows.
+
+    `figure()` gives it to matplotlib, for own data in its panels.
+    """
 
     views: Sequence[View] = field(repr=False)
     choices: dict[str, Any]
@@ -57,8 +60,24 @@ class Picture:
         """Draws the figure into a file (.png, .pdf, .svg); returns a sentence about it."""
         return draw(self.views, Path(path), **self.choices)
 
+    @one_at_a_time
+    def figure(self) -> Drawing:
+        """The figure as a new `matplotlib.figure.Figure`, whose `axes` are the panels row by row.
+
+        Raises InputError for an animation.
+        """
+        drawn: list[Drawing] = []
+        name = Path("figure.gif" if self.is_film else "figure.png")
+        draw(self.views, name, keep=drawn.append, **self.choices)
+        return drawn[0]
+
+    @property
+    def is_film(self) -> bool:
+        """Whether it is an animation."""
+        return not self.image.startswith(b"\x89PNG")
+
     def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:
-        kind = "png" if self.image.startswith(b"\x89PNG") else "gif"
+        kind = "gif" if self.is_film else "png"
         return {f"image/{kind}": self.image, "text/plain": self.shown}
 
 
@@ -68,7 +87,7 @@ def plot(
     data: Drawable | Sequence[Drawable],
     output: str | Path | None = None,
     *,
-    roots: Literal["rightmost", "smallest"] | None = None,
+    roots: Literal["rightmost", "smallest", "all"] | None = None,
     what: str | None = None,
     points: Sequence[int] | int = (),
     at: Mapping[str, float | str] = MappingProxyType({}),

@@ -4,7 +4,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from ..post.summary.arm_answer import validity_sentence
+from ..post.summary.arm_answer import plane_lines, validity_sentence
 from ..post.summary.ranges import span
 from ..sweep.estimate import SAMPLE
 from ..sweep.grid import Points
@@ -47,6 +47,7 @@ def _arm_lines(job: Job) -> list[str]:
     at_rest = ArmValidity(job.config, job.points).at_rest()
     told = validity_sentence(at_rest, when=" before anything moves")
     return [
+        *plane_lines({variable.name: np.asarray(values) for variable, values in job.quantities}),
         f"the arm as a rod: {', '.join(made)} s",
         *_uncovered_lines(job.points),
         f"{told}; the run judges inertia by how fast the arm moves",

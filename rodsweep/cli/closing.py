@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ..wording import counted
+from ..wording import counted, duration
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,12 +30,13 @@ class RunEnd:
         sentences, ranks = [], counted(self.ranks, "rank")
         if self.asked:
             points = self.asked - self.left
-            each = 1e3 * self.seconds * self.ranks / max(points, 1)
-            pace = f" ({each:.3g} ms a point and rank)" if points else ""
+            each = self.seconds * self.ranks / max(points, 1)
+            pace = f" ({duration(each)} a point and rank)" if points else ""
             sentences.append(f"{counted(points, 'point')} in {self.seconds:.2f} s on {ranks}{pace}")
         if self.followed is not None:
             word = "curves in" if self.halves is None else "curves stopped after"
-            done = f"; {self.followed} halves of curves of cycles followed" if self.followed else ""
+            halves = "half of a curve" if self.followed == 1 else "halves of curves"
+            done = f"; {self.followed} {halves} of cycles followed" if self.followed else ""
             sentences.append(f"{word} {self.curve_seconds:.2f} s on {ranks}{done}")
         return sentences
 

@@ -2,7 +2,7 @@
 
 import socket
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import closing
 from functools import cache
 from pathlib import Path
@@ -258,6 +258,11 @@ class _Run:
             raised = counted(exceptions, "unforeseen exception")
             click.echo(f"  {raised}: a bug, please report it with {self.log.path}, which has the traceback")
 
+    def _outcomes(self, counts: Mapping[str, int], left: int) -> str:
+        """How many points have each status, in words; left: those of this run that are not done."""
+        words = {"missing": "of other shards"} if self.shard and not left else {}
+        return ", ".join(f"{n} {words.get(name, name)}" for name, n in counts.items())
+
     def _finish(
         self,
         count: int,
@@ -289,7 +294,7 @@ class _Run:
             self._say(sentence)
         expected = {status.name for status in self.solver.statuses if status.succeeded} | {"missing"}
         amiss = not set(counts) <= expected
-        self._say(f"{self.output}: " + ", ".join(f"{n} {name}" for name, n in counts.items()), amiss)
+        self._say(f"{self.output}: {self._outcomes(counts, left)}", amiss)
         self._say_failures(contributions, exceptions)
         if left or lacks_curves:
             how = f"stopped by {self.stop.name}" if self.stop else "not complete"

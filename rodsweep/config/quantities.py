@@ -5,7 +5,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
 from ..errors import InputError
-from ..model.arm import UNITS
+from ..model.arm import LOADS, UNITS, share_of_flutter
 from ..model.units import in_si, split
 from .values import AXIS_SCHEMA, Axis, as_axis, as_number
 
@@ -21,16 +21,33 @@ def as_quantities(value: Any, info: ValidationInfo) -> Axis:
 def _axis_in_si(name: str, value: Any) -> Axis:
     if isinstance(value, dict):
         ends = {end: _read(name, value[end]) for end in ("start", "stop") if end in value}
-        return as_axis(value | ends)
+        try:
+            return as_axis(value | ends)
+        except ValueError as error:
+            remark = _without_unit(name, value) if ends.get("start", 0) >= ends.get("stop", 1) else ""
+            raise ValueError(f"{error}{remark}") from None
     if isinstance(value, list | tuple):
         return as_axis([_read(name, each) for each in value])
     return as_axis(_read(name, value))
+
+
+def _without_unit(name: str, span: dict[str, Any]) -> str:
+    """A remark on a range of which one end has a unit and the other has none; else empty."""
+    ends = [end for end in ("start", "stop") if end in span]
+    bare = [end for end in ends if not isinstance(span[end], str)]
+    unit = UNITS[name][0]
+    return f" in {unit}; {bare[0]} has no unit, so it is in {unit}" if len(bare) == 1 < len(ends) else ""
 
 
 def _read(name: str, value: Any) -> float:
     """A quantity in SI units; ValueError where it is none."""
     if not isinstance(value, str):
         return as_number(value)
+    if name in LOADS and share_of_flutter(value) is not None:
+        raise ValueError(
+            f"parameters.arm.{name} = '{value}' is relative to flutter, which a config does not know; write "
+            "the load that `rodsweep arm` says it is; rs.sweep(TASK, arm=rs.Arm(...)) takes a relative one"
+        )
     try:
         return in_si(f"parameters.arm.{name}", value, *UNITS[name])
     except InputError as error:

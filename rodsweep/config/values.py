@@ -102,6 +102,10 @@ AXIS_SCHEMA: dict[str, Any] = {
 """What `as_axis` takes, as a JSON schema."""
 
 
+DIGITS_OF_QUANTITY = 15
+"""Digits of a quantity in SI units: as many as conversion leaves of what was typed."""
+
+
 class Axis(Strict):
     """Values of one parameter: one number, a list, or `num` values from start to stop."""
 
@@ -146,10 +150,15 @@ class Axis(Strict):
     def array(self) -> Array:
         """The values, increasing, shape (size,)."""
         if self.values is not None:
-            return np.array(self.values)
-        if self.spacing == "log":
-            return self.factor * np.geomspace(self.start, self.stop, self.num, dtype=np.float64)
-        return self.factor * np.linspace(self.start, self.stop, self.num, dtype=np.float64)
+            values = np.array(self.values)
+        elif self.spacing == "log":
+            values = self.factor * np.geomspace(self.start, self.stop, self.num, dtype=np.float64)
+        else:
+            values = self.factor * np.linspace(self.start, self.stop, self.num, dtype=np.float64)
+        if self.written is None:
+            return values
+        # 10 cm between 4 cm and 12 cm is 0.1 m, as whoever looks for it writes, and not 0.09999999999999999.
+        return np.array([float(f"{value:.{DIGITS_OF_QUANTITY}g}") for value in values.tolist()])
 
 
 def as_axis(value: Any) -> Axis:

@@ -14,7 +14,7 @@ from typing import Any
 from ..errors import InputError
 from .drag import LEAST_SLENDERNESS, Drag, range_of_drag
 from .section import Circle, Rectangle, Section, Tube
-from .units import Given, in_si
+from .units import Given, in_si, unit_of, written_in
 
 UNITS = {
     "length": ("m", "10 cm"),
@@ -43,14 +43,21 @@ class NoWall(InputError):
     """The refusal of an arm whose bore is as wide as itself."""
 
 
-OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*of\s+flutter\s*", re.ASCII)
+OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
 """A load relative to the threshold of flutter, as "1.2 of flutter" or "120 % of flutter"."""
+FROM_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*%\s*(above|below)\s+flutter\s*", re.ASCII)
+"""The same as a distance, as "20 % above flutter"."""
 
 
 def share_of_flutter(given: Given) -> float | None:
     """The load over that at which an arm flutters, of a text that says so; None of any other."""
-    found = OF_FLUTTER.fullmatch(given) if isinstance(given, str) else None
-    return float(found[1]) / (100.0 if found[2] else 1.0) if found else None
+    if not isinstance(given, str):
+        return None
+    if found := OF_FLUTTER.fullmatch(given):
+        return float(found[1]) / (100.0 if found[2] else 1.0)
+    if (found := FROM_FLUTTER.fullmatch(given)) and (found[2] == "above" or float(found[1]) < 100):
+        return 1.0 + (1.0 if found[2] == "above" else -1.0) * float(found[1]) / 100.0
+    return None
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,10 +140,11 @@ class SlenderArm:
         loaded = self.load
         if loaded is None or self.share_of_flutter is not None or self.k1 > self.F:
             return
-        limit = self.si.young * self.section.area / self._loaded_area
+        limit, si = self.si.young * self.section.area / self._loaded_area, UNITS[loaded][0]
+        unit = unit_of(getattr(self, loaded), si)
         raise InputError(
             f"{self._told(loaded)} compresses the arm to nothing; it must be below "
-            f"{limit:.4g} {UNITS[loaded][0]}, where a linear material is crushed"
+            f"{written_in(limit, unit, si):.4g} {unit}, where a linear material is crushed"
         )
 
     def _refuse_other_sets(self) -> None:

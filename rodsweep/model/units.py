@@ -20,6 +20,9 @@ OF_A_UNIT = re.compile(r"[A-Za-zµμ]+|(?:\^|\*\*)?-?[1-4](?!\d)|[²³⁴]|[\s*/
 TOWER = re.compile(r"[\d²³⁴]\s*(?:\*\*|\^)")
 LONGEST_UNIT = 40
 """Characters of a unit."""
+COMMON = ("cm", "mm", "kPa", "MPa", "GPa", "Pa s", "mPa s", "kPa s", "mN", "kg/m^3", "g/cm^3", "mbar")
+"""Units of arms that are often written with other blanks, or other capital letters."""
+KINEMATIC = "is a kinematic viscosity, which is to be multiplied by the density of the fluid"
 
 
 @cache
@@ -76,6 +79,8 @@ def _number(name: str, given: Any, unit: str, allowed: str) -> float:
 
 def factor(subject: str, written: str, unit: str, allowed: str) -> float:
     """How many `unit` one `written` is; InputError where they measure different things or it is unknown."""
+    if written.startswith(","):
+        raise InputError(f"{subject} has a decimal comma; write a point")
     if len(written) > LONGEST_UNIT or OF_A_UNIT.sub("", written) or TOWER.search(written):
         raise InputError(
             f"{subject} has the unit '{written[:LONGEST_UNIT]}', which is not understood; write {allowed}"
@@ -88,11 +93,22 @@ def factor(subject: str, written: str, unit: str, allowed: str) -> float:
     except PintError as error:
         known = "from" in str(error)  # "Cannot convert from ..."
         why = f"is not measured in {unit}" if known else f"has the unknown unit '{written}'"
-        raise InputError(f"{subject} {why}; write {allowed}") from None
+        if known and unit == "Pa*s" and units.Quantity(1.0, written).check("[length]**2/[time]"):
+            why = KINEMATIC
+        raise InputError(f"{subject} {why}; {_meant(written, unit)}write {allowed}") from None
     except Exception as error:  # what pint's parser raises on nonsense is of many kinds
         raise InputError(
             f"{subject} has the unit '{written}', which is not understood; write {allowed}"
         ) from error
+
+
+def _meant(written: str, unit: str) -> str:
+    """What a unit that does not fit was probably meant to be, as the beginning of a clause; else empty."""
+    squeezed = "".join(written.split()).casefold()
+    for common in COMMON:
+        if "".join(common.split()).casefold() == squeezed and registry()(common).check(registry()(unit)):
+            return f"did you mean '{common}'? "
+    return ""
 
 
 def unit_of(given: Given, default: str) -> str:

@@ -9,6 +9,7 @@ from typing import TextIO
 from ..config.axes import words
 from ..errors import InputError
 from ..results.file.view import View
+from ..wording import counted
 from .tables import Table, Tables
 
 SEPARATORS = {".csv": ",", ".tsv": "\t"}
@@ -67,8 +68,3 @@ def _sentence(table: Table, view: View) -> str:
     if table.others:
         text += f"; --table takes {words(table.others, 'or')} instead"
     return text
-
-
-def counted(number: int, noun: str) -> str:
-    """A number with its noun: 1 row, 2 rows."""
-    return f"{number} {noun}{'s' * (number != 1)}"

@@ -10,6 +10,7 @@ import matplotlib
 import matplotlib.style
 import numpy as np
 from matplotlib import rc_params_from_file
+from matplotlib.figure import Figure
 
 from ...errors import EnvironmentLacks, InputError
 from ...results.file.view import View
@@ -80,12 +81,13 @@ def draw(
     *,
     look: Look = PLAIN,
     shapes: Shapes | None = None,
+    keep: Callable[[Figure], None] | None = None,
     **choices: Unpack[Choices],
 ) -> str:
     """Draws the figure of a file, or of several, into `output`; returns a sentence about it.
 
-    shapes: solves cycles whose shapes a file lacks. Raises InputError where there is nothing that a figure
-    could show.
+    shapes: solves cycles whose shapes a file lacks. keep: takes the figure instead of a file. Raises
+    InputError where there is nothing that a figure could show.
     """
     views = [views] if isinstance(views, View) else views
     if look.width and choices.get("what") == "animation":
@@ -95,7 +97,7 @@ def draw(
     taken = output.exists() and (
         not output.is_file() or any(output.samefile(view.path) for view in views if view.path.exists())
     )
-    request = FigureRequest(views, output, taken=taken, look=look, shapes=shapes, **choices)
+    request = FigureRequest(views, output, taken=taken, look=look, shapes=shapes, keep=keep, **choices)
     with _styled(look), np.errstate(all="ignore"):
         try:
             shown = _drawn(request)

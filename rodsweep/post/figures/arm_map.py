@@ -18,17 +18,14 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...arrays import Array
-from ...config.arm import CRUSHED, NO_WALL, NOT_SLENDER
+from ...config.arm import CRUSHED, NO_WALL, NOT_SLENDER, UNIT_NAMES
 from ...model.neglected import Validity
-from ...model.units import written_in
 from ...results.file.view import View
-from ...results.layouts.arm import QUANTITY_UNITS
 from . import style
+from .arm_quantities import in_typed, quantity_text, word
 from .cycle.point_map import cell_edges
 from .request import FigureRequest
 
-WORDS = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
-"""What quantities are called along an axis, where that is not their name."""
 MAPS = ("map", "maps")
 """What may be asked for of a task that has several figures."""
 DECADE = 10
@@ -57,6 +54,8 @@ class Panel:
     values: Array
     lines: Mapping[str, Array] = field(default_factory=dict)
     turns: str = ""
+    of_lines: str = ""
+    """The label where several lines are drawn, if it is another one."""
     without: str = "nothing computed"
     """What the legend says of arms that have no number."""
 
@@ -83,7 +82,9 @@ def draw_arm_map(request: FigureRequest) -> str:
     ]
     style.legend_below(figure, [*handles, *covers[0]], columns=3)
     figure.suptitle(style.heading(view, _fixed(view, axes)))
-    return request.write(figure, f"{' and '.join(p.label for p in panels)} over {' and '.join(axes)}")
+    return request.write(
+        figure, f"{' and '.join(p.label for p in panels)} over {' and '.join(map(word, axes))}"
+    )
 
 
 def can_draw(request: FigureRequest) -> bool:
@@ -93,20 +94,13 @@ def can_draw(request: FigureRequest) -> bool:
     return bool(view.over) and view.task in PANELS and not chosen
 
 
-def in_typed(view: View, name: str, values: Array, si: str = "") -> tuple[Array, str]:
-    """(values of a quantity in the unit in which it was typed, that unit)."""
-    si = si or QUANTITY_UNITS[name]
-    unit = view.typed.get(name, si)
-    return (values, "") if si == "1" else (values * written_in(1.0, unit, si), unit)
-
-
 def _axis(view: View, name: str) -> tuple[Array, str]:
     """(values along an axis, its label)."""
     values = view.variables[name]
     if name in style.LABELS:
         return values, style.LABELS[name]
     values, unit = in_typed(view, name, values)
-    return values, WORDS.get(name, name.replace("_", " ")) + (f" ({unit})" if unit else "")
+    return values, word(name) + (f" ({unit})" if unit else "")
 
 
 def _panels(count: int, narrow: bool, maps: bool) -> tuple[Figure, list[Axes]]:
@@ -150,15 +144,15 @@ def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[
     x, label = _axis(view, name)
     colours = (style.SECOND, style.FIRST, style.THIRD)
     handles: list[Artist] = []
-    for colour, (word, values) in zip(colours, (panel.lines or {"": panel.values}).items(), strict=False):
+    for colour, (line, values) in zip(colours, (panel.lines or {"": panel.values}).items(), strict=False):
         axes.plot(x, values[place], "-o", ms=2.5, lw=1.2, color=colour)
-        if word and np.isfinite(values[place]).any():
-            handles.append(Line2D([], [], color=colour, marker="o", ms=2.5, lw=1.2, label=word))
+        if line and np.isfinite(values[place]).any():
+            handles.append(Line2D([], [], color=colour, marker="o", ms=2.5, lw=1.2, label=line))
     style.scale(axes, "x", x)
     subplot = axes.get_subplotspec()
     if subplot is None or subplot.is_last_row():
         axes.set_xlabel(label)
-    axes.set_ylabel(panel.label)
+    axes.set_ylabel(panel.of_lines if len(handles) > 1 else panel.label)
     return handles
 
 
@@ -171,15 +165,15 @@ def _cover(axes: Axes, view: View, panel: Panel, names: tuple[str, str], place: 
     limits = axes.get_ylim()
     up = cell_edges(_axis(view, y)[0]) if y else np.array(limits)
     handles: list[Artist] = []
-    for variable, value, word, look in HATCHES:
+    for variable, value, says, look in HATCHES:
         there = view.variables[variable][place] == value
-        empty.append((there if variable == "status" else there & rods, word, look))
-    for there, word, look in empty:
+        empty.append((there if variable == "status" else there & rods, says, look))
+    for there, says, look in empty:
         for i, j in np.argwhere(there if y else there[:, None]):
             corner = across[[i, i + 1]], up[[j, j + 1]]
             axes.fill_between(corner[0], *corner[1], ec=HATCHING, lw=0, zorder=3 if y else 0, **look)
         if there.any():
-            handles.append(Patch(label=word, ec=HATCHING, lw=0.5, **look))
+            handles.append(Patch(label=says, ec=HATCHING, lw=0.5, **look))
     axes.set_xlim(across[0], across[-1])
     axes.set_ylim(up[0], up[-1]) if y else axes.set_ylim(limits)
     return handles
@@ -189,18 +183,11 @@ def _fixed(view: View, drawn: list[str]) -> str:
     """The quantities that are not along an axis of the figure, with their values."""
     told = []
     for name, values in view.quantities.items():
-        if name in drawn or name in MADE:
+        if name in drawn or name in UNIT_NAMES:
             continue
-        value = np.ravel(values)[:1]
-        shown, unit = in_typed(view, name, value)
-        unit = unit.replace("^3", "$^3$")
         more = f" (of {len(values)} values)" if np.size(values) > 1 else ""
-        told.append(f"{WORDS.get(name, name.replace('_', ' '))} {shown[0]:.4g} {unit}".rstrip() + more)
+        told.append(quantity_text(view, name, float(np.ravel(values)[0])) + more)
     return ", ".join(told)
-
-
-MADE = ("tau2", "force_scale", "pressure_scale")
-"""Units that follow from the quantities."""
 
 
 def _of_thresholds(view: View) -> list[Panel]:
@@ -210,7 +197,9 @@ def _of_thresholds(view: View) -> list[Panel]:
         lines[EVENTS[event]], unit = in_typed(view, typed, view.variables[f"{load}_{event}"], si)
     flutter = lines[EVENTS["hopf"]]
     return [
-        Panel(f"{load} at flutter ({unit})", flutter, lines, without="no flutter"),
+        Panel(
+            f"{load} at flutter ({unit})", flutter, lines, of_lines=f"{load} ({unit})", without="no flutter"
+        ),
         Panel("frequency at flutter (Hz)", view.variables["frequency_hopf_hz"], without="no flutter"),
     ]
 

@@ -11,8 +11,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
 
+from ...model.parameters import CRUSHING
 from ...results.file.view import View
-from ...wording import counted
+from ...results.layouts.variables import MISSING
+from ...wording import counted, has_or_have, some_of
 from ..branch_curves import (
     CurveOfCycles,
     Range,
@@ -67,7 +69,7 @@ def draw_branch(request: FigureRequest) -> str:
         _pieces(upper, curve.at, curve.y, curve.stable, colour)
         _pieces(lower, curve.at, curve.period, curve.stable, colour)
         _mark(upper, lower, curve, marked)
-    straight = straight_ranges(view, drawn[0], _shown(view, curves)) if alone else ([], [])
+    straight = straight_ranges(view, drawn[0], _shown(view, drawn[0], curves)) if alone else ([], [])
     for stable, ranges in zip((1, 0), straight, strict=True):
         for low, high in ranges:
             upper.plot([low, high], [0, 0], LINES[stable][0], color="k", lw=1.4)
@@ -98,17 +100,26 @@ def _left_out(view: View, drawn: list[int], beating: list[int]) -> str:
     """What is said of branches and rods that are not drawn."""
     hidden = sum(branches_not_told(view, rod) for rod in range(view.variables["status"].size))
     more = f"; {hidden} more have special points that are not stored" if hidden else ""
-    rods = view.variables["status"].size
+    missing = int((view.variables["status"] == MISSING).sum())
+    rods = view.variables["status"].size - missing
     if len(drawn) < len(beating):
         more += f"; of the first {len(drawn)} of {len(beating)} rods with branches (--at chooses others)"
-    return more + (f"; {rods - len(beating)} of {rods} rods have none" if len(beating) < rods else "")
+    return more + (
+        f"; {some_of(rods - len(beating), rods, 'rod')} {has_or_have(rods - len(beating))} none"
+        if len(beating) < rods
+        else ""
+    )
 
 
-def _shown(view: View, curves: list[CurveOfCycles]) -> Range:
-    """The range in which the straight rod is drawn: no further than cycles and Hopf points reach."""
+def _shown(view: View, rod: int, curves: list[CurveOfCycles]) -> Range:
+    """The range in which the straight rod is drawn: not where it is crushed, nor beyond all cycles."""
     low, high = ends_of(view)
-    reach = max(float(np.nanmax(curve.at)) for curve in curves)
-    return low, min(high, 1.1 * reach)
+    high = min(high, 1.1 * max(float(np.nanmax(curve.at)) for curve in curves))
+    force, stiffness = CRUSHING
+    columns = {name: float(values[rod]) for name, values in view.point_columns.items()}
+    if followed_parameter(view) == force:
+        return low, min(high, columns[stiffness])
+    return (max(low, columns[force]) if followed_parameter(view) == stiffness else low), high
 
 
 def _pieces(

@@ -15,6 +15,7 @@ from ...arrays import Array
 from ...results.file.view import View
 from ...results.layouts.phase_diagram import CLASSES
 from ...results.layouts.thresholds import CROSSING_KINDS
+from ...wording import plural
 from .lists import number_points, shared_parameters
 from .style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, need, parameter_text
 
@@ -40,7 +41,7 @@ LATER = "later"
 MARKS = {
     "onset": (FIRST, "o", rf"onset ${SYMBOLS['F']}_*$"),
     "hopf": (SECOND, "s", rf"Hopf ${SYMBOLS['F']}_{{**}}$"),
-    LATER: (SECOND, "D", "further Hopf points"),
+    LATER: (SECOND, "D", "further Hopf point"),
     "restabilization": (THIRD, "^", "restabilization"),
 }
 """Colour, marker and word of the crossings that are marked."""
@@ -161,7 +162,8 @@ def _mark(axes: Axes, view: View, upright: bool) -> list[Line2D]:
             continue
         force = F[rods, places]
         x, y = (rods + 1, force) if upright else (force, rods)
-        label = word if upright else f"{word} = " + ", ".join(f"{at:#.{DIGITS}g}" for at in force)
+        name = plural(word) if kind == LATER and rods.size > 1 else word
+        label = name if upright else f"{name} = " + ", ".join(f"{at:#.{DIGITS}g}" for at in force)
         handles += axes.plot(
             x, y, marker, color=colour, mec="white", mew=0.6, ms=6, label=label, clip_on=False
         )

@@ -28,14 +28,18 @@ LEAST_HEIGHT = 0.45
 """Inches of a panel below which the labels of two ticks have no room above each other."""
 SPARE = 4.0
 """Inches by which a figure is higher while its text is measured, so that its panels do not vanish."""
+SLACK = 1.03
+"""By how much more than its height a panel of one scale gets: where height and width both just suffice, the
+layout goes back and forth between them."""
 MARGIN = 0.04
 """Inches between text and the edge of the figure."""
 BLANK = 0.25
 """Space between the labels of two ticks beside each other, in units of their height."""
 SEEN = 1e-9
 """Length of an axis by which a tick at its end may lie outside by rounding."""
-WORDS = re.compile(r"(?:\\.|\$(?:\\.|[^$\\])*\$|[^\s$])+")
-"""Words of a text; mathematics between dollars is part of its word, with the blanks in it."""
+WORDS = re.compile(r"(?:\\.|\$(?:\\.|[^$\\])*\$|[^\s$]|\xa0)+")
+"""Words of a text; mathematics between dollars is part of its word, with the blanks in it, and a no-break
+space holds a number and its unit together."""
 
 
 def fit(figure: Figure, least_aspect: float = LEAST_ASPECT) -> None:
@@ -222,6 +226,12 @@ def _thin_decades(axis: Axis, locator: LogLocator) -> bool:
     return False
 
 
+def _shape(axes: Axes) -> float:
+    """Height over width of a panel whose x and y have one scale, which its data fix; 0 of any other."""
+    scale = axes.get_aspect()
+    return 0.0 if scale == "auto" else float(axes.get_data_ratio() * scale)
+
+
 def _spare_height(figure: Figure, least_aspect: float) -> float:
     """By how much the figure can get lower, in inches, until a panel has the least height for its width."""
     width, height = figure.get_size_inches()
@@ -234,6 +244,7 @@ def _spare_height(figure: Figure, least_aspect: float) -> float:
         ratios = np.asarray(place.get_gridspec().get_height_ratios())
         part = ratios[place.rowspan.start : place.rowspan.stop].sum() / ratios.sum()
         label = axes.yaxis.label.get_window_extent().height / figure.dpi
-        least = max(least_aspect * room.width * width, label + MARGIN, LEAST_HEIGHT)
+        shape = max(least_aspect, SLACK * _shape(axes))
+        least = max(shape * room.width * width, label + MARGIN, LEAST_HEIGHT)
         spare.append((room.height * height - least) / part)
     return min(spare)

@@ -29,6 +29,8 @@ def draw_limit_cycle(request: FigureRequest) -> str:
     view = _with_needs(request, name)
     if name == "animation":
         request.check_output(*FILMS)
+        if request.keep is not None:
+            raise InputError("an animation is a file and no single figure; save it as a .gif")
         return write_animation(view, points, request.output)
     request.check_output()
     if name == "amplitude":

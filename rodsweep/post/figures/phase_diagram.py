@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...arrays import Array
+from ...config.axes import DEFAULTS
 from ...model.parameters import CRUSHING, LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts import lacks_curves
@@ -18,9 +19,10 @@ from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from .class_bars import BAR_ASPECT, CLASS_COLOURS, classes_behind_crossings
 from .diagram_curves import draw_curves, draw_cycle_curves, mark_cycles_on_rows
 from .fitting import MAP_ASPECT
-from .regions import ClassedPlaces, DrawnPlane, coloured
+from .regions import PIXELS, ClassedPlaces, DrawnPlane, coloured
 from .request import FigureRequest
-from .style import LABELS, SYMBOLS, fixed_text, heading, legend_below, need, scale
+from .row_classes import class_along_row
+from .style import LABELS, SYMBOLS, heading, is_logarithmic, legend_below, need, parameter_text, scale
 from .style import number as number_text
 
 STATE_COLOURS = {
@@ -82,14 +84,15 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     """The class of every point, the boundaries where they were traced, and their folds."""
     view = request.only_view()
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
-    row = next(name for name in view.parameters if len(view.axes[name]) > 1)
+    row = next((name for name in view.parameters if len(view.axes[name]) > 1), view.parameters[0])
     palette = STATES if STATES.variable in view.variables else MOTIONS
     values = view.variables[palette.variable]
     need(view, (values >= 0).any(), "computed row")
     x, y = view.variables[line], view.axes[row]
     keep = np.isfinite(y)
     if keep.sum() < 2:
-        shown = f"what the rod does over {line}, for each {row}"
+        rows = f", for each {row}" if len(y) > 1 else ""
+        shown = f"what the rod does over {line}{rows}"
         return request.write(_draw_rows(view, palette, line, row), shown, BAR_ASPECT * len(y))
     table = values.reshape(len(y), len(x))[keep]
     y = y[keep]
@@ -111,9 +114,19 @@ def draw_phase_diagram(request: FigureRequest) -> str:
         handles += mark_cycles_on_rows(axes, view, line, row)
     handles += edge if (table == palette.crushed).any() else []
     legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
-    figure.suptitle(heading(view, fixed_text(view, line, row)))
+    figure.suptitle(heading(view, _fixed(view, line, row)))
     missing = "; curves are missing, the file is not finished" if lacks_curves(view.attributes) else ""
     return request.write(figure, f"what the rod does over {line} and {row}{missing}", MAP_ASPECT)
+
+
+def _fixed(view: View, line: str, row: str) -> str:
+    """The parameters that are fixed, with their values; gamma1 where cycles are told of."""
+    told = {name: values[0] for name, values in view.axes.items() if name not in (line, row)}
+    if "curve_gamma1" in view.variables:
+        told["gamma1"] = float(view.variables["curve_gamma1"])
+    elif "gamma1" in view.attributes or ("stable_states" in view.variables and not view.quantities):
+        told["gamma1"] = float(view.attributes.get("gamma1", DEFAULTS["gamma1"]))
+    return parameter_text(told)
 
 
 def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
@@ -128,11 +141,13 @@ def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
 def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
     """A bar for each row, where they are too few, or at infinity, to make a plane."""
     x, y = view.variables[line], view.axes[row]
-    table = view.variables[palette.variable].reshape(len(y), len(x))
     figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")
     axes = figure.subplots()
-    looks: dict[str, Any] = {"shading": "nearest", "rasterized": True} | palette.colours_of_numbers
-    axes.pcolormesh(x, np.arange(len(y)), table, **looks)
+    share = np.linspace(0, 1, PIXELS + 1)
+    edges = x[0] * (x[-1] / x[0]) ** share if is_logarithmic(x) else x[0] + (x[-1] - x[0]) * share
+    table = np.array([class_along_row(view, palette.variable, line, row, n, edges) for n in range(len(y))])
+    looks: dict[str, Any] = {"rasterized": True} | palette.colours_of_numbers
+    axes.pcolormesh(edges, np.arange(len(y) + 1) - 0.5, table, **looks)
     for between in np.arange(len(y) - 1) + 0.5:
         axes.axhline(between, color="white", lw=4)
     scale(axes, "x", x)
@@ -140,7 +155,7 @@ def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
     axes.tick_params("y", length=0)
     axes.set(xlim=(x[0], x[-1]), xlabel=LABELS[line])
     legend_below(figure, palette.patches(table), columns=3)
-    figure.suptitle(heading(view, fixed_text(view, line, row)))
+    figure.suptitle(heading(view, _fixed(view, line, row)))
     return figure
 
 

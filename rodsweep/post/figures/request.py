@@ -15,6 +15,8 @@ from .fitting import LEAST_ASPECT, fit
 
 Shapes = Callable[[View, Sequence[int]], View]
 """A file with the shapes of the cycles of some points, numbered from 1."""
+Drawing = Figure
+"""What a figure is to those who draw into it: matplotlib's own class."""
 WIDTHS = {"single": 3.375, "double": 7.0}
 """Of a journal's columns, in inches."""
 ROOTS = ("rightmost", "smallest", "all")
@@ -93,6 +95,8 @@ class FigureRequest:
     look: Look = Look()
     shapes: Shapes | None = None
     """Solves cycles whose shapes a file lacks."""
+    keep: Callable[[Figure], None] | None = None
+    """Takes the figure, laid out, instead of a file."""
 
     def only_view(self, *kinds: str) -> View:
         """The file, for tasks that draw one, know no --point, and of --what the kinds; else InputError."""
@@ -135,5 +139,8 @@ class FigureRequest:
         if not any(view.over for view in self.views):  # whose own figures tell it
             add_validity(figure, self.views)
         self.look.fit(figure, least_aspect)
-        figure.savefig(self.output)
+        if self.keep is None:
+            figure.savefig(self.output)
+        else:
+            self.keep(figure)
         return shown

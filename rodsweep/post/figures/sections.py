@@ -50,8 +50,7 @@ def _cut(view: View, name: str, value: float) -> View:
         followed = f"; {name} is no axis of points in this file" if name in NONLINEAR_PARAMETERS else ""
         raise InputError(f"--at {name}={value:.15g}: {view.path} has no such axis{followed}; {hint}")
     values = view.variables[name]
-    with np.errstate(invalid="ignore"):  # inf - inf
-        there = (values == value) | (np.abs(values - value) <= SAME_VALUE * abs(value))
+    there = np.isclose(values, value, rtol=SAME_VALUE, atol=0.0)
     if not there.any():
         unique = np.unique(values)
         named = [f"{one:.15g}" for one in unique[:MOST_NAMED]]

@@ -13,6 +13,7 @@ from .eigenvalues import draw_eigenvalues, draw_list_of_spectra
 from .fitting import MAP_ASPECT
 from .lists import as_grid
 from .request import FigureRequest
+from .sections import section
 from .spectra.line import FOLLOWED_ROOTS, draw_line, roots_to_follow
 from .spectra.panels import MOST_PANELS, draw_panels
 from .style import LABELS, fixed_text, heading, long_axes, need, scale
@@ -20,6 +21,8 @@ from .style import LABELS, fixed_text, heading, long_axes, need, scale
 MAP_COLOURS = "PuOr_r"
 SHADES_A_SIDE = 40
 """Colours of a map on each side of zero growth."""
+MOST_LINES = 6
+"""Values of a parameter up to which each has a panel of its own; beyond, a map interpolates between them."""
 SMALLEST_SHADE = 1e-4
 """Growth rate in units of the largest below which colours are linear in it."""
 
@@ -37,12 +40,25 @@ def draw_spectrum(request: FigureRequest) -> str:
         return request.write(draw_eigenvalues(view), "the stored eigenvalues in the complex plane")
     if not view.is_grid:
         return request.write(draw_list_of_spectra(view), "the stored eigenvalues of every point")
+    long = long_axes(view)
+    few = min(long, key=lambda name: len(view.axes[name]))
+    if len(long) > 1 and len(view.axes[few]) <= MOST_LINES:
+        return _lines(view, few, request)
     view = without_infinite(view)
     long = long_axes(view)
     if len(long) == 1:
         roots = roots_to_follow([view], request.roots)
         return request.write(draw_line(view, long[0], roots), FOLLOWED_ROOTS[roots])
     return request.write(_map(view, long), "the leading growth rate", MAP_ASPECT)
+
+
+def _lines(view: View, few: str, request: FigureRequest) -> str:
+    """A panel for each value of a parameter with few of them: a map would show what is not known between."""
+    lines = [without_infinite(section(view, {few: float(value)})) for value in view.axes[few]]
+    views = [line for line in lines if np.isfinite(line.variables["growth_rate"]).any()]
+    roots = roots_to_follow(views, request.roots)
+    figure = draw_panels(views, roots, request.look.narrow)
+    return request.write(figure, f"{FOLLOWED_ROOTS[roots]}, in a panel for each {few}")
 
 
 def _several(request: FigureRequest) -> str:
@@ -81,9 +97,11 @@ def without_infinite(view: View) -> View:
     for place, (name, values) in enumerate(view.axes.items()):
         finite = np.isfinite(values)
         if len(values) > 1 and not finite.all():
-            variables[name] = values[finite]
-            for key in ("growth_rate", "frequency", "unstable_count"):
+            shape = variables["status"].shape
+            of_points = [key for key, data in variables.items() if data.shape[: len(shape)] == shape]
+            for key in of_points:
                 variables[key] = np.compress(finite, variables[key], axis=place)
+            variables[name] = values[finite]
     return replace(view, variables=variables)
 
 
@@ -109,5 +127,7 @@ def _map(view: View, names: list[str]) -> Figure:
     axes.set(xlabel=LABELS[horizontal], ylabel=LABELS[vertical])
     colours = matplotlib.cm.ScalarMappable(norm, MAP_COLOURS)
     figure.colorbar(colours, ax=axes, label=r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$")
-    figure.suptitle(heading(view, fixed_text(view, *names), "black: zero growth"))
+    figure.suptitle(
+        heading(view, fixed_text(view, *names), "black: zero growth, interpolated between the points")
+    )
     return figure

@@ -30,6 +30,11 @@ def draw_thresholds(request: FigureRequest) -> str:
     given = request.only_view("lines", "map")
     view = as_grid(given)
     if not view.is_grid or view.variables["status"].size == 1:
+        if request.what and view.quantities:
+            raise InputError(
+                f"{view.path}: --what {request.what} is not for a grid over an arm's quantities; remove it, "
+                "and --at, as --at 'length=12 cm', draws lines over the others"
+            )
         if request.what:
             raise InputError(
                 f"{view.path}: --what {request.what} needs rods that vary in one parameter or two; remove it"

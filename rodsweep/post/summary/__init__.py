@@ -16,7 +16,7 @@ from ...results.file.view import View
 from ...results.layouts import lacks_curves
 from ...results.layouts.arm import QUANTITY_UNITS
 from ...results.layouts.variables import DIMENSIONS, MISSING
-from ...wording import counted, is_or_are, plural
+from ...wording import counted, duration, is_or_are, plural
 from .arm import arm_lines
 from .arm_answer import arm_answer
 from .branch import branch_summary
@@ -74,7 +74,12 @@ def show_summary(view: View, every_status: bool = False) -> None:
 def _unfinished(view: View, missing: int, noun: str) -> list[str]:
     """What is not in the file yet."""
     lines = []
-    if missing:
+    if missing and (shard := view.attributes.get("shard")):
+        lines.append(
+            f"{counted(missing, noun)} {is_or_are(missing)} not here: the file is shard {shard}, `rodsweep "
+            "merge` puts the shards together; where this one was interrupted, its own command continues"
+        )
+    elif missing:
         lines.append(
             f"{counted(missing, noun)} {is_or_are(missing)} missing; where no run goes on, the same command "
             "continues"
@@ -97,10 +102,10 @@ def _times(view: View, done: np.ndarray, noun: str) -> list[str]:
         return []
     seconds = view.variables["seconds"][done]
     if done.sum() == 1:
-        return [f"time of the {noun}: {1e3 * float(seconds.max()):.3g} ms"]
+        return [f"time of the {noun}: {duration(float(seconds.max()))}"]
     return [
-        f"time a {noun}: median {1e3 * np.median(seconds):.3g} ms, longest {1e3 * seconds.max():.3g} ms, "
-        f"all together {seconds.sum():.3g} s"
+        f"time a {noun}: median {duration(float(np.median(seconds)))}, longest "
+        f"{duration(float(seconds.max()))}, all together {duration(float(seconds.sum()))}"
     ]
 
 

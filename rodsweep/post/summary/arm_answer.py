@@ -13,15 +13,34 @@ from ...model.units import written_in
 from ...results.file.view import View
 from ...results.layouts.arm import EFFECTS, FORCES, VALIDITY
 from ...results.layouts.thresholds import CROSSING_KINDS
+from ...wording import some_of
 
 OF_PRESSURE = ("pressure", "young")
 """Whose unit a pressure is told in: the first that was typed."""
 
 
+OTHER_PLANE = (
+    "the motion is in the plane of the height; where that is above the width, the arm flutters first in the "
+    "other plane, at a lower load: exchange width and height to see it"
+)
+
+
 def arm_answer(view: View, done: np.ndarray) -> list[str]:
     """Lines about the points that are `done`, a mask of their shape; none without an arm."""
-    if not view.quantities:
-        return []
+    return [*plane_lines(view.quantities), *_applied(view, done)] if view.quantities else []
+
+
+def plane_lines(quantities: Mapping[str, np.ndarray]) -> list[str]:
+    """What is said of rectangles of which one gives way first in the plane that is not computed; else none.
+
+    quantities: those of an arm in SI, each a number or (n,).
+    """
+    height, width = (np.asarray(quantities.get(name, np.nan)) for name in ("height", "width"))
+    return [OTHER_PLANE] if np.max(height) > np.min(width) else []
+
+
+def _applied(view: View, done: np.ndarray) -> list[str]:
+    """Lines about points, with whether the model applies to them."""
     rods = done & (view.variables["status"] < NOT_SLENDER)
     if not rods.any():
         return ["no rod covers any of these arms"] if done.any() else []
@@ -46,7 +65,8 @@ def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str
     if worst == Validity.applies:
         return f"the model applies{' at all points' * (len(applies) > 1)}{when}"
     there = applies == worst
-    at = f" at {int(there.sum())} of {len(applies)} points" if len(applies) > 1 else ""
+    some = f" at {some_of(int(there.sum()), len(applies), 'point')}"
+    at = "" if len(applies) == 1 else f" at all {len(applies)} points" if there.all() else some
     verb = "does not apply" if worst == Validity.does_not_apply else "is doubtful"
     place = int(np.flatnonzero(there)[np.argmax(excess[there])])
     name, size = EFFECTS[int(effect[place])].replace("_", " "), f"{excess[place]:.2g}"
@@ -112,7 +132,7 @@ def _of_modes(view: View, rods: np.ndarray) -> list[str]:
         return ["stays straight"]
     of = f" at {int(unstable.sum())} of {len(unstable)} points" if len(unstable) > 1 else ""
     leading = view.variables["frequency_hz"][rods][unstable][:, 0]
-    return [f"gives way{of}; its leading mode turns at {spanned(view, np.abs(leading), 'Hz')}"]
+    return [f"gives way{of}; its leading mode oscillates at {spanned(view, np.abs(leading), 'Hz')}"]
 
 
 def _of_branches(view: View, rods: np.ndarray) -> list[str]:

@@ -1,7 +1,8 @@
 """What `rodsweep show` says of branches of cycles: where they lead and change, where two states coexist."""
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from itertools import combinations
 
 import numpy as np
 
@@ -18,23 +19,24 @@ from ..branch_curves import (
     union,
 )
 from .ranges import listed, rounded, span, to_error
-from .told import Told
+from .told import Told, at_point
 
 SPECIAL_ACCURACY = 2.0
 """Error of the cycle at a special point, which the file does not tell, in units of the accuracy asked for."""
 NAMED_RODS = 8
 """Rods whose coexistence is named."""
 FULL = "they have more special points than the list holds; raise branch.special"
+BESIDE_STRAIGHT, TWO_CYCLES = "stable cycles beside a stable straight rod", "stable cycles of two branches"
+"""What the two stable states of a rod are."""
 SPECIAL_WORDS = {
     "fold": "fold",
     "torus": "torus point",
     "symmetry_breaking": "symmetry breaking",
-    "left_the_model": "place where h1 = 0",
-    "end": "end of a branch",
     "period_doubling": "period doubling",
 }
-"""What special points other than Hopf points are called."""
+"""What changes on a branch is called; Hopf points and ends are told apart from these."""
 ENDS = {
+    "left_the_model": "where h1 = 0",
     "range_end": "the end of the range",
     "crushed": "where F all but reaches k1",
     "no_cycle_found": "where no further cycle is found",
@@ -51,7 +53,7 @@ def branch_summary(view: View, done: np.ndarray) -> Told:
     counts = v["branch_count"][done]
     branches = counted(int(counts.clip(min=0).sum()), "branch")
     cycles = counted(int(v["point_count"][done].clip(min=0).sum()), "cycle")
-    line = f"{branches} at {some_of((counts > 0).sum(), len(rods), 'rod')}, {cycles}"
+    line = f"{branches} at {some_of((counts > 0).sum(), len(rods), 'rod')}, {cycles}{_sizes(view, done)}"
     return Told([line, *_specials(view, rods), *_coexistence(view, rods)], [_searched(view, done)])
 
 
@@ -91,7 +93,9 @@ def _one_rod(view: View, rod: int) -> Iterator[str]:
     if curves and not hidden:
         common = coexistence(view, rod)
         words = f"{along} = {listed(common, errors_of(curves))}" if common else "nowhere in the range"
-        yield f"stable cycles beside a stable straight rod: {words}"
+        yield f"{BESIDE_STRAIGHT}: {words}"
+        if pairs := two_cycles(view, rod):
+            yield f"{TWO_CYCLES}: {along} = {listed(pairs, errors_of(curves))}"
 
 
 def _ends(curve: CurveOfCycles, along: str) -> str:
@@ -117,6 +121,12 @@ def coexistence(view: View, rod: int) -> list[Range]:
     return both(stable, straight_ranges(view, rod, ends_of(view))[0])
 
 
+def two_cycles(view: View, rod: int) -> list[Range]:
+    """The ranges of the parameter in which a rod has stable cycles on two branches."""
+    pairs = combinations([curve.stable_ranges for curve in curves_of(view, rod)], 2)
+    return union(piece for one, other in pairs for piece in both(one, other))
+
+
 def errors_of(curves: Iterable[CurveOfCycles]) -> dict[float, float]:
     """The absolute errors of the special points of branches, by their places."""
     return {float(special.at): special.error for curve in curves for special in curve.special}
@@ -128,31 +138,74 @@ def ends_of(view: View) -> Range:
     return float(options["start"]), float(options["stop"])
 
 
+def _sizes(view: View, done: np.ndarray) -> str:
+    """The period and the size of all cycles of the points that are `done`; nothing where there are none."""
+    v = view.variables
+    period, y = v["period"][done], v["tip_y_max"][done]
+    if not np.isfinite(period).any():
+        return ""
+    told = f": period {span(period, period * v['period_error'][done])} tau2"
+    return f"{told}, largest tip y {span(y, y * v['amplitude_error'][done])} L"
+
+
 def _specials(view: View, rods: np.ndarray) -> Iterator[str]:
-    """How many special points of each kind all rods have, and where."""
+    """How many special points of each kind there are, and where; where branches lead that end at no other."""
     along = followed_parameter(view)
-    found: dict[str, list[tuple[float, float]]] = {}
+    found: dict[str, list[tuple[float, float]]] = {word: [] for word in (*SPECIAL_WORDS, *ENDS)}
     for rod in rods:
-        for curve in curves_of(view, int(rod)):
+        for number, curve in enumerate(curves_of(view, int(rod)), 1):
             for special in curve.special:
-                found.setdefault(special.kind, []).append((special.at, special.error))
+                kind = special.reason if special.kind == "end" else special.kind
+                told_before = 0 < special.meets < number  # by the other branch that meets it
+                if kind in found and not told_before:
+                    found[kind].append((special.at, special.error))
     for kind, located in found.items():
-        if kind != "hopf":
-            places, errors = np.array(located).T
-            yield f"{counted(len(places), SPECIAL_WORDS[kind])}: {along} = {span(places, errors)}"
+        if not located:
+            continue
+        where = f"{along} = {span(*np.array(located).T)}"
+        if kind in SPECIAL_WORDS:
+            yield f"{counted(len(located), SPECIAL_WORDS[kind])}: {where}"
+        else:
+            verb = "leads" if len(located) == 1 else "lead"
+            yield f"{counted(len(located), 'branch')} {verb} to {ENDS[kind]}: {where}"
+    yield from _stopped(view, rods)
+
+
+def _stopped(view: View, rods: np.ndarray) -> Iterator[str]:
+    """The rods with a branch that could not be followed to its end, some by name."""
+    along = followed_parameter(view)
+    ends = [
+        (int(rod), number, curve.special[-1])
+        for rod in rods
+        for number, curve in enumerate(curves_of(view, int(rod)), 1)
+        if curve.special[-1].reason == "no_cycle_found"
+    ]
+    for rod, number, end in ends[:NAMED_RODS]:
+        yield f"  {at_point(view, rod)}: branch {number}, at {along} = {rounded(end.at, end.error)}"
+    if len(ends) > NAMED_RODS:
+        yield f"  and {counted(len(ends) - NAMED_RODS, 'branch')} more"
 
 
 def _coexistence(view: View, rods: np.ndarray) -> Iterator[str]:
     """The rods that have two stable states somewhere, some by name."""
-    along, columns = followed_parameter(view), view.point_columns
     told = [int(rod) for rod in rods if not branches_not_told(view, int(rod))]
-    having = [(rod, ranges) for rod in told if (ranges := coexistence(view, rod))]
     if len(told) < len(rods):
         yield f"not told of {counted(len(rods) - len(told), 'rod')}: {FULL}"
-    yield f"stable cycles beside a stable straight rod at {some_of(len(having), len(told), 'rod')}"
+    yield from _rods_with(view, told, BESIDE_STRAIGHT, coexistence)
+    if any(two_cycles(view, rod) for rod in told):
+        yield from _rods_with(view, told, TWO_CYCLES, two_cycles)
+
+
+def _rods_with(
+    view: View, rods: list[int], words: str, ranges_of: Callable[[View, int], list[Range]]
+) -> Iterator[str]:
+    """At how many rods something is, and in which ranges of the parameter, of some by name."""
+    along = followed_parameter(view)
+    having = [(rod, ranges) for rod in rods if (ranges := ranges_of(view, rod))]
+    yield f"{words} at {some_of(len(having), len(rods), 'rod')}"
     for rod, ranges in having[:NAMED_RODS]:
-        name = ", ".join(f"{key} = {column[rod]:.6g}" for key, column in columns.items())
-        yield f"  {name}: {along} = {listed(ranges, errors_of(curves_of(view, rod)))}"
+        where = f"{along} = {listed(ranges, errors_of(curves_of(view, rod)))}"
+        yield f"  {': '.join(filter(None, (at_point(view, rod), where)))}"
     if len(having) > NAMED_RODS:
         yield f"  and {counted(len(having) - NAMED_RODS, 'rod')} more"
 

@@ -132,7 +132,7 @@ def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
         )
     )  # fmt: skip
     power = v["injection_mean"][beats]
-    of_power = 2 * v["amplitude_error"][beats] + of_period + np.abs(v["energy_imbalance"][beats])
+    of_power = power_error(v)[beats]
     lines = [f"frequency {span(frequency, frequency * of_period)} rad/tau2, "
              f"over that of the leading mode {span(ratio, ratio * of_period)}"]  # fmt: skip
     if "period_tau1" in v:
@@ -145,6 +145,11 @@ def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
         f"multiplier: {span(v['multiplier'][beats], v['multiplier_error'][beats])}; returns waited for: "
         f"{span(v['periods'][beats])}; least stretch: {span(v['least_stretch'][beats], extrema)}",
     ]
+
+
+def power_error(v: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Relative error of the mean power of the force, of any shape: it goes with the amplitude's square."""
+    return 2 * v["amplitude_error"] + v["period_error"] + np.abs(v["energy_imbalance"])
 
 
 def _error_line(v: Mapping[str, np.ndarray], beats: np.ndarray) -> str:

@@ -128,18 +128,32 @@ def share_lines(found: np.ndarray) -> list[str]:
     return [f"of the grid: {', '.join(f'{share:.1f} % {word}' for share, word in shares if share)}"]
 
 
+def start_lines(view: View, done: np.ndarray, line: str) -> list[str]:
+    """What rows do where they begin, unless all are monotone; done: which rows are there, (rows,)."""
+    start = view.variables["class"][done][:, 0]
+    words = [f"{word} on {int((start == n).sum())}" for n, word in CLASSES if (start == n).any()]
+    if words == [f"monotone on {len(start)}"]:
+        return []
+    rows = f"of {counted(len(start), 'row')}"
+    return [f"at {line} = {view.variables[line][0]:.6g}, where the rows begin, {rows}: {', '.join(words)}"]
+
+
 def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     """What changes on the rows that are `done`, a mask of their shape: on how many, where, and where not."""
     v, of_row = view.variables, view.point_columns[row].reshape(done.shape)
-    lines = []
+    lines = start_lines(view, done, line)
     for number, word in enumerate(CROSSING_KINDS):
         there = (v["crossing_kind"] == number) & done[..., np.newaxis]
         on_row = there.any(axis=-1)
         if number and on_row.any():
-            at, rows = span(v["crossing_at"][there], v["crossing_error"][there]), span(of_row[on_row])
-            lines.append(
-                f"{word}: on {some_of(on_row.sum(), done.sum(), 'row')}, {line} = {at}, {row} = {rows}"
-            )
+            first = there & (there.cumsum(axis=-1) == 1)
+            again = there & ~first
+            at, later = (span(v["crossing_at"][one], v["crossing_error"][one]) for one in (first, again))
+            text = f"{word}: on {some_of(on_row.sum(), done.sum(), 'row')}, {line} = {at}"
+            text += f", {row} = {span(of_row[on_row])}"
+            if again.any():
+                text += f"; again on {int(again.any(axis=-1).sum())}, {line} = {later}"
+            lines.append(text)
             if line == "F" and view.quantities:
                 forces = v["crossing_at"][there]
                 lines.append(f"  in SI units: {loads_at(view, forces, np.zeros(len(forces), int))}")

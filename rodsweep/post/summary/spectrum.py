@@ -87,7 +87,7 @@ def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
     v = view.variables
     unknowns = 3 * v["elements"][done].astype(int) * v["order"][done]
     if (followed := int((unknowns == 0).sum())) == unknowns.size:
-        return ["unknowns a point: none, all followed from neighbours or failed"]
+        return ["every point was followed from its neighbours, or failed: none was solved on a mesh"]
     without = f"; none at {followed} that were followed or failed" if followed else ""
     return [f"unknowns a point: {span(unknowns[unknowns > 0])}{without}"]
 

@@ -101,12 +101,16 @@ def monotony_lines(view: View) -> list[str]:
             continue
         rising = np.apply_along_axis(lambda F: (np.diff(F[np.isfinite(F)]) > 0).all(), -1, along) & there
         text = f"{force} rises with {label} on {some_of(rising.sum(), there.sum(), 'line')}"
-        others = [n for n in view.axes if n != name]
-        for other, places in zip(others, np.argwhere(there & ~rising).T, strict=True):
+        falling = np.apply_along_axis(lambda F: (np.diff(F[np.isfinite(F)]) < 0).all(), -1, along) & there
+        if falling.any():
+            text += f", falls on {int(falling.sum())}"
+        others, where = [n for n in view.axes if n != name], []
+        for other, places in zip(others, np.argwhere(there & ~rising & ~falling).T, strict=True):
             if len(view.axes[other]) > 1 and places.size:
                 low, high = view.axes[other][places].min(), view.axes[other][places].max()
-                text += f", and falls somewhere for {other} = {low:.6g}"
-                text += f" to {high:.6g}" if high > low else ""
+                where.append(f"{other} = {low:.6g}" + (f" to {high:.6g}" if high > low else ""))
+        if mixed := int((there & ~rising & ~falling).sum()):
+            text += f", does both on {mixed}{in_brackets(', '.join(where))}"
         lines.append(text)
     return lines
 

@@ -90,8 +90,8 @@ def column_of(variable: Variable, values: NDArray, words: Mapping[int, str] | No
 
 
 def coordinate(name: str, unit: str, meaning: str, values: NDArray) -> Column:
-    """The column of a coordinate, (rows,), which every row has."""
-    return Column(name, unit, meaning, values, np.zeros(len(values), bool), given=True)
+    """The column of a coordinate, (rows,), NaN in rows of arms that no rod covers."""
+    return Column(name, unit, meaning, values, np.isnan(values.astype(float)), given=True)
 
 
 def _typed(value: float, text: str) -> str:

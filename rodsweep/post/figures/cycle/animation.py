@@ -1,6 +1,7 @@
 """The beating arm in motion: a GIF, or an MP4 where ffmpeg is installed."""
 
 from collections.abc import Sequence
+from math import floor, log10
 from pathlib import Path
 
 import matplotlib
@@ -23,6 +24,8 @@ FEWEST_SHAPES = 8
 """Frames below which nothing seems to move."""
 GHOSTS = 6
 """Earlier shapes that fade away behind the arm."""
+DIGITS_OF_TIME = 3
+"""Of the period, which the running time has too."""
 GHOSTS_BACK = 0.2
 """How far back in periods the last of them is."""
 
@@ -53,7 +56,7 @@ def first_frame(selection: Selection) -> tuple[Figure, list["MovingArm"]]:
     figure = Figure(figsize=(2.7 * len(cycles) + 0.9, 4.4), layout="constrained")
     panels = figure.subplots(1, len(cycles), squeeze=False, sharey=True)[0]
     figure.suptitle(selection.title)
-    panels[0].set_ylabel("$y/L$")
+    panels[0].set_ylabel(cycles[0].units.along("y"))
     arms = [MovingArm(axes, cycle) for axes, cycle in zip(panels, cycles, strict=True)]
     frame(panels, cycles)
     for arm in arms:
@@ -79,14 +82,14 @@ class MovingArm:
         self.axes, self.cycle = axes, cycle
         self.frames = len(cycle.values["shape_x"])
         tip_path(axes, cycle)
-        clamp(axes)
+        clamp(axes, cycle.units.length)
         fading = np.linspace(0.85, 0.45, GHOSTS)
         self.ghosts = [axes.plot([], [], color=str(grey), lw=1.2, zorder=1.5)[0] for grey in fading]
         (self.rod,) = axes.plot([], [], color=FIRST, lw=3.0, solid_capstyle="round", zorder=3)
-        self.arrow = force_arrow(axes, np.zeros(1), np.zeros(1), np.zeros(1), SECOND)
+        self.arrow = force_arrow(axes, np.zeros(1), np.zeros(1), np.zeros(1), SECOND, cycle.units.length)
         self.text = axes.text(0.02, 0.02, "", transform=axes.transAxes, size=9)
-        axes.set_xlabel("$x/L$")
-        axes.set_title(cycle.heading(rf"$T = {cycle.period:.6g}\,\tau_2$"))
+        axes.set_xlabel(cycle.units.along("x"))
+        axes.set_title(cycle.heading(cycle.period_text))
 
     def show(self, k: int) -> None:
         """Moves the arm to its k-th shape."""
@@ -97,6 +100,8 @@ class MovingArm:
         x, y, theta = (values[k] for values in shapes)
         self.rod.set_data(x, y)
         self.arrow.remove()
-        self.arrow = force_arrow(self.axes, x, y, theta, SECOND)
+        self.arrow = force_arrow(self.axes, x, y, theta, SECOND, self.cycle.units.length)
         time = self.cycle.period * k / self.frames
-        self.text.set_text(rf"$t$ = {time:.4f} $\tau_2$ = {k / self.frames:.2f} $T$")
+        decimals = max(0, DIGITS_OF_TIME - 1 - floor(log10(self.cycle.period)))
+        unit = self.cycle.units.names[1]
+        self.text.set_text(f"$t$ = {time:.{decimals}f} {unit} = {k / self.frames:.2f} $T$")

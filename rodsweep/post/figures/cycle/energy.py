@@ -9,8 +9,11 @@ from matplotlib.ticker import MaxNLocator
 
 from ....discretization.periodic import derivative, resampled
 from ....results.file.view import View
+from ...summary.limit_cycle import power_error
+from ...summary.ranges import rounded
+from ..arm_quantities import TOGETHER
 from ..style import FIRST, SECOND, THIRD, legend_below
-from .selection import ENERGIES, StoredCycle, chosen_cycles
+from .selection import ENERGIES, StoredCycle, chosen_cycles, in_tex
 
 RATE_MARKS = 24
 """Times at which the derivative of U is marked on the difference of injection and dissipation."""
@@ -30,18 +33,25 @@ def draw_energy(view: View, points: Sequence[int], narrow: bool = False) -> tupl
     )
     for column, cycle in zip(rows.T, cycles, strict=True):
         _budget(column, cycle)
-        mean, imbalance = (float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance"))
-        numbers = rf"$T = {cycle.period:.6g}\,\tau_2$", f"mean power {mean:.6g}", f"imbalance {imbalance:.1e}"
-        column[0].set_title(cycle.heading(*numbers))
+        column[0].set_title(cycle.heading(cycle.period_text, *_budget_words(cycle)))
     rows[1, 0].set_ylim(bottom=min(0.0, rows[1, 0].get_ylim()[0]))
-    rows[0, 0].set_ylabel("energy\n$U L/k_3$")
-    rows[1, 0].set_ylabel("power\n" r"$\times\, L\tau_2/k_3$")
-    rows[2, 0].set_ylabel(r"$\dot U L\tau_2/k_3$")
+    for axes, label in zip(rows[:, 0], cycles[0].units.budget_labels, strict=True):
+        axes.set_ylabel(label)
     handles = [handle for axes in rows[1:, 0] for handle in axes.get_legend_handles_labels()[0]]
     legend_below(figure, handles, columns=2 if narrow else min(3, 1 + len(cycles)))
     figure.align_ylabels(rows[:, 0])
     figure.suptitle(selection.title)
     return figure, "energy, injection and dissipation over a cycle" + selection.left_out
+
+
+def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
+    """(the mean power of the force to its error, the imbalance), in the units of the panels."""
+    v = {name: float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance")}
+    error = power_error(cycle.values)
+    mean = in_tex(rounded(v["injection_mean"], abs(v["injection_mean"]) * float(error)))
+    unit = cycle.units.names[3]
+    power = f"mean power ${mean}$" + (f"{TOGETHER}{unit}" if unit else "")
+    return power, f"imbalance {v['energy_imbalance']:.1e}"
 
 
 def _budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
@@ -58,8 +68,8 @@ def _budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
     bottom.axhline(0, color="0.8", lw=0.6, zorder=0)
     bottom.plot(time, injection - dissipation, color=THIRD, lw=1.5, label=r"injection $-$ dissipation")
     at = np.arange(RATE_MARKS) / RATE_MARKS
-    rate = resampled(derivative(cycle.values["energy"]), at) / cycle.period
+    rate = resampled(derivative(cycle.values["energy"]), at) / cycle.period * cycle.units.power_of_rate
     bottom.plot(at * cycle.period, rate, "o", color="k", mfc="none", ms=3.5, label="derivative of $U$")
-    bottom.set_xlabel(r"time $t/\tau_2$")
+    bottom.set_xlabel(cycle.units.time_label)
     bottom.set_xlim(0, cycle.period)
     bottom.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))

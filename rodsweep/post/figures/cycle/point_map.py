@@ -42,10 +42,7 @@ def point_map(view: View) -> PointMap:
     """
     varied = varied_parameters(view)
     if len(varied) != 2:
-        raise InputError(
-            f"{view.path} varies {len(varied)} parameters ({', '.join(varied) or 'none'}) and maps are drawn "
-            "over two; run with one value of each of the others"
-        )
+        raise InputError(f"{view.path}: a map is drawn over two parameters, and {_varying(varied)}")
     columns = view.point_columns
     (x, column), (y, row) = (np.unique(columns[name], return_inverse=True) for name in varied)
     at = np.full((len(y), len(x)), -1)
@@ -64,6 +61,15 @@ def point_map(view: View) -> PointMap:
     return PointMap(
         (varied[0], varied[1]), x[finite[0]], y[finite[1]], at[np.ix_(*finite[::-1])], shared, left_out
     )
+
+
+def _varying(names: list[str]) -> str:
+    """How many parameters vary, which is not two, and what to do about it."""
+    if not names:
+        return "none varies"
+    if names[1:]:
+        return f"{', '.join(names)} vary; --at {names[-1]}=VALUE takes the points with one value of it"
+    return f"only {names[0]} varies; leave out --what maps for its lines"
 
 
 def in_its_scale(values: Array) -> tuple[Array, Callable[[Array], Array]]:

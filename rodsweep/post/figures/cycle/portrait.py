@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Rectangle
 from matplotlib.quiver import Quiver
 from matplotlib.ticker import FuncFormatter
@@ -28,10 +29,20 @@ MOST_SHAPES = 12
 """Shapes of one cycle that can still be told apart."""
 ARROW = 0.14
 """Length of the force's arrow in L."""
+WALL_DEPTH, WALL_HALF = 0.05, 0.13
+"""Thickness and half the height of the wall in L."""
+MARGIN = 0.04
+"""Free room around shapes and arrows in L."""
 TIP_PERIODS = 2
 """How long the tip is followed, in periods of the slowest cycle."""
 FEW_SAMPLES = 48
 """Below this number the samples themselves are marked on the curve through them."""
+SHAPES_WIDTH, TIP_HEIGHT = 3.2, 1.0
+"""Inches of a panel with shapes, across, and of one of the tip below it, down."""
+PADDING = 0.1
+"""Inches beside panels: the layout misjudges the labels of panels of one scale by half of it."""
+TEXTS, NARROW_TEXTS = 1.4, 2.0
+"""Inches of labels and headings above and below the panels; on a narrow page the bar of times too."""
 LIGHTEST = 0.14
 """The part of the colour map left out: yellow that does not show on white."""
 
@@ -43,7 +54,7 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
     """
     selection = chosen_cycles(view, points, SHAPES)
     cycles = selection.cycles
-    figure, shapes, tips = _panels(len(cycles), narrow)
+    figure, shapes, tips = _panels(cycles, narrow)
     emerging = all(cycle.has_trace for cycle in cycles)
     end = TIP_PERIODS * max(c.period for c in cycles)
     drawn, step = drawn_shapes(len(cycles[0].values["shape_x"]))
@@ -51,31 +62,35 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
     colours = ListedColormap(matplotlib.colormaps["viridis_r"](np.linspace(LIGHTEST, 1, len(drawn))))
     for axes, (upper, lower), cycle in zip(shapes, tips, cycles, strict=True):
         tip_path(axes, cycle)
-        clamp(axes)
+        clamp(axes, cycle.units.length)
         for k, place in enumerate(drawn):
             x, y, theta = (cycle.values[name][place] for name in SHAPES)
             axes.plot(x, y, color=colours(k), lw=1.8, solid_capstyle="round", zorder=2 + k / 100)
-            force_arrow(axes, x, y, theta, colours(k))
-        axes.set_xlabel("$x/L$")
-        period = [rf"$T = {cycle.period:.6g}\,\tau_2$"]
-        if 0 < cycle.tau1 < np.inf:
-            period.append(rf"$= {cycle.period / cycle.tau1:.6g}\,\tau_1$")
-        axes.set_title(cycle.heading(*period))
+            force_arrow(axes, x, y, theta, colours(k), cycle.units.length)
+        axes.set_xlabel(cycle.units.along("x"))
+        axes.set_title(cycle.heading(cycle.period_text, cycle.period_in_tau1))
         if emerging:
             draw_emergence(upper, lower, cycle)
         else:
             _tip(upper, lower, cycle, end)
     frame(shapes, cycles)
-    shapes[0].set_ylabel("$y/L$")
-    label_tip(*tips[0])
+    shapes[0].set_ylabel(cycles[0].units.along("y"))
+    label_tip(*tips[0], cycles[0].units)
     _phase_bar(figure, shapes, colours, step, narrow)
     figure.suptitle(selection.title)
     tip = "the tip from the start on" if emerging else "the tip in time"
     return figure, f"shapes through the cycle and {tip}{selection.left_out}"
 
 
-def _panels(count: int, narrow: bool) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
-    """(figure, a panel for each cycle's shapes, two for its tip: beside those of one, or below)."""
+def _panels(
+    cycles: Sequence[StoredCycle], narrow: bool
+) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
+    """(figure, a panel for each cycle's shapes, two for its tip: beside those of one, or below).
+
+    The shapes have the height that they need at the width that they have, so that no blank is left above.
+    """
+    count = len(cycles)
+    (left, right), (low, high) = region(cycles)
     if count == 1 and not narrow:
         figure = Figure(figsize=(8.6, 4.4), layout="constrained")
         table: dict[str, Axes] = figure.subplot_mosaic(
@@ -83,9 +98,14 @@ def _panels(count: int, narrow: bool) -> tuple[Figure, list[Axes], list[tuple[Ax
         )
         table["x"].sharex(table["y"])
         return figure, [table["shapes"]], [(table["x"], table["y"])]
-    figure = Figure(figsize=(3.2 * count + 1.2, 8.0 if narrow else 7.2), layout="constrained")
-    heights = (3.2, 1, 1)
-    rows = figure.subplots(3, count, squeeze=False, sharex="row", sharey="row", height_ratios=heights)
+    shapes = SHAPES_WIDTH * (high - low) / (right - left)
+    beside = NARROW_TEXTS if narrow else TEXTS
+    size = SHAPES_WIDTH * count + 1.2, shapes + 2 * TIP_HEIGHT + beside
+    figure = Figure(figsize=size, layout=ConstrainedLayoutEngine(w_pad=PADDING))
+    heights = (shapes, TIP_HEIGHT, TIP_HEIGHT)
+    rows = figure.subplots(3, count, squeeze=False, sharey="row", height_ratios=heights)
+    for x, y in rows[1:].T:
+        x.sharex(y)
     return figure, list(rows[0]), list(zip(rows[1], rows[2], strict=True))
 
 
@@ -118,38 +138,54 @@ def tip_path(axes: Axes, cycle: StoredCycle) -> None:
     axes.plot(*(resampled(v, phase) for v in cycle.tip), color="0.6", lw=0.8, ls=(0, (4, 2)), zorder=1)
 
 
-def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any) -> Quiver:
-    """The force, along -e1 = -(cos theta, sin theta) of the tip, as an arrow that presses on the tip."""
+def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, length: float) -> Quiver:
+    """The force, along -e1 = -(cos theta, sin theta) of the tip, as an arrow that presses on the tip.
+
+    length: L in the units of x and y.
+    """
     e1 = np.array([np.cos(theta[-1]), np.sin(theta[-1])])
+    along = -ARROW * length * e1
     return axes.quiver(
-        x[-1], y[-1], *(-ARROW * e1), angles="xy", scale_units="xy", scale=1, pivot="tip", color=colour,
+        x[-1], y[-1], *along, angles="xy", scale_units="xy", scale=1, pivot="tip", color=colour,
         width=0.011, headwidth=4, headlength=4.5, headaxislength=4, zorder=4,
     )  # fmt: skip
 
 
-def clamp(axes: Axes) -> None:
-    """The wall that holds the rod at u = 0."""
-    wall = Rectangle((-0.05, -0.13), 0.05, 0.26, facecolor="white", edgecolor="0.3", hatch="/////", lw=0)
+def clamp(axes: Axes, length: float) -> None:
+    """The wall that holds the rod at u = 0; length: L in the units of the axes."""
+    depth, half = WALL_DEPTH * length, WALL_HALF * length
+    wall = Rectangle((-depth, -half), depth, 2 * half, fc="white", ec="0.3", hatch="/////", lw=0)
     axes.add_patch(wall)
-    axes.plot([0, 0], [-0.13, 0.13], color="k", lw=1.4, zorder=5)
+    axes.plot([0, 0], [-half, half], color="k", lw=1.4, zorder=5)
 
 
 def frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
-    """The same region in all panels: every shape and arrow, one length for x and y."""
-    wall = -0.05
+    """The same region in all panels, with one length for x and y."""
+    along_x, along_y = region(cycles)
+    for axes in panels:
+        axes.set_aspect("equal")
+        axes.set(xlim=along_x, ylim=along_y)
+
+
+def region(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[float, float]]:
+    """(from and to in x, the same in y) of every shape and arrow, in the unit of length of the cycles."""
+    longest = max(cycle.units.length for cycle in cycles)
+    wall, margin = -WALL_DEPTH * longest, MARGIN * longest
     along_x, along_y = [np.array([wall])], []
     for cycle in cycles:
         x, y, theta = (cycle.values[name] for name in SHAPES)
-        along_x += [x.ravel(), x[:, -1] + ARROW * np.cos(theta[:, -1])]
-        along_y += [y.ravel(), y[:, -1] + ARROW * np.sin(theta[:, -1])]
-    x, y = np.concatenate(along_x), np.concatenate(along_y)
-    for axes in panels:
-        axes.set_aspect("equal")
-        axes.set(xlim=(x.min() - 0.04, x.max() + 0.04), ylim=(y.min() - 0.04, y.max() + 0.04))
+        arrow = ARROW * cycle.units.length
+        along_x += [x.ravel(), x[:, -1] + arrow * np.cos(theta[:, -1])]
+        along_y += [y.ravel(), y[:, -1] + arrow * np.sin(theta[:, -1])]
+    along = [np.concatenate(values) for values in (along_x, along_y)]
+    (left, right), (low, high) = ((x.min() - margin, x.max() + margin) for x in along)
+    if not (left < right and low < high):
+        raise ValueError("shapes are too large")
+    return (left, right), (low, high)
 
 
 def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
-    """x and y of the tip against time in tau2, and in the paper's tau1 where there is one."""
+    """x and y of the tip against time, and also in the paper's tau1 where there is one."""
     time = np.linspace(0, end, 801, dtype=np.float64)
     for axes, values, colour in zip((upper, lower), cycle.tip, (FIRST, SECOND), strict=True):
         axes.plot(time, resampled(values, time / cycle.period), color=colour, lw=1.4)
@@ -158,4 +194,4 @@ def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
             axes.plot(at * cycle.period / len(values), values[at % len(values)], "o", color=colour, ms=2.5)
         axes.axvline(cycle.period, color="0.7", lw=0.8, ls=":")
         axes.margins(x=0)
-    label_time(upper, lower, cycle.tau1)
+    label_time(upper, lower, cycle)

@@ -13,7 +13,10 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import View
+from ...summary.ranges import rounded
+from ..arm_quantities import at_point, given_quantities, quantity_text, replaced
 from ..style import heading, parameter_text
+from .units import PLAIN_UNITS, CycleUnits, units_of
 
 MOST_CYCLES = 3
 """Cycles for which one figure has room, side by side."""
@@ -28,7 +31,7 @@ OPTIONS = dict.fromkeys(SHAPES, "shapes") | dict.fromkeys(TRACE, "transient")
 
 @dataclass(frozen=True, slots=True)
 class StoredCycle:
-    """A point: its parameters, the period in tau2 of its cycle, NaN without one, and all variables there."""
+    """A point: its parameters, the period of its cycle, NaN without one, and its variables, in `units`."""
 
     number: int
     """Of the point in the file, from 1."""
@@ -39,15 +42,35 @@ class StoredCycle:
     values: dict[str, Array]
     word: str = "cycle"
     """Its status."""
+    units: CycleUnits = PLAIN_UNITS
 
     @property
     def tau1(self) -> float:
-        """The short time scale gamma3/k2 in tau2; 0 where the rod has none."""
+        """The short time scale gamma3/k2 in tau2; 0 where the rod has none, or is an arm in SI units."""
+        if self.units.in_si:
+            return 0.0
         return self.parameters["gamma3"] / self.parameters["k2"]
 
     @property
+    def period_text(self) -> str:
+        """The period, in TeX, with the digits that its error leaves; a line may end behind the T."""
+        if self.units.in_si:
+            return f"$T$ = {self.units.told_time(self.period)}"
+        return self._period(self.period, r"\tau_2", r"T\,")
+
+    @property
+    def period_in_tau1(self) -> str:
+        """The same in tau1, where the rod has that, as another line; else nothing."""
+        return self._period(self.period / self.tau1, r"\tau_1") if 0 < self.tau1 < np.inf else ""
+
+    def _period(self, value: float, unit: str, symbol: str = "") -> str:
+        """A period in a unit, in TeX."""
+        error = float(self.values["period_error"])
+        return rf"${symbol}{{=}}$ ${in_tex(rounded(value, abs(value) * error))}\,{unit}$"
+
+    @property
     def tip(self) -> tuple[Array, Array]:
-        """x and y of the tip in L over a period: from the samples, or else from the shapes."""
+        """x and y of the tip over a period: from the samples, or else from the shapes."""
         if "tip_x" in self.values:
             return self.values["tip_x"], self.values["tip_y"]
         return self.values["shape_x"][:, -1], self.values["shape_y"][:, -1]
@@ -60,6 +83,12 @@ class StoredCycle:
     def heading(self, *lines: str) -> str:
         """The label, where there is one, above lines about the cycle, which a narrow panel has room for."""
         return "\n".join(filter(None, (self.label, *lines)))
+
+
+def in_tex(number: str) -> str:
+    """A number as `rounded` writes it, with its power of ten in TeX."""
+    mantissa, _, power = number.partition("e")
+    return rf"{mantissa}\times10^{{{int(power)}}}" if power else mantissa
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,12 +147,13 @@ def _selection(view: View, points: Sequence[int], drawable: NDArray[np.bool_], w
     numbers = list(points) or [int(index) + 1 for index in there[:MOST_CYCLES]]
     columns = view.point_columns
     parameters = [{name: float(columns[name][n - 1]) for name in columns} for n in numbers]
-    shared, own = told_apart(parameters)
+    units = units_of(view, numbers)
+    shared, own = arms_told_apart(view, numbers) if units[0].in_si else told_apart(parameters)
     cycles = []
-    for number, label, at in zip(numbers, own, parameters, strict=True):
-        values = _values(view, number)
+    for number, label, at, drawn_in in zip(numbers, own, parameters, units, strict=True):
+        values = drawn_in.drawn(_values(view, number))
         period, word = float(values["period"]), str(words[number - 1])
-        cycles.append(StoredCycle(number, label, at, period, values, word))
+        cycles.append(StoredCycle(number, label, at, period, values, word, drawn_in))
     left_out = ""
     if not points and there.size > len(cycles):
         left_out = f", the first {len(cycles)} of {there.size} {what}s (--point chooses others)"
@@ -157,3 +187,15 @@ def told_apart(parameters: Sequence[dict[str, float]]) -> tuple[str, list[str]]:
     shared = {n: v for n, v in parameters[0].items() if all(other[n] == v for other in parameters)}
     own = [parameter_text({n: v for n, v in each.items() if n not in shared}) for each in parameters]
     return parameter_text(shared), own
+
+
+def arms_told_apart(view: View, numbers: Sequence[int]) -> tuple[str, list[str]]:
+    """(what the arms at points numbered from 1 share, what tells each from the others), in typed units."""
+    texts = []
+    for number in numbers:
+        told = {n: quantity_text(view, n, at_point(view, n, number)) for n in given_quantities(view)}
+        own = {name: parameter_text({name: value}) for name, value in replaced(view, number).items()}
+        texts.append(told | own)
+    shared = {name: text for name, text in texts[0].items() if all(each[name] == text for each in texts)}
+    labels = [", ".join(text for name, text in each.items() if name not in shared) for each in texts]
+    return ", ".join(shared.values()), labels

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from ....results.file.view import View
 from ..style import FIRST, SECOND
 from .selection import CYCLE_WORDS, TRACE, StoredCycle, chosen_traces
+from .units import CycleUnits
 
 LEVEL: dict[str, Any] = {"color": "0.55", "lw": 0.8, "ls": (0, (4, 2)), "zorder": 1}
 """The look of the extrema of the cycle that the motion comes to."""
@@ -26,12 +27,12 @@ def draw_transients(view: View, points: Sequence[int], narrow: bool = False) -> 
     rows = figure.subplots(2, count, squeeze=False, sharex="col", sharey="row")
     for (upper, lower), cycle in zip(rows.T, selection.cycles, strict=True):
         draw_emergence(upper, lower, cycle)
-        ends = cycle.word.replace("_", " ")
+        ends = [cycle.word.replace("_", " ")]
         if cycle.word in CYCLE_WORDS:
-            ends += "" if narrow else " (extrema dashed)"
-            ends += rf", $T = {cycle.period:.6g}\,\tau_2$"
-        upper.set_title(cycle.heading(ends))
-    label_tip(rows[0, 0], rows[1, 0])
+            ends[0] += "" if narrow else " (extrema dashed)"
+            ends.append(cycle.period_text)
+        upper.set_title(cycle.heading(*ends))
+    label_tip(rows[0, 0], rows[1, 0], selection.cycles[0].units)
     figure.align_ylabels(rows[:, 0])
     figure.suptitle(selection.title)
     return figure, "the tip from the start on" + selection.left_out
@@ -47,20 +48,21 @@ def draw_emergence(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
         for name, sign in pair if cycle.word in CYCLE_WORDS else ():
             axes.axhline(sign * float(v[name]), **LEVEL)
         axes.margins(x=0)
-    label_time(upper, lower, cycle.tau1)
+    label_time(upper, lower, cycle)
 
 
-def label_tip(upper: Axes, lower: Axes) -> None:
+def label_tip(upper: Axes, lower: Axes, units: CycleUnits) -> None:
     """What the two panels show, in the colours of their lines."""
-    upper.set_ylabel("tip $x/L$", color=FIRST)
-    lower.set_ylabel("tip $y/L$", color=SECOND)
+    upper.set_ylabel("tip " + units.along("x"), color=FIRST)
+    lower.set_ylabel("tip " + units.along("y"), color=SECOND)
 
 
-def label_time(upper: Axes, lower: Axes, tau1: float) -> None:
-    """The time in tau2 below, and in the paper's tau1 above where there is one."""
+def label_time(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
+    """The time in the cycle's unit below, and in the paper's tau1 above where there is one."""
+    tau1 = cycle.tau1
     upper.tick_params(labelbottom=False)
     lower.axhline(0, color="0.8", lw=0.6, zorder=0)
-    lower.set_xlabel(r"time $t/\tau_2$")
+    lower.set_xlabel(cycle.units.time_label)
     if 0 < tau1 < np.inf:
         top = upper.secondary_xaxis(
             "top", functions=(lambda t: np.asarray(t) / tau1, lambda t: np.asarray(t) * tau1)
