@@ -5,7 +5,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import Array
-from ..model.algebra import ALGEBRAS, Algebra, Integers
 from ..model.balance import Material
 from .mesh import NodeMatrices
 
@@ -18,14 +17,13 @@ class NodalRod(NamedTuple):
     unknowns.
     """
 
-    algebra: Algebra
     tip_stress: Array
     rest: Array
     compliance: Array
     drag: Array
     mobility: Array
     second: Array
-    kept: Integers
+    kept: Array
 
 
 def nodal_rod(material: Material, m: NodeMatrices, kept: tuple[int, ...] = ()) -> NodalRod:
@@ -34,7 +32,7 @@ def nodal_rod(material: Material, m: NodeMatrices, kept: tuple[int, ...] = ()) -
     eliminated = [a not in kept for a in range(len(drag))]
     np.divide(1.0, drag, out=mobility, where=np.array(eliminated)[:, None])
     second = m.weak @ (mobility[:, :, None] * m.D)
-    known = ALGEBRAS[len(drag)], material.tip_stress, rest, compliance, drag, mobility, second
+    known = material.tip_stress, rest, compliance, drag, mobility, second
     return NodalRod(*known, np.array(kept, np.int64))
 
 

@@ -1,7 +1,7 @@
 """The nonlinear rod on a mesh with its stresses as unknowns: its balance, compiled.
 
-Sec. III, second formulation, in the plane and in space: only the structure constants of `model.algebra` tell
-the one from the other. The unknowns S are the stresses beyond those of the straight rod, at every node but
+Sec. III, second formulation, in the plane and in space: only the structure constants of `model.algebra`, the
+first argument `g`, tell the one from the other. The unknowns S are the stresses beyond those of the straight rod, at every node but
 the tip, where they vanish. With the compliances C and the drags Gamma of each node, the assembled
 differentiation matrix D, the nodes' weights W and E0, the strain of the straight rod under its force,
 
@@ -24,129 +24,109 @@ Jacobian is in `stress_jacobian`.
 import numpy as np
 
 from ..arrays import Array
-from ..model.algebra import add_ad, add_coad
-from ..model.compilation import compiled_for_vectors
+from ..model.algebra import Algebra
+from ..model.unrolling import OverAlgebra
 from .mesh import NodeMatrices
 from .nodal_rod import NodalRod
 from .state_layout import stresses_of, velocities_of
 
 
-@compiled_for_vectors
-def strains_and_stresses(x: Array, E: Array, Sigma: Array, c: NodalRod) -> None:
-    """E and Sigma at all nodes of a state x, both (d, nodes + 1)."""
-    d, n = E.shape[0], E.shape[1] - 1
-    S = stresses_of(x, d, n)
-    for a in range(d):
-        for i in range(n):
-            E[a, i] = c.rest[a, i] + c.compliance[a, i] * S[a, i]
-            Sigma[a, i] = c.tip_stress[a] + S[a, i]
-        E[a, n], Sigma[a, n] = c.rest[a, n], c.tip_stress[a]
-
-
-@compiled_for_vectors
-def elastic_forces(x: Array, E: Array, Sigma: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """D*_E Sigma at all nodes of a state x into out, (d, nodes + 1), as are E and Sigma there."""
-    d, size = out.shape
-    S = stresses_of(x, d, size - 1)
+@OverAlgebra
+def forces(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
+    """D*_E Sigma at all nodes of a state x into out, (d, nodes + 1)."""
+    size = len(m.weights)
     out[:, :] = 0.0
-    for a in range(d):
-        for j in range(size - 1):
-            stress = S[a, j]
-            for i in range(size):
-                out[a, i] += m.D_transposed[j, i] * stress
-    add_coad(E, Sigma, out, c.algebra)
-
-
-@compiled_for_vectors
-def weigh(V: Array, G: Array, m: NodeMatrices) -> None:
-    """From ad_E V, in G, to W ad_E V - D^T W V; both (d, nodes + 1)."""
-    d, size = V.shape
-    for a in range(d):
+    for j in range(size - 1):
+        s = [x[a * (size - 1) + j] for a in g.components]
         for i in range(size):
-            G[a, i] *= m.weights[i]
-        for j in range(size):
-            v = m.weights[j] * V[a, j]
-            for i in range(size):
-                G[a, i] -= m.D[j, i] * v
+            slope = m.D_transposed[j, i]
+            for a in g.components:
+                out[a, i] += slope * s[a]
+    for i in range(size):
+        s = [x[a * (size - 1) + i] if i < size - 1 else 0.0 for a in g.components]
+        E = [c.rest[a, i] + c.compliance[a, i] * s[a] for a in g.components]
+        force = [out[a, i] for a in g.components]
+        for a, b, o, sign in g.terms:
+            force[o] -= sign * E[b] * (c.tip_stress[a] + s[a])
+        for a in g.components:
+            out[a, i] = force[a]
 
 
-@compiled_for_vectors
-def balance(x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatrices) -> None:
+@OverAlgebra
+def strain_rates(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatrices) -> None:
+    """W D_E V, weakly, at all nodes of a state x that moves with V, into G; both (d, nodes + 1)."""
+    size = len(m.weights)
+    for i in range(size):
+        s = [x[a * (size - 1) + i] if i < size - 1 else 0.0 for a in g.components]
+        E = [c.rest[a, i] + c.compliance[a, i] * s[a] for a in g.components]
+        rate = [0.0 for _ in g.components]
+        for a, b, o, sign in g.terms:
+            rate[a] += sign * E[b] * V[o, i]
+        for a in g.components:
+            G[a, i] = m.weights[i] * rate[a]
+    add_weak_slope(g, V, G, m)
+
+
+@OverAlgebra
+def add_weak_slope(g: Algebra, V: Array, G: Array, m: NodeMatrices) -> None:
+    """Adds -D^T W V to G, both (d, nodes + 1)."""
+    size = len(m.weights)
+    for j in range(size):
+        v = [m.weights[j] * V[a, j] for a in g.components]
+        for i in range(size):
+            slope = m.D[j, i]
+            for a in g.components:
+                G[a, i] -= slope * v[a]
+
+
+@OverAlgebra
+def balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatrices) -> None:
     """V and G at all nodes of a state x, (d, nodes + 1) both; what is known of V is taken from x."""
-    d, size = V.shape
-    E, Sigma = np.empty((d, size)), np.empty((d, size))
-    strains_and_stresses(x, E, Sigma, c)
-    elastic_forces(x, E, Sigma, V, c, m)
-    for a in range(d):
-        for i in range(size):
+    size = len(m.weights)
+    forces(g, x, V, c, m)
+    for i in range(size):
+        for a in g.components:
             V[a, i] *= c.mobility[a, i]
-    known = velocities_of(x, d, size - 1)
     for k in range(len(c.kept)):
         for i in range(size):
-            V[c.kept[k], i] = known[k, i]
-    G[:, :] = 0.0
-    add_ad(E, V, G, c.algebra)
-    weigh(V, G, m)
+            V[c.kept[k], i] = x[g.dimension * (size - 1) + k * size + i]
+    strain_rates(g, x, V, G, c, m)
 
 
-@compiled_for_vectors
-def velocity_balance(x: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
+@OverAlgebra
+def velocity_balance(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
     """W (D*_E Sigma - Gamma V) at all nodes, for each unknown V, into its places in out, (unknowns,)."""
-    d, size = c.drag.shape
+    d, size = g.dimension, len(m.weights)
     known, rows = velocities_of(x, d, size - 1), velocities_of(out, d, size - 1)
-    E, Sigma, force = np.empty((d, size)), np.empty((d, size)), np.empty((d, size))
-    strains_and_stresses(x, E, Sigma, c)
-    elastic_forces(x, E, Sigma, force, c, m)
+    force = np.empty((d, size))
+    forces(g, x, force, c, m)
     for k in range(len(c.kept)):
         a = c.kept[k]
         for i in range(size):
             rows[k, i] = m.weights[i] * (force[a, i] - c.drag[a, i] * known[k, i])
 
 
-@compiled_for_vectors
-def balance_change(x: Array, V: Array, out: Array, change: NodalRod, c: NodalRod, m: NodeMatrices) -> None:
-    """The derivatives of V and G along a change of the rod into out, (2, d, nodes + 1).
+@OverAlgebra
+def balance_change(
+    g: Algebra, x: Array, V: Array, out: Array, change: NodalRod, c: NodalRod, m: NodeMatrices
+) -> None:
+    """The derivatives along a change of the rod, at the state x of which V is known, into out.
 
-    V at the state x, (d, nodes + 1), is known. What of V is an unknown does not change.
+    out, (3, d, nodes + 1): of D*_E Sigma - Gamma V at fixed V, of V and of G; what of V is an unknown does not
+    change.
     """
-    dV, dG = out[0], out[1]
-    d, size = V.shape
-    strains = np.empty((2, d, size))
-    _changed_forces(x, V, strains, dV, change, c)
-    for a in range(d):
-        for i in range(size):
-            dV[a, i] *= c.mobility[a, i]
-    dG[:, :] = 0.0
-    add_ad(strains[1], V, dG, c.algebra)
-    add_ad(strains[0], dV, dG, c.algebra)
-    weigh(dV, dG, m)
-
-
-@compiled_for_vectors
-def velocity_change(x: Array, V: Array, out: Array, change: NodalRod, c: NodalRod, m: NodeMatrices) -> None:
-    """The derivative of `velocity_balance` along a change of the rod into its places in out, (unknowns,)."""
-    d, size = V.shape
-    rows = velocities_of(out, d, size - 1)
-    strains, changed = np.empty((2, d, size)), np.empty((d, size))
-    _changed_forces(x, V, strains, changed, change, c)
-    for k in range(len(c.kept)):
-        for i in range(size):
-            rows[k, i] = m.weights[i] * changed[c.kept[k], i]
-
-
-@compiled_for_vectors
-def _changed_forces(x: Array, V: Array, strains: Array, out: Array, change: NodalRod, c: NodalRod) -> None:
-    """E and its derivative along a change of the rod into strains, (2, d, nodes + 1).
-
-    Into out, (d, nodes + 1), the derivative of D*_E Sigma - Gamma V at fixed V.
-    """
-    d, size = V.shape
-    E, dE, Sigma, dSigma = strains[0], strains[1], np.empty((d, size)), np.empty((d, size))
-    strains_and_stresses(x, E, Sigma, c)
-    strains_and_stresses(x, dE, dSigma, change)
-    for a in range(d):
-        for i in range(size):
-            dSigma[a, i] = change.tip_stress[a]  # S does not change
-            out[a, i] = -change.drag[a, i] * V[a, i]
-    add_coad(dE, Sigma, out, c.algebra)
-    add_coad(E, dSigma, out, c.algebra)
+    size = len(m.weights)
+    for i in range(size):
+        s = [x[a * (size - 1) + i] if i < size - 1 else 0.0 for a in g.components]
+        E = [c.rest[a, i] + c.compliance[a, i] * s[a] for a in g.components]
+        dE = [change.rest[a, i] + change.compliance[a, i] * s[a] for a in g.components]
+        force = [-change.drag[a, i] * V[a, i] for a in g.components]
+        for a, b, o, sign in g.terms:
+            force[o] -= sign * (dE[b] * (c.tip_stress[a] + s[a]) + E[b] * change.tip_stress[a])
+        dV = [c.mobility[a, i] * force[a] for a in g.components]
+        rate = [0.0 for _ in g.components]
+        for a, b, o, sign in g.terms:
+            rate[a] += sign * (dE[b] * V[o, i] + E[b] * dV[o])
+        for a in g.components:
+            out[0, a, i], out[1, a, i], out[2, a, i] = force[a], dV[a], m.weights[i] * rate[a]
+    add_weak_slope(g, out[1], out[2], m)

@@ -9,9 +9,8 @@ from ..arrays import Array
 from ..model.compilation import compiled_for_vectors
 from .mesh import NodeMatrices
 from .nodal_rod import NodalRod
+from .plane import balance, jacobian
 from .state_layout import stresses_of
-from .stress_balance import balance
-from .stress_jacobian import jacobian
 
 
 @compiled_for_vectors

@@ -16,14 +16,13 @@ divided by one. `rodsweep.discretization.mixed_form` is made of these functions,
 `rodsweep.discretization.stress_balance` of those of `algebra` beneath them and of the `Material`.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .algebra import ALGEBRAS, add_ad, add_coad
+from .algebra import ALGEBRAS
 from .rod import Rod
 
 Values = NDArray[Any]
@@ -35,22 +34,18 @@ IN_SPACE = [0, 1, 5]
 
 def ad(E: Values, V: Values) -> Values:
     """ad_E V, of two elements of se(2) or se(3)."""
-    return _added(add_ad, E, V)
+    out = np.zeros(np.broadcast_shapes(E.shape, V.shape), np.result_type(E, V))
+    for a, b, c, sign in ALGEBRAS[len(E)].terms:
+        out[a] += sign * E[b] * V[c]
+    return out
 
 
 def coad(E: Values, Sigma: Values) -> Values:
     """ad*_E Sigma, of an element of the algebra and one of its dual."""
-    return _added(add_coad, E, Sigma)
-
-
-def _added(add: Callable[..., None], one: Values, other: Values) -> Values:
-    """What a compiled product of two fields adds to 0, for fields of any shapes that broadcast."""
-    kind = np.result_type(one, other)
-    shape = np.broadcast_shapes(one.shape, other.shape)
-    flat = [np.array(np.broadcast_to(f, shape), kind, order="C").reshape(len(one), -1) for f in (one, other)]
-    out = np.zeros(flat[0].shape, kind)
-    add(*flat, out, ALGEBRAS[len(one)])
-    return out.reshape(shape)
+    out = np.zeros(np.broadcast_shapes(E.shape, Sigma.shape), np.result_type(E, Sigma))
+    for a, b, c, sign in ALGEBRAS[len(E)].terms:
+        out[c] -= sign * E[b] * Sigma[a]
+    return out
 
 
 def strain_rate(E: Values, V: Values, dV: Values) -> Values:

@@ -20,8 +20,7 @@ import numpy as np
 from ...arrays import Array
 from ...discretization.mesh import NodeMatrices
 from ...discretization.nodal_rod import NodalRod
-from ...discretization.stress_balance import balance
-from ...discretization.stress_jacobian import jacobian
+from ...discretization.plane import balance, jacobian
 from ...model.compilation import compiled_for_vectors
 from ..backend.products import product, square_product
 

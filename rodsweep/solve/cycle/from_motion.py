@@ -5,7 +5,7 @@ from scipy.interpolate import CubicSpline
 
 from ...arrays import Array
 from ...discretization.beam import Beam
-from ...discretization.stress_balance import balance
+from ...discretization.plane import balance
 from ...discretization.stress_form import StressForm
 from ..motion.integrator import Trajectory
 from .orbit import Orbit, node_times

@@ -9,18 +9,17 @@ from ...arrays import Array
 from ...discretization.mesh import NodeMatrices
 from ...discretization.nodal_rod import NodalRod
 from ...discretization.state_layout import BENDING, COMPONENTS, stresses_of
-from ...discretization.stress_balance import balance, balance_change
-from ...discretization.stress_jacobian import jacobian
+from ...discretization.plane import balance, balance_change, jacobian
 from ...model.compilation import compiled_for_vectors
 
 
 @compiled_for_vectors
 def phase_change(start: Array, change: NodalRod, c: NodalRod, m: NodeMatrices) -> float:
     """The derivative of `phase` at a start, (n,), by a change of the parameters, as a right side."""
-    V, G, changes = np.empty(c.drag.shape), np.empty(c.drag.shape), np.empty((2, *c.drag.shape))
+    V, G, changes = np.empty(c.drag.shape), np.empty(c.drag.shape), np.empty((3, *c.drag.shape))
     balance(start, V, G, c, m)
     balance_change(start, V, changes, change, c, m)
-    return -lateral_velocity(changes[1], tip_angle(start, m))
+    return -lateral_velocity(changes[2], tip_angle(start, m))
 
 
 @compiled_for_vectors

@@ -6,8 +6,8 @@ import numpy as np
 
 from ...arrays import Array
 from ...discretization.nodal_rod import NodalRod
-from ...discretization.state_layout import stresses_of
-from ...discretization.stress_balance import balance, balance_change, velocity_balance, velocity_change
+from ...discretization.plane import balance, balance_change, velocity_balance
+from ...discretization.state_layout import stresses_of, velocities_of
 from ...model.compilation import compiled_for_vectors
 from .condensation import Semidiscrete
 
@@ -31,22 +31,25 @@ def equations(x: Array, F: Array, V: Array, G: Array, p: Semidiscrete) -> None:
 @compiled_for_vectors
 def _take(G: Array, F: Array) -> None:
     """G at all nodes but the tip, (3, nodes + 1), into its places in F, (n,)."""
-    rows = stresses_of(F, G.shape[0], G.shape[1] - 1)
-    for a in range(G.shape[0]):
-        for i in range(G.shape[1] - 1):
-            rows[a, i] = G[a, i]
+    d, n = G.shape[0], G.shape[1] - 1
+    for a in range(d):
+        for i in range(n):
+            F[a * n + i] = G[a, i]
 
 
 @compiled_for_vectors
 def equations_change(x: Array, F: Array, V: Array, out: Array, change: NodalRod, p: Semidiscrete) -> None:
     """The derivative of `equations` along a change of the parameters into F, (n,).
 
-    V at the state x is known; out, (2, 3, nodes + 1), is made on the way.
+    V at the state x is known; out, (3, 3, nodes + 1), is made on the way.
     """
     balance_change(x, V, out, change, p.rod, p.matrices)
-    _take(out[1], F)
+    _take(out[2], F)
     if len(p.rod.kept):
-        velocity_change(x, V, F, change, p.rod, p.matrices)
+        rows = velocities_of(F, V.shape[0], V.shape[1] - 1)
+        for k in range(len(rows)):
+            for i in range(V.shape[1]):
+                rows[k, i] = p.matrices.weights[i] * out[0, p.rod.kept[k], i]
 
 
 @compiled_for_vectors
@@ -77,7 +80,7 @@ def right_sides(
     along the change of a parameter.
     """
     K, s, count, n = columns.shape
-    G, changes, slopes = np.empty(V.shape[2:]), np.empty((2, *V.shape[2:])), np.empty(n)
+    G, changes, slopes = np.empty(V.shape[2:]), np.empty((3, *V.shape[2:])), np.empty(n)
     for k in range(K):
         length = p.lengths[k]
         for i in range(s):

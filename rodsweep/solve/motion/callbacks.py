@@ -144,7 +144,7 @@ class Workspace:
         """Takes the rod, and the error of a stage (rms) at which Newton's method stops, or may stagnate."""
         self._rod = arrays_of(beam)  # these, too, are read by address
         self._set({name: array.ctypes.data for name, array in self._rod.items()})
-        self._set({"components": len(self._rod["tip_stress"]), "products": len(self._rod["signs"])})
+        self._set({"components": len(self._rod["tip_stress"])})
         root, rest = beam.layout.unknowns**0.5, np.zeros(beam.layout.unknowns)
         straight, pressed = beam.least_stretch(rest), beam.least_stretch(rest - 1)
         fresh = {"matrix_due": AT_BASE, "shift": 0.0, "last_step": 0.0, "contraction": 1.0, "measured": 0}

@@ -11,16 +11,14 @@ from ...arrays import Array
 from ...discretization.beam import Beam
 from ...discretization.mesh import NodeMatrices
 from ...discretization.nodal_rod import NodalRod
-from ...model.algebra import Algebra
 from ...model.compilation import compiled
-from ..backend.c_functions import floats, integers
+from ..backend.c_functions import floats
 
 MOST_STAGES, MOST_POINTS = 16, 8
 """Stages of a step that are remembered, and points through which the next is extrapolated."""
 
 REAL, WHOLE = "<f8", "<i8"
-ALGEBRA = Algebra._fields
-ROD = (*(name for name in NodalRod._fields if name not in {"algebra", "kept"}), "roots")
+ROD = (*(name for name in NodalRod._fields if name != "kept"), "roots")
 """Addresses of the rod that moves, and of the square roots of its compliances."""
 ARRAYS = ("jacobian", "base", "times", "states", "points", "constant", "rates")
 """Addresses of what a `Workspace` holds: the last Jacobian; the state at which a step's matrix is made;
@@ -30,10 +28,9 @@ HANDLES = ("ts", "matrix", "ksp", "residual", "correction")
 """PETSc's objects."""
 CONTEXT = np.dtype(
     [
-        *((name, WHOLE) for name in (*NodeMatrices._fields, *ALGEBRA, *ROD, *ARRAYS, *HANDLES)),
+        *((name, WHOLE) for name in (*NodeMatrices._fields, *ROD, *ARRAYS, *HANDLES)),
         ("nodes", WHOLE),  # the tip included
         ("components", WHOLE),  # of a stress
-        ("products", WHOLE),  # terms of its algebra
         ("unknowns", WHOLE),
         ("matrix_due", WHOLE),  # UP_TO_DATE, AT_BASE or AT_ITERATE
         ("shift", REAL),  # with which the matrix was made
@@ -76,21 +73,18 @@ UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
 
 
 def arrays_of(beam: Beam) -> dict[str, Array]:
-    """What `ALGEBRA` and `ROD` are the addresses of, arrays of any shapes."""
-    nodal = beam.nodal
-    own = nodal._asdict() | {"roots": beam.roots}
-    return nodal.algebra._asdict() | {name: own[name] for name in ROD}
+    """What `ROD` is the addresses of, arrays of any shapes."""
+    own = beam.nodal._asdict() | {"roots": beam.roots}
+    return {name: own[name] for name in ROD}
 
 
 @compiled
 def rod_of(c: Any) -> NodalRod:
-    d, m, t = c.components, c.nodes, c.products
-    forward, backward = integers(c.forward, d * d).reshape(d, d), integers(c.backward, d * d).reshape(d, d)
-    algebra = Algebra(integers(c.terms, 3 * t).reshape(t, 3), floats(c.signs, t), forward, backward)
+    d, m = c.components, c.nodes
     rest, compliance = floats(c.rest, d * m).reshape(d, m), floats(c.compliance, d * m).reshape(d, m)
     drag, mobility = floats(c.drag, d * m).reshape(d, m), floats(c.mobility, d * m).reshape(d, m)
     second, none = floats(c.second, d * m * m).reshape(d, m, m), np.empty(0, np.int64)
-    return NodalRod(algebra, floats(c.tip_stress, d), rest, compliance, drag, mobility, second, none)
+    return NodalRod(floats(c.tip_stress, d), rest, compliance, drag, mobility, second, none)
 
 
 @compiled
