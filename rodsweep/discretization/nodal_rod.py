@@ -26,20 +26,30 @@ class NodalRod(NamedTuple):
     kept: Array
 
 
+class NodalChange(NamedTuple):
+    """The derivative of a `NodalRod` along a parameter, of what the equations have of it."""
+
+    tip_stress: Array
+    rest: Array
+    compliance: Array
+    drag: Array
+
+
 def nodal_rod(material: Material, m: NodeMatrices, kept: tuple[int, ...] = ()) -> NodalRod:
     """A material on a mesh, of which these components of V are unknowns."""
     rest, compliance, drag, mobility = _at_nodes(material, len(m.weights))
-    eliminated = [a not in kept for a in range(len(drag))]
-    np.divide(1.0, drag, out=mobility, where=np.array(eliminated)[:, None])
+    for a in range(len(drag)):
+        if a not in kept:
+            mobility[a] = 1 / drag[a]
     second = m.weak @ (mobility[:, :, None] * m.D)
     known = material.tip_stress, rest, compliance, drag, mobility, second
     return NodalRod(*known, np.array(kept, np.int64))
 
 
-def nodal_change(change: Material, rod: NodalRod) -> NodalRod:
-    """The derivative of a rod along a change of its material; of mobility and second there is none."""
-    rest, compliance, drag, _ = _at_nodes(change, rod.drag.shape[1])
-    return rod._replace(tip_stress=change.tip_stress, rest=rest, compliance=compliance, drag=drag)
+def nodal_change(change: Material, m: NodeMatrices) -> NodalChange:
+    """A change of a material on a mesh."""
+    rest, compliance, drag, _ = _at_nodes(change, len(m.weights))
+    return NodalChange(change.tip_stress, rest, compliance, drag)
 
 
 def _at_nodes(material: Material, size: int) -> Array:

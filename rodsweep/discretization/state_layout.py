@@ -1,7 +1,7 @@
 """Where each field of a flat state lies: stresses at the nodes but the tip, then unknown velocities.
 
-Nobody else counts places in a state. Python asks a `StateLayout`, compiled code takes a view by component,
-`stresses_of` or `velocities_of`.
+Nobody else counts places in a state. Python asks a `StateLayout`, compiled code `stress_place` and
+`velocity_place`: numbers, for a view costs it as much as a sum over the nodes.
 """
 
 from dataclasses import dataclass
@@ -85,12 +85,12 @@ def plane_layout(nodes: int, kept: tuple[int, ...] = ()) -> StateLayout:
 
 
 @compiled_for_vectors
-def stresses_of(x: Array, components: int, nodes: int) -> Any:
-    """The stresses of one state at the nodes but the tip, a view (components, nodes)."""
-    return x[: components * nodes].reshape(components, nodes)
+def stress_place(a: int, node: int, nodes: int) -> int:
+    """Which of the unknowns component a of the stress at a node is."""
+    return a * nodes + node
 
 
 @compiled_for_vectors
-def velocities_of(x: Array, components: int, nodes: int) -> Any:
-    """The velocities of one state that are unknowns at all nodes, a view (velocities, nodes + 1)."""
-    return x[components * nodes :].reshape(-1, nodes + 1)
+def velocity_place(k: int, node: int, components: int, nodes: int) -> int:
+    """Which of the unknowns the k-th of the velocities that are unknown is at a node."""
+    return components * nodes + k * (nodes + 1) + node

@@ -27,8 +27,8 @@ from ..arrays import Array
 from ..model.algebra import Algebra
 from ..model.unrolling import OverAlgebra
 from .mesh import NodeMatrices
-from .nodal_rod import NodalRod
-from .state_layout import stresses_of, velocities_of
+from .nodal_rod import NodalChange, NodalRod
+from .state_layout import stress_place, velocity_place
 
 
 @OverAlgebra
@@ -37,13 +37,13 @@ def forces(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatrices) -> No
     size = len(m.weights)
     out[:, :] = 0.0
     for j in range(size - 1):
-        s = [x[a * (size - 1) + j] for a in g.components]
+        s = [x[stress_place(a, j, size - 1)] for a in g.components]
         for i in range(size):
             slope = m.D_transposed[j, i]
             for a in g.components:
                 out[a, i] += slope * s[a]
     for i in range(size):
-        s = [x[a * (size - 1) + i] if i < size - 1 else 0.0 for a in g.components]
+        s = [x[stress_place(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
         E = [c.rest[a, i] + c.compliance[a, i] * s[a] for a in g.components]
         force = [out[a, i] for a in g.components]
         for a, b, o, sign in g.terms:
@@ -57,7 +57,7 @@ def strain_rates(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeM
     """W D_E V, weakly, at all nodes of a state x that moves with V, into G; both (d, nodes + 1)."""
     size = len(m.weights)
     for i in range(size):
-        s = [x[a * (size - 1) + i] if i < size - 1 else 0.0 for a in g.components]
+        s = [x[stress_place(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
         E = [c.rest[a, i] + c.compliance[a, i] * s[a] for a in g.components]
         rate = [0.0 for _ in g.components]
         for a, b, o, sign in g.terms:
@@ -89,26 +89,26 @@ def balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatric
             V[a, i] *= c.mobility[a, i]
     for k in range(len(c.kept)):
         for i in range(size):
-            V[c.kept[k], i] = x[g.dimension * (size - 1) + k * size + i]
+            V[c.kept[k], i] = x[velocity_place(k, i, g.dimension, size - 1)]
     strain_rates(g, x, V, G, c, m)
 
 
 @OverAlgebra
 def velocity_balance(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
     """W (D*_E Sigma - Gamma V) at all nodes, for each unknown V, into its places in out, (unknowns,)."""
-    d, size = g.dimension, len(m.weights)
-    known, rows = velocities_of(x, d, size - 1), velocities_of(out, d, size - 1)
-    force = np.empty((d, size))
+    size = len(m.weights)
+    force = np.empty((g.dimension, size))
     forces(g, x, force, c, m)
     for k in range(len(c.kept)):
         a = c.kept[k]
         for i in range(size):
-            rows[k, i] = m.weights[i] * (force[a, i] - c.drag[a, i] * known[k, i])
+            place = velocity_place(k, i, g.dimension, size - 1)
+            out[place] = m.weights[i] * (force[a, i] - c.drag[a, i] * x[place])
 
 
 @OverAlgebra
 def balance_change(
-    g: Algebra, x: Array, V: Array, out: Array, change: NodalRod, c: NodalRod, m: NodeMatrices
+    g: Algebra, x: Array, V: Array, out: Array, change: NodalChange, c: NodalRod, m: NodeMatrices
 ) -> None:
     """The derivatives along a change of the rod, at the state x of which V is known, into out.
 
@@ -117,7 +117,7 @@ def balance_change(
     """
     size = len(m.weights)
     for i in range(size):
-        s = [x[a * (size - 1) + i] if i < size - 1 else 0.0 for a in g.components]
+        s = [x[stress_place(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
         E = [c.rest[a, i] + c.compliance[a, i] * s[a] for a in g.components]
         dE = [change.rest[a, i] + change.compliance[a, i] * s[a] for a in g.components]
         force = [-change.drag[a, i] * V[a, i] for a in g.components]

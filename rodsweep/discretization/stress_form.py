@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..model.balance import plane_change
-from .nodal_rod import NodalRod, nodal_change
+from .nodal_rod import NodalChange, NodalRod, nodal_change
 from .rod_on_mesh import RodOnMesh
 
 LEAST_ELIMINATED_DRAG = 1e-5
@@ -40,16 +40,16 @@ class StressForm(RodOnMesh):
     def stresses(self, x: Array) -> Array:
         return self.layout.stresses(x)
 
-    def change(self, name: str) -> NodalRod:
+    def change(self, name: str) -> NodalChange:
         """The derivative of `nodal` by a parameter, by 1/k of a stiffness k."""
-        return nodal_change(plane_change(self.rod, name), self.nodal)
+        return nodal_change(plane_change(self.rod, name), self.mesh.matrices)
 
     @cached_property
     def mass(self) -> Array:
         """The diagonal of W C, 0 for Omega, shape (unknowns,)."""
         return self.mass_of(self.nodal)
 
-    def mass_of(self, rod: NodalRod) -> Array:
+    def mass_of(self, rod: NodalRod | NodalChange) -> Array:
         """`mass` for other compliances."""
         weighted = rod.compliance * self.mesh.quadrature
         return self.layout.state(weighted, np.zeros(weighted.shape))

@@ -16,7 +16,7 @@ from ..model.algebra import Algebra
 from ..model.unrolling import OverAlgebra
 from .mesh import NodeMatrices
 from .nodal_rod import NodalRod
-from .state_layout import stresses_of
+from .state_layout import stress_place, velocity_place
 
 
 @OverAlgebra
@@ -30,28 +30,28 @@ def jacobian(
     """
     d, size = g.dimension, len(m.weights)
     n = size - 1
-    S, slopes = stresses_of(x, d, n), np.empty((d, d, size))
-    _velocity_slopes(g, S, slopes, c)
+    slopes = np.empty((d, d, size))
+    _velocity_slopes(g, x, slopes, c)
     for i in range(size):
-        rows = [J[a * n + i] if i < n else tip[a] for a in g.components]
+        rows = [J[stress_place(a, i, n)] if i < n else tip[a] for a in g.components]
         w = m.weights[i]
         A = [[0.0 for _ in g.components] for _ in g.components]
         for a, b, o, sign in g.terms:
-            A[a][o] += sign * w * (c.rest[b, i] + (c.compliance[b, i] * S[b, i] if i < n else 0.0))
+            A[a][o] += sign * w * (c.rest[b, i] + (c.compliance[b, i] * x[stress_place(b, i, n)] if i < n else 0.0))
         by = [[A[a][o] * c.mobility[o, i] if g.forward[a][o] else 0.0 for o in g.components] for a in g.components]
         for a in g.components:
             for j in range(n):
-                rows[a][a * n + j] = c.second[a, i, j]
+                rows[a][stress_place(a, j, n)] = c.second[a, i, j]
         for j in range(n):
             weak, slope = m.weak[i, j], m.D[i, j]
             for a in g.components:
                 for b in g.components:
                     if g.forward[a][b]:
-                        rows[a][b * n + j] = weak * slopes[a, b, j] + by[a][b] * slope
+                        rows[a][stress_place(b, j, n)] = weak * slopes[a, b, j] + by[a][b] * slope
                     elif g.backward[a][b]:
-                        rows[a][b * n + j] = weak * slopes[a, b, j]
+                        rows[a][stress_place(b, j, n)] = weak * slopes[a, b, j]
                     elif a != b:
-                        rows[a][b * n + j] = 0.0
+                        rows[a][stress_place(b, j, n)] = 0.0
         if i < n:
             same = [[0.0 for _ in g.components] for _ in g.components]
             for a, b, o, sign in g.terms:
@@ -63,9 +63,9 @@ def jacobian(
                             same[a][b] += A[a][o] * slopes[o, b, i]
             for a in g.components:
                 for b in g.components:
-                    rows[a][b * n + i] += same[a][b]
+                    rows[a][stress_place(b, i, n)] += same[a][b]
         for k in range(len(c.kept)):
-            first = d * n + k * size
+            first = velocity_place(k, 0, d, n)
             for a in g.components:
                 for j in range(size):
                     rows[a][first + j] = m.weak[i, j] if c.kept[k] == a else 0.0
@@ -73,15 +73,15 @@ def jacobian(
                     if g.forward[a][o] and c.kept[k] == o:
                         rows[a][first + i] += A[a][o]
     for k in range(len(c.kept)):
-        _kept_rows(g, k, S, J, c, m)
+        _kept_rows(g, k, x, J, c, m)
 
 
 @OverAlgebra
-def _velocity_slopes(g: Algebra, S: Array, slopes: Array, c: NodalRod) -> None:
-    """Mobility B at all nodes into slopes, (d, d, nodes + 1), where it does not vanish; S (d, nodes)."""
-    n = S.shape[1]
+def _velocity_slopes(g: Algebra, x: Array, slopes: Array, c: NodalRod) -> None:
+    """Mobility B at all nodes into slopes, (d, d, nodes + 1), where it does not vanish."""
+    n = slopes.shape[2] - 1
     for i in range(n + 1):
-        s = [S[a, i] if i < n else 0.0 for a in g.components]
+        s = [x[stress_place(a, i, n)] if i < n else 0.0 for a in g.components]
         B = [[0.0 for _ in g.components] for _ in g.components]
         for a, b, o, sign in g.terms:
             B[o][a] -= sign * (c.rest[b, i] + c.compliance[b, i] * s[b])
@@ -93,18 +93,18 @@ def _velocity_slopes(g: Algebra, S: Array, slopes: Array, c: NodalRod) -> None:
 
 
 @OverAlgebra
-def _kept_rows(g: Algebra, k: int, S: Array, J: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """The rows of the balance of the k-th of the V that are unknowns into J; S (d, nodes)."""
+def _kept_rows(g: Algebra, k: int, x: Array, J: Array, c: NodalRod, m: NodeMatrices) -> None:
+    """The rows of the balance of the k-th of the V that are unknowns into J."""
     d, size, n, of = g.dimension, len(m.weights), len(m.weights) - 1, c.kept[k]
-    first = d * n + k * size
+    first = velocity_place(k, 0, d, n)
     for i in range(size):
         row, w = J[first + i], m.weights[i]
         row[:] = 0.0
         for j in range(n):
-            row[of * n + j] = w * m.D[i, j]
+            row[stress_place(of, j, n)] = w * m.D[i, j]
         row[first + i] = -w * c.drag[of, i]
         if i < n:
             for a, b, o, sign in g.terms:
                 if o == of:
-                    row[a * n + i] -= w * sign * (c.rest[b, i] + c.compliance[b, i] * S[b, i])
-                    row[b * n + i] -= w * sign * c.compliance[b, i] * (c.tip_stress[a] + S[a, i])
+                    row[stress_place(a, i, n)] -= w * sign * (c.rest[b, i] + c.compliance[b, i] * x[stress_place(b, i, n)])
+                    row[stress_place(b, i, n)] -= w * sign * c.compliance[b, i] * (c.tip_stress[a] + x[stress_place(a, i, n)])

@@ -10,7 +10,7 @@ from ..model.compilation import compiled_for_vectors
 from .mesh import NodeMatrices
 from .nodal_rod import NodalRod
 from .plane import balance, jacobian
-from .state_layout import stresses_of
+from .state_layout import stress_place
 
 
 @compiled_for_vectors
@@ -20,20 +20,19 @@ def rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> No
     V, G, x = np.empty((d, size)), np.empty((d, size)), np.empty(len(z))
     _unscale(z, x, roots)
     balance(x, V, G, c, m)
-    slopes = stresses_of(out, d, size - 1)
     for a in range(d):
         for i in range(size - 1):
-            slopes[a, i] = G[a, i] / (m.weights[i] * roots[a, i])
+            out[stress_place(a, i, size - 1)] = G[a, i] / (m.weights[i] * roots[a, i])
 
 
 @compiled_for_vectors
 def _unscale(z: Array, x: Array, roots: Array) -> None:
     """S of z = C^(1/2) S into x, both (unknowns,)."""
     d, n = roots.shape[0], roots.shape[1] - 1
-    scaled, S = stresses_of(z, d, n), stresses_of(x, d, n)
     for a in range(d):
         for i in range(n):
-            S[a, i] = scaled[a, i] / roots[a, i]
+            at = stress_place(a, i, n)
+            x[at] = z[at] / roots[a, i]
 
 
 @compiled_for_vectors
@@ -46,11 +45,11 @@ def rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatric
     balance(x, V, G, c, m)
     jacobian(x, V, J, tip, c, m)
     scale, inverse = np.empty(unknowns), np.empty(unknowns)
-    rows, columns = stresses_of(scale, d, size - 1), stresses_of(inverse, d, size - 1)
     for a in range(d):
         for i in range(size - 1):
-            columns[a, i] = 1 / roots[a, i]
-            rows[a, i] = columns[a, i] / m.weights[i]
+            at = stress_place(a, i, size - 1)
+            inverse[at] = 1 / roots[a, i]
+            scale[at] = inverse[at] / m.weights[i]
     for p in range(unknowns):
         for q in range(unknowns):
             out[q, p] = scale[p] * inverse[q] * J[p, q]

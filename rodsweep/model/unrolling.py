@@ -54,18 +54,19 @@ class OverAlgebra(Generic[P, R]):
         definition.decorator_list, definition.returns = [], None
         for argument in definition.args.args:
             argument.annotation = None
-        names = {name: value.of(g) if isinstance(value, OverAlgebra) else value for name, value in self._reads()}
-        others = {name for name, value in self._reads() if isinstance(value, OverAlgebra)}
+        namespace = {"__name__": self.function.__module__}
+        others = set()
+        for name in {part.id for part in ast.walk(definition) if isinstance(part, ast.Name)}:
+            value = self.function.__globals__.get(name)
+            if isinstance(value, OverAlgebra):
+                others.add(name)
+                namespace[name] = value.of(g)
+            elif name in self.function.__globals__:
+                namespace[name] = value
         tree.body = [_Writer({first: g, **ALWAYS}, set(), others).visit(definition)]
-        namespace = {"__name__": self.function.__module__, **names}
         exec(compile(ast.fix_missing_locations(tree), self.function.__code__.co_filename, "exec"), namespace)
         written: Any = namespace[definition.name]
         return written
-
-    def _reads(self) -> Iterable[tuple[str, Any]]:
-        """The global names of the function and what they are."""
-        known = self.function.__globals__
-        return [(name, known[name]) for name in self.function.__code__.co_names if name in known]
 
 
 class _Writer(ast.NodeTransformer):

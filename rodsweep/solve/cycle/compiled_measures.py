@@ -6,7 +6,7 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...discretization.periodic import hermite_columns, maxima, minima, sampled_columns
-from ...discretization.state_layout import stresses_of
+from ...discretization.state_layout import stress_place
 from ...discretization.tip_motion import TipMatrices, tip_motion
 from ...model.compilation import compiled_for_vectors
 from .condensation import Semidiscrete, powers, strain_rates
@@ -63,9 +63,9 @@ def node_strains(states: Array, p: Semidiscrete, out: Array) -> None:
     c, n = p.rod, len(p.matrices.weights) - 1
     for a in range(len(out)):
         for k in range(len(states)):
-            S = stresses_of(states[k], len(out), n)
             for i in range(n):
-                out[a, k, i] = c.rest[a, i] + c.compliance[a, i] * S[a, i]
+                stress = states[k, stress_place(a, i, n)]
+                out[a, k, i] = c.rest[a, i] + c.compliance[a, i] * stress
             out[a, k, n] = c.rest[a, n]
 
 
@@ -97,7 +97,7 @@ def means(stages: Array, weights: Array, p: Semidiscrete) -> Means:
             square[a] += weights[i % s] * p.lengths[i // s] * (power[a, i] - mean[a]) ** 2
     stretch = p.rod.rest[0, nodes]  # at the tip
     for i in range(K * s):
-        pull = stresses_of(flat[i], len(p.rod.drag), nodes)[0]
         for j in range(nodes):
-            stretch = min(stretch, p.rod.rest[0, j] + p.rod.compliance[0, j] * pull[j])
+            pull = flat[i, stress_place(0, j, nodes)]
+            stretch = min(stretch, p.rod.rest[0, j] + p.rod.compliance[0, j] * pull)
     return Means(mean[0], np.sqrt(square[0]), mean[1], np.sqrt(square[1]), stretch)

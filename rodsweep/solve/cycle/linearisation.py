@@ -9,7 +9,8 @@ from math import prod
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...discretization.state_layout import COMPONENTS, stresses_of
+from ...discretization.nodal_rod import NodalChange
+from ...discretization.state_layout import COMPONENTS, stress_place
 from ...discretization.stress_form import StressForm
 from ...model.compilation import compiled_for_vectors
 from ...model.parameters import PARAMETERS
@@ -69,8 +70,7 @@ class Linearisation:
         self.orbit = orbit
         self._workspace = NewtonWorkspace(orbit.intervals, orbit.stages, orbit.form.unknowns)
         p, factors = orbit.semidiscrete, self._workspace.factors
-        still = Along(p.rod, p.mass)  # what is not read
-        along = still if parameter is None else change_along(orbit.form, parameter)
+        along = Along(STILL, p.mass) if parameter is None else change_along(orbit.form, parameter)
         count = 2 if parameter is None else 3
         steps, self._by_period = linearise(orbit.values, count, along, p, factors)
         self.step, self.tangent = steps[0], None if parameter is None else steps[1]
@@ -108,6 +108,10 @@ def release_workspace() -> None:
 def coordinate(name: str, value: float) -> float:
     """In what a branch is followed: 1/value of a stiffness, for cycles are smooth up to inf, or the value."""
     return 1 / value if PARAMETERS[name].by_compliance else value
+
+
+STILL = NodalChange(np.zeros(0), *np.zeros((3, 0, 0)))
+"""No change of the rod: nothing of it is read."""
 
 
 def change_along(form: StressForm, name: str) -> Along:
@@ -231,11 +235,10 @@ def largest_change(values: Array, step: Array, unknowns: int, nodes: int) -> flo
             return np.inf
     most, size = np.zeros(COMPONENTS), np.zeros(COMPONENTS)
     for first in range(unknowns, len(values) - 1, unknowns):
-        state = stresses_of(values[first:], COMPONENTS, nodes)
-        changes = stresses_of(step[first:], COMPONENTS, nodes)
         for a in range(1, COMPONENTS):
             for i in range(nodes):
-                most[a], size[a] = max(most[a], abs(changes[a, i])), max(size[a], abs(state[a, i]))
+                at = first + stress_place(a, i, nodes)
+                most[a], size[a] = max(most[a], abs(step[at])), max(size[a], abs(values[at]))
     for a in range(1, COMPONENTS):
         largest = max(largest, most[a] / size[a])
     return largest

@@ -15,7 +15,7 @@ from ...arrays import Array
 from ...discretization.collocation import radau
 from ...discretization.mesh import Mesh, mesh
 from ...discretization.resolution import LARGEST_ORDER
-from ...discretization.state_layout import COMPONENTS, plane_layout, stresses_of
+from ...discretization.state_layout import COMPONENTS, plane_layout, stress_place
 from ...model.compilation import compiled_for_vectors
 from .orbit import Orbit
 
@@ -149,14 +149,13 @@ def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array
     nodes = elements * (size - 1)
     largest, c = np.zeros((COMPONENTS, size)), np.empty(size)
     for k in range(len(states)):
-        S = stresses_of(states[k], COMPONENTS, nodes)
         for a in range(COMPONENTS):
             for e in range(elements):
-                first = e * (size - 1)
+                first = stress_place(a, e * (size - 1), nodes)
                 known = size if e < elements - 1 else size - 1  # at the tip stresses vanish
                 c[:] = 0.0
                 for j in range(known):
-                    stress = S[a, first + j]
+                    stress = states[k, first + j]
                     for i in range(size):
                         c[i] += stress * analysis[j, i]
                 for i in range(size):
@@ -191,13 +190,12 @@ def largest_end(points: Array, elements: int, analysis: Array) -> float:
     for a in range(COMPONENTS):
         largest, end = 0.0, 0.0
         for k in range(len(points)):
-            S = stresses_of(points[k], COMPONENTS, nodes)[a]
             for e in range(elements):
-                first = e * (size - 1)
+                first = stress_place(a, e * (size - 1), nodes)
                 known = size if e < elements - 1 else size - 1  # at the tip stresses vanish
                 c[:] = 0.0
                 for j in range(known):
-                    stress = S[first + j]
+                    stress = points[k, first + j]
                     largest = max(largest, abs(stress))
                     for i in range(count):
                         c[i] += stress * analysis[j, i]
@@ -231,14 +229,17 @@ def largest_tail(points: Array, row: Array, nodes: int) -> float:
         largest, tail = 0.0, 0.0
         for m in range(len(points)):
             size = 0.0
-            for stress in stresses_of(points[m], COMPONENTS, nodes)[a]:
-                size += stress**2
+            for i in range(nodes):
+                size += points[m, stress_place(a, i, nodes)] ** 2
             largest = max(largest, size)
         for k in range(0, len(points) - 1, s):
-            top = np.zeros(nodes)
-            for j in range(s + 1):
-                top += row[j] * stresses_of(points[k + j], COMPONENTS, nodes)[a]
-            tail = max(tail, (top**2).sum())
+            size = 0.0
+            for i in range(nodes):
+                top = 0.0
+                for j in range(s + 1):
+                    top += row[j] * points[k + j, stress_place(a, i, nodes)]
+                size += top**2
+            tail = max(tail, size)
         worst = max(worst, np.sqrt(tail / max(largest, 1e-300)))
     return float(worst)
 

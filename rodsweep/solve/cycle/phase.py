@@ -7,14 +7,14 @@ import numpy as np
 
 from ...arrays import Array
 from ...discretization.mesh import NodeMatrices
-from ...discretization.nodal_rod import NodalRod
-from ...discretization.state_layout import BENDING, COMPONENTS, stresses_of
+from ...discretization.nodal_rod import NodalChange, NodalRod
+from ...discretization.state_layout import BENDING, COMPONENTS, stress_place
 from ...discretization.plane import balance, balance_change, jacobian
 from ...model.compilation import compiled_for_vectors
 
 
 @compiled_for_vectors
-def phase_change(start: Array, change: NodalRod, c: NodalRod, m: NodeMatrices) -> float:
+def phase_change(start: Array, change: NodalChange, c: NodalRod, m: NodeMatrices) -> float:
     """The derivative of `phase` at a start, (n,), by a change of the parameters, as a right side."""
     V, G, changes = np.empty(c.drag.shape), np.empty(c.drag.shape), np.empty((3, *c.drag.shape))
     balance(start, V, G, c, m)
@@ -40,9 +40,8 @@ def lateral_velocity(G: Array, theta: float) -> float:
 def tip_angle(x: Array, m: NodeMatrices) -> float:
     """theta at the tip of a state, (n,)."""
     theta, nodes = 0.0, len(m.weights) - 1
-    moments = stresses_of(x, COMPONENTS, nodes)[BENDING]
     for i in range(nodes):
-        theta += m.weights[i] * moments[i]
+        theta += m.weights[i] * x[stress_place(BENDING, i, nodes)]
     return theta
 
 
@@ -57,6 +56,5 @@ def phase_row(start: Array, c: NodalRod, m: NodeMatrices, row: Array) -> None:
     sin, cos = np.sin(theta), np.cos(theta)
     for i in range(n):
         row[i] = -(sin * tip[0, i] + cos * tip[1, i])
-    by_moments = stresses_of(row, COMPONENTS, nodes)[BENDING]
     for i in range(nodes):
-        by_moments[i] += (sin * G[1, nodes] - cos * G[0, nodes]) * m.weights[i]
+        row[stress_place(BENDING, i, nodes)] += (sin * G[1, nodes] - cos * G[0, nodes]) * m.weights[i]

@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array
-from ...discretization.nodal_rod import NodalRod
+from ...discretization.nodal_rod import NodalChange
 from ...discretization.plane import balance, balance_change, velocity_balance
-from ...discretization.state_layout import stresses_of, velocities_of
+from ...discretization.state_layout import stress_place, velocity_place
 from ...model.compilation import compiled_for_vectors
 from .condensation import Semidiscrete
 
@@ -15,7 +15,7 @@ from .condensation import Semidiscrete
 class Along(NamedTuple):
     """How the rod changes along a parameter: the rod itself, and the mass, (n,), per unit of it."""
 
-    change: NodalRod
+    change: NodalChange
     mass: Array
 
 
@@ -34,22 +34,21 @@ def _take(G: Array, F: Array) -> None:
     d, n = G.shape[0], G.shape[1] - 1
     for a in range(d):
         for i in range(n):
-            F[a * n + i] = G[a, i]
+            F[stress_place(a, i, n)] = G[a, i]
 
 
 @compiled_for_vectors
-def equations_change(x: Array, F: Array, V: Array, out: Array, change: NodalRod, p: Semidiscrete) -> None:
+def equations_change(x: Array, F: Array, V: Array, out: Array, change: NodalChange, p: Semidiscrete) -> None:
     """The derivative of `equations` along a change of the parameters into F, (n,).
 
     V at the state x is known; out, (3, 3, nodes + 1), is made on the way.
     """
     balance_change(x, V, out, change, p.rod, p.matrices)
     _take(out[2], F)
-    if len(p.rod.kept):
-        rows = velocities_of(F, V.shape[0], V.shape[1] - 1)
-        for k in range(len(rows)):
-            for i in range(V.shape[1]):
-                rows[k, i] = p.matrices.weights[i] * out[0, p.rod.kept[k], i]
+    d, size = V.shape
+    for k in range(len(p.rod.kept)):
+        for i in range(size):
+            F[velocity_place(k, i, d, size - 1)] = p.matrices.weights[i] * out[0, p.rod.kept[k], i]
 
 
 @compiled_for_vectors
