@@ -55,7 +55,7 @@ def equations(x, rod, grid):
 
 @MESHES
 def test_plane_states_of_space_are_those_of_the_plane(grid):
-    plane, space = (nodal_rod(material, grid.matrices) for material in (PLANE, SPACE))
+    plane, space = (nodal_rod(material, grid) for material in (PLANE, SPACE))
     x, n = state(plane, grid), grid.nodes
     at = np.concatenate([np.arange(a * n, (a + 1) * n) for a in IN_SPACE])
     there = np.zeros(6 * n)
@@ -80,7 +80,7 @@ def test_plane_states_of_space_are_those_of_the_plane(grid):
 @pytest.mark.parametrize("uniform", [True, False], ids=["uniform", "tapered"])
 def test_power_of_the_stresses_is_lost_to_the_fluid(material, grid, uniform):
     """The energy law: with the tip's stress, whose power is that of the force, to rounding on any mesh."""
-    rod = nodal_rod(material if uniform else tapered(material, grid), grid.matrices)
+    rod = nodal_rod(material if uniform else tapered(material, grid), grid)
     x = state(rod, grid)
     V, G = balanced(x, rod, grid)
     Sigma = np.tile(rod.tip_stress[:, None], grid.nodes + 1)
@@ -94,7 +94,7 @@ def test_power_of_the_stresses_is_lost_to_the_fluid(material, grid, uniform):
 @pytest.mark.parametrize("uniform", [True, False], ids=["uniform", "tapered"])
 @pytest.mark.parametrize("kept", [(), (2,), (0, 2)], ids=["eliminated", "one kept", "two kept"])
 def test_jacobian_is_the_derivative_of_the_equations(material, grid, uniform, kept):
-    rod = nodal_rod(material if uniform else tapered(material, grid), grid.matrices, kept)
+    rod = nodal_rod(material if uniform else tapered(material, grid), grid, kept)
     x, d, n = state(rod, grid), len(rod.tip_stress), grid.nodes
     V, _ = balanced(x, rod, grid)
     J, tip = np.full((len(x),) * 2, np.nan), np.full((d, len(x)), np.nan)
@@ -112,7 +112,7 @@ def test_jacobian_is_the_derivative_of_the_equations(material, grid, uniform, ke
 @MESHES
 def test_a_rod_turned_about_its_axis_moves_turned(grid):
     turn = np.array([[1, 0, 0], [0, np.cos(0.8), -np.sin(0.8)], [0, np.sin(0.8), np.cos(0.8)]])
-    turn, rod = np.kron(np.eye(2), turn), nodal_rod(SPACE, grid.matrices)
+    turn, rod = np.kron(np.eye(2), turn), nodal_rod(SPACE, grid)
     x = state(rod, grid)
     turned = (turn @ x.reshape(6, -1)).ravel()
     for here, there in zip(balanced(x, rod, grid), balanced(turned, rod, grid), strict=True):

@@ -1,12 +1,16 @@
 """One rod at the nodes of a mesh: compliances and drags as arrays over these, for compiled functions."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..model.balance import Material
-from .mesh import NodeMatrices
+from .mesh import Mesh
+
+Integers = NDArray[np.int64]
 
 
 class NodalRod(NamedTuple):
@@ -23,7 +27,7 @@ class NodalRod(NamedTuple):
     drag: Array
     mobility: Array
     second: Array
-    kept: Array
+    kept: Integers
 
 
 class NodalChange(NamedTuple):
@@ -35,26 +39,42 @@ class NodalChange(NamedTuple):
     drag: Array
 
 
-def nodal_rod(material: Material, m: NodeMatrices, kept: tuple[int, ...] = ()) -> NodalRod:
+def nodal_rod(material: Material, grid: Mesh, kept: tuple[int, ...] = ()) -> NodalRod:
     """A material on a mesh, of which these components of V are unknowns."""
-    rest, compliance, drag, mobility = _at_nodes(material, len(m.weights))
-    for a in range(len(drag)):
-        if a not in kept:
-            mobility[a] = 1 / drag[a]
-    second = m.weak @ (mobility[:, :, None] * m.D)
-    known = material.tip_stress, rest, compliance, drag, mobility, second
-    return NodalRod(*known, np.array(kept, np.int64))
+    size = grid.nodes + 1
+    rest, compliance = _at_nodes(material.rest, size), _at_nodes(material.compliance, size)
+    if material.drag.ndim == 1:
+        resistance = _uniform_resistance(tuple(material.drag.tolist()), grid, kept)
+    else:
+        resistance = _resistance(material.drag, grid, kept)
+    return NodalRod(material.tip_stress, rest, compliance, *resistance)
 
 
-def nodal_change(change: Material, m: NodeMatrices) -> NodalChange:
+def nodal_change(change: Material, grid: Mesh) -> NodalChange:
     """A change of a material on a mesh."""
-    rest, compliance, drag, _ = _at_nodes(change, len(m.weights))
-    return NodalChange(change.tip_stress, rest, compliance, drag)
+    fields = change.rest, change.compliance, change.drag
+    return NodalChange(change.tip_stress, *(_at_nodes(field, grid.nodes + 1) for field in fields))
 
 
-def _at_nodes(material: Material, size: int) -> Array:
-    """rest, compliance and drag of every component at every node, and zeros, (4, d, size)."""
-    out = np.zeros((4, len(material.drag), size))
-    for rows, field in zip(out, (material.rest, material.compliance, material.drag), strict=False):
-        rows[:] = field.reshape(len(field), -1)
+@lru_cache(maxsize=64)
+def _uniform_resistance(
+    drag: tuple[float, ...], grid: Mesh, kept: tuple[int, ...]
+) -> tuple[Array, Array, Array, Integers]:
+    """`_resistance` of a uniform rod: rods of a chain over F share it."""
+    return _resistance(np.array(drag)[:, None], grid, kept)
+
+
+def _resistance(drag: Array, grid: Mesh, kept: tuple[int, ...]) -> tuple[Array, Array, Array, Integers]:
+    """drag, mobility, second and kept of a `NodalRod`."""
+    drag = _at_nodes(drag, grid.nodes + 1)
+    mobility, eliminated = np.zeros(drag.shape), [a for a in range(len(drag)) if a not in kept]
+    mobility[eliminated] = 1 / drag[eliminated]
+    second = grid.matrices.weak @ (mobility[:, :, None] * grid.matrices.D)
+    return drag, mobility, second, np.array(kept, np.int64)
+
+
+def _at_nodes(field: Array, size: int) -> Array:
+    """A constant of each component, or one at each node, at all nodes, (d, size)."""
+    out = np.empty((len(field), size))
+    out[:] = field.reshape(len(field), -1)
     return out

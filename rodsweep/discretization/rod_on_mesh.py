@@ -52,7 +52,7 @@ class RodOnMesh(ABC):
     @cached_property
     def nodal(self) -> NodalRod:
         """The rod as the compiled functions take it."""
-        return nodal_rod(self.material, self.mesh.matrices, self.kept)
+        return nodal_rod(self.material, self.mesh, self.kept)
 
     def strains(self, x: Values) -> Values:
         """(h1, h2, Pi) at all nodes, the tip included, shape (3, ..., nodes + 1)."""

@@ -71,6 +71,13 @@ class StateLayout:
         """
         return np.concatenate([*S[..., :-1], *(V[a] for a in self.kept)], axis=-1)
 
+    def carried(self, x: Array, E: Array) -> Array:
+        """States x on another mesh; E: from all nodes to all there, (nodes there + 1, nodes + 1)."""
+        split = self.components * self.nodes
+        places = [slice(first, first + self.nodes) for first in range(0, split, self.nodes)]
+        parts = [x[..., here] @ E[:-1, :-1].T for here in places]
+        return np.concatenate([*parts, *(self.velocities(x) @ E.T if self.kept else ())], axis=-1)
+
     def row(self, values: dict[str, Array]) -> Array:
         """A row (unknowns,) with these numbers, (nodes,), where a stress lies and 0 elsewhere."""
         row = np.zeros(self.unknowns)

@@ -42,7 +42,7 @@ class StressForm(RodOnMesh):
 
     def change(self, name: str) -> NodalChange:
         """The derivative of `nodal` by a parameter, by 1/k of a stiffness k."""
-        return nodal_change(plane_change(self.rod, name), self.mesh.matrices)
+        return nodal_change(plane_change(self.rod, name), self.mesh)
 
     @cached_property
     def mass(self) -> Array:

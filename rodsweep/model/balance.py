@@ -73,12 +73,12 @@ class Material:
     @property
     def straight(self) -> Values:
         """Ebar, the undeformed rod: (1, 0, 0) or (1, 0, 0; 0, 0, 0)."""
-        return np.eye(len(self.drag))[0]
+        return _first(1.0, len(self.drag))
 
     @property
     def tip_stress(self) -> Values:
         """Sigma(1)."""
-        return -self.F * self.straight
+        return _first(-self.F, len(self.drag))
 
     def strain(self, Sigma: Values) -> Values:
         """E = Ebar + C Sigma."""
@@ -100,14 +100,14 @@ class Material:
 def plane_material(rod: Rod, gamma1: float) -> Material:
     """The rod that moves in the plane."""
     compliance, drag = np.array([rod.c1, rod.c2, 1.0]), np.array([gamma1, 1.0, rod.gamma3], float)
-    return Material(compliance, drag, rod.F, rod.nu * np.eye(3)[0])
+    return Material(compliance, drag, rod.F, _first(rod.nu, 3))
 
 
 def space_material(rod: Rod, gamma1: float, twist_stiffness: float, twist_drag: float) -> Material:
     """The rod that moves in space; twist stiffness in k3, twist drag in gamma2 L^2."""
     compliance = np.array([rod.c1, rod.c2, rod.c2, 1 / twist_stiffness, 1.0, 1.0])
     drag = np.array([gamma1, 1.0, 1.0, twist_drag, rod.gamma3, rod.gamma3])
-    return Material(compliance, drag, rod.F, rod.nu * np.eye(6)[0])
+    return Material(compliance, drag, rod.F, _first(rod.nu, 6))
 
 
 COMPLIANCES, DRAGS = {"k1": [0], "k2": [1]}, {"gamma1": [0], "gamma3": [2]}
@@ -119,8 +119,7 @@ def plane_change(rod: Rod, name: str) -> Material:
     compliance, drag, F = np.zeros(3), np.zeros(3), float(name == "F")
     compliance[COMPLIANCES.get(name, [])] = 1.0
     drag[DRAGS.get(name, [])] = 1.0
-    rest = -(F * rod.c1 + rod.F * compliance[0]) * np.eye(3)[0]
-    return Material(compliance, drag, F, rest)
+    return Material(compliance, drag, F, _first(-(F * rod.c1 + rod.F * compliance[0]), 3))
 
 
 def in_space(plane: Values) -> Values:
@@ -128,6 +127,13 @@ def in_space(plane: Values) -> Values:
     space = np.zeros((6, *plane.shape[1:]), plane.dtype)
     space[IN_SPACE] = plane
     return space
+
+
+def _first(number: float, size: int) -> Values:
+    """An element of which only the first component is not 0, (size,)."""
+    element = np.zeros(size)
+    element[0] = number
+    return element
 
 
 def _along(diagonal: Values, field: Values) -> Values:

@@ -105,7 +105,7 @@ class Orbit:
         if there != here:
             points = between_intervals(here, there) @ points
         if grid is not self.form.mesh:
-            points = moved_to(self.form, form, points)
+            points = self.form.layout.carried(points, transfer(self.form.mesh, grid))
         return replace(
             self,
             form=form,
@@ -168,11 +168,3 @@ def piecewise(source: tuple[int, int], times: Array) -> csr_array:
     columns = first[:, None] + np.arange(s + 1)
     rows = np.arange(0, weights.size + 1, s + 1)
     return csr_array((weights.ravel(), columns.ravel(), rows), shape=(len(times), 1 + K * s))
-
-
-def moved_to(source: StressForm, target: StressForm, x: Array) -> Array:
-    """States (..., n) of one mesh on another."""
-    E = transfer(source.mesh, target.mesh)
-    S, V = source.layout.stresses(x) @ E.T, np.zeros((source.layout.components, *x.shape[:-1], len(E)))
-    V[list(source.layout.kept)] = source.layout.velocities(x) @ E.T
-    return target.layout.state(S, V)
