@@ -7,7 +7,7 @@ import pytest
 
 from rodsweep.discretization.mesh import mesh
 from rodsweep.discretization.stress_form import StressForm
-from rodsweep.discretization.stress_jacobian import jacobian
+from rodsweep.discretization.plane import jacobian
 from rodsweep.model.parameters import NONLINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.bordered import BorderedMatrix, Scale

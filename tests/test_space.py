@@ -8,9 +8,9 @@ from scipy.linalg import expm
 
 from rodsweep.discretization.mesh import mesh
 from rodsweep.discretization.nodal_rod import nodal_rod
-from rodsweep.discretization.stress_balance import balance, velocity_balance, weigh
+from rodsweep.discretization.stress_balance import balance, strain_rates, velocity_balance
 from rodsweep.discretization.stress_jacobian import jacobian
-from rodsweep.model.algebra import SE3, add_ad
+from rodsweep.model.algebra import ALGEBRAS, SE3
 from rodsweep.model.balance import IN_SPACE, ad, plane_material, space_material
 from rodsweep.model.rod import Rod
 
@@ -41,7 +41,7 @@ def state(rod, grid):
 def balanced(x, rod, grid):
     """V and G at all nodes, (d, nodes + 1)."""
     V, G = np.empty((2, *rod.drag.shape))
-    balance(x, V, G, rod, grid.matrices)
+    balance.of(ALGEBRAS[len(V)])(x, V, G, rod, grid.matrices)
     return V, G
 
 
@@ -49,7 +49,7 @@ def equations(x, rod, grid):
     """G at all nodes, (d, nodes + 1), and the balance of what is unknown of V, flat."""
     _, G = balanced(x, rod, grid)
     out = np.empty(len(x))
-    velocity_balance(x, out, rod, grid.matrices)
+    velocity_balance.of(ALGEBRAS[len(G)])(x, out, rod, grid.matrices)
     return np.append(G.ravel(), out[len(G) * grid.nodes :])
 
 
@@ -64,7 +64,7 @@ def test_plane_states_of_space_are_those_of_the_plane(grid):
     for rod, here in ((plane, x), (space, there)):
         V, G = balanced(here, rod, grid)
         J, tip = np.empty((len(here),) * 2), np.empty((len(V), len(here)))
-        jacobian(here, V, J, tip, rod, grid.matrices)
+        jacobian.of(ALGEBRAS[len(V)])(here, V, J, tip, rod, grid.matrices)
         jacobians.append((V, G, J, tip))
     (V, G, J, tip), (V_space, G_space, J_space, tip_space) = jacobians
     for ours, theirs in ((V_space, V), (G_space, G)):
@@ -98,7 +98,7 @@ def test_jacobian_is_the_derivative_of_the_equations(material, grid, uniform, ke
     x, d, n = state(rod, grid), len(rod.tip_stress), grid.nodes
     V, _ = balanced(x, rod, grid)
     J, tip = np.full((len(x),) * 2, np.nan), np.full((d, len(x)), np.nan)
-    jacobian(x, V, J, tip, rod, grid.matrices)
+    jacobian.of(ALGEBRAS[d])(x, V, J, tip, rod, grid.matrices)
     whole = np.concatenate([J[: d * n].reshape(d, n, -1), tip[:, None]], axis=1).reshape(d * (n + 1), -1)
     whole = np.concatenate([whole, J[d * n :]])
     for k, step in enumerate(1e-2 * np.eye(len(x))):  # the equations are cubic: this difference is exact
@@ -126,9 +126,8 @@ def test_a_rigid_motion_strains_no_rod():
     bracket = np.stack([ad(E[:, None], column[:, None])[:, 0] for column in np.eye(6)], axis=1)
     seen = np.array([0.3, -1.0, 0.5, 2.0, 0.4, -0.6])
     V = np.stack([expm(-u * bracket) @ seen for u in grid.positions], axis=1)
-    G = np.zeros(V.shape)
-    add_ad(np.tile(E[:, None], grid.nodes + 1), V, G, SE3)
-    weigh(V, G, grid.matrices)
+    G, rod = np.empty(V.shape), nodal_rod(replace(SPACE, compliance=np.zeros(6), rest=E), grid)
+    strain_rates.of(SE3)(np.zeros(6 * grid.nodes), V, G, rod, grid.matrices)
     G[:, 0] -= V[:, 0]  # what a clamp would hold
     G[:, -1] += V[:, -1]  # and the reaction
     assert np.abs(G).max() < 1e-12 * np.abs(V).max()

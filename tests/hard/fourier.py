@@ -9,7 +9,7 @@ import numpy as np
 from rodsweep.discretization.mesh import configuration
 from rodsweep.discretization.mixed_form import MixedForm
 from rodsweep.discretization.periodic import coefficients, maxima
-from rodsweep.discretization.stress_balance import balance
+from rodsweep.discretization.plane import balance
 
 MOST_STEPS, SOLVED = 12, 1e-11
 
