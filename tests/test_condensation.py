@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.mesh import mesh
-from rodsweep.discretization.stress_form import StressForm
 from rodsweep.discretization.plane import jacobian
+from rodsweep.discretization.stress_form import StressForm
 from rodsweep.model.parameters import NONLINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.bordered import BorderedMatrix, Scale

@@ -5,8 +5,8 @@ import pytest
 
 from rodsweep.discretization.mesh import mesh
 from rodsweep.discretization.mixed_form import MixedForm
-from rodsweep.discretization.state_layout import StateLayout
 from rodsweep.discretization.plane import balance
+from rodsweep.discretization.state_layout import StateLayout
 from rodsweep.discretization.stress_form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.symmetry import NONE, REFLECTION, Symmetry

@@ -15,7 +15,8 @@ from rodsweep.model.rod import Rod
 from rodsweep.model.unrolling import OverAlgebra
 
 ROD, GRID = Rod(50.0, 1e3, 1e2, 1e-2), mesh(2, 3)
-MATERIALS = {SE2: plane_material(ROD, 0.7), SE3: space_material(ROD, 0.7, twist_stiffness=0.6, twist_drag=0.02)}
+SPACE = space_material(ROD, 0.7, twist_stiffness=0.6, twist_drag=0.02)
+MATERIALS = {SE2: plane_material(ROD, 0.7), SE3: SPACE}
 BOTH = pytest.mark.parametrize("g", [SE2, SE3], ids=["plane", "space"])
 
 

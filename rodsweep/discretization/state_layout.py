@@ -5,7 +5,6 @@ Nobody else counts places in a state. Python asks a `StateLayout`, compiled code
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 

@@ -1,9 +1,10 @@
 """The nonlinear rod on a mesh with its stresses as unknowns: its balance, compiled.
 
 Sec. III, second formulation, in the plane and in space: only the structure constants of `model.algebra`, the
-first argument `g`, tell the one from the other. The unknowns S are the stresses beyond those of the straight rod, at every node but
-the tip, where they vanish. With the compliances C and the drags Gamma of each node, the assembled
-differentiation matrix D, the nodes' weights W and E0, the strain of the straight rod under its force,
+first argument `g`, tell the one from the other. The unknowns S are the stresses beyond those of the straight
+rod, at every node but the tip, where they vanish. With the compliances C and the drags Gamma of each node,
+the assembled differentiation matrix D, the nodes' weights W and E0, the strain of the straight rod under its
+force,
 
     E = E0 + C S,    Sigma = Sigma(1) + S,    Gamma V = D*_E Sigma = D S + ad*_E Sigma,
     W C dS/dt = G(S) = -D^T W V + W ad_E V.
@@ -107,13 +108,13 @@ def velocity_balance(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatri
 
 
 @OverAlgebra
-def balance_change(
+def balance_change(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count references at each use
     g: Algebra, x: Array, V: Array, out: Array, change: NodalChange, c: NodalRod, m: NodeMatrices
 ) -> None:
     """The derivatives along a change of the rod, at the state x of which V is known, into out.
 
-    out, (3, d, nodes + 1): of D*_E Sigma - Gamma V at fixed V, of V and of G; what of V is an unknown does not
-    change.
+    out, (3, d, nodes + 1): of D*_E Sigma - Gamma V at fixed V, of V and of G; what of V is an unknown does
+    not change.
     """
     size = len(m.weights)
     for i in range(size):

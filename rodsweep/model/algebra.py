@@ -4,8 +4,8 @@ With the components (v1, v2; Omega3) in the plane and (v; Omega), three each, in
 
     (ad_E V)_a = sum over (b, c) of s_abc E_b V_c,    (ad*_E Sigma)_c = -sum over (a, b) of s_abc E_b Sigma_a,
 
-of which 4 and 18 terms are not 0, each +1 or -1. All that is nonlinear in the rod is a loop over them; none of
-them leads from a component to itself.
+of which 4 and 18 terms are not 0, each +1 or -1. All that is nonlinear in the rod is a loop over them; none
+of them leads from a component to itself.
 """
 
 from typing import NamedTuple
@@ -18,8 +18,8 @@ Pattern = tuple[tuple[bool, ...], ...]
 class Algebra(NamedTuple):
     """Structure constants, of as many components as `components` has.
 
-    forward: whether component c of V occurs in component a of ad_E V, at [a][c]; backward: whether component b
-    of Sigma, by itself or by way of E, does in component c of ad*_E Sigma, at [c][b].
+    forward: whether component c of V occurs in component a of ad_E V, at [a][c]; backward: whether component
+    b of Sigma, by itself or by way of E, does in component c of ad*_E Sigma, at [c][b].
     """
 
     components: range
@@ -30,6 +30,11 @@ class Algebra(NamedTuple):
     @property
     def dimension(self) -> int:
         return len(self.components)
+
+    @property
+    def pairs(self) -> list[tuple[int, int]]:
+        """Two components that are not the same."""
+        return [(a, b) for a in self.components for b in self.components if a != b]
 
 
 def algebra(size: int, terms: list[Term]) -> Algebra:

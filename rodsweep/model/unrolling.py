@@ -1,8 +1,8 @@
-"""Functions of an algebra: written as loops over its structure constants, compiled with these loops written out.
+"""Functions of an algebra: loops over its structure constants, written out before they are compiled.
 
-What is nonlinear in the rod is the same formula on se(2) and on se(3). As loops at run time it takes three
-times as long as written out by hand: a loop over 4 terms costs more than its products. So `OverAlgebra` writes
-it out, from the syntax tree of the function, for each algebra that it is asked for:
+What is nonlinear in the rod is the same formula on se(2) and on se(3). As loops at run time it takes two to
+three times as long as written out by hand: a loop over 4 terms costs more than its products. So `OverAlgebra`
+writes it out, from the syntax tree of the function, for each algebra that it is asked for:
 
 - a loop over something that the algebra alone determines, `for a in g.components`, becomes its turns,
 - a condition on such a thing becomes what it decides for, and a number of this kind a constant,
@@ -46,7 +46,7 @@ class OverAlgebra(Generic[P, R]):
         return self._compiled[g]
 
     def written_out(self, g: Algebra) -> Callable[P, R]:
-        """The function for one algebra before it is compiled; so are the others of this class that it calls."""
+        """The function for one algebra before it is compiled, calling others like it that are."""
         tree = ast.parse(dedent(inspect.getsource(self.function)))
         ast.increment_lineno(tree, self.function.__code__.co_firstlineno - 1)
         definition: Any = tree.body[0]
@@ -88,7 +88,8 @@ class _Writer(ast.NodeTransformer):
     def visit_For(self, node: ast.For) -> Any:
         if not self._is_known(node.iter):
             return self.generic_visit(node)
-        if any(isinstance(part, ast.Break | ast.Continue | ast.Return) for part in ast.walk(node)) or node.orelse:
+        leaves = ast.Break | ast.Continue | ast.Return
+        if node.orelse or any(isinstance(part, leaves) for part in ast.walk(node)):
             raise TypeError(f"line {node.lineno}: a loop that is written out is left at its end alone")
         return [
             statement

@@ -8,8 +8,8 @@ import numpy as np
 from ...arrays import Array
 from ...discretization.mesh import NodeMatrices
 from ...discretization.nodal_rod import NodalChange, NodalRod
-from ...discretization.state_layout import BENDING, COMPONENTS, stress_place
 from ...discretization.plane import balance, balance_change, jacobian
+from ...discretization.state_layout import BENDING, COMPONENTS, stress_place
 from ...model.compilation import compiled_for_vectors
 
 
