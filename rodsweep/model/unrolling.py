@@ -14,9 +14,9 @@ Called as it is, with the algebra before the other arguments, the function is or
 import ast
 import inspect
 from collections.abc import Callable, Iterable, Mapping
-from copy import deepcopy
 from textwrap import dedent
-from typing import Any, Concatenate, Generic, ParamSpec, TypeVar
+from types import CodeType
+from typing import Any, Concatenate, Generic, NamedTuple, ParamSpec, TypeVar
 
 from .algebra import Algebra
 from .compilation import compiled_for_vectors
@@ -63,27 +63,39 @@ class OverAlgebra(Generic[P, R]):
                 namespace[name] = value.of(g)
             elif name in self.function.__globals__:
                 namespace[name] = value
-        tree.body = [_Writer({first: g, **ALWAYS}, set(), others).visit(definition)]
+        tree.body = [_Writer({first: g, **ALWAYS}, _Shared(set(), others, {}, {})).visit(definition)]
         exec(compile(ast.fix_missing_locations(tree), self.function.__code__.co_filename, "exec"), namespace)
         written: Any = namespace[definition.name]
         return written
 
 
-class _Writer(ast.NodeTransformer):
-    """Writes out what `known` determines.
+class _Shared(NamedTuple):
+    """Of one function. lists: names of lists whose items are variables; others: functions like it."""
 
-    `lists`: names of the lists whose items are variables; `others`: functions whose first argument goes.
-    """
+    lists: set[str]
+    others: set[str]
+    names: dict[ast.AST, frozenset[str]]
+    code: dict[ast.AST, CodeType]
 
-    def __init__(self, known: Mapping[str, Any], lists: set[str], others: set[str]) -> None:
-        self.known, self.lists, self.others = known, lists, others
+
+class _Writer(ast.NodeVisitor):
+    """Makes of a statement or an expression what `known` leaves of it; what it reads is not changed."""
+
+    def __init__(self, known: Mapping[str, Any], shared: _Shared) -> None:
+        self.known, self.shared = known, shared
 
     def visit(self, node: ast.AST) -> Any:
-        if isinstance(node, ast.expr) and self._is_known(node) and not isinstance(_context(node), ast.Store):
-            value = self._value(node)
-            if isinstance(value, int | float):
-                return ast.copy_location(ast.Constant(value), node)
+        reads = isinstance(node, ast.expr) and not isinstance(getattr(node, "ctx", None), ast.Store)
+        if reads and self._is_known(node) and isinstance(value := self._value(node), int | float):
+            return ast.copy_location(ast.Constant(value), node)
         return super().visit(node)
+
+    def generic_visit(self, node: ast.AST) -> Any:
+        fields = {
+            name: self._all(value) if isinstance(value, list) else self._one(value)
+            for name, value in ast.iter_fields(node)
+        }
+        return ast.copy_location(type(node)(**fields), node)
 
     def visit_For(self, node: ast.For) -> Any:
         if not self._is_known(node.iter):
@@ -91,16 +103,13 @@ class _Writer(ast.NodeTransformer):
         leaves = ast.Break | ast.Continue | ast.Return
         if node.orelse or any(isinstance(part, leaves) for part in ast.walk(node)):
             raise TypeError(f"line {node.lineno}: a loop that is written out is left at its end alone")
-        return [
-            statement
-            for item in self._value(node.iter)
-            for statement in self._under(_bound(node.target, item), node.body)
-        ]
+        turns = [self._with(node.target, item)._all(node.body) for item in self._value(node.iter)]
+        return [statement for turn in turns for statement in turn]
 
     def visit_If(self, node: ast.If) -> Any:
         if not self._is_known(node.test):
             return self.generic_visit(node)
-        return self._under({}, node.body if self._value(node.test) else node.orelse)
+        return self._all(node.body if self._value(node.test) else node.orelse)
 
     def visit_IfExp(self, node: ast.IfExp) -> Any:
         if not self._is_known(node.test):
@@ -111,43 +120,56 @@ class _Writer(ast.NodeTransformer):
         target, value = node.targets[0], node.value
         if not (isinstance(value, ast.ListComp) and isinstance(target, ast.Name)):
             return self.generic_visit(node)
-        self.lists.add(target.id)
+        self.shared.lists.add(target.id)
         loop, written = value.generators[0], []
         for place, item in enumerate(self._value(loop.iter)):
-            name = ast.Name(f"{target.id}_{place}", ast.Store())
+            name = ast.copy_location(ast.Name(f"{target.id}_{place}", ast.Store()), target)
             one = ast.copy_location(ast.Assign([name], value.elt), node)
-            written += self._under(_bound(loop.target, item), [one])
+            made = self._with(loop.target, item).visit(one)
+            written += made if isinstance(made, list) else [made]
         return written
 
     def visit_Subscript(self, node: ast.Subscript) -> Any:
         inner = self.visit(node.value)
-        if isinstance(inner, ast.Name) and inner.id in self.lists:
+        if isinstance(inner, ast.Name) and inner.id in self.shared.lists:
             return ast.copy_location(ast.Name(f"{inner.id}_{self._value(node.slice)}", node.ctx), node)
         return ast.copy_location(ast.Subscript(inner, self.visit(node.slice), node.ctx), node)
 
     def visit_Call(self, node: ast.Call) -> Any:
-        if isinstance(node.func, ast.Name) and node.func.id in self.others:
-            node.args = node.args[1:]
-        return self.generic_visit(node)
+        made = self.generic_visit(node)
+        if isinstance(made.func, ast.Name) and made.func.id in self.shared.others:
+            made.args = made.args[1:]
+        return made
 
-    def _under(self, more: Mapping[str, Any], body: Iterable[ast.stmt]) -> list[ast.stmt]:
-        """A copy of the statements, written out with more that is known."""
-        writer = _Writer({**self.known, **more}, self.lists, self.others)
-        block = writer.visit(ast.Module([deepcopy(statement) for statement in body], []))
-        return list(block.body)
+    def _with(self, target: ast.expr, item: Any) -> "_Writer":
+        """The writer of one turn of a loop."""
+        return _Writer({**self.known, **_bound(target, item)}, self.shared)
+
+    def _all(self, parts: Iterable[Any]) -> list[Any]:
+        made = [self._one(part) for part in parts]
+        return [part for some in made for part in (some if isinstance(some, list) else [some])]
+
+    def _one(self, part: Any) -> Any:
+        return self.visit(part) if isinstance(part, ast.AST) else part
 
     def _is_known(self, node: ast.AST) -> bool:
-        names = {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
+        names = self._names(node)
         return bool(names) and names <= self.known.keys()
 
-    def _value(self, node: ast.expr) -> Any:
+    def _names(self, node: ast.AST) -> frozenset[str]:
+        names = self.shared.names.get(node)
+        if names is None:
+            own = {node.id} if isinstance(node, ast.Name) else ()
+            names = frozenset(own).union(*map(self._names, ast.iter_child_nodes(node)))
+            self.shared.names[node] = names
+        return names
+
+    def _value(self, node: Any) -> Any:
         """NameError: it is not known."""
-        expression = ast.fix_missing_locations(ast.Expression(deepcopy(node)))
-        return eval(compile(expression, "<known>", "eval"), {"__builtins__": {}}, dict(self.known))
-
-
-def _context(node: ast.expr) -> ast.expr_context:
-    return getattr(node, "ctx", ast.Load())
+        code = self.shared.code.get(node)
+        if code is None:
+            code = self.shared.code[node] = compile(ast.Expression(node), "<known>", "eval")
+        return eval(code, {"__builtins__": {}}, dict(self.known))
 
 
 def _bound(target: ast.expr, item: Any) -> dict[str, Any]:
