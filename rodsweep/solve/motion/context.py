@@ -12,7 +12,7 @@ from ...discretization.beam import Beam
 from ...discretization.mesh import NodeMatrices
 from ...discretization.nodal_rod import NodalRod
 from ...model.compilation import compiled
-from ..backend.c_functions import floats
+from ..backend.c_functions import floats, floats_in, integers
 
 MOST_STAGES, MOST_POINTS = 16, 8
 """Stages of a step that are remembered, and points through which the next is extrapolated."""
@@ -81,22 +81,22 @@ def arrays_of(beam: Beam) -> dict[str, Array]:
 @compiled
 def rod_of(c: Any) -> NodalRod:
     d, m = c.components, c.nodes
-    rest, compliance = floats(c.rest, d * m).reshape(d, m), floats(c.compliance, d * m).reshape(d, m)
-    drag, mobility = floats(c.drag, d * m).reshape(d, m), floats(c.mobility, d * m).reshape(d, m)
-    second, none = floats(c.second, d * m * m).reshape(d, m, m), np.empty(0, np.int64)
+    rest, compliance = floats_in(c.rest, (d, m)), floats_in(c.compliance, (d, m))
+    drag, mobility = floats_in(c.drag, (d, m)), floats_in(c.mobility, (d, m))
+    second, none = floats_in(c.second, (d, m, m)), integers(c.rest, 0)
     return NodalRod(floats(c.tip_stress, d), rest, compliance, drag, mobility, second, none)
 
 
 @compiled
 def matrices_of(c: Any) -> NodeMatrices:
-    m = c.nodes
-    D, D_transposed = floats(c.D, m * m).reshape(m, m), floats(c.D_transposed, m * m).reshape(m, m)
-    return NodeMatrices(D, D_transposed, floats(c.weak, m * m).reshape(m, m), floats(c.weights, m))
+    all_nodes = (c.nodes, c.nodes)
+    D, D_transposed = floats_in(c.D, all_nodes), floats_in(c.D_transposed, all_nodes)
+    return NodeMatrices(D, D_transposed, floats_in(c.weak, all_nodes), floats(c.weights, c.nodes))
 
 
 @compiled
 def roots_of(c: Any) -> Any:
-    return floats(c.roots, c.components * c.nodes).reshape(c.components, c.nodes)
+    return floats_in(c.roots, (c.components, c.nodes))
 
 
 @compiled
@@ -106,4 +106,4 @@ def times_of(c: Any) -> Any:
 
 @compiled
 def states_of(c: Any) -> Any:
-    return floats(c.states, 2 * MOST_STAGES * c.unknowns).reshape(2 * MOST_STAGES, c.unknowns)
+    return floats_in(c.states, (2 * MOST_STAGES, c.unknowns))
