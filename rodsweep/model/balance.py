@@ -36,7 +36,7 @@ def ad(E: Values, V: Values) -> Values:
     """ad_E V, of two elements of se(2) or se(3)."""
     out = np.zeros(np.broadcast(E, V).shape, np.result_type(E, V))
     for a, b, c, sign in ALGEBRAS[len(E)].terms:
-        (np.add if sign > 0 else np.subtract)(out[a], E[b] * V[c], out[a])
+        (np.add if sign > 0 else np.subtract)(out[a], E[b] * V[c], out[a, ...])
     return out
 
 
@@ -44,7 +44,7 @@ def coad(E: Values, Sigma: Values) -> Values:
     """ad*_E Sigma, of an element of the algebra and one of its dual."""
     out = np.zeros(np.broadcast(E, Sigma).shape, np.result_type(E, Sigma))
     for a, b, c, sign in ALGEBRAS[len(E)].terms:
-        (np.subtract if sign > 0 else np.add)(out[c], E[b] * Sigma[a], out[c])
+        (np.subtract if sign > 0 else np.add)(out[c], E[b] * Sigma[a], out[c, ...])
     return out
 
 
