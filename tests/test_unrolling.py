@@ -1,5 +1,6 @@
 """Functions of an algebra: written out they do what their loops do; what cannot be written out is refused."""
 
+import importlib.util
 from functools import partial
 
 import numpy as np
@@ -11,12 +12,14 @@ from rodsweep.discretization.stress_balance import balance, balance_change
 from rodsweep.discretization.stress_jacobian import jacobian
 from rodsweep.model.algebra import SE2, SE3
 from rodsweep.model.balance import plane_change, plane_material, space_material
+from rodsweep.model.kernel_digest import digest, kernel_of
 from rodsweep.model.rod import Rod
 from rodsweep.model.unrolling import OverAlgebra
 
 ROD, GRID = Rod(50.0, 1e3, 1e2, 1e-2), mesh(2, 3)
 SPACE = space_material(ROD, 0.7, twist_stiffness=0.6, twist_drag=0.02)
 MATERIALS = {SE2: plane_material(ROD, 0.7), SE3: SPACE}
+HEAD = "from rodsweep.model.unrolling import OverAlgebra\n\n@OverAlgebra\n"
 BOTH = pytest.mark.parametrize("g", [SE2, SE3], ids=["plane", "space"])
 
 
@@ -83,3 +86,20 @@ def test_a_loop_that_is_left_early_is_not_written_out():
 def test_algebras_have_kernels_of_their_own():
     assert balance.of(SE2) is balance.of(SE2)
     assert balance.of(SE2) is not balance.of(SE3)
+
+
+@pytest.mark.parametrize(
+    ("text", "same"), [("    # a comment\n    return x[0]", True), ("    return x[1]", False)]
+)
+def test_compiled_code_is_kept_by_the_formula_not_by_its_comments(tmp_path, text, same):
+    digests = []
+    for k, body in enumerate(("    return x[0]", text)):
+        path = tmp_path / f"{k}.py"
+        path.write_text(
+            f"from rodsweep.model.unrolling import OverAlgebra\n\n@OverAlgebra\ndef f(g, x):\n{body}\n"
+        )
+        spec = importlib.util.spec_from_file_location("of_a_test", path)
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        digests.append(digest(kernel_of(module.f.written_out(SE2), {}), {}))
+    assert (digests[0] == digests[1]) == same
