@@ -6,22 +6,18 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.mesh import mesh
-from rodsweep.discretization.stress_balance import jacobian
+from rodsweep.discretization.plane import jacobian
 from rodsweep.discretization.stress_form import StressForm
 from rodsweep.model.parameters import NONLINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.bordered import BorderedMatrix, Scale
 from rodsweep.solve.cycle.condensation import PANEL, eliminate, invert, substitute
-from rodsweep.solve.cycle.linearisation import (
-    Linearisation,
-    NewtonWorkspace,
-    change_along,
-    phase,
-    phase_change,
-)
+from rodsweep.solve.cycle.linearisation import Linearisation, NewtonWorkspace, change_along
 from rodsweep.solve.cycle.neighbour import coordinate_of, with_coordinate
 from rodsweep.solve.cycle.orbit import Orbit
+from rodsweep.solve.cycle.phase import phase, phase_change
 from rodsweep.solve.cycle.right_sides import equations, residuals, right_sides
+from rodsweep.solve.cycle.symmetry import REFLECTION
 
 INTERVALS, PERIOD, COLUMNS = 4, 0.02, 2
 RODS = {
@@ -35,7 +31,7 @@ def orbit_with(rod, stages):
     """Any states: what is tested holds for orbits and for what is none."""
     form = StressForm(rod, 0.7, mesh(1, 8))
     states = np.random.default_rng(stages).normal(size=(1 + INTERVALS * stages, form.unknowns))
-    return Orbit.of(form, True, PERIOD, states, stages)
+    return Orbit.of(form, REFLECTION, PERIOD, states, stages)
 
 
 def velocities(orbit):
@@ -54,7 +50,7 @@ def dense_matrix(orbit, k):
     for i in range(s):
         F, J = np.empty(n), np.zeros((n, n))
         equations(orbit.states[k, i], F, V, G, p)
-        jacobian(orbit.states[k, i], V, J, tip, p.parameters, p.matrices)
+        jacobian(orbit.states[k, i], V, J, tip, p.rod, p.matrices)
         A[i * n : (i + 1) * n, i * n : (i + 1) * n] -= orbit.duration * p.lengths[k] * J
     return A
 
@@ -105,7 +101,7 @@ def balances(orbit, name, change):
     moved = replace(orbit, form=with_coordinate(form, name, coordinate_of(form, name) + change))
     p, out = moved.semidiscrete, np.empty_like(orbit.states)
     residuals(orbit.points, orbit.duration, p, out)
-    return np.append(out, -phase(orbit.start, p.parameters, p.matrices))
+    return np.append(out, -phase(orbit.start, p.rod, p.matrices))
 
 
 @pytest.mark.parametrize("name", NONLINEAR_PARAMETERS)
@@ -116,7 +112,7 @@ def test_derivative_by_a_parameter_is_the_limit_of_differences(rod, name):
     p, V = orbit.semidiscrete, np.empty((INTERVALS, 4, 3, 9))
     right_sides(orbit.points, orbit.duration, p, along, V, columns)
     right = columns[:, :, 2]
-    shift = phase_change(orbit.start, along.change, p.parameters, p.matrices)
+    shift = phase_change(orbit.start, along.change, p.rod, p.matrices)
     step = 1e-4 * coordinate_of(orbit.form, name) or 1e-6  # to one side: a limit has no other
     there = np.array([balances(orbit, name, k * step) for k in range(3)])
     limit, rounding = [-1.5, 2, -0.5] @ there / step, 4e-15 * np.abs(there).max() / step

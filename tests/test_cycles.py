@@ -29,6 +29,7 @@ from rodsweep.solve.cycle.neighbour import Neighbour
 from rodsweep.solve.cycle.newton import at_orbit, newton
 from rodsweep.solve.cycle.orbit import Orbit, interval_lengths, node_times
 from rodsweep.solve.cycle.orbit_mesh import legendre_analysis, tails_of
+from rodsweep.solve.cycle.symmetry import NONE, REFLECTION
 from rodsweep.solve.motion.integrator import forget_integrators
 
 SOFT = (1e4, 1e2, 1e-2, 1.0)
@@ -322,13 +323,15 @@ def repeated(half, times):
     K = times * (half.intervals - 1) + 1
     at = times * node_times(K, half.stages)
     number = np.floor(at + 1e-9)
-    states = half.at(np.maximum(at - number, 0.0)) * half.form.reflection ** number[:, None]
-    return Orbit.of(half.form, False, times * half.period / 2, states, half.stages)
+    states = half.at(np.maximum(at - number, 0.0))
+    later = number % 2 == 1
+    states[later] = REFLECTION.of(states[later], half.form.layout)
+    return Orbit.of(half.form, NONE, times * half.period / 2, states, half.stages)
 
 
 def test_three_periods_are_recognised_and_cut_to_one():
     half = newton(orbit_at_fifty().on(mesh(1, 16), 12, 4), 1e-10).orbit
-    thrice = replace(repeated(half, 3), symmetric=True)
+    thrice = replace(repeated(half, 3), symmetry=REFLECTION)
     thrice = replace(thrice, values=np.append(thrice.values[:-1], 3 * half.period))
     assert [common_divisor(CyclePath(orbit), 1e-3) for orbit in (half, thrice)] == [1, 3]
     assert [undecided_divisor(CyclePath(orbit), 1e-8) for orbit in (half, thrice)] == [1, 3]
@@ -347,7 +350,7 @@ def orbit_on(elements, order):
 def test_the_path_is_that_of_the_states_strains_and_shapes(elements, order):
     half = orbit_on(elements, order)
     path, form = CyclePath(half), half.form
-    states = np.concatenate((half.regular_states, half.regular_states * form.reflection))
+    states = np.concatenate((half.regular_states, REFLECTION.of(half.regular_states, form.layout)))
     tip = form.tip(states).T
     assert path.resampled_tip(22 * 4)[::4] == pytest.approx(tip, abs=1e-13)
     strains = form.strains(states)

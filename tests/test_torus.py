@@ -82,7 +82,7 @@ def test_another_integrator_on_another_mesh_is_on_the_same_torus():
             for _ in range(40):
                 middle = (low + high) / 2
                 low, high = (middle, high) if row @ state(middle) < 0 else (low, middle)
-            returns.append(state(low)[2 * beam.mesh.nodes :])
+            returns.append(beam.layout.field(state(low), "m3"))
     found = modulation_of(np.array(returns[133:]), abs(np.angle(rod(207.0, 400).multipliers[0])))
     assert found.angle == pytest.approx(ROTATION, abs=1e-3)
     assert found.error < PREDICTED / 5

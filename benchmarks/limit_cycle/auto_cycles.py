@@ -86,8 +86,8 @@ def continued(program: Path, first: Orbit, setting: AutoSetting, step: float, cy
 
 def rod_file(form: StressForm) -> bytes:
     """What the equations read as `rod`."""
-    c, matrices = form.parameters, form.mesh.matrices
-    numbers = np.array([c.c1, c.c2, c.gamma1, c.gamma3])
+    rod, matrices = form.rod, form.mesh.matrices
+    numbers = np.array([rod.c1, rod.c2, form.gamma1, rod.gamma3])
     parts = (np.int32(form.mesh.nodes), matrices.D_transposed, matrices.weights, numbers)
     return b"".join(part.tobytes() for part in parts)
 
@@ -95,10 +95,10 @@ def rod_file(form: StressForm) -> bytes:
 def start_file(orbit: Orbit, pieces: int) -> bytes:
     """What the equations read as `start`: F, the period and the states z at equal times, ends included."""
     beam, _ = on_cycle(orbit)
-    turns = np.arange(pieces + 1) / pieces * (2 if orbit.symmetric else 1)
+    turns = np.arange(pieces + 1) / pieces * orbit.symmetry.parts
     states = orbit.at(np.where(turns > 1, turns - 1, turns))
-    states[turns > 1] *= orbit.return_signs
-    z = states * np.repeat(beam.roots, orbit.form.mesh.nodes)
+    states[turns > 1] = orbit.symmetry.of(states[turns > 1], orbit.form.layout)
+    z = states * beam.roots[:, :-1].ravel()
     return b"".join(part.tobytes() for part in (np.int32(pieces), np.array([beam.rod.F, orbit.period]), z))
 
 

@@ -9,7 +9,7 @@ import scipy.integrate
 
 from rodsweep.arrays import Array
 from rodsweep.bench.limit_cycle.integrators import CAREFUL, Family, Leg, by_petsc
-from rodsweep.discretization.stress_balance import rate, rate_jacobian
+from rodsweep.discretization.stress_rates import rate, rate_jacobian
 from rodsweep.solve.motion.integrator import Ending, Trajectory
 
 from ..installed import installed
@@ -50,7 +50,7 @@ def by_scipy(method: str, tolerance: float, leg: Leg) -> Trajectory:
 def by_cvode(cvode: Any, tolerance: float, leg: Leg) -> Trajectory:
     """CVODE's BDF with its dense solver, through scikit-sundae."""
     beam, z, duration = leg
-    arguments = beam.roots, beam.parameters, beam.mesh.matrices
+    arguments = beam.roots, beam.nodal, beam.mesh.matrices
     buffer = np.empty((len(z), len(z)))
 
     def right_side(_: float, x: Array, out: Array) -> None:

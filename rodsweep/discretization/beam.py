@@ -12,84 +12,62 @@ from functools import cached_property
 import numpy as np
 
 from ..arrays import Array
-from ..model.rod import Rod
-from .mesh import Mesh, configuration
-from .stress_balance import BeamParameters, rate_jacobians, rates
+from ..model.balance import Values
+from .rod_on_mesh import RodOnMesh
+from .stress_rates import rate_jacobians, rates
 
 TINY = 1e-30
 """Complex step of a velocity."""
 
 
 @dataclass(frozen=True, eq=False)
-class Beam:
+class Beam(RodOnMesh):
     """One rod with finite k1, k2 and gamma3 > 0, its axial drag gamma1 in gamma2, on one mesh.
 
     z has shape (unknowns,) and the unit of sqrt(energy density), sqrt(k3)/L.
     """
 
-    rod: Rod
-    gamma1: float
-    mesh: Mesh
-
-    @cached_property
-    def parameters(self) -> BeamParameters:
-        """The parameters as the compiled functions take them."""
-        r = self.rod
-        return BeamParameters(*map(float, (r.F, r.nu, r.c1, r.c2, self.gamma1, r.gamma3)))
+    @property
+    def kept(self) -> tuple[int, ...]:
+        return ()
 
     @cached_property
     def roots(self) -> Array:
-        """Square roots of (c1, c2, 1), shape (3,): z = roots S, and the strains beyond rest are roots z."""
-        return np.sqrt([self.parameters.c1, self.parameters.c2, 1.0])
+        """Square roots of C, (3, nodes + 1): z = roots S, and the strains beyond rest are roots z."""
+        return np.sqrt(self.nodal.compliance)
+
+    def stresses(self, z: Values) -> Values:
+        scaled = self.layout.stresses(z)
+        return scaled / self._along(scaled)
+
+    def scaled(self, S: Array) -> Array:
+        """z of stresses beyond the straight rod's at all nodes, (3, ..., nodes + 1)."""
+        return self.layout.state(S * self._along(S), S)
+
+    def unknown(self, strains: Array) -> Array:
+        """z of (h1, h2, Pi) at all nodes, shape (3, nodes + 1); the tip's values are not free."""
+        return self.layout.state((strains - self.nodal.rest) / self.roots, strains)
 
     def rate(self, z: Array) -> Array:
         """dz/dt in 1/tau2 of one state or of many, shape (..., unknowns) as that of z."""
         out = np.empty(z.shape)
-        size = self.mesh.unknowns
-        rates(z.reshape(-1, size), out.reshape(-1, size), self.roots, self.parameters, self.mesh.matrices)
+        flat = z.reshape(-1, self.unknowns), out.reshape(-1, self.unknowns)
+        rates(*flat, self.roots, self.nodal, self.mesh.matrices)
         return out
 
     def jacobian(self, z: Array) -> Array:
         """d(dz/dt)/dz of one state or of many, shape (..., unknowns, unknowns) for z (..., unknowns)."""
-        size = self.mesh.unknowns
+        size = self.unknowns
         out = np.empty((*z.shape, size))
         states, matrices = z.reshape(-1, size), out.reshape(-1, size, size)
-        rate_jacobians(states, matrices, self.roots, self.parameters, self.mesh.matrices)
+        rate_jacobians(states, matrices, self.roots, self.nodal, self.mesh.matrices)
         return out.swapaxes(-1, -2)
-
-    def strains(self, z: Array) -> Array:
-        """(h1, h2, Pi) at all nodes, the tip included, shape (3, ..., nodes + 1) for z (..., unknowns)."""
-        E = np.zeros((3, *z.shape[:-1], self.mesh.nodes + 1), dtype=z.dtype)
-        for a, (part, root) in enumerate(zip(np.split(z, 3, axis=-1), self.roots, strict=True)):
-            E[a, ..., :-1] = part * root
-        E[0] += self.rod.nu
-        return E
-
-    def unknown(self, strains: Array) -> Array:
-        """z of (h1, h2, Pi) at all nodes, shape (3, nodes + 1); the tip's values are not free."""
-        deviation = strains[:, :-1] - np.array([[self.rod.nu], [0.0], [0.0]])
-        return (deviation / self.roots[:, None]).ravel()
-
-    def energy(self, z: Array) -> Array:
-        """U = 1/2 int k1 (h1 - 1)^2 + k2 h2^2 + Pi^2 in k3/L, shape (...)."""
-        E = self.strains(z)
-        E[0] -= 1.0
-        return 0.5 * np.tensordot(self.roots**-2, E * E @ self.mesh.quadrature, 1)
-
-    def shape(self, z: Array) -> Array:
-        """(x, y, theta) at all nodes in L and rad, shape (3, ..., nodes + 1), the clamp at 0 along e_x."""
-        return configuration(self.mesh, self.strains(z), np.zeros(3))
-
-    def tip(self, z: Array) -> Array:
-        """(x, y, theta) of the tip, shape (3, ...) for z of shape (..., unknowns)."""
-        return self.shape(z)[..., -1]
 
     def tip_velocity(self, z: Array, direction: Array) -> Array:
         """d/dt of the tip's (x, y, theta) for dz/dt = direction, by complex step, shape (3,)."""
         velocity: Array = np.divide(self.tip(z + 1j * TINY * direction).imag, TINY)
         return velocity
 
-    def least_stretch(self, z: Array) -> float:
-        """min h1 over the nodes of all states; the model holds while it is positive."""
-        least = min(0.0, float(z[..., : self.mesh.nodes].min()))
-        return float(self.rod.nu + least * self.roots[0])
+    def _along(self, field: Values) -> Array:
+        """The roots, to be combined with a field (3, ..., nodes + 1)."""
+        return self.roots.reshape(3, *(1,) * (field.ndim - 2), -1)

@@ -6,16 +6,28 @@ h2).
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
 from ..arrays import Array
 from .basis import differentiation, interpolation
 from .quadrature import gauss, gauss_lobatto
-from .stress_balance import NodeMatrices
 
 EXTRA_POINTS = 10
 """Gauss points beyond the nodes with which shapes are integrated: theta turns by a radian or two."""
+
+
+class NodeMatrices(NamedTuple):
+    """D, D^T and -D^T W on all nodes of a mesh, (nodes + 1, nodes + 1), and W, (nodes + 1,).
+
+    All are contiguous, and so are the inner loops over the nodes.
+    """
+
+    D: Array
+    D_transposed: Array
+    weak: Array
+    weights: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,11 +42,6 @@ class Mesh:
     def nodes(self) -> int:
         """Nodes without the tip."""
         return self.elements * self.order
-
-    @property
-    def unknowns(self) -> int:
-        """Stresses: three at each of the nodes."""
-        return 3 * self.nodes
 
     @cached_property
     def positions(self) -> Array:
@@ -73,8 +80,7 @@ def mesh(elements: int, order: int) -> Mesh:
         weighted[here, here] += w[:, None] * slopes  # the lengths of the element cancel
         total[here] += weights
     D = weighted / total[:, None]
-    weak = -weighted.T
-    parts = D, D.T, weak, weak @ D, total
+    parts = D, D.T, -weighted.T, total
     return Mesh(elements, order, NodeMatrices(*map(np.ascontiguousarray, parts)))
 
 

@@ -26,9 +26,8 @@ from ..arrays import Array
 from ..model.balance import Material, Values, ad, coad, plane_material
 from ..model.rod import Rod
 from .mesh import Mesh, mesh
+from .state_layout import COMPONENTS, StateLayout, plane_layout
 
-COMPONENTS = 3
-"""Of an element of se(2)."""
 MIRROR = np.array([1.0, -1.0, -1.0])
 """What the reflection of the plane in the straight rod does to the components of a stress or a velocity."""
 
@@ -46,14 +45,19 @@ class MixedForm:
     gamma1: float
     mesh: Mesh
 
+    @cached_property
+    def layout(self) -> StateLayout:
+        """Where each field of X lies: all of V is unknown."""
+        return plane_layout(self.mesh.nodes, tuple(range(COMPONENTS)))
+
     @property
     def stresses(self) -> int:
         """How many of the unknowns are stresses."""
-        return COMPONENTS * self.mesh.nodes
+        return plane_layout(self.mesh.nodes).unknowns
 
     @property
     def unknowns(self) -> int:
-        return COMPONENTS * (2 * self.mesh.nodes + 1)
+        return self.layout.unknowns
 
     @cached_property
     def material(self) -> Material:
@@ -68,15 +72,14 @@ class MixedForm:
     @cached_property
     def parity(self) -> Array:
         """The diagonal of R, which maps motions to their mirror images, motions too; +-1, (unknowns,)."""
-        nodes = self.mesh.nodes
-        return np.concatenate([np.repeat(MIRROR, nodes), np.repeat(MIRROR, nodes + 1)])
+        signs = np.repeat(MIRROR[:, None], self.mesh.nodes + 1, axis=1)
+        return self.layout.state(signs, signs)
 
     @cached_property
     def M(self) -> Array:
         """The diagonal of M, (W C, 0), shape (unknowns,)."""
-        M = np.zeros(self.unknowns)
-        M[: self.stresses] = np.kron(self.material.compliance, self.mesh.quadrature[:-1])
-        return M
+        weighted = np.outer(self.material.compliance, self.mesh.quadrature)
+        return self.layout.state(weighted, np.zeros(weighted.shape))
 
     @cached_property
     def A(self) -> Array:
@@ -100,20 +103,15 @@ class MixedForm:
     def tip_y(self) -> Array:
         """The row that gives the tip's y in L to first order in X, int nu (1 - u) m3 + c2 n2, (unknowns,)."""
         u, W = self.mesh.positions[:-1], self.mesh.quadrature[:-1]
-        row = np.zeros(self.unknowns)
-        row[self.mesh.nodes : self.stresses] = np.append(self.rod.c2 * W, self.rod.nu * (1 - u) * W)
-        return row
+        return self.layout.row({"n2": self.rod.c2 * W, "m3": self.rod.nu * (1 - u) * W})
 
     def fields(self, X: Values) -> tuple[Values, Values]:
         """(S, V) at all nodes, the tip included, each of shape (3, ..., nodes + 1)."""
-        N, many = self.mesh.nodes, X.shape[:-1]
-        S = np.zeros((COMPONENTS, *many, N + 1), X.dtype)
-        S[..., :-1] = np.moveaxis(X[..., : self.stresses].reshape(*many, COMPONENTS, N), -2, 0)
-        return S, np.moveaxis(X[..., self.stresses :].reshape(*many, COMPONENTS, N + 1), -2, 0)
+        return self.layout.stresses(X), self.layout.velocities(X)
 
     def unknown(self, S: Values, V: Values) -> Values:
         """X of (S, V) at all nodes, each (3, ..., nodes + 1); what S has at the tip does not count."""
-        return np.concatenate([*S[..., :-1], *V], axis=-1)
+        return self.layout.state(S, V)
 
     def bilinear(self, X: Values, Y: Values) -> Values:
         """B(X, Y) = B(Y, X), shape (..., unknowns)."""

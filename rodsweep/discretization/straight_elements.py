@@ -21,8 +21,9 @@ from scipy.linalg.lapack import zgetrf, zgetrs
 from ..arrays import Array, Complex
 from ..model.balance import Values, ad, coad
 from .basis import differentiation
-from .mixed_form import COMPONENTS, MixedForm
+from .mixed_form import MixedForm
 from .quadrature import gauss_lobatto
+from .state_layout import COMPONENTS
 
 LONGITUDINAL, TRANSVERSE = (0,), (1, 2)
 """Components of se(2), of stresses and of velocities, that the reflection in the rod keeps or turns."""

@@ -1,7 +1,6 @@
 """One nonlinear rod on one mesh, in its stresses: every limit, k1 = inf, k2 = inf and gamma3 = 0, included.
 
-The equations and the unknowns are `rodsweep.discretization.stress_balance`'s; here are the mesh, the
-parameters, and what follows from a state: strains, shape, energy, powers.
+The equations and the unknowns are `rodsweep.discretization.stress_balance`'s.
 """
 
 from dataclasses import dataclass
@@ -10,32 +9,24 @@ from functools import cached_property
 import numpy as np
 
 from ..arrays import Array
-from ..model.rod import Rod
-from .mesh import Mesh, configuration
-from .stress_balance import BeamParameters
+from ..model.balance import plane_change
+from .nodal_rod import NodalChange, NodalRod, nodal_change
+from .rod_on_mesh import RodOnMesh
 
 LEAST_ELIMINATED_DRAG = 1e-5
 """gamma3 from which Omega is eliminated: below, the division by gamma3 costs multipliers their digits, 2e-9
 at 1e-6 and 2e-7 at 1e-8, and soft rods their cycles; as an unknown Omega costs 2.4 times the time."""
+OMEGA = (2,)
+"""Which component of V that is."""
 
 
 @dataclass(frozen=True, eq=False)
-class StressForm:
+class StressForm(RodOnMesh):
     """One rod, its axial drag gamma1 in gamma2, on one mesh.
 
     A state x has shape (..., unknowns): n1 + F, n2 in k3/L^2 and m3 in k3/L at every node but the tip, where
     they vanish, and Omega in 1/tau2 at all nodes where gamma3 is small.
     """
-
-    rod: Rod
-    gamma1: float
-    mesh: Mesh
-
-    @cached_property
-    def parameters(self) -> BeamParameters:
-        """The parameters as the compiled functions take them."""
-        r = self.rod
-        return BeamParameters(*map(float, (r.F, r.nu, r.c1, r.c2, self.gamma1, r.gamma3)))
 
     @property
     def omega_unknown(self) -> bool:
@@ -43,66 +34,27 @@ class StressForm:
         return self.rod.gamma3 < LEAST_ELIMINATED_DRAG
 
     @property
-    def unknowns(self) -> int:
-        n = self.mesh.nodes
-        return 4 * n + 1 if self.omega_unknown else 3 * n
+    def kept(self) -> tuple[int, ...]:
+        return OMEGA if self.omega_unknown else ()
 
-    @cached_property
-    def compliances(self) -> Array:
-        """(c1, c2, 1), shape (3,)."""
-        return np.array([self.parameters.c1, self.parameters.c2, 1.0])
+    def stresses(self, x: Array) -> Array:
+        return self.layout.stresses(x)
+
+    def change(self, name: str) -> NodalChange:
+        """The derivative of `nodal` by a parameter, by 1/k of a stiffness k."""
+        return nodal_change(plane_change(self.rod, name), self.mesh)
 
     @cached_property
     def mass(self) -> Array:
         """The diagonal of W C, 0 for Omega, shape (unknowns,)."""
-        return self.mass_of(self.parameters.c1, self.parameters.c2)
+        return self.mass_of(self.nodal)
 
-    def mass_of(self, c1: float, c2: float) -> Array:
+    def mass_of(self, rod: NodalRod | NodalChange) -> Array:
         """`mass` for other compliances."""
-        mass = np.zeros(self.unknowns)
-        mass[: 3 * self.mesh.nodes] = np.outer([c1, c2, 1.0], self.mesh.quadrature[:-1]).ravel()
-        return mass
-
-    @cached_property
-    def reflection(self) -> Array:
-        """The signs that reflect a state on the line of the straight rod, shape (unknowns,)."""
-        signs = -np.ones(self.unknowns)
-        signs[: self.mesh.nodes] = 1.0
-        return signs
-
-    def stresses(self, x: Array) -> Array:
-        """(n1 + F, n2, m3) at all nodes, the tip included, shape (3, ..., nodes + 1)."""
-        n = self.mesh.nodes
-        S = np.zeros((3, *x.shape[:-1], n + 1))
-        for a in range(3):
-            S[a, ..., :-1] = x[..., a * n : (a + 1) * n]
-        return S
-
-    def strains(self, x: Array) -> Array:
-        """(h1, h2, Pi) at all nodes, the tip included, shape (3, ..., nodes + 1)."""
-        E = self.stresses(x) * self.compliances.reshape(3, *(1,) * x.ndim)
-        E[0] += self.rod.nu
-        return E
-
-    def shape(self, x: Array) -> Array:
-        """(x, y, theta) at all nodes in L and rad, shape (3, ..., nodes + 1), the clamp at 0 along e_x."""
-        return configuration(self.mesh, self.strains(x), np.zeros(3))
-
-    def tip(self, x: Array) -> Array:
-        """(x, y, theta) of the tip, shape (3, ...)."""
-        return self.shape(x)[..., -1]
-
-    def energy(self, x: Array) -> Array:
-        """U = 1/2 int k1 (h1 - 1)^2 + k2 h2^2 + Pi^2 in k3/L, shape (...)."""
-        S = self.stresses(x)
-        S[0] -= self.rod.F
-        return 0.5 * np.tensordot(self.compliances, S * S @ self.mesh.quadrature, 1)
+        weighted = rod.compliance * self.mesh.quadrature
+        return self.layout.state(weighted, np.zeros(weighted.shape))
 
     def size(self, x: Array) -> Array:
         """sqrt of the energy of the stresses beyond the straight rod's, an amplitude of the motion, (...)."""
         size: Array = np.sqrt(x**2 @ self.mass)
         return size
-
-    def least_stretch(self, x: Array) -> float:
-        """min h1 over the nodes of all states; the model holds while it is positive."""
-        return float(self.strains(x)[0].min())

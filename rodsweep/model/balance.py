@@ -12,9 +12,8 @@ where <ad*_E Sigma, V> = -<Sigma, ad_E V>. Multiplied by V and by Sigma and inte
 law dU/dt = Sigma(1) V(1) - <Gamma V, V> with U = <Sigma, C Sigma>/2 and Sigma(1) V(1) = -F v1(1).
 
 Arrays have the shape (3, ...) in the plane and (6, ...) in space. A compliance may be 0, for nothing is
-divided by one. `rodsweep.discretization.mixed_form` is made of these functions;
-`rodsweep.discretization.stress_balance` has the same balance compiled, on a mesh, in the plane, and tests
-hold the one against the other.
+divided by one. `rodsweep.discretization.mixed_form` is made of these functions, and
+`rodsweep.discretization.stress_balance` of those of `algebra` beneath them and of the `Material`.
 """
 
 from dataclasses import dataclass
@@ -23,6 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .algebra import ALGEBRAS
 from .rod import Rod
 
 Values = NDArray[Any]
@@ -34,20 +34,18 @@ IN_SPACE = [0, 1, 5]
 
 def ad(E: Values, V: Values) -> Values:
     """ad_E V, of two elements of se(2) or se(3)."""
-    if len(E) == 3:
-        (h1, h2, kappa), (v1, v2, Omega) = E, V
-        return np.stack([h2 * Omega - kappa * v2, kappa * v1 - h1 * Omega, 0 * kappa * Omega])
-    (h, kappa), (v, Omega) = _halves(E), _halves(V)
-    return np.concatenate([_cross(kappa, v) + _cross(h, Omega), _cross(kappa, Omega)])
+    out = np.zeros(np.broadcast(E, V).shape, np.result_type(E, V))
+    for a, b, c, sign in ALGEBRAS[len(E)].terms:
+        (np.add if sign > 0 else np.subtract)(out[a], E[b] * V[c], out[a, ...])
+    return out
 
 
 def coad(E: Values, Sigma: Values) -> Values:
     """ad*_E Sigma, of an element of the algebra and one of its dual."""
-    if len(E) == 3:
-        (h1, h2, kappa), (n1, n2, _) = E, Sigma
-        return np.stack([-kappa * n2, kappa * n1, h1 * n2 - h2 * n1])
-    (h, kappa), (n, m) = _halves(E), _halves(Sigma)
-    return np.concatenate([_cross(kappa, n), _cross(kappa, m) + _cross(h, n)])
+    out = np.zeros(np.broadcast(E, Sigma).shape, np.result_type(E, Sigma))
+    for a, b, c, sign in ALGEBRAS[len(E)].terms:
+        (np.subtract if sign > 0 else np.add)(out[c], E[b] * Sigma[a], out[c, ...])
+    return out
 
 
 def strain_rate(E: Values, V: Values, dV: Values) -> Values:
@@ -62,21 +60,25 @@ def elastic_force(E: Values, Sigma: Values, dSigma: Values) -> Values:
 
 @dataclass(frozen=True, eq=False)
 class Material:
-    """The diagonals of C and Gamma, shapes (3,) or (6,), and the force on the tip."""
+    """The diagonals of C and Gamma, the force on the tip, and rest, E of the straight rod under that force.
+
+    Shapes are (3,) or (6,), or with the nodes behind, (3, nodes + 1), where a rod is not uniform.
+    """
 
     compliance: Values
     drag: Values
     F: float
+    rest: Values
 
     @property
     def straight(self) -> Values:
         """Ebar, the undeformed rod: (1, 0, 0) or (1, 0, 0; 0, 0, 0)."""
-        return np.eye(len(self.drag))[0]
+        return _first(1.0, len(self.drag))
 
     @property
     def tip_stress(self) -> Values:
         """Sigma(1)."""
-        return -self.F * self.straight
+        return _first(-self.F, len(self.drag))
 
     def strain(self, Sigma: Values) -> Values:
         """E = Ebar + C Sigma."""
@@ -97,13 +99,27 @@ class Material:
 
 def plane_material(rod: Rod, gamma1: float) -> Material:
     """The rod that moves in the plane."""
-    return Material(np.array([rod.c1, rod.c2, 1.0]), np.array([gamma1, 1.0, rod.gamma3]), rod.F)
+    compliance, drag = np.array([rod.c1, rod.c2, 1.0]), np.array([gamma1, 1.0, rod.gamma3], float)
+    return Material(compliance, drag, rod.F, _first(rod.nu, 3))
 
 
 def space_material(rod: Rod, gamma1: float, twist_stiffness: float, twist_drag: float) -> Material:
     """The rod that moves in space; twist stiffness in k3, twist drag in gamma2 L^2."""
     compliance = np.array([rod.c1, rod.c2, rod.c2, 1 / twist_stiffness, 1.0, 1.0])
-    return Material(compliance, np.array([gamma1, 1.0, 1.0, twist_drag, rod.gamma3, rod.gamma3]), rod.F)
+    drag = np.array([gamma1, 1.0, 1.0, twist_drag, rod.gamma3, rod.gamma3])
+    return Material(compliance, drag, rod.F, _first(rod.nu, 6))
+
+
+COMPLIANCES, DRAGS = {"k1": [0], "k2": [1]}, {"gamma1": [0], "gamma3": [2]}
+"""Which components in the plane a parameter is the stiffness or the drag of."""
+
+
+def plane_change(rod: Rod, name: str) -> Material:
+    """The derivative of `plane_material` by a parameter, by 1/k of a stiffness k."""
+    compliance, drag, F = np.zeros(3), np.zeros(3), float(name == "F")
+    compliance[COMPLIANCES.get(name, [])] = 1.0
+    drag[DRAGS.get(name, [])] = 1.0
+    return Material(compliance, drag, F, _first(-(F * rod.c1 + rod.F * compliance[0]), 3))
 
 
 def in_space(plane: Values) -> Values:
@@ -113,14 +129,13 @@ def in_space(plane: Values) -> Values:
     return space
 
 
-def _halves(element: Values) -> tuple[Values, Values]:
-    return element[:3], element[3:]
-
-
-def _cross(a: Values, b: Values) -> Values:
-    return np.cross(a, b, axis=0)
+def _first(number: float, size: int) -> Values:
+    """An element of which only the first component is not 0, (size,)."""
+    element = np.zeros(size)
+    element[0] = number
+    return element
 
 
 def _along(diagonal: Values, field: Values) -> Values:
-    """A diagonal, one number a component, to be multiplied with a field."""
-    return diagonal.reshape(-1, *(1,) * (field.ndim - 1))
+    """A diagonal, one number a component, or one a component and node, to be multiplied with a field."""
+    return diagonal.reshape(len(diagonal), *(1,) * (field.ndim - diagonal.ndim), *diagonal.shape[1:])

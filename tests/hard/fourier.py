@@ -9,7 +9,7 @@ import numpy as np
 from rodsweep.discretization.mesh import configuration
 from rodsweep.discretization.mixed_form import MixedForm
 from rodsweep.discretization.periodic import coefficients, maxima
-from rodsweep.discretization.stress_balance import balance
+from rodsweep.discretization.plane import balance
 
 MOST_STEPS, SOLVED = 12, 1e-11
 
@@ -28,8 +28,9 @@ def guess_at(orbit, m):
     form, V = orbit.form, np.empty((m, 3, orbit.form.mesh.nodes + 1))
     states, reaction = orbit.at(np.arange(m) / m), np.empty(V.shape[1:])
     for x, velocities in zip(states, V, strict=True):
-        balance(x, velocities, reaction, form.parameters, form.mesh.matrices)
-    return np.concatenate([states[:, : 3 * form.mesh.nodes], V.reshape(m, -1)], axis=1)
+        balance(x, velocities, reaction, form.nodal, form.mesh.matrices)
+    mixed = MixedForm(form.rod, form.gamma1, form.mesh)
+    return mixed.unknown(form.stresses(states), V.swapaxes(0, 1))
 
 
 def solved_cycle(form, X, frequency):

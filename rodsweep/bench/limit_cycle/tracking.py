@@ -88,7 +88,7 @@ def on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
     """The rod as integrators see it, and its state z on the cycle where y is largest, shape (unknowns,)."""
     form = orbit.form
     beam = Beam(form.rod, form.gamma1, form.mesh)
-    return beam, (orbit.start.reshape(3, -1) * beam.roots[:, None]).ravel()
+    return beam, (orbit.start.reshape(3, -1) * beam.roots[:, :-1]).ravel()
 
 
 def reference() -> Reference:

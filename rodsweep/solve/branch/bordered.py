@@ -18,9 +18,7 @@ from ..cycle.condensation import eliminate, substitute
 from ..cycle.linearisation import (
     NewtonWorkspace,
     change_along,
-    phase,
-    phase_change,
-    phase_row,
+    jump_of,
     reduced_residuals,
 )
 from ..cycle.multipliers import nonzero_eigenvalues
@@ -28,6 +26,7 @@ from ..cycle.neighbour import coordinate_of, with_coordinate
 from ..cycle.newton import MOST_ITERATIONS, Converged, relative_change
 from ..cycle.orbit import Orbit
 from ..cycle.orbit_mesh import OrbitMesh
+from ..cycle.phase import phase, phase_change, phase_row
 from ..cycle.right_sides import right_sides
 from ..point import Unsolvable
 
@@ -52,7 +51,7 @@ class Scale:
     @classmethod
     def of(cls, orbit: Orbit, name: str, least: float) -> "Scale":
         """The one at an orbit."""
-        largest = float(np.abs(orbit.points[:, 2 * orbit.form.mesh.nodes]).max())
+        largest = float(np.abs(orbit.form.layout.at(orbit.points, "m3")).max())
         return cls(name, float(np.hypot(largest, least)), abs(coordinate_of(orbit.form, name)), least)
 
     def place(self, orbit: Orbit) -> Array:
@@ -63,13 +62,13 @@ class Scale:
 
     def moved(self, orbit: Orbit, change: Array) -> Array:
         """What a change of an orbit and the coordinate, (N + 1,), moves `place` by, (3,)."""
-        moment = change[2 * orbit.form.mesh.nodes] / self.moment
+        moment = change[orbit.form.layout.place("m3")] / self.moment
         return np.array([moment, change[-2] / orbit.period, change[-1] / self.coordinate])
 
 
 def moment_of(orbit: Orbit) -> float:
     """The bending moment at the clamp at t = 0, when the tip's y is largest."""
-    return float(orbit.start[2 * orbit.form.mesh.nodes])
+    return float(orbit.form.layout.at(orbit.start, "m3"))
 
 
 class BorderedMatrix:
@@ -87,12 +86,12 @@ class BorderedMatrix:
         self._columns, self._workspace = np.empty((K, s, 3, n)), NewtonWorkspace(K, s, n)
         right_sides(orbit.points, orbit.duration, p, along, V, self._columns)
         ends = eliminate(orbit.points, V, orbit.duration, p, self._workspace.factors, self._columns)
-        shift = phase_change(orbit.start, along.change, p.parameters, p.matrices)
+        shift = phase_change(orbit.start, along.change, p.rod, p.matrices)
         self._matrix = np.zeros((n + 2, n + 2))
-        self._matrix[:n, :n] = self._workspace.propagator - np.diag(p.signs)
+        self._matrix[:n, :n] = self._workspace.propagator - p.symmetry
         self._matrix[:n, n], self._matrix[:n, n + 1] = ends[0], ends[2]
         row = np.empty(n)
-        phase_row(orbit.start, p.parameters, p.matrices, row)
+        phase_row(orbit.start, p.rod, p.matrices, row)
         self._matrix[n, :n], self._matrix[n, n + 1] = row, -shift
         self._right = self._jump(orbit, ends[1])
 
@@ -116,11 +115,13 @@ class BorderedMatrix:
     @cached_property
     def returns(self) -> Complex:
         """The multipliers of the map over what is solved, half a period and the reflection, (rank,)."""
-        return nonzero_eigenvalues(self.orbit.return_signs[:, None] * self._workspace.propagator)
+        return nonzero_eigenvalues(
+            self.orbit.symmetry.returned(self._workspace.propagator, self.orbit.form.layout)
+        )
 
     def multipliers(self) -> Complex:
         """All Floquet multipliers but rounding, (rank,), by descending modulus, the trivial one too."""
-        values = self.returns**2 if self.orbit.symmetric else self.returns
+        values = self.returns**self.orbit.symmetry.parts
         return values[np.argsort(-np.abs(values), kind="stable")]
 
     def other_way(self) -> Array:
@@ -135,14 +136,14 @@ class BorderedMatrix:
     def _jump(self, orbit: Orbit, end: Array) -> Array:
         """Right side for an orbit's start and phase, (n + 1,), and what its stages make of its end, (n,)."""
         p = orbit.semidiscrete
-        jump = p.signs * orbit.start - orbit.points[-1] - end
-        return np.append(jump, -phase(orbit.start, p.parameters, p.matrices))
+        jump = jump_of(orbit.points, p) - end
+        return np.append(jump, -phase(orbit.start, p.rod, p.matrices))
 
     def _solved(self, border: Array, right: Array, sides: Array, share: float) -> Array:
         """The change for right sides of the ends and a share of those of the stages, (K, s, n)."""
         n = len(self.orbit.start)
         matrix = self._matrix.copy()
-        matrix[-1, 2 * self.orbit.form.mesh.nodes] = border[0] / self.scale.moment
+        matrix[-1, self.orbit.form.layout.place("m3")] = border[0] / self.scale.moment
         matrix[-1, n:] = border[1] / self.orbit.period, border[2] / self.scale.coordinate
         return self._spread(np.linalg.solve(matrix, right), sides, share)
 

@@ -199,8 +199,8 @@ def turned_round(here: ArcPoint, there: ArcPoint) -> bool:
     They do beyond a Hopf point, where the branch is its own mirror image. The tip's y would not tell: an
     extremum of it may pass through 0 on a large cycle.
     """
-    mesh, nodes = mesh_of(there.orbit), there.orbit.form.mesh.nodes
-    one, other = (orbit.start[2 * nodes : 3 * nodes] for orbit in (mesh.carry(here.orbit), there.orbit))
+    mesh, layout = mesh_of(there.orbit), there.orbit.form.layout
+    one, other = (layout.field(orbit.start, "m3") for orbit in (mesh.carry(here.orbit), there.orbit))
     return float(one @ other) < 0
 
 

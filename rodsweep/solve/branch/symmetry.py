@@ -19,6 +19,7 @@ from ..cycle.newton import relative_change
 from ..cycle.orbit import Orbit, node_times
 from ..cycle.orbit_mesh import stages_for, wanted_mesh
 from ..cycle.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tolerance
+from ..cycle.symmetry import NONE
 from ..point import Unsolvable
 from .arc import SHORTEST, ArcPoint, first_point
 from .beginning import FIRST_STEP, MOMENT
@@ -65,9 +66,9 @@ def over_whole_period(orbit: Orbit) -> Orbit:
     times = 2 * node_times(intervals, orbit.stages)
     later = times > 1
     points = orbit.at(np.where(later, times - 1, times))
-    points[later] *= orbit.form.reflection
+    points[later] = orbit.symmetry.of(points[later], orbit.form.layout)
     values = np.append(points.ravel(), orbit.period)
-    return replace(orbit, symmetric=False, intervals=intervals, values=values)
+    return replace(orbit, symmetry=NONE, intervals=intervals, values=values)
 
 
 def asymmetry(orbit: Orbit) -> Array:
@@ -77,8 +78,7 @@ def asymmetry(orbit: Orbit) -> Array:
 
 def _moments(states: Array, orbit: Orbit) -> Array:
     """The bending moments of states, (..., n), of an orbit's mesh, (..., nodes)."""
-    nodes = orbit.form.mesh.nodes
-    return states[..., 2 * nodes : 3 * nodes]
+    return orbit.form.layout.field(states, "m3")
 
 
 def beginning_without_symmetry(breaking: Breaking, name: str, accuracy: float) -> ArcPoint:

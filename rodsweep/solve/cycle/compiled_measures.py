@@ -6,6 +6,7 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...discretization.periodic import hermite_columns, maxima, minima, sampled_columns
+from ...discretization.state_layout import stress_place
 from ...discretization.tip_motion import TipMatrices, tip_motion
 from ...model.compilation import compiled_for_vectors
 from .condensation import Semidiscrete, powers, strain_rates
@@ -59,12 +60,13 @@ def tip_path(states: Array, period: float, p: Semidiscrete, m: TipMatrices) -> T
 @compiled_for_vectors
 def node_strains(states: Array, p: Semidiscrete, out: Array) -> None:
     """(h1, h2, Pi) at all nodes of states (K, n) into out, (3, K, nodes + 1)."""
-    c, size = p.parameters, len(p.matrices.weights)
-    for a, base, compliance in ((0, c.nu, c.c1), (1, 0.0, c.c2), (2, 0.0, 1.0)):
+    c, n = p.rod, len(p.matrices.weights) - 1
+    for a in range(len(out)):
         for k in range(len(states)):
-            for i in range(size - 1):
-                out[a, k, i] = base + compliance * states[k, a * (size - 1) + i]
-            out[a, k, size - 1] = base
+            for i in range(n):
+                stress = states[k, stress_place(a, i, n)]
+                out[a, k, i] = c.rest[a, i] + c.compliance[a, i] * stress
+            out[a, k, n] = c.rest[a, n]
 
 
 @compiled_for_vectors
@@ -93,9 +95,9 @@ def means(stages: Array, weights: Array, p: Semidiscrete) -> Means:
             mean[a] += weights[i % s] * p.lengths[i // s] * power[a, i]
         for i in range(K * s):
             square[a] += weights[i % s] * p.lengths[i // s] * (power[a, i] - mean[a]) ** 2
-    least = 0.0  # of n1 + F, which vanishes at the tip
+    stretch = p.rod.rest[0, nodes]  # at the tip
     for i in range(K * s):
         for j in range(nodes):
-            least = min(least, flat[i, j])
-    stretch = p.parameters.nu + p.parameters.c1 * least
+            pull = flat[i, stress_place(0, j, nodes)]
+            stretch = min(stretch, p.rod.rest[0, j] + p.rod.compliance[0, j] * pull)
     return Means(mean[0], np.sqrt(square[0]), mean[1], np.sqrt(square[1]), stretch)

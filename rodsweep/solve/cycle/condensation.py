@@ -18,7 +18,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...arrays import Array
-from ...discretization.stress_balance import BeamParameters, NodeMatrices, balance, jacobian
+from ...discretization.mesh import NodeMatrices
+from ...discretization.nodal_rod import NodalRod
+from ...discretization.plane import balance, jacobian
 from ...model.compilation import compiled_for_vectors
 from ..backend.products import product, square_product
 
@@ -33,16 +35,16 @@ ROWS = 8
 class Semidiscrete(NamedTuple):
     """The rod on its mesh, the method in time, and how an orbit closes.
 
-    mass (n,); differentiation (s, s + 1); lengths: of the intervals, of sum 1, (K,); signs: what the state is
-    multiplied with at the end, (n,); parts: of the period that are equal but for the signs, 1 or 2.
+    mass (n,); differentiation (s, s + 1); lengths: of the intervals, of sum 1, (K,); symmetry: S, by which
+    the state has changed at the end, (n, n); parts: of the period that are equal but for it, 1 or 2.
     """
 
-    parameters: BeamParameters
+    rod: NodalRod
     matrices: NodeMatrices
     mass: Array
     differentiation: Array
     lengths: Array
-    signs: Array
+    symmetry: Array
     parts: float
 
 
@@ -132,7 +134,7 @@ def eliminate(
     for k in range(K):
         B, h = factors.blocks[k], duration * p.lengths[k]
         for i in range(s):
-            jacobian(points[1 + k * s + i], V[k, i], B[i, i], tip, p.parameters, p.matrices)
+            jacobian(points[1 + k * s + i], V[k, i], B[i, i], tip, p.rod, p.matrices)
             for r in range(n):
                 for q in range(n):
                     B[i, i, r, q] *= -h
@@ -348,7 +350,7 @@ def strain_rates(states: Array, out: Array, p: Semidiscrete) -> None:
     size = len(p.matrices.weights)
     V, G = np.empty((3, size)), np.empty((3, size))
     for k in range(len(states)):
-        balance(states[k], V, G, p.parameters, p.matrices)
+        balance(states[k], V, G, p.rod, p.matrices)
         for a in range(3):
             for i in range(size - 1):
                 out[a, k, i] = G[a, i] / p.matrices.weights[i]
@@ -359,11 +361,12 @@ def strain_rates(states: Array, out: Array, p: Semidiscrete) -> None:
 def powers(states: Array, out: Array, p: Semidiscrete) -> None:
     """Power of the follower force, by the reaction, and power lost, of states (m, n) into out, (2, m)."""
     size = len(p.matrices.weights)
-    V, G, c = np.empty((3, size)), np.empty((3, size)), p.parameters
+    V, G, c = np.empty((3, size)), np.empty((3, size)), p.rod
     for k in range(len(states)):
         balance(states[k], V, G, c, p.matrices)
-        lost = 0.0
-        for i in range(size):
-            drag = c.gamma1 * V[0, i] ** 2 + V[1, i] ** 2 + c.gamma3 * V[2, i] ** 2
-            lost += p.matrices.weights[i] * drag
-        out[0, k], out[1, k] = c.F * G[0, size - 1], lost
+        gained, lost = 0.0, 0.0
+        for a in range(len(V)):
+            gained -= c.tip_stress[a] * G[a, size - 1]
+            for i in range(size):
+                lost += p.matrices.weights[i] * c.drag[a, i] * V[a, i] ** 2
+        out[0, k], out[1, k] = gained, lost

@@ -5,10 +5,11 @@ from scipy.interpolate import CubicSpline
 
 from ...arrays import Array
 from ...discretization.beam import Beam
-from ...discretization.stress_balance import balance
+from ...discretization.plane import balance
 from ...discretization.stress_form import StressForm
 from ..motion.integrator import Trajectory
 from .orbit import Orbit, node_times
+from .symmetry import NONE, REFLECTION
 
 STAGES, INTERVALS = 3, 20
 """Of the first orbit, over its period."""
@@ -28,31 +29,29 @@ def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: flo
     times = begin + period * np.arange(PHASES) / PHASES
     turn = spline(times)
     top = float(times[int(np.argmax(beam.tip(turn)[1]))])
-    symmetric = asymmetry(beam, turn) < SYMMETRIC
-    intervals = INTERVALS * turns // (2 if symmetric else 1)
-    duration = period / 2 if symmetric else period
+    symmetry = REFLECTION if asymmetry(beam, turn) < SYMMETRIC else NONE
+    intervals = INTERVALS * turns // symmetry.parts
+    duration = period / symmetry.parts
     at = top + duration * node_times(intervals, STAGES)
     at = np.where(at > run.times[-1], at - period, at)
     states = stressed(beam, form, spline(at))
-    return Orbit.of(form, symmetric, period, states, STAGES)
+    return Orbit.of(form, symmetry, period, states, STAGES)
 
 
 def asymmetry(beam: Beam, states: Array) -> float:
     """Relative distance of the bending moments of states (m, n) over a period from their reflection."""
-    moments = states[:, 2 * beam.mesh.nodes :]
+    moments = beam.layout.field(states, "m3")
     mirrored = -np.roll(moments, len(moments) // 2, axis=0)
     return float(np.linalg.norm(moments - mirrored) / np.linalg.norm(moments))
 
 
 def stressed(beam: Beam, form: StressForm, z: Array) -> Array:
-    """States of `form`, (m, unknowns), of the time stepper's z, (m, 3 nodes), on the same mesh."""
-    S = (z.reshape(len(z), 3, -1) / beam.roots[:, None]).reshape(z.shape)
-    if not form.omega_unknown:
-        return S
-    size = form.mesh.nodes + 1
-    V, G = np.empty((3, size)), np.empty((3, size))
-    Omega = np.empty((len(z), size))
-    for k, state in enumerate(S):
-        balance(np.ascontiguousarray(state), V, G, beam.parameters, beam.mesh.matrices)
-        Omega[k] = V[2]
-    return np.hstack([S, Omega])
+    """States of `form`, (m, unknowns), of the time stepper's z, (m, its unknowns), on the same mesh."""
+    S = beam.stresses(z)
+    V, G = np.empty(S.shape), np.empty((len(S), S.shape[-1]))
+    if form.omega_unknown:
+        for k, state in enumerate(beam.layout.state(S, S)):
+            velocity = np.empty(G.shape)
+            balance(state, velocity, G, beam.nodal, beam.mesh.matrices)
+            V[:, k] = velocity
+    return form.layout.state(S, V)

@@ -24,6 +24,7 @@ from ..spectrum.search import SpectrumRequest, solve_spectrum
 from .neighbour import followed_from, in_steps
 from .newton import at_orbit, newton
 from .orbit import Orbit, node_times
+from .symmetry import REFLECTION
 
 LEADING = SpectrumRequest(1, 1e-9, False)
 SCAN = 0.93
@@ -175,6 +176,5 @@ def orbit_with(normal: NormalForm, form: StressForm, amplitude: float, frequency
     X = normal.motion(amplitude, np.pi * node_times(INTERVALS, STAGES))
     S, V = normal.form.fields(X)
     E = normal.form.mesh.evaluation(form.mesh.positions)
-    parts = [*(S @ E.T)[..., :-1]] + ([V[2] @ E.T] if form.omega_unknown else [])
-    states = np.concatenate(parts, axis=1)
-    return Orbit.of(form, True, 2 * np.pi / frequency, states, STAGES)
+    states = form.layout.state(S @ E.T, V @ E.T)
+    return Orbit.of(form, REFLECTION, 2 * np.pi / frequency, states, STAGES)

@@ -328,7 +328,7 @@ def _from_motion(
         return torus_or(transient.follow(request.amplitude * transient.mode.z.real), transient)
     orbit = neighbour.branch.orbit
     stresses = orbit.form.stresses(orbit.start) @ orbit.form.mesh.evaluation(beam.mesh.positions).T
-    return torus_or(transient.follow((stresses[:, :-1] * beam.roots[:, None]).ravel()), transient)
+    return torus_or(transient.follow(beam.scaled(stresses)), transient)
 
 
 def _measured(cycle: Cycle, found: RefinedCycle, request: CycleRequest) -> Cycle:

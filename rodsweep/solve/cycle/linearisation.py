@@ -9,13 +9,8 @@ from math import prod
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...discretization.stress_balance import (
-    BeamParameters,
-    NodeMatrices,
-    balance,
-    balance_change,
-    jacobian,
-)
+from ...discretization.nodal_rod import NodalChange
+from ...discretization.state_layout import COMPONENTS, stress_place
 from ...discretization.stress_form import StressForm
 from ...model.compilation import compiled_for_vectors
 from ...model.parameters import PARAMETERS
@@ -31,6 +26,7 @@ from .condensation import (
 )
 from .multipliers import nonzero_eigenvalues
 from .orbit import Orbit
+from .phase import phase, phase_change, phase_row
 from .right_sides import Along, residuals, right_sides
 
 _memory: list[Array] = [np.empty(0)]
@@ -73,9 +69,10 @@ class Linearisation:
     def __init__(self, orbit: Orbit, parameter: str | None = None) -> None:
         self.orbit = orbit
         self._workspace = NewtonWorkspace(orbit.intervals, orbit.stages, orbit.form.unknowns)
-        along = None if parameter is None else change_along(orbit.form, parameter)
-        count, factors = 2 if along is None else 3, self._workspace.factors
-        steps, self._by_period = linearise(orbit.values, count, along or STILL, orbit.semidiscrete, factors)
+        p, factors = orbit.semidiscrete, self._workspace.factors
+        along = Along(STILL, p.mass) if parameter is None else change_along(orbit.form, parameter)
+        count = 2 if parameter is None else 3
+        steps, self._by_period = linearise(orbit.values, count, along, p, factors)
         self.step, self.tangent = steps[0], None if parameter is None else steps[1]
 
     def correction(self, orbit: Orbit) -> Array:
@@ -90,8 +87,8 @@ class Linearisation:
 
 def multipliers_by(propagator: Array, orbit: Orbit) -> Complex:
     """All Floquet multipliers but rounding, (rank,), by descending modulus, of an orbit with P, (n, n)."""
-    values = nonzero_eigenvalues(orbit.return_signs[:, None] * propagator)
-    values = values**2 if orbit.symmetric else values
+    values = nonzero_eigenvalues(orbit.symmetry.returned(propagator, orbit.form.layout))
+    values = values**orbit.symmetry.parts
     return values[np.argsort(-np.abs(values), kind="stable")]
 
 
@@ -113,67 +110,14 @@ def coordinate(name: str, value: float) -> float:
     return 1 / value if PARAMETERS[name].by_compliance else value
 
 
-STILL = Along(BeamParameters(*(0.0 for _ in BeamParameters._fields)), np.zeros(0))
-"""No change of the rod."""
+STILL = NodalChange(np.zeros(0), *np.zeros((3, 0, 0)))
+"""No change of the rod: nothing of it is read."""
 
 
 def change_along(form: StressForm, name: str) -> Along:
     """How a rod changes with a `coordinate`, the mass, (n,), among it."""
-    c, field = form.parameters, {"k1": "c1", "k2": "c2"}.get(name, name)
-    change = BeamParameters(*(float(field == other) for other in c._fields))
-    change = change._replace(nu=-change.F * c.c1 - c.F * change.c1)
-    mass = form.mass_of(change.c1, change.c2)
-    mass[2 * form.mesh.nodes :] = 0.0
-    return Along(change, mass)
-
-
-@compiled_for_vectors
-def phase_change(start: Array, change: BeamParameters, c: BeamParameters, m: NodeMatrices) -> float:
-    """The derivative of `phase` at a start, (n,), by a change of the parameters, as a right side."""
-    size = len(m.weights)
-    V, G, changes = np.empty((3, size)), np.empty((3, size)), np.empty((2, 3, size))
-    balance(start, V, G, c, m)
-    balance_change(start, V, changes, change, c, m)
-    return -lateral_velocity(changes[1], tip_angle(start, m))
-
-
-@compiled_for_vectors
-def phase(start: Array, c: BeamParameters, m: NodeMatrices) -> float:
-    """The tip's dy/dt at the start, (n,), by the reaction there."""
-    size = len(m.weights)
-    V, G = np.empty((3, size)), np.empty((3, size))
-    balance(start, V, G, c, m)
-    return float(lateral_velocity(G, tip_angle(start, m)))
-
-
-@compiled_for_vectors
-def lateral_velocity(G: Array, theta: float) -> float:
-    """dy/dt of the tip at an angle, by G at all nodes, (3, nodes + 1)."""
-    return -(np.sin(theta) * G[0, -1] + np.cos(theta) * G[1, -1])
-
-
-@compiled_for_vectors
-def tip_angle(x: Array, m: NodeMatrices) -> float:
-    """theta at the tip of a state, (n,)."""
-    theta, nodes = 0.0, len(m.weights) - 1
-    for i in range(nodes):
-        theta += m.weights[i] * x[2 * nodes + i]
-    return theta
-
-
-@compiled_for_vectors
-def phase_row(start: Array, c: BeamParameters, m: NodeMatrices, row: Array) -> None:
-    """The derivative of `phase` by the start into row, both (n,)."""
-    n, size = len(start), len(m.weights)
-    V, G, J, tip = np.empty((3, size)), np.empty((3, size)), np.empty((n, n)), np.empty((3, n))
-    balance(start, V, G, c, m)
-    jacobian(start, V, J, tip, c, m)
-    theta, nodes = tip_angle(start, m), size - 1
-    sin, cos = np.sin(theta), np.cos(theta)
-    for i in range(n):
-        row[i] = -(sin * tip[0, i] + cos * tip[1, i])
-    for i in range(nodes):
-        row[2 * nodes + i] += (sin * G[1, nodes] - cos * G[0, nodes]) * m.weights[i]
+    change = form.change(name)
+    return Along(change, form.mass_of(change))
 
 
 @compiled_for_vectors
@@ -187,27 +131,38 @@ def linearise(
     """
     K, s, n = factors.blocks.shape[0], factors.blocks.shape[1], len(p.mass)
     points, duration = values[:-1].reshape(1 + K * s, n), values[-1] / p.parts
-    V, columns = np.empty((K, s, 3, len(p.matrices.weights))), np.empty((K, s, count, n))
+    V, columns = np.empty((K, s, COMPONENTS, len(p.matrices.weights))), np.empty((K, s, count, n))
     right_sides(points, duration, p, along, V, columns)
     ends = eliminate(points, V, duration, p, factors, columns)
     inverse = factors.inverse
     inverse[:, :] = 0.0
     inverse[:n, :n] = factors.propagator
     for i in range(n):
-        inverse[i, i] -= p.signs[i]
         inverse[i, n] = ends[0, i]
-    phase_row(points[0], p.parameters, p.matrices, inverse[n, :n])
+        for j in range(n):
+            inverse[i, j] -= p.symmetry[i, j]
+    phase_row(points[0], p.rod, p.matrices, inverse[n, :n])
     invert(inverse, np.empty(n + 1, np.int64), np.empty((n + 1, PANEL)))
     rights = np.zeros((count - 1, n + 1))
     for m in range(1, count):
         for i in range(n):
-            jump = p.signs[i] * points[0, i] - points[K * s, i] if m == 1 else 0.0
-            rights[m - 1, i] = jump - ends[m, i]
-    rights[0, n] = -phase(points[0], p.parameters, p.matrices)
+            rights[m - 1, i] = -ends[m, i]
+    rights[0, :n] += jump_of(points, p)
+    rights[0, n] = -phase(points[0], p.rod, p.matrices)
     if count > 2:
-        rights[1, n] = phase_change(points[0], along.change, p.parameters, p.matrices)
+        rights[1, n] = phase_change(points[0], along.change, p.rod, p.matrices)
     by_period = columns[:, :, 0].copy()
     return steps_of(rights, by_period, columns[:, :, 1:], p, factors), by_period
+
+
+@compiled_for_vectors
+def jump_of(points: Array, p: Semidiscrete) -> Array:
+    """S x(0) - x(T/p) of points, (1 + K s, n), shape (n,)."""
+    jump = -points[-1]
+    for i in range(len(jump)):
+        for j in range(len(jump)):
+            jump[i] += p.symmetry[i, j] * points[0, j]
+    return jump
 
 
 @compiled_for_vectors
@@ -266,9 +221,8 @@ def correct(values: Array, by_period: Array, p: Semidiscrete, factors: Factors) 
     points, duration = values[:-1].reshape(1 + K * s, n), values[-1] / p.parts
     columns, ends = reduced_residuals(points, duration, p, p, factors)
     rights = np.empty((1, n + 1))
-    for i in range(n):
-        rights[0, i] = p.signs[i] * points[0, i] - points[K * s, i] - ends[0, i]
-    rights[0, n] = -phase(points[0], p.parameters, p.matrices)
+    rights[0, :n] = jump_of(points, p) - ends[0]
+    rights[0, n] = -phase(points[0], p.rod, p.matrices)
     return steps_of(rights, by_period, columns, p, factors)[0]
 
 
@@ -279,10 +233,12 @@ def largest_change(values: Array, step: Array, unknowns: int, nodes: int) -> flo
     for change in step:
         if not np.isfinite(change):
             return np.inf
-    for a in range(1, 3):
-        most, size = 0.0, 0.0
-        for first in range(unknowns + a * nodes, len(values) - 1, unknowns):
-            for i in range(first, first + nodes):
-                most, size = max(most, abs(step[i])), max(size, abs(values[i]))
-        largest = max(largest, most / size)
+    most, size = np.zeros(COMPONENTS), np.zeros(COMPONENTS)
+    for first in range(unknowns, len(values) - 1, unknowns):
+        for a in range(1, COMPONENTS):
+            for i in range(nodes):
+                at = first + stress_place(a, i, nodes)
+                most[a], size[a] = max(most[a], abs(step[at])), max(size[a], abs(values[at]))
+    for a in range(1, COMPONENTS):
+        largest = max(largest, most[a] / size[a])
     return largest

@@ -21,7 +21,7 @@ from ..point import Unsolvable
 from .calibration import LENGTH, Calibration
 from .linearisation import coordinate
 from .newton import Converged, at_orbit, newton, relative_change
-from .normalised import combined, layout, normalised, normalised_tangent, polynomial_weights, values_of
+from .normalised import combined, normalised, normalised_tangent, polynomial_weights, reflected, values_of
 from .orbit import Orbit
 from .orbit_mesh import OrbitMesh, mesh_of
 from .refinement import (
@@ -31,6 +31,7 @@ from .refinement import (
     matrix_distance,
     newton_tolerance,
 )
+from .symmetry import NONE, REFLECTION
 
 FARTHEST = 0.3
 """Relative distance of a cycle from its prediction beyond which it may be another one."""
@@ -90,7 +91,7 @@ class Followed:
         if not values[-1] > 0:
             raise Unsolvable("the branch is predicted to end")
         here = replace(form, mesh=self.orbit.form.mesh)
-        return replace(self.orbit, form=here, values=values_of(values, layout(self.orbit)))
+        return replace(self.orbit, form=here, values=values_of(values, reflected(self.orbit)))
 
     def on(self, target: OrbitMesh) -> "Followed":
         """The same on another mesh."""
@@ -200,7 +201,7 @@ class Neighbour:
         form = StressForm(Rod(F, k1, k2, gamma3), gamma1, here.grid)
         # The values are one number fewer than each row of the data.
         values, data = np.split(parts[6], [len(parts[6]) // (1 + m)])
-        orbit = Orbit(form, bool(symmetric), here.intervals, here.stages, values)
+        orbit = Orbit(form, REFLECTION if symmetric else NONE, here.intervals, here.stages, values)
         branch = Followed(orbit, parts[4], parts[5], data.reshape(m, -1))
         return cls(branch, there, Calibration.unpack(parts[3]), complex(real, imag))
 

@@ -1,9 +1,9 @@
 """A periodic orbit on one mesh in space and time.
 
-Its unknowns are the state at t = 0, the stages of a Radau collocation and the period T. A symmetric orbit has
-x(T/2) = R x(0), R the reflection on the line of the straight rod, and is solved over half its period; any
-other over the whole. At t = 0 the tip's y is at an extremum: its velocity, by the reaction at the tip,
-vanishes there, so that the largest y is as accurate as the period.
+Its unknowns are the state at t = 0, the stages of a Radau collocation and the period T. A symmetric orbit,
+x(T/p) = S x(0), is solved over that part of its period; any other over the whole. At t = 0 the tip's y is at
+an extremum: its velocity, by the reaction at the tip, vanishes there, so that the largest y is as accurate as
+the period.
 """
 
 from dataclasses import dataclass, replace
@@ -17,6 +17,7 @@ from ...discretization.collocation import Collocation, radau
 from ...discretization.mesh import Mesh, transfer
 from ...discretization.stress_form import StressForm
 from .condensation import Semidiscrete
+from .symmetry import Symmetry
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,16 +26,16 @@ class Orbit:
     in tau2, (N,) with N = (1 + K s) n + 1."""
 
     form: StressForm
-    symmetric: bool
+    symmetry: Symmetry
     intervals: int
     stages: int
     values: Array
 
     @classmethod
-    def of(cls, form: StressForm, symmetric: bool, period: float, states: Array, stages: int) -> "Orbit":
+    def of(cls, form: StressForm, symmetry: Symmetry, period: float, states: Array, stages: int) -> "Orbit":
         """From the states at the start and at the stages of all intervals, (1 + K s, n)."""
         values = np.append(states.ravel(), period)
-        return cls(form, symmetric, (len(states) - 1) // stages, stages, values)
+        return cls(form, symmetry, (len(states) - 1) // stages, stages, values)
 
     @property
     def period(self) -> float:
@@ -72,16 +73,16 @@ class Orbit:
     @property
     def duration(self) -> float:
         """Of what is solved: half the period or the whole."""
-        return self.period / 2 if self.symmetric else self.period
+        return self.period / self.symmetry.parts
 
     @property
-    def return_signs(self) -> Array:
-        """What the state is multiplied with after the duration, shape (n,)."""
-        return self.form.reflection if self.symmetric else np.ones(self.form.unknowns)
+    def symmetric(self) -> bool:
+        """Whether less than the whole period is solved."""
+        return self.symmetry.parts > 1
 
     @property
     def semidiscrete(self) -> Semidiscrete:
-        return _semidiscrete(self.form, self.symmetric, self.intervals, self.stages)
+        return _semidiscrete(self.form, self.symmetry, self.intervals, self.stages)
 
     @property
     def size(self) -> float:
@@ -104,7 +105,7 @@ class Orbit:
         if there != here:
             points = between_intervals(here, there) @ points
         if grid is not self.form.mesh:
-            points = moved_to(self.form, form, points)
+            points = self.form.layout.carried(points, transfer(self.form.mesh, grid))
         return replace(
             self,
             form=form,
@@ -115,11 +116,11 @@ class Orbit:
 
 
 @lru_cache(maxsize=16)
-def _semidiscrete(form: StressForm, symmetric: bool, intervals: int, stages: int) -> Semidiscrete:
+def _semidiscrete(form: StressForm, symmetry: Symmetry, intervals: int, stages: int) -> Semidiscrete:
     """What all orbits of a form on one method have in common."""
-    signs, parts = (form.reflection, 2.0) if symmetric else (np.ones(form.unknowns), 1.0)
     d, lengths = radau(stages).differentiation, interval_lengths(intervals)
-    return Semidiscrete(form.parameters, form.mesh.matrices, form.mass, d, lengths, signs, parts)
+    S, parts = symmetry.matrix(form.layout), float(symmetry.parts)
+    return Semidiscrete(form.nodal, form.mesh.matrices, form.mass, d, lengths, S, parts)
 
 
 @lru_cache(maxsize=256)
@@ -167,13 +168,3 @@ def piecewise(source: tuple[int, int], times: Array) -> csr_array:
     columns = first[:, None] + np.arange(s + 1)
     rows = np.arange(0, weights.size + 1, s + 1)
     return csr_array((weights.ravel(), columns.ravel(), rows), shape=(len(times), 1 + K * s))
-
-
-def moved_to(source: StressForm, target: StressForm, x: Array) -> Array:
-    """States (..., n) of one mesh on another."""
-    E = transfer(source.mesh, target.mesh)
-    n = source.mesh.nodes
-    parts = [x[..., a * n : (a + 1) * n] @ E[:-1, :-1].T for a in range(3)]
-    if target.omega_unknown:
-        parts.append(x[..., 3 * n :] @ E.T)
-    return np.ascontiguousarray(np.concatenate(parts, axis=-1))

@@ -15,6 +15,7 @@ from ...arrays import Array
 from ...discretization.collocation import radau
 from ...discretization.mesh import Mesh, mesh
 from ...discretization.resolution import LARGEST_ORDER
+from ...discretization.state_layout import COMPONENTS, plane_layout, stress_place
 from ...model.compilation import compiled_for_vectors
 from .orbit import Orbit
 
@@ -49,6 +50,11 @@ class OrbitMesh:
         return mesh(self.elements, self.order)
 
     @property
+    def unknowns(self) -> int:
+        """Stresses of a state."""
+        return plane_layout(self.elements * self.order).unknowns
+
+    @property
     def numbers(self) -> tuple[int, int, int, int]:
         """By which it is stored and made anew."""
         return self.elements, self.order, self.intervals, self.stages
@@ -67,12 +73,12 @@ class OrbitMesh:
 
     @property
     def allowed(self) -> bool:
-        return 3 * self.elements * self.order <= MOST_STATE_UNKNOWNS and self.intervals <= MOST_INTERVALS
+        return self.unknowns <= MOST_STATE_UNKNOWNS and self.intervals <= MOST_INTERVALS
 
     @property
     def cost(self) -> float:
         """Of an elimination, in any unit; processors and their BLAS take numbers in eights."""
-        unknowns = 8 * ceil(3 * self.elements * self.order / 8)
+        unknowns = 8 * ceil(self.unknowns / 8)
         return float(unknowns**3 * self.intervals * self.stages**2)
 
     def carry(self, orbit: Orbit) -> Orbit:
@@ -141,11 +147,11 @@ def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array
     """The largest moduli of the coefficients of n1, n2, m3, (3, p + 1), of states (m, n) in all elements."""
     size = len(analysis)
     nodes = elements * (size - 1)
-    largest, c = np.zeros((3, size)), np.empty(size)
+    largest, c = np.zeros((COMPONENTS, size)), np.empty(size)
     for k in range(len(states)):
-        for a in range(3):
+        for a in range(COMPONENTS):
             for e in range(elements):
-                first = a * nodes + e * (size - 1)
+                first = stress_place(a, e * (size - 1), nodes)
                 known = size if e < elements - 1 else size - 1  # at the tip stresses vanish
                 c[:] = 0.0
                 for j in range(known):
@@ -181,11 +187,11 @@ def largest_end(points: Array, elements: int, analysis: Array) -> float:
     """
     size, count = analysis.shape
     nodes, c, worst = elements * (size - 1), np.empty(count), 0.0
-    for a in range(3):
+    for a in range(COMPONENTS):
         largest, end = 0.0, 0.0
         for k in range(len(points)):
             for e in range(elements):
-                first = a * nodes + e * (size - 1)
+                first = stress_place(a, e * (size - 1), nodes)
                 known = size if e < elements - 1 else size - 1  # at the tip stresses vanish
                 c[:] = 0.0
                 for j in range(known):
@@ -219,20 +225,19 @@ def largest_tail(points: Array, row: Array, nodes: int) -> float:
     coefficient, (s + 1,). Sizes are those of the vectors of a stress at all nodes.
     """
     s, worst = len(row) - 1, 0.0
-    for a in range(3):
-        first = a * nodes
+    for a in range(COMPONENTS):
         largest, tail = 0.0, 0.0
         for m in range(len(points)):
             size = 0.0
-            for i in range(first, first + nodes):
-                size += points[m, i] ** 2
+            for i in range(nodes):
+                size += points[m, stress_place(a, i, nodes)] ** 2
             largest = max(largest, size)
         for k in range(0, len(points) - 1, s):
             size = 0.0
-            for i in range(first, first + nodes):
+            for i in range(nodes):
                 top = 0.0
                 for j in range(s + 1):
-                    top += row[j] * points[k + j, i]
+                    top += row[j] * points[k + j, stress_place(a, i, nodes)]
                 size += top**2
             tail = max(tail, size)
         worst = max(worst, np.sqrt(tail / max(largest, 1e-300)))

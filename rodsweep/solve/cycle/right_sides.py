@@ -5,51 +5,50 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array
-from ...discretization.stress_balance import (
-    BeamParameters,
-    balance,
-    balance_change,
-    torque_balance,
-    torque_change,
-)
+from ...discretization.nodal_rod import NodalChange
+from ...discretization.plane import balance, balance_change, velocity_balance
+from ...discretization.state_layout import stress_place, velocity_place
 from ...model.compilation import compiled_for_vectors
 from .condensation import Semidiscrete
 
 
 class Along(NamedTuple):
-    """How the rod changes along a parameter: its parameters, and the mass, (n,), per unit of it."""
+    """How the rod changes along a parameter: the rod itself, and the mass, (n,), per unit of it."""
 
-    change: BeamParameters
+    change: NodalChange
     mass: Array
 
 
 @compiled_for_vectors
 def equations(x: Array, F: Array, V: Array, G: Array, p: Semidiscrete) -> None:
     """F(x), shape (n,), with V and G, (3, nodes + 1), on the way."""
-    nodes = G.shape[1] - 1
-    balance(x, V, G, p.parameters, p.matrices)
-    for a in range(3):
-        for i in range(nodes):
-            F[a * nodes + i] = G[a, i]
-    if len(x) > 3 * nodes:
-        torque_balance(x, F[3 * nodes :], p.parameters, p.matrices)
+    balance(x, V, G, p.rod, p.matrices)
+    _take(G, F)
+    if len(p.rod.kept):
+        velocity_balance(x, F, p.rod, p.matrices)
 
 
 @compiled_for_vectors
-def equations_change(
-    x: Array, F: Array, V: Array, out: Array, change: BeamParameters, p: Semidiscrete
-) -> None:
+def _take(G: Array, F: Array) -> None:
+    """G at all nodes but the tip, (3, nodes + 1), into its places in F, (n,)."""
+    d, n = G.shape[0], G.shape[1] - 1
+    for a in range(d):
+        for i in range(n):
+            F[stress_place(a, i, n)] = G[a, i]
+
+
+@compiled_for_vectors
+def equations_change(x: Array, F: Array, V: Array, out: Array, change: NodalChange, p: Semidiscrete) -> None:
     """The derivative of `equations` along a change of the parameters into F, (n,).
 
-    V at the state x is known; out, (2, 3, nodes + 1), is made on the way.
+    V at the state x is known; out, (3, 3, nodes + 1), is made on the way.
     """
-    nodes = V.shape[1] - 1
-    balance_change(x, V, out, change, p.parameters, p.matrices)
-    for a in range(3):
-        for i in range(nodes):
-            F[a * nodes + i] = out[1, a, i]
-    if len(x) > 3 * nodes:
-        torque_change(x, F[3 * nodes :], change, p.parameters, p.matrices)
+    balance_change(x, V, out, change, p.rod, p.matrices)
+    _take(out[2], F)
+    d, size = V.shape
+    for k in range(len(p.rod.kept)):
+        for i in range(size):
+            F[velocity_place(k, i, d, size - 1)] = p.matrices.weights[i] * out[0, p.rod.kept[k], i]
 
 
 @compiled_for_vectors
@@ -80,7 +79,7 @@ def right_sides(
     along the change of a parameter.
     """
     K, s, count, n = columns.shape
-    G, changes, slopes = np.empty(V.shape[2:]), np.empty((2, *V.shape[2:])), np.empty(n)
+    G, changes, slopes = np.empty(V.shape[2:]), np.empty((3, *V.shape[2:])), np.empty(n)
     for k in range(K):
         length = p.lengths[k]
         for i in range(s):

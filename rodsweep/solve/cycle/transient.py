@@ -100,9 +100,7 @@ class TransientOutcome:
 
 def angle_weights(beam: Beam) -> Array:
     """The row c, shape (unknowns,), with c z = theta of the tip."""
-    row = np.zeros(beam.mesh.unknowns)
-    row[2 * beam.mesh.nodes :] = beam.mesh.quadrature[:-1]
-    return row
+    return beam.layout.row({"m3": beam.mesh.quadrature[:-1]})
 
 
 def hermite_weights(x: float) -> tuple[float, float, float, float]:
@@ -128,7 +126,7 @@ def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
             low, high = (middle, high) if below else (low, middle)
         times.append(run.times[k] + h * low)
         states.append(np.array(hermite_weights(low)) @ cubic)
-    return np.array(times), np.array(states).reshape(len(times), beam.mesh.unknowns)
+    return np.array(times), np.array(states).reshape(len(times), beam.layout.unknowns)
 
 
 class Transient:
@@ -187,7 +185,7 @@ class Transient:
                 return self._broken(run)
             z, (times, states) = run.states[-1], section_crossings(self.beam, run)
             self.waited += max(len(times), 1)
-            moments = states[:, 2 * self.beam.mesh.nodes :]
+            moments = self.beam.layout.field(states, "m3")
             self.past.extend(zip(map(float, self.clock + times), moments, strict=True))
             self.clock += run.times[-1]
             if self.straight.stable is not False and np.linalg.norm(z) < STRAIGHT_SIZE:
@@ -207,7 +205,8 @@ class Transient:
                 continue  # a path that is stored has no jumps
             if factor is not None:
                 scaled = factor * z
-                scaled[: self.beam.mesh.nodes] *= factor  # the stretch is quadratic in the deflection
+                pull = self.beam.layout.field(scaled, "n1")
+                pull *= factor  # the stretch is quadratic in the deflection
                 z = self._jumped(scaled)
                 continue
             outcome = self._closed(z, times, states)
@@ -231,7 +230,7 @@ class Transient:
 
     def _swings(self, z: Array) -> bool:
         """Whether more than rounding bends or shears the rod."""
-        return bool(np.linalg.norm(z[self.beam.mesh.nodes :]) >= STRAIGHT_SIZE)
+        return bool(np.linalg.norm(self.beam.layout.transverse(z)) >= STRAIGHT_SIZE)
 
     def _rate_of_the_beam(self) -> float:
         """Its linear growth rate, 1/tau2, by its spectrum.

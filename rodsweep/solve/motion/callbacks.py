@@ -16,7 +16,8 @@ from numba import types
 
 from ...discretization.beam import Beam
 from ...discretization.mesh import Mesh
-from ...discretization.stress_balance import rate, rate_jacobian
+from ...discretization.state_layout import plane_layout
+from ...discretization.stress_rates import rate, rate_jacobian
 from ..backend.c_functions import POINTER, c_function, call, floats, integers, petsc_function, record_at
 from ..backend.petsc import PETSc
 from .context import (
@@ -28,8 +29,9 @@ from .context import (
     MOST_STAGES,
     TAKEN,
     UP_TO_DATE,
+    arrays_of,
     matrices_of,
-    parameters_of,
+    rod_of,
     roots_of,
 )
 from .petsc_calls import read_array, unread_array, unwrite_array, write_array
@@ -57,7 +59,7 @@ def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
     if c.without_rate:
         out[:] = dot
     else:
-        rate(floats(taken[0], n), out, roots_of(c), parameters_of(c), matrices_of(c))
+        rate(floats(taken[0], n), out, roots_of(c), rod_of(c), matrices_of(c))
         for i in range(n):
             out[i] = dot[i] - out[i]
     unread_array(U, at)
@@ -96,10 +98,10 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     J = floats(c.jacobian, n * n).reshape(n, n)
     if c.matrix_due == AT_ITERATE:
         read_array(U, at)
-        rate_jacobian(floats(taken[0], n), J, roots_of(c), parameters_of(c), matrices_of(c))
+        rate_jacobian(floats(taken[0], n), J, roots_of(c), rod_of(c), matrices_of(c))
         unread_array(U, at)
     elif c.matrix_due == AT_BASE:
-        rate_jacobian(floats(c.base, n), J, roots_of(c), parameters_of(c), matrices_of(c))
+        rate_jacobian(floats(c.base, n), J, roots_of(c), rod_of(c), matrices_of(c))
     _dense(B, at)
     M = floats(taken[0], n * n).reshape(n, n)
     M[:, :] = -J
@@ -117,11 +119,10 @@ class Workspace:
     """The memory behind the callbacks of one TS; the rod in it may be changed, the mesh may not."""
 
     def __init__(self, mesh: Mesh) -> None:
-        n = mesh.unknowns
+        n = plane_layout(mesh.nodes).unknowns
         self.base = np.zeros(n)
         self._mesh = mesh  # PETSc's callbacks read its arrays by address: they must live as long
         self._arrays = mesh.matrices._asdict() | {
-            "roots": np.ones(3),
             "base": self.base,
             "jacobian": np.zeros((n, n)),
             "times": np.zeros(2 * MOST_STAGES),
@@ -141,14 +142,13 @@ class Workspace:
 
     def prepare(self, beam: Beam, error: float, floor: float) -> None:
         """Takes the rod, and the error of a stage (rms) at which Newton's method stops, or may stagnate."""
-        self._arrays["roots"][:] = beam.roots
-        root = beam.mesh.unknowns**0.5
-        rest = np.zeros(beam.mesh.unknowns)
+        self._rod = arrays_of(beam)  # these, too, are read by address
+        self._set({name: array.ctypes.data for name, array in self._rod.items()})
+        self._set({"components": len(self._rod["tip_stress"])})
+        root, rest = beam.layout.unknowns**0.5, np.zeros(beam.layout.unknowns)
         straight, pressed = beam.least_stretch(rest), beam.least_stretch(rest - 1)
         fresh = {"matrix_due": AT_BASE, "shift": 0.0, "last_step": 0.0, "contraction": 1.0, "measured": 0}
-        self._set(
-            beam.parameters._asdict() | fresh | dict.fromkeys(("growing", "stages", "steps", "left"), 0)
-        )
+        self._set(fresh | dict.fromkeys(("growing", "stages", "steps", "left"), 0))
         self._set({"small_error": error * root, "rounding": floor * root})
         self.context["crushed"] = straight / (pressed - straight)  # h1 is affine in z1
         take_steps(self.context)

@@ -7,26 +7,30 @@ from typing import Any
 
 import numpy as np
 
-from ...discretization.stress_balance import BeamParameters, NodeMatrices
+from ...arrays import Array
+from ...discretization.beam import Beam
+from ...discretization.mesh import NodeMatrices
+from ...discretization.nodal_rod import NodalRod
 from ...model.compilation import compiled
-from ..backend.c_functions import floats
+from ..backend.c_functions import floats, floats_in, integers
 
 MOST_STAGES, MOST_POINTS = 16, 8
 """Stages of a step that are remembered, and points through which the next is extrapolated."""
 
 REAL, WHOLE = "<f8", "<i8"
-ARRAYS = ("roots", "jacobian", "base", "times", "states", "points", "constant", "rates")
-"""Addresses of what a `Workspace` holds: the square roots of the compliances; the last Jacobian; the state at
-which a step's matrix is made; times, (2 MOST_STAGES,), and states, (2 MOST_STAGES, unknowns), of the stages
-of this step and the last; the points through which each is extrapolated, (MOST_STAGES, MOST_POINTS); a
-stage's equation and its rates."""
+ROD = (*(name for name in NodalRod._fields if name != "kept"), "roots")
+"""Addresses of the rod that moves, and of the square roots of its compliances."""
+ARRAYS = ("jacobian", "base", "times", "states", "points", "constant", "rates")
+"""Addresses of what a `Workspace` holds: the last Jacobian; the state at which a step's matrix is made;
+times, (2 MOST_STAGES,), and states, (2 MOST_STAGES, unknowns), of the stages of this step and the last; the
+points through which each is extrapolated, (MOST_STAGES, MOST_POINTS); a stage's equation and its rates."""
 HANDLES = ("ts", "matrix", "ksp", "residual", "correction")
 """PETSc's objects."""
 CONTEXT = np.dtype(
     [
-        *((name, REAL) for name in BeamParameters._fields),
-        *((name, WHOLE) for name in (*NodeMatrices._fields, *ARRAYS, *HANDLES)),
+        *((name, WHOLE) for name in (*NodeMatrices._fields, *ROD, *ARRAYS, *HANDLES)),
         ("nodes", WHOLE),  # the tip included
+        ("components", WHOLE),  # of a stress
         ("unknowns", WHOLE),
         ("matrix_due", WHOLE),  # UP_TO_DATE, AT_BASE or AT_ITERATE
         ("shift", REAL),  # with which the matrix was made
@@ -68,22 +72,31 @@ UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
 """Whether a new matrix is due, and where it is to be made."""
 
 
+def arrays_of(beam: Beam) -> dict[str, Array]:
+    """What `ROD` is the addresses of, arrays of any shapes."""
+    own = beam.nodal._asdict() | {"roots": beam.roots}
+    return {name: own[name] for name in ROD}
+
+
 @compiled
-def parameters_of(c: Any) -> BeamParameters:
-    return BeamParameters(c.F, c.nu, c.c1, c.c2, c.gamma1, c.gamma3)
+def rod_of(c: Any) -> NodalRod:
+    d, m = c.components, c.nodes
+    rest, compliance = floats_in(c.rest, (d, m)), floats_in(c.compliance, (d, m))
+    drag, mobility = floats_in(c.drag, (d, m)), floats_in(c.mobility, (d, m))
+    second, none = floats_in(c.second, (d, m, m)), integers(c.rest, 0)
+    return NodalRod(floats(c.tip_stress, d), rest, compliance, drag, mobility, second, none)
 
 
 @compiled
 def matrices_of(c: Any) -> NodeMatrices:
-    m = c.nodes
-    D, D_transposed = floats(c.D, m * m).reshape(m, m), floats(c.D_transposed, m * m).reshape(m, m)
-    weak, second = floats(c.weak, m * m).reshape(m, m), floats(c.second, m * m).reshape(m, m)
-    return NodeMatrices(D, D_transposed, weak, second, floats(c.weights, m))
+    all_nodes = (c.nodes, c.nodes)
+    D, D_transposed = floats_in(c.D, all_nodes), floats_in(c.D_transposed, all_nodes)
+    return NodeMatrices(D, D_transposed, floats_in(c.weak, all_nodes), floats(c.weights, c.nodes))
 
 
 @compiled
 def roots_of(c: Any) -> Any:
-    return floats(c.roots, 3)
+    return floats_in(c.roots, (c.components, c.nodes))
 
 
 @compiled
@@ -93,4 +106,4 @@ def times_of(c: Any) -> Any:
 
 @compiled
 def states_of(c: Any) -> Any:
-    return floats(c.states, 2 * MOST_STAGES * c.unknowns).reshape(2 * MOST_STAGES, c.unknowns)
+    return floats_in(c.states, (2 * MOST_STAGES, c.unknowns))

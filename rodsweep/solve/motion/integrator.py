@@ -15,6 +15,7 @@ import numpy as np
 from ...arrays import Array
 from ...discretization.beam import Beam
 from ...discretization.mesh import Mesh
+from ...discretization.state_layout import plane_layout
 from ..backend.c_functions import call
 from ..backend.kept import Kept
 from ..backend.petsc import PETSc
@@ -73,8 +74,9 @@ class Integrator:
     def __init__(self, mesh: Mesh, scheme: TimeScheme) -> None:
         self.scheme = scheme
         self.workspace = Workspace(mesh)
-        self.vector = PETSc.Vec().createSeq(mesh.unknowns, comm=PETSc.COMM_SELF)
-        self.matrix = PETSc.Mat().createDense((mesh.unknowns, mesh.unknowns), comm=PETSc.COMM_SELF)
+        unknowns = plane_layout(mesh.nodes).unknowns
+        self.vector = PETSc.Vec().createSeq(unknowns, comm=PETSc.COMM_SELF)
+        self.matrix = PETSc.Mat().createDense((unknowns, unknowns), comm=PETSc.COMM_SELF)
         self.matrix.setUp()
         self.matrix.assemble()
         self.ts = self._create()

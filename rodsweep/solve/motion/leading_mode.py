@@ -23,10 +23,11 @@ class LeadingMode:
 
 def leading_mode(beam: Beam) -> LeadingMode:
     """The leading mode, from the Jacobian at rest, whose transverse part is decoupled from the axial one."""
-    n = beam.mesh.nodes
-    rest = np.zeros(3 * n)
-    values, vectors = np.linalg.eig(beam.jacobian(rest)[n:, n:])
+    layout, rest = beam.layout, np.zeros(beam.layout.unknowns)
+    J = layout.transverse(layout.transverse(beam.jacobian(rest)).T).T
+    values, vectors = np.linalg.eig(J)
     k = int(np.argmax(values.real + 1e-9 * values.imag))
-    z = np.concatenate([np.zeros(n), vectors[:, k]]) + 0j
+    z = np.zeros(layout.unknowns, complex)
+    layout.transverse(z)[:] = vectors[:, k]
     tip = complex(*(beam.tip_velocity(rest, part)[1] for part in (z.real, z.imag)))
     return LeadingMode(complex(values[k]), z / tip)

@@ -12,10 +12,10 @@ import numpy as np
 from numba import types
 
 from ...arrays import Array
-from ...discretization.stress_balance import rate
+from ...discretization.stress_rates import rate
 from ...model.compilation import compiled
 from ..backend.c_functions import INT, POINTER, c_function, floats, integers, pointer, record_at
-from .context import AT_ITERATE, CONTEXT, TAKEN, UP_TO_DATE, matrices_of, parameters_of, roots_of
+from .context import AT_ITERATE, CONTEXT, TAKEN, UP_TO_DATE, matrices_of, rod_of, roots_of
 from .petsc_calls import (
     context_of_snes,
     read_array,
@@ -133,7 +133,7 @@ def corrected(c: Any, at: int, X: int) -> float:
     write_array(X, at)
     write_array(c.residual, at + 8)
     x, residual = floats(taken[0], n), floats(taken[1], n)
-    rate(x, f, roots_of(c), parameters_of(c), matrices_of(c))
+    rate(x, f, roots_of(c), rod_of(c), matrices_of(c))
     for i in range(n):
         residual[i] = c.shift * x[i] + constant[i] - f[i]
     unwrite_array(c.residual, at + 8)

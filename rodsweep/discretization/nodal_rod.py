@@ -1,0 +1,80 @@
+"""One rod at the nodes of a mesh: compliances and drags as arrays over these, for compiled functions."""
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array
+from ..model.balance import Material
+from .mesh import Mesh
+
+Integers = NDArray[np.int64]
+
+
+class NodalRod(NamedTuple):
+    """A rod at all nodes of a mesh, the tip included, as the compiled functions take it; of d components.
+
+    tip_stress: Sigma(1), (d,). rest: E0, with compliance and drag (d, nodes + 1); mobility: 1/drag, but 0
+    where V is unknown. second: -D^T W mobility D, (d, nodes + 1, nodes + 1). kept: which components of V are
+    unknowns.
+    """
+
+    tip_stress: Array
+    rest: Array
+    compliance: Array
+    drag: Array
+    mobility: Array
+    second: Array
+    kept: Integers
+
+
+class NodalChange(NamedTuple):
+    """The derivative of a `NodalRod` along a parameter, of what the equations have of it."""
+
+    tip_stress: Array
+    rest: Array
+    compliance: Array
+    drag: Array
+
+
+def nodal_rod(material: Material, grid: Mesh, kept: tuple[int, ...] = ()) -> NodalRod:
+    """A material on a mesh, of which these components of V are unknowns."""
+    size = grid.nodes + 1
+    rest, compliance = _at_nodes(material.rest, size), _at_nodes(material.compliance, size)
+    if material.drag.ndim == 1:
+        resistance = _uniform_resistance(tuple(material.drag.tolist()), grid, kept)
+    else:
+        resistance = _resistance(material.drag, grid, kept)
+    return NodalRod(material.tip_stress, rest, compliance, *resistance)
+
+
+def nodal_change(change: Material, grid: Mesh) -> NodalChange:
+    """A change of a material on a mesh."""
+    fields = change.rest, change.compliance, change.drag
+    return NodalChange(change.tip_stress, *(_at_nodes(field, grid.nodes + 1) for field in fields))
+
+
+@lru_cache(maxsize=64)
+def _uniform_resistance(
+    drag: tuple[float, ...], grid: Mesh, kept: tuple[int, ...]
+) -> tuple[Array, Array, Array, Integers]:
+    """`_resistance` of a uniform rod: rods of a chain over F share it."""
+    return _resistance(np.array(drag)[:, None], grid, kept)
+
+
+def _resistance(drag: Array, grid: Mesh, kept: tuple[int, ...]) -> tuple[Array, Array, Array, Integers]:
+    """drag, mobility, second and kept of a `NodalRod`."""
+    drag = _at_nodes(drag, grid.nodes + 1)
+    mobility, eliminated = np.zeros(drag.shape), [a for a in range(len(drag)) if a not in kept]
+    mobility[eliminated] = 1 / drag[eliminated]
+    second = grid.matrices.weak @ (mobility[:, :, None] * grid.matrices.D)
+    return drag, mobility, second, np.array(kept, np.int64)
+
+
+def _at_nodes(field: Array, size: int) -> Array:
+    """A constant of each component, or one at each node, at all nodes, (d, size)."""
+    out = np.empty((len(field), size))
+    out[:] = field.reshape(len(field), -1)
+    return out

@@ -1,0 +1,9 @@
+"""The compiled equations of the rod in the plane: those of every algebra, for se(2)."""
+
+from ..model.algebra import SE2
+from . import stress_balance, stress_jacobian
+
+balance = stress_balance.balance.of(SE2)
+balance_change = stress_balance.balance_change.of(SE2)
+velocity_balance = stress_balance.velocity_balance.of(SE2)
+jacobian = stress_jacobian.jacobian.of(SE2)

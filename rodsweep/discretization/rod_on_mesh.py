@@ -1,0 +1,84 @@
+"""One nonlinear rod on one mesh, whatever the unit of its unknowns: what follows from its stresses.
+
+Strains, shape, energy. `StressForm` has the stresses themselves for unknowns, `Beam` the same in units of
+energy.
+"""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..arrays import Array
+from ..model.balance import Material, Values, plane_material
+from ..model.rod import Rod
+from .mesh import Mesh, configuration
+from .nodal_rod import NodalRod, nodal_rod
+from .state_layout import StateLayout, plane_layout
+
+
+@dataclass(frozen=True, eq=False)
+class RodOnMesh(ABC):
+    """One rod, its axial drag gamma1 in gamma2, on one mesh; states have the shape (..., unknowns)."""
+
+    rod: Rod
+    gamma1: float
+    mesh: Mesh
+
+    @property
+    @abstractmethod
+    def kept(self) -> tuple[int, ...]:
+        """Which components of V are unknowns."""
+
+    @abstractmethod
+    def stresses(self, x: Values) -> Values:
+        """(n1 + F, n2, m3) at all nodes, the tip included, shape (3, ..., nodes + 1)."""
+
+    @cached_property
+    def layout(self) -> StateLayout:
+        """Where each field of a state lies."""
+        return plane_layout(self.mesh.nodes, self.kept)
+
+    @property
+    def unknowns(self) -> int:
+        return self.layout.unknowns
+
+    @cached_property
+    def material(self) -> Material:
+        """Compliances, drags and the force."""
+        return plane_material(self.rod, self.gamma1)
+
+    @cached_property
+    def nodal(self) -> NodalRod:
+        """The rod as the compiled functions take it."""
+        return nodal_rod(self.material, self.mesh, self.kept)
+
+    def strains(self, x: Values) -> Values:
+        """(h1, h2, Pi) at all nodes, the tip included, shape (3, ..., nodes + 1)."""
+        S, c = self.stresses(x), self.nodal
+        return _along(c.rest, S) + _along(c.compliance, S) * S
+
+    def shape(self, x: Values) -> Values:
+        """(x, y, theta) at all nodes in L and rad, shape (3, ..., nodes + 1), the clamp at 0 along e_x."""
+        return configuration(self.mesh, self.strains(x), np.zeros(3))
+
+    def tip(self, x: Values) -> Values:
+        """(x, y, theta) of the tip, shape (3, ...)."""
+        return self.shape(x)[..., -1]
+
+    def energy(self, x: Array) -> Array:
+        """U = 1/2 int k1 (h1 - 1)^2 + k2 h2^2 + Pi^2 in k3/L, shape (...)."""
+        S = self.stresses(x)
+        Sigma = S + _along(self.nodal.tip_stress[:, None], S)
+        energy: Array = self.material.energy(Sigma) @ self.mesh.quadrature
+        return energy
+
+    def least_stretch(self, x: Array) -> float:
+        """min h1 over the nodes of all states; the model holds while it is positive."""
+        return float(self.strains(x)[0].min())
+
+
+def _along(constant: Array, field: Values) -> Array:
+    """Numbers of the components, (3, nodes + 1) or (3, 1), beside a field (3, ..., nodes + 1)."""
+    return constant.reshape(len(constant), *(1,) * (field.ndim - 2), -1)

@@ -1,0 +1,60 @@
+"""The condition of phase of an orbit in the plane: at t = 0 the tip's y is at an extremum, compiled.
+
+Its velocity there is that by the reaction, which converges twice as fast as the velocity field.
+"""
+
+import numpy as np
+
+from ...arrays import Array
+from ...discretization.mesh import NodeMatrices
+from ...discretization.nodal_rod import NodalChange, NodalRod
+from ...discretization.plane import balance, balance_change, jacobian
+from ...discretization.state_layout import BENDING, COMPONENTS, stress_place
+from ...model.compilation import compiled_for_vectors
+
+
+@compiled_for_vectors
+def phase_change(start: Array, change: NodalChange, c: NodalRod, m: NodeMatrices) -> float:
+    """The derivative of `phase` at a start, (n,), by a change of the parameters, as a right side."""
+    V, G, changes = np.empty(c.drag.shape), np.empty(c.drag.shape), np.empty((3, *c.drag.shape))
+    balance(start, V, G, c, m)
+    balance_change(start, V, changes, change, c, m)
+    return -lateral_velocity(changes[2], tip_angle(start, m))
+
+
+@compiled_for_vectors
+def phase(start: Array, c: NodalRod, m: NodeMatrices) -> float:
+    """The tip's dy/dt at the start, (n,), by the reaction there."""
+    V, G = np.empty(c.drag.shape), np.empty(c.drag.shape)
+    balance(start, V, G, c, m)
+    return float(lateral_velocity(G, tip_angle(start, m)))
+
+
+@compiled_for_vectors
+def lateral_velocity(G: Array, theta: float) -> float:
+    """dy/dt of the tip at an angle, by G at all nodes, (3, nodes + 1)."""
+    return -(np.sin(theta) * G[0, -1] + np.cos(theta) * G[1, -1])
+
+
+@compiled_for_vectors
+def tip_angle(x: Array, m: NodeMatrices) -> float:
+    """theta at the tip of a state, (n,)."""
+    theta, nodes = 0.0, len(m.weights) - 1
+    for i in range(nodes):
+        theta += m.weights[i] * x[stress_place(BENDING, i, nodes)]
+    return theta
+
+
+@compiled_for_vectors
+def phase_row(start: Array, c: NodalRod, m: NodeMatrices, row: Array) -> None:
+    """The derivative of `phase` by the start into row, both (n,)."""
+    n = len(start)
+    V, G, J, tip = np.empty(c.drag.shape), np.empty(c.drag.shape), np.empty((n, n)), np.empty((COMPONENTS, n))
+    balance(start, V, G, c, m)
+    jacobian(start, V, J, tip, c, m)
+    theta, nodes = tip_angle(start, m), len(m.weights) - 1
+    sin, cos = np.sin(theta), np.cos(theta)
+    for i in range(n):
+        row[i] = -(sin * tip[0, i] + cos * tip[1, i])
+    for i in range(nodes):
+        row[stress_place(BENDING, i, nodes)] += (sin * G[1, nodes] - cos * G[0, nodes]) * m.weights[i]

@@ -1,0 +1,133 @@
+"""The compiled balance with the algebra of space, se(3), and with rods that are not uniform, on meshes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from rodsweep.discretization.mesh import mesh
+from rodsweep.discretization.nodal_rod import nodal_rod
+from rodsweep.discretization.stress_balance import balance, strain_rates, velocity_balance
+from rodsweep.discretization.stress_jacobian import jacobian
+from rodsweep.model.algebra import ALGEBRAS, SE3
+from rodsweep.model.balance import IN_SPACE, ad, plane_material, space_material
+from rodsweep.model.rod import Rod
+
+ROD, GAMMA1 = Rod(50.0, 1e3, 1e2, 1e-2), 0.7
+PLANE = plane_material(ROD, GAMMA1)
+SPACE = space_material(ROD, GAMMA1, twist_stiffness=0.6, twist_drag=0.02)
+MATERIALS = {"plane": PLANE, "space": SPACE}
+ALL = pytest.mark.parametrize("material", MATERIALS.values(), ids=MATERIALS.keys())
+MESHES = pytest.mark.parametrize("grid", [mesh(1, 9), mesh(3, 4)], ids=["1 element", "3 elements"])
+
+
+def tapered(material, grid):
+    """The material with compliances and drags that vary along the rod, each in its own way."""
+    u, phase = grid.positions, np.arange(len(material.drag))[:, None]
+    profile = 1 + 0.4 * np.sin(2 * u + phase)
+    compliance, drag = material.compliance[:, None] * profile, material.drag[:, None] * profile[::-1]
+    rest = material.straight[:, None] + compliance * material.tip_stress[:, None]
+    return replace(material, compliance=compliance, drag=drag, rest=rest)
+
+
+def state(rod, grid):
+    """Stresses that no mesh resolves, and with them any velocities that are unknown, (unknowns,)."""
+    d = len(rod.tip_stress)
+    size = d * grid.nodes + len(rod.kept) * (grid.nodes + 1)
+    return 10 * np.random.default_rng(d).standard_normal(size)
+
+
+def balanced(x, rod, grid):
+    """V and G at all nodes, (d, nodes + 1)."""
+    V, G = np.empty((2, *rod.drag.shape))
+    balance.of(ALGEBRAS[len(V)])(x, V, G, rod, grid.matrices)
+    return V, G
+
+
+def equations(x, rod, grid):
+    """G at all nodes, (d, nodes + 1), and the balance of what is unknown of V, flat."""
+    _, G = balanced(x, rod, grid)
+    out = np.empty(len(x))
+    velocity_balance.of(ALGEBRAS[len(G)])(x, out, rod, grid.matrices)
+    return np.append(G.ravel(), out[len(G) * grid.nodes :])
+
+
+@MESHES
+def test_plane_states_of_space_are_those_of_the_plane(grid):
+    plane, space = (nodal_rod(material, grid) for material in (PLANE, SPACE))
+    x, n = state(plane, grid), grid.nodes
+    at = np.concatenate([np.arange(a * n, (a + 1) * n) for a in IN_SPACE])
+    there = np.zeros(6 * n)
+    there[at] = x
+    jacobians = []
+    for rod, here in ((plane, x), (space, there)):
+        V, G = balanced(here, rod, grid)
+        J, tip = np.empty((len(here),) * 2), np.empty((len(V), len(here)))
+        jacobian.of(ALGEBRAS[len(V)])(here, V, J, tip, rod, grid.matrices)
+        jacobians.append((V, G, J, tip))
+    (V, G, J, tip), (V_space, G_space, J_space, tip_space) = jacobians
+    for ours, theirs in ((V_space, V), (G_space, G)):
+        assert np.abs(ours[IN_SPACE] - theirs).max() <= 1e-13 * np.abs(theirs).max()
+        assert not np.delete(ours, IN_SPACE, axis=0).any()
+    assert np.abs(J_space[np.ix_(at, at)] - J).max() <= 1e-13 * np.abs(J).max()
+    assert np.abs(tip_space[np.ix_(IN_SPACE, at)] - tip).max() <= 1e-13 * np.abs(tip).max()
+    assert not np.delete(J_space[:, at], at, axis=0).any(), "a bent rod does not leave its plane"
+
+
+@ALL
+@MESHES
+@pytest.mark.parametrize("uniform", [True, False], ids=["uniform", "tapered"])
+def test_power_of_the_stresses_is_lost_to_the_fluid(material, grid, uniform):
+    """The energy law: with the tip's stress, whose power is that of the force, to rounding on any mesh."""
+    rod = nodal_rod(material if uniform else tapered(material, grid), grid)
+    x = state(rod, grid)
+    V, G = balanced(x, rod, grid)
+    Sigma = np.tile(rod.tip_stress[:, None], grid.nodes + 1)
+    Sigma[:, :-1] += x.reshape(len(V), -1)
+    lost = (rod.drag * V**2 @ grid.quadrature).sum()
+    assert (Sigma * G).sum() == pytest.approx(-lost, rel=1e-12)
+
+
+@ALL
+@MESHES
+@pytest.mark.parametrize("uniform", [True, False], ids=["uniform", "tapered"])
+@pytest.mark.parametrize("kept", [(), (2,), (0, 2)], ids=["eliminated", "one kept", "two kept"])
+def test_jacobian_is_the_derivative_of_the_equations(material, grid, uniform, kept):
+    rod = nodal_rod(material if uniform else tapered(material, grid), grid, kept)
+    x, d, n = state(rod, grid), len(rod.tip_stress), grid.nodes
+    V, _ = balanced(x, rod, grid)
+    J, tip = np.full((len(x),) * 2, np.nan), np.full((d, len(x)), np.nan)
+    jacobian.of(ALGEBRAS[d])(x, V, J, tip, rod, grid.matrices)
+    whole = np.concatenate([J[: d * n].reshape(d, n, -1), tip[:, None]], axis=1).reshape(d * (n + 1), -1)
+    whole = np.concatenate([whole, J[d * n :]])
+    for k, step in enumerate(1e-2 * np.eye(len(x))):  # the equations are cubic: this difference is exact
+        once, twice = (
+            equations(x + s * step, rod, grid) - equations(x - s * step, rod, grid) for s in (1, 2)
+        )
+        column = (8 * once - twice) / (12 * step[k])
+        assert np.abs(whole[:, k] - column).max() <= 1e-10 * np.abs(whole).max()
+
+
+@MESHES
+def test_a_rod_turned_about_its_axis_moves_turned(grid):
+    turn = np.array([[1, 0, 0], [0, np.cos(0.8), -np.sin(0.8)], [0, np.sin(0.8), np.cos(0.8)]])
+    turn, rod = np.kron(np.eye(2), turn), nodal_rod(SPACE, grid)
+    x = state(rod, grid)
+    turned = (turn @ x.reshape(6, -1)).ravel()
+    for here, there in zip(balanced(x, rod, grid), balanced(turned, rod, grid), strict=True):
+        assert np.abs(there - turn @ here).max() <= 1e-12 * np.abs(here).max()
+
+
+def test_a_rigid_motion_strains_no_rod():
+    """Of a rod bent to a helix, whose points see one twist of all space in their own frames."""
+    grid = mesh(1, 24)
+    E = np.array([0.9, 0.2, -0.1, 1.5, 2.0, 0.7])
+    bracket = np.stack([ad(E[:, None], column[:, None])[:, 0] for column in np.eye(6)], axis=1)
+    seen = np.array([0.3, -1.0, 0.5, 2.0, 0.4, -0.6])
+    V = np.stack([expm(-u * bracket) @ seen for u in grid.positions], axis=1)
+    G, rod = np.empty(V.shape), nodal_rod(replace(SPACE, compliance=np.zeros(6), rest=E), grid)
+    strain_rates.of(SE3)(np.zeros(6 * grid.nodes), V, G, rod, grid.matrices)
+    G[:, 0] -= V[:, 0]  # what a clamp would hold
+    G[:, -1] += V[:, -1]  # and the reaction
+    assert np.abs(G).max() < 1e-12 * np.abs(V).max()

@@ -1,0 +1,86 @@
+"""Where fields lie in a state, and what a symmetry makes of one."""
+
+import numpy as np
+import pytest
+
+from rodsweep.discretization.mesh import mesh
+from rodsweep.discretization.mixed_form import MixedForm
+from rodsweep.discretization.plane import balance
+from rodsweep.discretization.state_layout import StateLayout
+from rodsweep.discretization.stress_form import StressForm
+from rodsweep.model.rod import Rod
+from rodsweep.solve.cycle.symmetry import NONE, REFLECTION, Symmetry
+
+FORMS = {
+    "Omega eliminated": StressForm(Rod(50.0, 1e4, 1e2, 1e-2), 0.7, mesh(2, 4)),
+    "Omega unknown": StressForm(Rod(50.0, np.inf, 1e2, 0.0), 0.7, mesh(2, 4)),
+}
+EACH = pytest.mark.parametrize("form", FORMS.values(), ids=FORMS.keys())
+
+
+def states(layout, *many):
+    return np.random.default_rng(5).standard_normal((*many, layout.unknowns))
+
+
+@pytest.mark.parametrize(
+    "layout", [StateLayout(3, 4), StateLayout(3, 4, (2,)), StateLayout(6, 3, (0, 3))], ids=str
+)
+@pytest.mark.parametrize("many", [(), (5,), (2, 3)])
+def test_a_state_is_made_of_its_fields_and_taken_apart_again(layout, many):
+    x = states(layout, *many)
+    S, known = layout.stresses(x), layout.velocities(x)
+    assert S.shape == (layout.components, *many, layout.nodes + 1)
+    assert known.shape == (len(layout.kept), *many, layout.nodes + 1)
+    assert not S[..., -1].any()
+    V = np.full(S.shape, np.nan)
+    V[list(layout.kept)] = known
+    assert np.array_equal(layout.state(S, V), x)
+
+
+def test_a_field_is_known_by_its_name():
+    layout = StateLayout(3, 4, (2,))
+    x = states(layout, 2)
+    for number, name in enumerate(("n1", "n2", "m3")):
+        assert np.array_equal(layout.field(x, name), layout.stresses(x)[number, :, :-1])
+        assert np.array_equal(layout.at(x, name, 3), layout.field(x, name)[:, 3])
+        assert np.array_equal(x[:, layout.place(name, 2)], layout.at(x, name, 2))
+    row = layout.row({"m3": np.arange(4.0)})
+    assert x @ row == pytest.approx(layout.field(x, "m3") @ np.arange(4.0))
+    layout.field(x, "n2")[:] = 0
+    assert not layout.stresses(x)[1].any(), "a field is a view"
+    with pytest.raises(ValueError, match="not in"):
+        layout.field(x, "n3")
+
+
+@EACH
+@pytest.mark.parametrize("symmetry", [NONE, REFLECTION], ids=["none", "reflection"])
+def test_a_symmetry_maps_motions_to_motions(form, symmetry):
+    def motion(x):
+        V, G = np.empty((2, 3, form.mesh.nodes + 1))
+        balance(x, V, G, form.nodal, form.mesh.matrices)
+        return V, form.layout.state(G, V)
+
+    x = states(form.layout)
+    V, rate = motion(x)
+    image, rate_of_image = motion(symmetry.of(x, form.layout))
+    assert image == pytest.approx(symmetry.turn @ V, abs=1e-12 * np.abs(V).max())
+    assert rate_of_image == pytest.approx(symmetry.of(rate, form.layout), abs=1e-12 * np.abs(rate).max())
+
+
+@EACH
+def test_the_reflection_is_the_one_of_the_mixed_form(form):
+    x, layout = states(form.layout), MixedForm(form.rod, form.gamma1, form.mesh).layout
+    X = states(layout)
+    assert np.array_equal(REFLECTION.of(X, layout), MixedForm(form.rod, form.gamma1, form.mesh).parity * X)
+    assert np.array_equal(REFLECTION.reversed(form.layout) * x, (x - REFLECTION.of(x, form.layout)) / 2)
+
+
+@pytest.mark.parametrize("layout", [StateLayout(3, 4, (2,)), StateLayout(6, 3)], ids=["plane", "space"])
+def test_a_symmetry_is_a_matrix_and_is_undone(layout):
+    turn, _ = np.linalg.qr(np.random.default_rng(1).standard_normal((layout.components,) * 2))
+    if layout.kept:  # what leaves Omega alone
+        turn = np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, -1.0]])
+    symmetry, x, P = Symmetry(turn, 3), states(layout, 2), states(layout, layout.unknowns)
+    S = symmetry.matrix(layout)
+    assert symmetry.of(x, layout) == pytest.approx(x @ S.T)
+    assert symmetry.returned(P, layout) == pytest.approx(np.linalg.solve(S, P))

@@ -1,0 +1,105 @@
+"""Functions of an algebra: written out they do what their loops do; what cannot be written out is refused."""
+
+import importlib.util
+from functools import partial
+
+import numpy as np
+import pytest
+
+from rodsweep.discretization.mesh import mesh
+from rodsweep.discretization.nodal_rod import nodal_change, nodal_rod
+from rodsweep.discretization.stress_balance import balance, balance_change
+from rodsweep.discretization.stress_jacobian import jacobian
+from rodsweep.model.algebra import SE2, SE3
+from rodsweep.model.balance import plane_change, plane_material, space_material
+from rodsweep.model.kernel_digest import digest, kernel_of
+from rodsweep.model.rod import Rod
+from rodsweep.model.unrolling import OverAlgebra
+
+ROD, GRID = Rod(50.0, 1e3, 1e2, 1e-2), mesh(2, 3)
+SPACE = space_material(ROD, 0.7, twist_stiffness=0.6, twist_drag=0.02)
+MATERIALS = {SE2: plane_material(ROD, 0.7), SE3: SPACE}
+HEAD = "from rodsweep.model.unrolling import OverAlgebra\n\n@OverAlgebra\n"
+BOTH = pytest.mark.parametrize("g", [SE2, SE3], ids=["plane", "space"])
+
+
+@BOTH
+@pytest.mark.parametrize("kept", [(), (2,)], ids=["eliminated", "kept"])
+def test_compiled_functions_do_what_their_loops_do(g, kept):
+    """The loops themselves run in Python, with the algebra as an argument."""
+    rod, d = nodal_rod(MATERIALS[g], GRID, kept), g.dimension
+    n = d * GRID.nodes + len(kept) * (GRID.nodes + 1)
+    x = np.random.default_rng(d).standard_normal(n)
+    found = []
+    for run, slope in ((balance.of(g), jacobian.of(g)), (partial(balance, g), partial(jacobian, g))):
+        V, G = np.empty((2, d, GRID.nodes + 1))
+        J, tip = np.full((n, n), np.nan), np.full((d, n), np.nan)
+        run(x, V, G, rod, GRID.matrices)
+        slope(x, V, J, tip, rod, GRID.matrices)
+        found.append((V, G, J, tip))
+    for compiled, plain in zip(*found, strict=True):
+        assert np.abs(compiled - plain).max() <= 1e-13 * np.abs(plain).max()
+
+
+def test_derivative_along_a_parameter_is_that_of_loops_in_python():
+    rod, change = nodal_rod(MATERIALS[SE2], GRID), nodal_change(plane_change(ROD, "k1"), GRID)
+    x = np.random.default_rng(1).standard_normal(3 * GRID.nodes)
+    V, G = np.empty((2, 3, GRID.nodes + 1))
+    balance(SE2, x, V, G, rod, GRID.matrices)
+    out = np.empty((2, 3, 3, GRID.nodes + 1))
+    balance_change.of(SE2)(x, V, out[0], change, rod, GRID.matrices)
+    balance_change(SE2, x, V, out[1], change, rod, GRID.matrices)
+    assert np.abs(out[0] - out[1]).max() <= 1e-13 * np.abs(out[1]).max()
+
+
+@OverAlgebra
+def decided(g, x):
+    total = 0.0
+    both = [[x[a] * x[b] if g.forward[a][b] else 0.0 for b in g.components] for a in g.components]
+    for a, b, o, sign in g.terms:
+        if a == o:
+            total += x[b] / 0.0
+        else:
+            total += sign * both[a][o] if g.forward[a][o] else x[a] / 0.0
+    return total
+
+
+@OverAlgebra
+def left_early(g, x):
+    for a in g.components:
+        if x[a] > 0:
+            break
+    return a
+
+
+@BOTH
+def test_conditions_on_the_algebra_are_decided_before_compilation(g):
+    x = np.arange(1.0, 1 + g.dimension)
+    assert decided.of(g)(x) == pytest.approx(sum(sign * x[a] * x[o] for a, _, o, sign in g.terms))
+
+
+def test_a_loop_that_is_left_early_is_not_written_out():
+    with pytest.raises(TypeError, match="left"):
+        left_early.of(SE2)
+
+
+def test_algebras_have_kernels_of_their_own():
+    assert balance.of(SE2) is balance.of(SE2)
+    assert balance.of(SE2) is not balance.of(SE3)
+
+
+@pytest.mark.parametrize(
+    ("text", "same"), [("    # a comment\n    return x[0]", True), ("    return x[1]", False)]
+)
+def test_compiled_code_is_kept_by_the_formula_not_by_its_comments(tmp_path, text, same):
+    digests = []
+    for k, body in enumerate(("    return x[0]", text)):
+        path = tmp_path / f"{k}.py"
+        path.write_text(
+            f"from rodsweep.model.unrolling import OverAlgebra\n\n@OverAlgebra\ndef f(g, x):\n{body}\n"
+        )
+        spec = importlib.util.spec_from_file_location("of_a_test", path)
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        digests.append(digest(kernel_of(module.f.written_out(SE2), {}), {}))
+    assert (digests[0] == digests[1]) == same
