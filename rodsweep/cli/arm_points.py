@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..config.arm import CRUSHED, NO_WALL, NOT_SLENDER, SLENDER
+from ..config.arm_axes import CRUSHED, NO_FLUTTER, NO_WALL, NOT_SLENDER, SLENDER
 from ..model.drag import LEAST_SLENDERNESS
 from ..model.neglected import Validity
 from ..results.layouts.arm import VALIDITY
@@ -30,6 +30,12 @@ class NoRod(PointStatus):
         True,
     )
     crushed = CRUSHED, "the load compresses the arm to nothing, F >= k1, so nothing is computed", True
+    no_flutter = (
+        NO_FLUTTER,
+        "the load is relative to flutter, and with the likeliest drag the arm does not flutter, so nothing "
+        "is computed",
+        True,
+    )
     no_wall = NO_WALL, "the bore is as wide as the arm, so nothing is computed", True
 
 

@@ -13,11 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..config.arm import SLENDER, ArmGrid, ArmSection, moved_by
+from ..config.arm import ArmGrid, ArmSection
+from ..config.arm_axes import SLENDER, moved_by
 from ..config.axes import words
 from ..config.schema import Config
 from ..config.values import as_number, overflows, short
 from ..errors import InputError
+from ..model.arm import SlenderArm
 from ..model.parameters import CRUSHING, LINEAR_PARAMETERS, PARAMETERS, Range
 from ..model.rod import Rod
 
@@ -135,11 +137,18 @@ def _own_grid(arm: ArmSection, beside: dict[str, Array], names: tuple[str, ...])
     for name, column in beside.items():
         refuse_outside(PARAMETERS[name].allowed, name, column)
     try:
-        grid: ArmGrid = arm.own_grid(beside)
+        grid: ArmGrid = arm.own_grid(beside, _first_flutter)
     except ValueError as error:
         raise InputError(str(error)) from None
     columns = tuple(grid.parameters[name] for name in names)
     return Points(names, columns, False, grid.axes, grid.units, grid.covered)
+
+
+def _first_flutter(arm: SlenderArm) -> float:
+    """The F at which an arm flutters first in any plane, inf where it does not; imports its solver."""
+    from ..verdict.planes import first_flutter
+
+    return first_flutter(arm)
 
 
 def refuse_outside(

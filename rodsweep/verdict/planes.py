@@ -8,7 +8,7 @@ from ..errors import InputError
 from ..model.arm import UNITS, SlenderArm
 from ..model.units import compact
 from ..solve.changes.unstable_modes import Kind
-from .flutter import FlutterRange, flutter_range
+from .flutter import FlutterRange, first_hopf_force, flutter_range
 
 A = TypeVar("A", bound=SlenderArm)
 
@@ -63,6 +63,23 @@ def turned(arm: A) -> A:
     return replace(arm, width=arm.height, height=arm.width)
 
 
+def first_flutter(arm: SlenderArm) -> float:
+    """The F that a load relative to flutter is relative to, in k3/L^2 of the arm; inf where nothing flutters.
+
+    That of the first flutter of all planes with the likeliest drag, as `with_load` has it.
+    """
+    own = _first_flutter(arm)
+    if arm.radius is not None or arm.si.width == arm.si.height:
+        return own
+    other = turned(arm)
+    return min(own, _first_flutter(other) * (other.section.second_moment / arm.section.second_moment))
+
+
+def _first_flutter(arm: SlenderArm) -> float:
+    """The same in the arm's own plane."""
+    return first_hopf_force(arm.k1, arm.k2, arm.gamma3_with(arm.drags[0]))
+
+
 def with_load(planes: Planes) -> Planes:
     """The planes with a load as a quantity where it is given relative to flutter.
 
@@ -72,15 +89,15 @@ def with_load(planes: Planes) -> Planes:
     share, load = first.arm.share_of_flutter, first.arm.load
     if share is None or load is None:
         return planes
-    flutter, scale = first.flutter_loads[0] / first.arm.force_scale, first.arm.load_scale
-    if flutter == inf:
+    force, scale = first.found.forces[0].force(Kind.hopf), first.arm.load_scale
+    if force is None:
         end = f"{first.found.end * scale:.3g} {UNITS[load][0]}"
         raise InputError(
             f"{load} = '{getattr(first.arm, load)}' is nothing: with the likeliest drag the arm does not "
             f"flutter up to {end}"
         )
-    factor, unit = compact(share * flutter * scale, UNITS[load][0])
-    given: dict[str, Any] = {load: f"{share * flutter * scale * factor:.15g} {unit}"}
+    factor, unit = compact(share * force * scale, UNITS[load][0])
+    given: dict[str, Any] = {load: f"{share * force * scale * factor:.15g} {unit}"}
     second = planes.second and replace(planes.second, arm=replace(planes.second.arm, **given))
     return Planes(replace(first, arm=replace(first.arm, **given)), second)
 

@@ -18,7 +18,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...arrays import Array
-from ...config.arm import CRUSHED, NO_WALL, NOT_SLENDER, UNIT_NAMES
+from ...config.arm_axes import CRUSHED, NO_WALL, NOT_SLENDER, UNIT_NAMES
 from ...model.neglected import Validity
 from ...results.file.view import View
 from . import style

@@ -1,12 +1,14 @@
 """An arm's quantities as figures name them: in words, in the units in which they were typed."""
 
 from math import isclose
+from typing import Any
 
 import numpy as np
 
 from ...arrays import Array
-from ...config.arm import AXIS_OF, UNIT_NAMES
+from ...config.arm_axes import ALONG, RELATIVE, UNIT_NAMES
 from ...model.arm import SlenderArm
+from ...model.drag import DRAGS
 from ...model.units import written_in
 from ...results.file.view import View
 from ...results.layouts.arm import QUANTITY_UNITS
@@ -41,7 +43,7 @@ def quantity_text(view: View, name: str, value: float) -> str:
 
 def given_quantities(view: View) -> list[str]:
     """The quantities that make the arm of a file; its units of time, force and pressure follow from them."""
-    return [name for name in view.quantities if name not in UNIT_NAMES]
+    return [name for name in view.quantities if name not in (*UNIT_NAMES, *RELATIVE)]
 
 
 def at_point(view: View, name: str, number: int) -> float:
@@ -51,13 +53,16 @@ def at_point(view: View, name: str, number: int) -> float:
         return float(values.ravel()[0])
     if view.is_grid:  # along the one parameter that it moves
         shape = view.variables["status"].shape
-        return float(values[np.unravel_index(number - 1, shape)[view.parameters.index(AXIS_OF[name])]])
+        return float(values[np.unravel_index(number - 1, shape)[view.parameters.index(ALONG[name])]])
     return float(values.ravel()[number - 1])
 
 
 def replaced(view: View, number: int) -> dict[str, float]:
     """The parameters at a point, numbered from 1, that were given beside the arm instead of its own."""
-    own = SlenderArm(**{name: at_point(view, name, number) for name in given_quantities(view)})
+    given: dict[str, Any] = {name: at_point(view, name, number) for name in given_quantities(view)}
+    if "drag" in given:
+        given["drag"] = DRAGS[int(given["drag"])]
+    own = SlenderArm(**given)
     columns = view.point_columns
     at = {name: float(columns[name][number - 1]) for name in view.parameters}
     if own.load:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...config.arm import AXIS_OF
+from ...config.arm_axes import ALONG
 from ...config.refusals import nearest
 from ...errors import InputError
 from ...model.parameters import NONLINEAR_PARAMETERS
@@ -66,7 +66,7 @@ def _grid_at(view: View, name: str, there: np.ndarray) -> View:
     """A grid with the places of one axis, a mask of its shape."""
     names = view.over or view.parameters
     shape, axis = view.variables["status"].shape, names.index(name)
-    along = {name, *(quantity for quantity, moved in AXIS_OF.items() if moved == name)}
+    along = {name, *(quantity for quantity, moved in ALONG.items() if moved == name)}
     variables = {}
     for key, data in view.variables.items():
         if key in along and np.ndim(data):

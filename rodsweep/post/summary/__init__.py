@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from ...config.arm import NOT_SLENDER
+from ...config.arm_axes import NOT_SLENDER
 from ...config.values import printable
 from ...model.units import written_in
 from ...results.file.provenance import RANK_SHARES, kernels_of

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from ...config.arm import NOT_SLENDER
+from ...config.arm_axes import NOT_SLENDER
 from ...model.neglected import Validity
 from ...model.units import written_in
 from ...results.file.view import View

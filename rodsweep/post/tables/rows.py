@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...config.arm import AXIS_OF
+from ...config.arm_axes import ALONG
 from ...results.file.view import View
 from ...results.layouts.arm import MEANINGS, QUANTITY_UNITS, any_unit_of, converted, twin_of
 from ...results.layouts.variables import DIMENSIONS, MISSING, STATUS, Variable
@@ -96,7 +96,7 @@ def si_columns(
 def line_columns(view: View, rows: Rows) -> Iterator[Column]:
     """The quantities of an arm along the rows of a diagram, as the pressure of F."""
     for name, values in view.quantities.items():
-        if values.size > 1 and view.is_grid and AXIS_OF.get(name, "") not in view.parameters:
+        if values.size > 1 and view.is_grid and ALONG.get(name, "") not in view.parameters:
             yield coordinate(name, QUANTITY_UNITS[name], MEANINGS[name], values[rows[1]])
 
 
@@ -114,7 +114,7 @@ def _quantities_at_points(view: View) -> dict[str, NDArray]:
     """The quantities of an arm at every point, each (points,); those along a row of a diagram left out."""
     count, found = view.variables["status"].size, {}
     for name, values in view.quantities.items():
-        along = AXIS_OF.get(name, "")
+        along = ALONG.get(name, "")
         if values.size == 1 or not view.is_grid:
             found[name] = np.broadcast_to(values, count)
         elif along in view.parameters:
