@@ -241,7 +241,7 @@ class ArmSection(Strict):
         self._made(self._firsts, place=0)
         if no_flutter:
             raise ValueError(
-                f"parameters.arm.{self.load} is relative to flutter, and no arm has one with the likeliest drag"
+                f"parameters.arm.{self.load} is relative to flutter, which no arm has with the likeliest drag"
             )
         k1 = float(beside["k1"][0])
         raise ValueError(f"parameters.k1 is {k1:.15g} and every F is above; the rod is crushed where F >= k1")

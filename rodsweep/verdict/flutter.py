@@ -100,7 +100,7 @@ def span_of(values: list[float | None]) -> Span | None:
 
 @cache
 def first_hopf_force(k1: float, k2: float, gamma3: float) -> float:
-    """F of the first flutter of a rod to DIGITS digits, inf where it has none up to FARTHEST. Needs no PETSc."""
+    """F of the first flutter of a rod to DIGITS digits, inf where there is none up to FARTHEST."""
     rod = Rod(k1=k1, k2=k2, gamma3=gamma3, F=0.0)
     for end in (NEAR, FARTHEST):
         try:

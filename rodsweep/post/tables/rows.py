@@ -36,7 +36,7 @@ def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]
     """Columns of the points of rows, (rows,): parameters, an arm's quantities, their own variables."""
     for name, values in view.point_columns.items():
         yield coordinate(name, *DIMENSIONS[name], values[points])
-    for name, values in _quantities_at_points(view).items():
+    for name, values in quantities_at_points(view).items():
         yield coordinate(name, QUANTITY_UNITS[name], MEANINGS[name], values[points])
     missing = view.variables[STATUS.name].reshape(-1)[points] == MISSING
     for variable in own:
@@ -75,7 +75,7 @@ def si_columns(
     """
     if not view.quantities:
         return
-    at = _quantities_at_points(view)
+    at = quantities_at_points(view)
     if points is not None:
         at = {name: values[points] for name, values in at.items()}
     else:
@@ -110,7 +110,7 @@ def _places(view: View, parameter: str) -> NDArray[np.int64]:
     return np.searchsorted(view.axes[parameter], view.point_columns[parameter])
 
 
-def _quantities_at_points(view: View) -> dict[str, NDArray]:
+def quantities_at_points(view: View) -> dict[str, NDArray]:
     """The quantities of an arm at every point, each (points,); those along a row of a diagram left out."""
     count, found = view.variables["status"].size, {}
     for name, values in view.quantities.items():
