@@ -12,9 +12,8 @@ from ...model.drag import DRAGS
 from ...model.units import written_in
 from ...results.file.view import View
 from ...results.layouts.arm import QUANTITY_UNITS
+from ..summary.arm import word
 
-WORDS = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
-"""What quantities are called along an axis, where that is not their name."""
 TOGETHER = "\N{NO-BREAK SPACE}"
 """Between a number and its unit, which no line of a figure parts."""
 
@@ -29,13 +28,10 @@ def in_typed(view: View, name: str, values: Array, si: str = "") -> tuple[Array,
     return (values, "") if si == "1" else (values * written_in(1.0, unit, si), unit)
 
 
-def word(name: str) -> str:
-    """A quantity in words."""
-    return WORDS.get(name, name.replace("_", " "))
-
-
 def quantity_text(view: View, name: str, value: float) -> str:
     """A quantity with its value as it was typed: `length 12 cm`."""
+    if name == "drag":
+        return f"{name}{TOGETHER}{DRAGS[int(value)].replace('_', TOGETHER)}"
     shown, unit = in_typed(view, name, np.array([value]))
     unit = unit.replace("^3", "$^3$").replace("*", " ").replace(" ", TOGETHER)
     return f"{word(name)}{TOGETHER}{shown[0]:.4g}{TOGETHER}{unit}".rstrip(TOGETHER)
