@@ -162,13 +162,14 @@ def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[
     colours = (style.SECOND, style.FIRST, style.THIRD)
     handles: list[Artist] = []
     for colour, (line, values) in zip(colours, (panel.lines or {"": panel.values}).items(), strict=False):
-        axes.plot(x, values[place], "-o", ms=2.5, lw=1.2, color=colour)
+        style_of_line = "o" if name == DRAG else "-o"
+        axes.plot(x, values[place], style_of_line, ms=2.5, lw=1.2, color=colour)
         handles += _band(axes, view, name, values, place, colour)
         if line and np.isfinite(values[place]).any():
             handles.append(Line2D([], [], color=colour, marker="o", ms=2.5, lw=1.2, label=line))
     style.scale(axes, "x", x)
     if name == DRAG:
-        axes.set_xticks(x, [DRAGS[int(drag)].replace("_", "\n") for drag in x])
+        axes.set_xticks(x, [DRAGS[int(drag)].replace("_", "\n") for drag in x], rotation=90)
     subplot = axes.get_subplotspec()
     if subplot is None or subplot.is_last_row():
         axes.set_xlabel(label)
