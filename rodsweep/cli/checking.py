@@ -4,11 +4,13 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from ..config.arm_axes import SLENDER
 from ..post.summary.arm_answer import plane_lines, validity_sentence
 from ..post.summary.ranges import span
 from ..sweep.estimate import SAMPLE
 from ..sweep.grid import Points
-from .arm_points import NoRod
+from ..wording import counted
+from .arm_points import NoRod, same_rods
 from .arm_validity import ArmValidity
 from .job import Job
 
@@ -55,8 +57,12 @@ def _arm_lines(job: Job) -> list[str]:
 
 
 def _uncovered_lines(points: Points) -> list[str]:
-    """How many points no rod covers, and why."""
-    lines = []
+    """How many different rods there are, how many points no rod covers, and why."""
+    lines, rods = list[str](), same_rods(points)
+    if rods is not None:
+        there = rods if points.covered is None else rods[points.covered == SLENDER]
+        different = counted(len(np.unique(there)), "different rod")
+        lines.append(f"{different} at {len(there)} points: each is solved once")
     for status in NoRod:
         number = 0 if points.covered is None else int((points.covered == status).sum())
         if number:

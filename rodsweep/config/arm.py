@@ -139,7 +139,7 @@ class ArmSection(Strict):
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
     def refuse_unfit(self) -> None:
-        """ValueError where a value is not allowed, or a grid of parameters has arms that no rod covers."""
+        """ValueError where a value is not allowed, or a grid of parameters is of arms that no rod covers."""
         for name, axis in self.given.items():
             low = float(axis.array()[0])
             if name in RELATIVE and low < 0:
@@ -147,7 +147,7 @@ class ArmSection(Strict):
             if name in UNITS and name not in SIGNED and not low > 0:
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} {UNITS[name][0]} is not above 0")
         if self.is_grid:
-            self._made(self._firsts, place=-1)
+            self._made(self._firsts, place=0)
 
     def refuse_misuse(self, forced: bool, beside: Collection[str]) -> None:
         """ValueError unless there is one load where the task needs one, and no axis that changes nothing.
@@ -175,9 +175,9 @@ class ArmSection(Strict):
     def grid_axes(self) -> dict[str, Axis]:
         """The axes of the dimensionless parameters of a grid of these, by name; no F without load.
 
-        ValueError for what is no slender arm, and for a load that crushes it.
+        ValueError for what is no slender arm, and where the least load crushes it.
         """
-        arm = self._made(self._firsts, place=-1)
+        arm = self._made(self._firsts, place=0)
         axes = {name: Axis(values=(getattr(arm, name),)) for name in NONLINEAR_PARAMETERS if name != "F"}
         for name in ("k2", "gamma3"):
             different = {getattr(self._made(each), name) for each in self._sections()}
