@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 from ..errors import InputError
 from ..model.arm import UNITS, share_of_flutter
 from ..model.drag import DRAGS
-from ..model.units import in_si, split
+from ..model.units import in_si, split, written_in
 from .arm_axes import RELATIVE
 from .values import AXIS_SCHEMA, Axis, as_axis, as_number, short
 
@@ -86,11 +86,7 @@ ENDS = ("start", "stop")
 
 def _shares(value: Any) -> tuple[list[float | None], bool]:
     """(each number of a load's value over flutter, None where it is not relative; whether any is)."""
-    if isinstance(value, Mapping):
-        each = [value.get(end) for end in ENDS]
-    else:
-        each = list(value) if isinstance(value, list | tuple) else [value]
-    shares = [None if one is None else share_of_flutter(one) for one in each]
+    shares = [None if one is None else share_of_flutter(one) for one in _each(value)]
     return shares, any(share is not None for share in shares)
 
 
@@ -113,12 +109,33 @@ def drags_written(values: list[float]) -> list[str]:
 
 def typed_unit(name: str, axis: Axis) -> str:
     """The unit in which a quantity was typed, the first of several; the SI unit where it was none."""
-    written = axis.written
-    if isinstance(written, dict):
-        written = [written.get("start"), written.get("stop")]
-    each = written if isinstance(written, list | tuple) else [written]
-    units = [split(value)[1] for value in each if isinstance(value, str)]
+    units = [split(value)[1] for value in _each(axis.written) if isinstance(value, str)]
     return next(filter(None, units), UNITS[name][0])
+
+
+def given_text(quantities: Mapping[str, Axis]) -> str:
+    """The quantities of an arm in the units that were taken, and which of them were given without, as words."""
+    told, bare = [], []
+    for name, axis in quantities.items():
+        ends = axis.array()[[0, -1]].tolist()
+        if name == "drag":
+            names = drags_written(axis.array().tolist())
+            told.append(f"drag {RANGE if len(names) == len(DRAGS) else ' and '.join(names)}")
+            continue
+        unit = typed_unit(name, axis) if name in UNITS else ""
+        texts = [f"{written_in(end, unit, UNITS[name][0]) if unit else end:.6g}" for end in ends]
+        told.append(f"{name} {' to '.join(dict.fromkeys(texts))} {unit}".rstrip())
+        if unit and not all(isinstance(one, str) for one in _each(axis.written)):
+            bare.append(name)
+    remark = f" ({' and '.join(bare)} without a unit: SI)" if bare else ""
+    return f"{', '.join(told)}{remark}".replace("_", " ")
+
+
+def _each(written: Any) -> list[Any]:
+    """The values that a user wrote for a quantity; of a range its ends."""
+    if isinstance(written, Mapping):
+        return [written.get(end) for end in ENDS]
+    return list(written) if isinstance(written, list | tuple) else [written]
 
 
 def _schema() -> dict[str, Any]:

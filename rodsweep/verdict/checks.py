@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import isnan
 
 from ..model.arm import SlenderArm
-from ..model.neglected import SELF_BUCKLING, Effect, Validity
+from ..model.neglected import SELF_BUCKLING, Effect, Validity, wall_effect
 from .validity import Assessment
 
 SLENDER = 20.0
@@ -52,6 +52,7 @@ def checks_of(assessment: Assessment) -> list[Check]:
         compression(assessment, effects["compression"]),
         *inertia(effects["inertia of the arm"], effects["inertia of the fluid"]),
         *reynolds(effects["Reynolds number"]),
+        *wall(arm),
         weight(effects.get("weight")),
         poisson(arm),
     ]
@@ -123,6 +124,28 @@ def reynolds(number: Effect) -> list[Check]:
     )[validity]
     value = f"{float(number.value):.2g}"
     return [Check(validity, f"Reynolds number: {value} if the tip moves by half the length; {ending}.")]
+
+
+def wall(arm: SlenderArm) -> list[Check]:
+    """How far the section of a tube flattens in wide beating; nothing of other sections."""
+    if arm.inner_radius is None:
+        return []
+    si = arm.si
+    return [wall_check(wall_effect(si.length, si.radius, si.inner_radius, arm.poisson))]
+
+
+def wall_check(effect: Effect) -> Check:
+    """The same from the effect on one tube."""
+    lost = float(effect.value)
+    loses = f"takes some {100 * lost:.2g} % of its bending stiffness" if lost < 1 else "folds the tube"
+    validity = _validity(effect)
+    ending = (
+        "left out with reason",
+        "the model leaves that out",
+        "the wall is too thin for the model, which leaves that out",
+    )[validity]
+    sentence = f"Wall: as the tip moves by half the length, the section flattens, which {loses}; {ending}."
+    return Check(validity, sentence)
 
 
 def weight(effect: Effect | None) -> Check:
