@@ -114,7 +114,7 @@ def typed_unit(name: str, axis: Axis) -> str:
 
 
 def given_text(quantities: Mapping[str, Axis]) -> str:
-    """The quantities of an arm in the units that were taken, and which of them were given without, as words."""
+    """The quantities of an arm in the units that were taken, and which were given without one, as words."""
     told, bare = [], []
     for name, axis in quantities.items():
         ends = axis.array()[[0, -1]].tolist()

@@ -159,7 +159,7 @@ def _own_grid(arm: ArmSection, beside: dict[str, Array], names: tuple[str, ...])
 
 def _first_flutter(arm: SlenderArm) -> float:
     """The F at which an arm flutters first in any plane, inf where it does not; imports its solver."""
-    from ..verdict.planes import first_flutter
+    from ..verdict.relative import first_flutter
 
     return first_flutter(arm)
 

@@ -1,28 +1,16 @@
 """Where an arm flutters, how fast, and whether it returns, over its range of drag. Forces in k3/L^2."""
 
 from dataclasses import dataclass
-from functools import cache
-from math import inf, pi
+from math import pi
 
-from ..determinant.parameter_path import Path
-from ..errors import InputError
 from ..model.arm import SlenderArm
 from ..model.drag import Drag
-from ..model.rod import Rod
-from ..solve.changes.along_path import pair_crossings
-from ..solve.changes.thresholds import SHORT_OF_CRUSHED, Thresholds, ThresholdsRequest, solve_thresholds
+from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
 from ..solve.changes.unstable_modes import Crossing, Kind
 from ..solve.exclusive import solving
-from ..solve.point import FAILURES
+from .relative import FARTHEST
 
-FARTHEST = 1000.0
-"""Force up to which changes are sought, if the arm is not crushed before: 25 times where filaments do."""
 REQUEST = ThresholdsRequest(F_max=FARTHEST, accuracy=1e-6, certify=True, crossings=1000)
-NEAR = 200.0
-"""Force up to which flutter is sought first, which takes half of the time; few arms flutter beyond."""
-DIGITS = 10
-"""Digits of the threshold that a load is relative to: far more than are known of an arm, and the same on all
-machines, so that a run that goes on elsewhere has the same points."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,22 +84,6 @@ def span_of(values: list[float | None]) -> Span | None:
     """From the least to the greatest of those that are there; None where none is."""
     there = [value for value in values if value is not None]
     return Span(min(there), max(there), len(there) == len(values)) if there else None
-
-
-@cache
-def first_hopf_force(k1: float, k2: float, gamma3: float) -> float:
-    """F of the first flutter of a rod to DIGITS digits, inf where there is none up to FARTHEST."""
-    rod = Rod(k1=k1, k2=k2, gamma3=gamma3, F=0.0)
-    for end in (NEAR, FARTHEST):
-        try:
-            found = pair_crossings(Path(rod, "F"), 0.0, min(end, k1 * (1 - SHORT_OF_CRUSHED)))
-        except (*FAILURES, ValueError) as error:
-            raise InputError(
-                f"where the arm flutters, which its load is relative to, is not found: {error}"
-            ) from None
-        if first := next((c for c in found.crossings if c.kind == Kind.hopf), None):
-            return float(f"{first.at:.{DIGITS}g}")
-    return inf
 
 
 def flutter_forces(arm: SlenderArm, drag: Drag) -> FlutterForces:

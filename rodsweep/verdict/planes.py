@@ -8,7 +8,8 @@ from ..errors import InputError
 from ..model.arm import UNITS, SlenderArm
 from ..model.units import compact
 from ..solve.changes.unstable_modes import Kind
-from .flutter import FlutterRange, first_hopf_force, flutter_range
+from .flutter import FlutterRange, flutter_range
+from .relative import turned
 
 A = TypeVar("A", bound=SlenderArm)
 
@@ -56,28 +57,6 @@ def planes_of(arm: SlenderArm) -> Planes:
     if across.flutter_loads[0] < own.flutter_loads[0]:
         return Planes(across, own)
     return Planes(own, across)
-
-
-def turned(arm: A) -> A:
-    """The arm that moves in the other plane of its rectangular section."""
-    return replace(arm, width=arm.height, height=arm.width)
-
-
-def first_flutter(arm: SlenderArm) -> float:
-    """The F that a load relative to flutter is relative to, in k3/L^2 of the arm; inf where nothing flutters.
-
-    That of the first flutter of all planes with the likeliest drag, as `with_load` has it.
-    """
-    own = _first_flutter(arm)
-    if arm.radius is not None or arm.si.width == arm.si.height:
-        return own
-    other = turned(arm)
-    return min(own, _first_flutter(other) * (other.section.second_moment / arm.section.second_moment))
-
-
-def _first_flutter(arm: SlenderArm) -> float:
-    """The same in the arm's own plane."""
-    return first_hopf_force(arm.k1, arm.k2, arm.gamma3_with(arm.drags[0]))
 
 
 def with_load(planes: Planes) -> Planes:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...config.arm_axes import ALONG
+from ...model.drag import DRAGS
 from ...results.file.view import View
 from ...results.layouts.arm import MEANINGS, QUANTITY_UNITS, any_unit_of, converted, twin_of
 from ...results.layouts.variables import DIMENSIONS, MISSING, STATUS, Variable
@@ -37,7 +38,7 @@ def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]
     for name, values in view.point_columns.items():
         yield coordinate(name, *DIMENSIONS[name], values[points])
     for name, values in quantities_at_points(view).items():
-        yield coordinate(name, QUANTITY_UNITS[name], MEANINGS[name], values[points])
+        yield quantity_column(name, values[points])
     missing = view.variables[STATUS.name].reshape(-1)[points] == MISSING
     for variable in own:
         values = view.variables[variable.name].reshape(-1)[points]
@@ -97,7 +98,13 @@ def line_columns(view: View, rows: Rows) -> Iterator[Column]:
     """The quantities of an arm along the rows of a diagram, as the pressure of F."""
     for name, values in view.quantities.items():
         if values.size > 1 and view.is_grid and ALONG.get(name, "") not in view.parameters:
-            yield coordinate(name, QUANTITY_UNITS[name], MEANINGS[name], values[rows[1]])
+            yield quantity_column(name, values[rows[1]])
+
+
+def quantity_column(name: str, values: NDArray) -> Column:
+    """The column of a quantity of an arm, whose values have the shape (rows,)."""
+    column = coordinate(name, QUANTITY_UNITS[name], MEANINGS[name], values)
+    return replace(column, words=dict(enumerate(DRAGS))) if name == "drag" else column
 
 
 def _is_of_points(view: View, variable: Variable) -> bool:
