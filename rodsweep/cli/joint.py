@@ -18,7 +18,7 @@ from ..sweep.pool import Pool
 from ..sweep.progress import Silent, Teller
 from ..sweep.stop import StopRequest
 from ..sweep.team import Team
-from ..watch import Stopped, heard_by
+from ..watch import Stopped, Whereabouts, heard_by
 from .tasks.protocol import AllPoints, Arrays
 from .unforeseen import PASSING, UnitNote
 
@@ -114,4 +114,4 @@ class _Alone:
 
     def between_points(self) -> None: ...
 
-    def tell_place(self, place: str) -> None: ...
+    def tell_place(self, place: Whereabouts) -> None: ...

@@ -48,7 +48,9 @@ class BranchTask(Task):
         ]
 
     def cost(self) -> Estimate:
-        return estimate_branches(self.points.count)
+        options = self.config.branch
+        reach = (options.start, options.stop)
+        return estimate_branches(self.points, options.along, reach, self.config.accuracy)
 
     def solver(self) -> Solver:
         from ...solve.branch.branches import (

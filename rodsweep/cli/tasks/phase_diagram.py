@@ -78,7 +78,11 @@ class PhaseDiagramTask(LinearTask):
         lines = estimate_lines(rows, options.certify)
         if not options.cycles:
             return lines
-        return replace(lines, seconds=lines.seconds + estimate_branches(rows).seconds)
+        from ...solve.branch.work import DIAGRAM_ACCURACY
+
+        reach = (float(self.line[0]), float(self.line[-1]))
+        branches = estimate_branches(self.points, self.config.plane[0], reach, DIAGRAM_ACCURACY)
+        return replace(lines, seconds=lines.seconds + branches.seconds)
 
     def solver(self) -> Solver:
         from ...solve.changes.rows import solve_row

@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 from ...arrays import Array
 from ...determinant.parameter_plane import Plane, PlaneAxis
-from ...watch import report
+from ...watch import Whereabouts, report
 from ..cycle.measures import CyclePath
 from ..cycle.newton import relative_change
 from ..cycle.orbit import Orbit
@@ -137,7 +137,7 @@ class CurveCourse:
         """
         points, step = [first_point(special, self.line.name, self.rows, row)], FIRST
         while len(points) < MOST_POINTS:
-            report(lambda: f"{self.rows.name} = {points[-1].row:.5g}, {len(points)} points")
+            report(lambda: Whereabouts(f"{self.rows.name} = {points[-1].row:.5g}, {len(points)} points"))
             try:
                 there, off = self._next(points, step, side)
             except FAILURES:
