@@ -88,15 +88,13 @@ class ArmSection(Strict):
     density_difference: Annotated[Quantities | None, Allowed] = None
     """The arm's density less the fluid's, for whether the model applies; weight is left out without it."""
     drag: Annotated[Drags | None, DragAllowed] = None
-    """Which members of the range of drags that the literature has for one arm; the likeliest where it is not
-    given."""
+    """Members of the range of drags that the literature has; the likeliest where it is not given."""
     pressure: Annotated[Quantities | None, Allowed] = None
     """On the tip's cross section; or give force. Not where the task finds F itself."""
     force: Annotated[Quantities | None, Allowed] = None
     """Follower force at the tip."""
     pressure_over_flutter: Annotated[Values | None, ShareAllowed] = None
-    """The pressure over that at which the arm flutters first with the likeliest drag: what `pressure: 1.2 of
-    flutter` is."""
+    """The pressure over that of flutter with the likeliest drag: 1.2 is `pressure: 1.2 of flutter`."""
     force_over_flutter: Annotated[Values | None, ShareAllowed] = None
     """The same of a force."""
 
