@@ -8,9 +8,9 @@ import pytest
 
 from rodsweep import Arm
 from rodsweep.errors import InputError
-from rodsweep.model.arm import share_of_flutter
 from rodsweep.model.drag import cox, gray_hancock, least_rotational, lighthill, most_rotational
 from rodsweep.model.section import Circle, Rectangle, Tube
+from rodsweep.model.units import share_of_flutter
 from rodsweep.solve.changes.along_path import Transitions
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdStatus, nothing_found
 from rodsweep.solve.changes.unstable_modes import Crossing, Kind

@@ -29,8 +29,6 @@ from .arm_axes import (
 from .quantities import Drags, Quantities, drags_written, with_shares
 from .values import Axis, Strict, Values
 
-MOST_POINTS = 1_000_000
-"""Points of a grid over an arm's quantities, whose parameters are all in memory."""
 UNCOVERED = {NotSlender: NOT_SLENDER, NoWall: NO_WALL}
 """What refusals of an arm mean for a point."""
 
@@ -181,7 +179,7 @@ class ArmSection(Strict):
             different = {getattr(self._made(each), name) for each in self._sections()}
             axes[name] = Axis(values=tuple(sorted(different)))
         if self.load:
-            axes = {"F": _scaled(self.given[self.load], 1.0 / getattr(arm, SCALE_OF[self.load]))} | axes
+            axes = {"F": self.given[self.load].scaled(1.0 / getattr(arm, SCALE_OF[self.load]))} | axes
         return axes
 
     def grid_quantities(self) -> dict[str, Array]:
@@ -301,11 +299,3 @@ def _units_of(arm: SlenderArm | None) -> dict[str, float]:
 def _along(dimension: int, values: Any) -> Array:
     """Values, (n,), along one of three dimensions."""
     return np.asarray(values).reshape([-1 if i == dimension else 1 for i in range(3)])
-
-
-def _scaled(axis: Axis, scale: float) -> Axis:
-    """An axis with all values multiplied."""
-    if axis.values is not None:
-        return Axis(values=tuple(scale * value for value in axis.values))
-    factor = scale * axis.factor  # kept apart, so that a longer range has the same values
-    return axis.model_copy(update={"factor": factor})

@@ -32,6 +32,8 @@ SLENDER, NOT_SLENDER, CRUSHED, NO_WALL, NO_FLUTTER = 0, 100, 101, 102, 103
 """Whether a rod covers a point: it does; the arm is too short for the drag of slender bodies; F reaches k1;
 the bore is as wide as the arm; the load is relative to a flutter that there is not. All but the first are
 statuses, which no task's own statuses reach."""
+MOST_POINTS = 1_000_000
+"""Points of a grid over an arm's quantities, whose parameters are all in memory."""
 SCALE_OF = {"pressure": "pressure_scale", "force": "force_scale"}
 """The unit of a load, which makes F = 1."""
 UNIT_NAMES = ("tau2", "force_scale", "pressure_scale")

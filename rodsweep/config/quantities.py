@@ -6,9 +6,9 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
 from ..errors import InputError
-from ..model.arm import UNITS, share_of_flutter
+from ..model.arm import UNITS
 from ..model.drag import DRAGS
-from ..model.units import in_si, split, written_in
+from ..model.units import in_si, share_of_flutter, split, written_in
 from .arm_axes import RELATIVE
 from .values import AXIS_SCHEMA, Axis, as_axis, as_number, short
 

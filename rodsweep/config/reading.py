@@ -14,7 +14,7 @@ from .parsing import DEEPEST, parse, read_text
 from .quantities import drags_written
 from .refusals import KEY_SHOWN, dotted, nearest, sentence_of
 from .schema import Config
-from .tasks import CONFIGS
+from .tasks import CONFIGS, makes_diagram
 from .values import Axis, axis_of, named, short
 
 
@@ -66,7 +66,7 @@ def config_of(resolved: dict[str, Any]) -> Config:
         parameters = _axes_of(resolved["parameters"])
         if "arm" in parameters:
             given = parameters | {"arm": _axes_of(parameters["arm"])}
-            parameters = _without_those_of_the_arm(given, task == "phase_diagram")
+            parameters = _without_those_of_the_arm(given, makes_diagram(task))
         # An option that is not used must not be given, but every resolved config has its default.
         options = {
             name: _axes_of(value) if isinstance(value, dict) else value

@@ -4,7 +4,6 @@ Stiffness is of the paper's Sec. III, the force of Sec. IV, scales and dimension
 Knows no mesh and no solver. Quantities are given as text with a unit, or as numbers in SI.
 """
 
-import re
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import inf, isnan
@@ -14,7 +13,7 @@ from typing import Any
 from ..errors import InputError
 from .drag import DRAGS, LEAST_SLENDERNESS, Drag, range_of_drag
 from .section import Circle, Rectangle, Section, Tube
-from .units import Given, in_si, unit_of, written_in
+from .units import Given, in_si, share_of_flutter, unit_of, written_in
 
 UNITS = {
     "length": ("m", "10 cm"),
@@ -43,23 +42,6 @@ class NotSlender(InputError):
 
 class NoWall(InputError):
     """The refusal of an arm whose bore is as wide as itself."""
-
-
-OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
-"""A load relative to the threshold of flutter, as "1.2 of flutter" or "120 % of flutter"."""
-FROM_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*%\s*(above|below)\s+flutter\s*", re.ASCII)
-"""The same as a distance, as "20 % above flutter"."""
-
-
-def share_of_flutter(given: Given) -> float | None:
-    """The load over that at which an arm flutters, of a text that says so; None of any other."""
-    if not isinstance(given, str):
-        return None
-    if found := OF_FLUTTER.fullmatch(given):
-        return float(found[1]) / (100.0 if found[2] else 1.0)
-    if (found := FROM_FLUTTER.fullmatch(given)) and (found[2] == "above" or float(found[1]) < 100):
-        return 1.0 + (1.0 if found[2] == "above" else -1.0) * float(found[1]) / 100.0
-    return None
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..config.arm import MOST_POINTS, ArmGrid, ArmSection
-from ..config.arm_axes import CRUSHED, SLENDER, moved_by
+from ..config.arm import ArmGrid, ArmSection
+from ..config.arm_axes import CRUSHED, MOST_POINTS, SLENDER, moved_by
 from ..config.axes import words
 from ..config.schema import Config
 from ..config.values import as_number, overflows, short

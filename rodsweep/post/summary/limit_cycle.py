@@ -44,7 +44,10 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> Told:
 
 
 def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarray], str]) -> str:
-    """What became of how many points, and where these lie; region: says that of a mask of points."""
+    """What became of how many points, and where these lie.
+
+    done: a mask of the points' shape; region: says where the points of such a mask lie.
+    """
     status, whole = view.variables["status"], counted(int(done.sum()), "point")
     masks = {word: done & (status == value) for value, word in view.flags.items() if value >= 0}
     there = {OUTCOMES.get(word, word.replace("_", " ")): mask for word, mask in masks.items() if mask.any()}

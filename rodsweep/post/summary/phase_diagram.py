@@ -162,7 +162,7 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
 
 
 def crossings_of_arms(view: View, done: np.ndarray) -> list[str]:
-    """What changes on the rows that are `done`, in the units of an arm; none but along F."""
+    """What changes along F on rows, in the units of an arm; done: a mask of the rows' shape."""
     if not view.quantities or "F" in view.parameters:
         return []
     v, lines = view.variables, []

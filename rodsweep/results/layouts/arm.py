@@ -17,6 +17,7 @@ from ...config.arm import ArmSection
 from ...config.arm_axes import ALONG, RELATIVE, names_over
 from ...config.axes import Axes
 from ...config.quantities import typed_unit
+from ...config.tasks import makes_diagram
 from ...model.arm import UNITS
 from ...model.drag import DRAGS
 from ...model.neglected import Validity
@@ -173,7 +174,7 @@ def over_of(config: Mapping[str, Any]) -> tuple[str, ...]:
     parameters = config["parameters"]
     axes = parameters["arm"] | {name: axis for name, axis in parameters.items() if name in PARAMETERS}
     sizes = {name: _size(axis) for name, axis in axes.items() if isinstance(axis, Mapping)}
-    return names_over(sizes, config["task"] == "phase_diagram")
+    return names_over(sizes, makes_diagram(config["task"]))
 
 
 def _size(axis: Mapping[str, Any]) -> int:
