@@ -150,9 +150,8 @@ class ArmSection(Strict):
 
         forced: whether F is a parameter of the task; beside: the parameters that stand beside the arm.
         """
-        loads = [f"parameters.arm.{name}" for name in LOAD_AXES if getattr(self, name) is not None]
-        if "F" in beside:
-            loads.insert(0, "parameters.F")
+        loads = ["parameters.F"] if "F" in beside else []
+        loads += [f"parameters.arm.{name}" for name in LOAD_AXES if getattr(self, name) is not None]
         if loads[1:]:
             raise ValueError(f"{loads[0]} and {loads[1]} are both given; give one of them")
         if "poisson" in self.several and "k2" in beside:
