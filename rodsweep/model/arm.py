@@ -131,7 +131,7 @@ class SlenderArm:
         unit = unit_of(getattr(self, loaded), si)
         raise InputError(
             f"{self._told(loaded)} compresses the arm to nothing; it must be below "
-            f"{written_in(limit, unit, si):.4g} {unit}, where a linear material is crushed"
+            f"{float(f'{written_in(limit, unit, si):.4g}'):g} {unit}, where a linear material is crushed"
         )
 
     def _refuse_other_sets(self) -> None:

@@ -70,7 +70,7 @@ def with_load(planes: Planes) -> Planes:
         return planes
     force, scale = first.found.forces[0].force(Kind.hopf), first.arm.load_scale
     if force is None:
-        end = f"{first.found.end * scale:.3g} {UNITS[load][0]}"
+        end = f"{float(f'{first.found.end * scale:.3g}'):g} {UNITS[load][0]}"
         raise InputError(
             f"{load} = '{getattr(first.arm, load)}' is nothing: with the likeliest drag the arm does not "
             f"flutter up to {end}"
