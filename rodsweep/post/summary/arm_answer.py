@@ -156,7 +156,7 @@ def _decided(view: View, rods: np.ndarray) -> list[str]:
     some = len(of_arms) - always - never
     told = {"with every drag": always, "with part of the range of drag": some, "with none": never}
     counts = ", ".join(f"{words} at {count}" for words, count in told.items() if count)
-    return [f"of {counted(len(of_arms), 'arm')} with its load: beats {counts}"]
+    return [f"of {counted(len(of_arms), 'combination')} of arm and load: beats {counts}"]
 
 
 def _of_modes(view: View, rods: np.ndarray) -> list[str]:
