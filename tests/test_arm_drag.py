@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 
 import rodsweep as rs
 from rodsweep.api.asking import job_from, tree_of
-from rodsweep.cli.arm_points import same_rods
 from rodsweep.config.arm import ArmSection
 from rodsweep.config.arm_axes import CRUSHED, NO_FLUTTER
 from rodsweep.model.arm import SlenderArm
@@ -18,6 +17,7 @@ from rodsweep.model.drag import DRAGS
 from rodsweep.model.neglected import HALF_LENGTH, WIDE_CURVATURE, wall_effect
 from rodsweep.post.figures import draw
 from rodsweep.results.file.view import read_view
+from rodsweep.tasks.arm_points import same_rods
 from rodsweep.verdict.flutter import Kind
 from rodsweep.verdict.relative import first_flutter, first_hopf_force
 

@@ -5,9 +5,9 @@ import os
 import numpy as np
 import pytest
 
-from rodsweep.cli.job import make_job
 from rodsweep.config.refusals import nearest
 from rodsweep.errors import InputError
+from rodsweep.tasks.job import make_job
 
 GOOD = """
 title: test
@@ -202,6 +202,10 @@ REFUSED_BY_TASK = [
     (
         config("criticality", "k1: 9, k2: 1, gamma3: 0", "F_max: 0"),
         "F_max = 0 is not allowed; it should be a finite number above 0",
+    ),
+    (
+        config("spectrum", options="method: krylov_schur, certify: true"),
+        "spectrum.certify is given but not used; set spectrum.method: determinant or remove it",
     ),
     (config("branch", "F: 3, k1: 9"), "parameters.F is given but the task branch follows F; remove it"),
     (

@@ -15,7 +15,7 @@ import pytest
 from rodsweep import watch
 from rodsweep.solve.exclusive import HeldSignals, one_at_a_time
 
-INTERRUPTS = int(os.environ.get("RODSWEEP_INTERRUPTS", "2"))
+INTERRUPTS = int(os.environ.get("RODSWEEP_INTERRUPTS", "1"))
 TASKS = """
 import rodsweep as rs
 ROD = rs.Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2)
@@ -55,7 +55,8 @@ alone = pickle.load(sys.stdin.buffer)
 faults = []
 def work(seed):
     try:
-        for task in random.Random(seed).sample(sorted(TASKS), len(TASKS)):
+        some = sorted(TASKS)[seed % 3 :: 3]  # so that each is solved by two threads
+        for task in random.Random(seed).sample(some, len(some)):
             if bits(task) != alone[task]:
                 faults.append(task)
     except BaseException as error:

@@ -4,7 +4,6 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
-from ..cli.job import Job, job_of, memory
 from ..config.arguments import unknown
 from ..config.arm import ArmSection
 from ..config.arm_axes import RELATIVE
@@ -16,6 +15,7 @@ from ..errors import InputError
 from ..model.arm import LOADS, SlenderArm
 from ..model.drag import DRAGS
 from ..solve.exclusive import signals_held
+from ..tasks.job import Job, job_of, memory
 from .axes import plain
 
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)

@@ -20,6 +20,7 @@ class OfSpectrum(OfEveryTask, total=False):
     """Keys of the section `spectrum`."""
 
     modes: int
+    method: Literal["determinant", "krylov_schur"]
     certify: bool
     vectors: bool
     nodes: int

@@ -14,11 +14,11 @@ from ..post.summary.arm_answer import plane_lines, validity_sentence
 from ..post.summary.ranges import span
 from ..sweep.estimate import SAMPLE
 from ..sweep.grid import Points
+from ..tasks.arm_points import NoRod, same_rods
+from ..tasks.arm_validity import ArmValidity
+from ..tasks.job import Job
 from ..verdict.checks import wall_check
 from ..wording import counted
-from .arm_points import NoRod, same_rods
-from .arm_validity import ArmValidity
-from .job import Job
 
 
 def describe_job(job: Job) -> None:

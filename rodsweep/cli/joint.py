@@ -18,9 +18,9 @@ from ..sweep.pool import Pool
 from ..sweep.progress import Silent, Teller
 from ..sweep.stop import StopRequest
 from ..sweep.team import Team
+from ..tasks.protocol import AllPoints, Arrays
+from ..tasks.unforeseen import PASSING, UnitNote
 from ..watch import Stopped, Whereabouts, heard_by
-from .tasks.protocol import AllPoints, Arrays
-from .unforeseen import PASSING, UnitNote
 
 NOUN = "halves of curves"
 """What units are called; a curve is followed from one of its points in two halves."""
