@@ -1,6 +1,8 @@
 """The range of drags as an axis, and loads relative to flutter: configs, files, `show`, figures of arms."""
 
 import re
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -235,3 +237,16 @@ def test_a_tube_flattens_as_brazier_found():
     report = str(rs.Arm(**SILICONE, inner_radius="3.6 mm").report())
     assert "warning: Wall: as the tip moves by half the length" in report
     assert "Wall:" not in str(rs.Arm(**SILICONE).report())
+
+
+def test_check_of_a_relative_load_and_of_a_tube_starts_no_petsc(tmp_path):
+    """As on a login node; on several ranks the first one alone makes the points."""
+    tube = OVER_LOADS.replace("radius: 4 mm", "radius: 4 mm\n    inner_radius: 2 mm")
+    (tmp_path / "a.yaml").write_text(tube, encoding="utf-8")
+    code = (
+        "import sys\nfrom pathlib import Path\nfrom rodsweep.cli.checking import describe_job\n"
+        "from rodsweep.tasks.job import make_job\ndescribe_job(make_job(Path(sys.argv[1]), ()))\n"
+        "print([m for m in ('mpi4py.MPI', 'petsc4py', 'slepc4py') if m in sys.modules])"
+    )
+    argv = [sys.executable, "-c", code, str(tmp_path / "a.yaml")]
+    assert subprocess.run(argv, capture_output=True, text=True, check=True).stdout.endswith("[]\n")

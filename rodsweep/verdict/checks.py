@@ -2,10 +2,13 @@
 
 from dataclasses import dataclass
 from math import isnan
+from typing import TYPE_CHECKING
 
 from ..model.arm import SlenderArm
 from ..model.neglected import SELF_BUCKLING, Effect, Validity, wall_effect
-from .validity import Assessment
+
+if TYPE_CHECKING:
+    from .validity import Assessment  # which imports solvers
 
 SLENDER = 20.0
 """Lengths a radius from which the logarithms of slender-body theory are good to some ten percent."""
@@ -44,7 +47,7 @@ class Check:
         return self.sentence if self.fine else f"warning: {self.sentence}"
 
 
-def checks_of(assessment: Assessment) -> list[Check]:
+def checks_of(assessment: "Assessment") -> list[Check]:
     """All of them."""
     arm, effects = assessment.arm, {effect.name: effect for effect in assessment.at_flutter}
     return [
@@ -70,7 +73,7 @@ def slenderness(arm: SlenderArm) -> Check:
     return Check(_doubt(not fine), f"Slenderness: the arm is {ratio:.3g} radii long; {why}.")
 
 
-def compression(assessment: Assessment, at_flutter: Effect) -> Check:
+def compression(assessment: "Assessment", at_flutter: Effect) -> Check:
     """F/k1, the share of its length that the straight arm loses."""
     says, effects = [], [at_flutter, *assessment.under_load]
     if assessment.under_load:
