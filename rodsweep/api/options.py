@@ -69,7 +69,6 @@ class OfLimitCycle(OfEveryTask, total=False):
 
     amplitude: float
     start: Literal["mode", "neighbour", "hopf"]
-    continue_from: Literal["none", "previous"]
     along: str
     direction: Literal["up", "down"]
     harmonics: int
