@@ -301,10 +301,11 @@ ARM = """
 ### File of an arm
 
 Where only the load or Poisson's ratio of `parameters.arm` have several values, the points are a grid of
-parameters: `pressure` or `force` stands along F, `poisson` along k2. Where another quantity has several,
-the points are a grid over the arm's own quantities and the parameters beside it: every one with several
-values is a dimension, in SI with the unit that was typed as `typed_unit`, and F, k1, k2, gamma3, gamma1 and
-the units below are coordinates on that grid. What has one value is a number.
+parameters: `pressure` or `force` stands along F, `poisson` along k2; of a phase diagram `drag` and tau2 along
+gamma3. Where another quantity has several, or the load is relative to flutter, the points are a grid over the
+arm's own quantities and the parameters beside it: every one with several values is a dimension, in SI with
+the unit that was typed as `typed_unit`, and F, k1, k2, gamma3, gamma1 and the units below are coordinates on
+that grid. What has one value is a number.
 
 What has the units tau2, rad/tau2, 1/tau2, L, k3/L or k3/(L tau2), and forces, stand in SI beside:
 `period_si` in s, `frequency_hz` in cycles per second, `growth_rate_si` in 1/s; a force F as the load,

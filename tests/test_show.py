@@ -66,7 +66,7 @@ def test_a_change_that_is_not_understood_is_a_bracket(command):
     view.variables["unstable_count"][-1] = 4
     (line,) = lines_over(view, "F")
     assert stability_changes(line, view) == [Bracket(40, 60, True)]
-    (told,) = stability_lines(view, "F", lambda one: stability_changes(one, view))
+    (told,), _ = stability_lines(view, "F", lambda one: stability_changes(one, view))
     assert told == "F** (straight rod starts to beat): between 40 and 60"
 
 

@@ -5,13 +5,15 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from ..config.arguments import unknown
-from ..config.arm import LOADS, ArmSection
+from ..config.arm import ArmSection
+from ..config.arm_axes import RELATIVE
 from ..config.reading import validated, yaml_of
 from ..config.refusals import nearest
 from ..config.schema import Config
 from ..config.tasks import CONFIGS
 from ..errors import InputError
-from ..model.arm import SlenderArm
+from ..model.arm import LOADS, SlenderArm
+from ..model.drag import DRAGS
 from ..solve.exclusive import signals_held
 from ..tasks.job import Job, job_of, memory
 from .axes import plain
@@ -57,9 +59,10 @@ def _write_out_arm(task: str, tree: Tree) -> None:
     arm = parameters.get("arm")
     if isinstance(arm, SlenderArm):
         loaded = "F" in CONFIGS[task].taken_of_a_rod(tree.get(task, {}))
-        names = [name for name in ArmSection.model_fields if loaded or name not in LOADS]
+        names = [n for n in ArmSection.model_fields if n not in RELATIVE and (loaded or n not in LOADS)]
         known = known_load(arm) if loaded else arm
         given = {name: getattr(known, name) for name in names}
+        given["drag"] = None if known.drag == DRAGS[0] else known.drag
         parameters["arm"] = {name: plain(value) for name, value in given.items() if value is not None}
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from ..config.arguments import in_sentences
-from ..config.arm import AXIS_OF
+from ..config.arm_axes import ALONG
 from ..config.values import short
 from ..errors import InputError
 from ..results.file.content import SEAL, attribute_digests, variable_digest
@@ -66,8 +66,8 @@ def _opened(path: Path) -> xr.Dataset:
 
 def _selectable(data: xr.Dataset) -> xr.Dataset:
     """The Dataset, in which what an arm has along a parameter can be selected by, as F by its pressure."""
-    for name in AXIS_OF:
-        if name in data.coords and data[name].dims == (AXIS_OF[name],) and name not in data.xindexes:
+    for name in ALONG:
+        if name in data.coords and data[name].dims == (ALONG[name],) and name not in data.xindexes:
             data = data.set_xindex(name)
     return data
 

@@ -1,16 +1,24 @@
 """What `rodsweep check` prints: the points, what is modelled and what is left out, and the cost."""
 
+from dataclasses import replace
+
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from ..config.arm import ArmSection
+from ..config.arm_axes import SLENDER
+from ..config.quantities import given_text
+from ..model.neglected import wall_effect
 from ..post.summary.arm_answer import plane_lines, validity_sentence
 from ..post.summary.ranges import span
 from ..sweep.estimate import SAMPLE
 from ..sweep.grid import Points
-from ..tasks.arm_points import NoRod
+from ..tasks.arm_points import NoRod, same_rods
 from ..tasks.arm_validity import ArmValidity
 from ..tasks.job import Job
+from ..verdict.checks import wall_check
+from ..wording import counted
 
 
 def describe_job(job: Job) -> None:
@@ -42,11 +50,15 @@ def describe_job(job: Job) -> None:
 
 def _arm_lines(job: Job) -> list[str]:
     """The parameters that are made of an arm, its unit of time, and what is known of it before the run."""
+    arm = job.config.parameters.arm
+    assert arm is not None
     columns = job.points.by_name | {v.name: values for v, values in job.quantities if v.name == "tau2"}
     made = (f"{name} = {span(np.asarray(values))}" for name, values in columns.items())
     at_rest = ArmValidity(job.config, job.points).at_rest()
     told = validity_sentence(at_rest, when=" before anything moves")
     return [
+        f"the arm: {given_text(arm.given)}",
+        *_wall_lines(arm),
         *plane_lines({variable.name: np.asarray(values) for variable, values in job.quantities}),
         f"the arm as a rod: {', '.join(made)} s",
         *_uncovered_lines(job.points),
@@ -54,9 +66,28 @@ def _arm_lines(job: Job) -> list[str]:
     ]
 
 
+def _wall_lines(arm: ArmSection) -> list[str]:
+    """A warning where tubes have thin walls."""
+    if arm.inner_radius is None:
+        return []
+    names = ("length", "radius", "inner_radius", "poisson")
+    values = [arm.given[name].array() if name in arm.given else np.array([0.5]) for name in names]
+    length, radius, bore, poisson = np.meshgrid(*values)
+    tubes = bore < radius
+    effect = wall_effect(length[tubes], radius[tubes], bore[tubes], poisson[tubes])
+    worst = int(np.argmax(effect.value))
+    told = wall_check(replace(effect, value=effect.value[worst])).told
+    some = int((effect.validity > 0).sum())
+    return [f"{told} That is the worst of {counted(effect.value.size, 'tube')}."] if some else []
+
+
 def _uncovered_lines(points: Points) -> list[str]:
-    """How many points no rod covers, and why."""
-    lines = []
+    """How many different rods there are, how many points no rod covers, and why."""
+    lines, rods = list[str](), same_rods(points)
+    if rods is not None:
+        there = rods if points.covered is None else rods[points.covered == SLENDER]
+        different = counted(len(np.unique(there)), "different rod")
+        lines.append(f"{different} at {len(there)} points: each is solved once")
     for status in NoRod:
         number = 0 if points.covered is None else int((points.covered == status).sum())
         if number:

@@ -1,47 +1,42 @@
-"""The section `parameters.arm` of a config: an arm in SI units, whose axes become those of parameters.
+"""The section `parameters.arm` of a config: an arm in SI units, and the points that its axes make."""
 
-An axis of the load is one of F, an axis of Poisson's ratio one of k2, and a grid of both stays a grid of
-parameters. Any other quantity moves several parameters at once, or none: with an axis of these the points
-are a grid over the arm's own quantities, on which every parameter has its own value.
-"""
-
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
 from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from ..arrays import Array
 from ..errors import InputError
-from ..model.arm import SIGNED, UNITS, NotSlender, NoWall, SlenderArm
+from ..model.arm import CRUSHED_FROM, LOADS, SIGNED, UNITS, NotSlender, NoWall, SlenderArm
 from ..model.parameters import NONLINEAR_PARAMETERS
-from .quantities import Quantities
+from .arm_axes import (
+    AXIS_OF,
+    CRUSHED,
+    LOAD_AXES,
+    NO_FLUTTER,
+    NO_WALL,
+    NOT_SLENDER,
+    RELATIVE,
+    SCALE_OF,
+    SECTION,
+    SLENDER,
+    UNIT_NAMES,
+)
+from .quantities import Drags, Quantities, drags_written, with_shares
 from .values import Axis, Strict, Values
 
-LOADS = ("pressure", "force")
-AXIS_OF = dict.fromkeys(LOADS, "F") | {"poisson": "k2"}
-"""The one parameter that a quantity moves, where it moves one only."""
-FLUID = ("viscosity", "fluid_density", "density_difference")
-"""What moves no parameter: units of time are proportional to viscosity, densities say whether the model
-applies."""
-SECTION = ("length", "young", "radius", "inner_radius", "width", "height", "poisson", *FLUID)
-"""What makes an arm beside its load."""
-SIGNED_IN_SECTION = ("density_difference",)
-"""What of it may be negative."""
-MOST_POINTS = 1_000_000
-"""Points of a grid over an arm's quantities, whose parameters are all in memory."""
-SLENDER, NOT_SLENDER, CRUSHED, NO_WALL = 0, 100, 101, 102
-"""Whether a rod covers a point: it does; the arm is too short for the drag of slender bodies; F reaches k1;
-the bore is as wide as the arm. All but the first are statuses, which no task's own statuses reach."""
 UNCOVERED = {NotSlender: NOT_SLENDER, NoWall: NO_WALL}
 """What refusals of an arm mean for a point."""
-UNIT_NAMES = ("tau2", "force_scale", "pressure_scale")
-"""Units of time, force and pressure that an arm makes."""
 
 Allowed = Field(description="a quantity with its unit, a list or a range of quantities; SI without unit")
+ShareAllowed = Field(description="a number from 0 on, a list or a range")
+DragAllowed = Field(description="range, the name of a drag, or a list of names")
+FlutterOf = Callable[[SlenderArm], float]
+"""From an arm to the F at which it flutters first with the likeliest drag, inf where it does not."""
 RatioAllowed = Field(description="a number above -1 and up to 0.5, a list or a range")
 
 
@@ -90,20 +85,37 @@ class ArmSection(Strict):
     """Of the fluid, that of water where it is not given; for whether the model applies."""
     density_difference: Annotated[Quantities | None, Allowed] = None
     """The arm's density less the fluid's, for whether the model applies; weight is left out without it."""
+    drag: Annotated[Drags | None, DragAllowed] = None
+    """Members of the range of drags that the literature has; the likeliest where it is not given."""
     pressure: Annotated[Quantities | None, Allowed] = None
     """On the tip's cross section; or give force. Not where the task finds F itself."""
     force: Annotated[Quantities | None, Allowed] = None
     """Follower force at the tip."""
+    pressure_over_flutter: Annotated[Values | None, ShareAllowed] = None
+    """The pressure over that of flutter with the likeliest drag: 1.2 is `pressure: 1.2 of flutter`."""
+    force_over_flutter: Annotated[Values | None, ShareAllowed] = None
+    """The same of a force."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_shares(cls, given: Any) -> Any:
+        """A load relative to flutter has a key of its own."""
+        return with_shares(given) if isinstance(given, dict) else given
+
+    @property
+    def load_axis(self) -> str | None:
+        """Which of LOAD_AXES is given, if any is."""
+        return next((name for name in LOAD_AXES if getattr(self, name) is not None), None)
 
     @property
     def load(self) -> str | None:
-        """Which of the loads is given, if any is."""
-        return next((name for name in LOADS if getattr(self, name) is not None), None)
+        """Which of LOADS the load is told as, if any is given."""
+        return RELATIVE.get(str(self.load_axis), self.load_axis)
 
     @property
     def several(self) -> tuple[str, ...]:
-        """The quantities that have more than one value."""
-        return tuple(name for name, axis in self.given.items() if axis.size > 1)
+        """The quantities that have more than one value, or are relative to flutter."""
+        return tuple(name for name, axis in self.given.items() if axis.size > 1 or name in RELATIVE)
 
     @property
     def meaning(self) -> dict[str, float | None]:
@@ -119,29 +131,29 @@ class ArmSection(Strict):
     @property
     def given(self) -> dict[str, Axis]:
         """The quantities that are given, those of the section first."""
-        names = (*SECTION, *LOADS)
+        names = (*SECTION, *LOAD_AXES)
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
     def refuse_unfit(self) -> None:
-        """ValueError where a value is not allowed, or a grid of parameters has arms that no rod covers."""
+        """ValueError where a value is not allowed, or a grid of parameters is of arms that no rod covers."""
         for name, axis in self.given.items():
             low = float(axis.array()[0])
-            if name not in (*SIGNED, "poisson") and not low > 0:
+            if name in RELATIVE and low < 0:
+                raise ValueError(f"parameters.arm.{name} = {low:.6g} is below 0")
+            if name in UNITS and name not in SIGNED and not low > 0:
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} {UNITS[name][0]} is not above 0")
         if self.is_grid:
-            self._made(self._firsts, place=-1)
+            self._made(self._firsts, place=0)
 
     def refuse_misuse(self, forced: bool, beside: Collection[str]) -> None:
         """ValueError unless there is one load where the task needs one, and no axis that changes nothing.
 
         forced: whether F is a parameter of the task; beside: the parameters that stand beside the arm.
         """
-        if self.pressure is not None and self.force is not None:
-            raise ValueError(
-                "parameters.arm.pressure and parameters.arm.force are both given; give one of them"
-            )
-        if self.load and "F" in beside:
-            raise ValueError(f"parameters.F and parameters.arm.{self.load} are both given; give one of them")
+        loads = ["parameters.F"] if "F" in beside else []
+        loads += [f"parameters.arm.{name}" for name in LOAD_AXES if getattr(self, name) is not None]
+        if loads[1:]:
+            raise ValueError(f"{loads[0]} and {loads[1]} are both given; give one of them")
         if "poisson" in self.several and "k2" in beside:
             raise ValueError(
                 "parameters.arm.poisson has several values, and parameters.k2, which replaces all that it "
@@ -158,14 +170,15 @@ class ArmSection(Strict):
     def grid_axes(self) -> dict[str, Axis]:
         """The axes of the dimensionless parameters of a grid of these, by name; no F without load.
 
-        ValueError for what is no slender arm, and for a load that crushes it.
+        ValueError for what is no slender arm, and where the least load crushes it.
         """
-        arm = self._made(self._firsts, place=-1)
+        arm = self._made(self._firsts, place=0)
         axes = {name: Axis(values=(getattr(arm, name),)) for name in NONLINEAR_PARAMETERS if name != "F"}
-        if self.poisson is not None:
-            axes["k2"] = Axis(values=tuple(sorted(self._made(each).k2 for each in self._sections())))
+        for name in ("k2", "gamma3"):
+            different = {getattr(self._made(each), name) for each in self._sections()}
+            axes[name] = Axis(values=tuple(sorted(different)))
         if self.load:
-            axes = {"F": _scaled(self.given[self.load], self._force_of(arm))} | axes
+            axes = {"F": self.given[self.load].scaled(1.0 / getattr(arm, SCALE_OF[self.load]))} | axes
         return axes
 
     def grid_quantities(self) -> dict[str, Array]:
@@ -174,31 +187,39 @@ class ArmSection(Strict):
         if self.poisson is not None:  # k2 falls as it rises
             values["poisson"] = values["poisson"][::-1]
         units = {name: np.array([value]) for name, value in _units_of(self._made(self._firsts)).items()}
+        if len(values.get("drag", ())) > 1:
+            arms = {place: self._made(self._firsts | {"drag": place}) for place in values["drag"].tolist()}
+            values["drag"] = np.array(sorted(arms, key=lambda place: arms[place].gamma3))
+            units["tau2"] = np.array([arms[place].tau2 for place in values["drag"].tolist()])
         return {name: array[0] if len(array) == 1 else array for name, array in (values | units).items()}
 
-    def own_grid(self, beside: Mapping[str, Array]) -> ArmGrid:
+    def own_grid(self, beside: Mapping[str, Array], flutter: FlutterOf) -> ArmGrid:
         """The grid over the arm's quantities, and over those parameters of `beside` that have several values.
 
-        beside: values of parameters that replace the arm's, (n,). ValueError where no rod covers any point.
+        beside: values of parameters that replace the arm's, (n,); flutter: what a load may be relative to.
+        ValueError where no rod covers any point.
         """
         arms, statuses = zip(*self._arms(), strict=True)
-        loads = self.given[self.load].array() if self.load else np.zeros(1)
+        loads = self.given[self.load_axis].array() if self.load_axis else np.zeros(1)
         crossed = dict(zip(beside, np.meshgrid(*beside.values(), indexing="ij"), strict=True))
         shape = (len(arms), len(loads), next(iter(crossed.values())).size if crossed else 1)
         names = [name for name in NONLINEAR_PARAMETERS if name != "F"]
         of_arms = {name: _along(0, [getattr(arm, name, np.nan) for arm in arms]) for name in names}
         units = {name: _along(0, [_units_of(arm)[name] for arm in arms]) for name in UNIT_NAMES}
         if self.load:
-            scale = _along(0, [self._force_of(arm) if arm else np.nan for arm in arms])
-            of_arms["F"] = scale * _along(1, loads)
+            scale = _along(0, [self._force_of(arm, flutter) if arm else np.nan for arm in arms])
+            of_arms["F"] = np.where(np.isinf(scale), np.nan, scale) * _along(1, loads)
         of_arms |= {name: _along(2, column.ravel()) for name, column in crossed.items()}
         table = {name: np.broadcast_to(column, shape) for name, column in of_arms.items()}
         covered = np.broadcast_to(_along(0, statuses), shape).copy()
+        if self.load_axis in RELATIVE:
+            units[str(self.load)] = of_arms["F"] * units[SCALE_OF[str(self.load)]]
+            covered[(covered == SLENDER) & np.isinf(scale)] = NO_FLUTTER
         if "F" in table:
-            covered[(covered == SLENDER) & (table["F"] >= table["k1"])] = CRUSHED
+            covered[(covered == SLENDER) & (table["F"] >= CRUSHED_FROM * table["k1"])] = CRUSHED
         if (covered != SLENDER).all():
-            self._refuse_all(beside)
-        axes = {name: axis.array() for name, axis in self.given.items() if axis.size > 1}
+            self._refuse_all(beside, bool((covered == NO_FLUTTER).any()))
+        axes = {name: self.given[name].array() for name in self.several}
         return ArmGrid(
             axes | {name: column for name, column in beside.items() if len(column) > 1},
             {name: table[name].ravel() for name in NONLINEAR_PARAMETERS if name in table},
@@ -210,9 +231,13 @@ class ArmSection(Strict):
         """Points of a grid, where `beside` the arm so many combinations of parameters are given."""
         return int(np.prod([float(axis.size) for axis in self.given.values()])) * beside
 
-    def _refuse_all(self, beside: Mapping[str, Array]) -> None:
-        """ValueError, with what is wrong at the first point."""
+    def _refuse_all(self, beside: Mapping[str, Array], no_flutter: bool) -> None:
+        """ValueError, with what is wrong at the first point; no_flutter: whether some arm has none."""
         self._made(self._firsts, place=0)
+        if no_flutter:
+            raise ValueError(
+                f"parameters.arm.{self.load} is relative to flutter, which no arm has with the likeliest drag"
+            )
         k1 = float(beside["k1"][0])
         raise ValueError(f"parameters.k1 is {k1:.15g} and every F is above; the rod is crushed where F >= k1")
 
@@ -245,35 +270,22 @@ class ArmSection(Strict):
     def _made(self, values: Mapping[str, float], place: int | None = None) -> SlenderArm:
         """An arm with the load at a place of its axis, or without; ValueError where it cannot be."""
         section = {name: value for name, value in values.items() if name in SECTION}
-        load = {"pressure": 0.0}
-        if place is not None and self.load:
-            load = {self.load: float(self.given[self.load].array()[place])}
+        load: dict[str, float] = {"pressure": 0.0}
+        if place is not None and self.load_axis in LOADS:
+            load = {self.load_axis: float(self.given[self.load_axis].array()[place])}
+        (drag,) = drags_written([section.pop("drag", 0.0)])
         try:
-            return SlenderArm(**{**section, **load})
+            return SlenderArm(**section, **load, drag=drag)
         except (NotSlender, NoWall) as error:
             raise _Uncovered(error) from None
         except InputError as error:
             raise ValueError(f"parameters.arm.{error}") from None
 
-    def _force_of(self, arm: SlenderArm) -> float:
-        """F of a load of 1 in SI on an arm."""
-        return 1.0 / (arm.pressure_scale if self.load == "pressure" else arm.force_scale)
-
-
-def names_over(sizes: Mapping[str, int]) -> tuple[str, ...]:
-    """The axes of a grid over an arm's quantities; none where the points are a grid of parameters.
-
-    sizes: how many values each quantity and each parameter beside the arm has.
-    """
-    quantities = [name for name in (*SECTION, *LOADS) if sizes.get(name, 1) > 1]
-    if all(name in AXIS_OF for name in quantities):
-        return ()
-    return (*quantities, *(name for name in NONLINEAR_PARAMETERS if sizes.get(name, 1) > 1))
-
-
-def moved_by(axis: str) -> str:
-    """The one parameter that an axis of an arm's grid moves; empty where it moves several or none."""
-    return axis if axis in NONLINEAR_PARAMETERS else AXIS_OF.get(axis, "")
+    def _force_of(self, arm: SlenderArm, flutter: FlutterOf) -> float:
+        """F of a load of 1 on an arm, in SI or of flutter."""
+        if self.load_axis in RELATIVE:
+            return flutter(arm)
+        return 1.0 / getattr(arm, SCALE_OF[str(self.load)])
 
 
 def _units_of(arm: SlenderArm | None) -> dict[str, float]:
@@ -286,11 +298,3 @@ def _units_of(arm: SlenderArm | None) -> dict[str, float]:
 def _along(dimension: int, values: Any) -> Array:
     """Values, (n,), along one of three dimensions."""
     return np.asarray(values).reshape([-1 if i == dimension else 1 for i in range(3)])
-
-
-def _scaled(axis: Axis, scale: float) -> Axis:
-    """An axis with all values multiplied."""
-    if axis.values is not None:
-        return Axis(values=tuple(scale * value for value in axis.values))
-    factor = scale * axis.factor  # kept apart, so that a longer range has the same values
-    return axis.model_copy(update={"factor": factor})

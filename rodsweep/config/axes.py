@@ -6,7 +6,8 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field, create_model, model_validator
 
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, PARAMETERS
-from .arm import MOST_POINTS, ArmSection, moved_by, names_over
+from .arm import ArmSection
+from .arm_axes import MOST_POINTS, moved_by, names_over
 from .values import Axis, Number, Strict, Text, Values
 
 BEYOND_LINEAR = tuple(name for name in NONLINEAR_PARAMETERS if name not in LINEAR_PARAMETERS)
@@ -32,6 +33,8 @@ class Axes(LinearAxes):
 
     of_arm: ClassVar[tuple[str, ...]] = LINEAR_PARAMETERS
     """The parameters for which the arm gives values."""
+    in_diagram: ClassVar[bool] = False
+    """Whether the points are rows of a phase diagram, which need a grid of parameters."""
 
     @property
     def axes(self) -> dict[str, Axis]:
@@ -57,7 +60,7 @@ class Axes(LinearAxes):
         if self.arm is None:
             return ()
         given = self.arm.given | self.given_axes
-        return names_over({name: axis.size for name, axis in given.items()})
+        return names_over({name: axis.size for name, axis in given.items()}, self.in_diagram)
 
     @property
     def alone(self) -> dict[str, int]:
@@ -109,6 +112,12 @@ AllAxes: Any = _section(Axes, BEYOND_LINEAR, Values)
 
 class LinearParameters(AxesAndNumbers):
     """The parameters of the linear problem; one that only the nonlinear rod has is one number or none."""
+
+
+class DiagramParameters(LinearParameters):
+    """The parameters of a phase diagram."""
+
+    in_diagram: ClassVar[bool] = True
 
 
 class NonlinearParameters(AllAxes):

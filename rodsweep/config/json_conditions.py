@@ -5,17 +5,20 @@ A key that is null counts as not given, as for the command.
 
 from collections.abc import Iterable, Mapping
 from copy import deepcopy
+from itertools import combinations
 from typing import Any
 
+from ..model.arm import LOADS
 from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS
-from .arm import LOADS, SECTION, SIGNED_IN_SECTION
+from .arm_axes import LOAD_AXES, RELATIVE, SECTION, SIGNED_IN_SECTION
 
 Schema = dict[str, Any]
-QUANTITY_TEXT = r"^\s*{sign}(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[A-Za-z\u00b5\u03bc]"
+QUANTITY_TEXT = r"^\s*{sign}(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[A-Za-z\u00b5\u03bc{percent}]"
 """A number and the beginning of a unit."""
 BOUNDS_OF_ARM: dict[str, Schema] = {
     **{name: {"exclusiveMinimum": 0} for name in SECTION if name not in ("poisson", *SIGNED_IN_SECTION)},
     "poisson": {"exclusiveMinimum": -1, "maximum": 0.5},
+    **{name: {"minimum": 0} for name in RELATIVE},
 }
 """Of the quantities of an arm that may not be any number."""
 
@@ -67,14 +70,16 @@ def restrict_arm(section: Schema, axis: Schema) -> None:
         if "anyOf" in key:
             kinds = [axis if "$ref" in kind else kind for kind in key["anyOf"]]
             key["anyOf"] = [bounded(kind, bound) for kind in kinds]
-        pattern = QUANTITY_TEXT.format(sign="[+]?" if bound else "[+-]?")
+        pattern = QUANTITY_TEXT.format(
+            sign="[+]?" if bound else "[+-]?", percent="%" if name in LOADS else ""
+        )
         for node in nodes_of(key):
             if node.get("type") == "string":
                 node["pattern"] = pattern
     circle, rectangle = all_of(["radius"], none_of(["width", "height"])), ["width", "height"]
     section["allOf"] = [
         {"oneOf": [circle, all_of(rectangle, none_of(["radius", "inner_radius"]))]},
-        {"not": all_of(LOADS)},
+        *({"not": all_of(pair)} for pair in combinations(LOAD_AXES, 2)),
     ]
 
 
@@ -84,9 +89,9 @@ def points_of(needed: Iterable[str], lists: bool) -> Schema:
     The arm has a load, or F beside it, where F is needed, and neither otherwise.
     """
     axes = tuple(name for name in needed if PARAMETERS[name].default is None)
-    loads = [all_of([name]) for name in LOADS]
+    loads = [all_of([name]) for name in LOAD_AXES]
     loaded = {"properties": {"arm": {"anyOf": loads}}}
-    unloaded = {"properties": {"arm": none_of(LOADS)}}
+    unloaded = {"properties": {"arm": none_of(LOAD_AXES)}}
     load = {"oneOf": [given("F"), loaded]} if "F" in axes else unloaded
     ways = [all_of(axes, none_of(["points", "arm"])), all_of(["arm"], none_of(["points"]), load)]
     if lists:

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from ..model.parameters import NONLINEAR_PARAMETERS
-from .arm import AXIS_OF
+from .arm_axes import AXIS_OF
 from .axes import NonlinearParameters, words
 from .schema import Config, Nodes
 from .values import Number, Strict
@@ -90,7 +90,7 @@ class LimitCycleConfig(Config):
         self.parameters.require(self.names)
         self.refuse_unused()
         arm, along = self.parameters.arm, self.limit_cycle.along
-        if along in AXIS_OF and (arm is None or getattr(arm, along) is None):
+        if along in AXIS_OF and (arm is None or along not in {arm.load, *arm.given}):
             raise ValueError(
                 f"limit_cycle.along is {along} but parameters.arm.{along} is not given; give it, or one of "
                 f"{words(NONLINEAR_PARAMETERS, 'or')}"

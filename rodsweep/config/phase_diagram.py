@@ -6,8 +6,8 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS, all_but
-from .arm import AXIS_OF, FLUID
-from .axes import DEFAULTS, LinearAxes, words
+from .arm_axes import AXIS_OF, FLUID, RELATIVE
+from .axes import DEFAULTS, DiagramParameters, LinearAxes, words
 from .schema import Crossings, LinearConfig
 from .values import Axis, Strict
 
@@ -63,6 +63,7 @@ class PhaseDiagramConfig(LinearConfig):
     """What the rod does over two parameters, row by row: a row is a line in the first of the two."""
 
     task: Literal["phase_diagram"]
+    parameters: DiagramParameters
     phase_diagram: PhaseDiagramOptions = PhaseDiagramOptions()
 
     into_crushed: ClassVar[bool] = True
@@ -133,11 +134,14 @@ class PhaseDiagramConfig(LinearConfig):
             )
         self.parameters.require(LINEAR_PARAMETERS, or_points=False)
         if self.parameters.over:
-            several = next(name for name in self.parameters.over if name not in AXIS_OF)
+            several = next(name for name in self.parameters.over if name not in (*AXIS_OF, "drag"))
             moves = "no parameter" if several in FLUID else "several parameters at once"
+            why = (
+                "is relative to flutter" if several in RELATIVE else f"has several values, which move {moves}"
+            )
             raise ValueError(
-                f"parameters.arm.{several} has several values, which move {moves}; a phase diagram of an arm "
-                f"is over {words(tuple(AXIS_OF), 'or')}, or parameters beside the arm"
+                f"parameters.arm.{RELATIVE.get(several, several)} {why}; a phase diagram of an arm is over "
+                f"{words((*AXIS_OF, 'drag'), 'or')}, or parameters beside the arm"
             )
         long = self.plane
         if len(long) != 2:

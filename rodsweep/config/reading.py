@@ -11,9 +11,10 @@ from ..errors import InputError
 from .arm import ArmSection
 from .axes import words
 from .parsing import DEEPEST, parse, read_text
+from .quantities import drags_written
 from .refusals import KEY_SHOWN, dotted, nearest, sentence_of
 from .schema import Config
-from .tasks import CONFIGS
+from .tasks import CONFIGS, makes_diagram
 from .values import Axis, axis_of, named, short
 
 
@@ -64,7 +65,8 @@ def config_of(resolved: dict[str, Any]) -> Config:
         fields = section.model_fields
         parameters = _axes_of(resolved["parameters"])
         if "arm" in parameters:
-            parameters = _without_those_of_the_arm(parameters | {"arm": _axes_of(parameters["arm"])})
+            given = parameters | {"arm": _axes_of(parameters["arm"])}
+            parameters = _without_those_of_the_arm(given, makes_diagram(task))
         # An option that is not used must not be given, but every resolved config has its default.
         options = {
             name: _axes_of(value) if isinstance(value, dict) else value
@@ -84,10 +86,10 @@ def _axes_of(section: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def _without_those_of_the_arm(parameters: dict[str, Any]) -> dict[str, Any]:
-    """The parameters without the axes that `canonical` made of the arm."""
+def _without_those_of_the_arm(parameters: dict[str, Any], in_diagram: bool) -> dict[str, Any]:
+    """The parameters without the axes that `canonical` made of the arm; in_diagram: for a phase diagram."""
     arm = ArmSection.model_validate(parameters["arm"])
-    made = arm.grid_axes() if arm.is_grid else {}
+    made = arm.grid_axes() if in_diagram or arm.is_grid else {}
     return {
         name: value
         for name, value in parameters.items()
@@ -120,7 +122,8 @@ def _written(axis: Any) -> Any:
     if not isinstance(axis, dict):
         return axis
     if "length" in axis:
-        return {name: _written(value) for name, value in axis.items()}
+        own = {"drag": drags_written(axis["drag"]["values"])} if "drag" in axis else {}
+        return {name: _written(value) for name, value in axis.items()} | own
     values = axis.get("values", axis)
     return values[0] if isinstance(values, list) and len(values) == 1 else values
 

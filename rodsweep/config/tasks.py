@@ -1,5 +1,7 @@
 """The config of every task, by its name; the section of a task's options has that name too."""
 
+from typing import Any
+
 from .branch import BranchConfig
 from .criticality import CriticalityConfig
 from .limit_cycle import LimitCycleConfig
@@ -18,3 +20,9 @@ CONFIGS: dict[str, type[Config]] = {
     "criticality": CriticalityConfig,
     "branch": BranchConfig,
 }
+
+
+def makes_diagram(task: str) -> bool:
+    """Whether the points of a task are the rows of a diagram over two parameters."""
+    parameters: Any = CONFIGS[task].model_fields["parameters"].annotation
+    return bool(parameters.in_diagram)

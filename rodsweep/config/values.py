@@ -143,6 +143,13 @@ class Axis(Strict):
         ends = {} if self.values is not None else {"start": self.start, "stop": self.stop}
         return tree | {name: self.factor * value for name, value in ends.items()}
 
+    def scaled(self, scale: float) -> "Axis":
+        """The axis with all values multiplied."""
+        if self.values is not None:
+            return Axis(values=tuple(scale * value for value in self.values))
+        # The factor is kept apart, so that a longer range has the same values.
+        return self.model_copy(update={"factor": scale * self.factor})
+
     def agrees(self, other: "Axis") -> bool:
         """Whether the two have the same values, but for rounding."""
         return self.size == other.size and np.allclose(self.array(), other.array(), rtol=1e-12, atol=0)

@@ -4,7 +4,6 @@ Stiffness is of the paper's Sec. III, the force of Sec. IV, scales and dimension
 Knows no mesh and no solver. Quantities are given as text with a unit, or as numbers in SI.
 """
 
-import re
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import inf, isnan
@@ -12,9 +11,9 @@ from numbers import Real
 from typing import Any
 
 from ..errors import InputError
-from .drag import LEAST_SLENDERNESS, Drag, range_of_drag
+from .drag import DRAGS, LEAST_SLENDERNESS, Drag, range_of_drag
 from .section import Circle, Rectangle, Section, Tube
-from .units import Given, in_si, unit_of, written_in
+from .units import Given, in_si, share_of_flutter, unit_of, written_in
 
 UNITS = {
     "length": ("m", "10 cm"),
@@ -32,6 +31,8 @@ UNITS = {
 """SI unit of each quantity, and how it may be written."""
 LOADS = ("pressure", "force")
 """What may push the tip; an arm has one of them or none."""
+CRUSHED_FROM = 1 - 1e-14
+"""Part of k1 from which on F is as large: what conversion of units leaves between them."""
 SIGNED = (*LOADS, "density_difference")
 
 
@@ -41,23 +42,6 @@ class NotSlender(InputError):
 
 class NoWall(InputError):
     """The refusal of an arm whose bore is as wide as itself."""
-
-
-OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
-"""A load relative to the threshold of flutter, as "1.2 of flutter" or "120 % of flutter"."""
-FROM_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*%\s*(above|below)\s+flutter\s*", re.ASCII)
-"""The same as a distance, as "20 % above flutter"."""
-
-
-def share_of_flutter(given: Given) -> float | None:
-    """The load over that at which an arm flutters, of a text that says so; None of any other."""
-    if not isinstance(given, str):
-        return None
-    if found := OF_FLUTTER.fullmatch(given):
-        return float(found[1]) / (100.0 if found[2] else 1.0)
-    if (found := FROM_FLUTTER.fullmatch(given)) and (found[2] == "above" or float(found[1]) < 100):
-        return 1.0 + (1.0 if found[2] == "above" else -1.0) * float(found[1]) / 100.0
-    return None
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,8 +68,8 @@ class SlenderArm:
     Either a radius, or width and height, of which the height lies in the plane of motion. inner_radius: of
     the bore of a tube, which is closed at the tip and filled with the fluid at the pressure around. A
     pressure on the tip or a force there, of which positive ones push, or no load; "1.2 of flutter" is a load
-    that is known once the threshold is. density_difference: of the arm's material over the fluid. Raises
-    InputError, naming the quantity.
+    that is known once the threshold is. density_difference: of the arm's material over the fluid. drag: which
+    member of its range, one of DRAGS, the arm has as a rod. Raises InputError, naming the quantity.
     """
 
     length: Given
@@ -100,6 +84,7 @@ class SlenderArm:
     poisson: float = 0.5
     fluid_density: Given = "1000 kg/m^3"
     density_difference: Given | None = None
+    drag: str = DRAGS[0]
     si: InSI = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -113,6 +98,8 @@ class SlenderArm:
             except ValueError:  # an integer of thousands of digits
                 told = "an integer too large to be shown"
             raise InputError(f"poisson = {told:.60} is not a number above -1 and up to 0.5")
+        if self.drag not in DRAGS:
+            raise InputError(f"drag = {self.drag!r:.60} is not known; choose one of {', '.join(DRAGS)}")
         self._refuse_other_sets()
         if self.si.density_difference <= -self.si.fluid_density:
             least = -self.si.fluid_density
@@ -138,13 +125,13 @@ class SlenderArm:
     def _refuse_crushed(self) -> None:
         """InputError where F is not below k1."""
         loaded = self.load
-        if loaded is None or self.share_of_flutter is not None or self.k1 > self.F:
+        if loaded is None or self.share_of_flutter is not None or CRUSHED_FROM * self.k1 > self.F:
             return
         limit, si = self.si.young * self.section.area / self._loaded_area, UNITS[loaded][0]
         unit = unit_of(getattr(self, loaded), si)
         raise InputError(
             f"{self._told(loaded)} compresses the arm to nothing; it must be below "
-            f"{written_in(limit, unit, si):.4g} {unit}, where a linear material is crushed"
+            f"{float(f'{written_in(limit, unit, si):.4g}'):g} {unit}, where a linear material is crushed"
         )
 
     def _refuse_other_sets(self) -> None:
@@ -250,20 +237,14 @@ class SlenderArm:
         return self.bending_stiffness / self.si.length**2
 
     @property
-    def shear_modulus(self) -> float:
-        """kappa G with G = E/(2 (1 + nu)), in Pa: the paper's effective G (Sec. III; Cowper 1966)."""
-        G = self.si.young / (2 * (1 + self.poisson))
-        return self.section.shear_coefficient(self.poisson) * G
-
-    @property
     def k1(self) -> float:
-        """E A L^2/k3 (Sec. III and VI)."""
-        return self.si.young * self.section.area / self.force_scale
+        """E A L^2/k3 = A L^2/I (Sec. III and VI): the same bits whatever Young's modulus."""
+        return self.section.area * self.si.length**2 / self.section.second_moment
 
     @property
     def k2(self) -> float:
-        """kappa G A L^2/k3 (Sec. III and VI)."""
-        return self.shear_modulus * self.section.area / self.force_scale
+        """kappa G A L^2/k3, kappa G being the paper's effective G (Sec. III and VI; Cowper 1966)."""
+        return self.section.shear_coefficient(self.poisson) / (2 * (1 + self.poisson)) * self.k1
 
     @property
     def F(self) -> float:
@@ -272,13 +253,18 @@ class SlenderArm:
 
     @cached_property
     def drags(self) -> tuple[Drag, ...]:
-        """The likeliest drag, then the corners of its range."""
+        """The drags of DRAGS: the likeliest, then the corners of the range."""
         section = self.section
         return range_of_drag(self.si.viscosity, self.si.length, section.drag_radius, section.half_height)
 
+    @property
+    def own_drag(self) -> Drag:
+        """The member of the range that the arm has as a rod."""
+        return self.drags[DRAGS.index(self.drag)]
+
     def gamma3_with(self, drag: Drag) -> float:
         """gamma3/(gamma2 L^2) (Sec. VI)."""
-        return drag.gamma3 / (drag.gamma2 * self.si.length**2)
+        return drag.rotational / (drag.across * self.si.length**2)
 
     def tau2_with(self, drag: Drag) -> float:
         """gamma2 L^4/k3, in s (Sec. VI)."""
@@ -286,20 +272,20 @@ class SlenderArm:
 
     @property
     def gamma3(self) -> float:
-        """gamma3/(gamma2 L^2) with the likeliest drag (Sec. VI)."""
-        return self.gamma3_with(self.drags[0])
+        """gamma3/(gamma2 L^2) (Sec. VI)."""
+        return self.gamma3_with(self.own_drag)
 
     @property
     def gamma1(self) -> float:
-        """gamma1/gamma2 with the likeliest drag (Sec. VI)."""
-        return self.drags[0].gamma1 / self.drags[0].gamma2
+        """gamma1/gamma2 (Sec. VI)."""
+        return self.own_drag.axial / self.own_drag.across
 
     @property
     def tau2(self) -> float:
-        """The longest time scale gamma2 L^4/k3 with the likeliest drag, in s (Sec. VI)."""
-        return self.tau2_with(self.drags[0])
+        """The longest time scale gamma2 L^4/k3, in s (Sec. VI)."""
+        return self.tau2_with(self.own_drag)
 
     @property
     def tau1(self) -> float:
-        """The shortest time scale, dimensional gamma3/k2, with the likeliest drag, in s (Sec. VI)."""
+        """The shortest time scale, dimensional gamma3/k2, in s (Sec. VI)."""
         return self.tau2 * self.gamma3 / self.k2

@@ -12,13 +12,38 @@ LEAST_SLENDERNESS = 10.0
 """Lengths a radius below which the logarithms of slender-body theory mean nothing."""
 
 
+DRAGS = ("likeliest", "least", "most_rotational", "most_translational", "most")
+"""The members of `range_of_drag` by name, in its order: the likeliest, then the corners of the range. `least`
+and `most` have the least and the most drag of all kinds, the others the most of one kind and the least of the
+other."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drag:
-    """Force per length and velocity, gamma1 along and gamma2 across the axis, in Pa s; gamma3 in Pa s m^2."""
+    """Drag of an arm over its viscosity, in Pa s: along and across the axis without unit, rotational in m^2.
 
-    gamma1: float
-    gamma2: float
-    gamma3: float
+    Their ratios, which are all that a rod feels, are the same bits whatever the viscosity.
+    """
+
+    viscosity: float
+    axial: float
+    across: float
+    rotational: float
+
+    @property
+    def gamma1(self) -> float:
+        """Force per length and velocity along the axis, in Pa s."""
+        return self.viscosity * self.axial
+
+    @property
+    def gamma2(self) -> float:
+        """Force per length and velocity across the axis, in Pa s."""
+        return self.viscosity * self.across
+
+    @property
+    def gamma3(self) -> float:
+        """Torque per length and angular velocity, in Pa s m^2."""
+        return self.viscosity * self.rotational
 
 
 def cox(viscosity: float, slenderness: float) -> tuple[float, float]:
@@ -54,14 +79,13 @@ def most_rotational(viscosity: float, half_height: float) -> float:
 
 
 def range_of_drag(viscosity: float, length: float, radius: float, half_height: float) -> tuple[Drag, ...]:
-    """The likeliest first, then the corners of the range; they are equally good guesses of one arm."""
+    """The drags of DRAGS, which are equally good guesses of one arm: the likeliest first."""
     slenderness = length / radius
-    rotational = [form(viscosity, half_height) for form in (least_rotational, most_rotational)]
-    likely = cox(viscosity, slenderness)
-    corners = [
-        Drag(gamma1=gamma1, gamma2=gamma2, gamma3=gamma3)
-        for gamma1, gamma2 in (gray_hancock(viscosity, slenderness), lighthill(viscosity, slenderness))
-        for gamma3 in rotational
-    ]
-    middle = (rotational[0] * rotational[1]) ** 0.5
-    return Drag(gamma1=likely[0], gamma2=likely[1], gamma3=middle), *corners
+    least, most = (form(1.0, half_height) for form in (least_rotational, most_rotational))
+    translations = (gray_hancock(1.0, slenderness), lighthill(1.0, slenderness))
+    members = [(*cox(1.0, slenderness), (least * most) ** 0.5)]
+    members += [(*translation, rotational) for translation in translations for rotational in (least, most)]
+    return tuple(
+        Drag(viscosity=viscosity, axial=axial, across=across, rotational=rotational)
+        for axial, across, rotational in members
+    )

@@ -22,6 +22,10 @@ LONGEST_UNIT = 40
 """Characters of a unit."""
 COMMON = ("cm", "mm", "kPa", "MPa", "GPa", "Pa s", "mPa s", "kPa s", "mN", "kg/m^3", "g/cm^3", "mbar")
 """Units of arms that are often written with other blanks, or other capital letters."""
+OF_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*(?:of|times)\s+flutter\s*", re.ASCII)
+"""A load relative to the threshold of flutter, as "1.2 of flutter" or "120 % of flutter"."""
+FROM_FLUTTER = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*%\s*(above|below)\s+flutter\s*", re.ASCII)
+"""The same as a distance, as "20 % above flutter"."""
 KINEMATIC = "is a kinematic viscosity, which is to be multiplied by the density of the fluid"
 
 
@@ -119,6 +123,17 @@ def unit_of(given: Given, default: str) -> str:
 def written_in(value: float, unit: str, si: str) -> float:
     """A value in the SI unit `si`, in another unit."""
     return value / factor("", unit, si, "")
+
+
+def share_of_flutter(given: Given) -> float | None:
+    """The load over that at which an arm flutters, of a text that says so; None of any other."""
+    if not isinstance(given, str):
+        return None
+    if found := OF_FLUTTER.fullmatch(given):
+        return float(found[1]) / (100.0 if found[2] else 1.0)
+    if (found := FROM_FLUTTER.fullmatch(given)) and (found[2] == "above" or float(found[1]) < 100):
+        return 1.0 + (1.0 if found[2] == "above" else -1.0) * float(found[1]) / 100.0
+    return None
 
 
 def compact(value: float, unit: str) -> tuple[float, str]:

@@ -13,11 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..config.arm import SLENDER, ArmGrid, ArmSection, moved_by
+from ..config.arm import ArmGrid, ArmSection
+from ..config.arm_axes import CRUSHED, MOST_POINTS, SLENDER, moved_by
 from ..config.axes import words
 from ..config.schema import Config
 from ..config.values import as_number, overflows, short
 from ..errors import InputError
+from ..model.arm import CRUSHED_FROM, SlenderArm
 from ..model.parameters import CRUSHING, LINEAR_PARAMETERS, PARAMETERS, Range
 from ..model.rod import Rod
 
@@ -44,7 +46,7 @@ class Points:
     units: dict[str, Array] = field(default_factory=dict)
     """The units that the arm makes at every point of such a grid, (points,)."""
     covered: NDArray[np.int8] | None = None
-    """Whether a rod covers each point of such a grid, as `rodsweep.config.arm` numbers it, (points,)."""
+    """Whether a rod covers each point of an arm, as `rodsweep.config.arm_axes` numbers it, (points,)."""
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -71,7 +73,7 @@ class Points:
         """The columns by their parameters, without points that no rod covers."""
         if self.covered is None:
             return self.by_name
-        return {name: column[self.covered == SLENDER] for name, column in self.by_name.items()}
+        return self.values_of(np.flatnonzero(self.covered == SLENDER))
 
     def has_rod(self, index: int) -> bool:
         """Whether a rod covers a point."""
@@ -126,8 +128,21 @@ def points_of(config: Config, directory: Path) -> Points:
     axes = {name: axis.array() for name, axis in parameters.axes.items()}
     if parameters.arm is not None and parameters.over:
         return _own_grid(parameters.arm, axes, config.names)
-    refuse_axes(axes, config.into_crushed)
-    return Points(config.names, tuple(axes[name] for name in config.names), is_grid=True)
+    named = {name: axes[name] for name in config.names}
+    covered = None if parameters.arm is None else _partly_crushed(named)
+    refuse_axes(axes, config.into_crushed or covered is not None)
+    return Points(config.names, tuple(named.values()), is_grid=True, covered=covered)
+
+
+def _partly_crushed(axes: dict[str, Array]) -> NDArray[np.int8] | None:
+    """Which points of an arm's grid of parameters its load crushes, (points,); None where all or none are."""
+    count = math.prod(map(len, axes.values()))
+    if not set(CRUSHING) <= axes.keys() or axes["F"].max() < axes["k1"].min() or count > MOST_POINTS:
+        return None
+    F, k1 = (axes[name].reshape([-1 if each == name else 1 for each in axes]) for name in CRUSHING)
+    shape = tuple(map(len, axes.values()))
+    crushed = np.broadcast_to(CRUSHED_FROM * k1 <= F, shape).ravel()
+    return None if crushed.all() else np.where(crushed, CRUSHED, SLENDER).astype(np.int8)
 
 
 def _own_grid(arm: ArmSection, beside: dict[str, Array], names: tuple[str, ...]) -> Points:
@@ -135,11 +150,18 @@ def _own_grid(arm: ArmSection, beside: dict[str, Array], names: tuple[str, ...])
     for name, column in beside.items():
         refuse_outside(PARAMETERS[name].allowed, name, column)
     try:
-        grid: ArmGrid = arm.own_grid(beside)
+        grid: ArmGrid = arm.own_grid(beside, _first_flutter)
     except ValueError as error:
         raise InputError(str(error)) from None
     columns = tuple(grid.parameters[name] for name in names)
     return Points(names, columns, False, grid.axes, grid.units, grid.covered)
+
+
+def _first_flutter(arm: SlenderArm) -> float:
+    """The F at which an arm flutters first in any plane, inf where it does not; imports its solver."""
+    from ..verdict.relative import first_flutter
+
+    return first_flutter(arm)
 
 
 def refuse_outside(

@@ -1,12 +1,14 @@
-"""Points of a grid over an arm's quantities that no rod covers: they get a status, and the sweep goes on."""
+"""Points of an arm that no rod covers, which get a status, and those of one and the same rod, solved once."""
 
-from dataclasses import dataclass, replace
+from collections import OrderedDict
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..config.arm import CRUSHED, NO_WALL, NOT_SLENDER, SLENDER
+from ..config.arm_axes import CRUSHED, NO_FLUTTER, NO_WALL, NOT_SLENDER, SLENDER
 from ..model.drag import LEAST_SLENDERNESS
 from ..model.neglected import Validity
 from ..results.layouts.arm import VALIDITY
@@ -18,6 +20,10 @@ from ..sweep.stretches import Together
 from .protocol import Solver
 
 MODEL_APPLIES = VALIDITY[0].name
+REMEMBERED = 1e8
+"""Bytes of outcomes that a rank remembers, about."""
+SMALLEST_OUTCOME = 10_000
+"""Bytes that an outcome takes beside its variables, at least."""
 
 
 class NoRod(PointStatus):
@@ -30,6 +36,12 @@ class NoRod(PointStatus):
         True,
     )
     crushed = CRUSHED, "the load compresses the arm to nothing, F >= k1, so nothing is computed", True
+    no_flutter = (
+        NO_FLUTTER,
+        "the load is relative to flutter, and with the likeliest drag the arm does not flutter, so nothing "
+        "is computed",
+        True,
+    )
     no_wall = NO_WALL, "the bore is as wide as the arm, so nothing is computed", True
 
 
@@ -39,6 +51,83 @@ class Uncovered:
 
     status: NoRod
     message: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Again:
+    """The outcome of a point whose rod was solved at another point."""
+
+    outcome: Any
+
+    @property
+    def status(self) -> Any:
+        """How the solve ended."""
+        return self.outcome.status
+
+    @property
+    def message(self) -> str:
+        """What the solve has to say."""
+        return str(self.outcome.message)
+
+
+def same_rods(points: Points) -> NDArray[np.int64] | None:
+    """The number of the rod of each point of a grid over an arm's quantities, (points,); None if all differ.
+
+    Viscosity and densities move no parameter, Young's modulus none without a load or with a relative one.
+    """
+    if not points.over:
+        return None
+    table = np.stack(points.columns, axis=-1)
+    rods = np.unique(np.nan_to_num(table, nan=-1.0), axis=0, return_inverse=True)[1].ravel()
+    return None if rods.max() + 1 == len(rods) else rods
+
+
+def shared(solver: Solver, points: Points, layout: Layout) -> Solver:
+    """The solver that remembers outcomes, so that a rod of several points is solved once on a rank.
+
+    Points that start one from the other are the same if what they start from is, to the last bit. Spectra
+    along stretches take less than a millisecond a point, and are left as they are.
+    """
+    rods = None if solver.stretched else same_rods(points)
+    if rods is None:
+        return solver
+    memory = _Outcomes(max(1, int(REMEMBERED // max(layout.bytes_per_point, SMALLEST_OUTCOME))))
+
+    def solve_from(index: int, state: State) -> tuple[Any, State]:
+        assert solver.chained is not None
+        step, start = solver.chained[1], None if state is None else state.tobytes()
+        (outcome, following), again = memory.of((int(rods[index]), start), lambda: step(index, state))
+        return Again(outcome) if again else outcome, following
+
+    def record(index: int, outcome: Any) -> dict[str, Any]:
+        if isinstance(outcome, Again):
+            return solver.record(index, outcome.outcome) | {SECONDS.name: 0.0}
+        return solver.record(index, outcome)
+
+    def alone(index: int) -> Any:
+        outcome, again = memory.of(int(rods[index]), lambda: solver.solve(index))
+        return Again(outcome) if again else outcome
+
+    chained = (solver.chained[0], solve_from) if solver.chained else None
+    return replace(solver, solve=alone, record=record, chained=chained)
+
+
+@dataclass(slots=True)
+class _Outcomes:
+    """The outcomes of the last solves of a rank."""
+
+    most: int
+    kept: OrderedDict[Hashable, Any] = field(default_factory=OrderedDict)
+
+    def of(self, key: Hashable, solve: Callable[[], Any]) -> tuple[Any, bool]:
+        """(what a solve gives, whether it was solved before)."""
+        if key in self.kept:
+            self.kept.move_to_end(key)
+            return self.kept[key], True
+        found = self.kept[key] = solve()
+        if len(self.kept) > self.most:
+            self.kept.popitem(last=False)
+        return found, False
 
 
 def around(solver: Solver, points: Points, layout: Layout) -> Solver:

@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..config.arm import SECTION, SLENDER, ArmSection
+from ..config.arm import ArmSection
+from ..config.arm_axes import SECTION, SLENDER
 from ..config.schema import Config
 from ..model.arm import SlenderArm
-from ..model.neglected import HALF_LENGTH, effects_of, fastest_rate, worst_validity
+from ..model.neglected import HALF_LENGTH, effects_of, least_drag, worst_validity
 from ..results.layouts.arm import EFFECTS
 from ..results.layouts.thresholds import CROSSING_KINDS
 from ..sweep.grid import Points
@@ -115,9 +116,10 @@ class ArmValidity:
         return self.arm(index // self.each if self.points.over else 0)
 
     def _told(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> dict[str, Any]:
-        rate = fastest_rate(arm, motion.frequency)
+        drag = arm.own_drag if "drag" in self.points.over else least_drag(arm)
+        rate = motion.frequency / arm.tau2_with(drag)
         F = self._force(arm, motion, index)
-        effects = effects_of(arm, rate, F, amplitude=motion.amplitude)
+        effects = effects_of(arm, rate, F, drag=drag, amplitude=motion.amplitude)
         counted = [effect for effect in effects if motion.is_cycle or not effect.of_cycles_only]
         excess = np.array([effect.excess for effect in counted])  # (effects, n, ...)
         validity = worst_validity(effects, of_cycles=motion.is_cycle)

@@ -37,7 +37,7 @@ class HopfLine:
         """The Hopf points on the line; None where they cannot be had. Needs no PETSc."""
         from ..determinant.parameter_path import Path
         from ..solve.changes.along_path import pair_crossings
-        from ..solve.changes.thresholds import SHORT_OF_CRUSHED
+        from ..solve.changes.unstable_modes import SHORT_OF_CRUSHED
         from ..solve.point import FAILURES
 
         start, stop = self.start, self.stop

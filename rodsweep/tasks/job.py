@@ -17,7 +17,7 @@ from ..results.layouts.variables import Filled, Layout
 from ..sweep.grid import Points, grid_size, points_of
 from ..sweep.stretches import Together
 from . import TASKS
-from .arm_points import around
+from .arm_points import around, shared
 from .arm_validity import ArmValidity
 from .protocol import Solver, Task
 
@@ -58,7 +58,8 @@ class Job:
         solver = self.task.solver()
         if self.config.parameters.arm is None:
             return solver
-        return around(self._in_si(solver), self.points, self.layout)
+        once = shared(self._in_si(solver), self.points, self.layout)
+        return around(once, self.points, self.layout)
 
     def _in_si(self, solver: Solver) -> Solver:
         """The solver whose records tell results in SI units too, and whether the model applies."""

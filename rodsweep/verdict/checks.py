@@ -2,10 +2,13 @@
 
 from dataclasses import dataclass
 from math import isnan
+from typing import TYPE_CHECKING
 
 from ..model.arm import SlenderArm
-from ..model.neglected import SELF_BUCKLING, Effect, Validity
-from .validity import Assessment
+from ..model.neglected import SELF_BUCKLING, Effect, Validity, wall_effect
+
+if TYPE_CHECKING:
+    from .validity import Assessment  # which imports solvers
 
 SLENDER = 20.0
 """Lengths a radius from which the logarithms of slender-body theory are good to some ten percent."""
@@ -44,7 +47,7 @@ class Check:
         return self.sentence if self.fine else f"warning: {self.sentence}"
 
 
-def checks_of(assessment: Assessment) -> list[Check]:
+def checks_of(assessment: "Assessment") -> list[Check]:
     """All of them."""
     arm, effects = assessment.arm, {effect.name: effect for effect in assessment.at_flutter}
     return [
@@ -52,6 +55,7 @@ def checks_of(assessment: Assessment) -> list[Check]:
         compression(assessment, effects["compression"]),
         *inertia(effects["inertia of the arm"], effects["inertia of the fluid"]),
         *reynolds(effects["Reynolds number"]),
+        *wall(arm),
         weight(effects.get("weight")),
         poisson(arm),
     ]
@@ -69,7 +73,7 @@ def slenderness(arm: SlenderArm) -> Check:
     return Check(_doubt(not fine), f"Slenderness: the arm is {ratio:.3g} radii long; {why}.")
 
 
-def compression(assessment: Assessment, at_flutter: Effect) -> Check:
+def compression(assessment: "Assessment", at_flutter: Effect) -> Check:
     """F/k1, the share of its length that the straight arm loses."""
     says, effects = [], [at_flutter, *assessment.under_load]
     if assessment.under_load:
@@ -123,6 +127,28 @@ def reynolds(number: Effect) -> list[Check]:
     )[validity]
     value = f"{float(number.value):.2g}"
     return [Check(validity, f"Reynolds number: {value} if the tip moves by half the length; {ending}.")]
+
+
+def wall(arm: SlenderArm) -> list[Check]:
+    """How far the section of a tube flattens in wide beating; nothing of other sections."""
+    if arm.inner_radius is None:
+        return []
+    si = arm.si
+    return [wall_check(wall_effect(si.length, si.radius, si.inner_radius, arm.poisson))]
+
+
+def wall_check(effect: Effect) -> Check:
+    """The same from the effect on one tube."""
+    lost = float(effect.value)
+    loses = f"takes some {100 * lost:.2g} % of its bending stiffness" if lost < 1 else "folds the tube"
+    validity = _validity(effect)
+    ending = (
+        "left out with reason",
+        "the model leaves that out",
+        "the wall is too thin for the model, which leaves that out",
+    )[validity]
+    sentence = f"Wall: as the tip moves by half the length, the section flattens, which {loses}; {ending}."
+    return Check(validity, sentence)
 
 
 def weight(effect: Effect | None) -> Check:

@@ -8,9 +8,8 @@ from ..model.drag import Drag
 from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
 from ..solve.changes.unstable_modes import Crossing, Kind
 from ..solve.exclusive import solving
+from .relative import FARTHEST
 
-FARTHEST = 1000.0
-"""Force up to which changes are sought, if the arm is not crushed before: 25 times where filaments do."""
 REQUEST = ThresholdsRequest(F_max=FARTHEST, accuracy=1e-6, certify=True, crossings=1000)
 
 

@@ -9,6 +9,7 @@ from ..model.arm import UNITS, SlenderArm
 from ..model.units import compact
 from ..solve.changes.unstable_modes import Kind
 from .flutter import FlutterRange, flutter_range
+from .relative import turned
 
 A = TypeVar("A", bound=SlenderArm)
 
@@ -58,11 +59,6 @@ def planes_of(arm: SlenderArm) -> Planes:
     return Planes(own, across)
 
 
-def turned(arm: A) -> A:
-    """The arm that moves in the other plane of its rectangular section."""
-    return replace(arm, width=arm.height, height=arm.width)
-
-
 def with_load(planes: Planes) -> Planes:
     """The planes with a load as a quantity where it is given relative to flutter.
 
@@ -72,15 +68,15 @@ def with_load(planes: Planes) -> Planes:
     share, load = first.arm.share_of_flutter, first.arm.load
     if share is None or load is None:
         return planes
-    flutter, scale = first.flutter_loads[0] / first.arm.force_scale, first.arm.load_scale
-    if flutter == inf:
-        end = f"{first.found.end * scale:.3g} {UNITS[load][0]}"
+    force, scale = first.found.forces[0].force(Kind.hopf), first.arm.load_scale
+    if force is None:
+        end = f"{float(f'{first.found.end * scale:.3g}'):g} {UNITS[load][0]}"
         raise InputError(
             f"{load} = '{getattr(first.arm, load)}' is nothing: with the likeliest drag the arm does not "
             f"flutter up to {end}"
         )
-    factor, unit = compact(share * flutter * scale, UNITS[load][0])
-    given: dict[str, Any] = {load: f"{share * flutter * scale * factor:.15g} {unit}"}
+    factor, unit = compact(share * force * scale, UNITS[load][0])
+    given: dict[str, Any] = {load: f"{share * force * scale * factor:.15g} {unit}"}
     second = planes.second and replace(planes.second, arm=replace(planes.second.arm, **given))
     return Planes(replace(first, arm=replace(first.arm, **given)), second)
 

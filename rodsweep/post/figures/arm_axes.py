@@ -28,19 +28,16 @@ LOAD_SCALES = {
 def add_si_scales(figure: Figure, views: Sequence[View]) -> None:
     """Adds them to every axis of a follower force; none where the files have no arm, or several."""
     load = LOAD_SCALES["force" if all("force" in view.quantities for view in views) else "pressure"]
-    units = [view.quantities.get(load[0]) for view in views]
-    unit = units[0]
-    if (
-        unit is None
-        or np.ndim(unit)
-        or any(other is None or not np.array_equal(other, unit) for other in units)
-    ):
+    given = [view.quantities.get(load[0]) for view in views]
+    units = {float(unit) for values in given if values is not None for unit in np.ravel(values)}
+    if len(units) != 1 or any(values is None for values in given):
         return
+    (unit,) = units
     for axes in list(figure.axes):
         for which in ("x", "y"):
             label, scale = (getattr(axes, f"get_{which}{what}")() for what in ("label", "scale"))
             if label in (LABELS["F"], CRITICAL_FORCE) and scale in SCALABLE:
-                _add(_outermost(axes, which), which, float(unit), load)
+                _add(_outermost(axes, which), which, unit, load)
 
 
 def _outermost(axes: Axes, which: str) -> Axes:

@@ -4,7 +4,7 @@ The points of the file are the centres of cells. Where the model does not apply,
 cell is hatched.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -18,11 +18,13 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...arrays import Array
-from ...config.arm import CRUSHED, NO_WALL, NOT_SLENDER, UNIT_NAMES
+from ...config.arm_axes import CRUSHED, NO_FLUTTER, NO_WALL, NOT_SLENDER, UNIT_NAMES
+from ...model.drag import DRAGS
 from ...model.neglected import Validity
 from ...results.file.view import View
+from ..summary.arm import word
 from . import style
-from .arm_quantities import in_typed, quantity_text, word
+from .arm_quantities import in_typed, quantity_text
 from .cycle.point_map import cell_edges
 from .request import FigureRequest
 
@@ -35,9 +37,13 @@ HATCHES: tuple[tuple[str, int, str, dict[str, Any]], ...] = (
     ("model_applies", Validity.does_not_apply, "model does not apply", {"fc": "none", "hatch": "////"}),
     ("status", NOT_SLENDER, "shorter than 10 radii", {"fc": "0.85", "hatch": ""}),
     ("status", CRUSHED, "crushed", {"fc": "0.65", "hatch": ""}),
+    ("status", NO_FLUTTER, "no flutter", {"fc": "0.75", "hatch": ""}),
     ("status", NO_WALL, "no wall", {"fc": "0.45", "hatch": ""}),
 )
 """Which cells are covered: the variable, its value, what the legend says, and how; later ones lie above."""
+DRAG = "drag"
+BAND = 0.25
+"""Opacity of the band between the least and the largest number over the drags."""
 WITHOUT: dict[str, Any] = {"fc": "#E8EDF2"}
 HATCHING = "0.35"
 
@@ -64,10 +70,15 @@ def draw_arm_map(request: FigureRequest) -> str:
     """The main numbers of a task over the axes of an arm: two panels, of lines or of maps."""
     view = replace(request, what=None).only_view()
     long = [name for name in view.over if len(view.variables[name]) > 1] or list(view.over[:1])
+    if DRAG in long and long[1:]:  # drawn as a band, or of one drag
+        long.remove(DRAG)
     axes = sorted(long, key=lambda name: -len(view.variables[name]))[:2]
     x = next(name for name in view.over if name in axes)
     y = next((name for name in view.over if name in axes and name != x), "")
-    place = tuple(slice(None) if name in axes else 0 for name in view.over)
+    first = {name: 0 for name in view.over if name not in axes}
+    if DRAG in first:  # the likeliest is the first of those that are there
+        first[DRAG] = int(np.argmin(view.variables[DRAG]))
+    place = tuple(first.get(name, slice(None)) for name in view.over)
     panels = PANELS[view.task](view)
     style.need(view, any(np.isfinite(panel.values[place]).any() for panel in panels), "number")
     figure, drawn = _panels(len(panels), request.look.narrow, bool(y))
@@ -80,11 +91,17 @@ def draw_arm_map(request: FigureRequest) -> str:
     covers = [
         _cover(subplot, view, panel, (x, y), place) for subplot, panel in zip(drawn, panels, strict=True)
     ]
-    style.legend_below(figure, [*handles, *covers[0]], columns=3)
-    figure.suptitle(style.heading(view, _fixed(view, axes)))
+    style.legend_below(figure, [*_once(handles), *covers[0]], columns=3)
+    banded = [DRAG] if not y and DRAG in first else []
+    figure.suptitle(style.heading(view, _fixed(view, axes + banded)))
     return request.write(
         figure, f"{' and '.join(p.label for p in panels)} over {' and '.join(map(word, axes))}"
     )
+
+
+def _once(handles: Sequence[Artist]) -> list[Artist]:
+    """Entries of a legend, of those that say the same the first."""
+    return list({str(handle.get_label()): handle for handle in reversed(handles)}.values())[::-1]
 
 
 def can_draw(request: FigureRequest) -> bool:
@@ -145,15 +162,38 @@ def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[
     colours = (style.SECOND, style.FIRST, style.THIRD)
     handles: list[Artist] = []
     for colour, (line, values) in zip(colours, (panel.lines or {"": panel.values}).items(), strict=False):
-        axes.plot(x, values[place], "-o", ms=2.5, lw=1.2, color=colour)
+        style_of_line = "o" if name == DRAG else "-o"
+        axes.plot(x, values[place], style_of_line, ms=2.5, lw=1.2, color=colour)
+        handles += _band(axes, view, name, values, place, colour)
         if line and np.isfinite(values[place]).any():
             handles.append(Line2D([], [], color=colour, marker="o", ms=2.5, lw=1.2, label=line))
     style.scale(axes, "x", x)
+    if name == DRAG:
+        axes.set_xticks(x, [DRAGS[int(drag)].replace("_", "\n") for drag in x], rotation=90)
     subplot = axes.get_subplotspec()
     if subplot is None or subplot.is_last_row():
         axes.set_xlabel(label)
-    axes.set_ylabel(panel.of_lines if len(handles) > 1 else panel.label)
+    axes.set_ylabel(panel.of_lines if sum(isinstance(each, Line2D) for each in handles) > 1 else panel.label)
     return handles
+
+
+def _band(axes: Axes, view: View, x: str, values: Array, place: Any, colour: str) -> list[Artist]:
+    """The band of a number, on the grid of points, over the drags of the file; returns its legend entry.
+
+    Where some of the drags have no number it is drawn from those that have one.
+    """
+    if DRAG not in view.over or x == DRAG or len(view.variables[DRAG]) < 2:
+        return []
+    drag = view.over.index(DRAG)
+    whole = np.moveaxis(values, drag, -1)[tuple(each for i, each in enumerate(place) if i != drag)]
+    low, high = (extreme.reduce(whole, axis=-1) for extreme in (np.fmin, np.fmax))
+    axes.fill_between(_axis(view, x)[0], low, high, color=colour, alpha=BAND, lw=0, zorder=1)
+    return [Patch(color="0.3", alpha=BAND, lw=0, label=f"range of drag (line: {_drag_of(view)})")]
+
+
+def _drag_of(view: View) -> str:
+    """The drag that is drawn as a line, in words."""
+    return DRAGS[int(view.variables[DRAG].min())].replace("_", " ")
 
 
 def _cover(axes: Axes, view: View, panel: Panel, names: tuple[str, str], place: Any) -> list[Artist]:
@@ -185,8 +225,10 @@ def _fixed(view: View, drawn: list[str]) -> str:
     for name, values in view.quantities.items():
         if name in drawn or name in UNIT_NAMES:
             continue
+        if np.size(values) > 1 and name not in view.over:  # as the load that one relative to flutter is
+            continue
         more = f" (of {len(values)} values)" if np.size(values) > 1 else ""
-        told.append(quantity_text(view, name, float(np.ravel(values)[0])) + more)
+        told.append(quantity_text(view, name, float(np.min(values))) + more)
     return ", ".join(told)
 
 

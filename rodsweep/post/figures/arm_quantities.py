@@ -1,18 +1,19 @@
 """An arm's quantities as figures name them: in words, in the units in which they were typed."""
 
 from math import isclose
+from typing import Any
 
 import numpy as np
 
 from ...arrays import Array
-from ...config.arm import AXIS_OF, UNIT_NAMES
+from ...config.arm_axes import ALONG, RELATIVE, UNIT_NAMES
 from ...model.arm import SlenderArm
+from ...model.drag import DRAGS
 from ...model.units import written_in
 from ...results.file.view import View
 from ...results.layouts.arm import QUANTITY_UNITS
+from ..summary.arm import word
 
-WORDS = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
-"""What quantities are called along an axis, where that is not their name."""
 TOGETHER = "\N{NO-BREAK SPACE}"
 """Between a number and its unit, which no line of a figure parts."""
 
@@ -27,13 +28,10 @@ def in_typed(view: View, name: str, values: Array, si: str = "") -> tuple[Array,
     return (values, "") if si == "1" else (values * written_in(1.0, unit, si), unit)
 
 
-def word(name: str) -> str:
-    """A quantity in words."""
-    return WORDS.get(name, name.replace("_", " "))
-
-
 def quantity_text(view: View, name: str, value: float) -> str:
     """A quantity with its value as it was typed: `length 12 cm`."""
+    if name == "drag":
+        return f"{name}{TOGETHER}{DRAGS[int(value)].replace('_', TOGETHER)}"
     shown, unit = in_typed(view, name, np.array([value]))
     unit = unit.replace("^3", "$^3$").replace("*", " ").replace(" ", TOGETHER)
     return f"{word(name)}{TOGETHER}{shown[0]:.4g}{TOGETHER}{unit}".rstrip(TOGETHER)
@@ -41,7 +39,7 @@ def quantity_text(view: View, name: str, value: float) -> str:
 
 def given_quantities(view: View) -> list[str]:
     """The quantities that make the arm of a file; its units of time, force and pressure follow from them."""
-    return [name for name in view.quantities if name not in UNIT_NAMES]
+    return [name for name in view.quantities if name not in (*UNIT_NAMES, *RELATIVE)]
 
 
 def at_point(view: View, name: str, number: int) -> float:
@@ -51,13 +49,16 @@ def at_point(view: View, name: str, number: int) -> float:
         return float(values.ravel()[0])
     if view.is_grid:  # along the one parameter that it moves
         shape = view.variables["status"].shape
-        return float(values[np.unravel_index(number - 1, shape)[view.parameters.index(AXIS_OF[name])]])
+        return float(values[np.unravel_index(number - 1, shape)[view.parameters.index(ALONG[name])]])
     return float(values.ravel()[number - 1])
 
 
 def replaced(view: View, number: int) -> dict[str, float]:
     """The parameters at a point, numbered from 1, that were given beside the arm instead of its own."""
-    own = SlenderArm(**{name: at_point(view, name, number) for name in given_quantities(view)})
+    given: dict[str, Any] = {name: at_point(view, name, number) for name in given_quantities(view)}
+    if "drag" in given:
+        given["drag"] = DRAGS[int(given["drag"])]
+    own = SlenderArm(**given)
     columns = view.point_columns
     at = {name: float(columns[name][number - 1]) for name in view.parameters}
     if own.load:

@@ -5,9 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...config.arm import AXIS_OF
+from ...config.arm_axes import ALONG
 from ...config.refusals import nearest
 from ...errors import InputError
+from ...model.drag import DRAGS
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.units import in_si
 from ...results.file.view import View
@@ -32,9 +33,13 @@ def section(view: View, at: Mapping[str, float | str]) -> View:
 
 def _number(name: str, value: float | str) -> float:
     """A value as a number, in SI where it is a quantity."""
+    if name == "drag" and value in DRAGS:
+        return float(DRAGS.index(str(value)))
     try:
         return float(value)
     except ValueError:
+        if name == "drag":
+            raise InputError(f"--at drag={value} is none of {', '.join(DRAGS)}") from None
         if name in QUANTITY_UNITS:
             return in_si(f"--at {name}", value, QUANTITY_UNITS[name], "12 cm")
         raise InputError(f"--at {name}={value} is no parameter with a number, as k1=150 is") from None
@@ -66,7 +71,7 @@ def _grid_at(view: View, name: str, there: np.ndarray) -> View:
     """A grid with the places of one axis, a mask of its shape."""
     names = view.over or view.parameters
     shape, axis = view.variables["status"].shape, names.index(name)
-    along = {name, *(quantity for quantity, moved in AXIS_OF.items() if moved == name)}
+    along = {name, *(quantity for quantity, moved in ALONG.items() if moved == name)}
     variables = {}
     for key, data in view.variables.items():
         if key in along and np.ndim(data):

@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from ...config.arm import NOT_SLENDER
+from ...config.arm_axes import NOT_SLENDER
 from ...config.values import printable
 from ...model.units import written_in
 from ...results.file.provenance import RANK_SHARES, kernels_of
@@ -56,7 +56,7 @@ def show_summary(view: View, every_status: bool = False) -> None:
     nothing = Told([] if done.any() else [f"no {noun} is computed yet"])
     told = SUMMARIES[view.task](view, rods) if rods.any() else nothing
     console.print(f"{printable(str(view.path))}: {a.get('title', '')}, task {view.task}", soft_wrap=True)
-    for line in [*arm_answer(view, done), *told.answer, *(arm_lines(view, done) if done.any() else [])]:
+    for line in _answer(view, done, told):
         console.print(line, soft_wrap=True)
     console.print()
     for line in [*_unfinished(view, int((~done).sum()), noun), *told.trust]:
@@ -69,6 +69,14 @@ def show_summary(view: View, every_status: bool = False) -> None:
     console.print()
     for line in [*_times(view, done, noun), *_ranks(a, noun), *_origin(a)]:
         console.print(line, soft_wrap=True)
+
+
+def _answer(view: View, done: np.ndarray, told: Told) -> list[str]:
+    """The answer; of an arm in its own units, then without dimension."""
+    if not view.quantities or not done.any():
+        return [*told.answer]
+    lines = [*arm_answer(view, done), *told.of_arm, *arm_lines(view, done)]
+    return [*lines, "", "the rods without dimension:", *told.answer] if told.answer else lines
 
 
 def _unfinished(view: View, missing: int, noun: str) -> list[str]:

@@ -1,27 +1,123 @@
-"""What `rodsweep show` says of an arm: the numbers of every task that are told in SI units, and thresholds.
+"""What `rodsweep show` says of an arm in its own units: quantities, the numbers of every task, thresholds.
 
-Forces are told as the load of the arm is given, as a pressure or a force, and frequencies in Hz.
+Loads and lengths are told in the unit that was typed, frequencies in Hz, all powers of an answer in one unit.
 """
 
 import json
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ...model.units import compact
+from ...config.arm_axes import RELATIVE, UNIT_NAMES
+from ...model.drag import DRAGS
+from ...model.units import compact, written_in
 from ...results.file.view import View
 from ...results.layouts import LAYOUTS
-from ...results.layouts.arm import FORCES, HERTZ, twins_of
+from ...results.layouts.arm import FORCES, HERTZ, QUANTITY_UNITS, twins_of
+from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ..hopf_points import Located
+from ..tables.rows import quantities_at_points
 from .ranges import span
 
 WIDTH = 80
 """Columns of a line in SI units."""
 ITEMS_FEW = 4
 """Values of a table of one rod that are told one by one."""
-PREFIXED = ("Pa", "N", "s", "m", "J", "W", HERTZ)
-"""Units that are told with a prefix, as kPa."""
+TYPED_AS = {"m": ("length",), "Pa": ("pressure", "young"), "N": ("force",)}
+"""The quantities in whose unit others of their kind are told, where they were typed in one."""
+PREFIXED = ("J", "W")
+"""Units that are told with a prefix, as mW."""
+SHORT_TIME = 0.1
+"""Seconds below which times are told in ms."""
+DIGITS = 3
+"""Digits of a quantity that says where something is."""
+WORDS = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
+"""What quantities are called, where that is not their name."""
+NOT_SHOWN = ("injection_rms_si", "dissipation_rms_si")
+"""Variables without an error estimate, which only the file has."""
+ON_ERROR_OF = {
+    "period_si": "period_error",
+    "frequency_hz": "period_error",
+    "tip_y_max_si": "amplitude_error",
+}
+"""The relative errors of numbers of cycles."""
+OF_THRESHOLDS = {
+    "hopf": "flutters at {load}{rate}",
+    "restabilization": "is straight again from {load} on",
+    "onset": "a disturbance swings as it dies away from {load} on",
+}
+"""What is said of the loads at which the straight arm changes, by their kind."""
+
+
+def word(name: str) -> str:
+    """A quantity in words."""
+    return WORDS.get(name, name.replace("_", " "))
+
+
+def own_unit(view: View, si: str, largest: float) -> tuple[float, str]:
+    """(factor, unit) in which numbers in an SI unit up to `largest` are told."""
+    typed = next((view.typed[name] for name in TYPED_AS.get(si, ()) if name in view.typed), si)
+    if typed != si:
+        return written_in(1.0, typed, si), typed
+    if si == "s" and largest < SHORT_TIME or si in PREFIXED:
+        return compact(largest, si)
+    return 1.0, si
+
+
+def in_own_unit(view: View, values: np.ndarray, si: str) -> str:
+    """The range of numbers in an SI unit, of any shape, in the arm's own."""
+    factor, unit = own_unit(view, si, _largest(values))
+    return f"{span(factor * values)} {unit}"
+
+
+def _largest(values: np.ndarray) -> float:
+    """The largest modulus of the finite values, 0 without one."""
+    finite = np.abs(values[np.isfinite(values)])
+    return float(finite.max()) if finite.size else 0.0
+
+
+def given_columns(view: View) -> dict[str, np.ndarray]:
+    """The quantities of an arm that differ among the points of a file, at every point, each (points,)."""
+    columns = quantities_at_points(view)
+    given = {name: column for name, column in columns.items() if name not in UNIT_NAMES}
+    return {name: column for name, column in given.items() if len(np.unique(column[~np.isnan(column)])) > 1}
+
+
+def region_of_arms(view: View, there: np.ndarray) -> str:
+    """The ranges of the quantities that differ among points, a mask of their shape; empty for one arm."""
+    told = (quantity_range(view, name, column, there.ravel()) for name, column in given_columns(view).items())
+    return ", ".join(filter(None, told))
+
+
+def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray) -> str:
+    """The range of a quantity, (points,), over chosen points, a mask; empty where they have all drags."""
+    values = column[chosen]
+    if name == "drag":
+        names = [DRAGS[int(place)] for place in np.unique(values)]
+        return "" if len(names) == len(np.unique(column)) else f"drag {' and '.join(names)}".replace("_", " ")
+    ends = [
+        float(f"{end:.{DIGITS}g}") for end in _in_typed(view, name, np.array([values.min(), values.max()]))
+    ]
+    extent = " to ".join(f"{end:.{DIGITS + 1}g}" for end in sorted(set(ends)))
+    if name in RELATIVE:
+        return f"{extent} of flutter"
+    return f"{word(name)} {extent} {_unit(view, name)}".rstrip()
+
+
+def _in_typed(view: View, name: str, values: np.ndarray) -> np.ndarray:
+    """Values of a quantity in its own unit."""
+    return (
+        values
+        if QUANTITY_UNITS[name] == "1"
+        else values * written_in(1.0, _unit(view, name), QUANTITY_UNITS[name])
+    )
+
+
+def _unit(view: View, name: str) -> str:
+    """The unit of a quantity as it is told; empty of a ratio."""
+    si = QUANTITY_UNITS[name]
+    return "" if si == "1" else view.typed.get(name, own_unit(view, si, 1.0)[1])
 
 
 def arm_lines(view: View, done: np.ndarray) -> list[str]:
@@ -29,14 +125,47 @@ def arm_lines(view: View, done: np.ndarray) -> list[str]:
     if not view.quantities:
         return []
     config = json.loads(view.attributes["config_resolved"])
+    shown = {
+        v.name: v
+        for v in twins_of(LAYOUTS[view.task](config), config)
+        if v.name not in NOT_SHOWN and (not v.extra or (done.size == 1 and v.extra != ("crossing",)))
+    }
+    values = {name: view.variables[name][done] for name in shown}
+    values = {name: column for name, column in values.items() if np.isfinite(column).any()}
+    largest: dict[str, float] = {}
+    for name, column in values.items():
+        largest[shown[name].units] = max(largest.get(shown[name].units, 0.0), _largest(column))
     told = []
-    for variable in twins_of(LAYOUTS[view.task](config), config):
-        values = view.variables[variable.name][done]
-        name = variable.name.removesuffix("_si").removesuffix("_hz")
-        told_here = variable.extra != ("crossing",) if done.size == 1 else not variable.extra
-        if told_here and np.isfinite(values).any():
-            told.append(f"{name} = {in_unit(values, variable.units)}")
-    return ["in SI units:", *wrapped("; ".join(item.replace(" ", "\xa0") for item in told))] if told else []
+    for name, column in values.items():
+        factor, unit = own_unit(view, shown[name].units, largest[shown[name].units])
+        numbers = _numbers(factor * column, factor * _errors(view, name, column, done))
+        told.append(f"{name.removesuffix('_si').removesuffix('_hz')} = {numbers} {unit}")
+    return (
+        ["in the arm's units:", *wrapped("; ".join(item.replace(" ", "\xa0") for item in told))]
+        if told
+        else []
+    )
+
+
+def _errors(view: View, name: str, values: np.ndarray, done: np.ndarray) -> np.ndarray:
+    """Absolute errors of a variable in SI units; 0 of what is known to more digits than are shown."""
+    v = view.variables
+    if name in ON_ERROR_OF:
+        return np.abs(values) * v[ON_ERROR_OF[name]][done]
+    if name in ("tip_x_min_si", "tip_x_max_si"):
+        return np.asarray(v["extrema_error"][done] * v["tip_y_max_si"][done])
+    if name in ("injection_mean_si", "dissipation_mean_si"):
+        relative = 2 * v["amplitude_error"] + v["period_error"] + np.abs(v["energy_imbalance"])
+        return np.asarray(np.abs(values) * relative[done])
+    return np.zeros_like(values)
+
+
+def _numbers(values: np.ndarray, errors: np.ndarray) -> str:
+    """Values as words: one by one where they are a few of a table, else their range."""
+    finite = values[np.isfinite(values)]
+    if values.ndim > 1 and 1 < finite.size <= ITEMS_FEW:
+        return ", ".join(f"{value:.6g}" for value in finite)
+    return span(values, errors)
 
 
 def wrapped(text: str) -> list[str]:
@@ -52,51 +181,84 @@ def wrapped(text: str) -> list[str]:
     return [line.replace("\xa0", " ") for line in lines]
 
 
-def in_unit(values: np.ndarray, unit: str) -> str:
-    """Values in an SI unit, of any shape, as words: one by one where they are few, else their range."""
-    finite = values[np.isfinite(values)]
-    if unit in PREFIXED and finite.size:
-        factor, unit = compact(float(np.abs(finite).max()), unit)
-        finite = finite * factor
-    few = values.ndim > 1 and 1 < finite.size <= ITEMS_FEW
-    return f"{', '.join(f'{value:.6g}' for value in finite) if few else span(finite)} {unit}"
-
-
 def loads_at(view: View, F: np.ndarray, points: np.ndarray) -> str:
-    """Follower forces F, (n,), at points of a file with an arm, (n,) indices, as its load in SI units."""
-    quantities = view.quantities
-    unit, (scale,), _ = FORCES["force" if "force" in quantities else "pressure"]
-    return in_unit(F * _at(quantities[scale], points), unit)
+    """Follower forces F, (n,), at points of a file with an arm, (n,) indices, as its load in its own unit."""
+    unit, (scale,), _ = FORCES["force" if "force" in view.quantities else "pressure"]
+    return in_own_unit(view, F * _at(view.quantities[scale], points), unit)
 
 
-def crossing_line_in_si(view: View, i: int) -> list[str]:
-    """The i-th crossing of the one rod of a file as load and frequency; none without arm."""
+def crossings_of_arm(view: View) -> list[str]:
+    """Every crossing of the one rod of a file as load and frequency; none without arm."""
     if not view.quantities:
         return []
-    F, frequency = (view.variables[f"crossing_{name}"].ravel()[i] for name in ("F", "frequency"))
-    rod = np.zeros(1, int)
-    text = loads_at(view, np.array([F]), rod)
-    if frequency:
-        text += f", frequency {_in_hertz(view, np.array([frequency]), rod)}"
-    return [f"  in SI units: {text}"]
+    v, rod = view.variables, np.zeros(1, int)
+    kinds, forces, frequencies = (v[f"crossing_{name}"].ravel() for name in ("kind", "F", "frequency"))
+    lines = []
+    for i in np.flatnonzero(kinds > 0):
+        kind = CROSSING_KINDS[int(kinds[i])]
+        text = f"{kind} at {loads_at(view, forces[i : i + 1], rod)}: {CROSSING_MEANINGS[kind]}"
+        if frequencies[i]:
+            text += f"; frequency {_in_hertz(view, frequencies[i : i + 1], rod)}"
+        lines.append(text)
+    return lines
 
 
-def threshold_lines_in_si(view: View, found: Sequence[tuple[Located, np.ndarray]]) -> list[str]:
-    """Thresholds with the points of their lines, (points,), as load and frequency; none without arm."""
+def thresholds_of_arm(view: View, kind: str, found: Sequence[tuple[Located, np.ndarray]]) -> list[str]:
+    """Thresholds of a kind with the points of their lines, (points,), in own units; none without arm."""
     if not view.quantities or not found:
         return []
     points = np.concatenate([points for _, points in found])
     each = [len(points) for _, points in found]
-    text = loads_at(view, np.repeat([place.position for place, _ in found], each), points)
+    load = loads_at(view, np.repeat([place.position for place, _ in found], each), points)
     frequency = np.repeat([getattr(place, "frequency", np.nan) for place, _ in found], each)
+    rate = ""
     if np.isfinite(frequency).any():
-        text += f", frequency {_in_hertz(view, frequency, points)}"
-    return [f"  in SI units: {text}"]
+        rate = f", where it begins to beat at {_in_hertz(view, frequency, points)}"
+    return [OF_THRESHOLDS[kind].format(load=load, rate=rate)]
+
+
+def drag_lines(view: View, numbers: Mapping[str, np.ndarray]) -> list[str]:
+    """How far numbers at the points of a file, each (points,), by name, differ over the drags of an arm."""
+    arms = arms_of_drags(view)
+    if arms is None:
+        return []
+    drags, several = len(np.unique(given_columns(view)["drag"])), len(np.unique(arms)) > 1
+    told = []
+    for name, values in numbers.items():
+        spread = _largest_spread(values, arms)
+        if np.isfinite(spread):
+            told.append(f"{name} by {'up to ' * several}{_factor(spread)}")
+    return [f"over {drags} drags of its range one arm varies: {', '.join(told)}"] if told else []
+
+
+def arms_of_drags(view: View) -> np.ndarray | None:
+    """A number for each point, (points,), equal where only the drag differs; None where it does not."""
+    columns = given_columns(view)
+    if columns.pop("drag", None) is None:
+        return None
+    count = view.variables["status"].size
+    table = np.stack([np.zeros(count), *(np.nan_to_num(column) for column in columns.values())], axis=-1)
+    return np.unique(table, axis=0, return_inverse=True)[1].ravel()
+
+
+def _largest_spread(values: np.ndarray, arms: np.ndarray) -> float:
+    """Largest over least value of an arm, the most of all arms; nan where no arm has two values."""
+    spreads = [np.nan]
+    for arm in np.unique(arms):
+        there = values[(arms == arm) & np.isfinite(values)]
+        if len(there) > 1 and there.min() > 0:
+            spreads.append(float(there.max() / there.min()))
+    return float(np.nanmax(spreads)) if len(spreads) > 1 else np.nan
+
+
+def _factor(spread: float) -> str:
+    """A ratio in percent, or as a factor."""
+    return f"{100 * (spread - 1):.2g} %" if spread < 2 else f"a factor of {spread:.3g}"
 
 
 def _in_hertz(view: View, frequency: np.ndarray, points: np.ndarray) -> str:
     """Angular frequencies in rad/tau2, (n,), at points of a file with an arm, (n,) indices, in Hz."""
-    return in_unit(frequency / (2 * np.pi * _at(view.quantities["tau2"], points)), HERTZ)
+    return in_own_unit(view, frequency / (2 * np.pi * _at(view.quantities["tau2"], points)), HERTZ)
 
 
 def _at(values: np.ndarray, points: np.ndarray) -> np.ndarray:

@@ -7,17 +7,13 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from ...config.arm import NOT_SLENDER
+from ...config.arm_axes import NOT_SLENDER
 from ...model.neglected import Validity
-from ...model.units import written_in
 from ...results.file.view import View
 from ...results.layouts.arm import EFFECTS, FORCES, VALIDITY
 from ...results.layouts.thresholds import CROSSING_KINDS
-from ...wording import some_of
-
-OF_PRESSURE = ("pressure", "young")
-"""Whose unit a pressure is told in: the first that was typed."""
-
+from ...wording import counted, some_of
+from .arm import arms_of_drags, drag_lines, own_unit, region_of_arms
 
 OTHER_PLANE = (
     "the motion is in the plane of the height; where that is above the width, the arm flutters first in the "
@@ -52,7 +48,7 @@ def _applied(view: View, done: np.ndarray) -> list[str]:
     if (inside != rods).any():
         return [caveat, *(f"where it applies: {line}" for line in ANSWERS[view.task](view, inside))]
     answer = ANSWERS[view.task](view, rods)
-    return [caveat, *answer] if validity["model_applies"].any() else [*answer, caveat]
+    return [caveat, *answer] if validity["model_applies"].any() else [*answer[:1], caveat, *answer[1:]]
 
 
 def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str:
@@ -73,25 +69,45 @@ def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str
     return f"the model {verb}{at}{when}: {name} is {'up to ' * (there.sum() > 1)}{size} times its limit"
 
 
-def spanned(view: View, values: np.ndarray, si: str, *typed: str) -> str:
-    """The range of values in an SI unit, of any shape, in the unit in which the first quantity was typed."""
-    unit = next((view.typed[name] for name in typed if name in view.typed), si)
+def spanned(view: View, values: np.ndarray, si: str) -> str:
+    """The range of values in an SI unit, of any shape, in the arm's own unit, to three digits."""
     finite = values[np.isfinite(values)]
-    low, high = (f"{written_in(float(end), unit, si):.3g}" for end in (finite.min(), finite.max()))
+    factor, unit = own_unit(view, si, float(np.abs(finite).max()))
+    low, high = (f"{factor * float(end):.3g}" for end in (finite.min(), finite.max()))
     return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
 
 
 def load_spanned(view: View, loads: np.ndarray) -> str:
     """The range of loads in SI, (n,), as the load of the arm is told."""
-    if "force" in view.quantities:
-        return spanned(view, loads, "N", "force")
-    return spanned(view, loads, "Pa", *OF_PRESSURE)
+    return spanned(view, loads, "N" if "force" in view.quantities else "Pa")
 
 
 def _of_thresholds(view: View, rods: np.ndarray) -> list[str]:
-    load = load_of(view)
-    v = {name: view.variables[name][rods] for name in (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz")}
-    return _flutter(view, *v.values())
+    load, v = load_of(view), view.variables
+    hopf, end, rate = (v[name][rods] for name in (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz"))
+    lines = [*_flutter(view, hopf, end, rate), *_where(view, rods, hopf)]
+    onset, back = v[f"{load}_onset"][rods], v[f"{load}_restabilization"][rods]
+    if len(hopf) > 1 and np.isfinite(onset).any():
+        lines.append(f"a disturbance swings as it dies away from {load_spanned(view, onset)} on")
+    if len(hopf) > 1 and np.isfinite(back).any():
+        there = some_of(int(np.isfinite(back).sum()), len(back), "point")
+        lines.append(f"is straight again at {there}, from {load_spanned(view, back)} on")
+    return lines
+
+
+def _where(view: View, rods: np.ndarray, loads: np.ndarray) -> list[str]:
+    """Which arms flutter at the least and at the largest of loads in SI, (n,), and what drag does."""
+    if np.isfinite(loads).sum() < 2:
+        return []
+    places = np.flatnonzero(rods)
+    ends = [places[found(loads)] for found in (np.nanargmin, np.nanargmax)]
+    least, most = (region_of_arms(view, np.arange(rods.size) == end) for end in ends)
+    lines = [] if least == most else [f"least at {least}; most at {most}"]
+    numbers = {"flutter": loads, "its frequency": view.variables["frequency_hopf_hz"][rods]}
+    whole = {name: np.full(rods.size, np.nan) for name in numbers}
+    for name, values in numbers.items():
+        whole[name][places] = values
+    return [*lines, *drag_lines(view, whole)]
 
 
 def _of_crossings(view: View, rods: np.ndarray) -> list[str]:
@@ -122,8 +138,25 @@ def _of_cycles(view: View, rods: np.ndarray) -> list[str]:
     if not there.any():
         return ["does not beat"]
     of = f" at {int(there.sum())} of {len(there)} points" if len(there) > 1 else ""
-    wide = spanned(view, v["tip_y_max_si"][there], "m", "length")
-    return [f"beats{of} at {spanned(view, v['frequency_hz'], 'Hz')}, its tip by {wide} to either side"]
+    wide = spanned(view, v["tip_y_max_si"][there], "m")
+    beats = f"beats{of} at {spanned(view, v['frequency_hz'], 'Hz')}, its tip by {wide} to either side"
+    known = {"frequency": "frequency_hz", "reach of the tip": "tip_y_max_si", "power": "injection_mean_si"}
+    numbers = {name: np.where(rods, view.variables[key], np.nan).ravel() for name, key in known.items()}
+    return [beats, *_decided(view, rods), *drag_lines(view, numbers)]
+
+
+def _decided(view: View, rods: np.ndarray) -> list[str]:
+    """At how many arms and loads drag decides whether there is a cycle; none where none was varied."""
+    arms = arms_of_drags(view)
+    if arms is None:
+        return []
+    beats = np.isfinite(view.variables["frequency_hz"]).ravel()
+    of_arms = [beats[(arms == arm) & rods.ravel()] for arm in np.unique(arms[rods.ravel()])]
+    always, never = sum(each.all() for each in of_arms), sum(not each.any() for each in of_arms)
+    some = len(of_arms) - always - never
+    told = {"with every drag": always, "with part of the range of drag": some, "with none": never}
+    counts = ", ".join(f"{words} at {count}" for words, count in told.items() if count)
+    return [f"of {counted(len(of_arms), 'combination')} of arm and load: beats {counts}"]
 
 
 def _of_modes(view: View, rods: np.ndarray) -> list[str]:

@@ -7,7 +7,7 @@ import numpy as np
 from ...results.file.view import View
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, some_of
-from .arm import crossing_line_in_si
+from .arm import crossings_of_arm
 from .ranges import rounded, span, to_error
 from .thresholds import not_stored
 from .told import Told, in_brackets, region
@@ -25,7 +25,8 @@ def criticality_summary(view: View, done: np.ndarray) -> Told:
         none = "nothing is known of its Hopf points"
         if v["crossing_count"].max() >= 0:
             none = f"no Hopf point up to F = {span(v['F_end'])}"
-        return Told(list(_hopf_lines(view)) or [none], [_searched(view, done)])
+        lines = list(_hopf_lines(view)) or [none]
+        return Told(lines, [_searched(view, done)], of_arm=crossings_of_arm(view))
     side = v["criticality"][done]
     first, known = side[:, 0], np.isfinite(side)
     with_hopf = v["crossing_count"] > 0
@@ -67,7 +68,6 @@ def _hopf_lines(view: View) -> Iterator[str]:
             f"{kind} at F = {F}, frequency {frequency} rad/tau2; unstable modes above: "
             f"{after if after >= 0 else 'not known'}"
         )
-        yield from crossing_line_in_si(view, int(i))
         if not np.isfinite(v["landau_error"][i]):
             yield "  its normal form is not known"
             continue

@@ -1,6 +1,6 @@
 """What `rodsweep show` says of limit cycles: where the rod beats, how, and how far that can be relied on."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from ...results.file.view import View
 from ...results.layouts.limit_cycle import SECOND_STATES
 from ...wording import counted, some_of
 from ..hopf_points import StoredHopfPoints
+from .arm import region_of_arms
 from .ranges import error_text, span, to_error
 from .stability import stability_lines
 from .told import Told, in_brackets, region, varied
@@ -25,7 +26,10 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> Told:
     values = {word: value for value, word in view.flags.items()}
     beats = done & (v["status"] == values.get("cycle"))
     orbit = done & np.isin(v["status"], [values[word] for word in ("cycle", "unstable") if word in values])
-    answer = [_outcome_line(view, done), *_stability(view), *_second_state_lines(v, done)]
+    stability, of_arm = _stability(view)
+    answer = [outcome_line(view, done, region), *stability, *_second_state_lines(v, done)]
+    if view.quantities and done.size > 1 and not beats[done].all():
+        of_arm.insert(0, outcome_line(view, done, region_of_arms))
     trust, details = _proof_lines(v), [_straight_line(v, done)]
     on_torus = done & (v["status"] == values.get("torus"))
     if on_torus.any():
@@ -36,11 +40,14 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> Told:
     elif beats.any():
         answer[1:1] = _size_lines(v, beats)
         trust.insert(0, _error_line(v, beats))
-    return Told(answer, trust, [*details, *(_cycle_lines(v, beats) if beats.any() else [])])
+    return Told(answer, trust, [*details, *(_cycle_lines(v, beats) if beats.any() else [])], of_arm)
 
 
-def _outcome_line(view: View, done: np.ndarray) -> str:
-    """What became of how many points, and where these lie."""
+def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarray], str]) -> str:
+    """What became of how many points, and where these lie.
+
+    done: a mask of the points' shape; region: says where the points of such a mask lie.
+    """
     status, whole = view.variables["status"], counted(int(done.sum()), "point")
     masks = {word: done & (status == value) for value, word in view.flags.items() if value >= 0}
     there = {OUTCOMES.get(word, word.replace("_", " ")): mask for word, mask in masks.items() if mask.any()}
@@ -52,13 +59,17 @@ def _outcome_line(view: View, done: np.ndarray) -> str:
     return f"of {whole}: {', '.join(told)}"
 
 
-def _stability(view: View) -> list[str]:
-    """Where the straight rod changes along F, or along the other parameters where F is no axis."""
+def _stability(view: View) -> tuple[list[str], list[str]]:
+    """Where the straight rod changes along F, or along the other parameters where F is no axis.
+
+    Then the same of an arm along F, in its own units.
+    """
     names = [name for name in LINEAR_PARAMETERS if name in varied(view)]
-    lines = []
+    lines, of_arm = list[str](), list[str]()
     for name in names[:1] if "F" in names else names:
-        lines += stability_lines(view, name, StoredHopfPoints(view, name).on)
-    return lines
+        found = stability_lines(view, name, StoredHopfPoints(view, name).on)
+        lines, of_arm = [*lines, *found[0]], [*of_arm, *found[1]]
+    return lines, of_arm
 
 
 def _proof_lines(v: Mapping[str, np.ndarray]) -> list[str]:

@@ -21,16 +21,16 @@ def modes_summary(view: View, done: np.ndarray) -> Told:
     """The task's sentences about the points that are `done`, a mask of the points' shape."""
     unknowns = unknowns_lines(view, done)
     if done.size == 1:
-        answer, trust, details = eigenvalue_lines(view), [], unknowns
+        answer, trust, details, of_arm = eigenvalue_lines(view), [], unknowns, list[str]()
     else:
-        lines, how = threshold_lines(view)
+        lines, how, of_arm = threshold_lines(view)
         answer = [stable_line(view, done), *lines]
         trust = [*error_lines(view, done), stability_line(view, done), *how]
         details = [leading_line(view, done), *unknowns]
     errors = view.variables["mode_error"][done]
     if np.isfinite(errors).any():
         trust.append(f"error of the modes, relative: worst {np.nanmax(errors):.1e}")
-    return Told([*answer, *growth_lines(view, done)], trust, details)
+    return Told([*answer, *growth_lines(view, done)], trust, details, of_arm)
 
 
 def growth_lines(view: View, done: np.ndarray) -> list[str]:

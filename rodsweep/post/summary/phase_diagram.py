@@ -56,7 +56,7 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> Told:
         answer += bautin_curve_lines(view)
     if "cycle_curve_number" in v:
         answer += cycle_curve_lines(view, line, row)
-    return Told(answer, trust, details)
+    return Told(answer, trust, details, crossings_of_arms(view, done))
 
 
 def count_lines(found: np.ndarray) -> list[str]:
@@ -154,13 +154,24 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
             if again.any():
                 text += f"; again on {int(again.any(axis=-1).sum())}, {line} = {later}"
             lines.append(text)
-            if line == "F" and view.quantities:
-                forces = v["crossing_at"][there]
-                lines.append(f"  in SI units: {loads_at(view, forces, np.zeros(len(forces), int))}")
     flutters = (v["class"] == FLUTTER).any(axis=-1)
     if (done & ~flutters).any() and (done & flutters).any():
         with_it, without = (span(of_row[done & mask]) for mask in (flutters, ~flutters))
         lines.append(f"flutter on the rows {row} = {with_it}; on none of {row} = {without}")
+    return lines
+
+
+def crossings_of_arms(view: View, done: np.ndarray) -> list[str]:
+    """What changes along F on rows, in the units of an arm; done: a mask of the rows' shape."""
+    if not view.quantities or "F" in view.parameters:
+        return []
+    v, lines = view.variables, []
+    for number, word in enumerate(CROSSING_KINDS):
+        there = (v["crossing_kind"] == number) & done[..., np.newaxis]
+        if number and there.any():
+            forces = v["crossing_at"][there]
+            rows = some_of(there.any(axis=-1).sum(), done.sum(), "row")
+            lines.append(f"{word}: on {rows}, at {loads_at(view, forces, np.zeros(len(forces), int))}")
     return lines
 
 

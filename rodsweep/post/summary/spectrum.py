@@ -22,11 +22,12 @@ def spectrum_summary(view: View, done: np.ndarray) -> Told:
     """The task's sentences about the points that are `done`, a mask of the points' shape."""
     if done.size == 1:
         return Told(eigenvalue_lines(view), details=unknowns_lines(view, done))
-    lines, how = threshold_lines(view)
+    lines, how, of_arm = threshold_lines(view)
     return Told(
         [stable_line(view, done), *lines],
         [*error_lines(view, done), stability_line(view, done), *how],
         [leading_line(view, done), *unknowns_lines(view, done)],
+        of_arm,
     )
 
 
@@ -51,10 +52,10 @@ def leading_line(view: View, done: np.ndarray) -> str:
     return f"leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"
 
 
-def threshold_lines(view: View) -> tuple[list[str], list[str]]:
-    """(where the rod changes along F; how that was found), both empty where F is no axis."""
-    lines = stability_lines(view, "F", lambda line: thresholds_on(line, view))
-    return lines, [f"thresholds: {HOW_FOUND}"] if lines else []
+def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
+    """(where the rod changes along F; how that was found; the first of an arm), empty where F is no axis."""
+    lines, of_arm = stability_lines(view, "F", lambda line: thresholds_on(line, view))
+    return lines, [f"thresholds: {HOW_FOUND}"] if lines else [], of_arm
 
 
 def eigenvalue_lines(view: View) -> list[str]:

@@ -7,7 +7,7 @@ import numpy as np
 from ...results.file.view import View
 from ...wording import counted, some_of
 from ..hopf_points import Bracket, HopfPoint, Located, ParameterLine, lines_over
-from .arm import threshold_lines_in_si
+from .arm import thresholds_of_arm
 from .ranges import error_text, stated_error
 
 FEW_LINES = 3
@@ -29,27 +29,27 @@ Threshold = Located | Bracket
 
 def stability_lines(
     view: View, name: str, found_on: Callable[[ParameterLine], Sequence[Threshold]]
-) -> list[str]:
+) -> tuple[list[str], list[str]]:
     """Where the straight rod changes along a parameter, a sentence for each kind of threshold.
 
-    None where the parameter is no axis. Of an arm a line in SI units follows for thresholds along F.
+    None where the parameter is no axis. Then the same of an arm along F, in its own units.
 
     found_on: gives the thresholds on a line over the parameter.
     """
     column = view.point_columns[name]
     if len(np.unique(column[np.isfinite(column)])) < 2:
-        return []
+        return [], []
     lines = list(lines_over(view, name))
     names, along = names_of(lines), [found_on(line) for line in lines]
-    texts = []
+    texts, of_arm = list[str](), list[str]()
     for kind, words in (OVER_FORCE if name == "F" else OVER_OTHERS).items():
         of_kind = [[point for point in points if point.kind == kind] for points in along]
         if found := {i: points for i, points in enumerate(of_kind) if points}:
             texts.append(f"{words.format(name=name)}: {_positions(found, names, name)}")
             every = [(point, lines[i].at) for i, points in found.items() for point in points]
             located = [(point, at) for point, at in every if isinstance(point, Located)]
-            texts += threshold_lines_in_si(view, located) if name == "F" else []
-    return texts
+            of_arm += thresholds_of_arm(view, kind, located) if name == "F" else []
+    return texts, of_arm
 
 
 def names_of(lines: Sequence[ParameterLine]) -> list[str]:

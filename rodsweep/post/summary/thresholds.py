@@ -8,7 +8,7 @@ from ...results.file.view import View
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...results.layouts.variables import ANGULAR
 from ...wording import counted, plural, some_of
-from .arm import crossing_line_in_si
+from .arm import crossings_of_arm
 from .ranges import error_text, rounded, span, to_error
 from .told import Told, at_point, in_brackets
 
@@ -23,7 +23,7 @@ EVENTS = {
 def thresholds_summary(view: View, done: np.ndarray) -> Told:
     """The task's sentences about the points that are `done`, a mask of the points' shape."""
     if done.size == 1:
-        return Told(crossing_lines(view), trust_of_one(view), cost_lines(view, done))
+        return Told(crossing_lines(view), trust_of_one(view), cost_lines(view, done), crossings_of_arm(view))
     answer = [event_line(view, done, event) for event in EVENTS]
     trust = [*search_lines(view, done, "rod"), f"searched up to F = {span(view.variables['F_end'][done])}"]
     return Told(answer, trust, [*monotony_lines(view), *cost_lines(view, done)])
@@ -63,7 +63,6 @@ def crossing_lines(view: View) -> list[str]:
         after = int(v["unstable_after"][i])
         above = f"; unstable modes above: {after if after >= 0 else 'not known'}"
         lines.append(f"{kind} at F = {F}: {CROSSING_MEANINGS[kind]}; {rates}{above}")
-        lines += crossing_line_in_si(view, int(i))
     if not lines and v["crossing_count"][0] < 0:
         return ["nothing is known of its thresholds"]
     return lines or [f"no threshold up to F = {v['F_end'][0]:.15g}"]

@@ -14,12 +14,13 @@ class Told:
     """Sentences of one result.
 
     answer: what was asked for, in words; trust: how far that is accurate, complete and proved; details: all
-    else that the file says of it.
+    else that the file says of it; of_arm: of the answer of an arm what is told in its own units.
     """
 
     answer: Sequence[str]
     trust: Sequence[str] = ()
     details: Sequence[str] = ()
+    of_arm: Sequence[str] = ()
 
 
 def varied(view: View) -> dict[str, np.ndarray]:

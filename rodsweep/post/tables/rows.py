@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...config.arm import AXIS_OF
+from ...config.arm_axes import ALONG
+from ...model.drag import DRAGS
 from ...results.file.view import View
 from ...results.layouts.arm import MEANINGS, QUANTITY_UNITS, any_unit_of, converted, twin_of
 from ...results.layouts.variables import DIMENSIONS, MISSING, STATUS, Variable
@@ -36,8 +37,8 @@ def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]
     """Columns of the points of rows, (rows,): parameters, an arm's quantities, their own variables."""
     for name, values in view.point_columns.items():
         yield coordinate(name, *DIMENSIONS[name], values[points])
-    for name, values in _quantities_at_points(view).items():
-        yield coordinate(name, QUANTITY_UNITS[name], MEANINGS[name], values[points])
+    for name, values in quantities_at_points(view).items():
+        yield quantity_column(name, values[points])
     missing = view.variables[STATUS.name].reshape(-1)[points] == MISSING
     for variable in own:
         values = view.variables[variable.name].reshape(-1)[points]
@@ -75,7 +76,7 @@ def si_columns(
     """
     if not view.quantities:
         return
-    at = _quantities_at_points(view)
+    at = quantities_at_points(view)
     if points is not None:
         at = {name: values[points] for name, values in at.items()}
     else:
@@ -96,8 +97,14 @@ def si_columns(
 def line_columns(view: View, rows: Rows) -> Iterator[Column]:
     """The quantities of an arm along the rows of a diagram, as the pressure of F."""
     for name, values in view.quantities.items():
-        if values.size > 1 and view.is_grid and AXIS_OF.get(name, "") not in view.parameters:
-            yield coordinate(name, QUANTITY_UNITS[name], MEANINGS[name], values[rows[1]])
+        if values.size > 1 and view.is_grid and ALONG.get(name, "") not in view.parameters:
+            yield quantity_column(name, values[rows[1]])
+
+
+def quantity_column(name: str, values: NDArray) -> Column:
+    """The column of a quantity of an arm, whose values have the shape (rows,)."""
+    column = coordinate(name, QUANTITY_UNITS[name], MEANINGS[name], values)
+    return replace(column, words=dict(enumerate(DRAGS))) if name == "drag" else column
 
 
 def _is_of_points(view: View, variable: Variable) -> bool:
@@ -110,11 +117,11 @@ def _places(view: View, parameter: str) -> NDArray[np.int64]:
     return np.searchsorted(view.axes[parameter], view.point_columns[parameter])
 
 
-def _quantities_at_points(view: View) -> dict[str, NDArray]:
+def quantities_at_points(view: View) -> dict[str, NDArray]:
     """The quantities of an arm at every point, each (points,); those along a row of a diagram left out."""
     count, found = view.variables["status"].size, {}
     for name, values in view.quantities.items():
-        along = AXIS_OF.get(name, "")
+        along = ALONG.get(name, "")
         if values.size == 1 or not view.is_grid:
             found[name] = np.broadcast_to(values, count)
         elif along in view.parameters:

@@ -13,10 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...config.arm import AXIS_OF, ArmSection, names_over
+from ...config.arm import ArmSection
+from ...config.arm_axes import ALONG, RELATIVE, names_over
 from ...config.axes import Axes
 from ...config.quantities import typed_unit
+from ...config.tasks import makes_diagram
 from ...model.arm import UNITS
+from ...model.drag import DRAGS
 from ...model.neglected import Validity
 from ...model.parameters import PARAMETERS
 from ...sweep.grid import Points
@@ -60,15 +63,20 @@ MEANINGS = {
     "viscosity": "viscosity of the fluid",
     "fluid_density": "density of the fluid",
     "density_difference": "density of the arm less that of the fluid",
+    "drag": "which member of the range of drags",
+    **{
+        name: f"{load} over that of the first flutter, with the likeliest drag"
+        for name, load in RELATIVE.items()
+    },
     "pressure": "pressure on the tip's cross section",
     "force": "follower force at the tip",
-    "tau2": "unit of time, gamma2 L^4/k3, with the likeliest drag",
+    "tau2": "unit of time, gamma2 L^4/k3",
     "force_scale": "unit of force, k3/L^2",
     "pressure_scale": "pressure on the tip's cross section that makes F = 1, k3/(L^2 A)",
 }
 """What each quantity is."""
 QUANTITY_UNITS = {name: unit for name, (unit, _) in UNITS.items()} | {
-    "poisson": "1",
+    **dict.fromkeys(("poisson", "drag", *RELATIVE), "1"),
     "tau2": "s",
     "force_scale": "N",
     "pressure_scale": "Pa",
@@ -111,7 +119,7 @@ def with_si(layout: Layout, config: Mapping[str, Any]) -> Layout:
 
 def twins_of(layout: Layout, config: Mapping[str, Any]) -> list[Variable]:
     """What is stored in SI units too of a rod's layout, for a resolved config that has an arm."""
-    as_force = "force" in config["parameters"]["arm"]
+    as_force = any(name in config["parameters"]["arm"] for name in ("force", "force_over_flutter"))
     units = ((variable, _unit_of(variable, as_force)[0]) for variable in layout.variables)
     return [real(twin_of(v.name, unit), unit, _meaning(v, unit), *v.extra) for v, unit in units if unit]
 
@@ -166,7 +174,7 @@ def over_of(config: Mapping[str, Any]) -> tuple[str, ...]:
     parameters = config["parameters"]
     axes = parameters["arm"] | {name: axis for name, axis in parameters.items() if name in PARAMETERS}
     sizes = {name: _size(axis) for name, axis in axes.items() if isinstance(axis, Mapping)}
-    return names_over(sizes)
+    return names_over(sizes, makes_diagram(config["task"]))
 
 
 def _size(axis: Mapping[str, Any]) -> int:
@@ -184,7 +192,7 @@ def quantities_of(parameters: Axes, points: Points) -> tuple[Filled, ...]:
         return ()
     if not points.over:
         return tuple(
-            _filled(arm, name, values, (AXIS_OF[name],) if np.ndim(values) else ())
+            _filled(arm, name, values, (ALONG[name],) if np.ndim(values) else ())
             for name, values in arm.grid_quantities().items()
         )
     numbers = {name: axis.array()[0] for name, axis in arm.given.items() if name not in points.over}
@@ -203,9 +211,11 @@ def _filled(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]
     """A quantity or a parameter with its values along dimensions."""
     units, meaning = DIMENSIONS[name] if name in PARAMETERS else (QUANTITY_UNITS[name], MEANINGS[name])
     variable = real(name, units, meaning, *dimensions)
-    if name in UNITS:
+    if name in UNITS and getattr(arm, name) is not None:
         variable = replace(variable, typed=typed_unit(name, getattr(arm, name)))
-    return variable, np.asarray(values)
+    if name == "drag":
+        variable = replace(variable, dtype="|i1", fill=-1, flags=tuple(enumerate(DRAGS)))
+    return variable, np.asarray(values, variable.dtype)
 
 
 def at_points(quantities: Iterable[Filled], points: Points) -> dict[str, NDArray[Any]]:

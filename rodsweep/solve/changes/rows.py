@@ -16,7 +16,8 @@ from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ..point import solved
 from .along_path import Transitions, transitions
-from .thresholds import SHORT_OF_CRUSHED, Thresholds, ThresholdStatus, judged, nothing_found
+from .thresholds import Thresholds, ThresholdStatus, judged, nothing_found
+from .unstable_modes import SHORT_OF_CRUSHED
 
 
 class Motion(IntEnum):

@@ -8,10 +8,7 @@ from ...model.rod import Rod
 from ..point import solved
 from ..status import PointStatus
 from .along_path import Transitions, transitions
-from .unstable_modes import Crossing, Kind
-
-SHORT_OF_CRUSHED = 1e-6
-"""How far below k1, relatively, the search ends where F_max lies beyond: at F = k1 the rod is crushed."""
+from .unstable_modes import SHORT_OF_CRUSHED, Crossing, Kind
 
 
 class ThresholdStatus(PointStatus):

@@ -11,6 +11,8 @@ from enum import IntEnum
 from ...determinant.parameter_path import Path
 from ...determinant.winding_number import count_right_of
 
+SHORT_OF_CRUSHED = 1e-6
+"""How far below k1, relatively, the search ends where F_max lies beyond: at F = k1 the rod is crushed."""
 PLACES = (0.5, 0.3, 0.7)
 """Where between two crossings the unstable modes are counted, until a count is decided."""
 TOGETHER = 1e-3

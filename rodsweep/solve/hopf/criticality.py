@@ -11,8 +11,7 @@ from functools import lru_cache
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ..changes.along_path import Transitions, pair_crossings
-from ..changes.thresholds import SHORT_OF_CRUSHED
-from ..changes.unstable_modes import Crossing
+from ..changes.unstable_modes import SHORT_OF_CRUSHED, Crossing
 from ..point import FAILURES, cause_of, solved
 from ..status import PointStatus
 from .hopf_coefficients import HopfCoefficients, hopf_coefficients

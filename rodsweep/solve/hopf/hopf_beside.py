@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ..changes.along_path import pair_crossings
-from ..changes.thresholds import SHORT_OF_CRUSHED
+from ..changes.unstable_modes import SHORT_OF_CRUSHED
 from .hopf_coefficients import hopf_coefficients
 
 FARTHEST_FORCE = 1.5

@@ -13,26 +13,21 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from ....arrays import Array
+from ....config.arm_axes import MOVES
 from ....config.limit_cycle import LONGEST
 from ....errors import InputError
 from ....results.file.view import View
 from ...hopf_points import HopfPoint, StoredHopfPoints, lines_over
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, need, plain, scale
 from .hopf_marks import draw_laws, mark_hopf_points
-from .selection import CYCLE_WORDS, outcomes, told_apart
+from .selection import CYCLE_WORDS, arms_told_apart, outcomes, told_apart
 from .square_root import SquareRootLaw, square_root_laws
+from .units import PLAIN_UNITS, CycleUnits, units_over
 
 BRANCH_LOOKS = tuple(
     zip((FIRST, SECOND, THIRD, "#CC79A7", "#56B4E9", "#000000"), ("o", "s", "^", "D", "v", "P"), strict=True)
 )
 """Colour, of Okabe and Ito, and marker of each branch."""
-PANEL_LABELS = (
-    r"tip $(x_{\max} - x_{\min})/2L$",
-    r"tip $y_{\max}/L$",
-    r"period $T/\tau_2$",
-    r"mean power $\times\,L\tau_2/k_3$",
-)
-"""What each panel shows, the upper left first, downwards."""
 LEAST_FOR_ARROW = 4
 """Points of a line that has an arrow."""
 UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 3}
@@ -41,10 +36,10 @@ UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 
 
 @dataclass(frozen=True, slots=True)
 class AmplitudeBranch:
-    """Points in the order of the file that differ in one parameter only; amplitudes in L, NaN where unknown.
+    """Points in the order of the file that differ in one parameter only; amplitudes NaN where unknown.
 
-    parameters: the other ones, by name; period: in tau2; power: of the force, the mean over a period, in
-    k3/(L tau2); words: of the status; all arrays have the shape (points,); hopf: the Hopf points along the
+    parameters: the other ones, by name; power: of the force, the mean over a period; units: of all of
+    these; words: of the status; all arrays have the shape (points,); hopf: the Hopf points along the
     branch, none where it is not over F.
     """
 
@@ -57,6 +52,9 @@ class AmplitudeBranch:
     power: Array
     words: NDArray[np.str_]
     hopf: list[HopfPoint]
+    units: CycleUnits
+    first: int
+    """The number of its first point in the file, from 1."""
 
     @property
     def measures(self) -> tuple[Array, ...]:
@@ -82,7 +80,10 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
     """
     first = views[0]
     name = abscissa(first)
-    branches = [branch for view in views for branch in branches_of(view, name)]
+    every = [np.arange(view.variables["status"].size) for view in views]
+    units = units_over(views, every)
+    pairs = zip(views, units, strict=True)
+    branches = [branch for view, drawn_in in pairs for branch in branches_of(view, name, drawn_in)]
     if len(branches) > len(BRANCH_LOOKS):
         raise InputError(
             f"{first.path} makes {len(branches)} lines over {name}, for which a figure has no room; "
@@ -92,15 +93,17 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
     need(first, any(np.isfinite(branch.amplitude_y).any() for branch in branches), "amplitude")
     figure = Figure(figsize=(4.4, 8.4) if narrow else (8.6, 5.6), layout="constrained")
     panels = figure.subplots(*((4, 1) if narrow else (2, 2)), sharex=True).T.ravel()
-    shared, own = told_apart([branch.parameters for branch in branches])
+    shared, own = _names(branches, name)
     handles = _draw_branches(panels, branches, own, _file_words(views, name))
     colours = (colour for colour, _ in BRANCH_LOOKS)
     marks = [
         (point, colour) for branch, colour in zip(branches, colours, strict=False) for point in branch.hopf
     ]
     handles += mark_hopf_points(panels, marks)
-    handles += draw_laws(panels[1], [law for branch in branches for law in branch.laws])
-    _label(panels, name)
+    handles += draw_laws(
+        panels[1], [law for branch in branches for law in branch.laws], units[0].names[0] * units[0].in_si
+    )
+    _label(panels, name, units[0].labels_over)
     for panel in panels:
         scale(panel, "x", np.unique(branches[0].x))
     if legend := [handle for handle in handles if handle.get_label()]:
@@ -175,9 +178,18 @@ def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: boo
         )
 
 
-def _label(panels: Sequence[Axes], name: str) -> None:
+def _names(branches: Sequence[AmplitudeBranch], name: str) -> tuple[str, list[str]]:
+    """(what all branches over a parameter share, what tells each from the others); of an arm in its units."""
+    view = branches[0].view
+    if branches[0].units.in_si and all(branch.view is view for branch in branches):
+        along = {name, *(quantity for quantity, moved in MOVES.items() if moved == name)}
+        return arms_told_apart(view, [branch.first for branch in branches], along)
+    return told_apart([branch.parameters for branch in branches])
+
+
+def _label(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> None:
     """Axes and their labels: 0, of straight arms, is drawn, and a little below it shown."""
-    for axes, label in zip(panels, PANEL_LABELS, strict=True):
+    for axes, label in zip(panels, labels, strict=True):
         height = axes.dataLim.y1 if np.isfinite(axes.dataLim.y1) and axes.dataLim.y1 > 0 else 1.0
         axes.set_ylim(-0.04 * height, 1.1 * height)
         axes.axhline(0, color="0.8", lw=0.6, zorder=0)
@@ -216,15 +228,17 @@ def abscissa(view: View) -> str:
     return name
 
 
-def branches_of(view: View, name: str) -> list[AmplitudeBranch]:
+def branches_of(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[AmplitudeBranch]:
     """The file's points, one branch for each combination of the parameters other than `name`."""
     words, v = outcomes(view), view.variables
     straight, cycle = words == "straight", np.isin(words, CYCLE_WORDS)
     reach = (v["tip_x_max"] - v["tip_x_min"]).ravel() / 2
     along_x, along_y = (
-        np.where(straight, 0.0, np.where(cycle, values, np.nan)) for values in (reach, v["tip_y_max"].ravel())
+        units.length * np.where(straight, 0.0, np.where(cycle, values, np.nan))
+        for values in (reach, v["tip_y_max"].ravel())
     )
-    period, power = (np.where(cycle, v[key].ravel(), np.nan) for key in ("period", "injection_mean"))
+    period = units.time * np.where(cycle, v["period"].ravel(), np.nan)
+    power = units.power * np.where(cycle, v["injection_mean"].ravel(), np.nan)
     branches = []
     stored = StoredHopfPoints(view, "F")
     for line in lines_over(view, name):
@@ -241,6 +255,8 @@ def branches_of(view: View, name: str) -> list[AmplitudeBranch]:
                 power=power[at],
                 words=words[at],
                 hopf=hopf,
+                units=units,
+                first=int(at[0]) + 1,
             )
         )
     return branches

@@ -54,8 +54,11 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[HopfPoint, st
     return handles
 
 
-def draw_laws(axes: Axes, laws: Sequence[SquareRootLaw]) -> list[Line2D]:
-    """The square-root laws as dashed curves; returns what the legend says: formula and coefficients."""
+def draw_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str = "") -> list[Line2D]:
+    """The square-root laws as dashed curves; returns what the legend says: formula and coefficients.
+
+    unit: of the coefficients, empty where that is L.
+    """
     handles = []
     for above in (True, False):
         here = [law for law in laws if law.above == above]
@@ -65,7 +68,7 @@ def draw_laws(axes: Axes, laws: Sequence[SquareRootLaw]) -> list[Line2D]:
         for law in here:
             axes.plot(*law.curve(), zorder=1.5, **look)
         difference = rf"\tilde F - {HOPF_SYMBOL}" if above else rf"{HOPF_SYMBOL} - \tilde F"
-        formula = rf"$a\sqrt{{({difference})/{HOPF_SYMBOL}}}$, $a$ = {_coefficients(here)}"
+        formula = rf"$a\sqrt{{({difference})/{HOPF_SYMBOL}}}$, $a$ = {_coefficients(here)} {unit}".rstrip()
         handles.append(Line2D([], [], label=formula, **look))
     return handles
 

@@ -20,6 +20,7 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from ....arrays import Array
+from ....config.arm_axes import MOVES
 from ....results.file.view import View
 from ..style import (
     LABELS,
@@ -33,7 +34,8 @@ from ..style import (
 from .hopf_lines import hopf_lines
 from .hopf_marks import HOPF_SYMBOL
 from .point_map import PointMap, cell_edges, point_map
-from .selection import CYCLE_WORDS, outcomes
+from .selection import CYCLE_WORDS, arms_told_apart, outcomes
+from .units import units_over
 
 STATUS_LOOKS = {
     "straight": ("#E8EDF2", ""),
@@ -54,10 +56,10 @@ HATCHING = "0.25"
 ONE_ROW = 6
 """Entries of a legend that one row can hold."""
 QUANTITIES = (
-    ("period", r"period $T/\tau_2$", "viridis", True),
-    ("tip_y_max", r"tip $y_{\max}/L$", "plasma", False),
+    ("period", "viridis", True),
+    ("tip_y_max", "plasma", False),
 )
-"""Variable, label and colours of each panel, and whether those are logarithmic over more than a decade."""
+"""Variable and colours of each panel, and whether those are logarithmic over more than a decade."""
 DECADE = 10
 """Ratio of the longest to the shortest period above which their colours are logarithmic."""
 
@@ -73,8 +75,11 @@ def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
     need(view, cycles.any(), "cycle")
     figure, panels = map_panels(2, narrow)
     lines = hopf_lines(points, view)
-    for axes, (name, label, colours, ratios) in zip(panels, QUANTITIES, strict=True):
-        values = np.where(cycles, view.variables[name].ravel()[points.at], np.nan)
+    (units,) = units_over([view], [points.at.ravel()])
+    _, largest_y, period, _ = units.labels_over
+    for axes, label, (name, colours, ratios) in zip(panels, (period, largest_y), QUANTITIES, strict=True):
+        drawn = units.drawn({name: view.variables[name].ravel()[points.at.ravel()]})[name]
+        values = np.where(cycles, drawn.reshape(points.at.shape), np.nan)
         mesh = _heat_map(axes, points, values, ratios)
         mesh.set_cmap(colours)
         bar = figure.colorbar(mesh, ax=axes, label=label)
@@ -87,8 +92,17 @@ def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
     if handles:
         rows = -(-len(handles) // ONE_ROW)
         legend_below(figure, handles, columns=-(-len(handles) // rows))
-    figure.suptitle(heading(view, parameter_text(points.shared)))
+    figure.suptitle(heading(view, _shared(view, points, units.in_si)))
     return figure, f"period and amplitude over {' and '.join(points.names)}{points.left_out}"
+
+
+def _shared(view: View, points: PointMap, in_si: bool) -> str:
+    """What all points share: the parameters, or an arm's quantities; in_si: whether there is an arm."""
+    if not in_si:
+        return parameter_text(points.shared)
+    along = {quantity for quantity, moved in MOVES.items() if moved in points.names}
+    numbers = [int(points.at[0, 0]) + 1, int(points.at[-1, -1]) + 1]
+    return arms_told_apart(view, numbers, {*points.names, *along})[0]
 
 
 def map_panels(count: int, narrow: bool) -> tuple[Figure, list[Axes]]:

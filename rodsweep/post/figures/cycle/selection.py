@@ -4,7 +4,7 @@ Samples and shapes of a cycle are at the times k T / n, k = 0 ... n - 1, over on
 last is the first.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -189,13 +189,18 @@ def told_apart(parameters: Sequence[dict[str, float]]) -> tuple[str, list[str]]:
     return parameter_text(shared), own
 
 
-def arms_told_apart(view: View, numbers: Sequence[int]) -> tuple[str, list[str]]:
-    """(what the arms at points numbered from 1 share, what tells each from the others), in typed units."""
+def arms_told_apart(
+    view: View, numbers: Sequence[int], without: Collection[str] = ()
+) -> tuple[str, list[str]]:
+    """(what the arms at points numbered from 1 share, what tells each from the others), in typed units.
+
+    without: quantities and parameters that are not told, as those along an axis of the figure.
+    """
     texts = []
     for number in numbers:
         told = {n: quantity_text(view, n, at_point(view, n, number)) for n in given_quantities(view)}
         own = {name: parameter_text({name: value}) for name, value in replaced(view, number).items()}
-        texts.append(told | own)
+        texts.append({name: text for name, text in (told | own).items() if name not in without})
     shared = {name: text for name, text in texts[0].items() if all(each[name] == text for each in texts)}
     labels = [", ".join(text for name, text in each.items() if name not in shared) for each in texts]
     return ", ".join(shared.values()), labels

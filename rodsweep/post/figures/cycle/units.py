@@ -2,13 +2,16 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ....arrays import Array
 from ....model.units import compact, written_in
 from ....results.file.view import View
-from ..arm_quantities import TOGETHER, at_point
+from ...tables.rows import quantities_at_points
+from ..arm_quantities import TOGETHER
 
 LENGTHS = ("shape_x", "shape_y", "tip_x", "tip_y", "transient_x", "transient_y")
 LENGTHS_OF_CYCLES = ("tip_x_min", "tip_x_max", "tip_y_max")
@@ -17,6 +20,9 @@ ENERGIES = ("energy",)
 POWERS = ("injection", "dissipation", "injection_mean", "dissipation_mean")
 SHORT_PERIOD = 0.1
 """Seconds; the time of a faster cycle has a prefix, as ms. One of hours stays in s."""
+Factor = Any
+"""A number, or an array of one for each point."""
+SI = ("m", "s", "J", "W")
 NEEDED = ("length", "tau2", "force_scale")
 """Quantities of an arm from which its units follow."""
 
@@ -25,13 +31,14 @@ NEEDED = ("length", "tau2", "force_scale")
 class CycleUnits:
     """What the figure's axes are called, and its units in those of the rod at a point; by default the rod's.
 
-    length: L in the unit of length that is drawn; time: tau2; energy: k3/L; power: k3/(L tau2).
+    length: L in the unit of length that is drawn; time: tau2; energy: k3/L; power: k3/(L tau2); of several
+    points each (points,).
     """
 
-    length: float = 1.0
-    time: float = 1.0
-    energy: float = 1.0
-    power: float = 1.0
+    length: Factor = 1.0
+    time: Factor = 1.0
+    energy: Factor = 1.0
+    power: Factor = 1.0
     in_si: bool = False
     names: tuple[str, str, str, str] = ("L", r"$\tau_2$", "", "")
     """Units of length, time, energy and power."""
@@ -44,6 +51,24 @@ class CycleUnits:
     def time_label(self) -> str:
         """The label of the time."""
         return f"time $t$ ({self.names[1]})" if self.in_si else r"time $t/\tau_2$"
+
+    @property
+    def labels_over(self) -> tuple[str, str, str, str]:
+        """Labels of cycles over a parameter: half the reach of the tip's x, its largest y, period, power."""
+        if self.in_si:
+            length, time, _, power = self.names
+            return (
+                rf"tip $(x_{{\max}} - x_{{\min}})/2$ ({length})",
+                rf"tip $y_{{\max}}$ ({length})",
+                f"period $T$ ({time})",
+                f"mean power ({power})",
+            )
+        return (
+            r"tip $(x_{\max} - x_{\min})/2L$",
+            r"tip $y_{\max}/L$",
+            r"period $T/\tau_2$",
+            r"mean power $\times\,L\tau_2/k_3$",
+        )
 
     @property
     def budget_labels(self) -> tuple[str, str, str]:
@@ -64,7 +89,7 @@ class CycleUnits:
 
     def drawn(self, values: dict[str, Array]) -> dict[str, Array]:
         """Variables of a point, each of any shape, in these units."""
-        factors = (
+        factors: dict[str, Factor] = (
             dict.fromkeys((*LENGTHS, *LENGTHS_OF_CYCLES), self.length)
             | dict.fromkeys(TIMES, self.time)
             | dict.fromkeys(ENERGIES, self.energy)
@@ -78,26 +103,44 @@ PLAIN_UNITS = CycleUnits()
 
 def units_of(view: View, numbers: Sequence[int]) -> list[CycleUnits]:
     """The units at points numbered from 1, with the same names at all; the rod's own where it is no arm."""
-    if not all(name in view.quantities for name in NEEDED):
-        return [PLAIN_UNITS] * len(numbers)
-    lengths, times, forces = (np.array([at_point(view, name, n) for n in numbers]) for name in NEEDED)
-    energies, powers = forces * lengths, forces * lengths / times
-    period = float(np.nanmax(_at(view, "period", numbers) * times, initial=0.0))
-    length = view.typed.get("length", "m")
-    second = compact(period, "s")[1] if 0 < period < SHORT_PERIOD else "s"
-    mean = np.nanmax(np.abs(_at(view, "injection_mean", numbers)) * powers, initial=0.0)
-    watt, joule = compact(float(mean), "W")[1], compact(float(energies.max()), "J")[1]
-    names = (length, second, joule, watt)
-    drawn = zip(
-        written_in(1.0, length, "m") * lengths,
-        written_in(1.0, second, "s") * times,
-        written_in(1.0, joule, "J") * energies,
-        written_in(1.0, watt, "W") * powers,
-        strict=True,
+    at = np.array(numbers, int) - 1
+    (units,) = units_over([view], [at])
+    if not units.in_si:
+        return [units] * len(numbers)
+    drawn = zip(units.length, units.time, units.energy, units.power, strict=True)
+    return [
+        CycleUnits(float(a), float(t), float(e), float(p), in_si=True, names=units.names)
+        for a, t, e, p in drawn
+    ]
+
+
+def units_over(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> list[CycleUnits]:
+    """The units of points of each file, by their places among all: factors (n,), the same names in all files.
+
+    The rod's own where one of the files has no arm.
+    """
+    if not all(name in view.quantities for view in views for name in NEEDED):
+        return [PLAIN_UNITS] * len(views)
+    lengths, times, forces = (
+        [quantities_at_points(view)[name][places] for view, places in zip(views, at, strict=True)]
+        for name in NEEDED
     )
-    return [CycleUnits(float(a), float(t), float(e), float(p), True, names) for a, t, e, p in drawn]
+    powers = [force * length / time for force, length, time in zip(forces, lengths, times, strict=True)]
+    energies = [force * length for force, length in zip(forces, lengths, strict=True)]
+    cycles = list(zip(views, at, times, powers, strict=True))
+    period = max(_largest(view, "period", places, time) for view, places, time, _ in cycles)
+    mean = max(_largest(view, "injection_mean", places, power) for view, places, _, power in cycles)
+    length = views[0].typed.get("length", "m")
+    second = compact(period, "s")[1] if 0 < period < SHORT_PERIOD else "s"
+    joule = compact(max(float(np.nanmax(energy)) for energy in energies), "J")[1]
+    watt = compact(mean, "W")[1]
+    names = (length, second, joule, watt)
+    scales = [written_in(1.0, unit, si) for unit, si in zip(names, SI, strict=True)]
+    columns = zip(lengths, times, energies, powers, strict=True)
+    scaled = ([scale * column for scale, column in zip(scales, each, strict=True)] for each in columns)
+    return [CycleUnits(a, t, e, p, in_si=True, names=names) for a, t, e, p in scaled]
 
 
-def _at(view: View, name: str, numbers: Sequence[int]) -> Array:
-    """A variable at points numbered from 1, shape (points,)."""
-    return np.array([float(view.variables[name].ravel()[number - 1]) for number in numbers])
+def _largest(view: View, name: str, at: NDArray[np.int64], factors: Array) -> float:
+    """The largest modulus of a variable at points, by their places, times factors (n,); 0 without one."""
+    return float(np.nanmax(np.abs(view.variables[name].ravel()[at]) * factors, initial=0.0))

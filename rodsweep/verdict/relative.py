@@ -1,0 +1,73 @@
+"""The flutter that a load is relative to: of the plane that an arm leaves first, with the likeliest drag.
+
+Knows no PETSc, which starts on all ranks of a run together: the first one makes the points of a config alone.
+"""
+
+from dataclasses import replace
+from functools import cache
+from math import inf
+from typing import TypeVar
+
+from ..determinant.covering import cover, first_boxes
+from ..determinant.newton import Zero
+from ..determinant.parameter_path import Path, coefficients_at, determinant_along
+from ..errors import InputError
+from ..model.arm import SlenderArm
+from ..model.rod import Rod
+from ..solve.changes.unstable_modes import SHORT_OF_CRUSHED
+
+A = TypeVar("A", bound=SlenderArm)
+FARTHEST = 1000.0
+"""Force up to which changes are sought, if the arm is not crushed before: 25 times where filaments do."""
+NEAR = 200.0
+"""Force up to which flutter is sought first, which takes half of the time; few arms flutter beyond."""
+DIGITS = 10
+"""Digits of the threshold that a load is relative to: far more than are known of an arm, and the same on all
+machines, so that a run that goes on elsewhere has the same points."""
+
+
+def turned(arm: A) -> A:
+    """The arm that moves in the other plane of its rectangular section."""
+    return replace(arm, width=arm.height, height=arm.width)
+
+
+def first_flutter(arm: SlenderArm) -> float:
+    """The F, in k3/L^2 of the arm, that a load relative to flutter is relative to; inf without flutter."""
+    own = _in_its_plane(arm)
+    if arm.radius is not None or arm.si.width == arm.si.height:
+        return own
+    other = turned(arm)
+    return min(own, _in_its_plane(other) * (other.section.second_moment / arm.section.second_moment))
+
+
+def _in_its_plane(arm: SlenderArm) -> float:
+    """The same of one plane."""
+    return first_hopf_force(arm.k1, arm.k2, arm.gamma3_with(arm.drags[0]))
+
+
+@cache
+def first_hopf_force(k1: float, k2: float, gamma3: float) -> float:
+    """The first F at which a pair of modes begins to grow, to DIGITS digits; inf without one up to FARTHEST.
+
+    InputError where the covering cannot decide what lies below.
+    """
+    path = Path(Rod(k1=k1, k2=k2, gamma3=gamma3, F=0.0), "F")
+    for end in (NEAR, FARTHEST):
+        boxes = first_boxes(path, 0.0, min(end, k1 * (1 - SHORT_OF_CRUSHED)))
+        if boxes is None:
+            raise InputError("the flutter that a load is relative to has no bound, so it is not found")
+        zeros, left, _ = cover(boxes, path.origin, path.direction)
+        first = min((zero.p for zero in zeros if _grows(path, zero)), default=inf)
+        if any(min(box.p_from, box.p_to) < first for box in left):
+            raise InputError("the flutter that a load is relative to is not decided")
+        if first < inf:
+            return float(f"{first:.{DIGITS}g}")
+    return inf
+
+
+def _grows(path: Path, zero: Zero) -> bool:
+    """Whether the pair on the axis grows with F."""
+    there = determinant_along(
+        complex(0.0, zero.eta_or_x), coefficients_at(zero.p, path.origin, path.direction), path.direction
+    )
+    return bool((-there.D_p / there.D_w).real > 0)

@@ -1,0 +1,252 @@
+"""The range of drags as an axis, and loads relative to flutter: configs, files, `show`, figures of arms."""
+
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from contents import content, same
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+
+import rodsweep as rs
+from rodsweep.api.asking import job_from, tree_of
+from rodsweep.config.arm import ArmSection
+from rodsweep.config.arm_axes import CRUSHED, NO_FLUTTER
+from rodsweep.model.arm import SlenderArm
+from rodsweep.model.drag import DRAGS
+from rodsweep.model.neglected import HALF_LENGTH, WIDE_CURVATURE, wall_effect
+from rodsweep.post.figures import draw
+from rodsweep.results.file.view import read_view
+from rodsweep.tasks.arm_points import same_rods
+from rodsweep.verdict.flutter import Kind
+from rodsweep.verdict.relative import first_flutter, first_hopf_force
+
+SILICONE = {"length": "14 cm", "radius": "4 mm", "young": "100 kPa", "viscosity": "20 Pa s"}
+QUICK = {"accuracy": 1e-3, "harmonics": 2}
+OVER_LOADS = """
+task: limit_cycle
+parameters:
+  arm:
+    length: [10 cm, 14 cm]
+    radius: 4 mm
+    young: 100 kPa
+    viscosity: 20 Pa s
+    drag: [likeliest, most]
+    pressure: {start: 0.9 of flutter, stop: 1.3 of flutter, num: 3}
+accuracy: 1.0e-3
+limit_cycle: {start: neighbour, harmonics: 2}
+"""
+
+
+def test_thresholds_over_the_drags_are_those_of_the_verdict():
+    data = rs.sweep("thresholds", arm=SILICONE | {"drag": "range"}, crossings=4)
+    arm = rs.Arm(**SILICONE)
+    assert data.drag.attrs["flag_meanings"].split() == list(DRAGS)
+    assert data.drag.values.tolist() == [0, 1, 2, 3, 4]
+    for drag, found in zip(DRAGS, arm.flutter.forces, strict=True):
+        here = data.sel(drag=DRAGS.index(drag))
+        force = found.force(Kind.hopf) * arm.pressure_scale
+        assert here.pressure_hopf.item() == pytest.approx(force, rel=1e-9)
+        assert here.frequency_hopf_hz.item() == pytest.approx(found.frequency(Kind.hopf), rel=1e-9)
+        assert here.tau2.item() == arm.replace(drag=drag).tau2
+
+
+def test_cycles_over_the_drags_are_those_of_arms_with_each():
+    pressure = "0.9 kPa"
+    data = rs.sweep("limit_cycle", arm=SILICONE | {"drag": ["least", "most"], "pressure": pressure}, **QUICK)
+    for drag in ("least", "most"):
+        alone = rs.Arm(**SILICONE, pressure=pressure, drag=drag).limit_cycle(**QUICK)
+        here = data.sel(drag=DRAGS.index(drag))
+        assert here.period_si.item() == pytest.approx(alone.period_si, rel=1e-12)
+        assert here.gamma1.item() == alone.data.gamma1.item()
+
+
+def test_a_phase_diagram_has_the_drags_along_gamma3():
+    span = {"start": 0, "stop": "1.2 kPa", "num": 4}
+    data = rs.sweep("phase_diagram", arm=SILICONE | {"drag": "range", "pressure": span}, curves=False)
+    assert data.drag.dims == data.tau2.dims == ("gamma3",)
+    assert (np.diff(data.gamma3) > 0).all()
+    for place, gamma3, tau2 in zip(data.drag.values, data.gamma3.values, data.tau2.values, strict=True):
+        arm = SlenderArm(**SILICONE, drag=DRAGS[place])
+        assert (gamma3, tau2) == (arm.gamma3, arm.tau2)
+    with pytest.raises(rs.InputError, match=r"arm\.pressure is relative to flutter; a phase diagram"):
+        rs.sweep("phase_diagram", arm=SILICONE | {"pressure": "1.2 of flutter"}, gamma3=[1e-3, 2e-3])
+
+
+def test_a_relative_load_is_that_of_the_verdict_whatever_the_drag():
+    shares = ["0.9 of flutter", "20 % above flutter"]
+    arm = SILICONE | {"length": ["10 cm", "14 cm"], "drag": ["likeliest", "most"], "pressure": shares}
+    data = rs.sweep("spectrum", arm=arm, modes=2)
+    assert data.F.dims == ("length", "drag", "pressure_over_flutter")
+    assert data.pressure_over_flutter.values.tolist() == [0.9, 1.2]
+    for length in (0.1, 0.14):
+        known = rs.Arm(**SILICONE | {"length": length}, pressure="1.2 of flutter").loaded
+        here = data.sel(length=length, pressure_over_flutter=1.2)
+        assert here.pressure.values == pytest.approx(known.si.pressure, rel=1e-9)
+        assert here.F.values == pytest.approx(known.F, rel=1e-9)
+    assert (data.unstable_count.sel(pressure_over_flutter=0.9) == 0).all()
+    assert (data.unstable_count.sel(pressure_over_flutter=1.2) == 2).all()
+
+
+def test_a_relative_force_is_told_as_a_force():
+    arm = SILICONE | {"force": "1.2 of flutter"}
+    data = rs.sweep("spectrum", arm=arm, modes=2)
+    assert data.force.item() == pytest.approx(rs.Arm(**arm).loaded.si.force, rel=1e-9)
+    assert "pressure" not in data.variables
+
+
+def test_a_rectangle_is_loaded_relative_to_the_plane_that_goes_first():
+    arm = {"length": "15 cm", "width": "6 mm", "height": "8 mm", "young": "60 kPa", "viscosity": "40 Pa s"}
+    flat, tall = SlenderArm(**arm), SlenderArm(**arm | {"width": "8 mm", "height": "6 mm"})
+    assert first_flutter(flat) * flat.force_scale == pytest.approx(first_flutter(tall) * tall.force_scale)
+    assert first_flutter(tall) == first_hopf_force(tall.k1, tall.k2, tall.gamma3)
+    data = rs.sweep("spectrum", arm=arm | {"pressure": "1.2 of flutter"}, modes=2)
+    known = rs.Arm(**arm, pressure="1.2 of flutter").loaded
+    assert data.pressure.item() == pytest.approx(known.si.pressure, rel=1e-9)
+
+
+def test_an_arm_without_flutter_is_a_point_with_a_status():
+    section = ArmSection(**SILICONE | {"length": ["10 cm", "14 cm"], "pressure": "1.2 of flutter"})
+    stiff = SlenderArm(**SILICONE).k1
+    grid = section.own_grid({}, lambda arm: 36.0 if arm.k1 == stiff else np.inf)
+    assert grid.covered.tolist() == [NO_FLUTTER, 0]
+    assert np.isnan(grid.parameters["F"][0])
+    with pytest.raises(ValueError, match="relative to flutter, which no arm has with the likeliest drag"):
+        section.own_grid({}, lambda arm: np.inf)
+
+
+def test_shards_ranks_and_an_extension_give_the_same_file(command):
+    command.write("a.yaml", OVER_LOADS)
+    command.write("less.yaml", OVER_LOADS.replace("[likeliest, most]", "likeliest"))
+    assert command("run", "a.yaml", "-o", "whole.h5").returncode == 0
+    assert command("run", "a.yaml", "-o", "ranks.h5", ranks=2).returncode == 0
+    for shard in (1, 2):
+        assert command("run", "a.yaml", "-o", f"{shard}.h5", "--shard", f"{shard}/2").returncode == 0
+    assert command("merge", "merged.h5", "1.h5", "2.h5").returncode == 0
+    whole = content(command.directory / "whole.h5")
+    for name in ("ranks.h5", "merged.h5"):
+        assert same(whole, content(command.directory / name))
+    assert command("run", "less.yaml", "-o", "less.h5").returncode == 0
+    assert "drag" not in rs.open(command.directory / "less.h5").dims
+
+
+def test_show_answers_in_the_units_of_the_arm_before_those_without_dimension(command):
+    command.write("a.yaml", OVER_LOADS)
+    assert command("run", "a.yaml").returncode == 0
+    answer, rest = command("show", "a.h5").stdout.split("\nthe rods without dimension:\n")
+    data = rs.open(command.directory / "a.h5")
+    assert not re.search(r"\bF\b|\bk1\b|gamma3|tau2|mHz", answer)
+    assert re.search(r"beats at 8 \(length 10 to 14 cm, pressure [\d.]+ to [\d.]+ kPa, 1.1 to 1.3 of", answer)
+    assert "of 6 combinations of arm and load: beats with every drag at 4, with none at 2" in answer
+    frequency = data.frequency_hz.where(np.isfinite(data.period))
+    spread = (frequency.max("drag") / frequency.min("drag")).max().item()
+    assert 1 < spread < 2  # in percent, then
+    stated = re.search(r"frequency by up to (\d+) %", answer)
+    assert float(stated[1]) == pytest.approx(100 * (spread - 1), abs=0.5)
+    assert "F** (straight rod starts to beat)" in rest
+
+
+def test_a_figure_has_a_band_over_the_drags_of_the_file(command, monkeypatch):
+    command.write("a.yaml", OVER_LOADS.replace("[10 cm, 14 cm]", "14 cm"))
+    assert command("run", "a.yaml").returncode == 0
+    figures = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: figures.append(figure))
+    draw(read_view(command.directory / "a.h5"), command.directory / "f.png")
+    panel, data = figures[0].axes[0], rs.open(command.directory / "a.h5")
+    band = next(each for each in panel.collections if isinstance(each, PolyCollection))
+    beats = data.frequency_hz.sel(pressure_over_flutter=[1.1, 1.3])
+    ends = band.get_paths()[0].vertices[:, 1]
+    assert (ends.min(), ends.max()) == (beats.min().item(), beats.max().item())
+    assert panel.lines[0].get_ydata() == pytest.approx(data.frequency_hz.sel(drag=0), nan_ok=True)
+    words = {text.get_text() for text in figures[0].legends[0].get_texts()}
+    assert "range of drag (line: likeliest)" in words
+
+
+def test_drags_are_words_in_tables_and_in_sections(command):
+    command.write("a.yaml", OVER_LOADS)
+    assert command("run", "a.yaml").returncode == 0
+    assert command("export", "a.h5", "--columns", "drag,length").returncode == 0
+    lines = (command.directory / "a.csv").read_text().splitlines()
+    assert set(lines[1:]) == {"likeliest,0.1", "most,0.1", "likeliest,0.14", "most,0.14"}
+    assert command("plot", "a.h5", "-o", "a.png", "--at", "drag=most").returncode == 0
+    refused = command("plot", "a.h5", "-o", "b.png", "--at", "drag=least")
+    assert refused.returncode == 2 and "no point there" in refused.stderr
+    assert "is none of likeliest, least," in command("plot", "a.h5", "-o", "b.png", "--at", "drag=x").stderr
+
+
+@pytest.mark.parametrize("task", ["thresholds", "limit_cycle"])
+def test_a_rod_of_several_points_is_solved_once(task):
+    """Along modulus and viscosity the rods are the same bits where the load is relative, or not there."""
+    load = {"pressure": ["1.1 of flutter", "1.2 of flutter"]} if task == "limit_cycle" else {}
+    more = QUICK | {"start": "neighbour"} if load else {"crossings": 4}
+    arm = SILICONE | {"young": ["50 kPa", "70 kPa", "100 kPa"], "viscosity": ["20 Pa s", "33 Pa s"]}
+    data = rs.sweep(task, arm=arm | load, **more)
+    assert (data.seconds > 0).sum() == (2 if load else 1)
+    alone = rs.sweep(task, arm=SILICONE | {"viscosity": "33 Pa s"} | load, **more)
+    for name in ("frequency_hz", "tip_y_max_si") if load else ("pressure_hopf", "frequency_hopf_hz"):
+        shared = data[name].sel(young=1e5, viscosity=33)
+        assert np.array_equal(shared.values.ravel(), alone[name].values.ravel())
+
+
+def test_points_of_different_rods_are_told_apart():
+    lengths = SILICONE | {"length": ["10 cm", "14 cm"]}
+    points = [
+        job_from(tree_of("thresholds", {"arm": arm})).points
+        for arm in (lengths | {"viscosity": ["20 Pa s", "30 Pa s"]}, lengths)
+    ]
+    assert np.diff(same_rods(points[0])).astype(bool).tolist() == [False, True, False]
+    assert same_rods(points[1]) is None
+
+
+def test_a_load_that_crushes_the_arm_at_some_points_only_is_no_refusal(command):
+    soft = SILICONE | {"young": "1 kPa"}
+    loads = ["5 Pa", "9 Pa", "1 kPa", "2 kPa"]
+    data = rs.sweep("spectrum", arm=soft | {"pressure": loads}, modes=2)
+    assert data.growth_rate.dims[0] == "F"
+    assert data.status.values.ravel().tolist() == [0, 0, CRUSHED, CRUSHED]
+    assert np.isfinite(data.growth_rate.values.reshape(4, 2)[:2]).all()
+    with pytest.raises(rs.InputError, match="compresses the arm to nothing"):
+        rs.sweep("spectrum", arm=soft | {"pressure": loads[2:]}, modes=2)
+
+
+def test_check_says_which_units_it_took_and_warns_of_thin_walls(command):
+    def told(length, bore):
+        arm = f"length: {length}, radius: 5 mm, inner_radius: {bore}, young: 100 kPa, viscosity: 20 Pa s"
+        command.write("a.yaml", f"task: thresholds\nparameters: {{arm: {{{arm}}}}}\n")
+        return command("check", "a.yaml").stdout
+
+    bare = told(15, "3 mm")
+    assert "the arm: length 15 m, young 100 kPa, radius 5 mm" in bare
+    assert "(length without a unit: SI)" in bare
+    assert "warning: Wall" not in bare
+    thin = told("15 cm", "[3 mm, 4.8 mm]")
+    assert "without a unit" not in thin
+    assert "warning: Wall: as the tip moves by half the length" in thin
+    assert "the worst of 2 tubes" in thin
+
+
+def test_a_tube_flattens_as_brazier_found():
+    """The largest moment of M = E pi r^3 t kappa (1 - loss) is 2 sqrt(2)/9 pi E r t^2/sqrt(1 - nu^2)."""
+    r, t, nu = 10.0, 0.01, 0.3
+    bend = np.linspace(0, 2e-3, 200001)[1:] / r  # curvatures up to beyond the maximum
+    loss = wall_effect(WIDE_CURVATURE * HALF_LENGTH / bend, r + t / 2, r - t / 2, nu).value
+    moment = np.pi * r**3 * t * bend * (1 - loss)
+    assert moment.max() == pytest.approx(2 * np.sqrt(2) / 9 * np.pi * r * t**2 / np.sqrt(1 - nu**2), rel=1e-6)
+    report = str(rs.Arm(**SILICONE, inner_radius="3.6 mm").report())
+    assert "warning: Wall: as the tip moves by half the length" in report
+    assert "Wall:" not in str(rs.Arm(**SILICONE).report())
+
+
+def test_check_of_a_relative_load_and_of_a_tube_starts_no_petsc(tmp_path):
+    """As on a login node; on several ranks the first one alone makes the points."""
+    tube = OVER_LOADS.replace("radius: 4 mm", "radius: 4 mm\n    inner_radius: 2 mm")
+    (tmp_path / "a.yaml").write_text(tube, encoding="utf-8")
+    code = (
+        "import sys\nfrom pathlib import Path\nfrom rodsweep.cli.checking import describe_job\n"
+        "from rodsweep.tasks.job import make_job\ndescribe_job(make_job(Path(sys.argv[1]), ()))\n"
+        "print([m for m in ('mpi4py.MPI', 'petsc4py', 'slepc4py') if m in sys.modules])"
+    )
+    argv = [sys.executable, "-c", code, str(tmp_path / "a.yaml")]
+    assert subprocess.run(argv, capture_output=True, text=True, check=True).stdout.endswith("[]\n")
