@@ -37,6 +37,7 @@ from .from_motion import stressed
 from .limit_cycle import Cycle, CyclePoint, CycleRequest, first_of, motion_wave, near_rod
 from .measures import CyclePath, measures_of
 from .orbit import Orbit, node_times
+from .symmetry import NONE
 from .transient import (
     LONGEST_ORBIT,
     STEPS_PER_CHUNK,
@@ -167,10 +168,8 @@ class _Marching:
         self.resolution = replace(self.resolution, order=self.resolution.order + MORE_ORDERS)
         self.scheme = replace(self.scheme, tolerance=TIGHTER * self.scheme.tolerance)
         self.beam = self._beam()
-        stresses = (settled.z.reshape(3, -1) / before.roots[:, None]) @ before.mesh.evaluation(
-            self.beam.mesh.positions
-        )[:, :-1].T
-        z = (stresses[:, :-1] * self.beam.roots[:, None]).ravel()
+        stresses = before.stresses(settled.z) @ before.mesh.evaluation(self.beam.mesh.positions).T
+        z = self.beam.scaled(stresses)
         return self._settled(relaxed(self.beam, z, self.mode.period))
 
     def _settled(self, z: Array) -> _Settled:
@@ -183,7 +182,7 @@ class _Marching:
             run = self._run(z, 3 * CHUNK * self.mode.period, step, _returns(row, z, CHUNK))
             z, step = run.states[-1], float(run.times[-1] - run.times[-2])
             states = self._crossings(run)[1]
-            past.extend(states[:, 2 * self.beam.mesh.nodes :])
+            past.extend(self.beam.layout.field(states, "m3"))
             self.waited += max(len(states), 1)
             if self.mode.w.real < 0 and np.linalg.norm(z) < STRAIGHT_SIZE:
                 raise _Ended(MarchedStatus.straight, "decayed to rounding")
@@ -219,7 +218,7 @@ class _Marching:
         to from the step before it.
         """
         row, times = angle_weights(self.beam), section_crossings(self.beam, run)[0]
-        states = np.empty((len(times), self.beam.mesh.unknowns))
+        states = np.empty((len(times), self.beam.unknowns))
         for i, rough in enumerate(times):
             before = int(np.searchsorted(run.times, rough, side="right")) - 1
             left = float(rough - run.times[before])
@@ -241,7 +240,7 @@ class _Marching:
         spline = CubicSpline(run.times, run.states)
         states = spline(times[0] + period * node_times(INTERVALS * settled.turns, STAGES))
         form = StressForm(self.rod, self.gamma1, self.beam.mesh)
-        return CyclePath(Orbit.of(form, False, period, stressed(self.beam, form, states), STAGES))
+        return CyclePath(Orbit.of(form, NONE, period, stressed(self.beam, form, states), STAGES))
 
     def _errors_of_the_limit(self, settled: _Settled, path: CyclePath, errors: CycleErrors) -> CycleErrors:
         """The errors with what the rod is off by that stands for a limit; raises _Ended."""
