@@ -5,7 +5,7 @@ Forces are told as the load of the arm is given, as a pressure or a force, and f
 
 import json
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -14,7 +14,8 @@ from ...results.file.view import View
 from ...results.layouts import LAYOUTS
 from ...results.layouts.arm import FORCES, HERTZ, twins_of
 from ..hopf_points import Located
-from .ranges import span
+from .errors import errors_of
+from .ranges import rounded, span
 
 WIDTH = 80
 """Columns of a line in SI units."""
@@ -29,13 +30,15 @@ def arm_lines(view: View, done: np.ndarray) -> list[str]:
     if not view.quantities:
         return []
     config = json.loads(view.attributes["config_resolved"])
-    told = []
-    for variable in twins_of(LAYOUTS[view.task](config), config):
-        values = view.variables[variable.name][done]
+    v, told = view.variables, []
+    for own, variable in twins_of(LAYOUTS[view.task](config), config).items():
+        values = v[variable.name][done]
         name = variable.name.removesuffix("_si").removesuffix("_hz")
         told_here = variable.extra != ("crossing",) if done.size == 1 else not variable.extra
-        if told_here and np.isfinite(values).any():
-            told.append(f"{name} = {in_unit(values, variable.units)}")
+        if told_here and "error" not in name and np.isfinite(values).any():
+            told.append(
+                f"{name} = {in_unit(values, variable.units, errors_in_si(v, own, variable.name)[done])}"
+            )
     return ["in SI units:", *wrapped("; ".join(item.replace(" ", "\xa0") for item in told))] if told else []
 
 
@@ -52,14 +55,25 @@ def wrapped(text: str) -> list[str]:
     return [line.replace("\xa0", " ") for line in lines]
 
 
-def in_unit(values: np.ndarray, unit: str) -> str:
-    """Values in an SI unit, of any shape, as words: one by one where they are few, else their range."""
-    finite = values[np.isfinite(values)]
+def errors_in_si(v: Mapping[str, np.ndarray], own: str, twin: str) -> np.ndarray:
+    """The absolute errors of what stands under the name `twin` in an SI unit too, in it, of its shape."""
+    scale = np.divide(v[twin], v[own], out=np.zeros_like(v[twin]), where=np.asarray(v[own]) != 0)
+    return np.asarray(np.abs(scale) * errors_of(v, own))
+
+
+def in_unit(values: np.ndarray, unit: str, errors: np.ndarray | None = None) -> str:
+    """Values in an SI unit, of any shape, as words: one by one where they are few, else their range.
+
+    errors: absolute ones, of the same shape, which leave out digits that are not known.
+    """
+    there = np.isfinite(values)
+    finite, known = values[there], np.zeros(int(there.sum())) if errors is None else errors[there]
     if unit in PREFIXED and finite.size:
         factor, unit = compact(float(np.abs(finite).max()), unit)
-        finite = finite * factor
+        finite, known = finite * factor, known * factor
     few = values.ndim > 1 and 1 < finite.size <= ITEMS_FEW
-    return f"{', '.join(f'{value:.6g}' for value in finite) if few else span(finite)} {unit}"
+    each = ", ".join(map(rounded, finite, np.nan_to_num(known))) if few else span(finite, known)
+    return f"{each} {unit}"
 
 
 def loads_at(view: View, F: np.ndarray, points: np.ndarray) -> str:

@@ -14,11 +14,15 @@ from ...results.file.view import View
 from ...results.layouts.arm import EFFECTS, FORCES, VALIDITY
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import some_of
+from .arm import errors_in_si
+from .ranges import rounded
 
 OF_PRESSURE = ("pressure", "young")
 """Whose unit a pressure is told in: the first that was typed."""
 
 
+DIGITS = 3
+"""Digits of an answer, where its error leaves so many."""
 OTHER_PLANE = (
     "the motion is in the plane of the height; where that is above the width, the arm flutters first in the "
     "other plane, at a lower load: exchange width and height to see it"
@@ -73,11 +77,17 @@ def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str
     return f"the model {verb}{at}{when}: {name} is {'up to ' * (there.sum() > 1)}{size} times its limit"
 
 
-def spanned(view: View, values: np.ndarray, si: str, *typed: str) -> str:
-    """The range of values in an SI unit, of any shape, in the unit in which the first quantity was typed."""
+def spanned(view: View, values: np.ndarray, si: str, *typed: str, errors: np.ndarray | float = 0.0) -> str:
+    """The range of values in an SI unit, of any shape, in the unit in which the first quantity was typed.
+
+    errors: absolute ones, of the same shape; three digits are told where they are known.
+    """
     unit = next((view.typed[name] for name in typed if name in view.typed), si)
-    finite = values[np.isfinite(values)]
-    low, high = (f"{written_in(float(end), unit, si):.3g}" for end in (finite.min(), finite.max()))
+    there = np.isfinite(values)
+    finite, known = values[there], np.broadcast_to(errors, values.shape)[there]
+    ends = (int(finite.argmin()), int(finite.argmax()))
+    pairs = ((written_in(float(some[i]), unit, si) for some in (finite, known)) for i in ends)
+    low, high = (rounded(value, error, DIGITS) for value, error in pairs)
     return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
 
 
@@ -117,13 +127,16 @@ def _flutter(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarra
 
 
 def _of_cycles(view: View, rods: np.ndarray) -> list[str]:
-    v = {name: view.variables[name][rods] for name in ("frequency_hz", "tip_y_max_si")}
+    names = {"frequency_hz": "frequency", "tip_y_max_si": "tip_y_max"}
+    v = {name: view.variables[name][rods] for name in names}
+    errors = {name: errors_in_si(view.variables, own, name)[rods] for name, own in names.items()}
     there = np.isfinite(v["frequency_hz"])
     if not there.any():
         return ["does not beat"]
     of = f" at {int(there.sum())} of {len(there)} points" if len(there) > 1 else ""
-    wide = spanned(view, v["tip_y_max_si"][there], "m", "length")
-    return [f"beats{of} at {spanned(view, v['frequency_hz'], 'Hz')}, its tip by {wide} to either side"]
+    wide = spanned(view, v["tip_y_max_si"], "m", "length", errors=errors["tip_y_max_si"])
+    rate = spanned(view, v["frequency_hz"], "Hz", errors=errors["frequency_hz"])
+    return [f"beats{of} at {rate}, its tip by {wide} to either side"]
 
 
 def _of_modes(view: View, rods: np.ndarray) -> list[str]:
@@ -140,7 +153,8 @@ def _of_branches(view: View, rods: np.ndarray) -> list[str]:
     if not np.isfinite(loads).any():
         return ["does not beat"]
     frequency = 1 / view.variables["period_si"][rods]
-    return [f"beats at {load_spanned(view, loads)}, at {spanned(view, frequency, 'Hz')}"]
+    errors = frequency * view.variables["period_error"][rods]
+    return [f"beats at {load_spanned(view, loads)}, at {spanned(view, frequency, 'Hz', errors=errors)}"]
 
 
 def _of_diagram(view: View, rods: np.ndarray) -> list[str]:
