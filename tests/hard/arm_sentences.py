@@ -182,7 +182,8 @@ def _threshold_in_si(view, page, line, before, scales):
         pairs = []
         for path in lines_over(view, "F"):
             rod = Rod(float(path.x.min()), *(path.parameters[n] for n in ("k1", "k2", "gamma3")))
-            for c in changes_along(rod, "F", float(path.x.min()), float(path.x.max())):
+            low = 0.0 if view.task == "limit_cycle" else float(path.x.min())
+            for c in changes_along(rod, "F", low, float(path.x.max())):
                 after = {"hopf": 2, "restabilization": 0}.get(kind, c.unstable_after)
                 if c.kind.name == kind and c.unstable_after == after:
                     pairs += [(c.at * to_load[i], c.frequency * to_hertz[i]) for i in path.at]
@@ -467,10 +468,10 @@ class ArmTruth:
         """Why a load is not on the side of flutter, or not as far from it, as the verdict says."""
         F, low, high = self.F, np.nanmin(hopf, initial=inf), np.nanmax(hopf, initial=-inf)
         for _, match in read(
-            page, r"(?:is|would be) (\d[\d.e+-]*(?: to \d[\d.e+-]*)?)( %|) ?(below|above|times)", only=line
+            page, r"(?:is|would be) RANGE( %|) (below|above|times|) ?(?:flutter|that threshold)", only=line
         ):
             text, _, word = match.groups()
-            if word == "times":
+            if word not in ("below", "above"):
                 true = np.array([F / high, F / low])
             else:
                 true = 100 * (np.array([F / high, F / low]) - 1) * (1 if word == "above" else -1)
@@ -507,7 +508,7 @@ class ArmTruth:
             why = "" if abs(true / float(match[1]) - 1) < 2 * TWO_DIGITS else f"it is {true} times"
             found.append((line, why or self._no_remedy(match[1], -1, "viscosity")))
         for line, match in read(page, r"at most NUMBER times as thick"):
-            found.append((line, self._no_remedy(match[1], 1, *(side for side in SIDES if side in self.q))))
+            found.append((line, self._no_remedy(match[1], 2, *(side for side in SIDES if side in self.q))))
         for line, match in read(page, rf"a (?:load|pull) of at most NUMBER ({UNIT}) "):
             F = float(match[1]) * UNITS[match[2]] / self.unit
             excess = abs(F) / self.own["k1"] / 0.1
@@ -534,7 +535,7 @@ class ArmTruth:
         return found
 
     def _no_remedy(self, factor, towards, *names):
-        """Why a factor of quantities does not bring inertia within its limit, or a digit less would do too."""
+        """Why a factor of quantities does not bring inertia within its limit, or less would do too: `towards` units of its last digit."""
         digit = 10.0 ** (floor(log10(float(factor))) - 1)
         within = [
             self._inertia(self.q | {name: by * self.q[name] for name in names})

@@ -54,6 +54,7 @@ def changes_of(view, name):
     found = []
     for line in lines_over(view, name):
         low, high = float(line.x.min()), float(line.x.max())
+        low = min(low, 0.0) if name == "F" and view.task == "limit_cycle" and low < high else low
         rod = Rod(**{n: line.parameters.get(n, low) for n in LINEAR_PARAMETERS})
         for crossing in changes_along(rod, name, low, high) if low < high else ():
             kind, after = crossing.kind.name, crossing.unstable_after

@@ -56,7 +56,7 @@ def _stability(view: View) -> list[str]:
     names = [name for name in LINEAR_PARAMETERS if name in varied(view)]
     lines = []
     for name in names[:1] if "F" in names else names:
-        lines += stability_lines(view, name, StoredHopfPoints(view, name).on)
+        lines += stability_lines(view, name, StoredHopfPoints(view, name).up_to)
     return lines
 
 
