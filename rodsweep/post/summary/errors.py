@@ -35,6 +35,8 @@ ABSOLUTE = {
 """Variables whose error is stored in their unit; `frequency` is one of these where there is no period."""
 EXTREMA = ("tip_x_min", "tip_x_max", "tip_y_min", "tip_theta_max", "least_stretch")
 """Variables of a cycle whose error is stored in units of tip_y_max."""
+BETWEEN_NODES = 1e-3
+"""How much more than at the nodes a rod may be stretched between them, in units of the largest strain h1 - 1."""
 POWERS = ("injection_mean", "injection_rms", "dissipation_mean", "dissipation_rms")
 OF_THE_STRAIGHT_ROD = ("linear_growth_rate", "linear_frequency")
 
@@ -52,7 +54,8 @@ def _errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     if name in POWERS and "amplitude_error" in v:
         return values * power_error(v, fluctuation=name.endswith("rms"))
     if name in EXTREMA and "extrema_error" in v:
-        return v["extrema_error"] * v["tip_y_max"]
+        beside = BETWEEN_NODES * np.abs(1 - v[name]) if name == "least_stretch" else 0.0
+        return v["extrema_error"] * v["tip_y_max"] + beside
     if name == "transient_time" and "growth_error" in v:
         return values * np.sqrt(v["growth_error"])  # next to its flat maximum the growth falls quadratically
     if RELATIVE.get(name, "") in v:
@@ -63,7 +66,7 @@ def _errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
 def power_error(v: Mapping[str, np.ndarray], fluctuation: bool = False) -> np.ndarray:
     """Relative error of a power of a cycle, of any shape: its mean goes with the amplitude's square."""
     mean = 2 * v["amplitude_error"] + v["period_error"] + np.abs(v["energy_imbalance"])
-    return mean + v["extrema_error"] if fluctuation else mean
+    return mean + 2 * v["extrema_error"] if fluctuation else mean
 
 
 def span_of(v: Mapping[str, np.ndarray], name: str, there: np.ndarray) -> str:
