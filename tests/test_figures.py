@@ -16,9 +16,9 @@ from rodsweep.cli.tasks import TASKS
 from rodsweep.errors import InputError
 from rodsweep.post.figures import FIGURES, draw
 from rodsweep.post.figures.class_bars import CLASS_COLOURS
+from rodsweep.post.figures.diagram_curves import mark_cycles_on_rows
 from rodsweep.post.figures.regions import PIXELS, ClassedPlaces, coloured
 from rodsweep.post.figures.request import Look
-from rodsweep.post.figures.diagram_curves import mark_cycles_on_rows
 from rodsweep.post.figures.row_classes import class_along_row
 from rodsweep.post.figures.sections import section
 from rodsweep.post.figures.spectra.line import broken, followed_roots, mark_thresholds
@@ -103,7 +103,7 @@ def test_few_values_of_a_parameter_have_a_panel_each_with_its_own_thresholds(com
     titles = [" ".join(axes.get_title(loc="left").split()) for axes in drawn[0].axes]
     assert len(titles) == 2
     assert "= 49.7580" in titles[0]
-    assert "restabilization = 155.600" in titles[0]
+    assert "restabilization =\N{NO-BREAK SPACE}155.600" in titles[0]
     assert "= 37.6560" in titles[1]
     assert "restabilization" not in titles[1]
 

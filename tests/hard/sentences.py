@@ -635,7 +635,7 @@ def diagram_sentences(view, page, keywords, fine):
         rod = Rod(0.0, **(fixed | {row: float(value)}))
         stop = min(float(values[-1]), rod.k1 * SHORT_OF_CRUSHED)
         every.append(changes_along(rod, "F", float(values[0]), stop))
-        table.append([_class_of(replace(rod, F=float(F))) if F < rod.k1 else "crushed" for F in values])
+        table.append([_class_of(replace(rod, F=float(F))) if rod.k1 > F else "crushed" for F in values])
     table = np.array(table)
     found = _search_sentences(view, page, every, "row")
     found += counts(page, "^of NUMBER places on the rows", table.size)
