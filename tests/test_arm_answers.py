@@ -86,7 +86,7 @@ def test_a_relative_load_is_resolved_for_sweeps_too():
 
 
 def test_no_digit_in_si_units_is_told_that_is_not_known():
-    """The period to 1e-4 has no six digits in seconds; to its own accuracy another solution has the same ones."""
+    """The period to 1e-4 has no six digits in seconds; those that it has are those of a finer solution."""
     arm = {
         "length": "15 cm",
         "radius": "5 mm",

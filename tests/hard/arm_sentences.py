@@ -1,7 +1,7 @@
 """What is said of arms in SI units, on the page of `show` and in the report of `rodsweep arm`.
 
-Scales are computed here anew from the quantities of the arm: section, drag of a slender cylinder (Cox 1970, Gray
-and Hancock 1955, Lighthill 1976), k3/L^2 and tau2. Thresholds are those of the covering for every drag.
+Scales are computed here anew from the quantities of the arm: section, drag of a slender cylinder (Cox 1970,
+Gray and Hancock 1955, Lighthill 1976), k3/L^2 and tau2. Thresholds are those of the covering for every drag.
 """
 
 import re
@@ -62,7 +62,7 @@ def _cm(metres):
     return f"{100 * metres:.4g} cm"
 
 
-# --- scales ---------------------------------------------------------------------------------------------------
+# --- scales ---
 
 
 def section_of(q):
@@ -86,7 +86,7 @@ def drags_of(q):
 
 
 def scales_of(q):
-    """Units of an arm whose quantities are numbers in SI: tau2 in s, force_scale in N, pressure_scale in Pa."""
+    """Units of an arm whose quantities are numbers in SI: tau2, force_scale, pressure_scale, length."""
     _, moment, face, *_ = section_of(q)
     force = q["young"] * moment / q["length"] ** 2
     tau2 = drags_of(q)[0][1] * q["length"] ** 4 / (q["young"] * moment)
@@ -114,7 +114,7 @@ def force_unit(view):
     return "force_scale" if "force" in view.quantities else "pressure_scale"
 
 
-# --- the page of a sweep ---------------------------------------------------------------------------------------
+# --- the page of a sweep ---
 
 
 def arm_sentences(view, page, fine):
@@ -296,7 +296,8 @@ def _validity_line(view, page, fine):
     found, count = [], len(excess)
     for line, match in read(
         page,
-        r"^the model (does not apply|is doubtful)(?: at (?:all )?NUMBER (?:of NUMBER )?points?)?: .* is (?:up to )?NUMBER times its limit$",
+        r"^the model (does not apply|is doubtful)(?: at (?:all )?NUMBER (?:of NUMBER )?points?)?"
+        r": .* is (?:up to )?NUMBER times its limit$",
     ):
         worst = max(applies)
         there = np.array(applies) == worst
@@ -340,7 +341,7 @@ def _motion(view, fine, i, arm):
     return moving[0] if len(moving) else np.nan, float(columns["F"][i]), HALF_LENGTH, False
 
 
-# --- the report of `rodsweep arm` ------------------------------------------------------------------------------
+# --- the report of `rodsweep arm` ---
 
 
 def random_report(index):
@@ -395,7 +396,7 @@ class ArmTruth:
 
     @staticmethod
     def _flutter(q):
-        """Changes of an arm with every drag: F of the first of each kind, frequency in Hz, unstable ranges."""
+        """Changes of an arm with every drag: F of the first of each kind, frequency in Hz."""
         A, moment, *_ = section_of(q)
         k3, length = q["young"] * moment, q["length"]
         k1 = q["young"] * A * length**2 / k3
@@ -452,7 +453,8 @@ class ArmTruth:
                 self._loads(self.other["hopf"], unit),
             )
             told(
-                rf"^In the plane of its \w+ there \w+ ?\w* no flutter (?:before it is crushed at|up to) {value}",
+                rf"^In the plane of its \w+ there \w+ ?\w* no flutter "
+                rf"(?:before it is crushed at|up to) {value}",
                 [self.other["end"] * unit],
             )
         for line in page:
@@ -523,7 +525,8 @@ class ArmTruth:
             true = float(match[3]) * self.own["hopf"][0] * self.unit / UNITS[match[2]]
             found.append((line, as_stated(match[1], true)))
         load = re.compile(
-            rf"({NUMBER}) ({UNIT}) (?:is|lies|would|does)\b|(?:at|straight at) ({NUMBER}) ({UNIT})(?=[:.])|; ({NUMBER}) ({UNIT}) (?:is|does) not"
+            rf"({NUMBER}) ({UNIT}) (?:is|lies|would|does)\b|(?:at|straight at) ({NUMBER}) ({UNIT})(?=[:.])"
+            rf"|; ({NUMBER}) ({UNIT}) (?:is|does) not"
         )
         for line in page:
             for match in load.finditer(line) if self.F is not None else ():
@@ -535,7 +538,7 @@ class ArmTruth:
         return found
 
     def _no_remedy(self, factor, towards, *names):
-        """Why a factor of quantities does not bring inertia within its limit, or less would do too: `towards` units of its last digit."""
+        """Why a factor does not bring inertia within its limit, or `towards` digits less would, too."""
         digit = 10.0 ** (floor(log10(float(factor))) - 1)
         within = [
             self._inertia(self.q | {name: by * self.q[name] for name in names})

@@ -234,7 +234,7 @@ def _grid(view, page, fine, own, true):
     )
     stored = view.variables
     sizes = [stored[name][np.isfinite(stored[name])] for name in ("period", "tip_y_max")]
-    # Cycles of another branch are at other places: what is stored is held against the finer branch one by one.
+    # The cycles of a finer branch are at other places.
     found += ranges(page, "cycles: period RANGE tau2, largest tip y RANGE L", *sizes)
     specials = [
         (rod, s)

@@ -98,7 +98,7 @@ def page_of(view):
 
 
 def read(page, pattern, only=None):
-    """(line, match) of every line with a pattern, in which RANGE and NUMBER stand for theirs; or of one line."""
+    """(line, match) of every line, or of one, with a pattern in which RANGE and NUMBER stand for theirs."""
     number = f"({NUMBER}(?: to {NUMBER})?|none)"
     whole = re.compile(pattern.replace("RANGE", number).replace("NUMBER", f"({NUMBER})"))
     found = [(line, match) for line in (page if only is None else [only]) for match in whole.finditer(line)]

@@ -1,9 +1,9 @@
 """Sweeps of random rods and arms, the page that `show` prints of each, and the same numbers from the solvers.
 
 With an error beside it a number must lie within it of the true one; an end of a range within one unit of its
-last digit, half for its error, half for rounding. True numbers of motions, branches and normal forms are those
-of a far smaller accuracy asked for; those of spectra and thresholds come from eigenvalues on both sides of a
-stated place, which share no code with the covering. What is said in SI units is converted here anew.
+last digit, half for its error, half for rounding. True numbers of motions, branches and normal forms are
+those of a far smaller accuracy asked for; those of spectra and thresholds come from eigenvalues on both sides
+of a stated place, which share no code with the covering. What is said in SI units is converted here anew.
 """
 
 import re
@@ -60,7 +60,7 @@ FOLD_BESIDE, FOLD_WIDTH = 1e-5, 0.05
 
 
 def random_sweep(index):
-    """(task, keywords of `rs.sweep`) of that number, whatever others are asked for: rods, every third an arm."""
+    """(task, keywords of `rs.sweep`) of that number, whatever others are asked for; some are of arms."""
     random = np.random.default_rng([33, index])
     task = TASKS[index % len(TASKS)]
     count = 1 if random.random() < 0.3 else int(random.integers(2, 4))
@@ -156,7 +156,7 @@ def solved(task, keywords):
 
 
 def wrong_sentences(task, keywords):
-    """(the lines of a sweep with a wrong number or one that nothing reads, with what is wrong; numbers read)."""
+    """(lines with a wrong number or one that nothing reads, with what is wrong; how many were read)."""
     view = solved(task, keywords)
     page = page_of(view)
     followed = "branch" if keywords.get("cycles") else task
@@ -337,7 +337,8 @@ def thresholds_sentences(view, page, keywords, _):
         )
         there = int(np.isfinite(F).sum())
         place = r"(?: \(([^)]*)\))?"
-        pattern = rf"^{start}.*: F = NUMBER{place}(?: to NUMBER{place})?, at (?:all|NUMBER of) NUMBER rods?; {noun} RANGE"
+        pattern = rf"^{start}.*: F = NUMBER{place}(?: to NUMBER{place})?"
+        pattern += rf", at (?:all|NUMBER of) NUMBER rods?; {noun} RANGE"
         for line, match in read(page, pattern):
             low, high = match[1], match[3] or match[1]
             why = [range_as_stated(low if low == high else f"{low} to {high}", F)]
@@ -360,7 +361,8 @@ def _monotony(view, page, kind, F):
     shape = view.variables["status"].shape
     for line, match in read(
         page,
-        rf"^F_{kind} rises with (1/)?(\w+) on NUMBER of NUMBER lines?(?:, falls on NUMBER)?(?:, does both on NUMBER)?",
+        rf"^F_{kind} rises with (1/)?(\w+) on NUMBER of NUMBER lines?"
+        r"(?:, falls on NUMBER)?(?:, does both on NUMBER)?",
     ):
         axis = list(view.axes).index(match[2])
         along = np.moveaxis(F.reshape(shape), axis, -1).reshape(-1, shape[axis])
@@ -399,7 +401,7 @@ def _crossing_sentences(rod, crossings, page):
 
 
 def _search_sentences(view, page, every, noun):
-    """How far was searched, how many crossings are stored, and how accurate these are; every: the true ones."""
+    """How far was searched, how many crossings are stored, how accurate these are; every: the true ones."""
     v, rods = view.variables, len(every)
     proved = int(v["certified"].sum())
     found = counts(page, rf"^that no crossing is missing is proved on NUMBER of NUMBER {noun}", proved, rods)
@@ -458,10 +460,9 @@ def criticality_sentences(view, page, keywords, fine):
             found += counts(page, rf"^{words}: .*?NUMBER {word}", (sides == side).sum())
     both = {n: relative(own[n], v[n]) for n in ("amplitude_coefficient", "frequency_slope")}
     both |= {
-        n: float(np.nanmax(np.abs(own[f"{n}_real"] - v[f"{n}_real"] + 1j * (own[f"{n}_imag"] - v[f"{n}_imag"]))
-                           / np.abs(v[f"{n}_real"] + 1j * v[f"{n}_imag"]), initial=0))
+        n: float(np.nanmax(np.abs(_complex(own, n) - _complex(v, n)) / np.abs(_complex(v, n)), initial=0))
         for n in ("landau", "growth_slope")
-    }  # fmt: skip
+    }
     worst = (both["landau"], both["growth_slope"], both["amplitude_coefficient"], both["frequency_slope"])
     found += at_most(page, "worst relative errors: c NUMBER, dw/dF NUMBER, a NUMBER, b NUMBER", *worst)
     side = v["criticality"].reshape(-1, extent)
@@ -479,6 +480,10 @@ def criticality_sentences(view, page, keywords, fine):
             why += [] if side[rod, int(i) - 1] == 1 else ["it is not subcritical"]
         found.append((line, "; ".join(filter(None, why))))
     return found
+
+
+def _complex(v, name):
+    return v[f"{name}_real"] + 1j * v[f"{name}_imag"]
 
 
 def _normal_forms(page, v):
@@ -561,8 +566,8 @@ def cycle_sentences(view, page, keywords, fine):
                 found.append((line, "" if above == ("above" in line) else "the verdict is the other"))
                 read(page, "all others are below NUMBER|it is above NUMBER", only=line)
     if beats.any():
-        found += _sizes(page, {name: v[name][beats] for name in v if v[name].shape[: len(shape)] == shape},
-                        {name: own[name][beats] for name in v if v[name].shape[: len(shape)] == shape})  # fmt: skip
+        of_points = [name for name in v if v[name].shape[: len(shape)] == shape]
+        found += _sizes(page, *({name: some[name][beats] for name in of_points} for some in (v, own)))
     return found + threshold_sentences(view, page)
 
 
@@ -588,7 +593,8 @@ def _sizes(page, v, own):
         0.0,
         float(np.nanmax(np.abs(own["multiplier"] - v["multiplier"]))),
     )
-    pattern = "^worst errors: period NUMBER, amplitude NUMBER, other extrema NUMBER, energy balance NUMBER, multiplier NUMBER"
+    pattern = "^worst errors: period NUMBER, amplitude NUMBER, other extrema NUMBER, energy balance NUMBER, "
+    pattern += "multiplier NUMBER"
     found += at_most(page, pattern, *worst)
     balance = float(np.nanmax(np.abs(own["injection_mean"] / own["dissipation_mean"] - 1)))
     return found + at_most(page, "energy balance NUMBER", balance)
@@ -675,12 +681,13 @@ def _class_of(rod):
 
 
 def _curve_sentences(view, page, row):
-    """The boundaries that are followed through the rows: their number, folds, and that they are boundaries."""
+    """The boundaries that are followed through rows: their number, folds, and that they are boundaries."""
     v = view.variables
     if "curve_number" not in v:
         return []
     kinds = [int(v["curve_kind"][v["curve_number"] == n][0]) for n in np.unique(v["curve_number"])]
-    for_line = "^curves: NUMBER of Hopf points, NUMBER of double eigenvalues; crossings on rows lie within NUMBER of them, over F; NUMBER lie"
+    for_line = "^curves: NUMBER of Hopf points, NUMBER of double eigenvalues; "
+    for_line += "crossings on rows lie within NUMBER of them, over F; NUMBER lie"
     found = []
     for line, match in read(page, for_line):
         told = [int(match[1]), int(match[2]), int(match[4])]
@@ -707,7 +714,8 @@ def _curve_sentences(view, page, row):
         )
     for line, match in read(
         page,
-        rf"^fold of the curve of (\w+ \w+), where (\w+) is extremal: {row} = NUMBER(?: \(\+- NUMBER\))?, F = NUMBER(?: \(\+- NUMBER\))?",
+        rf"^fold of the curve of (\w+ \w+), where (\w+) is extremal: "
+        rf"{row} = NUMBER(?: \(\+- NUMBER\))?, F = NUMBER(?: \(\+- NUMBER\))?",
     ):
         found.append((line, _fold(match, row, fixed, {row: float(match[3]), "F": float(match[5])})))
     if "partial_beam_k1" in v:
@@ -725,7 +733,8 @@ def _curve_sentences(view, page, row):
         found.append((line, _side_of_points(view, row, fixed)))
     for line, match in read(
         page,
-        rf"^generalised Hopf point \(Re c = 0\) on curve NUMBER: {row} = NUMBER \(\+- NUMBER\), F = NUMBER \(\+- NUMBER\)",
+        rf"^generalised Hopf point \(Re c = 0\) on curve NUMBER: "
+        rf"{row} = NUMBER \(\+- NUMBER\), F = NUMBER \(\+- NUMBER\)",
     ):
         found.append((line, _bautin(view, row, fixed, float(match[2]), float(match[4]))))
     return found
@@ -810,14 +819,17 @@ def _state_sentences(view, page, fine, row):
             )
     for line, match in read(
         page,
-        rf"^curve of (folds|torus points): from {row} = NUMBER, F = NUMBER \(\+- ({NUMBER})\) \([^)]*\) to {row} = NUMBER, F = NUMBER \(\+- ({NUMBER})\) \([^)]*\); NUMBER points?, largest error of F NUMBER",
+        rf"^curve of (folds|torus points): from {row} = NUMBER, F = NUMBER \(\+- ({NUMBER})\) \([^)]*\) "
+        rf"to {row} = NUMBER, F = NUMBER \(\+- ({NUMBER})\) \([^)]*\); NUMBER points?, "
+        "largest error of F NUMBER",
     ):
-        found.append((line, "; ".join(filter(None, (
-            _special_on_branch(view, row, match[1], float(match[2 + k]), match[3 + k], match[4 + k], fine) for k in (0, 3)
-        )))))  # fmt: skip
+        places = ((float(match[2 + k]), match[3 + k], match[4 + k]) for k in (0, 3))
+        why = (_special_on_branch(view, row, match[1], *place) for place in places)
+        found.append((line, "; ".join(filter(None, why))))
     for line, match in read(
         page,
-        "^curves of cycles: NUMBER; folds and torus points of rows lie within NUMBER of them, over F; NUMBER lie",
+        "^curves of cycles: NUMBER; folds and torus points of rows lie within NUMBER "
+        "of them, over F; NUMBER lie",
     ):
         true = (
             len(np.unique(view.variables["cycle_curve_number"])),
@@ -827,7 +839,7 @@ def _state_sentences(view, page, fine, row):
     return found
 
 
-def _special_on_branch(view, row, kind, value, F, error, fine):
+def _special_on_branch(view, row, kind, value, F, error):
     """Why a point of a curve of special points of cycles is none on the branch of its rod."""
     rod = {name: float(view.axes[name][0]) for name in view.parameters} | {row: value}
     rod["gamma1"] = float(view.attributes.get("gamma1", 1.0))

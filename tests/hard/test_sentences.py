@@ -1,7 +1,7 @@
-"""Every number on the page of `show` for sweeps of random rods and arms, and in reports on arms, against solvers.
+"""Every number on the page of `show` for random rods and arms, and in reports on arms, against the solvers.
 
-A number that nothing compares fails as well. The suite takes a few sweeps of each task, RODSWEEP_RODS as many as
-it says (`make survey`: 300).
+A number that nothing compares fails as well. The suite takes a few sweeps of each task, RODSWEEP_RODS as many
+as it says (`make survey`: 300).
 """
 
 import os
@@ -47,7 +47,7 @@ CYCLES = ("period", "tip_y_max", "frequency", "injection_mean", "multiplier", "l
 
 @pytest.mark.parametrize("name", CYCLES)
 def test_the_reader_finds_a_number_that_is_wrong(name, monkeypatch):
-    """A hundredth off, in what is solved to the accuracy of the sweep and not in what is solved far better."""
+    """A hundredth off, in what is solved to the accuracy of the sweep, not in what is solved far better."""
     true = solved
 
     def off(task, keywords):

@@ -36,7 +36,7 @@ ABSOLUTE = {
 EXTREMA = ("tip_x_min", "tip_x_max", "tip_y_min", "tip_theta_max", "least_stretch")
 """Variables of a cycle whose error is stored in units of tip_y_max."""
 BETWEEN_NODES = 1e-3
-"""How much more than at the nodes a rod may be stretched between them, in units of the largest strain h1 - 1."""
+"""How much less h1 may be between nodes than at them, in units of how far it is from 1."""
 POWERS = ("injection_mean", "injection_rms", "dissipation_mean", "dissipation_rms")
 OF_THE_STRAIGHT_ROD = ("linear_growth_rate", "linear_frequency")
 
