@@ -16,8 +16,6 @@ from pathlib import Path
 import numpy as np
 from pydantic.fields import FieldInfo
 
-from rodsweep.cli.arm_points import NoRod
-from rodsweep.cli.job import Job, make_job
 from rodsweep.config.arm import ArmSection
 from rodsweep.config.json_schema import meanings_of
 from rodsweep.config.phase_diagram import PhaseDiagramConfig
@@ -36,6 +34,8 @@ from rodsweep.results.layouts.phase_diagram import (
 )
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from rodsweep.results.layouts.variables import DIMENSIONS, MISSING, Variable
+from rodsweep.tasks.arm_points import NoRod
+from rodsweep.tasks.job import Job, make_job
 
 PAGE = Path(__file__).with_name("file-format.md")
 

@@ -18,27 +18,35 @@ ROOT = Path(__file__).parents[1]
 BIN = Path(sys.executable).parent
 
 LONGEST = (
-    "test_bad_files",
     "test_slurm",
-    "test_stress",
-    "test_bench_sweep",
+    "test_bad_files",
+    "test_figure_layout",
+    "test_joint",
     "test_paper",
+    "test_start",
+    "test_bad_input",
+    "test_bench_sweep",
     "test_run",
     "test_stop",
-    "test_branch",
-    "test_criticality",
-    "test_extend",
-    "test_start",
-    "test_branch_task",
-    "test_coexistence",
-    "test_bad_input",
-    "test_modes",
-    "test_cycle_figures",
+    "test_arm_grids",
     "test_stretches",
+    "test_branch_task",
+    "test_stress",
+    "test_interrupts",
+    "test_generalised_hopf",
     "test_peers_limit_cycle",
-    "test_cycles_task",
+    "test_cycle_figures",
+    "test_extend",
     "test_figures",
+    "test_cycles_task",
     "test_arm_sweeps",
+    "test_api",
+    "test_branch",
+    "test_coexistence",
+    "test_modes",
+    "test_compilation",
+    "test_arm_validity",
+    "test_hosts",
 )
 """Modules that take longest, begun first, so that no worker is left alone with one of them. Each stays on one
 worker of pytest-xdist (`--dist loadfile`), which makes what its tests share once."""
@@ -48,12 +56,14 @@ def pytest_configure(config):
     """Compiles the package: where bytecode is not written, each process that a test starts would do it.
 
     Before NumPy is loaded BLAS is given one core, as by the command: two workers' threads would compete.
+    Ranks that wait leave the core to others: a test next door has something to do.
     Where the tests were started in the background SIGINT is ignored, and all processes would inherit that.
     """
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
     for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
+    os.environ.setdefault("OMPI_MCA_mpi_yield_when_idle", "1")
     if not hasattr(config, "workerinput"):  # the workers of pytest-xdist come later
         compileall.compile_dir(ROOT / "rodsweep", quiet=2)
 

@@ -18,7 +18,7 @@ FLAGS = {-1: "missing", 0: "cycle", 1: "straight", 2: "not_settled", 3: "left_th
 UNSTABLE, TORUS = 5, 6
 MORE_FLAGS = FLAGS | {UNSTABLE: "unstable", TORUS: "torus"}
 PERIODS = {1.0: 0.034, 0.5: 0.026}
-SAMPLES, SHAPES = 64, 24
+SAMPLES, SHAPES = 64, 12
 
 
 def arm(phase, size):

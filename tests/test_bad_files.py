@@ -30,8 +30,8 @@ from faults.isolated import Isolated, Outcome
 from rodsweep.results.file.seal import seal
 
 MORE = int(os.environ.get("RODSWEEP_CASES", "1"))
-FILES, PAGES, CYCLE_PAGES = 8 * MORE, 8 * MORE, 3 * MORE
-"""Damaged files of each config and state, and damaged journals of each config."""
+FILES, PAGES, CYCLE_PAGES = 4 * MORE, 4 * MORE, 2 * MORE
+"""Damaged files of each config and state, and damaged journals of each: of every kind over two configs."""
 LONG = 30
 """Seconds of processor time: a run with limit cycles takes two."""
 
@@ -84,6 +84,12 @@ def shared(of, name, each):
     return [case for i, case in enumerate(of) if MORE > 1 or (place - i) % len(small.CONFIGS) < each]
 
 
+def kinds(name, count):
+    """So many kinds of damage in turn, at another one first for every other config."""
+    start = count * list(small.CONFIGS).index(name)
+    return [BYTES[(start + number) % len(BYTES)] for number in range(count)]
+
+
 @pytest.fixture(params=list(small.CONFIGS))
 def name(request):
     return request.param
@@ -124,8 +130,7 @@ LOOKS = (("show", "c.h5"), ("plot", "c.h5", "-o", "c.png"))
 def test_damaged_file_is_refused_and_left_as_it_is_or_repaired(results, tmp_path, name):
     complaints = []
     rng = Random(f"files {name}")
-    for number in range(FILES):
-        damage = BYTES[number % len(BYTES)]
+    for number, damage in enumerate(kinds(name, FILES)):
         data = damage((results.directory / f"{name}-whole.h5").read_bytes(), rng)
         half = damage((results.directory / f"{name}-half.h5").read_bytes(), rng)
         path = results.copied(name, "whole", tmp_path / "a")
@@ -143,10 +148,10 @@ def test_damaged_file_is_refused_and_left_as_it_is_or_repaired(results, tmp_path
 def test_damaged_journal_is_used_as_far_as_it_is_whole(results, tmp_path, name):
     complaints = []
     rng = Random(f"pages {name}")
-    for number in range(CYCLE_PAGES if name == "limit_cycle" else PAGES):
+    for number, damage in enumerate(kinds(name, CYCLE_PAGES if name == "limit_cycle" else PAGES)):
         path = results.copied(name, "half", tmp_path / "a")
         pages = sorted(page for page in Path(f"{path}.journal").iterdir() if page.stat().st_size)
-        page, damage = rng.choice(pages), BYTES[number % len(BYTES)]
+        page = rng.choice(pages)
         page.write_bytes(damage(page.read_bytes(), rng))
         shown = results.run(path.parent, "show", "c.h5")
         ended = results.run(path.parent, "run", "c.yaml", seconds=LONG)
@@ -227,7 +232,7 @@ SHOW, PLOT, RUN, MERGE = (*LOOKS, ("run", "c.yaml"), ("merge", "m.h5", "c.h5"))
 
 def test_result_that_another_program_made_unfit_is_refused(results, tmp_path, name):
     complaints = []
-    for edit, change in shared(MISFITS.items(), name, 2):
+    for edit, change in shared(MISFITS.items(), name, 1):
         path = changed(results, name, "whole", change, tmp_path / "a")
         before = path.read_bytes()
         complaints += tried(results, path, edit, [(words, {2}) for words in (SHOW, PLOT, RUN, MERGE)])

@@ -19,11 +19,11 @@ from faults.points import GOOD, bad_lists
 CONFIGS = sorted((ROOT / "configs").glob("*.yaml"))
 MORE = int(os.environ.get("RODSWEEP_CASES", "1"))
 DRAWN = {
-    "wrong values": (configs.wrong_values, 14),
-    "wrong overrides": (configs.wrong_overrides, 5),
-    "odd keys": (configs.odd_keys, 7),
-    "random trees": (configs.random_tree, 7),
-    "random texts": (configs.random_text, 7),
+    "wrong values": (configs.wrong_values, 6),
+    "wrong overrides": (configs.wrong_overrides, 3),
+    "odd keys": (configs.odd_keys, 3),
+    "random trees": (configs.random_tree, 3),
+    "random texts": (configs.random_text, 3),
 }
 """Kinds of which so many cases are drawn for each config."""
 SPREAD = {
@@ -103,8 +103,8 @@ def test_mutated_config_is_refused_in_one_sentence_or_valid(run, tmp_path, kind)
 
 def test_kinds_have_hundreds_of_cases_and_most_must_be_refused():
     cases = [case for kind in (*DRAWN, *SPREAD) for case in cases_of(kind)]
-    assert len(cases) > 600
-    assert sum(case.refused for case in cases) > 400
+    assert len(cases) > 500
+    assert sum(case.refused for case in cases) > 300
 
 
 @pytest.mark.parametrize("path", CONFIGS, ids=lambda path: path.stem)
@@ -200,8 +200,8 @@ def test_command_line_is_refused_in_one_short_sentence(run, tmp_path, words):
     assert (outcome.fault, outcome.status in (2, 3)) == ("", True)
 
 
-REAL = 2 * len([*DRAWN, *SPREAD])
-"""Cases that are given to the command itself: two of every kind, one to `check` and one to `run`."""
+REAL = len([*DRAWN, *SPREAD])
+"""Cases that are given to the command itself: one of every kind, in turn to `check` and to `run`."""
 MET_SOLVER = 99
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rodsweep.bench.sweep import followed
 from rodsweep.bench.sweep import study as sweep
 from rodsweep.bench.sweep.launch import (
     HOPF_FORCE,
@@ -54,6 +55,7 @@ def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch):
     monkeypatch.setattr(sweep, "QUICK_SIZES", (200, 400))
     monkeypatch.setattr(sweep, "QUICK_SPECTRA", 16)
     monkeypatch.setattr(sweep, "QUICK_CYCLES", 2)
+    monkeypatch.setattr(followed, "QUICK_AXES", followed.QUICK_AXES[1:])
     study = sweep_study(quick=True, command=MEASURED)
     assert "| spectra | 16 | 1 |" in study.text
     assert (f"| {APART} | 16 | 1 |" in study.text) == bool(launcher(2))
@@ -61,7 +63,6 @@ def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch):
     assert "| no solver | 1 rank | 200 | 400 |" in study.text
     assert "| resumed | 1 rank | 200 | 400 |" in study.text
     assert "| limit cycles | 2 | 1 |" in study.text
-    assert "| 64 of F | 512 |" in study.text
     assert "| 12 of F | 144 |" in study.text
     assert ("| no solver | 400 | 2 |" in study.text) == bool(launcher(2))
     assert not study.drawable
@@ -79,7 +80,7 @@ def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch):
 def test_memory_of_a_rank_does_not_grow_with_the_grid(tmp_path):
     """Up to a kill at the last point, and in the next run, which reads all that is there."""
     peaks = {}
-    for points in (2_000, 200_000):
+    for points in (2_000, 100_000):
         case = spectrum_case(tmp_path / str(points), "killed", points, "killed")
         killed = run(case, 1)
         assert killed.journal > 74 * (points - 1)

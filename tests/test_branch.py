@@ -8,7 +8,7 @@ from surveyed import survey_only
 
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch import branches, following
+from rodsweep.solve.branch import bordered, branches, following
 from rodsweep.solve.branch.beginning import hopf_point
 from rodsweep.solve.branch.branches import BranchRequest, BranchRod, BranchStatus, solve_branches
 from rodsweep.solve.branch.following import Course, follow_branch
@@ -16,6 +16,7 @@ from rodsweep.solve.branch.special_points import EndReason, SpecialKind
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.point import Unsolvable
+from rodsweep.watch import heard_by
 
 FIG_2C = BranchRod(k1=200.0, k2=1e4, gamma3=1e-4)
 SHORT = BranchRod(k1=150.0, k2=1e4, gamma3=1e-4)
@@ -231,3 +232,21 @@ def test_search_that_fails_is_a_status(monkeypatch):
     found = solve_branches(SHORT, BranchRequest("F", 0.0, 200.0, 1e-7, True, 500, 50))
     assert found.status == BranchStatus.failed
     assert found.message == "no a-priori bound on the eigenvalues applies"
+
+
+def test_place_of_a_long_solve_says_how_far_it_is(monkeypatch):
+    """Half of the eliminations are done at a share of a quarter to three quarters; no clock is asked."""
+    done, places = [], []
+    eliminate = bordered.eliminate
+    monkeypatch.setattr(bordered, "eliminate", lambda *values: done.append(1) or eliminate(*values))
+    with heard_by(lambda place: places.append((len(done), *place()))):
+        solve_branches(
+            BranchRod(k1=4000, k2=300, gamma3=1e-3), BranchRequest("F", 0, 150, 1e-5, True, 500, 50)
+        )
+    work, words, shares = zip(*[place for place in places if place[1]], strict=True)
+    assert all(0 <= share <= 1 for share in shares)
+    assert words[0].startswith("branch from Hopf point 1 of 2: F = 3")
+    assert words[0].endswith(" on the way to 150, 1 cycles")
+    assert shares[0] < 0.1
+    assert shares[-1] > 0.8
+    assert 0.25 < np.interp(0.5 * len(done), work, shares) < 0.75

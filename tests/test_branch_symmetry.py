@@ -8,7 +8,6 @@ import pytest
 from scipy.integrate import solve_ivp
 from test_paper import stated
 
-from rodsweep.cli.tasks.branch import record
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import CurveOfCycles, SpecialOfBranch
@@ -28,6 +27,7 @@ from rodsweep.solve.branch.symmetry import (
 )
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.right_sides import equations
+from rodsweep.tasks.branch import record
 
 ROUGH, STOP = 1e-3, 20.5
 """Accuracy of the branches; special points are located to 1e-5 here, which takes a tenth of the time."""

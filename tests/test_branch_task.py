@@ -12,8 +12,6 @@ from test_show import shown
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of
-from rodsweep.cli.job import make_job
-from rodsweep.cli.tasks.branch import record
 from rodsweep.post.branch_curves import both, curves_of, stability_of_pieces, straight_ranges, union
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.branch import through_cycles
@@ -24,6 +22,8 @@ from rodsweep.results.layouts.branch import END_REASONS, SPECIAL_KINDS
 from rodsweep.results.layouts.variables import MISSING
 from rodsweep.solve.branch.branches import BranchRequest, BranchRod, solve_branches
 from rodsweep.solve.branch.special_points import EndReason, SpecialKind
+from rodsweep.tasks.branch import record
+from rodsweep.tasks.job import make_job
 
 CONFIG = (
     "task: branch\nparameters: {{k1: {k1}, k2: 1.0e4, gamma3: 1.0e-4}}\n"

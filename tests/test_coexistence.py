@@ -11,7 +11,6 @@ from contents import content, same
 from surveyed import survey_only
 from test_paper import stated
 
-from rodsweep.cli.job import make_job
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.errors import InputError
 from rodsweep.results.layouts.phase_diagram import CYCLE_CURVE_ENDS
@@ -28,6 +27,7 @@ from rodsweep.solve.branch.special_curves import (
 )
 from rodsweep.solve.branch.special_points import SpecialKind
 from rodsweep.solve.changes.rows import RowRequest
+from rodsweep.tasks.job import make_job
 
 FOLD, RESTABILIZATION = 199.160114343, 155.600159298791
 """Of Fig. 2c's rod: the one of `configs/branches.yaml`, the other of 40-digit arithmetic."""

@@ -13,8 +13,6 @@ from test_paper import run, stated
 from test_show import shown
 
 import rodsweep as rs
-from rodsweep.cli.job import make_job
-from rodsweep.cli.tasks.criticality import record
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.discretization.mesh import mesh
 from rodsweep.discretization.mixed_form import mixed_form
@@ -33,6 +31,8 @@ from rodsweep.solve.hopf.criticality import (
 )
 from rodsweep.solve.hopf.normal_form import accurate_normal_form, normal_form
 from rodsweep.solve.point import Unsolvable
+from rodsweep.tasks.criticality import record
+from rodsweep.tasks.job import make_job
 
 INF = math.inf
 STRETCHABLE = RodInFluid(200.0, 1e4, 1e-4)

@@ -1,6 +1,6 @@
 """Result files that another program, a disk or a user changed: refused in a sentence, or the same numbers.
 
-A hundred random edits of a file of each task here; RODSWEEP_CASES=N asks for N times as many.
+A dozen random edits of a file of each task here; RODSWEEP_CASES=N asks for N times as many.
 """
 
 import os
@@ -11,12 +11,12 @@ from contents import content, same
 from faults.edits import copied, edited
 
 from rodsweep.api.dataset import open_result
-from rodsweep.cli.job import make_job
 from rodsweep.cli.merging import plan_without_solver
 from rodsweep.errors import InputError
 from rodsweep.results.file.merge import merge
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.view import read_view
+from rodsweep.tasks.job import make_job
 
 CONFIGS = {
     "spectrum": """
@@ -40,7 +40,7 @@ limit_cycle: {start: neighbour, samples: 8}
 accuracy: 1.0e-3
 """,
 }
-EDITS = 25 * int(os.environ.get("RODSWEEP_CASES", "1"))
+EDITS = 15 * int(os.environ.get("RODSWEEP_CASES", "1"))
 LONGEST_REFUSAL = 600
 """Characters of a refusal in a directory with a long name."""
 

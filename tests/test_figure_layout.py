@@ -201,7 +201,7 @@ def test_a_period_has_the_digits_that_its_error_leaves(error, period, tmp_path, 
     assert ("mean power $2024.69$" in words) == (error < 1e-6)
 
 
-@pytest.mark.parametrize("forces", [[0.5], [0.5, 0.6], [0.5, 0.6, 0.7], [50.0]])
+@pytest.mark.parametrize("forces", [[0.5], [0.5, 0.6, 0.7], [50.0]])
 def test_no_blank_is_left_above_flat_shapes(forces, tmp_path, monkeypatch):
     view = make_view((forces, [np.inf], [np.inf], [0.0], [1.0]), [0] * len(forces))
     figure = drawn(view, tmp_path, monkeypatch, "89 mm", what="cycle")
@@ -217,10 +217,11 @@ def test_the_frames_of_a_film_are_whole(name):
         figure, arms = first_frame(selection)
         for arm in arms:
             arm.show(7)
+        figure.draw_without_rendering()
         assert faults(figure) == []
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(4))
 def test_random_figures_of_cycles_are_whole(seed, tmp_path, monkeypatch):
     rng = np.random.default_rng(seed)
     forces = list(np.sort(rng.uniform(10, 10 ** rng.uniform(2, 4), rng.integers(2, 30))))

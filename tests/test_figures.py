@@ -11,8 +11,6 @@ from matplotlib.text import Text
 from PIL import Image
 from test_show import HOPF, STABLE_AGAIN
 
-from rodsweep.cli.job import make_job
-from rodsweep.cli.tasks import TASKS
 from rodsweep.errors import InputError
 from rodsweep.post.figures import FIGURES, draw
 from rodsweep.post.figures.class_bars import CLASS_COLOURS
@@ -27,6 +25,8 @@ from rodsweep.post.figures.threshold_lines import _alike
 from rodsweep.post.summary import SUMMARIES
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
+from rodsweep.tasks import TASKS
+from rodsweep.tasks.job import make_job
 
 
 def test_every_task_has_a_summary_and_a_figure():

@@ -11,7 +11,6 @@ from second_normal_form import Shape, coefficients
 from test_paper import run, stated
 
 import rodsweep as rs
-from rodsweep.cli.job import make_job
 from rodsweep.determinant.curves import trace
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.errors import InputError
@@ -22,6 +21,7 @@ from rodsweep.solve.hopf import bautin_curves, generalised
 from rodsweep.solve.hopf.bautin_curves import BautinCurvePoint, BautinEnd, BautinSpace, bautin_curve, lies_on
 from rodsweep.solve.hopf.generalised import curve_criticality
 from rodsweep.solve.point import Unsolvable
+from rodsweep.tasks.job import make_job
 
 K2, GAMMA3 = 1e4, 1e-4
 FOLD = 75.3972626336484526, 147.921519683199662, 770.860809443855688

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from known_cycles import UNSTABLE, hopf_variables, make_view, store
 
-from rodsweep.cli.job import make_job
-from rodsweep.cli.tasks.protocol import alone
 from rodsweep.post.figures.cycle.amplitude import draw_amplitude
 from rodsweep.post.figures.cycle.square_root import square_root_laws
 from rodsweep.post.hopf_points import Bracket, HopfPoint, StoredHopfPoints, lines_over
 from rodsweep.post.summary.stability import stability_lines
+from rodsweep.tasks.job import make_job
+from rodsweep.tasks.protocol import alone
 
 pytestmark = pytest.mark.filterwarnings("error::UserWarning")
 

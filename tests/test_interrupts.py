@@ -15,7 +15,7 @@ import pytest
 from rodsweep import watch
 from rodsweep.solve.exclusive import HeldSignals, one_at_a_time
 
-INTERRUPTS = int(os.environ.get("RODSWEEP_INTERRUPTS", "2"))
+INTERRUPTS = int(os.environ.get("RODSWEEP_INTERRUPTS", "1"))
 TASKS = """
 import rodsweep as rs
 ROD = rs.Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2)
@@ -55,7 +55,8 @@ alone = pickle.load(sys.stdin.buffer)
 faults = []
 def work(seed):
     try:
-        for task in random.Random(seed).sample(sorted(TASKS), len(TASKS)):
+        some = sorted(TASKS)[seed % 3 :: 3]  # so that each is solved by two threads
+        for task in random.Random(seed).sample(some, len(some)):
             if bits(task) != alone[task]:
                 faults.append(task)
     except BaseException as error:
@@ -148,12 +149,24 @@ def test_a_handler_runs_at_a_safe_place_and_not_before():
 def test_reports_are_heard_by_all_who_listen():
     heard = []
     with (
-        watch.heard_by(lambda text: heard.append("outer")),
-        watch.heard_by(lambda text: heard.append(text())),
+        watch.heard_by(lambda place: heard.append("outer")),
+        watch.heard_by(lambda place: heard.append(place())),
     ):
-        watch.report(lambda: "inner")
+        watch.report(lambda: watch.Whereabouts("inner", 0.25))
     watch.report()
-    assert heard == ["outer", "inner"]
+    assert heard == ["outer", watch.Whereabouts("inner", 0.25)]
+
+
+def test_a_place_in_a_part_is_told_as_one_in_the_whole():
+    heard = []
+    with watch.heard_by(lambda place: heard.append(place())), watch.part("branch 2", (0.5, 0.9)):
+        watch.report(lambda: watch.Whereabouts("F = 50", 0.25))
+        with watch.part("corner"):
+            watch.report(lambda: watch.Whereabouts("F = 51", 0.5))
+        watch.report()
+    assert heard[0] == ("branch 2: F = 50", pytest.approx(0.6))
+    assert heard[1] == ("branch 2: corner: F = 51", 0.5), "a part whose shares are unknown"
+    assert heard[2] == watch.Whereabouts(), "a safe place without words"
 
 
 def test_threads_wait_for_one_another():

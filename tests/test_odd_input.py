@@ -12,8 +12,8 @@ import xarray as xr
 
 import rodsweep as rs
 from rodsweep.cli import job
-from rodsweep.cli.job import make_job
 from rodsweep.results.file.seal import seal
+from rodsweep.tasks.job import make_job
 
 SPECTRA = """
 task: spectrum

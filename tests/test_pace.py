@@ -88,6 +88,22 @@ def test_a_point_that_does_not_end_is_waited_for():
     assert waits[-1] > 100
 
 
+def test_time_left_of_long_points_is_told_from_the_share_that_is_done():
+    pace = Pace(4)
+    assert pace.left(0, 5.0, 0.05) is None, "its start would decide"
+    assert pace.left(0, 10.0, 0.5) == pytest.approx(70)
+    alone = [(now, Pace(1).left(0, now, now / 80.0)) for now in (8.0, 40.0, 79.0)]
+    assert alone == [(now, pytest.approx(80.0 - now)) for now in (8.0, 40.0, 79.0)]
+
+
+def test_share_that_is_done_of_the_point_in_work_counts_beside_whole_points():
+    pace = Pace(10)
+    for done in range(1, 6):
+        pace.left(done, 10.0 * done)
+    assert pace.left(5, 55.0, 0.5) == pytest.approx(45)
+    assert pace._each(5, 90.0, 0.5) > 10, "the point in work takes longer than those before it"
+
+
 def test_memory_does_not_grow_with_the_points():
     pace = Pace(10**6)
     for done in range(1, 10**5):

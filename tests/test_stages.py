@@ -6,17 +6,17 @@ from pathlib import Path
 import pytest
 
 import rodsweep
-from rodsweep.cli.tasks import TASKS
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.post.figures import FIGURES
 from rodsweep.post.summary import SUMMARIES
 from rodsweep.results.layouts import LAYOUTS
+from rodsweep.tasks import TASKS
 
 PACKAGE = Path(rodsweep.__file__).parent
 STAGES = {
     "config": CONFIGS,
     "results/layouts": LAYOUTS,
-    "cli/tasks": TASKS,
+    "tasks": TASKS,
     "post/summary": SUMMARIES,
     "post/figures": FIGURES,
 }

@@ -86,11 +86,10 @@ def test_of_a_stretch_only_missing_points_are_kept():
     assert kept.told(1) == "told 6"
 
 
-@pytest.mark.parametrize("ranks", [2, 3])
-def test_any_number_of_ranks_gives_the_same_spectra(command, ranks):
+def test_any_number_of_ranks_gives_the_same_spectra(command):
     command.write("c.yaml", SPECTRA)
     assert command("run", "c.yaml", "-o", "alone.h5").returncode == 0
-    many = command("run", "c.yaml", "-o", "many.h5", ranks=ranks)
+    many = command("run", "c.yaml", "-o", "many.h5", ranks=3)
     assert many.returncode == 0, many.stderr
     alone = content(command.directory / "alone.h5")
     assert same(alone, content(command.directory / "many.h5"))
@@ -121,7 +120,7 @@ def test_resume_after_a_kill_gives_the_same_spectra(command, whole_job):
     process.communicate(timeout=PATIENCE)
     wait_for_end(command.directory)
     kept = read_view(path).journalled
-    again = command("run", "c.yaml", ranks=3)
+    again = command("run", "c.yaml", ranks=2)
     assert again.returncode == 0, again.stderr
     assert f"{1200 - kept} of 1200 points to do, {kept} kept" in again.stdout
     assert command("run", "c.yaml", "-o", "whole.h5").returncode == 0
@@ -215,7 +214,7 @@ def test_python_gives_the_numbers_of_the_command(command):
     [
         ("F: {start: 0, stop: 66, num: 133}", 64),
         ("F: {start: 0, stop: 49.5, num: 100}\n  k1: [100, 200, 1.0e4, .inf]", 100),
-        ("F: {start: 0, stop: 49.5, num: 100}\n  k2: {start: 50, stop: 1050, num: 201}", 0),
+        ("F: {start: 0, stop: 49.5, num: 100}\n  k2: {start: 50, stop: 600, num: 111}", 0),
         ("F: {start: -0.5, stop: 49.5, num: 101}", 0),
     ],
     ids=["longer", "another line", "along another axis", "shifted"],

@@ -9,9 +9,6 @@ import numpy as np
 import pytest
 import xarray
 
-from rodsweep.cli.job import make_job
-from rodsweep.cli.tasks import modes, spectrum, thresholds
-from rodsweep.cli.tasks.thresholds import search_record
 from rodsweep.discretization.resolution import Resolution
 from rodsweep.post.summary import NOUNS, show_summary
 from rodsweep.results.file.creation import Plan
@@ -20,6 +17,9 @@ from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 from rodsweep.results.layouts.variables import Variable
 from rodsweep.results.run.journal import Journal
+from rodsweep.tasks import modes, spectrum, thresholds
+from rodsweep.tasks.job import make_job
+from rodsweep.tasks.thresholds import search_record
 
 CONFIGS = {
     "spectrum": "parameters: {F: [1, 2], k1: 9, k2: [1, 2], gamma3: 0}\nspectrum: {modes: 3, vectors: true}",
@@ -319,7 +319,7 @@ def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
     """For any task: they must work on a login node."""
     code = (
         "import sys\nfrom pathlib import Path\n"
-        "from rodsweep.cli.checking import describe_job\nfrom rodsweep.cli.job import make_job\n"
+        "from rodsweep.cli.checking import describe_job\nfrom rodsweep.tasks.job import make_job\n"
         "from rodsweep.post.summary import show_summary\nfrom rodsweep.results.file.view import read_view\n"
         "for place in map(Path, sys.argv[1:]):\n"
         "    describe_job(make_job(place / 'c.yaml', ()))\n    show_summary(read_view(place / 'c.h5'))\n"

@@ -4,14 +4,14 @@ from random import Random
 
 import pytest
 
-from rodsweep.cli.job import make_job
-from rodsweep.cli.planning import plan_of
 from rodsweep.errors import InputError
 from rodsweep.post.figures import draw
 from rodsweep.post.summary import show_summary
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.view import read_view
 from rodsweep.sweep.shards import Shard
+from rodsweep.tasks.job import make_job
+from rodsweep.tasks.planning import plan_of
 
 CONFIGS = {
     "spectrum": """

@@ -4,7 +4,6 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
-from ..cli.job import Job, job_of, memory
 from ..config.arguments import unknown
 from ..config.arm import LOADS, ArmSection
 from ..config.reading import validated, yaml_of
@@ -14,6 +13,7 @@ from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.arm import SlenderArm
 from ..solve.exclusive import signals_held
+from ..tasks.job import Job, job_of, memory
 from .axes import plain
 
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)

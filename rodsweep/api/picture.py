@@ -9,7 +9,6 @@ from typing import Any, Literal, TypedDict, Unpack
 
 import xarray as xr
 
-from ..cli.cycle_shapes import with_shapes
 from ..config.arguments import in_sentences, unknown
 from ..config.values import short
 from ..errors import InputError
@@ -18,6 +17,7 @@ from ..post.figures.request import KINDS, ROOTS, Drawing, Look
 from ..post.figures.sections import choices_of, section
 from ..results.file.view import View
 from ..solve.exclusive import one_at_a_time
+from ..tasks.cycle_shapes import with_shapes
 from .answer import Answer
 from .dataset import file_path
 from .tabling import view_for

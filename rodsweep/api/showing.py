@@ -6,6 +6,7 @@ from ..errors import InputError
 from ..sweep.listener import RankListener
 from ..sweep.progress import Silent, Teller, in_notebook
 from ..sweep.stop import StopRequest
+from ..watch import Whereabouts
 
 Display = Teller | Silent
 
@@ -29,8 +30,8 @@ class _Here:
 
     def between_points(self) -> None: ...
 
-    def tell_place(self, place: str) -> None:
-        self.shown.place(place)
+    def tell_place(self, place: Whereabouts) -> None:
+        self.shown.place(place.words, place.share or 0.0)
 
 
 def listener(shown: Display, name: str) -> RankListener:

@@ -10,10 +10,6 @@ import numpy as np
 import xarray as xr
 from threadpoolctl import ThreadpoolController
 
-from ..cli.job import Job
-from ..cli.planning import plan_of
-from ..cli.tasks.protocol import AllPoints, Arrays, Solver
-from ..cli.unforeseen import Note, guarded
 from ..results.file.creation import Plan
 from ..results.file.provenance import now
 from ..results.file.view import View
@@ -23,6 +19,10 @@ from ..solve.backend.kept import forget_all
 from ..solve.exclusive import solving
 from ..sweep.listener import RankListener
 from ..sweep.shards import Shard
+from ..tasks.job import Job
+from ..tasks.planning import plan_of
+from ..tasks.protocol import AllPoints, Arrays, Solver
+from ..tasks.unforeseen import Note, guarded
 from ..watch import heard_by
 from .dataset import dataset_of
 from .showing import Display, display, listener

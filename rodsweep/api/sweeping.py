@@ -13,10 +13,10 @@ from typing import Any
 
 import xarray as xr
 
-from ..cli.unforeseen import described, log_file
 from ..config.arguments import in_sentences
 from ..config.reading import yaml_of
 from ..errors import EnvironmentLacks, InputError
+from ..tasks.unforeseen import described, log_file
 from .asking import Tree, job_from, tree_of
 from .dataset import open_result
 from .showing import Display, display

@@ -111,8 +111,8 @@ def snapshot(file: Path, output: Path | None) -> None:
 @overrides_option
 def check(config: Path, overrides: tuple[str, ...]) -> None:
     """Validate CONFIG and say what it would compute, at what cost, without computing."""
+    from ..tasks.job import make_job
     from .checking import describe_job
-    from .job import make_job
 
     describe_job(make_job(config, overrides))
 
@@ -185,7 +185,7 @@ def plot(
     from ..post.figures.request import Look
     from ..post.figures.sections import section
     from ..results.file.view import read_view
-    from .cycle_shapes import with_shapes
+    from ..tasks.cycle_shapes import with_shapes
 
     output = output or beside(files[0], ".gif" if what == "animation" else ".png")
     values = _values(at)

@@ -7,7 +7,7 @@ from typing import Any
 from ..results.file.creation import Plan
 from ..sweep.stop import StopRequest
 from ..sweep.team import Team
-from .tasks.protocol import Task
+from ..tasks.protocol import Task
 
 
 def planned_beforehand(plan: Plan, task: Task, team: Team, stop: StopRequest) -> Plan | None:

@@ -8,9 +8,9 @@ from ..post.summary.arm_answer import plane_lines, validity_sentence
 from ..post.summary.ranges import span
 from ..sweep.estimate import SAMPLE
 from ..sweep.grid import Points
-from .arm_points import NoRod
-from .arm_validity import ArmValidity
-from .job import Job
+from ..tasks.arm_points import NoRod
+from ..tasks.arm_validity import ArmValidity
+from ..tasks.job import Job
 
 
 def describe_job(job: Job) -> None:

@@ -18,9 +18,9 @@ from ..sweep.pool import Pool
 from ..sweep.progress import Silent, Teller
 from ..sweep.stop import StopRequest
 from ..sweep.team import Team
-from ..watch import Stopped, heard_by
-from .tasks.protocol import AllPoints, Arrays
-from .unforeseen import PASSING, UnitNote
+from ..tasks.protocol import AllPoints, Arrays
+from ..tasks.unforeseen import PASSING, UnitNote
+from ..watch import Stopped, Whereabouts, heard_by
 
 NOUN = "halves of curves"
 """What units are called; a curve is followed from one of its points in two halves."""
@@ -114,4 +114,4 @@ class _Alone:
 
     def between_points(self) -> None: ...
 
-    def tell_place(self, place: str) -> None: ...
+    def tell_place(self, place: Whereabouts) -> None: ...

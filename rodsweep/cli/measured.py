@@ -16,10 +16,10 @@ from pathlib import Path
 import numpy as np
 
 from ..bench.sweep.launch import FIRST_RANK, KILLED, OTHER_RANKS, SOLVED
+from ..tasks import TASKS
+from ..tasks.protocol import Solver
+from ..tasks.spectrum import SpectrumTask
 from . import _speaks, main
-from .tasks import TASKS
-from .tasks.protocol import Solver
-from .tasks.spectrum import SpectrumTask
 
 OUTCOMES = 4096
 """That the points take in turn: more than any compression looks back."""

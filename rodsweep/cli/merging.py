@@ -10,8 +10,8 @@ from ..results.file.creation import Plan
 from ..results.file.merge import Merged, merge
 from ..results.layouts import layout_of
 from ..sweep.grid import Points
+from ..tasks import TASKS
 from ..wording import counted
-from .tasks import TASKS
 
 
 def plan_without_solver(config: Config, points: Points) -> Plan:

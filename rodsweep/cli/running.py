@@ -26,15 +26,15 @@ from ..sweep.ranges import IndexRange, IndexSet, total
 from ..sweep.stop import StopRequest
 from ..sweep.stretches import StretchSolver, Together
 from ..sweep.team import Team
+from ..tasks.job import Job, make_job
+from ..tasks.planning import plan_of
+from ..tasks.unforeseen import Log, guarded
 from ..wording import counted
 from .beforehand import planned_beforehand
 from .closing import RunEnd
 from .contribution import FAILURES_TOLD, Contribution, failures_of, history_of, of_the_last_run
-from .job import Job, make_job
 from .joint import JointDue, JointWork
-from .planning import plan_of
 from .run_options import RunOptions
-from .unforeseen import Log, guarded
 
 CONTINUE = 75
 """Exit status of a run that was asked to stop: the same command continues it (EX_TEMPFAIL of sysexits.h)."""

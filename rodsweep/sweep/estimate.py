@@ -5,12 +5,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..arrays import Array
 from ..discretization.resolution import MOST_UNKNOWNS, expected_wave_number, resolution_for
 from ..model.dispersion import most_amplified_wave
 from .grid import Points
 from .stretches import Stretches
 
 SAMPLE = 200
+HARDER_IF_LARGER = ("F", "k1")
+"""Parameters of which the largest value decides what branches cost; of others the smallest."""
 FIXED_MS, LINEAR_MS, CUBIC_MS = 0.03, 2.2e-3, 1.5e-7
 """Time of a solve with n unknowns: overhead, orthogonalisation and dense factorisation, measured."""
 SPARSE_FROM, SPARSE_MS = 300, 8e-3
@@ -27,8 +30,11 @@ MODES_MS, GROWTH_MS = 1.5, 20.0
 with them, and that the growth takes: means over 24 rods."""
 CYCLE_SECONDS, CHAINED_CYCLE_SECONDS = 0.1, 0.01
 """Time of a limit cycle from the leading mode, and from its neighbour: about those of the benchmark."""
-BRANCH_SECONDS = 4.0
-"""Time of all branches of a rod along F up to 200 at the accuracy 1e-7: from 1 to 15 were seen."""
+BRANCH_SECONDS, BRANCH_ACCURACY, BRANCH_BENDING = 0.004, -0.17, 1.5
+"""All branches of a rod take BRANCH_SECONDS F (accuracy/1e-7)^BRANCH_ACCURACY (1 + F/k2)^BRANCH_BENDING;
+F is the largest of the range, or k1. Fourteen random rods (F up to 60 to 200, k2 from 12 to 9000, accuracies
+from 1e-4 to 1e-9) took 0.3 to 21 s, all within a factor of three and most within two; some near F = k1 take
+four times as long."""
 MEMORY_PER_UNKNOWN = 40_000
 BASE_MEMORY = 200_000_000
 
@@ -58,9 +64,18 @@ def estimate_criticality(rods: int, certify: bool) -> Estimate:
     return Estimate(rods * 1e-3 * each)
 
 
-def estimate_branches(rods: int) -> Estimate:
-    """The cost of the branches of cycles of `rods` rods."""
-    return Estimate(rods * BRANCH_SECONDS)
+def estimate_branches(points: Points, along: str, reach: tuple[float, float], accuracy: float) -> Estimate:
+    """The cost of the branches of cycles of all rods, each along a parameter from a value to another.
+
+    points: the rods, without that parameter. accuracy: that of the cycles, relative.
+    """
+    indices = np.unique(np.linspace(0, points.count - 1, min(SAMPLE, points.count)).astype(np.int64))
+    indices = indices[[points.has_rod(int(index)) for index in indices]]
+    values: dict[str, Array | float] = points.values_of(indices) | {along: reach[along in HARDER_IF_LARGER]}
+    F = np.minimum(values["F"], values["k1"])
+    per_force = BRANCH_SECONDS * (accuracy / 1e-7) ** BRANCH_ACCURACY
+    each = per_force * F * (1 + F / values["k2"]) ** BRANCH_BENDING
+    return Estimate(float(np.mean(each)) * points.count if indices.size else 0.0)
 
 
 def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> Estimate:

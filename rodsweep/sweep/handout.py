@@ -15,6 +15,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+from ..watch import Whereabouts
 from .ranges import IndexRange, total
 from .stop import StopRequest
 from .team import Team
@@ -135,17 +136,17 @@ class FirstRankClaims:
         team: Team,
         handout: Handout,
         stop: StopRequest,
-        show: Callable[[str], None] = lambda place: None,
+        show: Callable[[str, float], None] = lambda words, begun: None,
     ):
-        """show: takes where another rank is in a long point."""
+        """show: takes where a rank is in a long point, in words, and how much of all long points is done."""
         self.team, self.handout, self.stop, self.show = team, handout, stop, show
         self.waiting: deque[int] = deque()
         self.ahead: set[int] = set()
         """Ranks that have an answer to their next request already."""
         self.working = set(range(1, team.size))
         self.status = team.MPI.Status()
-        self.places: dict[int, str] = {}
-        """Where other ranks are in a long point, as they have said last."""
+        self.places: dict[int, Whereabouts] = {}
+        """Where each rank is in a long point, as it has said last."""
         self.serving = threading.Lock()
         self.served = 0.0
         self.thread: threading.Thread | None = None
@@ -156,6 +157,7 @@ class FirstRankClaims:
     def claim(self, report: Report) -> IndexRange:
         with self.serving:
             self._heed_stop()
+        self.places.pop(0, None)
         self.handout.settle(0, report)
         self.between_points()
         while (chunk := self.handout.take(0)) is None:
@@ -163,7 +165,7 @@ class FirstRankClaims:
                 self.handout.change.wait(WAIT_SECONDS)
             self.between_points()
             for place in list(self.places.values())[:1]:
-                self.show(place)
+                self.show(place.words, self._begun())
         return chunk
 
     def close(self) -> None:
@@ -171,9 +173,14 @@ class FirstRankClaims:
             self.thread.join()
             self._hear_places()
 
-    def tell_place(self, place: str) -> None:
+    def tell_place(self, place: Whereabouts) -> None:
         """Where this rank is in a long point."""
-        self.show(place)
+        self.places[0] = place
+        self.show(place.words, self._begun())
+
+    def _begun(self) -> float:
+        """How much is done of the long points that are being solved, in points."""
+        return sum(place.share or 0.0 for place in list(self.places.values()))
 
     def between_points(self) -> None:
         """Answers what other ranks ask; while a long point is solved, the thread does.
@@ -260,7 +267,7 @@ class OtherRankClaims:
             self.comm.send(Report(ahead=True), dest=0, tag=REQUEST_TAG)
         return chunk
 
-    def tell_place(self, place: str) -> None:
+    def tell_place(self, place: Whereabouts) -> None:
         """Where this rank is in a long point."""
         self.comm.send(place, dest=0, tag=PLACE_TAG)
 

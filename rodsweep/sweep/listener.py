@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 from typing import Protocol
 
-from ..watch import Stopped, Text
+from ..watch import MakeWhereabouts, Stopped, Whereabouts
 from .stop import StopRequest
 
 LOOK_SECONDS = 0.05
@@ -18,7 +18,7 @@ class Claims(Protocol):
 
     def between_points(self) -> None: ...
 
-    def tell_place(self, place: str) -> None: ...
+    def tell_place(self, place: Whereabouts) -> None: ...
 
 
 class RankListener:
@@ -29,12 +29,14 @@ class RankListener:
         self.claims, self.stop, self.name = claims, stop, name
         self.looks, self.tells = 0.0, time.monotonic() + PLACE_SECONDS
 
-    def __call__(self, text: Text) -> None:
+    def __call__(self, place: MakeWhereabouts) -> None:
         """Hears a report; raises Stopped where the solve is to end here."""
         now = time.monotonic()
-        if now >= self.tells and (place := text()):
+        if now >= self.tells and (here := place()).words:
             self.tells = now + PLACE_SECONDS
-            self.claims.tell_place(": ".join(filter(None, (self.name(), place))))
+            self.claims.tell_place(
+                Whereabouts(": ".join(filter(None, (self.name(), here.words))), here.share)
+            )
         if now >= self.looks:
             self.looks = now + LOOK_SECONDS
             self.claims.between_points()

@@ -36,8 +36,8 @@ class ProgressSink(Protocol):
     def __call__(self, done: int) -> None:
         """So many points are done in all."""
 
-    def place(self, text: str) -> None:
-        """Where a rank is in a long point."""
+    def place(self, words: str, begun: float) -> None:
+        """Where a rank is in a long point; how much is done of all that are being solved, in points."""
 
 
 @dataclass(frozen=True, slots=True)

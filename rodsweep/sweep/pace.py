@@ -2,7 +2,8 @@
 
 Points cost unlike: the first of a chain is cold, others start from a neighbour, some are hard. So the pace is
 that of the later half of what is done, and never of what is heard of first, the cold start. What is told
-follows it slowly, by a share of the time that has passed, and faster the nearer the end is. Knows no clock.
+follows it slowly, by a share of the time that has passed, and faster the nearer the end is. Where points are
+long, the share that is done of those that are being solved counts, too. Knows no clock.
 """
 
 from math import exp
@@ -11,6 +12,8 @@ FORGET = 0.5
 """Share of the points done that the pace is taken from, the latest."""
 FEWEST = 2
 """Points, after those that are heard of first, after which anything is said."""
+LEAST_BEGUN = 0.1
+"""Share of a long point that has to be done before the time left is told: earlier its start would decide."""
 SLOWNESS = 0.25
 """In which share of the time so far, and of the time still left, what is told follows what is found."""
 THINNED = 1.02
@@ -27,15 +30,19 @@ class Pace:
         self.told: tuple[float, float] | None = None
         """(time, what was said to be left then)."""
 
-    def left(self, done: int, now: float) -> float | None:
-        """The time left when `done` points are done at the time `now`; None where too few are."""
+    def left(self, done: int, now: float, begun: float = 0.0) -> float | None:
+        """The time left when `done` points are done at the time `now`; None where too little is.
+
+        begun: how much is done of the points that are being solved, in points.
+        """
         if done == self.total:
             return 0.0
         if done and (not self.records or done > self.records[-1][0]):
             self._record(done, now)
-        if not self.records or done < self.records[0][0] + FEWEST:
+        each = self._each(done, now, begun)
+        if each is None:
             return None
-        found = (self.total - done) * self._each(done, now)
+        found = max(self.total - done - begun, 0.0) * each
         if self.told is None:
             self.told = now, found
             return found
@@ -52,12 +59,17 @@ class Pace:
             self.records.pop()
         self.records.append((done, now))
 
-    def _each(self, done: int, now: float) -> float:
-        """Time a point over the latest FORGET of what is done; longer while the next one takes longer."""
+    def _each(self, done: int, now: float, begun: float) -> float | None:
+        """Time a point over the latest FORGET of what is done; longer while the next one takes longer.
+
+        Before FEWEST points are done it is that of what is begun; None where that is too little.
+        """
+        if not self.records or done < self.records[0][0] + FEWEST:
+            return now / (done + begun) if begun >= LEAST_BEGUN else None
         half = (record for record in reversed(self.records) if record[0] <= FORGET * done)
         points, began = next(half, self.records[0])
         latest = self.records[-1][1]
-        return max((latest - began) / (done - points), (now - began) / (done - points + 1))
+        return max((latest - began) / (done - points), (now - began) / (done - points + (begun or 1.0)))
 
 
 def in_words(seconds: float) -> str:

@@ -33,7 +33,7 @@ class Silent:
 
     def __call__(self, done: int) -> None: ...
 
-    def place(self, text: str) -> None: ...
+    def place(self, words: str, begun: float = 0.0) -> None: ...
 
     def close(self) -> None: ...
 
@@ -49,7 +49,7 @@ class Teller:
         self.total, self.noun = total, noun
         self.pace = None if total is None else Pace(total)
         self.began = self.next = 0.0
-        self.done, self.where = 0, ""
+        self.done, self.begun, self.where = 0, 0.0, ""
         self.bar = _bar(title) if (on_terminal() if live is None else live) else None
         if self.bar is not None:
             self.task = self.bar.add_task(title, total=total, count="", rate="", left="", where="")
@@ -59,12 +59,15 @@ class Teller:
         if not done:
             self.began = time.monotonic()
             self.next = self.began + FIRST_SECONDS
-        self.done, self.where = done, ""
+        self.done, self.begun, self.where = done, 0.0, ""
         self._show()
 
-    def place(self, text: str) -> None:
-        """Takes where a long point is; shows it when it is time."""
-        self.where = text
+    def place(self, words: str, begun: float = 0.0) -> None:
+        """Takes where a long point is; shows it when it is time.
+
+        begun: how much is done of all points that are being solved, in points.
+        """
+        self.begun, self.where = begun, words
         self._show()
 
     def _show(self) -> None:
@@ -73,14 +76,19 @@ class Teller:
             return
         passed = now - self.began
         rate = rate_in_words(self.done, passed) if self.total else ""
-        seconds = self.pace.left(self.done, passed) if self.pace else None
+        seconds = self.pace.left(self.done, passed, self.begun) if self.pace else None
         left = "" if seconds is None else f"about {in_words(seconds)} left"
         count = f"{self.done} of {self.total}" if self.total else f"{self.done or ''}"
         if self.bar is not None:
             self.bar.start()
             self.next = now + BAR_SECONDS
             self.bar.update(
-                self.task, completed=self.done, count=count, rate=rate, left=left, where=self.where
+                self.task,
+                completed=self.done + self.begun,
+                count=count,
+                rate=rate,
+                left=left,
+                where=self.where,
             )
             self.bar.refresh()
             return

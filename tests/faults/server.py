@@ -6,6 +6,7 @@ lines on standard output, one each; `faults.isolated` is the other end. `test_st
 of it against the command that is started afresh.
 """
 
+import io
 import json
 import os
 import resource
@@ -119,9 +120,9 @@ def load(solving: bool, configs: list[str]) -> None:
     import rodsweep.cli.running
     import rodsweep.post.figures
     import rodsweep.post.summary  # noqa: F401
-    from rodsweep.cli.job import make_job
     from rodsweep.errors import EnvironmentLacks
     from rodsweep.sweep.team import Team
+    from rodsweep.tasks.job import make_job
 
     for path in configs:
         job = make_job(Path(path), ())
@@ -130,8 +131,22 @@ def load(solving: bool, configs: list[str]) -> None:
             Team()
             with suppress(EnvironmentLacks):
                 job.task.solver().warm_up()
-    if not solving:
+    if solving:
+        draw()
+    else:
         sys.meta_path.insert(0, NoSolver())
+
+
+def draw() -> None:
+    """Draws a figure of all that figures have, so that no child loads fonts and what reads formulas."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(layout="constrained")
+    axes = figure.subplots()
+    axes.loglog([1, 1e3], [1, 1e3], label=r"$\tilde k_1 = 10^{4}$")
+    axes.set_title(r"$1.5\times10^{-3}$, a word")
+    figure.legend()
+    figure.savefig(io.BytesIO(), dpi=300)
 
 
 def main() -> None:

@@ -68,7 +68,7 @@ def random_sweep(index):
         {"gamma1": float(random.uniform(0.5, 1))} if task in ("limit_cycle", "criticality", "branch") else {}
     )
     top = 10 ** random.uniform(1.6, 2.3)
-    if index // len(TASKS) % 3 == 1:
+    if (index + index // len(TASKS)) % 3 == 1:
         keywords = _of_an_arm(random, task, count)
         arm = keywords["arm"]
         first = {

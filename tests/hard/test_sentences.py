@@ -1,6 +1,6 @@
 """Every number on the page of `show` for random rods and arms, and in reports on arms, against the solvers.
 
-A number that nothing compares fails as well. The suite takes a few sweeps of each task, RODSWEEP_RODS as many
+A number that nothing compares fails as well. The suite takes a sweep of each task, RODSWEEP_RODS as many
 as it says (`make survey`: 300).
 """
 
@@ -14,7 +14,7 @@ from . import sentences
 from .arm_sentences import random_report, wrong_report
 from .sentences import TASKS, random_sweep, solved, wrong_sentences
 
-SWEEPS, BATCH = int(os.environ.get("RODSWEEP_RODS", str(2 * len(TASKS)))), len(TASKS)
+SWEEPS, BATCH = int(os.environ.get("RODSWEEP_RODS", str(len(TASKS)))), len(TASKS)
 LEAST_READ = 10
 """Numbers on a page, on average, below which the reader no longer reads."""
 

@@ -9,6 +9,7 @@ from math import ceil
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.text import Text
@@ -50,16 +51,27 @@ def fit(figure: Figure, least_aspect: float = LEAST_ASPECT) -> None:
     width, height = figure.get_size_inches()
     figure.set_size_inches(width, height + SPARE)
     for _ in range(MOST_PASSES):
-        figure.draw_without_rendering()
+        _lay_out(figure)
         changes = [_fit_legends(figure), _break_texts(figure), _thin_ticks(figure)]
         if not any(changes):
             break
     spare = _spare_height(figure, least_aspect)
     figure.set_size_inches(width, max(height, min(height + SPARE - spare, TALLEST)))
     for _ in range(MOST_PASSES):
-        figure.draw_without_rendering()
+        _lay_out(figure)
         if not _thin_ticks(figure):
             break
+
+
+def _lay_out(figure: Figure) -> None:
+    """Places panels and legends, and draws nothing else: what is drawn in them is not measured."""
+    canvas = figure.canvas
+    if not isinstance(canvas, FigureCanvasAgg):
+        canvas = FigureCanvasAgg(figure)  # without it each text makes one that measures it
+    if engine := figure.get_layout_engine():
+        engine.execute(figure)
+    for legend in figure.legends:
+        legend.draw(canvas.get_renderer())  # which places its entries
 
 
 def break_lines(text: Text, room: float, upright: bool = False) -> bool:
@@ -157,7 +169,7 @@ def _with_columns(figure: Figure, legend: Legend, columns: int) -> Legend:
     handles = [handle for handle in legend.legend_handles if handle is not None]
     legend.remove()
     new = figure.legend(handles, texts, loc="outside lower center", ncols=columns, frameon=False)
-    figure.draw_without_rendering()
+    _lay_out(figure)
     return new
 
 

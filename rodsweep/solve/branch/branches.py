@@ -22,6 +22,7 @@ from .branch_curve import BranchCurve
 from .following import Course, follow_branch, follow_without_symmetry
 from .special_points import EndReason
 from .symmetry import Breaking, breakings_of
+from .work import shares_of_branches
 
 SHORT_OF_CRUSHED = 1e-4
 """How far below k1 a branch along F ends, relatively: beyond, the rod is all but crushed at rest."""
@@ -161,12 +162,13 @@ def _followed(course: Course, name: str) -> list[BranchCurve]:
     """The branches from all Hopf points, then those without symmetry; what ends at one another only once."""
     curves: list[BranchCurve] = []
     arrived: set[int] = set()
-    left = course.most
-    for number in range(len(course.hopfs)):
+    left, count = course.most, len(course.hopfs)
+    shares = shares_of_branches([hopf.coordinate for hopf in course.hopfs], course.ends)
+    for number in range(count):
         if number in arrived:
             continue
         here = replace(course, most=left)
-        with part(f"branch {len(curves) + 1}"):
+        with part(f"branch from Hopf point {number + 1} of {count}", (shares[number], shares[number + 1])):
             curve = follow_branch(number, here)
         arrived.add(curve.arrives)
         left -= len(curve.points)
@@ -176,7 +178,7 @@ def _followed(course: Course, name: str) -> list[BranchCurve]:
     for which, breaking in enumerate(breakings):
         if breaking in met:
             continue
-        with part(f"branch {len(curves) + 1}"):
+        with part(f"branch {len(curves) + 1}, without symmetry"):
             curve = follow_without_symmetry(which, name, replace(course, most=left, breakings=breakings))
         met += [curve.meets] if curve.meets else []
         left -= len(curve.points)

@@ -17,9 +17,8 @@ from ..status import PointStatus
 from .branch_curve import BranchCurve
 from .branches import BranchesOfRod, BranchRequest, BranchRod, BranchStatus, solve_branches
 from .special_points import EndReason, SpecialPoint
+from .work import DIAGRAM_ACCURACY
 
-ACCURACY = 1e-6
-"""Relative, of the cycles, whose stability is told as at 1e-7; special points are located to 1e-9."""
 MOST_CYCLES = 500
 """Of the branches of one row."""
 
@@ -101,7 +100,7 @@ def row_branches(fixed: dict[str, float], gamma1: float, request: RowRequest, sp
         along=request.name,
         start=float(request.values[0]),
         stop=float(request.values[-1]),
-        accuracy=ACCURACY,
+        accuracy=DIAGRAM_ACCURACY,
         certify=request.certify,
         cycles=MOST_CYCLES,
         special=special,

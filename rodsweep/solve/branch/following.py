@@ -8,8 +8,9 @@ from math import nan
 import numpy as np
 from scipy.optimize import brentq
 
-from ...watch import report
-from ..cycle.neighbour import value_of
+from ...watch import Whereabouts, report
+from ..cycle.linearisation import coordinate
+from ..cycle.neighbour import value_at, value_of
 from ..cycle.orbit_mesh import mesh_of
 from ..cycle.refinement import matrix_distance, newton_tolerance
 from ..point import Unsolvable
@@ -37,6 +38,7 @@ from .special_points import (
 )
 from .symmetry import Breaking, beginning_without_symmetry, mirrored, symmetric_end
 from .trail import BranchEnd, Trail, end_at
+from .work import share_done
 
 PARAMETER = np.array([0.0, 0.0, 1.0])
 SMALL = 0.06
@@ -106,16 +108,19 @@ def followed_from(curve: BranchCurve, first: ArcPoint, course: Course) -> Branch
     trail = Trail(curve, course.accuracy, first)
     going: ArcPoint | BranchEnd = first
     while isinstance(going, ArcPoint):
-        report(partial(_place_on, curve, going))
+        report(partial(_place_on, curve, going, course))
         going = _next(trail, going, course)
     trail.end(going)
     return curve
 
 
-def _place_on(curve: BranchCurve, here: ArcPoint) -> str:
-    """Where on a branch its last cycle is, in words."""
+def _place_on(curve: BranchCurve, here: ArcPoint, course: Course) -> Whereabouts:
+    """Where on a branch its last cycle is, and the share of the branch's work that is done there."""
     name = here.scale.name
-    return f"{name} = {value_of(here.orbit.form, name):.5g}, {len(curve.points)} cycles"
+    aim = course.ends[1 if here.ahead[-1] > 0 else 0]
+    there, end = value_at(name, here.at), value_at(name, aim)
+    words = f"{name} = {there:.5g} on the way to {end:.5g}, {len(curve.points)} cycles"
+    return Whereabouts(words, share_done(coordinate(name, curve.special[0].at), here.at, aim))
 
 
 def special_hopf(hopf: HopfBirth) -> SpecialPoint:

@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 from ...arrays import Array
 from ...determinant.parameter_plane import Plane, PlaneAxis
-from ...watch import report
+from ...watch import Whereabouts, report
 from ..cycle.measures import CyclePath
 from ..cycle.newton import relative_change
 from ..cycle.orbit import Orbit
@@ -137,7 +137,7 @@ class CurveCourse:
         """
         points, step = [first_point(special, self.line.name, self.rows, row)], FIRST
         while len(points) < MOST_POINTS:
-            report(lambda: f"{self.rows.name} = {points[-1].row:.5g}, {len(points)} points")
+            report(lambda: Whereabouts(f"{self.rows.name} = {points[-1].row:.5g}, {len(points)} points"))
             try:
                 there, off = self._next(points, step, side)
             except FAILURES:
@@ -168,7 +168,7 @@ class CurveCourse:
             start, place = self._predicted(points, self._alive(points, step))
             way = np.append(last.scale.place(start) - last.scale.place(last.orbit), place - last.place)
             across, slope = last.across(way), slope_of(*points[-2:])
-        there = self._family(last).point(start, place, across, slope)
+        there = self._family(last).point(start, place, across, slope, last.rates if len(points) > 1 else None)
         mesh = mesh_of(there.orbit)
         predicted = start if mesh == mesh_of(start) else mesh.carry(start)
         off = relative_change(predicted, there.orbit.values - predicted.values)
@@ -234,13 +234,13 @@ class CurveCourse:
         one, other = self._margins(inner, end), self._margins(outer, end)
         # Of what is passed between the two the first.
         which = int(np.argmin(np.where(other < 0, one / np.maximum(one - other, LANDED), np.inf)))
-        low, high, f_low, f_high = 0.0, 1.0, float(one[which]), float(other[which])
+        low, high, f_low, f_high, kept = 0.0, 1.0, float(one[which]), float(other[which]), 0
         if f_low <= LANDED:
             return []
         if end is CurveEnd.edge and which >= 2:
             with suppress(Unsolvable):
                 there = self.on_row(inner, outer, float(which - 2))
-                return [self._family(outer).point(there.orbit, there.place, ALONG_BRANCH)]
+                return [self._family(outer).point(there.orbit, there.place, ALONG_BRANCH, rates=there.rates)]
         for _ in range(MOST_LANDINGS):
             share = low + f_low / (f_low - f_high) * (high - low)
             try:
@@ -250,17 +250,19 @@ class CurveCourse:
             f = float(self._margins(there, end)[which])
             if abs(f) <= LANDED:
                 return [there]
+            # An end that is kept twice has its value halved, lest it be kept for ever (Illinois method).
             if f > 0:
-                low, f_low, f_high = share, f, f_high / 2
+                low, f_low, f_high = share, f, f_high / (2 if kept > 0 else 1)
             else:
-                high, f_high, f_low = share, f, f_low / 2
+                high, f_high, f_low = share, f, f_low / (2 if kept < 0 else 1)
+            kept = 1 if f > 0 else -1
         return []
 
     def between(self, one: OnCurve, other: OnCurve, share: float) -> OnCurve:
         """The point at a share of the way between two; raises Unsolvable."""
         start, place = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
         across = other.across(other.step_from(one))
-        return self._family(other).point(start, place, across, slope_of(one, other))
+        return self._family(other).point(start, place, across, slope_of(one, other), other.rates)
 
     def on_row(self, one: OnCurve, other: OnCurve, place: float) -> OnCurve:
         """The point at a place of the rows' axis, scaled, between two, without error; raises Unsolvable."""

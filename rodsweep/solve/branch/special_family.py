@@ -4,24 +4,26 @@ The cycles near a special point are a family of two numbers: a length along the 
 `bordered` has it, and the place on the axis of the rows. In these two the special points are the zeros of one
 function on a smooth curve, also where both parameters turn back, at a cusp. It is followed by its length: a
 polynomial through the points before predicts cycle and place; the secant method across the curve corrects,
-a cycle solved by the bordered Newton method at each step, on two meshes whose difference is the error.
+a cycle solved by the bordered Newton method at each step, on two meshes whose difference is the error. How
+the function and the cycles change across the curve is known from the point before, and from mesh to mesh.
 """
 
 from dataclasses import dataclass, replace
 from math import ceil, nan
+from typing import NamedTuple
 
 import numpy as np
 
 from ...arrays import Array
 from ...determinant.parameter_plane import PlaneAxis
-from ..cycle.neighbour import value_of
+from ..cycle.neighbour import coordinate_of, value_of
 from ..cycle.newton import Converged
 from ..cycle.orbit import Orbit
-from ..cycle.orbit_mesh import mesh_of, stages_for
+from ..cycle.orbit_mesh import OrbitMesh, mesh_of, stages_for
 from ..point import Unsolvable
 from .arc import tangent_at
 from .beginning import LEAST_UNIT, MOMENT
-from .bordered import BorderedMatrix, Condition, Scale, bordered, moment_of
+from .bordered import BorderedMatrix, Condition, Scale, bordered, moment_of, moved
 from .special_points import REAL, SpecialKind, SpecialPoint
 
 ACCURACY = 1e-7
@@ -32,12 +34,42 @@ TOLERANCE = 1e-8
 """Relative, of the distance of a cycle's matrix from it: the square of it is left."""
 SMALL = 0.05
 """Largest tip y, in L, of cycles whose folds are told from their Hopf point by a division by the moment."""
-ZERO, FIRST_SECANT, MOST_SECANTS = 1e-6, 1e-3, 12
-"""Last step of the secant method across a curve, after which its error is far less, and the first one."""
-FARTHEST = 0.1
-"""Longest step of it."""
+FIRST_SECANT, FARTHEST, MOST_SECANTS = 1e-3, 0.1, 12
+"""First step of the secant method across a curve where its rate is unknown, and the longest one."""
+LINEAR, LINEAR_HERE, LINEAR_BEFORE = 1e-9, 1e-6, 1e-7
+"""The last step is taken along a line, without a solution at its end: along that through the last two cycles,
+where its product with their distance is so small; with the rates between other cycles at the same point, on
+this mesh or another, which are known to 1e-3; or with those at the point before, to a tenth.
+The test function is known to some 1e-8."""
+ALIKE = 0.9
+"""Least cosine of the angle between two ways across for which the rates of one serve the other."""
+LEAST_SPAN = 1e-6
+"""Least distance of two cycles that tell the rates across the curve: the test function is known to 1e-8."""
 SAFETY, ROUNDING = 3.0, 1e-12
 MORE_ORDERS, MORE_INTERVALS, MOST_FINER_MESHES = 2, 1.2, 5
+
+
+@dataclass(frozen=True, eq=False)
+class Across:
+    """How the cycles of a family change across its curve, by the length across.
+
+    way: across, along the branch and along the rows, (2,). test: of what is zero on the curve. orbit: of
+    values and the line's coordinate, (N + 1,); mesh: theirs. span: length between the cycles that tell them.
+    """
+
+    way: Array
+    test: float
+    orbit: Array
+    mesh: OrbitMesh
+    span: float
+
+
+class _Tried(NamedTuple):
+    """A cycle at a length across a curve, with the test function there."""
+
+    orbit: Orbit
+    test: float
+    at: float
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -45,7 +77,7 @@ class OnCurve:
     """A point of a curve: a cycle with its values of the line's and the rows' parameter.
 
     place: on the rows' axis, scaled. ahead: direction of its branch in `Scale.place`, (3,). error: absolute,
-    of the line's value on the curve. period in tau2, tip_y_max in L.
+    of the line's value on the curve. period in tau2, tip_y_max in L. rates: across the curve, where known.
     """
 
     orbit: Orbit
@@ -55,6 +87,7 @@ class OnCurve:
     at: float
     row: float
     error: float = nan
+    rates: Across | None = None
 
     @property
     def tip_y_max(self) -> float:
@@ -94,31 +127,36 @@ class CycleFamily:
         """The values of an orbit for the rod at a place on the rows' axis; raises Unsolvable."""
         return with_parameters(orbit, {self.rows.name: self.rows.value(place)})
 
-    def nearest(self, start: Orbit, place: float, across: Array) -> OnCurve:
+    def nearest(
+        self, start: Orbit, place: float, across: Array, rates: Across | None = None, same: bool = False
+    ) -> OnCurve:
         """The point of the curve near an orbit at a place, across the curve in a direction, (2,).
 
+        rates: about those across the curve; same: whether they are of this very point, on another mesh.
         Raises Unsolvable.
         """
-        length, orbit = float(self.border @ self.scale.place(start)), start
-
-        def solved(t: float) -> Converged:
-            there = self.placed(orbit, place + t * float(across[1]))
-            return Condition(self.scale, self.border, length + t * float(across[0])).solved(
-                there, TOLERANCE, TOLERANCE
-            )
-
-        a, b, last = 0.0, FIRST_SECANT, FARTHEST
-        found = solved(a)
-        f_a, orbit = self.test(found), found.orbit
+        length = float(self.border @ self.scale.place(start))
+        at, orbit, before = 0.0, start, None
+        if rates and rates.way @ across < ALIKE:
+            rates = None
         for _ in range(MOST_SECANTS):
-            found = solved(b)
-            f_b, orbit = self.test(found), found.orbit
-            if abs(last) <= ZERO or f_b == f_a:
-                return self._point(found, place + b * float(across[1]))
-            last = -f_b * (b - a) / (f_b - f_a)
-            if not abs(last) <= FARTHEST:
+            condition = Condition(self.scale, self.border, length + at * float(across[0]))
+            there = self.placed(orbit, place + at * float(across[1]))
+            found = condition.solved(there, TOLERANCE, TOLERANCE)
+            test = self.test(found)
+            here = _Tried(found.orbit, test, at)
+            own = self._rates(across, before, here) if before else None
+            rates, same = own or rates, same or own is not None
+            step = -test / rates.test if rates else FIRST_SECANT
+            if not abs(step) <= FARTHEST:
                 raise Unsolvable("the secant method leaves the curve")
-            a, f_a, b = b, f_b, b + last
+            enough = LINEAR / own.span if own else LINEAR_HERE if same else LINEAR_BEFORE
+            if rates and abs(step) <= enough:
+                return self._point(found, place + at * float(across[1]), step, across, rates)
+            before, orbit = here, found.orbit
+            if rates:
+                orbit = moved(orbit, self.scale.name, step * _on(rates, orbit))
+            at += step
         raise Unsolvable("the secant method does not settle")
 
     def test(self, found: Converged) -> float:
@@ -134,10 +172,21 @@ class CycleFamily:
             raise Unsolvable("the multipliers that cross the circle have become real")
         return abs(pair) - 1
 
-    def _point(self, found: Converged, place: float) -> OnCurve:
-        """A cycle that was just found as a point of the curve."""
-        orbit = found.orbit
-        tangent = tangent_at(orbit, self.scale, self.border, bordered(found))
+    def _rates(self, way: Array, before: _Tried, here: _Tried) -> Across | None:
+        """The rates across the curve between two cycles on one mesh; None where they are too near."""
+        name, span = self.scale.name, here.at - before.at
+        if abs(span) < LEAST_SPAN or here.test == before.test:
+            return None
+        one, other = before.orbit, here.orbit
+        change = coordinate_of(other.form, name) - coordinate_of(one.form, name)
+        orbit = np.append(other.values - one.values, change) / span
+        return Across(way, (here.test - before.test) / span, orbit, mesh_of(one), abs(span))
+
+    def _point(self, found: Converged, place: float, step: float, across: Array, rates: Across) -> OnCurve:
+        """The point of the curve a short step across from a cycle that was just found."""
+        tangent = tangent_at(found.orbit, self.scale, self.border, bordered(found))
+        place += step * float(across[1])
+        orbit = self.placed(moved(found.orbit, self.scale.name, step * _on(rates, found.orbit)), place)
         scale = Scale.of(orbit, self.scale.name, self.scale.least)
         ahead = scale.moved(orbit, tangent)
         return OnCurve(
@@ -147,27 +196,39 @@ class CycleFamily:
             place=place,
             at=value_of(orbit.form, scale.name),
             row=value_of(orbit.form, self.rows.name),
+            rates=rates,
         )
 
-    def point(self, start: Orbit, place: float, across: Array, slope: float = 0.0) -> OnCurve:
+    def point(
+        self, start: Orbit, place: float, across: Array, slope: float = 0.0, rates: Across | None = None
+    ) -> OnCurve:
         """The same with its error, on a finer mesh if need be; raises Unsolvable.
 
         slope: d(line's value)/d(place) of the curve, so that what moves along it is no error.
         """
-        last = self.nearest(start, place, across)
+        last = self.nearest(start, place, across, rates)
         for _ in range(MOST_FINER_MESHES):
             mesh = mesh_of(last.orbit)
             longer = ceil(MORE_INTERVALS * mesh.intervals)
             finer = replace(mesh, order=mesh.order + MORE_ORDERS, intervals=longer)
             if not finer.allowed:
                 break
-            here = self.nearest(finer.carry(last.orbit), last.place, across)
+            here = self.nearest(finer.carry(last.orbit), last.place, across, last.rates, same=True)
             off = abs(here.at - last.at - slope * (here.place - last.place))
             error = SAFETY * off + ROUNDING * abs(here.at)
             if error <= ACCURACY * abs(here.at):
                 return replace(last, error=error)
             last = here
         raise Unsolvable("no mesh is fine enough")
+
+
+def _on(rates: Across, orbit: Orbit) -> Array:
+    """How an orbit changes across its curve on its own mesh, (N + 1,)."""
+    mesh = mesh_of(orbit)
+    if mesh == rates.mesh:
+        return rates.orbit
+    there = replace(rates.mesh.carry(orbit), values=rates.orbit[:-1])
+    return np.append(mesh.carry(there).values, rates.orbit[-1])
 
 
 def crossing_pair(matrix: BorderedMatrix) -> complex | None:

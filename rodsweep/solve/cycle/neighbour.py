@@ -140,6 +140,13 @@ def value_of(form: StressForm, name: str) -> float:
     return float(form.gamma1 if name == "gamma1" else getattr(form.rod, name))
 
 
+def value_at(name: str, at: float) -> float:
+    """The value of a parameter by its coordinate."""
+    if PARAMETERS[name].by_compliance:
+        return 1 / at if at else inf
+    return at
+
+
 def relative_distance(one: StressForm, other: StressForm, name: str) -> float:
     """Of two rods along a parameter: of its coordinates in units of the larger."""
     a, b = coordinate_of(one, name), coordinate_of(other, name)
@@ -292,9 +299,7 @@ def _step_factor(distance: float) -> float:
 
 def with_coordinate(form: StressForm, name: str, at: float) -> StressForm:
     """The rod with another value of a parameter, given by its coordinate."""
-    value = at
-    if PARAMETERS[name].by_compliance:
-        value = 1 / at if at else inf
+    value = value_at(name, at)
     if name == "gamma1":
         return replace(form, gamma1=value)
     return replace(form, rod=replace(form.rod, **{name: value}))

@@ -22,7 +22,7 @@ import numpy as np
 from ...arrays import Array
 from ...discretization.beam import Beam
 from ...discretization.stress_form import StressForm
-from ...watch import report
+from ...watch import Whereabouts, report
 from ..motion.integrator import RELAXATION_SHARE, Ending, RunLimit, Trajectory, integrator, relaxed
 from ..motion.leading_mode import leading_mode
 from ..motion.time_scheme import TimeScheme
@@ -177,7 +177,7 @@ class Transient:
         """Where the rod goes from z, shape (unknowns,)."""
         z, first = self._relaxed(z), True
         while self.waited < self.most_periods:
-            report(lambda: f"{self.waited} of at most {self.most_periods} returns of the tip")
+            report(lambda: Whereabouts(f"{self.waited} of at most {self.most_periods} returns of the tip"))
             returns, scheme = (FIRST_CHUNK, self.first_scheme) if first else (CHUNK, self.scheme)
             run = self._chunk(z, returns, scheme)
             if self.trace:

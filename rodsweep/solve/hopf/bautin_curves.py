@@ -16,7 +16,7 @@ from ...arrays import Array
 from ...determinant.boundary import Boundary
 from ...determinant.parameter_plane import Plane, PlaneAxis
 from ...model.rod import Rod
-from ...watch import report
+from ...watch import Whereabouts, report
 from ..point import FAILURES, Unsolvable
 from .generalised import FINEST, GeneralisedHopfPoint, HopfCurve
 
@@ -156,7 +156,7 @@ def _followed(space: BautinSpace, start: _Place, way: float) -> tuple[list[_Plac
     if not 0 < start.v[2] + way * SHORTEST < 1:
         return places, BautinEnd.range_end
     while len(places) < MOST_POINTS:
-        report(partial("curve of generalised Hopf points, {} points".format, len(places)))
+        report(partial(Whereabouts, f"curve of generalised Hopf points, {len(places)} points"))
         predicted = here.v + step * tangent
         try:
             there, edge = _within(space, predicted, here)

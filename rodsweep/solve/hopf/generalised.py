@@ -17,7 +17,7 @@ from ...determinant.boundary import Boundary, OnBoundary
 from ...determinant.curves import BoundaryCurve
 from ...determinant.parameter_path import determinant_along, direction_of
 from ...determinant.parameter_plane import Plane
-from ...watch import report
+from ...watch import Whereabouts, report
 from ..changes.unstable_modes import Crossing, Kind
 from ..point import FAILURES, Unsolvable
 from .hopf_coefficients import HopfCoefficients, hopf_coefficients
@@ -105,7 +105,8 @@ class HopfCurve:
 
     def sign(self, i: int) -> float:
         """That of Re c at a point: -1, 1, 0 undecided, NaN where there is no normal form."""
-        report(lambda: f"criticality of a Hopf curve, point {i + 1} of {len(self.scaled)}")
+        points = len(self.scaled)
+        report(lambda: Whereabouts(f"criticality of a Hopf curve, point {i + 1} of {points}", i / points))
         try:
             v = self.scaled[i]
             normal = self.boundary.tangent(v)

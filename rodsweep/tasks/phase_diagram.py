@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ...config.phase_diagram import PhaseDiagramConfig
-from ...results.layouts.phase_diagram import (
+from ..config.phase_diagram import PhaseDiagramConfig
+from ..results.layouts.phase_diagram import (
     MOST_SPECIAL,
 )
-from ...sweep.estimate import Estimate, estimate_branches, estimate_lines
+from ..sweep.estimate import Estimate, estimate_branches, estimate_lines
 from .diagram_curves import DiagramCurves
 from .diagram_cycles import cycles_record
 from .parts import LinearTask
@@ -17,7 +17,7 @@ from .protocol import Part, Solver
 from .thresholds import search_record
 
 if TYPE_CHECKING:
-    from ...solve.changes.rows import DiagramRow, RowRequest
+    from ..solve.changes.rows import DiagramRow, RowRequest
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,11 +78,15 @@ class PhaseDiagramTask(LinearTask):
         lines = estimate_lines(rows, options.certify)
         if not options.cycles:
             return lines
-        return replace(lines, seconds=lines.seconds + estimate_branches(rows).seconds)
+        from ..solve.branch.work import DIAGRAM_ACCURACY
+
+        reach = (float(self.line[0]), float(self.line[-1]))
+        branches = estimate_branches(self.points, self.config.plane[0], reach, DIAGRAM_ACCURACY)
+        return replace(lines, seconds=lines.seconds + branches.seconds)
 
     def solver(self) -> Solver:
-        from ...solve.changes.rows import solve_row
-        from ...solve.changes.thresholds import ThresholdStatus, warm_up
+        from ..solve.changes.rows import solve_row
+        from ..solve.changes.thresholds import ThresholdStatus, warm_up
 
         options, request = self.config.phase_diagram, self.row_request()
         if options.cycles:
@@ -97,7 +101,7 @@ class PhaseDiagramTask(LinearTask):
 
     def row_request(self) -> "RowRequest":
         """What is asked of every row."""
-        from ...solve.changes.rows import RowRequest
+        from ..solve.changes.rows import RowRequest
 
         options = self.config.phase_diagram
         return RowRequest(
@@ -106,8 +110,8 @@ class PhaseDiagramTask(LinearTask):
 
     def _with_cycles(self, request: "RowRequest") -> Solver:
         """How rows with their cycles are solved."""
-        from ...solve.branch.branches import warm_up
-        from ...solve.branch.coexistence import CoexistenceStatus, solve_coexistence
+        from ..solve.branch.branches import warm_up
+        from ..solve.branch.coexistence import CoexistenceStatus, solve_coexistence
 
         gamma1, curves = self.config.gamma1, DiagramCurves(self)
         return Solver(

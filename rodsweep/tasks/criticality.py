@@ -3,16 +3,16 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ...config.criticality import CriticalityConfig
-from ...results.layouts.criticality import NORMAL_FORM, OF_NO_HOPF_POINT
-from ...sweep.estimate import Estimate, estimate_criticality
+from ..config.criticality import CriticalityConfig
+from ..results.layouts.criticality import NORMAL_FORM, OF_NO_HOPF_POINT
+from ..sweep.estimate import Estimate, estimate_criticality
 from .parts import count_of, rod_parts
 from .protocol import Part, Solver, Task
 from .thresholds import search_record
 
 if TYPE_CHECKING:
-    from ...solve.hopf.criticality import Criticality
-    from ...solve.hopf.hopf_coefficients import HopfCoefficients
+    from ..solve.hopf.criticality import Criticality
+    from ..solve.hopf.hopf_coefficients import HopfCoefficients
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +49,7 @@ class CriticalityTask(Task):
         return estimate_criticality(self.points.count, self.config.criticality.certify)
 
     def solver(self) -> Solver:
-        from ...solve.hopf.criticality import (
+        from ..solve.hopf.criticality import (
             CriticalityRequest,
             CriticalityStatus,
             RodInFluid,

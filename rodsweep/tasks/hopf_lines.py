@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...model.parameters import LINEAR_PARAMETERS
-from ...model.rod import Rod
-from ...results.layouts.limit_cycle import HOPF_ALONG, HOPF_POINTS
-from ...results.layouts.variables import Filled
-from ...sweep.grid import Points
+from ..model.parameters import LINEAR_PARAMETERS
+from ..model.rod import Rod
+from ..results.layouts.limit_cycle import HOPF_ALONG, HOPF_POINTS
+from ..results.layouts.variables import Filled
+from ..sweep.grid import Points
 
 if TYPE_CHECKING:
-    from ...solve.changes.along_path import Transitions
-    from ...solve.changes.unstable_modes import Crossing
+    from ..solve.changes.along_path import Transitions
+    from ..solve.changes.unstable_modes import Crossing
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +35,10 @@ class HopfLine:
 
     def search(self) -> "Transitions | None":
         """The Hopf points on the line; None where they cannot be had. Needs no PETSc."""
-        from ...determinant.parameter_path import Path
-        from ...solve.changes.along_path import pair_crossings
-        from ...solve.changes.thresholds import SHORT_OF_CRUSHED
-        from ...solve.point import FAILURES
+        from ..determinant.parameter_path import Path
+        from ..solve.changes.along_path import pair_crossings
+        from ..solve.changes.thresholds import SHORT_OF_CRUSHED
+        from ..solve.point import FAILURES
 
         start, stop = self.start, self.stop
         if self.name == "F":

@@ -15,7 +15,7 @@ from ..solve.status import PointStatus
 from ..sweep.chains import State
 from ..sweep.grid import Points
 from ..sweep.stretches import Together
-from .tasks.protocol import Solver
+from .protocol import Solver
 
 MODEL_APPLIES = VALIDITY[0].name
 

@@ -8,13 +8,13 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ...results.file.view import View
-from ...results.layouts.variables import Filled
-from ...solve.status import PointStatus
-from ...sweep.chains import Chains, ChainStep
-from ...sweep.estimate import Estimate
-from ...sweep.grid import Points
-from ...sweep.stretches import Stretches, Together
+from ..results.file.view import View
+from ..results.layouts.variables import Filled
+from ..solve.status import PointStatus
+from ..sweep.chains import Chains, ChainStep
+from ..sweep.estimate import Estimate
+from ..sweep.grid import Points
+from ..sweep.stretches import Stretches, Together
 
 Arrays = dict[str, np.ndarray]
 """The result of a unit of work."""

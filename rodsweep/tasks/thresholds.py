@@ -5,15 +5,15 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ...config.thresholds import ThresholdsConfig
-from ...results.layouts.thresholds import CROSSING_KINDS
-from ...sweep.estimate import Estimate, estimate_lines
+from ..config.thresholds import ThresholdsConfig
+from ..results.layouts.thresholds import CROSSING_KINDS
+from ..sweep.estimate import Estimate, estimate_lines
 from .parts import LinearTask, count_of
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
-    from ...solve.changes.thresholds import Thresholds
-    from ...solve.hopf.criticality import Criticality
+    from ..solve.changes.thresholds import Thresholds
+    from ..solve.hopf.criticality import Criticality
 
 EVENTS = {"onset": "growth_rate", "hopf": "frequency", "restabilization": "frequency"}
 """Crossings of which the first one is a threshold, and what the file has of it beside F."""
@@ -42,7 +42,7 @@ class ThresholdsTask(LinearTask):
         return estimate_lines(self.points.count, self.config.thresholds.certify)
 
     def solver(self) -> Solver:
-        from ...solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds, warm_up
+        from ..solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds, warm_up
 
         options = self.config.thresholds
         request = ThresholdsRequest(options.F_max, self.config.accuracy, options.certify, options.crossings)

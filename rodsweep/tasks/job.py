@@ -16,10 +16,10 @@ from ..results.layouts.arm import at_points, in_si, quantities_of
 from ..results.layouts.variables import Filled, Layout
 from ..sweep.grid import Points, grid_size, points_of
 from ..sweep.stretches import Together
+from . import TASKS
 from .arm_points import around
 from .arm_validity import ArmValidity
-from .tasks import TASKS
-from .tasks.protocol import Solver, Task
+from .protocol import Solver, Task
 
 LARGEST_FILE = 2**63 - 1
 """Bytes of a file, and the largest number of a point."""

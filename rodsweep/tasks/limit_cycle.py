@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...config.limit_cycle import LimitCycleConfig
-from ...discretization.quadrature import lobatto_points
-from ...model.parameters import Range
-from ...results.layouts.limit_cycle import (
+from ..config.limit_cycle import LimitCycleConfig
+from ..discretization.quadrature import lobatto_points
+from ..model.parameters import Range
+from ..results.layouts.limit_cycle import (
     CYCLE,
     ENERGY,
     PERIOD_TAU1,
@@ -18,18 +18,18 @@ from ...results.layouts.limit_cycle import (
     TIP,
     TRANSIENT,
 )
-from ...results.layouts.variables import Filled, Variable
-from ...solve.backend.availability import require_solvers
-from ...sweep.chains import Chains, State
-from ...sweep.estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, Estimate
-from ...sweep.grid import refuse_outside
-from ...wording import counted
+from ..results.layouts.variables import Filled, Variable
+from ..solve.backend.availability import require_solvers
+from ..sweep.chains import Chains, State
+from ..sweep.estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, Estimate
+from ..sweep.grid import refuse_outside
+from ..wording import counted
 from .hopf_lines import HopfLine, hopf_lines_of, hopf_variables
 from .parts import count_of, rod_parts
 from .protocol import InOrder, Part, Solver, Task, alone
 
 if TYPE_CHECKING:
-    from ...solve.cycle.limit_cycle import Cycle
+    from ..solve.cycle.limit_cycle import Cycle
 
 OF_THE_SWEEP = ("along", "direction", "time")
 """Options that say how points follow each other and what the file adds; a cycle is asked for all others."""
@@ -119,7 +119,7 @@ class LimitCycleTask(Task):
         return Estimate(first * CYCLE_SECONDS + rest * CHAINED_CYCLE_SECONDS)
 
     def solver(self) -> Solver:
-        from ...solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle, warm_up
+        from ..solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle, warm_up
 
         options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
         request = CycleRequest(accuracy=self.config.accuracy, **options)

@@ -6,21 +6,21 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ...config.spectrum import SpectrumConfig
-from ...discretization.quadrature import lobatto_points
-from ...discretization.resolution import mesh_accuracy
-from ...errors import InputError
-from ...model.longitudinal import longitudinal_rates
-from ...results.layouts.spectrum import longitudinal
-from ...results.layouts.variables import Filled
-from ...sweep.estimate import Estimate, estimate_followed, estimate_spectra
-from ...sweep.stretches import Stretches, Together, along_the_longest
+from ..config.spectrum import SpectrumConfig
+from ..discretization.quadrature import lobatto_points
+from ..discretization.resolution import mesh_accuracy
+from ..errors import InputError
+from ..model.longitudinal import longitudinal_rates
+from ..results.layouts.spectrum import longitudinal
+from ..results.layouts.variables import Filled
+from ..sweep.estimate import Estimate, estimate_followed, estimate_spectra
+from ..sweep.stretches import Stretches, Together, along_the_longest
 from .parts import LinearTask, count_of
 from .protocol import InOrder, Part, Solver, alone
 
 if TYPE_CHECKING:
-    from ...solve.spectrum.search import Spectrum, SpectrumRequest
-    from ...solve.spectrum.stretch import Spectra
+    from ..solve.spectrum.search import Spectrum, SpectrumRequest
+    from ..solve.spectrum.stretch import Spectra
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,9 +82,9 @@ class SpectrumTask(LinearTask):
         return estimate_followed(alone, self.stretches) if self.stretches else alone
 
     def solver(self) -> Solver:
-        from ...solve.spectrum.search import SpectrumRequest, solve_spectrum, warm_up
-        from ...solve.spectrum.status import SpectrumStatus
-        from ...solve.spectrum.stretch import warm_up as warm_up_following
+        from ..solve.spectrum.search import SpectrumRequest, solve_spectrum, warm_up
+        from ..solve.spectrum.status import SpectrumStatus
+        from ..solve.spectrum.stretch import warm_up as warm_up_following
 
         options = self.config.spectrum
         request = SpectrumRequest(options.modes, self.config.accuracy, options.certify, self._vector_nodes)
@@ -99,7 +99,7 @@ class SpectrumTask(LinearTask):
 
     def _together(self, indices: NDArray[np.int64], request: "SpectrumRequest") -> Together:
         """What comes of the points of a stretch."""
-        from ...solve.spectrum.stretch import Stretch, solve_stretch
+        from ..solve.spectrum.stretch import Stretch, solve_stretch
 
         stretches = self.stretches
         assert stretches is not None

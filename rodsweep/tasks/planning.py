@@ -4,7 +4,7 @@ from ..results.file import provenance
 from ..results.file.creation import Plan
 from ..sweep.shards import Shard
 from .job import Job
-from .tasks.protocol import Solver
+from .protocol import Solver
 
 
 def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:

@@ -24,7 +24,7 @@ from ..solve.backend.kept import forget_all
 from ..solve.status import PointStatus
 from ..sweep.chains import State
 from ..sweep.stretches import Together
-from .tasks.protocol import Solver
+from .protocol import Solver
 
 PASSING = (Refusal, OSError)
 """Exceptions that are not of a point: they end the run in a sentence."""

@@ -7,9 +7,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from ...model.parameters import PARAMETERS, Parameter
-from ...sweep.grid import Points
-from ...wording import counted
+from ..model.parameters import PARAMETERS, Parameter
+from ..sweep.grid import Points
+from ..wording import counted
 from .protocol import Part, Task
 
 

@@ -6,28 +6,28 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...config.values import Axis
-from ...determinant.parameter_plane import Plane, PlaneAxis
-from ...model.parameters import CRUSHING
-from ...model.rod import Rod
-from ...results.file.view import View
-from ...results.layouts.phase_diagram import (
+from ..config.values import Axis
+from ..determinant.parameter_plane import Plane, PlaneAxis
+from ..model.parameters import CRUSHING
+from ..model.rod import Rod
+from ..results.file.view import View
+from ..results.layouts.phase_diagram import (
     MOST_SPECIAL,
     bautin_curve_variables,
     criticality_variables,
     curve_variables,
     cycle_curve_variables,
 )
-from ...results.layouts.variables import Filled
+from ..results.layouts.variables import Filled
 from .diagram_cycles import cycle_curve_record, row_specials, unstored_specials, with_hopf_ends
 from .diagram_records import bautin_curve_record, criticality_record, curve_record
 
 if TYPE_CHECKING:
-    from ...solve.branch.coexistence import CoexistenceRow
-    from ...solve.branch.special_boundaries import SpecialBoundaries
-    from ...solve.branch.special_points import SpecialPoint
-    from ...solve.changes.boundaries import Boundaries
-    from ...solve.hopf.generalised import CurveCriticality
+    from ..solve.branch.coexistence import CoexistenceRow
+    from ..solve.branch.special_boundaries import SpecialBoundaries
+    from ..solve.branch.special_points import SpecialPoint
+    from ..solve.changes.boundaries import Boundaries
+    from ..solve.hopf.generalised import CurveCriticality
     from .phase_diagram import PhaseDiagramTask
 
 MAX_KEPT_ROWS = 200
@@ -63,7 +63,7 @@ class DiagramCurves:
 
     def units(self, view: View) -> "SpecialBoundaries | None":
         """The curves of cycles as units of work, from a view with all rows; None where there are none."""
-        from ...solve.branch.special_boundaries import SpecialBoundaries
+        from ..solve.branch.special_boundaries import SpecialBoundaries
 
         plane = self.plane if self.task.config.phase_diagram.cycles else None
         if plane is None:
@@ -78,7 +78,7 @@ class DiagramCurves:
 
     def nothing(self) -> dict[str, np.ndarray]:
         """The result of a unit that finds no curve, arrays of no length along their first shape."""
-        from ...solve.branch.special_boundaries import TracedHalf
+        from ..solve.branch.special_boundaries import TracedHalf
 
         return TracedHalf(None).arrays()
 
@@ -94,7 +94,7 @@ class DiagramCurves:
         variables = curve_variables(line, row) | criticality_variables(line, row)
         values, options = curve_record(found, line, row), self.task.config.phase_diagram
         if (line, row) == CRUSHING:  # the fold of the Hopf curve in the partial beam limit (Sec. VIII)
-            from ...solve.changes.thresholds import filament_hopf
+            from ..solve.changes.thresholds import filament_hopf
 
             Fc = filament_hopf()
             values |= {"filament_F_hopf": Fc, "partial_beam_k1": 4 * Fc, "partial_beam_F": 2 * Fc}
@@ -133,7 +133,7 @@ class DiagramCurves:
 
     def _boundaries(self, plane: Plane, view: View, rows: np.ndarray) -> "Boundaries":
         """The curves through the crossings of all finite rows, whose values are given, (rows,)."""
-        from ...solve.changes.boundaries import curves_through, seed_of
+        from ..solve.changes.boundaries import curves_through, seed_of
 
         names = ("crossing_at", "crossing_kind", "crossing_frequency", "crossing_growth_rate")
         at, kind, frequency, rate = (view.variables[n].reshape(len(rows), -1) for n in names)
@@ -151,7 +151,7 @@ class DiagramCurves:
 
     def _special_points(self, number: int) -> "tuple[SpecialPoint, ...]":
         """The special points of the branches of the row of a number, kept or solved anew."""
-        from ...solve.branch.coexistence import row_branches, special_of
+        from ..solve.branch.coexistence import row_branches, special_of
 
         if number not in self.special:
             fixed = self.task.points.values(number)
@@ -161,7 +161,7 @@ class DiagramCurves:
 
     def _criticality(self, plane: Plane, found: "Boundaries") -> "list[CurveCriticality]":
         """On which side of each curve cycles are born, if it is one of Hopf points."""
-        from ...solve.hopf.generalised import CurveCriticality, curve_criticality
+        from ..solve.hopf.generalised import CurveCriticality, curve_criticality
 
         gamma1, accuracy = self.task.config.gamma1, self.task.config.accuracy
         return [
@@ -175,7 +175,7 @@ class DiagramCurves:
         self, plane: Plane, told: Sequence["CurveCriticality"], name: str, axis: Axis
     ) -> dict[str, Any]:
         """The curves of generalised Hopf points over the third parameter, as variables of the file."""
-        from ...solve.hopf.bautin_curves import BautinCurve, BautinSpace, bautin_curve, lies_on, on_curve
+        from ..solve.hopf.bautin_curves import BautinCurve, BautinSpace, bautin_curve, lies_on, on_curve
 
         options = self.task.config
         asked, here = axis.array(), float(options.parameters.axes[name].array()[0])

@@ -5,18 +5,18 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ...config.modes import ModesConfig
-from ...discretization.quadrature import lobatto_points
-from ...discretization.resolution import mesh_accuracy
-from ...model.rod import Rod
-from ...results.layouts.modes import GROWTH
-from ...sweep.estimate import Estimate, estimate_modes, estimate_spectra
+from ..config.modes import ModesConfig
+from ..discretization.quadrature import lobatto_points
+from ..discretization.resolution import mesh_accuracy
+from ..model.rod import Rod
+from ..results.layouts.modes import GROWTH
+from ..sweep.estimate import Estimate, estimate_modes, estimate_spectra
 from .parts import LinearTask, count_of
 from .protocol import Part, Solver
 from .spectrum import record as spectrum_record
 
 if TYPE_CHECKING:
-    from ...solve.modes.leading_modes import Modes
+    from ..solve.modes.leading_modes import Modes
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,8 +52,8 @@ class ModesTask(LinearTask):
         return estimate_modes(spectra, self.points.count, options.modes, options.growth)
 
     def solver(self) -> Solver:
-        from ...solve.modes.leading_modes import ModesRequest, solve_modes
-        from ...solve.spectrum.status import SpectrumStatus
+        from ..solve.modes.leading_modes import ModesRequest, solve_modes
+        from ..solve.spectrum.status import SpectrumStatus
 
         options = self.config.modes
         request = ModesRequest(

@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...config.branch import BranchConfig
-from ...results.layouts.branch import followed_variables, special_variables
-from ...sweep.estimate import Estimate, estimate_branches
+from ..config.branch import BranchConfig
+from ..results.layouts.branch import followed_variables, special_variables
+from ..sweep.estimate import Estimate, estimate_branches
 from .parts import count_of, rod_parts
 from .protocol import Part, Solver, Task
 
 if TYPE_CHECKING:
-    from ...solve.branch.branch_curve import BranchCurve, BranchPoint
-    from ...solve.branch.branches import BranchesOfRod
-    from ...solve.branch.special_points import SpecialPoint
-    from ...solve.changes.unstable_modes import Crossing
+    from ..solve.branch.branch_curve import BranchCurve, BranchPoint
+    from ..solve.branch.branches import BranchesOfRod
+    from ..solve.branch.special_points import SpecialPoint
+    from ..solve.changes.unstable_modes import Crossing
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,10 +48,12 @@ class BranchTask(Task):
         ]
 
     def cost(self) -> Estimate:
-        return estimate_branches(self.points.count)
+        options = self.config.branch
+        reach = (options.start, options.stop)
+        return estimate_branches(self.points, options.along, reach, self.config.accuracy)
 
     def solver(self) -> Solver:
-        from ...solve.branch.branches import (
+        from ..solve.branch.branches import (
             BranchRequest,
             BranchRod,
             BranchStatus,

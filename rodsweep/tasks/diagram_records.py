@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from ...determinant.curves import BoundaryCurve
-    from ...solve.changes.boundaries import Boundaries
-    from ...solve.hopf.bautin_curves import BautinCurve
-    from ...solve.hopf.generalised import CurveCriticality
+    from ..determinant.curves import BoundaryCurve
+    from ..solve.changes.boundaries import Boundaries
+    from ..solve.hopf.bautin_curves import BautinCurve
+    from ..solve.hopf.generalised import CurveCriticality
 
 
 def curve_record(found: "Boundaries", line: str, row: str) -> dict[str, Any]:
