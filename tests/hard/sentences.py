@@ -53,6 +53,8 @@ TASKS = ("spectrum", "modes", "thresholds", "criticality", "limit_cycle", "phase
 FINE = {"criticality": 1e-9, "limit_cycle": 1e-7, "modes": 1e-10, "branch": 1e-7}
 """Accuracy to which true numbers are computed, by task; of phase diagrams with cycles that of branches."""
 MODE_FIELDS = ("Y", "Theta", "h2", "Pi", "adjoint_Y")
+MANY = 30
+"""Modes among which that of a curve is, though others grow there."""
 ROUNDING = 1e-11
 """Relative error of an eigenvalue that is solved alone."""
 FOLD_BESIDE, FOLD_WIDTH = 1e-5, 0.05
@@ -700,7 +702,7 @@ def _curve_sentences(view, page, row):
     fixed = {name: float(view.axes[name][0]) for name in view.parameters if name != row}
     for i in range(0, len(v["curve_kind"]), max(1, len(v["curve_kind"]) // 6)):
         rod = Rod(float(v["curve_F"][i]), **(fixed | {row: float(v[f"curve_{row}"][i])}))
-        w = solve_spectrum(rod, SpectrumRequest(8, 1e-10, False)).eigenvalues
+        w = solve_spectrum(rod, SpectrumRequest(MANY, 1e-10, False)).eigenvalues
         at = complex(v["curve_growth_rate"][i], v["curve_frequency"][i])
         off = np.sort(np.abs(w - at))[0] / abs(at)
         # Double eigenvalues move with the root of an error.
@@ -733,10 +735,10 @@ def _curve_sentences(view, page, row):
         found.append((line, _side_of_points(view, row, fixed)))
     for line, match in read(
         page,
-        rf"^generalised Hopf point \(Re c = 0\) on curve NUMBER: "
+        r"^generalised Hopf point \(Re c = NUMBER\) on curve NUMBER: "
         rf"{row} = NUMBER \(\+- NUMBER\), F = NUMBER \(\+- NUMBER\)",
     ):
-        found.append((line, _bautin(view, row, fixed, float(match[2]), float(match[4]))))
+        found.append((line, _bautin(view, row, fixed, float(match[3]), float(match[5]))))
     return found
 
 

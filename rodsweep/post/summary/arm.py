@@ -57,7 +57,8 @@ def wrapped(text: str) -> list[str]:
 
 def errors_in_si(v: Mapping[str, np.ndarray], own: str, twin: str) -> np.ndarray:
     """The absolute errors of what stands under the name `twin` in an SI unit too, in it, of its shape."""
-    scale = np.divide(v[twin], v[own], out=np.zeros_like(v[twin]), where=np.asarray(v[own]) != 0)
+    known = np.isfinite(v[own]) & (v[own] != 0)
+    scale = np.divide(v[twin], v[own], out=np.zeros_like(v[twin]), where=known)
     return np.asarray(np.abs(scale) * errors_of(v, own))
 
 
