@@ -203,6 +203,10 @@ REFUSED_BY_TASK = [
         config("criticality", "k1: 9, k2: 1, gamma3: 0", "F_max: 0"),
         "F_max = 0 is not allowed; it should be a finite number above 0",
     ),
+    (
+        config("spectrum", options="method: krylov_schur, certify: true"),
+        "spectrum.certify is given but not used; set spectrum.method: determinant or remove it",
+    ),
     (config("branch", "F: 3, k1: 9"), "parameters.F is given but the task branch follows F; remove it"),
     (
         config("branch", "k1: 9, k2: 9, gamma3: 0", "along: k1, start: 1"),

@@ -12,9 +12,10 @@ from rodsweep.model.dispersion import most_amplified_wave
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.spectrum import candidates as candidates_module
-from rodsweep.solve.spectrum.krylov_schur import MOST_KEPT, eigen_solver
+from rodsweep.solve.spectrum.krylov_schur import DENSE_UP_TO, MOST_KEPT, eigen_solver
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
+from rodsweep.solve.spectrum.two_meshes import solve_on_two_meshes
 
 TIGHT = SpectrumRequest(modes=4, accuracy=1e-12, certify=True)
 
@@ -384,3 +385,34 @@ def test_a_solver_that_is_no_longer_kept_gives_its_memory_back():
     first, longest_unused, *others = solvers
     assert not any((longest_unused.eps, longest_unused.A, longest_unused.B, longest_unused.start))
     assert all(solver.eps and solver.A for solver in (first, *others))
+
+
+def test_krylov_schur_on_two_meshes_has_the_reference_spectra_within_its_errors(reference_spectra):
+    """D takes no part: the difference of two meshes is the error, and nothing is certified."""
+    request = SpectrumRequest(modes=4, accuracy=1e-8, certify=False)
+    for point in reference_spectra:
+        rod = rod_of(point)
+        result, exact = solve_on_two_meshes(rod, request), leading(point, 4)
+        if result.status != SpectrumStatus.ok:  # a pull makes the first eigenvalue less than its rounding
+            assert result.status == SpectrumStatus.accuracy_not_reached, rod
+            assert rod.F < 0, rod
+        apart = np.abs(result.eigenvalues - exact)
+        if rod.g > 0 or rod.gamma3 > 0:  # else infinitely many modes grow
+            assert (apart <= result.error_estimate).all(), rod
+            assert result.unstable_count in (point["unstable"], -1), rod
+        assert not result.certified
+
+
+def test_krylov_schur_on_two_meshes_is_sparse_where_elements_are_many():
+    rod, request = Rod(390.0, 1e4, 15.0, 1e-3), SpectrumRequest(modes=30, accuracy=1e-8, certify=False)
+    result, reference = solve_on_two_meshes(rod, request), solve_spectrum(rod, TIGHT)
+    assert result.status == SpectrumStatus.ok
+    assert result.resolution.unknowns > DENSE_UP_TO
+    assert np.abs(result.eigenvalues[:4] / reference.eigenvalues - 1).max() < 1e-8
+
+
+def test_krylov_schur_on_two_meshes_gives_the_vectors_that_the_search_gives():
+    rod, request = Rod(60.0, 200.0, 1e4, 1e-4), SpectrumRequest(3, 1e-6, certify=False, vector_nodes=9)
+    found, reference = solve_on_two_meshes(rod, request), solve_spectrum(rod, request)
+    assert found.vectors.shape == (2, 3, 9)
+    assert np.abs(found.vectors - reference.vectors).max() < 1e-6 * np.abs(reference.vectors).max()

@@ -20,6 +20,7 @@ class OfSpectrum(OfEveryTask, total=False):
     """Keys of the section `spectrum`."""
 
     modes: int
+    method: Literal["determinant", "krylov_schur"]
     certify: bool
     vectors: bool
     nodes: int
@@ -68,7 +69,6 @@ class OfLimitCycle(OfEveryTask, total=False):
 
     amplitude: float
     start: Literal["mode", "neighbour", "hopf"]
-    continue_from: Literal["none", "previous"]
     along: str
     direction: Literal["up", "down"]
     harmonics: int

@@ -15,6 +15,8 @@ class SpectrumOptions(Strict):
 
     modes: Modes = 4
     """Leading modes at each point."""
+    method: Literal["determinant", "krylov_schur"] = "determinant"
+    """Eigenvalues as roots of D, or by Krylov-Schur on two meshes alone, which proves nothing."""
     certify: bool = True
     """Prove by the winding number that none of them is missing."""
     vectors: bool = False
@@ -41,7 +43,15 @@ class SpectrumConfig(LinearConfig):
 
     @property
     def unused(self) -> dict[str, str]:
-        return {} if self.spectrum.vectors else {"nodes": "vectors: true"}
+        found = {} if self.spectrum.vectors else {"nodes": "vectors: true"}
+        if self.spectrum.method == "krylov_schur":
+            found |= dict.fromkeys(("certify", "follow"), "method: determinant")
+        return found
+
+    @property
+    def certifies(self) -> bool:
+        """Whether the winding number of D is to prove that no mode is missing."""
+        return self.spectrum.certify and self.spectrum.method == "determinant"
 
     @property
     def follows(self) -> bool:
@@ -50,12 +60,12 @@ class SpectrumConfig(LinearConfig):
 
     @property
     def _could_follow(self) -> bool:
-        return self.spectrum.certify and not (self.spectrum.vectors or self.parameters.is_list)
+        return self.certifies and not (self.spectrum.vectors or self.parameters.is_list)
 
     @property
     def meaning(self) -> dict[str, Any]:
         meant = super().meaning
-        if not self._could_follow:  # then it makes no difference
+        if "follow" in meant["spectrum"] and not self._could_follow:  # then it makes no difference
             meant["spectrum"]["follow"] = True
         return meant
 

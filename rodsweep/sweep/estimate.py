@@ -25,6 +25,9 @@ LINE_MS, LINE_CERTIFICATE_MS = 24.0, 16.0
 HOPF_SEARCH_MS, HOPF_CERTIFICATE_MS, HOPF_POINTS_MS = 25.0, 3.0, 18.0
 """Time of a search for the Hopf points of a rod, of its certificate, and of the normal forms of those that it
 has, two or three: means over 90 rods."""
+TWO_MESHES, FINER_MESH = 8.0, 4 / 3
+"""Time of a spectrum on two meshes, in units of one that begins on one mesh: a mean over 800 rods; and the
+unknowns of the second mesh in units of the first's."""
 MODES_MS, GROWTH_MS = 1.5, 20.0
 """Time that the vectors take beside the eigenvalues, in units of the modes squared, because the mesh grows
 with them, and that the growth takes: means over 24 rods."""
@@ -89,6 +92,13 @@ def estimate_followed(alone: Estimate, stretches: Stretches) -> Estimate:
     points = math.prod(stretches.shape)
     share = FIRST_POINTS * stretches.count / points
     return replace(alone, seconds=alone.seconds * min(1.0, share) + points * 1e-3 * FOLLOWED_MS)
+
+
+def estimate_two_meshes(points: Points, modes: int, accuracy: float) -> Estimate:
+    """The cost of spectra by Krylov-Schur on two meshes alone."""
+    alone = estimate_spectra(points, modes, accuracy, certify=False)
+    unknowns = alone.unknowns and (alone.unknowns[0], math.ceil(FINER_MESH * alone.unknowns[1]))
+    return replace(alone, seconds=TWO_MESHES * alone.seconds, unknowns=unknowns)
 
 
 def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool) -> Estimate:

@@ -24,14 +24,18 @@ class LinearTask(Task):
     def asked(self) -> list[Part]:
         """What the task's options ask for."""
 
-    def parts(self) -> list[Part]:
+    def certificate(self) -> tuple[bool, str]:
+        """Whether completeness is proved, and by what, or why not."""
         task = self.config.task
-        certify = getattr(self.config, task).certify
-        why = "winding number of D" if certify else f"{task}.certify: false; {self.not_proved}"
+        if getattr(self.config, task).certify:
+            return True, "winding number of D"
+        return False, f"{task}.certify: false; {self.not_proved}"
+
+    def parts(self) -> list[Part]:
         return [
             *rod_parts(self.points.of_rods | self.coordinates()),
             *self.asked(),
-            ("certificate", certify, why),
+            ("certificate", *self.certificate()),
             ("gravity, inertia, nonlinear motion", False, "not part of the linear overdamped problem"),
         ]
 

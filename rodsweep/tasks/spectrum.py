@@ -13,7 +13,7 @@ from ..errors import InputError
 from ..model.longitudinal import longitudinal_rates
 from ..results.layouts.spectrum import longitudinal
 from ..results.layouts.variables import Filled
-from ..sweep.estimate import Estimate, estimate_followed, estimate_spectra
+from ..sweep.estimate import Estimate, estimate_followed, estimate_spectra, estimate_two_meshes
 from ..sweep.stretches import Stretches, Together, along_the_longest
 from .parts import LinearTask, count_of
 from .protocol import InOrder, Part, Solver, alone
@@ -75,24 +75,35 @@ class SpectrumTask(LinearTask):
             ("eigenvectors", options.vectors, vectors),
         ]
 
+    def certificate(self) -> tuple[bool, str]:
+        if self.config.spectrum.method == "determinant":
+            return LinearTask.certificate(self)
+        return False, f"spectrum.method: {self.config.spectrum.method}; {self.not_proved}"
+
     def cost(self) -> Estimate:
         options = self.config.spectrum
+        if options.method == "krylov_schur":
+            return estimate_two_meshes(self.points, options.modes, self.config.accuracy)
         accuracy = mesh_accuracy(self.config.accuracy, options.vectors)
-        alone = estimate_spectra(self.points, options.modes, accuracy, options.certify)
+        alone = estimate_spectra(self.points, options.modes, accuracy, self.config.certifies)
         return estimate_followed(alone, self.stretches) if self.stretches else alone
 
     def solver(self) -> Solver:
         from ..solve.spectrum.search import SpectrumRequest, solve_spectrum, warm_up
         from ..solve.spectrum.status import SpectrumStatus
         from ..solve.spectrum.stretch import warm_up as warm_up_following
+        from ..solve.spectrum.two_meshes import solve_on_two_meshes
 
         options = self.config.spectrum
-        request = SpectrumRequest(options.modes, self.config.accuracy, options.certify, self._vector_nodes)
+        request = SpectrumRequest(
+            options.modes, self.config.accuracy, self.config.certifies, self._vector_nodes
+        )
         stretches = self.stretches
+        solve = solve_spectrum if options.method == "determinant" else solve_on_two_meshes
         return Solver(
             statuses=tuple(SpectrumStatus),
             warm_up=warm_up_following if stretches else warm_up,
-            solve=lambda index: solve_spectrum(self.points.rod(index), request),
+            solve=lambda index: solve(self.points.rod(index), request),
             record=lambda index, result: record(result),
             stretched=(stretches, lambda indices: self._together(indices, request)) if stretches else None,
         )

@@ -19,6 +19,7 @@ from rodsweep.determinant.winding_number import count_right_of
 from rodsweep.model.arm import SlenderArm
 from rodsweep.model.parameters import LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
+from rodsweep.post.branch_curves import curves_of
 from rodsweep.post.hopf_points import lines_over
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
@@ -51,7 +52,7 @@ from .truths import (
 
 TASKS = ("spectrum", "modes", "thresholds", "criticality", "limit_cycle", "phase_diagram", "branch")
 FINE = {"criticality": 1e-9, "limit_cycle": 1e-7, "modes": 1e-10, "branch": 1e-7}
-"""Accuracy to which true numbers are computed, by task; of phase diagrams with cycles that of branches."""
+"""Accuracy to which true numbers are computed, by task."""
 MODE_FIELDS = ("Y", "Theta", "h2", "Pi", "adjoint_Y")
 MANY = 30
 """Modes among which that of a curve is, though others grow there."""
@@ -161,8 +162,7 @@ def wrong_sentences(task, keywords):
     """(lines with a wrong number or one that nothing reads, with what is wrong; how many were read)."""
     view = solved(task, keywords)
     page = page_of(view)
-    followed = "branch" if keywords.get("cycles") else task
-    fine = solved(task, keywords | {"accuracy": FINE[followed]}) if followed in FINE else view
+    fine = solved(task, keywords | {"accuracy": FINE[task]}) if task in FINE else view
     found = CHECKS[task](view, page, keywords, fine) + table_sentences(view, page, keywords)
     if view.quantities:
         found += arm_sentences(view, page, fine)
@@ -672,7 +672,7 @@ def diagram_sentences(view, page, keywords, fine):
             found += counts(page, rf"^{kind}: .*; again on NUMBER", sum(len(each) > 1 for each in of_kind))
     found += _curve_sentences(view, page, row)
     if "stable_states" in v:
-        found += _state_sentences(view, page, fine, row)
+        found += _state_sentences(view, page, _states_of(view, row, fixed, table), row)
     return found
 
 
@@ -799,15 +799,39 @@ def _bautin(view, row, fixed, value, F):
     return "" if {-1.0, 1.0} <= sides else f"sides near by: {sides}"
 
 
+def _states_of(view, row, fixed, table):
+    """What is stable at the points of a diagram, and the special points of its rows, from branches of rods.
+
+    table: what the straight rod does, (rows, values).
+    """
+    F, gamma1 = view.variables["F"], float(view.attributes.get("gamma1", 1.0))
+    states, kinds, at = [], [], []
+    for value, motions in zip(view.axes[row], table, strict=True):
+        rod = {**fixed, row: float(value), "gamma1": gamma1, "stop": float(F[-1])}
+        branch = solved("branch", rod | {"accuracy": FINE["branch"]})
+        ranges_ = [piece for curve in curves_of(branch, 0) for piece in curve.stable_ranges]
+        cycles = np.array([any(a < x < b or x == b == F[-1] for a, b in ranges_) for x in F])
+        straight = np.isin(motions, ["monotone", "oscillatory"])
+        states.append(np.where(motions == "crushed", 5, straight + 2 * cycles))
+        kinds.append(branch.variables["special_kind"].ravel())
+        at.append(branch.variables["special_at"].ravel())
+    return {
+        "F": F,
+        "stable_states": np.array(states),
+        "cycle_special_kind": np.array(kinds),
+        "cycle_special_F": np.array(at),
+    }
+
+
 def _state_sentences(view, page, fine, row):
-    """Stable states and special points of cycles, against those of a far smaller accuracy."""
-    v, rows, found = fine.variables, view.axes[row], []
-    states = v["stable_states"].reshape(len(rows), -1)
+    """Stable states and special points of cycles, against branches of a far smaller accuracy."""
+    v, rows, found = fine, view.axes[row], []
+    states = v["stable_states"]
     for number, word in enumerate(("neither known", "straight", "cycle", "both", "undecided", "crushed")):
         share = [100 * (states == number).mean()]
         found += ranges(page, rf"^stable states, of the grid: (?:.*, )?RANGE % {word}", share)
     both = (states == 3).any(axis=1)
-    kinds, at = v["cycle_special_kind"].reshape(len(rows), -1), v["cycle_special_F"].reshape(len(rows), -1)
+    kinds, at = v["cycle_special_kind"], v["cycle_special_F"]
     where = {
         r"straight rod and cycle both stable": (both, np.broadcast_to(v["F"], states.shape)[states == 3])
     }

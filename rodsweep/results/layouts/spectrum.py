@@ -55,6 +55,7 @@ def longitudinal(gamma1: float, *along: str) -> Variable:
 
 INCREASES = {
     "modes": ANEW,
+    "method": ANEW,
     "certify": ANEW,
     "vectors": ANEW,
     "nodes": ANEW,

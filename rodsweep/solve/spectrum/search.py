@@ -99,7 +99,7 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
 
     def failed(cause: str) -> Spectrum:
         forget_solvers()
-        return _nothing(SpectrumStatus.failed, request, cause)
+        return no_spectrum(SpectrumStatus.failed, request, cause)
 
     return solved(lambda: Search(rod, request).outcome(), failed)
 
@@ -203,10 +203,10 @@ class Search:
             return _result(self.best, self.rod, self.request)
         if self.lost is not None:
             counted = f"the winding number counts {self.lost.count.number}"
-            return _nothing(SpectrumStatus.modes_missing, self.request, counted)
+            return no_spectrum(SpectrumStatus.modes_missing, self.request, counted)
         if self.unresolved:
-            return _nothing(SpectrumStatus.modes_missing, self.request, "no mesh resolves what may lead")
-        return _nothing(SpectrumStatus.failed, self.request, self.why)
+            return no_spectrum(SpectrumStatus.modes_missing, self.request, "no mesh resolves what may lead")
+        return no_spectrum(SpectrumStatus.failed, self.request, self.why)
 
 
 def _result(best: Judged, rod: Rod, request: SpectrumRequest) -> Spectrum:
@@ -233,22 +233,27 @@ def _result(best: Judged, rod: Rod, request: SpectrumRequest) -> Spectrum:
         unstable_count=unstable if known else -1,
         certified=proved and not undecided,
         resolution=best.found.resolution,
-        vectors=_vectors(rod, request, best.found),
+        vectors=vectors_on_nodes(rod, request, best.found.resolution, best.found.vectors),
         message=message,
     )
 
 
-def _vectors(rod: Rod, request: SpectrumRequest, found: Candidates) -> Complex | None:
-    """(Y, Theta) on the Lobatto nodes; NaN where Y(1) vanishes and cannot be scaled to 1."""
-    if found.vectors is None:
+def vectors_on_nodes(
+    rod: Rod, request: SpectrumRequest, resolution: Resolution, found: Complex | None
+) -> Complex | None:
+    """(Y, Theta) on the Lobatto nodes, complex, (2, modes, nodes), of a mesh's vectors, (unknowns, k).
+
+    NaN where Y(1) vanishes and cannot be scaled to 1.
+    """
+    if found is None:
         return None
-    pencil = eigen_solver(found.resolution).pencil
-    y, theta = pencil.fields(found.vectors[:, : request.modes], rod)
+    pencil = eigen_solver(resolution).pencil
+    y, theta = pencil.fields(found[:, : request.modes], rod)
     matrix, scale = pencil.evaluation(lobatto_points(request.vector_nodes)), tip_scale(y, theta)
     return np.stack([(matrix @ y * scale).T, (matrix @ theta * scale).T])
 
 
-def _nothing(status: SpectrumStatus, request: SpectrumRequest, message: str) -> Spectrum:
+def no_spectrum(status: SpectrumStatus, request: SpectrumRequest, message: str) -> Spectrum:
     """The outcome without numbers."""
     empty = np.full(request.modes, np.nan)
     shape = (2, request.modes, request.vector_nodes)

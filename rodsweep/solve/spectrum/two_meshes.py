@@ -1,0 +1,124 @@
+"""The leading eigenvalues of one rod by SLEPc alone: Krylov-Schur on two meshes, without D.
+
+The finer mesh gives the eigenvalues, what the coarser one has instead gives their errors. Krylov-Schur finds
+the eigenvalues nearest a shift above the growth rate of the most amplified wave; twice as many are asked for
+until the leading ones stay the same. That proves nothing: nothing is certified.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array, Complex
+from ...discretization.resolution import (
+    MOST_UNKNOWNS,
+    Resolution,
+    expected_wave_number,
+    finer,
+    mesh_accuracy,
+    resolution_for,
+)
+from ...model.dispersion import most_amplified_wave
+from ...model.rod import Rod
+from ..point import Unsolvable, solved
+from .krylov_schur import eigen_solver, forget_solvers
+from .search import SHIFT_ABOVE_GROWTH, Spectrum, SpectrumRequest, no_spectrum, vectors_on_nodes
+from .status import SpectrumStatus
+
+MOST_FINER = 8
+SPARE = 2
+"""Eigenvalues asked for at first beyond the wanted ones."""
+UNCHANGED = 1e-9
+"""Relative change of the leading eigenvalues below which more eigenvalues do not change them."""
+SAFETY, ROUNDING = 3.0, 1e-13
+"""Factor on what two meshes differ by, and rounding error of an eigenvalue in units of its modulus, the shift
+and F^2: under a pull the first eigenvalue is exponentially small against the latter."""
+
+
+def solve_on_two_meshes(rod: Rod, request: SpectrumRequest) -> Spectrum:
+    """The leading `request.modes` eigenvalues of `rod`; failures are a status, never an exception.
+
+    Nothing is proved, whatever `request.certify` says.
+    """
+
+    def failed(cause: str) -> Spectrum:
+        forget_solvers()
+        return no_spectrum(SpectrumStatus.failed, request, cause)
+
+    return solved(lambda: _solve(rod, request), failed)
+
+
+def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
+    growth, wave = most_amplified_wave(rod)
+    shift, modes = SHIFT_ABOVE_GROWTH * growth, request.modes
+    aim = mesh_accuracy(request.accuracy, vectors=True) if request.vector_nodes else request.accuracy
+    mesh = resolution_for(expected_wave_number(modes, wave), aim)
+    before = _leading(rod, mesh, modes, shift)
+    best: Spectrum | None = None
+    for _ in range(MOST_FINER):
+        mesh = finer(mesh)
+        if mesh.unknowns > MOST_UNKNOWNS:
+            break
+        found = _leading(rod, mesh, modes, shift)
+        if len(found.w) >= modes and len(before.w):
+            best = _spectrum(rod, request, mesh, found, _errors(found.w, before.w, abs(shift) + rod.F**2))
+            if best.status == SpectrumStatus.ok:
+                return best
+        before = found
+    if best is None:
+        raise Unsolvable("no mesh within the limit has as many eigenvalues as are wanted")
+    return best
+
+
+class _Found(NamedTuple):
+    """Eigenvalues of a mesh, sorted as `rodsweep.model` states, (k,); indices: of each in SLEPc, (k,)."""
+
+    w: Complex
+    indices: NDArray[np.intp]
+
+
+def _leading(rod: Rod, mesh: Resolution, modes: int, shift: float) -> _Found:
+    """At least so many leading eigenvalues of a mesh, if it has them, among all that were found on it."""
+    solver, wanted, before = eigen_solver(mesh), modes + SPARE, np.empty(0, complex)
+    while True:
+        raw = solver.solve(rod, shift, wanted, tight=True)
+        order = np.lexsort((-raw.imag, -raw.real))
+        leading = raw[order[:modes]]
+        same = len(leading) == len(before) == modes and np.allclose(leading, before, rtol=UNCHANGED, atol=0)
+        if same or 2 * wanted > mesh.unknowns // 3:
+            return _Found(raw[order], order)
+        before, wanted = leading, 2 * wanted
+
+
+def _errors(w: Complex, coarser: Complex, scale: float) -> Array:
+    """Absolute errors of sorted eigenvalues, (k,), by those of a coarser mesh, (l,), in any order.
+
+    scale: of the rates to which the matrix is rounded, in 1/tau2. Two meshes may round one eigenvalue alike
+    by chance: each gets the relative error of its neighbours, too.
+    """
+    apart = np.abs(w[:, None] - coarser).min(axis=1) / np.abs(w)
+    padded = np.pad(apart, 1)
+    relative = np.max([padded[:-2], padded[1:-1], padded[2:]], axis=0)
+    errors: Array = SAFETY * relative * np.abs(w) + ROUNDING * (np.abs(w) + scale)
+    return errors
+
+
+def _spectrum(rod: Rod, request: SpectrumRequest, mesh: Resolution, found: _Found, error: Array) -> Spectrum:
+    """The outcome of a mesh; error: absolute, of all its eigenvalues, (k,)."""
+    w, modes = found.w, request.modes
+    enough = bool((error[:modes] <= request.accuracy * np.abs(w[:modes])).all())
+    vectors = None
+    if request.vector_nodes and enough:
+        vectors = eigen_solver(mesh).vectors(len(w))[:, found.indices]
+    unstable = int((w.real > 0).sum())
+    decide = slice(max(modes, unstable + 1))  # what is sorted behind decays faster
+    known = unstable < len(w) and not (np.abs(w.real) <= error)[decide].any()
+    return Spectrum(
+        status=SpectrumStatus.ok if enough else SpectrumStatus.accuracy_not_reached,
+        eigenvalues=w[:modes],
+        error_estimate=error[:modes],
+        unstable_count=unstable if known else -1,
+        resolution=mesh,
+        vectors=vectors_on_nodes(rod, request, mesh, vectors),
+    )
