@@ -27,6 +27,7 @@ from .arm_sentences import arm_sentences, random_arm
 from .branch_sentences import branch_sentences
 from .page import (
     NUMBER,
+    TIE,
     as_stated,
     at_most,
     counts,
@@ -810,7 +811,7 @@ def _states_of(view, row, fixed, table):
         rod = {**fixed, row: float(value), "gamma1": gamma1, "stop": float(F[-1])}
         branch = solved("branch", rod | {"accuracy": FINE["branch"]})
         ranges_ = [piece for curve in curves_of(branch, 0) for piece in curve.stable_ranges]
-        cycles = np.array([any(a < x < b or x == b == F[-1] for a, b in ranges_) for x in F])
+        cycles = np.array([any(a < x < b * (1 + TIE) for a, b in ranges_) for x in F])
         straight = np.isin(motions, ["monotone", "oscillatory"])
         states.append(np.where(motions == "crushed", 5, straight + 2 * cycles))
         kinds.append(branch.variables["special_kind"].ravel())
