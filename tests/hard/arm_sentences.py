@@ -486,7 +486,7 @@ class ArmTruth:
             and len({self._grows(n) for n in range(5)}) == 1
         ):
             return f"F = {F} is outside of {low} to {high}"
-        if "the arm beats" in line and not all(self._grows(n) for n in range(5)):
+        if ": the arm beats" in line and not all(self._grows(n) for n in range(5)):
             return "with some drag the arm is stable"
         if "has returned" in line and any(self._grows(n) for n in range(5)):
             return "with some drag the arm is unstable"
@@ -511,7 +511,7 @@ class ArmTruth:
             found.append((line, why or self._no_remedy(match[1], -1, "viscosity")))
         for line, match in read(page, r"at most NUMBER times as thick"):
             found.append((line, self._no_remedy(match[1], 2, *(side for side in SIDES if side in self.q))))
-        for line, match in read(page, rf"a (?:load|pull) of at most NUMBER ({UNIT}) "):
+        for line, match in read(page, rf"a (?:load|pull) of at most NUMBER ({UNIT})(?=[.;])"):
             F = float(match[1]) * UNITS[match[2]] / self.unit
             excess = abs(F) / self.own["k1"] / 0.1
             found.append((line, "" if 0.98 < excess <= 1 else f"it is {excess} times the limit"))

@@ -74,7 +74,7 @@ def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str
     verb = "does not apply" if worst == Validity.does_not_apply else "is doubtful"
     place = int(np.flatnonzero(there)[np.argmax(excess[there])])
     name, size = EFFECTS[int(effect[place])].replace("_", " "), f"{excess[place]:.2g}"
-    return f"the model {verb}{at}{when}: {name} is {'up to ' * (there.sum() > 1)}{size} times its limit"
+    return f"the model {verb}{at}{when}: {name} is {'up to ' * int(there.sum() > 1)}{size} times its limit"
 
 
 def spanned(view: View, values: np.ndarray, si: str, *typed: str, errors: np.ndarray | float = 0.0) -> str:
