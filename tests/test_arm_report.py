@@ -15,6 +15,7 @@ from rodsweep.solve.changes.unstable_modes import Kind
 from rodsweep.verdict.arm import report_on
 from rodsweep.verdict.checks import LOWERED_BY_INERTIA, stiffening
 from rodsweep.verdict.flutter import FlutterForces, FlutterRange
+from rodsweep.verdict.load import Load
 from rodsweep.verdict.planes import PlaneOfMotion, Planes, with_load
 
 WATER = {"length": "12 cm", "radius": "6 mm", "young": "80 kPa", "poisson": 0.49, "viscosity": "1 mPa s"}
@@ -273,3 +274,12 @@ def test_the_report_is_a_table_in_a_notebook():
     assert f"<b>{report.verdict[0]}</b>" in page
     assert repr(report) == str(report)
     assert "<td>gamma3</td>" in page
+
+
+@pytest.mark.parametrize("share", [0.9986, 1.0, 1.0004, 0.1])
+def test_a_load_of_at_most_so_much_is_rounded_down(share):
+    """1.3381 kPa was told as 1.34 kPa, which is beyond the limit."""
+    load = Load(SlenderArm(**THICK, pressure="1.34 kPa"))
+    force = share * 1.34 / load.scale
+    told = float(load.at_most(force).split()[0])
+    assert 0.99 * share * 1.34 < told <= share * 1.34 * (1 + 1e-9)
