@@ -1,12 +1,16 @@
 """`rs.Arm` answers the tasks of a rod, in SI units too."""
 
 import math
+import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
+from hard.page import as_stated, page_of
 
 import rodsweep as rs
+from rodsweep.api.dataset import view_of
 from rodsweep.solve.changes.unstable_modes import Kind
 
 THICK = {"length": "15 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "100 Pa s"}
@@ -79,3 +83,25 @@ def test_a_relative_load_is_resolved_for_sweeps_too():
     arm = rs.Arm(**THICK, pressure="1.3 of flutter")
     data = rs.sweep("spectrum", arm=arm, modes=1)
     assert data.F.item() == pytest.approx(arm.loaded.F, rel=1e-12)
+
+
+def test_no_digit_in_si_units_is_told_that_is_not_known():
+    """The period to 1e-4 has no six digits in seconds; those that it has are those of a finer solution."""
+    arm = {
+        "length": "15 cm",
+        "radius": "5 mm",
+        "young": "100 kPa",
+        "viscosity": "100 Pa s",
+        "pressure": "2 kPa",
+    }
+    told = [
+        page_of(view_of(rs.sweep("limit_cycle", arm=arm, accuracy=accuracy, progress=False), Path("c.h5")))
+        for accuracy in (1e-3, 1e-8)
+    ]
+    rough, fine = (
+        dict(re.findall(r"(\w+) = (\S+)", next(x for x in page if x.startswith("in SI")))) for page in told
+    )
+    assert rough.keys() == fine.keys() >= {"period", "injection_rms", "tip_x_min"}
+    for name, text in rough.items():
+        assert as_stated(text, float(fine[name])) == "", name
+    assert len(rough["period"]) < len(fine["period"])

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,8 +11,10 @@ from test_paper import run, stated
 from test_show import shown
 
 import rodsweep as rs
+from rodsweep.api.dataset import view_of
 from rodsweep.post.branch_curves import both, curves_of, stability_of_pieces, straight_ranges, union
 from rodsweep.post.figures import draw
+from rodsweep.post.figures.branch import through_cycles
 from rodsweep.post.summary import branch as summary
 from rodsweep.post.summary.branch import coexistence
 from rodsweep.results.file.view import read_view
@@ -34,7 +37,7 @@ def test_show_tells_branches_special_points_and_where_two_states_coexist(command
     told = shown(command, CONFIG.format(k1=150, stop=200))
     ends = r"from the Hopf point at F = 67\.38698428\d+ \(\+- \S+\) to that at F = 85\.5693169\d+"
     assert re.search(rf"branch 1, {ends}", told)
-    assert re.search(r"fold at F = 85\.605576\d* \(\+- \de-\d+\), period 0\.00638[45]", told)
+    assert re.search(r"fold at F = 85\.605576\d* \(\+- \de-\d+\), period 0\.00638\d+ \(\+- \de-\d+\)", told)
     assert re.search(r"stable cycles at F = 67\.3869843 to 85\.605576", told)
     assert re.search(r"stable cycles beside a stable straight rod: F = 85\.5693169 to 85\.605576", told)
     assert "no Hopf point is missing is proved at 1 of 1 rod" in told
@@ -300,3 +303,61 @@ def test_config_shows_the_numbers_of_its_head(command):
         found = file["special_at"][0, 0, 0, 0, :3]
         assert found[[0, 2]] == pytest.approx([F_hopf, F_again], rel=1e-12)
         assert found[1] == pytest.approx(fold, rel=1e-10)
+
+
+NEAR, FINER = 1e-3, 1e-8
+"""Distance from the true branch, in units of the axes, that no eye sees: a fifth of a millimetre on a page;
+accuracy of the branch that stands for it."""
+
+
+@pytest.mark.parametrize(("k1", "stop"), [(150, 140), (175, 150)])
+def test_the_curve_in_the_figure_is_the_branch(k1, stop):
+    """Straight pieces between its few cycles miss it by up to a hundredth, next to a Hopf point most."""
+    coarse, fine = (
+        curves_of(
+            view_of(
+                rs.sweep("branch", k1=k1, k2=1e4, gamma3=1e-4, stop=stop, accuracy=accuracy), Path("b.h5")
+            ),
+            0,
+        )
+        for accuracy in (1e-3, FINER)
+    )
+    for curve, true in zip(coarse, fine, strict=True):
+        at, y, period, stable = through_cycles(curve)
+        assert len(stable) == len(at) - 1
+        assert np.isin(curve.at.round(9), at.round(9)).all()
+        for drawn, exact in (
+            ((at, y), (true.at, true.y)),
+            ((at, np.log(period)), (true.at, np.log(true.period))),
+        ):
+            assert distance(np.column_stack(drawn), np.column_stack(exact)) < NEAR
+
+
+def distance(polygon, points):
+    """Largest distance of points, (n, 2), from a polygon, (m, 2), in units of the extent of the points."""
+    polygon, points = polygon / np.ptp(points, axis=0), points / np.ptp(points, axis=0)
+    begins, sides = polygon[:-1], np.diff(polygon, axis=0)
+    lengths = (sides**2).sum(axis=1)
+    off = points[:, None] - begins
+    share = np.clip((off * sides).sum(axis=2) / np.where(lengths > 0, lengths, 1), 0, 1)
+    return np.linalg.norm(off - share[..., None] * sides, axis=2).min(axis=1).max()
+
+
+def test_a_branch_arrives_at_its_own_hopf_point_at_every_accuracy():
+    """At 1e-3 its last cycles are further from it than their places are known."""
+    branch = rs.Rod(k1=175, k2=1e4, gamma3=1e-4).branch(stop=150, accuracy=1e-3)
+    assert branch.status == "ok"
+    assert branch.special_kind[:3].tolist() == ["hopf", "fold", "hopf"]
+
+
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-5])
+def test_errors_at_special_points_contain_a_finer_branch_and_the_amplitude_of_criticality(accuracy):
+    rod = rs.Rod(k1=150, k2=1e4, gamma3=1e-4)
+    found, fine = (rod.branch(stop=140, accuracy=each) for each in (accuracy, FINER))
+    for name in ("special_period", "special_tip_y_max"):
+        here, true, error = getattr(found, name), getattr(fine, name), getattr(found, f"{name}_error")
+        assert (np.abs(here - true) <= here * error + 1e-9 * true).all(), name
+    a = rod.criticality(F_max=140, accuracy=1e-9).amplitude_coefficient
+    error = found.special_amplitude_coefficient_error[[0, 2]]
+    assert (np.abs(found.special_amplitude_coefficient[[0, 2]] / a - 1) <= error).all()
+    assert (error < 1e-3).all(), "three digits are known"

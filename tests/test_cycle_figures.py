@@ -17,6 +17,7 @@ from rodsweep.discretization.periodic import derivative, resampled
 from rodsweep.errors import EnvironmentLacks, InputError
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.amplitude import branches_of, draw_amplitude
+from rodsweep.post.figures.cycle.animation import first_frame
 from rodsweep.post.figures.cycle.energy import draw_energy
 from rodsweep.post.figures.cycle.portrait import ARROW, draw_portrait, drawn_shapes
 from rodsweep.post.figures.cycle.selection import chosen_cycles
@@ -312,3 +313,17 @@ def test_other_tasks_refuse_the_options_of_limit_cycle(command):
         assert f"{name}" in refused.stderr
         assert len(refused.stderr.splitlines()) == 1
     assert command("plot", "c.h5").returncode == 0
+
+
+def test_no_arrow_of_a_film_is_over_the_running_time():
+    selection = chosen_cycles(make_view(([50.0], [np.inf], [np.inf], [0.0], [0.5, 1.0]), [0, 0]), (), ())
+    figure, arms = first_frame(selection)
+    for k in range(arms[0].frames):
+        for moving in arms:
+            moving.show(k)
+        figure.draw_without_rendering()
+        for moving in arms:
+            tip = moving.arrow.get_offsets()[0]
+            tail = tip - np.array([moving.arrow.U[0], moving.arrow.V[0]])
+            low = moving.axes.transData.transform([tail, tip])[:, 1].min()
+            assert low > moving.text.get_window_extent().y1, k

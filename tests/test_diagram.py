@@ -142,3 +142,12 @@ def test_each_curve_is_followed_once_and_ends_are_no_folds(k1, top, folds):
     found = [fold for curve in curves for fold in curve.folds]
     assert len(found) == folds
     assert len({(f.axis, round(f.values[0], 3), round(f.values[1], 3)) for f in found}) == folds
+
+
+@pytest.mark.parametrize("off", [-3e-16, 0.0, 3e-16])
+def test_a_force_that_is_k1_but_for_rounding_is_crushed(off):
+    """Two axes in logarithmic steps meet at F = k1 up to rounding: nothing is undecided there."""
+    k1 = 10**2.5
+    values = np.array([0.5 * k1, k1 * (1 + off), 2 * k1])
+    row = solve_row({"k1": k1, "k2": 1e4, "gamma3": 1e-4}, RowRequest("F", values, 1e-9, True, 9))
+    assert [Motion(motion).name for motion in row.motion] == ["flutter", "crushed", "crushed"]

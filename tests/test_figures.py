@@ -14,6 +14,7 @@ from test_show import HOPF, STABLE_AGAIN
 from rodsweep.errors import InputError
 from rodsweep.post.figures import FIGURES, draw
 from rodsweep.post.figures.class_bars import CLASS_COLOURS
+from rodsweep.post.figures.diagram_curves import mark_cycles_on_rows
 from rodsweep.post.figures.regions import PIXELS, ClassedPlaces, coloured
 from rodsweep.post.figures.request import Look
 from rodsweep.post.figures.row_classes import class_along_row
@@ -529,3 +530,25 @@ def test_several_lines_of_spectra_are_panels_of_one_figure(command, monkeypatch)
     assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
     assert "only lines of spectra" in refused.stderr
     assert "several files are drawn of" in command("plot", "t.h5", "t.h5", "-o", "x.png").stderr
+
+
+def test_folds_of_rows_are_marked_where_no_curve_goes_through_them():
+    """Of three folds on rows two lie on the curve, one of them between its points."""
+    variables = {
+        "F": np.linspace(0, 100, 11),
+        "cycle_special_kind": np.array([[2, 0], [2, 1], [2, 0]]),
+        "cycle_special_F": np.array([[50.0, np.nan], [70.0, 60.0], [55.0, np.nan]]),
+        "cycle_curve_number": np.array([1, 1]),
+        "cycle_curve_kind": np.array([2, 2]),
+        "cycle_curve_F": np.array([50.0, 60.0]),
+        "cycle_curve_k1": np.array([100.0, 300.0]),
+    }
+    view = SimpleNamespace(variables=variables, point_columns={"k1": np.array([100.0, 150.0, 200.0])})
+    axes = Figure().subplots()
+    (folds,) = mark_cycles_on_rows(axes, view, "F", "k1")
+    assert folds.get_xydata().tolist() == [[70.0, 150.0]]
+    bare = {name: values for name, values in variables.items() if not name.startswith("cycle_curve")}
+    (folds,) = mark_cycles_on_rows(
+        axes, SimpleNamespace(variables=bare, point_columns=view.point_columns), "F", "k1"
+    )
+    assert len(folds.get_xydata()) == 3

@@ -310,3 +310,16 @@ def test_show_of_a_sweep_has_the_threshold_of_the_solver(command, ranks, gamma1)
         r"F\*\* \(straight rod starts to beat\): ([\d.]+) \(\+- ([\de.-]+)\)", shown
     ).groups()
     assert abs(float(text) - WINDOW[0]) <= float(error) < 1e-11
+
+
+def test_a_threshold_below_the_first_force_is_told(tmp_path):
+    found = searched(tmp_path, config_of("[60, 75]", 200, "1.0e4", "1.0e-4"))
+    assert found["hopf_F"] == pytest.approx(WINDOW[:1], rel=1e-12)
+    view = make_view(([60.0, 75], [200.0], [1e4], [1e-4], [1.0]), [0, 0], stored=())
+    view.variables.update(found | {"linear_growth_rate": np.ones((2, 1, 1, 1, 1))})
+    stored = StoredHopfPoints(view, "F")
+    (line,) = lines_over(view, "F")
+    assert stored.on(line) == []
+    assert [point.position for point in stored.up_to(line)] == pytest.approx(WINDOW[:1], rel=1e-12)
+    (sentence,) = stability_lines(view, "F", stored.up_to)
+    assert sentence.startswith("F** (straight rod starts to beat): 49.7580049161")

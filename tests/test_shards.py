@@ -1,5 +1,6 @@
 """Shards: every point in one of them, put together as if never divided; what merge refuses."""
 
+import re
 import shutil
 import threading
 from concurrent.futures import ThreadPoolExecutor
@@ -83,6 +84,7 @@ def test_merged_shards_are_the_undivided_run(command):
     told = command("show", names[1]).stdout
     assert "328 points are not here: the file is shard 2/3" in told
     assert "missing; where no run goes on" not in told
+    assert re.search(r"computed from \S+ on, all points of shard 2/3; rodsweep", told)
     some = command("merge", "m.h5", *names[:2])
     assert (some.returncode, "164 missing" in some.stdout) == (75, True)
     rest = command("merge", "m.h5", names[2], names[1])  # one that is already there changes nothing

@@ -38,6 +38,8 @@ class SpecialOfBranch:
     unstable_after: int
     meets: int
     amplitude_coefficient: float = nan
+    period_error: float = nan
+    tip_y_max_error: float = nan
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,6 +163,8 @@ def _specials(v: dict[str, Array], places: Iterable[int]) -> tuple[SpecialOfBran
             int(v["special_unstable_after"][i]),
             int(v["special_meets"][i]),
             float(v["special_amplitude_coefficient"][i]),
+            float(v["special_period_error"][i]),
+            float(v["special_tip_y_max_error"][i]),
         )
         for i in places
     )

@@ -7,7 +7,7 @@ nothing is interpolated: a change that no solver has located lies between two po
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
-from math import nan
+from math import inf, nan
 
 import numpy as np
 
@@ -141,6 +141,16 @@ class StoredHopfPoints:
                 point = HopfPoint(at, float(v["error"][i]) * abs(at), change, float(v["frequency"][i]))
                 self.by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)
 
+    def up_to(self, line: ParameterLine) -> list[Change]:
+        """The changes of stability on a line and at smaller values, as far as these were searched."""
+        return sorted({*self.on(line), *self._stored(line, -inf)}, key=place_of)
+
+    def _stored(self, line: ParameterLine, low: float) -> list[HopfPoint]:
+        """The stored changes from a value up to the last of a line."""
+        rod = tuple(line.parameters[other] for other in self.others)
+        high = line.x.max(initial=-inf)
+        return [point for point in self.by_rod.get(rod, []) if _within(point, low, high)]
+
     def on(self, line: ParameterLine) -> list[Change]:
         """The changes of stability on a line in increasing order.
 
@@ -149,8 +159,8 @@ class StoredHopfPoints:
         """
         if not len(line.x):
             return []
-        stored = self.by_rod.get(tuple(line.parameters[other] for other in self.others), [])
-        found: list[Change] = [point for point in stored if _within(point, line.x.min(), line.x.max())]
+        stored = self._stored(line, line.x.min())
+        found: list[Change] = [*stored]
         known = np.flatnonzero(np.isfinite(self.growth[line.at]))
         ordered = known[np.argsort(line.x[known], kind="stable")]
         for i, j in pairwise(ordered):

@@ -59,7 +59,10 @@ def hopf_lines_of(points: Points) -> list[HopfLine]:
 
 
 def _lines_over(points: Points, name: str) -> Iterator[HopfLine]:
-    """The lines over a parameter of points with at least two finite values of it."""
+    """The lines over a parameter of points with at least two finite values of it; over F from 0 on.
+
+    Below the first force the rod may have begun to beat, and that is told too.
+    """
     columns = {n: points.of_rods[n] for n in LINEAR_PARAMETERS}
     others = [n for n in LINEAR_PARAMETERS if n != name]
     if points.is_grid:
@@ -73,7 +76,8 @@ def _lines_over(points: Points, name: str) -> Iterator[HopfLine]:
         ends = [_ends(values) for values in np.split(columns[name][order], cuts)]
     for rod, (start, stop) in zip(rods.tolist(), ends, strict=True):
         if start < stop:
-            yield HopfLine(name, dict(zip(others, rod, strict=True)), start, stop)
+            first = min(start, 0.0) if name == "F" else start
+            yield HopfLine(name, dict(zip(others, rod, strict=True)), first, stop)
 
 
 def _ends(values: np.ndarray) -> tuple[float, float]:

@@ -84,7 +84,7 @@ def compression(assessment: "Assessment", at_flutter: Effect) -> Check:
     validity = max(map(_validity, effects))
     largest = max(float(effect.value) for effect in effects if not isnan(effect.value)) if says else 0.0
     ending = (
-        "a linear material will do",
+        "the material is linear there",
         f"rubber is some {100 * stiffening(largest):.1g} % stiffer there",
         "real materials are no longer linear there",
     )[validity]

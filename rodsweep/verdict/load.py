@@ -1,11 +1,15 @@
 """The load of an arm in the words and the unit in which it was given, and numbers as sentences have them."""
 
+from math import floor, log10
+
 from ..model.arm import UNITS, SlenderArm
 from ..model.units import compact, split, unit_of, written_in
 from .flutter import Span
 
 FLUTTER_ABOUT = 36.0
 """F at which arms flutter, roughly: which prefix a pressure has where none is given."""
+ROUNDING = 1e-12
+"""Relative error of a number that has three digits but for it."""
 LONGEST_GIVEN = 6
 """Characters of a load's number that are repeated as they were given."""
 
@@ -50,8 +54,8 @@ class Load:
     def at_most(self, F: float) -> str:
         """A force in k3/L^2 as this load, cut to three digits."""
         value = F * self.scale
-        cut = float(f"{value:.3g}")
-        return f"{digits(cut if cut <= value else cut * (1 - 1e-3))} {self.unit}"
+        unit = 10.0 ** (floor(log10(value)) - 2)
+        return f"{digits(floor(value / unit * (1 + ROUNDING)) * unit)} {self.unit}"
 
 
 def _short(given: object, value: float, si: str) -> str:

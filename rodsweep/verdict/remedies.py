@@ -57,11 +57,11 @@ def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
         si = UNITS["density_difference"][0]
         unit = unit_of(arm.density_difference, si)  # type: ignore[arg-type]
         most = rounded_down(written_in(abs(arm.si.density_difference) * share, unit, si))
-        return f"an arm whose density is within {most:g} {unit} of the fluid's would do"
+        return f"the model needs an arm whose density is within {most:g} {unit} of the fluid's"
     if any(effect is each for each in assessment.under_load):
         pulls = "a pull" if arm.F < 0 else "a load"
-        return f"{pulls} of at most {Load(arm).at_most(abs(arm.F) * share)} would do"
-    return "a longer or a thinner arm would do"
+        return f"the model needs {pulls} of at most {Load(arm).at_most(abs(arm.F) * share)}"
+    return "the model needs a longer or a thinner arm"
 
 
 def _thicker_fluid_or_thinner_arm(arm: SlenderArm, assessment: Assessment) -> str:
@@ -69,7 +69,7 @@ def _thicker_fluid_or_thinner_arm(arm: SlenderArm, assessment: Assessment) -> st
     si = UNITS["viscosity"][0]
     unit, factor = unit_of(arm.viscosity, si), viscosity_factor(assessment.at_flutter)
     viscosity = f"{rounded_up(written_in(arm.si.viscosity * factor, unit, si)):g} {unit.replace('*', ' ')}"
-    says = f"a fluid at least {rounded_up(factor):g} times as viscous ({viscosity}) would do"
+    says = f"the model needs a fluid at least {rounded_up(factor):g} times as viscous ({viscosity})"
     thickness = thickness_factor(arm)
     if isnan(thickness):
         return says

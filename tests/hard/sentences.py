@@ -1,9 +1,9 @@
-"""Sweeps of random rods, what `show` says of them, and the same numbers from the solvers.
+"""Sweeps of random rods and arms, the page that `show` prints of each, and the same numbers from the solvers.
 
-Numbers are read from the sentences that `show` prints. With an error beside it a number must lie within it of
-the true one; an end of a range within one unit of its last digit, half for its error, half for rounding.
-True numbers of motions and normal forms are those of a far smaller accuracy asked for; those of spectra and
-thresholds come from eigenvalues on both sides of a stated place, which share no code with the covering.
+With an error beside it a number must lie within it of the true one; an end of a range within one unit of its
+last digit, half for its error, half for rounding. True numbers of motions, branches and normal forms are
+those of a far smaller accuracy asked for; those of spectra and thresholds come from eigenvalues on both sides
+of a stated place, which share no code with the covering. What is said in SI units is converted here anew.
 """
 
 import re
@@ -15,54 +15,133 @@ import numpy as np
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of
-from rodsweep.determinant.parameter_path import Path as ParameterPath
 from rodsweep.determinant.winding_number import count_right_of
+from rodsweep.model.arm import SlenderArm
 from rodsweep.model.parameters import LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
+from rodsweep.post.branch_curves import curves_of
 from rodsweep.post.hopf_points import lines_over
-from rodsweep.post.summary import SUMMARIES
-from rodsweep.solve.changes.along_path import transitions
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
+from .arm_sentences import arm_sentences, random_arm
+from .branch_sentences import branch_sentences
+from .page import (
+    NUMBER,
+    TIE,
+    as_stated,
+    at_most,
+    counts,
+    page_of,
+    range_as_stated,
+    ranges,
+    read,
+    regions,
+    relative,
+    unit_of,
+    with_error,
+)
+from .truths import (
+    BESIDE,
+    SHORT_OF_CRUSHED,
+    changes_along,
+    changes_of,
+    changes_over_force,
+    is_change,
+    leading,
+    rods_of,
+)
+
 TASKS = ("spectrum", "modes", "thresholds", "criticality", "limit_cycle", "phase_diagram", "branch")
-NUMBER = r"-?\d+(?:\.\d+)?(?:e[+-]\d+)?"
-BESIDE = 1e-7
-"""Relative distance from a stated threshold at which eigenvalues are computed on both its sides."""
-EXACT = SpectrumRequest(2, 1e-11, True)
 FINE = {"criticality": 1e-9, "limit_cycle": 1e-7, "modes": 1e-10, "branch": 1e-7}
 """Accuracy to which true numbers are computed, by task."""
-TIE = 1e-12
-"""Relative difference of two numbers that rounding sets apart."""
+MODE_FIELDS = ("Y", "Theta", "h2", "Pi", "adjoint_Y")
+MANY = 30
+"""Modes among which that of a curve is, though others grow there."""
+ROUNDING = 1e-11
+"""Relative error of an eigenvalue that is solved alone."""
+FOLD_BESIDE, FOLD_WIDTH = 1e-5, 0.05
+"""Relative distances from a fold of a curve at which, and within which, changes are counted."""
 
 
 def random_sweep(index):
-    """(task, keywords of `rs.sweep`) of that number, whatever others are asked for."""
-    random = np.random.default_rng([31, index])
+    """(task, keywords of `rs.sweep`) of that number, whatever others are asked for; some are of arms."""
+    random = np.random.default_rng([33, index])
     task = TASKS[index % len(TASKS)]
-    if task == "branch" and index % 3:  # a branch takes as long as ten of the others
-        task = "limit_cycle"
     count = 1 if random.random() < 0.3 else int(random.integers(2, 4))
-    varied = str(random.choice(["k1", "k2", "gamma3"]))
-    rods = {name: (_drawn(random, name, count if name == varied else 1)) for name in ("k1", "k2", "gamma3")}
-    keywords = {name: values if len(values) > 1 else values[0] for name, values in rods.items()}
-    top = min(0.97 * min(rods["k1"]), 10 ** random.uniform(1.5, 2.4))
-    if task in ("spectrum", "modes", "limit_cycle"):
-        points = int(random.integers(2, 7 if task == "spectrum" else 5))
-        keywords["F"] = np.sort(random.uniform(0.05 * top, top, points)).tolist()
-        if random.random() < 0.15:  # a sweep along another parameter
-            keywords |= {"F": keywords["F"][-1], "k2": np.sort(10 ** random.uniform(0.5, 5, 4)).tolist()}
-    if task == "phase_diagram":
-        other = {"start": 0.0, "stop": top, "num": int(random.integers(5, 60))}
-        keywords |= {"F": other} | {varied: np.sort(_drawn(random, varied, 3)).tolist()}
-    if task in ("limit_cycle", "criticality", "branch"):
-        keywords["gamma1"] = float(random.uniform(0.5, 1))
+    keywords = (
+        {"gamma1": float(random.uniform(0.5, 1))} if task in ("limit_cycle", "criticality", "branch") else {}
+    )
+    top = 10 ** random.uniform(1.6, 2.3)
+    if (index + index // len(TASKS)) % 3 == 1:
+        keywords = _of_an_arm(random, task, count)
+        arm = keywords["arm"]
+        first = {
+            name: arm[name][0] if isinstance(arm[name], list) else arm[name]
+            for name in arm
+            if name != "pressure"
+        }
+        top = min(top, 0.9 * SlenderArm(**first).k1)
+    else:
+        varied = str(random.choice(["k1", "k2", "gamma3"]))
+        rods = {name: _drawn(random, name, count if name == varied else 1) for name in ("k1", "k2", "gamma3")}
+        if task == "branch":  # where branches turn back
+            rods["k1"] = sorted(float(10 ** random.uniform(2, 4)) for _ in rods["k1"])
+        keywords |= {name: values if len(values) > 1 else values[0] for name, values in rods.items()}
+        top = min(0.97 * min(rods["k1"]), top)
+        keywords |= _over_force(random, task, top)
+        if task == "phase_diagram":
+            keywords |= {varied: np.sort(_drawn(random, varied, 3)).tolist()} | _of_diagrams(random)
     if task in ("thresholds", "criticality"):
         keywords["F_max"] = top
     if task == "branch":
-        keywords |= {name: value[0] for name, value in rods.items()} | {"stop": top}
-    if task in FINE:
-        keywords["accuracy"] = float(10 ** random.uniform(-5, -3 if task == "branch" else -2))
+        keywords |= {"stop": top}
+    if task in FINE or keywords.get("cycles"):
+        keywords["accuracy"] = float(
+            10 ** random.uniform(-5, -3 if task in ("branch", "phase_diagram") else -2)
+        )
     return task, keywords
+
+
+def _over_force(random, task, top):
+    """Values of the force for a task that takes some, at times of another parameter."""
+    if task == "phase_diagram":
+        return {"F": {"start": 0.0, "stop": top, "num": int(random.integers(5, 60))}}
+    if task not in ("spectrum", "modes", "limit_cycle"):
+        return {}
+    points = int(random.integers(1, 7 if task == "spectrum" else 5))
+    F = np.sort(random.uniform(0.05 * top, top, points)).tolist()
+    if random.random() < 0.15:
+        return {"F": F[-1], "k2": np.sort(10 ** random.uniform(0.5, 5, 4)).tolist()}
+    return {"F": F if points > 1 else F[0]}
+
+
+def _of_diagrams(random):
+    """Options of a phase diagram: curves alone in most cases, else sides or cycles, which take long."""
+    kind = random.random()
+    if kind < 0.2:  # close to the partial beam, whose cycles turn back
+        k1 = np.sort(random.uniform(140, 220, 3)).tolist()
+        return {
+            "k1": k1,
+            "k2": 1e4,
+            "gamma3": 1e-4,
+            "cycles": True,
+            "F": {"start": 0.0, "stop": 110, "num": 23},
+        }
+    return {"criticality": True} if kind < 0.5 else {}
+
+
+def _of_an_arm(random, task, count):
+    """Keywords of a task for a random arm."""
+    loaded = task in ("spectrum", "modes", "limit_cycle", "phase_diagram")
+    arm = random_arm(random, load=loaded, varied=count > 1 and task not in ("branch", "phase_diagram"))
+    if loaded:
+        most = float(arm["pressure"].split()[0])
+        shares = np.sort(random.uniform(0.2, 1, 1 if isinstance(arm.get("length"), list) else 3))
+        arm["pressure"] = [f"{most * share:.5g} kPa" for share in shares]
+    if task != "phase_diagram":
+        return {"arm": arm}
+    arm["pressure"] = {"start": "0 kPa", "stop": f"{most:.5g} kPa", "num": 7}
+    return {"arm": arm, "gamma3": np.sort(10 ** random.uniform(-4, -1, 3)).tolist()}
 
 
 def _drawn(random, name, count):
@@ -75,105 +154,39 @@ def _drawn(random, name, count):
     return sorted(set(map(float, values)))
 
 
-def told_of(task, keywords):
-    """(the results as `show` sees them, what it says of them)."""
-    view = view_of(rs.sweep(task, progress=False, **keywords), Path(f"{task}.h5"))
-    return view, SUMMARIES[task](view, view.variables["status"] >= 0)
+def solved(task, keywords):
+    """The results of a sweep, as `show` sees them."""
+    return view_of(rs.sweep(task, progress=False, **keywords), Path(f"{task}.h5")).listed
 
 
 def wrong_sentences(task, keywords):
-    """The sentences of a sweep with a wrong number, each with what is wrong; and how many were read."""
-    view, told = told_of(task, keywords)
-    sentences = [*told.answer, *told.trust, *told.details]
-    found = CHECKS[task](view, sentences, keywords)
-    return [(sentence, why) for sentence, why in found if why], len(found)
+    """(lines with a wrong number or one that nothing reads, with what is wrong; how many were read)."""
+    view = solved(task, keywords)
+    page = page_of(view)
+    fine = solved(task, keywords | {"accuracy": FINE[task]}) if task in FINE else view
+    found = CHECKS[task](view, page, keywords, fine) + table_sentences(view, page, keywords)
+    if view.quantities:
+        found += arm_sentences(view, page, fine)
+    wrong = [(line, why) for line, why in found if why]
+    wrong += [(line, f"nothing reads {', '.join(numbers)}") for line, numbers in page.unread()]
+    return wrong, sum(map(len, page.seen.values()))
 
 
-# --- numbers in sentences -----------------------------------------------------------------------------------
-
-
-def unit_of(text):
-    """The unit of the last digit of a number that is written."""
-    mantissa, _, exponent = text.partition("e")
-    decimals = len(mantissa.partition(".")[2])
-    if not decimals and not exponent:  # 1200 may have been rounded to hundreds
-        decimals = -(len(mantissa) - len(mantissa.rstrip("0"))) if float(text) else 0
-    return 10.0 ** (int(exponent or 0) - decimals)
-
-
-def as_stated(text, true):
-    """Why a number that stands without an error is not the true one; empty where it is."""
-    off = abs(float(text) - true)
-    return "" if off <= unit_of(text) + TIE * abs(true) else f"{text} is {true!r}"
-
-
-def range_as_stated(text, true):
-    """Why a range, or a number, is not that of the true values, an array."""
-    ends = text.split(" to ")
-    true = np.asarray(true, float)
-    true = true[np.isfinite(true)]
-    if text == "none" or not true.size:
-        return "" if text == "none" and not true.size else f"{text} of {true}"
-    return "; ".join(filter(None, (as_stated(ends[0], true.min()), as_stated(ends[-1], true.max()))))
-
-
-def read(sentences, pattern):
-    """(sentence, match) of every sentence with a pattern, in which RANGE and NUMBER stand for theirs."""
-    number = f"({NUMBER}(?: to {NUMBER})?|none)"
-    whole = re.compile(pattern.replace("RANGE", number).replace("NUMBER", f"({NUMBER})"))
-    return [(sentence, match) for sentence in sentences for match in whole.finditer(sentence)]
-
-
-def ranges(sentences, pattern, *true):
-    """The check of the ranges in a pattern against arrays of true values, one a range."""
-    return [
-        (sentence, "; ".join(filter(None, map(range_as_stated, match.groups(), true))))
-        for sentence, match in read(sentences, pattern)
-    ]
-
-
-def with_error(text, error, true):
-    """Why a number with its error excludes the true one."""
-    off = abs(float(text) - true)
-    return "" if off <= float(error) + TIE * abs(true) else f"{text} +- {error} is {true!r}"
-
-
-# --- the true numbers ---------------------------------------------------------------------------------------
-
-
-def rods_of(view):
-    """The rod of every point, in their order."""
-    columns = view.point_columns
-    rows = zip(*(columns[name] for name in LINEAR_PARAMETERS), strict=True)
-    return [Rod(*map(float, row)) for row in rows]
-
-
-def leading(rod):
-    """(leading eigenvalue, the next one)."""
-    w = solve_spectrum(rod, EXACT).eigenvalues
-    return complex(w[0]), complex(w[1])
-
-
-def is_change(rod, name, at, kind):
-    """Whether the straight rod changes in this way where a parameter has a value."""
-    before, after = (leading(replace(rod, **{name: at * (1 + side * BESIDE)})) for side in (-1, 1))
-    if kind == "onset":
-        return before[0].imag == before[1].imag == 0 and after[0].imag > 0
-    signs = {"hopf": (-1, 1), "restabilization": (1, -1)}[kind]
-    return tuple(np.sign([before[0].real, after[0].real])) == signs
-
-
-def changes_of(view, name):
-    """(rod, kind, value) of every change of stability and onset on the lines over a parameter."""
-    found = []
-    for line in lines_over(view, name):
-        low, high = float(line.x.min()), float(line.x.max())
-        rod = Rod(**{n: line.parameters.get(n, low) for n in LINEAR_PARAMETERS})
-        if low < high:
-            for crossing in transitions(ParameterPath(rod, name), low, high).crossings:
-                kind, after = crossing.kind.name, crossing.unstable_after
-                if kind == "onset" or (kind, after) in (("hopf", 2), ("restabilization", 0)):
-                    found.append((rod, kind, crossing.at))
+def table_sentences(view, page, keywords):
+    """The check of the tables of statuses and of parameters."""
+    status, found = view.variables["status"].ravel().tolist(), []
+    for word, number in ((word, number) for number, word in view.flags.items()):
+        found += counts(page, rf"^{word} +NUMBER  ", status.count(number))
+    along = {"F": view.variables["F"]} if view.task == "phase_diagram" and "F" in view.variables else {}
+    for name, column in (view.quantities | view.point_columns | along).items():
+        values = np.unique(np.asarray(column, float))
+        for line, match in read(page, rf"^{name} +NUMBER +({NUMBER}|inf) +({NUMBER}|inf)  "):
+            if name in view.typed:  # in other units, which `arm_sentences` reads
+                continue
+            why = [] if int(match[1]) == len({f"{x:.9g}" for x in values}) else [f"{len(values)} values"]
+            for text, end in zip((match[2], match[3]), (values.min(), values.max()), strict=True):
+                why += [] if text == "inf" and end == inf else [as_stated(text, end)]
+            found.append((line, "; ".join(filter(None, why))))
     return found
 
 
@@ -182,24 +195,47 @@ ALONG = {
     "the straight rod starts to beat, as": "hopf",
     "the straight rod is stable again, as": "restabilization",
 }
-PLACE = rf"between ({NUMBER}) and ({NUMBER})|(?<!= )(?<![\w.+-])({NUMBER})(?= for | and | to | \(\+-)"
+PLACE = rf"between ({NUMBER}) and ({NUMBER})|(?<!= )(?<![\w.+-])({NUMBER})(?= for | and | to |, on | \(\+-)"
 
 
-def threshold_sentences(view, sentences):
+def threshold_sentences(view, page):
     """The check of every sentence that states thresholds along a parameter."""
     found = []
-    for sentence in sentences:
-        kind = next((kind for start, kind in (KINDS | ALONG).items() if sentence.startswith(start)), None)
+    for line in page:
+        kind = next((kind for start, kind in (KINDS | ALONG).items() if line.startswith(start)), None)
         if kind is None:
             continue
-        along = re.search(r"as (\w+) grows", sentence)
+        along = re.search(r"as (\w+) grows", line)
         name = along[1] if along else "F"
-        places = sentence.split("at " + name if along else ": ", 1)[1].split(", frequency")[0]
+        begin = line.index(": ") + 2 if not along else line.index(f"at {name}: ") + len(name) + 5
+        places = line[begin:].split(", frequency")[0]
         error = re.search(rf"\(\+- ({NUMBER})\)", places)
-        true = [(rod, at) for rod, kind_of, at in changes_of(view, name) if kind_of == kind]
-        why = [_misplaced(match, error, true, name, kind) for match in re.finditer(PLACE, f"{places} ")]
-        found.append((sentence, "; ".join(filter(None, why)) if why else "no number was read"))
+        true = [(rod, at, w) for rod, kind_of, at, w in changes_of(view, name) if kind_of == kind]
+        why = []
+        for match in re.finditer(PLACE, f"{places} "):
+            why.append(_misplaced(match, error, true, name, kind))
+            for group in (1, 2, 3):
+                page.mark(line, tuple(begin + place for place in match.span(group)))
+        for match in re.finditer(rf"\(\+- ({NUMBER})\)", places):
+            page.mark(line, tuple(begin + place for place in match.span(1)))
+        for _, match in read(page, r", frequency NUMBER rad/tau2", only=line):
+            why += [as_stated(match[1], true[0][2])]
+        read(page, r"for (?:\w+ = NUMBER(?:, (?=\w+ =))?)+", only=line)
+        for _, match in read(page, r" for \w+ = NUMBER(?:, \w+ = NUMBER)?(?:, \w+ = NUMBER)?", only=line):
+            columns = np.concatenate(list(view.point_columns.values()))
+            why += [near_one_of(text, columns) for text in match.groups() if text]
+        for _, match in read(page, r", on NUMBER of NUMBER lines? over", only=line):
+            lines = [each for each in lines_over(view, name) if len(each.x)]
+            having = len({tuple(getattr(rod, n) for n in LINEAR_PARAMETERS if n != name) for rod, *_ in true})
+            right = int(match[1]) == having and int(match[2]) == len(lines)
+            why += [] if right else [f"on {having} of {len(lines)} lines"]
+        found.append((line, "; ".join(filter(None, why)) if why else "no number was read"))
     return found
+
+
+def near_one_of(text, values):
+    """Why a number is none of several."""
+    return as_stated(text, min(values, key=lambda value: abs(value - float(text))))
 
 
 def _misplaced(match, error, true, name, kind):
@@ -208,13 +244,13 @@ def _misplaced(match, error, true, name, kind):
     if at is None:
         inside = [
             value
-            for _, value in true
+            for _, value, _ in true
             if float(low) <= value * (1 + 1e-5) and value <= float(high) * (1 + 1e-5)
         ]
         return "" if inside else f"nothing between {low} and {high}"
     if error is None:
         return f"{at} has no error"
-    rod, value = min(true, key=lambda pair: abs(pair[1] - float(at)), default=(None, inf))
+    rod, value, _ = min(true, key=lambda one: abs(one[1] - float(at)), default=(None, inf, 0))
     if rod is None or with_error(at, error[1], value):
         return f"{at} +- {error[1]} is {value!r}"
     return "" if is_change(rod, name, float(at), kind) else f"eigenvalues do not change at {at}"
@@ -223,225 +259,627 @@ def _misplaced(match, error, true, name, kind):
 # --- the sentences of each task ----------------------------------------------------------------------------
 
 
-def spectrum_sentences(view, sentences, _):
-    eigenvalues = np.array([leading(rod)[0] for rod in rods_of(view)])
-    numbers = [count_right_of(0.0, rod).number for rod in rods_of(view)]
-    found = ranges(
-        sentences,
-        "leading growth rate RANGE 1/tau2, frequency RANGE rad/tau2",
-        eigenvalues.real,
-        eigenvalues.imag,
-    )
-    for word, true in (("stable", sum(n == 0 for n in numbers)), ("unstable", sum(n > 0 for n in numbers))):
-        found += [
-            (sentence, "" if int(match[1]) == true else f"{true} are {word}")
-            for sentence, match in read(sentences, rf"(?<!\w){word} at NUMBER[ (,]")
-        ]
-    for sentence, match in read(sentences, "straight rod: (stable|unstable) at all NUMBER point"):
+def spectrum_sentences(view, page, keywords, fine):
+    rods, v = rods_of(view), view.variables
+    eigenvalues = np.array([leading(rod)[0] for rod in rods])
+    numbers = np.array([count_right_of(0.0, rod).number for rod in rods])
+    pattern = "leading growth rate RANGE 1/tau2, frequency RANGE rad/tau2"
+    found = ranges(page, pattern, eigenvalues.real, eigenvalues.imag)
+    found += counts(page, r"^straight rod, of NUMBER points?:", len(rods))
+    for word, there in (("stable", numbers == 0), ("unstable", numbers > 0)):
+        found += regions(page, rf"(?<!\w){word} at", there, view.point_columns)
+    for line, match in read(page, "straight rod: (stable|unstable) at all NUMBER point"):
         right = all((n > 0) == (match[1] == "unstable") for n in numbers) and int(match[2]) == len(numbers)
-        found.append((sentence, "" if right else f"unstable modes: {numbers}"))
-    if view.variables["status"].size == 1:
-        found += _eigenvalue_sentences(rods_of(view)[0], sentences, numbers[0])
-    return found + threshold_sentences(view, sentences)
+        found.append((line, "" if right else f"unstable modes: {numbers}"))
+    size = np.hypot(v["growth_rate"], v["frequency"])
+    stated = (v["error_estimate"] / size)[np.isfinite(size)]
+    for line, match in read(page, "^error estimate, relative: worst NUMBER, median NUMBER"):
+        off = max(
+            relative(np.hypot(w.real, w.imag), abs(leading(rod)[0]))
+            for rod, w in zip(
+                rods, (v["growth_rate"] + 1j * v["frequency"]).reshape(len(rods), -1)[:, 0], strict=True
+            )
+        )
+        why = [] if off <= float(match[1]) + ROUNDING else [f"an error is {off}"]
+        why += [f"median {np.median(stated)}"] if abs(np.median(stated) / float(match[2]) - 1) > 0.06 else []
+        found.append((line, "; ".join(why)))
+    proved = (numbers.max(), int(v["certified"].sum()), len(rods))
+    found += counts(
+        page, "^number of unstable modes: at most NUMBER, proved at NUMBER of NUMBER point", *proved
+    )
+    if len(rods) == 1:
+        found += _eigenvalue_sentences(rods[0], page, numbers[0])
+    return found + threshold_sentences(view, page)
 
 
-def _eigenvalue_sentences(rod, sentences, unstable):
+def _eigenvalue_sentences(rod, page, unstable):
     """Of the one point of a file."""
     true = solve_spectrum(rod, SpectrumRequest(6, 1e-12, True)).eigenvalues
     stated = f"({NUMBER})(?: \\(\\+- ({NUMBER})\\))?"
     found = []
-    for sentence, match in read(sentences, rf"mode (\d+): growth rate {stated} 1/tau2, frequency {stated}"):
+    for line, match in read(page, rf"mode (\d+): growth rate {stated} 1/tau2, frequency {stated}"):
         w = true[int(match[1]) - 1]
         pairs = ((match[2], match[3], w.real), (match[4], match[5], w.imag))
-        found.append((sentence, "; ".join(filter(None, (with_error(a, b or 0, c) for a, b, c in pairs)))))
-    for sentence, match in read(sentences, r"^unstable modes: NUMBER, proved"):
-        found.append((sentence, "" if int(match[1]) == unstable else f"{unstable} are unstable"))
-    return found
+        found.append((line, "; ".join(filter(None, (with_error(a, b or 0, c) for a, b, c in pairs)))))
+    return found + counts(page, r"^unstable modes: NUMBER, proved", unstable)
 
 
-def modes_sentences(view, sentences, keywords):
-    v = told_of("modes", keywords | {"accuracy": FINE["modes"]})[0].variables
-    growth, time = (
-        np.where(np.isfinite(v["transient_growth"]), v[n], np.nan)
-        for n in ("transient_growth", "transient_time")
-    )
-    found = ranges(sentences, "condition of the leading eigenvalue: RANGE", v["condition"][..., 0])
-    found += ranges(sentences, "numerical abscissa: RANGE 1/tau2", v["numerical_abscissa"])
-    found += ranges(sentences, "largest transient growth: RANGE times, at t = RANGE tau2", growth, time)
-    return found + spectrum_sentences(view, sentences, keywords)
+def modes_sentences(view, page, keywords, fine):
+    v, own = fine.variables, view.variables
+    unbounded = np.isinf(v["transient_growth"])
+    growth, time = (np.where(unbounded, np.nan, v[n]) for n in ("transient_growth", "transient_time"))
+    found = ranges(page, "condition of the leading eigenvalue: RANGE", v["condition"][..., 0])
+    found += ranges(page, "numerical abscissa: RANGE 1/tau2", v["numerical_abscissa"])
+    found += ranges(page, "largest transient growth: RANGE times, at t = RANGE tau2", growth, time)
+    found += counts(page, "^growth without bound at NUMBER point", unbounded.sum())
+    fields = [own[f"{name}_real"] + 1j * own[f"{name}_imag"] for name in MODE_FIELDS]
+    exact = [v[f"{name}_real"] + 1j * v[f"{name}_imag"] for name in MODE_FIELDS]
+    off = [np.abs(a - b).max(axis=-1) / np.abs(b).max(axis=-1) for a, b in zip(fields, exact, strict=True)]
+    found += at_most(page, "^error of the modes, relative: worst NUMBER", float(np.nanmax(off)))
+    return found + spectrum_sentences(view, page, keywords, fine)
 
 
-def thresholds_sentences(view, sentences, keywords):
+def thresholds_sentences(view, page, keywords, _):
     """Of a grid the first thresholds of every kind, of a single rod all with their errors."""
-    columns = [np.broadcast_to(c, view.variables["status"].size) for c in view.point_columns.values()]
-    found, first = [], {"hopf": [], "restabilization": [], "onset": []}
-    for row in zip(*columns, strict=True):
-        rod = Rod(0.0, *map(float, row))
-        end = min(keywords["F_max"], rod.k1 * (1 - 1e-6))
-        crossings = transitions(ParameterPath(rod, "F"), 0.0, end).crossings
-        for kind, each in first.items():
-            each.append(next(((c.at, c) for c in crossings if c.kind.name == kind), (np.nan, None)))
-        if len(columns[0]) == 1:
-            found += _crossing_sentences(rod, crossings, sentences)
-    for kind, start in (
-        ("hopf", r"F\*\* \(straight"),
-        ("restabilization", "stable again"),
-        ("onset", r"F\* \(straight"),
+    columns, v = view.point_columns, view.variables
+    count = v["status"].size
+    rods = [Rod(0.0, *(float(columns[name][i]) for name in LINEAR_PARAMETERS[1:])) for i in range(count)]
+    top = keywords.get("F_max", 200.0)
+    every = [changes_over_force(rod, top) for rod in rods]
+    found = _search_sentences(view, page, every, "rod")
+    found += _crossing_sentences(rods[0], every[0], page) if count == 1 else []
+    for kind, start, noun in (
+        ("hopf", r"F\*\* \(straight", "frequency"),
+        ("restabilization", "stable again", "frequency"),
+        ("onset", r"F\* \(straight", "growth rate"),
     ):
-        F = np.array([at for at, _ in first[kind]])
-        place = r"(?: \([^)]*\))?"
-        pattern = rf"^{start}.*: F = NUMBER{place}(?: to NUMBER{place})?, at (?:all|NUMBER) of NUMBER rod"
-        for sentence, match in read(sentences, pattern):
-            low, high = match[1], match[2] or match[1]
-            there, rods = int(np.isfinite(F).sum()), len(F)
+        first = [next((c for c in each if c.kind.name == kind), None) for each in every]
+        F = np.array([c.at if c else np.nan for c in first])
+        beside = np.array(
+            [(c.growth_rate if kind == "onset" else c.frequency) if c else np.nan for c in first]
+        )
+        there = int(np.isfinite(F).sum())
+        place = r"(?: \(([^)]*)\))?"
+        pattern = rf"^{start}.*: F = NUMBER{place}(?: to NUMBER{place})?"
+        pattern += rf", at (?:all|NUMBER of) NUMBER rods?; {noun} RANGE"
+        for line, match in read(page, pattern):
+            low, high = match[1], match[3] or match[1]
             why = [range_as_stated(low if low == high else f"{low} to {high}", F)]
-            if int(match[3] or rods) != there or int(match[4]) != rods:
-                why.append(f"{there} of {rods} have one")
-            found.append((sentence, "; ".join(filter(None, why))))
+            for text, i in ((match[2], np.nanargmin(F)), (match[4], np.nanargmax(F))):
+                for name, number in re.findall(rf"(\w+) = ({NUMBER}|inf)", text or ""):
+                    why += [] if number == "inf" else [as_stated(number, float(columns[name][i]))]
+                    why += ["it is not inf"] if (number == "inf") != np.isinf(columns[name][i]) else []
+            if int(match[5] or count) != there or int(match[6]) != count:
+                why.append(f"{there} of {count} have one")
+            why.append(range_as_stated(match[7], beside))
+            found.append((line, "; ".join(filter(None, why))))
+        found += counts(page, rf"^{start}[^:]*: at none of NUMBER rod", 0 if there else count)
+        found += _monotony(view, page, kind, F)
     return found
 
 
-def _crossing_sentences(rod, crossings, sentences):
+def _monotony(view, page, kind, F):
+    """Along how many lines a threshold rises or falls with a parameter."""
+    found = []
+    shape = view.variables["status"].shape
+    for line, match in read(
+        page,
+        rf"^F_{kind} rises with (1/)?(\w+) on NUMBER of NUMBER lines?"
+        r"(?:, falls on NUMBER)?(?:, does both on NUMBER)?",
+    ):
+        axis = list(view.axes).index(match[2])
+        along = np.moveaxis(F.reshape(shape), axis, -1).reshape(-1, shape[axis])
+        along = along[:, ::-1] if match[1] else along
+        steps = [np.diff(row[np.isfinite(row)]) for row in along if np.isfinite(row).sum() > 1]
+        rising, falling = sum((d > 0).all() for d in steps), sum((d < 0).all() for d in steps)
+        told = [int(text or 0) for text in match.groups()[2:]]
+        true = [rising, len(steps), falling, len(steps) - rising - falling]
+        found.append((line, "" if told == true else f"it is {true}"))
+        for _, items in read(page, r"does both on \d+ \(([^)]*)\)", only=line):
+            for name, text in re.findall(rf"(\w+) = ({NUMBER})", items[1]):
+                found.append((line, near_one_of(text, view.axes[name])))
+    return found
+
+
+def _crossing_sentences(rod, crossings, page):
     """Of the crossings of the one rod of a file."""
     found = []
-    for sentence, match in read(
-        sentences, rf"^(\w+) at F = NUMBER \(\+- ({NUMBER})\).*growth rate NUMBER 1/tau2, frequency NUMBER"
+    for line, match in read(
+        page,
+        rf"^(\w+) at F = NUMBER \(\+- ({NUMBER})\).*growth rate NUMBER 1/tau2, frequency NUMBER rad/tau2; "
+        "unstable modes above: NUMBER",
     ):
         near = min(crossings, key=lambda c: abs(c.at - float(match[2])))
         why = [with_error(match[2], match[3], near.at)]
         why += [as_stated(match[4], near.growth_rate), as_stated(match[5], near.frequency)]
         if match[1] in ("onset", "restabilization") and not is_change(rod, "F", near.at, match[1]):
             why.append("eigenvalues do not change there")
-        found.append((sentence, "; ".join(filter(None, why))))
+        w = solve_spectrum(
+            replace(rod, F=near.at * (1 + 10 * BESIDE)), SpectrumRequest(12, 1e-11, False)
+        ).eigenvalues
+        above = int((w.real > 0).sum())
+        why += [] if int(match[6]) == above else [f"{above} modes are unstable above"]
+        found.append((line, "; ".join(filter(None, why))))
     return found
 
 
-def criticality_sentences(view, sentences, keywords):
-    v = told_of("criticality", keywords | {"accuracy": FINE["criticality"]})[0].variables
-    found = []
-    if view.variables["status"].size > 1:
-        first = [v[name][..., 0] for name in ("crossing_F", "amplitude_coefficient")]
-        found += ranges(sentences, "first Hopf point: .*; F = RANGE, a = RANGE L", *first)
-        every = [v[name] for name in ("amplitude_coefficient", "frequency_slope")]
-        return found + ranges(sentences, "all Hopf points: .*; a = RANGE L, b = RANGE L", *every)
-    v, i = {name: v[name].ravel() for name in v}, -1
+def _search_sentences(view, page, every, noun):
+    """How far was searched, how many crossings are stored, how accurate these are; every: the true ones."""
+    v, rods = view.variables, len(every)
+    proved = int(v["certified"].sum())
+    found = counts(page, rf"^that no crossing is missing is proved on NUMBER of NUMBER {noun}", proved, rods)
+    stored = (v["crossing_kind"] > 0).reshape(rods, -1)
+    name = "crossing_at" if "crossing_at" in v else "crossing_F"
+    off = 0.0
+    for at, there, true in zip(v[name].reshape(rods, -1), stored, every, strict=True):
+        if there.sum() != len(true) and v["crossing_count"].max() <= stored.shape[1]:
+            found.append((page[0], f"{there.sum()} crossings are stored of {len(true)}"))
+        off = max([off, *(min(abs(c.at - x) for c in true) for x in at[there] if true)])
+    numbers = stored.sum(axis=1)
+    for line, match in read(
+        page, rf"^crossings stored: NUMBER, at most NUMBER on a {noun}(?:; absolute error at most NUMBER)?"
+    ):
+        why = (
+            []
+            if [int(match[1]), int(match[2])] == [numbers.sum(), numbers.max()]
+            else [f"there are {numbers}"]
+        )
+        why += [f"an error is {off}"] if match[3] and off > 2 * float(match[3]) else []
+        found.append((line, "; ".join(why)))
+    if "F_end" in v:
+        found += ranges(page, "^searched up to F = RANGE$", v["F_end"])
+        found += ranges(page, "^searched up to F = RANGE; that no crossing is missing is proved", v["F_end"])
+        found += ranges(page, "^no threshold up to F = RANGE", v["F_end"])
+    return found
+
+
+def criticality_sentences(view, page, keywords, fine):
+    v, own, columns = fine.variables, view.variables, view.point_columns
+    count, extent = v["status"].size, v["criticality"].shape[-1]
+    end = np.minimum(keywords["F_max"], columns["k1"] * (1 - 1e-9))
+    found = ranges(page, "^searched up to F = RANGE;", end) + ranges(
+        page, "^no Hopf point up to F = RANGE", end
+    )
+    proved = (int(own["certified"].sum()), count)
+    found += counts(page, "no Hopf point is missing is proved at NUMBER of NUMBER rod", *proved)
+    if count == 1:
+        return found + _normal_forms(page, {name: v[name].ravel() for name in v})
+    having = (v["crossing_count"] > 0).ravel()
+    found += counts(page, rf"^Hopf points at {having.sum()} of NUMBER rod", count)
+    for line, match in read(page, r"^Hopf points at NUMBER of \d+ rods?(?: \(([^()]*)\))?$"):
+        why = [] if int(match[1]) == having.sum() else [f"at {having.sum()} rods"]
+        for name, text in re.findall(rf"(\w+) = ({NUMBER}(?: to {NUMBER})?)", match[2] or ""):
+            why.append(range_as_stated(text, columns[name][having]))
+        found.append((line, "; ".join(filter(None, why))))
+    first = [v[name][..., 0] for name in ("crossing_F", "amplitude_coefficient")]
+    found += ranges(page, "first Hopf point: .*; F = RANGE, a = RANGE L", *first)
+    every = [v[name] for name in ("amplitude_coefficient", "frequency_slope")]
+    found += ranges(page, "all Hopf points: .*; a = RANGE L, b = RANGE L", *every)
+    for words, sides in (
+        ("first Hopf point", v["criticality"][..., 0]),
+        ("all Hopf points", v["criticality"]),
+    ):
+        for side, word in ((-1, "supercritical"), (1, "subcritical"), (0, "undecided")):
+            found += counts(page, rf"^{words}: .*?NUMBER {word}", (sides == side).sum())
+    both = {n: relative(own[n], v[n]) for n in ("amplitude_coefficient", "frequency_slope")}
+    both |= {
+        n: float(np.nanmax(np.abs(_complex(own, n) - _complex(v, n)) / np.abs(_complex(v, n)), initial=0))
+        for n in ("landau", "growth_slope")
+    }
+    worst = (both["landau"], both["growth_slope"], both["amplitude_coefficient"], both["frequency_slope"])
+    found += at_most(page, "worst relative errors: c NUMBER, dw/dF NUMBER, a NUMBER, b NUMBER", *worst)
+    side = v["criticality"].reshape(-1, extent)
+    for line, match in read(page, "^subcritical for ([^:]*): (.*)$"):
+        given = {name: float(x) for name, x in re.findall(rf"(\w+) = ({NUMBER}|inf)", match[1])}
+        away = [
+            sum(abs(columns[n][i] - x) / (1 + abs(x)) if np.isfinite(x) else 0 for n, x in given.items())
+            for i in range(count)
+        ]
+        rod = int(np.argmin(away))
+        F, a = (v[n].reshape(-1, extent)[rod] for n in ("crossing_F", "amplitude_coefficient"))
+        why = [near_one_of(str(x), columns[n]) for n, x in given.items() if np.isfinite(x)]
+        for at, i, size in re.findall(rf"F = ({NUMBER}) \(Hopf point (\d+), a = ({NUMBER}) L\)", match[2]):
+            why += [as_stated(at, F[int(i) - 1]), as_stated(size, a[int(i) - 1])]
+            why += [] if side[rod, int(i) - 1] == 1 else ["it is not subcritical"]
+        found.append((line, "; ".join(filter(None, why))))
+    return found
+
+
+def _complex(v, name):
+    return v[f"{name}_real"] + 1j * v[f"{name}_imag"]
+
+
+def _normal_forms(page, v):
+    """Every Hopf point of the one rod of a file."""
+    found, i = [], -1
     stated = rf"NUMBER \(\+- ({NUMBER})\)"
-    for sentence in sentences:
-        why = []
-        for _, match in read([sentence], rf"at F = {stated}, frequency {stated}"):
+    for line in page:
+        why, old = [], i
+        for _, match in read(
+            page, rf"at F = {stated}, frequency {stated} rad/tau2; unstable modes above: NUMBER", only=line
+        ):
             i += 1
             why += [with_error(match[1], match[2], v["crossing_F"][i])]
             why += [with_error(match[3], match[4], v["crossing_frequency"][i])]
+            why += [] if int(match[5]) == v["unstable_after"][i] else ["modes above"]
         for symbol, name in (("c", "landau"), ("dw/dF", "growth_slope")):
-            for _, match in read([sentence], rf"Re {symbol} = {stated}, Im {symbol} = {stated}"):
+            for _, match in read(page, rf"Re {symbol} = {stated}, Im {symbol} = {stated}", only=line):
                 why += [with_error(match[1], match[2], v[f"{name}_real"][i])]
                 why += [with_error(match[3], match[4], v[f"{name}_imag"][i])]
         for symbol, name in (("a", "amplitude_coefficient"), ("b", "frequency_slope")):
-            for _, match in read([sentence], rf"^  {symbol} = {stated}"):
+            for _, match in read(page, rf"^  {symbol} = {stated}", only=line):
                 why += [with_error(match[1], match[2], v[name][i])]
         for side, word in ((-1, "supercritical"), (1, "subcritical")):
-            if sentence.startswith(f"  {word}") and v["criticality"][i] != side:
-                why += [f"its side is {v['criticality'][i]}"]
-        found += [(sentence, "; ".join(filter(None, why)))] if why else []
+            if line.startswith(f"  {word}"):
+                why += [f"its side is {v['criticality'][i]}"] if v["criticality"][i] != side else [""]
+                above = "F above it" in line
+                why += (
+                    ["cycles are on the other side"] if above != (v["amplitude_coefficient"][i] > 0) else []
+                )
+                read(page, r"unstable by NUMBER other modes", only=line)
+        found += [(line, "; ".join(filter(None, why)))] if why or i > old else []
     return found
 
 
-def cycle_sentences(view, sentences, keywords):
-    fine = told_of("limit_cycle", keywords | {"accuracy": FINE["limit_cycle"]})[0]
+def cycle_sentences(view, page, keywords, fine):
+    own, shape = view.variables, view.variables["status"].shape
     words = [
-        np.array([view_.flags[int(s)] for s in view_.variables["status"].ravel()]) for view_ in (view, fine)
+        np.array([each.flags[int(s)] for s in each.variables["status"].ravel()]) for each in (view, fine)
     ]
-    v = {name: np.asarray(fine.variables[name]) for name in fine.variables}
-    beats = (words[0] == "cycle").reshape(v["status"].shape)
-    if not (words[0] == words[1]).all() or not beats.any():  # next to a Hopf point a motion may take long
-        return threshold_sentences(view, sentences)
-    found = ranges(
-        sentences,
-        "^period: RANGE tau2; largest y of the tip: RANGE L",
-        v["period"][beats],
-        v["tip_y_max"][beats],
-    )
-    ratio = v["frequency"][beats] / v["linear_frequency"][beats]
+    same = (words[0] == words[1]).reshape(shape)  # next to a Hopf point a motion may take long
+    v = {}
+    for name in fine.variables:
+        exact, stored = np.asarray(fine.variables[name]), np.asarray(own[name])
+        if exact.shape == stored.shape:
+            beside = (
+                same.reshape(shape + (1,) * (exact.ndim - len(shape)))
+                if exact.shape[: len(shape)] == shape
+                else True
+            )
+            v[name] = np.where(beside, exact, stored)
+    beats = (words[0] == "cycle").reshape(shape)
+    found = counts(page, r"^of NUMBER points?: \w", same.size)
+    for word in set(words[0]):
+        said = {"cycle": "beats", "straight": "stays straight"}.get(word, word.replace("_", " "))
+        found += regions(page, rf"(?<=[:,)\d] ){said} at", words[0] == word, view.point_columns)
+        found += counts(page, rf"^{said} at all NUMBER point", same.size)
+    w = np.array([leading(rod)[0] for rod in rods_of(view)])
     found += ranges(
-        sentences,
-        "frequency RANGE rad/tau2, over that of the leading mode RANGE",
-        v["frequency"][beats],
-        ratio,
+        page, "straight rod: leading growth rate RANGE 1/tau2, frequency RANGE rad/tau2", w.real, w.imag
     )
-    tips = [v[f"tip_{name}"][beats] for name in ("x_min", "x_max", "theta_max")]
-    found += ranges(sentences, "least x RANGE L, largest x RANGE L, largest theta RANGE rad", *tips)
-    found += ranges(sentences, r"power of the force, mean: RANGE k3", v["injection_mean"][beats])
-    found += ranges(
-        sentences,
-        r"^multiplier: RANGE;.*least stretch: RANGE",
-        v["multiplier"][beats],
-        v["least_stretch"][beats],
-    )
-    eigenvalues = np.array([leading(rod)[0] for rod in rods_of(view)])
-    found += ranges(
-        sentences,
-        "straight rod: leading growth rate RANGE 1/tau2, frequency RANGE",
-        eigenvalues.real,
-        eigenvalues.imag,
-    )
+    stays = (words[0] == "straight") & (w.real > 0)
+    found += [(page[0], "a rod that stays straight grows")] if stays.any() else []
+    found += [(line, "") for line, _ in read(page, r"tori: .* multipliers RANGE$")]
+    if "hopf_lines" in own:
+        proved = int(own["hopf_lines_proved"]), int(own["hopf_lines"])
+        found += counts(
+            page, "no Hopf point is missing between the points is proved on NUMBER of NUMBER line", *proved
+        )
+    found += _second_states(view, page, w, keywords)
+    orbits = np.isin(words[0], ["cycle", "unstable"]).reshape(shape)
     for pattern, name in (
         ("^period", "period"),
         ("^largest y of the tip", "tip_y_max"),
-        ("^largest Floquet.*1", "multiplier"),
+        ("^largest Floquet.*is 1", "multiplier"),
     ):
-        for sentence, match in read(sentences, rf"{pattern}: NUMBER \(\+- ({NUMBER})\)"):
-            found.append((sentence, with_error(match[1], match[2], float(v[name].max()))))
-    return found + threshold_sentences(view, sentences)
+        for line, match in read(page, rf"{pattern}: NUMBER \(\+- ({NUMBER})\)"):
+            found.append((line, with_error(match[1], match[2], float(v[name][orbits].max()))))
+            if name == "multiplier":
+                above = float(v[name][orbits].max()) > 1
+                found.append((line, "" if above == ("above" in line) else "the verdict is the other"))
+                read(page, "all others are below NUMBER|it is above NUMBER", only=line)
+    if beats.any():
+        of_points = [name for name in v if v[name].shape[: len(shape)] == shape]
+        found += _sizes(page, *({name: some[name][beats] for name in of_points} for some in (v, own)))
+    return found + threshold_sentences(view, page)
 
 
-def diagram_sentences(view, sentences, keywords):
+def _sizes(page, v, own):
+    """The periods, sizes and powers of the cycles of several points, and their largest errors."""
+    found = ranges(page, "^period: RANGE tau2; largest y of the tip: RANGE L", v["period"], v["tip_y_max"])
+    ratio = v["frequency"] / v["linear_frequency"]
+    of_mode = "^frequency RANGE rad/tau2, over that of the leading mode RANGE"
+    found += ranges(page, of_mode, v["frequency"], ratio)
+    tips = [v[f"tip_{name}"] for name in ("x_min", "x_max", "theta_max")]
+    found += ranges(page, "least x RANGE L, largest x RANGE L, largest theta RANGE rad", *tips)
+    found += ranges(page, r"power of the force, mean: RANGE k3", v["injection_mean"])
+    rest = "^multiplier: RANGE; returns waited for: RANGE; least stretch: RANGE"
+    found += ranges(page, rest, v["multiplier"], own["periods"], v["least_stretch"])
+    extrema = max(
+        float(np.nanmax(np.abs(own[n] - v[n]) / v["tip_y_max"]))
+        for n in ("tip_x_min", "tip_x_max", "tip_theta_max", "least_stretch")
+    )
+    worst = (
+        relative(own["period"], v["period"]),
+        relative(own["tip_y_max"], v["tip_y_max"]),
+        extrema,
+        0.0,
+        float(np.nanmax(np.abs(own["multiplier"] - v["multiplier"]))),
+    )
+    pattern = "^worst errors: period NUMBER, amplitude NUMBER, other extrema NUMBER, energy balance NUMBER, "
+    pattern += "multiplier NUMBER"
+    found += at_most(page, pattern, *worst)
+    balance = float(np.nanmax(np.abs(own["injection_mean"] / own["dissipation_mean"] - 1)))
+    return found + at_most(page, "energy balance NUMBER", balance)
+
+
+def _second_states(view, page, w, keywords):
+    """Whether straight rods are stable where they are said to be, and Hopf points subcritical."""
+    own, columns, found = view.variables, view.point_columns, []
+    straight = (own["second_state"] == 1).ravel()
+    for line, match in read(page, "^two states(?: at NUMBER of NUMBER points?)?: the straight rod"):
+        why = [] if match[1] is None or int(match[1]) == straight.sum() else [f"at {straight.sum()} points"]
+        found.append((line, "; ".join(why + ["it grows"] * bool((w.real[straight] > 0).any()))))
+    possible = (own["second_state"] == 2).ravel()
+    for line, match in read(
+        page, "^a second state is possible(?: at NUMBER of NUMBER points?)?: .* at F = RANGE is subcritical"
+    ):
+        why = [] if match[1] is None or int(match[1]) == possible.sum() else [f"at {possible.sum()} points"]
+        at = []
+        for i in np.flatnonzero(possible):
+            rod = {name: float(columns[name][i]) for name in ("k1", "k2", "gamma3", "gamma1")}
+            F = float(own["subcritical_F"].ravel()[i])
+            data = rs.sweep("criticality", **rod, F_max=min(1.01 * F, 0.9999 * rod["k1"]), progress=False)
+            near = int(np.nanargmin(np.abs(data.crossing_F.values.ravel() - F)))
+            at.append(float(data.crossing_F.values.ravel()[near]))
+            why += [] if data.criticality.values.ravel()[near] == 1 else [f"F = {F} is not subcritical"]
+        found.append((line, "; ".join(filter(None, [*why, range_as_stated(match[3], at)]))))
+    return found
+
+
+CHANGES_OF_CYCLES = {
+    "folds of cycles": 2,
+    "torus points of cycles": 3,
+    "cycles lose their symmetry": 4,
+    r"cycles leave the model \(h1 = 0\)": 5,
+}
+
+
+def diagram_sentences(view, page, keywords, fine):
     line, row = "F", next(name for name in view.parameters if len(view.axes[name]) > 1)
-    values, rows = view.variables[line], view.axes[row]
-    fixed = {name: float(view.axes[name][0]) for name in view.parameters}
-    true, classes = {}, []
+    v, values, rows = view.variables, view.variables[line], view.axes[row]
+    fixed = {name: float(view.axes[name][0]) for name in view.parameters if name in LINEAR_PARAMETERS}
+    every, table = [], []
     for value in rows:
         rod = Rod(0.0, **(fixed | {row: float(value)}))
-        stop = min(float(values[-1]), rod.k1 * (1 - 1e-6))  # beyond it the rod is crushed
-        crossings = transitions(ParameterPath(rod, "F"), float(values[0]), stop).crossings
-        for crossing in crossings:
-            true.setdefault(crossing.kind.name, []).append((crossing.at, float(value)))
-        for F in values:
-            if rod.k1 <= F:
-                classes.append("crushed")
-                continue
-            w = leading(replace(rod, F=float(F)))[0]
-            classes.append("flutter" if w.real > 0 else "oscillatory" if w.imag else "monotone")
-    found = []
+        stop = min(float(values[-1]), rod.k1 * SHORT_OF_CRUSHED)
+        every.append(changes_along(rod, "F", float(values[0]), stop))
+        table.append([_class_of(replace(rod, F=float(F))) if rod.k1 > F else "crushed" for F in values])
+    table = np.array(table)
+    found = _search_sentences(view, page, every, "row")
+    found += counts(page, "^of NUMBER places on the rows", table.size)
+    found += ranges(page, "where the rows begin, of RANGE rows?:", [len(rows)])
+    found += ranges(page, "^at F = RANGE, where the rows begin", [values[0]])
     for word in ("monotone", "oscillatory", "flutter", "crushed"):
-        share = 100 * classes.count(word) / len(classes)
-        found += [
-            (sentence, as_stated(match[1], share))
-            for sentence, match in read(sentences, rf"^of the grid:.*?NUMBER % {word}")
-        ]
-    for kind, places in true.items():
-        at, of_row = np.array(places).T
-        found += ranges(sentences, rf"^{kind}: on \d+ of \d+ rows?, F = RANGE, {row} = RANGE", at, of_row)
+        there = table == word
+        found += ranges(page, rf"^of the grid:.*?RANGE % {word}", [100 * there.mean()])
+        found += counts(page, rf"^of \d+ places on the rows:.*?NUMBER {word}", there.sum())
+        found += counts(page, rf"where the rows begin.*: .*{word} on NUMBER", there[:, 0].sum())
+    beats = (table == "flutter").any(axis=1)
+    found += ranges(
+        page, rf"^flutter on the rows {row} = RANGE; on none of {row} = RANGE", rows[beats], rows[~beats]
+    )
+    for kind in ("onset", "hopf", "restabilization", "real_again", "hopf_reverse"):
+        of_kind = [[c.at for c in each if c.kind.name == kind] for each in every]
+        having = np.array([bool(each) for each in of_kind])
+        first = [each[0] for each in of_kind if each]
+        again = [at for each in of_kind for at in each[1:]]
+        found += counts(page, rf"^{kind}: on NUMBER of NUMBER row", having.sum(), len(rows))
+        if having.any():
+            found += ranges(
+                page, rf"^{kind}: on \d+ of \d+ rows?, F = RANGE, {row} = RANGE", first, rows[having]
+            )
+            found += ranges(page, rf"^{kind}: .*; again on \d+, F = RANGE", again)
+            found += counts(page, rf"^{kind}: .*; again on NUMBER", sum(len(each) > 1 for each in of_kind))
+    found += _curve_sentences(view, page, row)
+    if "stable_states" in v:
+        found += _state_sentences(view, page, _states_of(view, row, fixed, table), row)
     return found
 
 
-def branch_sentences(view, sentences, keywords):
-    fine = told_of("branch", keywords | {"accuracy": FINE["branch"]})[0].variables
-    coarse = {name: array.ravel() for name, array in view.variables.items()}
-    v = {name: array.ravel() for name, array in fine.items()}
-    if not np.array_equal(coarse["special_kind"], v["special_kind"]):
+def _class_of(rod):
+    """What a straight rod does."""
+    w = leading(rod)[0]
+    return "flutter" if w.real > 0 else "oscillatory" if w.imag else "monotone"
+
+
+def _curve_sentences(view, page, row):
+    """The boundaries that are followed through rows: their number, folds, and that they are boundaries."""
+    v = view.variables
+    if "curve_number" not in v:
         return []
-    kinds = v["special_kind"] > 0
-    found, stated = [], rf"NUMBER \(\+- ({NUMBER})\)"
-    for sentence, match in read(sentences, rf"F = {stated}(?:, period NUMBER tau2, largest tip y NUMBER L)?"):
-        near = int(np.argmin(np.where(kinds, np.abs(v["special_at"] - float(match[1])), inf)))
-        why = [with_error(match[1], match[2], v["special_at"][near])]
-        if match[3]:
-            why += [
-                as_stated(match[3], v["special_period"][near]),
-                as_stated(match[4], v["special_tip_y_max"][near]),
-            ]
-        found.append((sentence, "; ".join(filter(None, why))))
+    kinds = [int(v["curve_kind"][v["curve_number"] == n][0]) for n in np.unique(v["curve_number"])]
+    for_line = "^curves: NUMBER of Hopf points, NUMBER of double eigenvalues; "
+    for_line += "crossings on rows lie within NUMBER of them, over F; NUMBER lie"
+    found = []
+    for line, match in read(page, for_line):
+        told = [int(match[1]), int(match[2]), int(match[4])]
+        true = [sum(k == 1 for k in kinds), sum(k == 0 for k in kinds), int(v["curves_untraced"])]
+        why = [] if told == true else [f"it is {true}"]
+        why += (
+            [] if abs(float(v["curve_agreement"]) - float(match[3])) <= unit_of(match[3]) else ["agreement"]
+        )
+        found.append((line, "; ".join(why)))
+    fixed = {name: float(view.axes[name][0]) for name in view.parameters if name != row}
+    for i in range(0, len(v["curve_kind"]), max(1, len(v["curve_kind"]) // 6)):
+        rod = Rod(float(v["curve_F"][i]), **(fixed | {row: float(v[f"curve_{row}"][i])}))
+        w = solve_spectrum(rod, SpectrumRequest(MANY, 1e-10, False)).eigenvalues
+        at = complex(v["curve_growth_rate"][i], v["curve_frequency"][i])
+        off = np.sort(np.abs(w - at))[0] / abs(at)
+        # Double eigenvalues move with the root of an error.
+        found.append(
+            (
+                page[0],
+                ""
+                if off < (1e-6 if v["curve_kind"][i] else 1e-4)
+                else f"point {i} of a curve is off by {off}",
+            )
+        )
+    for line, match in read(
+        page,
+        rf"^fold of the curve of (\w+ \w+), where (\w+) is extremal: "
+        rf"{row} = NUMBER(?: \(\+- NUMBER\))?, F = NUMBER(?: \(\+- NUMBER\))?",
+    ):
+        found.append((line, _fold(match, row, fixed, {row: float(match[3]), "F": float(match[5])})))
+    if "partial_beam_k1" in v:
+        filament = rs.Rod(k1=np.inf, k2=np.inf, gamma3=0.0).thresholds(F_max=60).F_hopf
+        found += ranges(
+            page, "k1 = RANGE Fc = RANGE, F = RANGE Fc = RANGE$", [4], [4 * filament], [2], [2 * filament]
+        )
+    found += [
+        (line, "")
+        for line, _ in read(page, r"^criticality, gamma1 = NUMBER: of NUMBER points? of the Hopf curves ")
+    ]
+    for line, match in read(page, r"of (\d+) points? of the Hopf curves (.*)$"):
+        told = sum(int(n) for n in re.findall(r"(\d+) (?:super|sub|undecided|without)", match[2]))
+        found.append((line, "" if told == int(match[1]) else "parts are not the whole"))
+        found.append((line, _side_of_points(view, row, fixed)))
+    for line, match in read(
+        page,
+        r"^generalised Hopf point \(Re c = NUMBER\) on curve NUMBER: "
+        rf"{row} = NUMBER \(\+- NUMBER\), F = NUMBER \(\+- NUMBER\)",
+    ):
+        found.append((line, _bautin(view, row, fixed, float(match[3]), float(match[5]))))
     return found
+
+
+def _fold(match, row, fixed, place):
+    """Why a curve has no fold at a place: beside it the number of changes differs on both sides."""
+    name = match[2]
+    other = "F" if name == row else row
+    changes = []
+    for side in (-1, 1):
+        rod = Rod(**({"F": place["F"]} | fixed | {row: place[row]}))
+        rod = replace(rod, **{name: place[name] * (1 + side * FOLD_BESIDE)})
+        low, high = (place[other] * (1 + s * FOLD_WIDTH) for s in (-1, 1))
+        if not (rod.k1 > rod.F and (other != "k1" or low > rod.F) and (other != "F" or high < rod.k1)):
+            return ""
+        kinds = (
+            ("onset", "real_again")
+            if match[1].startswith("double")
+            else ("hopf", "hopf_reverse", "restabilization")
+        )
+        changes.append(sum(c.kind.name in kinds for c in changes_along(rod, other, low, high)))
+    return "" if abs(changes[0] - changes[1]) == 2 else f"changes on both sides: {changes}"
+
+
+def _normal_form_at(view, row, fixed, value, F):
+    """The sign of Re c of the Hopf point next to a place of the plane."""
+    gamma1 = float(view.variables["curve_gamma1"])
+    rod = fixed | {row: value, "gamma1": gamma1}
+    data = rs.sweep("criticality", **rod, F_max=min(1.001 * F, 0.99999 * rod["k1"]), progress=False)
+    near = int(np.nanargmin(np.abs(data.crossing_F.values.ravel() - F)))
+    return float(data.criticality.values.ravel()[near])
+
+
+def _side_of_points(view, row, fixed):
+    """Why some Hopf points of curves are born on the other side than is stored."""
+    v = view.variables
+    there = np.flatnonzero(
+        (v["curve_kind"] == 1)
+        & np.isfinite(v["curve_criticality"])
+        & (v["curve_F"] < 0.99 * _k1(v, fixed, row))
+    )
+    for i in there[:: max(1, len(there) // 4)]:
+        side = _normal_form_at(view, row, fixed, float(v[f"curve_{row}"][i]), float(v["curve_F"][i]))
+        if side != v["curve_criticality"][i]:
+            return f"point {i} is on side {side}"
+    return ""
+
+
+def _k1(v, fixed, row):
+    return v["curve_k1"] if row == "k1" else fixed["k1"]
+
+
+def _bautin(view, row, fixed, value, F):
+    """Why the side does not change at a generalised Hopf point: beside it, along its curve."""
+    v = view.variables
+    on = np.flatnonzero(v["curve_kind"] == 1)
+    i = on[np.argsort(np.hypot(v[f"curve_{row}"][on] / value - 1, v["curve_F"][on] / F - 1))[:6]]
+    sides = {float(side) for side in v["curve_criticality"][i]}
+    return "" if {-1.0, 1.0} <= sides else f"sides near by: {sides}"
+
+
+def _states_of(view, row, fixed, table):
+    """What is stable at the points of a diagram, and the special points of its rows, from branches of rods.
+
+    table: what the straight rod does, (rows, values).
+    """
+    F, gamma1 = view.variables["F"], float(view.attributes.get("gamma1", 1.0))
+    states, kinds, at = [], [], []
+    for value, motions in zip(view.axes[row], table, strict=True):
+        rod = {**fixed, row: float(value), "gamma1": gamma1, "stop": float(F[-1])}
+        branch = solved("branch", rod | {"accuracy": FINE["branch"]})
+        ranges_ = [piece for curve in curves_of(branch, 0) for piece in curve.stable_ranges]
+        cycles = np.array([any(a < x < b * (1 + TIE) for a, b in ranges_) for x in F])
+        straight = np.isin(motions, ["monotone", "oscillatory"])
+        states.append(np.where(motions == "crushed", 5, straight + 2 * cycles))
+        kinds.append(branch.variables["special_kind"].ravel())
+        at.append(branch.variables["special_at"].ravel())
+    return {
+        "F": F,
+        "stable_states": np.array(states),
+        "cycle_special_kind": np.array(kinds),
+        "cycle_special_F": np.array(at),
+    }
+
+
+def _state_sentences(view, page, fine, row):
+    """Stable states and special points of cycles, against branches of a far smaller accuracy."""
+    v, rows, found = fine, view.axes[row], []
+    states = v["stable_states"]
+    for number, word in enumerate(("neither known", "straight", "cycle", "both", "undecided", "crushed")):
+        share = [100 * (states == number).mean()]
+        found += ranges(page, rf"^stable states, of the grid: (?:.*, )?RANGE % {word}", share)
+    both = (states == 3).any(axis=1)
+    kinds, at = v["cycle_special_kind"], v["cycle_special_F"]
+    where = {
+        r"straight rod and cycle both stable": (both, np.broadcast_to(v["F"], states.shape)[states == 3])
+    }
+    for words, kind in CHANGES_OF_CYCLES.items():
+        where[words] = (kinds == kind).any(axis=1), at[kinds == kind]
+    for words, (there, places) in where.items():
+        found += counts(page, rf"^{words}: on NUMBER of NUMBER row", there.sum(), len(rows))
+        if there.any():
+            found += ranges(
+                page, rf"^{words}: on \d+ of \d+ rows?, F = RANGE, {row} = RANGE", places, rows[there]
+            )
+    for line, match in read(
+        page,
+        rf"^curve of (folds|torus points): from {row} = NUMBER, F = NUMBER \(\+- ({NUMBER})\) \([^)]*\) "
+        rf"to {row} = NUMBER, F = NUMBER \(\+- ({NUMBER})\) \([^)]*\); NUMBER points?, "
+        "largest error of F NUMBER",
+    ):
+        places = ((float(match[2 + k]), match[3 + k], match[4 + k]) for k in (0, 3))
+        why = (_special_on_branch(view, row, match[1], *place) for place in places)
+        found.append((line, "; ".join(filter(None, why))))
+    for line, match in read(
+        page,
+        "^curves of cycles: NUMBER; folds and torus points of rows lie within NUMBER "
+        "of them, over F; NUMBER lie",
+    ):
+        true = (
+            len(np.unique(view.variables["cycle_curve_number"])),
+            int(view.variables["cycle_curves_untraced"]),
+        )
+        found.append((line, "" if (int(match[1]), int(match[3])) == true else f"it is {true}"))
+    return found
+
+
+def _special_on_branch(view, row, kind, value, F, error):
+    """Why a point of a curve of special points of cycles is none on the branch of its rod."""
+    rod = {name: float(view.axes[name][0]) for name in view.parameters} | {row: value}
+    rod["gamma1"] = float(view.attributes.get("gamma1", 1.0))
+    top = min(1.05 * float(F), 0.9998 * rod["k1"])
+    data = rs.sweep("branch", **rod, stop=top, accuracy=1e-7, progress=False)
+    kinds, at = data.special_kind.values.ravel(), data.special_at.values.ravel()
+    there = at[kinds == (2 if kind == "folds" else 3)]
+    there = np.append(there, at[kinds == 1])  # curves end at Hopf points
+    near = min(there, key=lambda place: abs(place - float(F)), default=inf)
+    # The row of the end is known to nine digits only.
+    return (
+        "" if abs(near - float(F)) <= float(error) + 1e-6 * near else f"{F} +- {error} at {value} is {near}"
+    )
 
 
 CHECKS = {

@@ -10,7 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
+from numpy.typing import NDArray
+from scipy.interpolate import Akima1DInterpolator
 
+from ...arrays import Array
 from ...model.parameters import CRUSHING
 from ...results.file.view import View
 from ...results.layouts.variables import MISSING
@@ -41,6 +44,10 @@ MARKS = {
     "list_full": ("|", "last cycle stored"),
 }
 """Marker and words of a special point, by its kind or, of an end, the reason; other ends are not marked."""
+MIRRORED, IMAGE = 3, np.array([1.0, -1.0, 1.0])
+"""Cycles that are mirrored at a Hopf point, as many as a slope of Akima's cubic depends on; their image."""
+BETWEEN = 12
+"""Places at which the curve between two cycles is drawn."""
 PREDICTED, PREDICTED_WORD = (0, (4, 1, 1, 1)), "by the normal form"
 """Line and word of the amplitude that it predicts next to every Hopf point."""
 COLOURS = (style.FIRST, style.SECOND, "#6A3D9A", "#2E7D32", "#8D6E63", "#00838F", "#C2185B", "#9E9D24")
@@ -66,8 +73,7 @@ def draw_branch(request: FigureRequest) -> str:
     marked: dict[str, Line2D] = {}
     for number, curve in enumerate(curves):
         colour = colours[number % len(colours)]
-        _pieces(upper, curve.at, curve.y, curve.stable, colour)
-        _pieces(lower, curve.at, curve.period, curve.stable, colour)
+        _draw(upper, lower, curve, colour)
         _mark(upper, lower, curve, marked)
     straight = straight_ranges(view, drawn[0], _shown(view, drawn[0], curves)) if alone else ([], [])
     for stable, ranges in zip((1, 0), straight, strict=True):
@@ -120,6 +126,36 @@ def _shown(view: View, rod: int, curves: list[CurveOfCycles]) -> Range:
     if followed_parameter(view) == force:
         return low, min(high, columns[stiffness])
     return (max(low, columns[force]) if followed_parameter(view) == stiffness else low), high
+
+
+def through_cycles(curve: CurveOfCycles) -> tuple[Array, Array, Array, NDArray[np.integer]]:
+    """(at, y, period, stable) of a branch as it is drawn, (n,), the last (n - 1,): smooth through its cycles.
+
+    At a Hopf point a branch is its own mirror image, y to -y: beyond it the cycles are mirrored, so that the
+    curve has the square root there. Akima's cubic makes no waves beside a corner, where another maximum of
+    y(t) becomes the largest.
+    """
+    places = np.column_stack([curve.at, curve.y, np.log(curve.period)])
+    extent = np.ptp(places, axis=0) + (np.ptp(places, axis=0) == 0)
+    moves = (np.diff(places, axis=0) != 0).any(axis=1)  # the end of the range is a cycle too
+    own, stable = places[np.append(True, moves)], curve.stable[moves]
+    if len(own) <= MIRRORED:
+        return curve.at, curve.y, curve.period, curve.stable
+    before, behind = (some * IMAGE for some in (own[MIRRORED:0:-1], own[-2 : -MIRRORED - 2 : -1]))
+    first, last = (int(vertex[1] == 0) * MIRRORED for vertex in (own[0], own[-1]))
+    whole = np.concatenate([before[:first], own, behind[:last]])
+    s = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(whole / extent, axis=0), axis=1)))
+    ends = s[first : first + len(own)]
+    finer = np.append(np.linspace(ends[:-1], ends[1:], BETWEEN, endpoint=False, axis=1).ravel(), ends[-1])
+    at, y, log_period = Akima1DInterpolator(s, whole)(finer).T
+    return at, y, np.exp(log_period), np.repeat(stable, BETWEEN)
+
+
+def _draw(upper: Axes, lower: Axes, curve: CurveOfCycles, colour: str) -> None:
+    """A branch in both panels."""
+    at, y, period, stable = through_cycles(curve)
+    _pieces(upper, at, y, stable, colour)
+    _pieces(lower, at, period, stable, colour)
 
 
 def _pieces(

@@ -23,8 +23,15 @@ SIDE_LOOKS = {
     0: ("Hopf points, side undecided", 0.6, "-"),
 }
 """Of the parts of Hopf curves, where the file tells on which side cycles are born; by Re c's sign."""
-CYCLE_MARKS = {"symmetry_breaking": ("symmetry breakings", "^"), "period_doubling": ("period doublings", "v")}
-"""Legend and marker of special points of cycles that are located on rows and not followed, by kind."""
+CYCLE_MARKS = {
+    "fold": ("folds of cycles on rows", "s"),
+    "torus": ("torus points on rows", "D"),
+    "symmetry_breaking": ("symmetry breakings", "^"),
+    "period_doubling": ("period doublings", "v"),
+}
+"""Legend and marker of special points of cycles on rows through which no curve goes, by kind."""
+ON_CURVE = 1e-3
+"""Distance of a point of a row from a curve through it, in units of the axis, that chords make."""
 CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", THIRD)}
 """Legend and colour of the curves of special points of cycles, by kind."""
 SAME_PLACE = 1e-6
@@ -114,17 +121,33 @@ def draw_cycle_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2
 
 
 def mark_cycles_on_rows(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
-    """Marks symmetry breakings and period doublings of cycles on rows; what the legend says of them."""
+    """Marks special points of cycles on rows through which no curve goes; what the legend says of them."""
     v, handles = view.variables, []
     values = view.point_columns[row]
     kinds, at = (v[f"cycle_special_{name}"].reshape(len(values), -1) for name in ("kind", line))
     for kind, (word, marker) in CYCLE_MARKS.items():
         rows, places = np.nonzero(kinds == SPECIAL_KINDS.index(kind))
-        if rows.size:
-            handles += axes.plot(
-                at[rows, places], values[rows], marker, color="k", mfc="white", ms=3.5, mew=0.8, label=word
-            )
+        there = ~_on_curves(view, SPECIAL_KINDS.index(kind), line, row, at[rows, places], values[rows])
+        x, y = at[rows, places][there], values[rows][there]
+        if there.any():
+            handles += axes.plot(x, y, marker, color="k", mfc="white", ms=3.5, mew=0.8, label=word)
     return handles
+
+
+def _on_curves(view: View, kind: int, line: str, row: str, x: Array, y: Array) -> NDArray[np.bool_]:
+    """Which special points of a kind, x along a row at y, (n,), lie on a curve of their kind."""
+    v, near = view.variables, np.zeros(len(x), dtype=bool)
+    if "cycle_curve_number" not in v:
+        return near
+    for curve in np.unique(v["cycle_curve_number"][v["cycle_curve_kind"] == kind]):
+        on = v["cycle_curve_number"] == curve
+        along, across = v[f"cycle_curve_{line}"][on], v[f"cycle_curve_{row}"][on]
+        before, after = across[:-1, None] - y, across[1:, None] - y
+        share = np.divide(before, before - after, out=np.zeros_like(before), where=before != after)
+        places = along[:-1, None] + share * np.diff(along)[:, None]
+        off = np.where(before * after <= 0, np.abs(places - x), np.inf)
+        near |= off.min(axis=0, initial=np.inf) <= ON_CURVE * np.ptp(v[line])
+    return near
 
 
 def _sides(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:

@@ -35,12 +35,11 @@ def draw_modes(request: FigureRequest) -> str:
         for panel, (word, fields) in zip(row, PANELS, strict=True):
             _panel(panel, view, int(point), fields)
             panel.set_title(word)
-        place = 0 if narrow else 1
-        where = ("\n" if narrow else ": ").join(_where(view, int(point)))
-        row[place].set_title(f"{where}\n{PANELS[place][0]}")
+        if len(drawn) > 1:
+            row[1].set_title(f"{': '.join(_where(view, int(point)))}\n{PANELS[1][0]}")
     for panel in panels[-1]:
         panel.set_xlabel("material coordinate $u/L$")
-    figure.suptitle(heading(view))
+    figure.suptitle(heading(view, *(_where(view, int(drawn[0])) if len(drawn) == 1 else ())))
     legend_below(figure, _parts(view, drawn), columns=2)
     left = f" of the first of {points.size} points" if len(drawn) == 1 < points.size else ""
     if points.size > len(drawn) > 1:

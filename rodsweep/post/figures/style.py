@@ -21,8 +21,9 @@ CRITICAL_FORCE = f"critical force ${SYMBOLS['F']}$"
 INVERSE_DRAG = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$"
 FIRST, SECOND, THIRD = "#0072B2", "#D55E00", "#009E73"
 """Blue, vermilion and green of Okabe and Ito: told apart by the colour-blind."""
-FEW_DECADES = 50
-"""Ratio of the ends of a logarithmic axis below which 1, 2 and 5 of each decade are labelled."""
+FEW_DECADES, IN_ONE_DECADE = 50, 6
+"""Ratio of the ends of a logarithmic axis below which 1, 2 and 5 of each decade are labelled, and below which
+more are, since only one or two of these may be in sight."""
 LEAST_POWER, PLAIN_BELOW = 2, 4
 """From which exponent on powers of ten are written as such; below which other numbers are written out."""
 STYLE = {
@@ -127,7 +128,8 @@ def scale(axes: Axes, which: Literal["x", "y"], values: np.ndarray) -> None:
 def label_few_decades(axis: Axis, low: float, high: float) -> None:
     """Labels 1, 2 and 5 of each decade of a logarithmic axis that spans few: all written out, or none."""
     if high < FEW_DECADES * low:
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        subs = (1, 2, 5) if high > IN_ONE_DECADE * low else (1, 1.5, 2, 3, 4, 6, 8)
+        axis.set_major_locator(LogLocator(subs=subs))
         written_out = low >= 10.0**-LEAST_POWER and high < 10.0 ** (PLAIN_BELOW + 1)
         axis.set_major_formatter(
             FuncFormatter(lambda value, _: f"{value:g}" if written_out else f"${number(value)}$")

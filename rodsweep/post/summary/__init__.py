@@ -119,12 +119,21 @@ def _times(view: View, done: np.ndarray, noun: str) -> list[str]:
 
 def _origin(a: dict[str, Any]) -> list[str]:
     """When and by what a file was computed."""
-    ran = f"{a['started']} to {a['finished']}" if "finished" in a and "started" in a else "not finished yet"
     return [
-        f"computed {ran}; rodsweep {a.get('rodsweep_version')}, PETSc {a.get('petsc_version')}, "
+        f"computed {_when(a)}; rodsweep {a.get('rodsweep_version')}, PETSc {a.get('petsc_version')}, "
         f"SLEPc {a.get('slepc_version')}, commit {str(a.get('git_commit'))[:12]}",
         f"BLAS: {'; '.join(kernels_of(a))}",
     ]
+
+
+def _when(a: dict[str, Any]) -> str:
+    """From when to when a file was computed; of a shard, that the run of its own part has come to its end."""
+    if "started" not in a:
+        return "not finished yet"
+    if "finished" in a:
+        return f"{a['started']} to {a['finished']}"
+    whole = a.get("shard") and not a.get("stopped")
+    return f"from {a['started']} on, all points of shard {a['shard']}" if whole else "not finished yet"
 
 
 def _ranks(a: dict[str, Any], noun: str) -> list[str]:

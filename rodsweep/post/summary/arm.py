@@ -18,7 +18,8 @@ from ...results.layouts.arm import FORCES, HERTZ, QUANTITY_UNITS, twins_of
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ..hopf_points import Located
 from ..tables.rows import quantities_at_points
-from .ranges import span
+from .errors import errors_of
+from .ranges import rounded, span
 
 WIDTH = 80
 """Columns of a line in SI units."""
@@ -34,14 +35,6 @@ DIGITS = 3
 """Digits of a quantity that says where something is."""
 WORDS = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
 """What quantities are called, where that is not their name."""
-NOT_SHOWN = ("injection_rms_si", "dissipation_rms_si")
-"""Variables without an error estimate, which only the file has."""
-ON_ERROR_OF = {
-    "period_si": "period_error",
-    "frequency_hz": "period_error",
-    "tip_y_max_si": "amplitude_error",
-}
-"""The relative errors of numbers of cycles."""
 OF_THRESHOLDS = {
     "hopf": "flutters at {load}{rate}",
     "restabilization": "is straight again from {load} on",
@@ -125,21 +118,24 @@ def arm_lines(view: View, done: np.ndarray) -> list[str]:
     if not view.quantities:
         return []
     config = json.loads(view.attributes["config_resolved"])
+    twins = twins_of(LAYOUTS[view.task](config), config)
     shown = {
-        v.name: v
-        for v in twins_of(LAYOUTS[view.task](config), config)
-        if v.name not in NOT_SHOWN and (not v.extra or (done.size == 1 and v.extra != ("crossing",)))
+        own: v
+        for own, v in twins.items()
+        if "error" not in v.name and (not v.extra or (done.size == 1 and v.extra != ("crossing",)))
     }
-    values = {name: view.variables[name][done] for name in shown}
-    values = {name: column for name, column in values.items() if np.isfinite(column).any()}
+    values = {own: view.variables[v.name][done] for own, v in shown.items()}
+    values = {own: column for own, column in values.items() if np.isfinite(column).any()}
     largest: dict[str, float] = {}
-    for name, column in values.items():
-        largest[shown[name].units] = max(largest.get(shown[name].units, 0.0), _largest(column))
+    for own, column in values.items():
+        largest[shown[own].units] = max(largest.get(shown[own].units, 0.0), _largest(column))
     told = []
-    for name, column in values.items():
-        factor, unit = own_unit(view, shown[name].units, largest[shown[name].units])
-        numbers = _numbers(factor * column, factor * _errors(view, name, column, done))
-        told.append(f"{name.removesuffix('_si').removesuffix('_hz')} = {numbers} {unit}")
+    for own, column in values.items():
+        variable = shown[own]
+        factor, unit = own_unit(view, variable.units, largest[variable.units])
+        errors = errors_in_si(view.variables, own, variable.name)[done]
+        numbers = _numbers(factor * column, factor * errors)
+        told.append(f"{variable.name.removesuffix('_si').removesuffix('_hz')} = {numbers} {unit}")
     return (
         ["in the arm's units:", *wrapped("; ".join(item.replace(" ", "\xa0") for item in told))]
         if told
@@ -147,25 +143,16 @@ def arm_lines(view: View, done: np.ndarray) -> list[str]:
     )
 
 
-def _errors(view: View, name: str, values: np.ndarray, done: np.ndarray) -> np.ndarray:
-    """Absolute errors of a variable in SI units; 0 of what is known to more digits than are shown."""
-    v = view.variables
-    if name in ON_ERROR_OF:
-        return np.abs(values) * v[ON_ERROR_OF[name]][done]
-    if name in ("tip_x_min_si", "tip_x_max_si"):
-        return np.asarray(v["extrema_error"][done] * v["tip_y_max_si"][done])
-    if name in ("injection_mean_si", "dissipation_mean_si"):
-        relative = 2 * v["amplitude_error"] + v["period_error"] + np.abs(v["energy_imbalance"])
-        return np.asarray(np.abs(values) * relative[done])
-    return np.zeros_like(values)
-
-
 def _numbers(values: np.ndarray, errors: np.ndarray) -> str:
-    """Values as words: one by one where they are a few of a table, else their range."""
-    finite = values[np.isfinite(values)]
+    """Values as words: one by one where they are a few of a table, else their range.
+
+    errors: absolute ones, of the same shape, which leave out digits that are not known.
+    """
+    there = np.isfinite(values)
+    finite, known = values[there], errors[there]
     if values.ndim > 1 and 1 < finite.size <= ITEMS_FEW:
-        return ", ".join(f"{value:.6g}" for value in finite)
-    return span(values, errors)
+        return ", ".join(map(rounded, finite, np.nan_to_num(known)))
+    return span(finite, known)
 
 
 def wrapped(text: str) -> list[str]:
@@ -179,6 +166,13 @@ def wrapped(text: str) -> list[str]:
         break_on_hyphens=False,
     )
     return [line.replace("\xa0", " ") for line in lines]
+
+
+def errors_in_si(v: Mapping[str, np.ndarray], own: str, twin: str) -> np.ndarray:
+    """The absolute errors of what stands under the name `twin` in an SI unit too, in it, of its shape."""
+    known = np.isfinite(v[own]) & (v[own] != 0)
+    scale = np.divide(v[twin], v[own], out=np.zeros_like(v[twin]), where=known)
+    return np.asarray(np.abs(scale) * errors_of(v, own))
 
 
 def loads_at(view: View, F: np.ndarray, points: np.ndarray) -> str:

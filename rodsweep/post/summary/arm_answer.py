@@ -13,8 +13,11 @@ from ...results.file.view import View
 from ...results.layouts.arm import EFFECTS, FORCES, VALIDITY
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, some_of
-from .arm import arms_of_drags, drag_lines, own_unit, region_of_arms
+from .arm import arms_of_drags, drag_lines, errors_in_si, own_unit, region_of_arms
+from .ranges import rounded
 
+DIGITS = 3
+"""Digits of an answer, where its error leaves so many."""
 OTHER_PLANE = (
     "the motion is in the plane of the height; where that is above the width, the arm flutters first in the "
     "other plane, at a lower load: exchange width and height to see it"
@@ -66,14 +69,19 @@ def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str
     verb = "does not apply" if worst == Validity.does_not_apply else "is doubtful"
     place = int(np.flatnonzero(there)[np.argmax(excess[there])])
     name, size = EFFECTS[int(effect[place])].replace("_", " "), f"{excess[place]:.2g}"
-    return f"the model {verb}{at}{when}: {name} is {'up to ' * (there.sum() > 1)}{size} times its limit"
+    return f"the model {verb}{at}{when}: {name} is {'up to ' * int(there.sum() > 1)}{size} times its limit"
 
 
-def spanned(view: View, values: np.ndarray, si: str) -> str:
-    """The range of values in an SI unit, of any shape, in the arm's own unit, to three digits."""
-    finite = values[np.isfinite(values)]
+def spanned(view: View, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0) -> str:
+    """The range of values in an SI unit, of any shape, in the arm's own unit.
+
+    errors: absolute ones, of the same shape; three digits are told where they are known.
+    """
+    there = np.isfinite(values)
+    finite, known = values[there], np.broadcast_to(errors, values.shape)[there]
     factor, unit = own_unit(view, si, float(np.abs(finite).max()))
-    low, high = (f"{factor * float(end):.3g}" for end in (finite.min(), finite.max()))
+    ends = (int(finite.argmin()), int(finite.argmax()))
+    low, high = (rounded(factor * float(finite[i]), factor * float(known[i]), DIGITS) for i in ends)
     return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
 
 
@@ -133,13 +141,16 @@ def _flutter(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarra
 
 
 def _of_cycles(view: View, rods: np.ndarray) -> list[str]:
-    v = {name: view.variables[name][rods] for name in ("frequency_hz", "tip_y_max_si")}
+    names = {"frequency_hz": "frequency", "tip_y_max_si": "tip_y_max"}
+    v = {name: view.variables[name][rods] for name in names}
+    errors = {name: errors_in_si(view.variables, own, name)[rods] for name, own in names.items()}
     there = np.isfinite(v["frequency_hz"])
     if not there.any():
         return ["does not beat"]
     of = f" at {int(there.sum())} of {len(there)} points" if len(there) > 1 else ""
-    wide = spanned(view, v["tip_y_max_si"][there], "m")
-    beats = f"beats{of} at {spanned(view, v['frequency_hz'], 'Hz')}, its tip by {wide} to either side"
+    wide = spanned(view, v["tip_y_max_si"], "m", errors["tip_y_max_si"])
+    rate = spanned(view, v["frequency_hz"], "Hz", errors["frequency_hz"])
+    beats = f"beats{of} at {rate}, its tip by {wide} to either side"
     known = {"frequency": "frequency_hz", "reach of the tip": "tip_y_max_si", "power": "injection_mean_si"}
     numbers = {name: np.where(rods, view.variables[key], np.nan).ravel() for name, key in known.items()}
     return [beats, *_decided(view, rods), *drag_lines(view, numbers)]
@@ -173,7 +184,8 @@ def _of_branches(view: View, rods: np.ndarray) -> list[str]:
     if not np.isfinite(loads).any():
         return ["does not beat"]
     frequency = 1 / view.variables["period_si"][rods]
-    return [f"beats at {load_spanned(view, loads)}, at {spanned(view, frequency, 'Hz')}"]
+    errors = frequency * view.variables["period_error"][rods]
+    return [f"beats at {load_spanned(view, loads)}, at {spanned(view, frequency, 'Hz', errors=errors)}"]
 
 
 def _of_diagram(view: View, rods: np.ndarray) -> list[str]:

@@ -18,11 +18,10 @@ from ..branch_curves import (
     straight_ranges,
     union,
 )
+from .errors import span_of
 from .ranges import listed, rounded, span, to_error
 from .told import Told, at_point
 
-SPECIAL_ACCURACY = 2.0
-"""Error of the cycle at a special point, which the file does not tell, in units of the accuracy asked for."""
 NAMED_RODS = 8
 """Rods whose coexistence is named."""
 FULL = "they have more special points than the list holds; raise branch.special"
@@ -60,7 +59,6 @@ def branch_summary(view: View, done: np.ndarray) -> Told:
 def _one_rod(view: View, rod: int) -> Iterator[str]:
     """Every branch of the one rod of a file, with its special points to their errors."""
     along, curves, v = followed_parameter(view), curves_of(view, rod), view.variables
-    accuracy = float(json.loads(view.attributes["config_resolved"])["accuracy"])
     hidden = branches_not_told(view, rod)
     if hidden:
         yield f"{some_of(hidden, hidden + len(curves), 'branch')} {is_or_are(hidden)} not told: {FULL}"
@@ -80,10 +78,8 @@ def _one_rod(view: View, rod: int) -> Iterator[str]:
                 continue
             at, kind = to_error(special.at, special.error), special.kind.replace("_", " ")
             kind += f", where branch {special.meets} meets it," * (special.meets > 0)
-            period, y = (
-                rounded(value, SPECIAL_ACCURACY * accuracy * abs(value))
-                for value in (special.period, special.tip_y_max)
-            )
+            period = to_error(special.period, special.period * special.period_error)
+            y = to_error(special.tip_y_max, special.tip_y_max * special.tip_y_max_error)
             size = f"period {period} tau2, largest tip y {y} L"
             yield f"  {kind} at {along} = {at}, {size}"
         if curve.stable_ranges:
@@ -141,11 +137,10 @@ def ends_of(view: View) -> Range:
 def _sizes(view: View, done: np.ndarray) -> str:
     """The period and the size of all cycles of the points that are `done`; nothing where there are none."""
     v = view.variables
-    period, y = v["period"][done], v["tip_y_max"][done]
-    if not np.isfinite(period).any():
+    if not np.isfinite(v["period"][done]).any():
         return ""
-    told = f": period {span(period, period * v['period_error'][done])} tau2"
-    return f"{told}, largest tip y {span(y, y * v['amplitude_error'][done])} L"
+    period, y = (span_of(v, name, done) for name in ("period", "tip_y_max"))
+    return f": period {period} tau2, largest tip y {y} L"
 
 
 def _specials(view: View, rods: np.ndarray) -> Iterator[str]:

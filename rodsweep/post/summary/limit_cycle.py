@@ -10,12 +10,11 @@ from ...results.layouts.limit_cycle import SECOND_STATES
 from ...wording import counted, some_of
 from ..hopf_points import StoredHopfPoints
 from .arm import region_of_arms
+from .errors import span_of
 from .ranges import error_text, span, to_error
 from .stability import stability_lines
 from .told import Told, in_brackets, region, varied
 
-ACCURATE = 1e-9
-"""Relative error of the eigenvalue of a straight rod: what its solver is asked for."""
 OUTCOMES = {"cycle": "beats", "straight": "stays straight"}
 """How a point that ended so is called; the other statuses speak for themselves."""
 
@@ -33,7 +32,7 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> Told:
     trust, details = _proof_lines(v), [_straight_line(v, done)]
     on_torus = done & (v["status"] == values.get("torus"))
     if on_torus.any():
-        multipliers = span(v["multiplier"][on_torus], v["multiplier_error"][on_torus])
+        multipliers = span_of(v, "multiplier", on_torus)
         details.append(f"tori: the cycles that they surround have multipliers {multipliers}")
     if done.size == 1 and orbit.any():
         answer[1:1] = orbit_lines(v, stable=bool(beats.any()))
@@ -67,7 +66,7 @@ def _stability(view: View) -> tuple[list[str], list[str]]:
     names = [name for name in LINEAR_PARAMETERS if name in varied(view)]
     lines, of_arm = list[str](), list[str]()
     for name in names[:1] if "F" in names else names:
-        found = stability_lines(view, name, StoredHopfPoints(view, name).on)
+        found = stability_lines(view, name, StoredHopfPoints(view, name).up_to)
         lines, of_arm = [*lines, *found[0]], [*of_arm, *found[1]]
     return lines, of_arm
 
@@ -83,10 +82,8 @@ def _proof_lines(v: Mapping[str, np.ndarray]) -> list[str]:
 
 def _straight_line(v: Mapping[str, np.ndarray], done: np.ndarray) -> str:
     """The leading eigenvalue of the straight rods."""
-    rate, frequency = v["linear_growth_rate"][done], v["linear_frequency"][done]
-    error = ACCURATE * np.hypot(rate, frequency)
-    told = f"leading growth rate {span(rate, error)} 1/tau2, frequency {span(frequency, error)} rad/tau2"
-    return f"straight rod: {told}"
+    rate, frequency = (span_of(v, f"linear_{name}", done) for name in ("growth_rate", "frequency"))
+    return f"straight rod: leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"
 
 
 def orbit_lines(v: Mapping[str, np.ndarray], stable: bool) -> list[str]:
@@ -126,41 +123,30 @@ def _at(some: np.ndarray, done: np.ndarray) -> str:
 
 def _size_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
     """The period and the size of the cycles of several points."""
-    period, y = v["period"][beats], v["tip_y_max"][beats]
-    told = f"period: {span(period, period * v['period_error'][beats])} tau2"
-    return [f"{told}; largest y of the tip: {span(y, y * v['amplitude_error'][beats])} L"]
+    period, y = (span_of(v, name, beats) for name in ("period", "tip_y_max"))
+    return [f"period: {period} tau2; largest y of the tip: {y} L"]
 
 
 def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
     """What else is known of the cycles, over the points that end in one."""
-    extrema = v["extrema_error"][beats] * v["tip_y_max"][beats]
-    of_period, frequency = v["period_error"][beats], v["frequency"][beats]
-    ratio = frequency / v["linear_frequency"][beats]
+    ratio = v["frequency"][beats] / v["linear_frequency"][beats]
     tips = (
-        f"{what} {span(v[f'tip_{name}'][beats], extrema)} {unit}"
+        f"{what} {span_of(v, f'tip_{name}', beats)} {unit}"
         for what, name, unit in (
             ("least x", "x_min", "L"), ("largest x", "x_max", "L"), ("largest theta", "theta_max", "rad"),
         )
     )  # fmt: skip
-    power = v["injection_mean"][beats]
-    of_power = power_error(v)[beats]
-    lines = [f"frequency {span(frequency, frequency * of_period)} rad/tau2, "
-             f"over that of the leading mode {span(ratio, ratio * of_period)}"]  # fmt: skip
+    lines = [f"frequency {span_of(v, 'frequency', beats)} rad/tau2, "
+             f"over that of the leading mode {span(ratio, ratio * v['period_error'][beats])}"]  # fmt: skip
     if "period_tau1" in v:
-        tau1 = v["period_tau1"][beats]
-        lines.append(f"period: {span(tau1, tau1 * of_period)} tau1")
+        lines.append(f"period: {span_of(v, 'period_tau1', beats)} tau1")
     return [
         *lines,
         f"tip: {', '.join(tips)}",
-        f"power of the force, mean: {span(power, np.abs(power) * of_power)} k3/(L tau2)",
-        f"multiplier: {span(v['multiplier'][beats], v['multiplier_error'][beats])}; returns waited for: "
-        f"{span(v['periods'][beats])}; least stretch: {span(v['least_stretch'][beats], extrema)}",
+        f"power of the force, mean: {span_of(v, 'injection_mean', beats)} k3/(L tau2)",
+        f"multiplier: {span_of(v, 'multiplier', beats)}; returns waited for: "
+        f"{span(v['periods'][beats])}; least stretch: {span_of(v, 'least_stretch', beats)}",
     ]
-
-
-def power_error(v: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Relative error of the mean power of the force, of any shape: it goes with the amplitude's square."""
-    return 2 * v["amplitude_error"] + v["period_error"] + np.abs(v["energy_imbalance"])
 
 
 def _error_line(v: Mapping[str, np.ndarray], beats: np.ndarray) -> str:

@@ -4,6 +4,7 @@ import numpy as np
 
 from ...results.file.view import View
 from ...wording import counted
+from .errors import errors_of, span_of
 from .ranges import span
 from .spectrum import (
     eigenvalue_lines,
@@ -36,20 +37,16 @@ def modes_summary(view: View, done: np.ndarray) -> Told:
 def growth_lines(view: View, done: np.ndarray) -> list[str]:
     """How far the modes are from being normal, and what that makes of small motions; done: (points,)."""
     v = view.variables
-    condition = v["condition"][done][:, 0]
-    lines = [
-        "condition of the leading eigenvalue: "
-        + span(condition, condition * v["condition_error"][done][:, 0])
-    ]
+    condition, error = v["condition"][done][:, 0], errors_of(v, "condition")[done][:, 0]
+    lines = [f"condition of the leading eigenvalue: {span(condition, error)}"]
     if "transient_growth" not in v:
         return lines
-    growth, abscissa = v["transient_growth"][done], v["numerical_abscissa"][done]
-    lines.append(f"numerical abscissa: {span(abscissa, v['abscissa_error'][done])} 1/tau2")
+    growth = v["transient_growth"][done]
+    lines.append(f"numerical abscissa: {span_of(v, 'numerical_abscissa', done)} 1/tau2")
     if np.isfinite(growth).any():
-        finite, error = np.where(np.isfinite(growth), growth, np.nan), v["growth_error"][done]
-        time = np.where(np.isfinite(growth), v["transient_time"][done], np.nan)
-        when = span(time, time * np.sqrt(error))  # next to its flat maximum the growth falls quadratically
-        lines.append(f"largest transient growth: {span(finite, finite * error)} times, at t = {when} tau2")
+        finite = done & np.isfinite(v["transient_growth"])
+        most, when = (span_of(v, f"transient_{name}", finite) for name in ("growth", "time"))
+        lines.append(f"largest transient growth: {most} times, at t = {when} tau2")
     if np.isinf(growth).any():
         points = counted(int(np.isinf(growth).sum()), "point")
         lines.append(f"growth without bound at {points}: a mode is unstable")

@@ -79,9 +79,9 @@ def error_text(error: float) -> str:
     return f"{ceil(error / unit * (1 - UNDER)) * unit:.0e}"
 
 
-def rounded(value: float, error: float) -> str:
-    """A number to the last digit of which its absolute error is at most a half, six digits at most."""
-    return _rounded(float(value), 2 * float(error), DIGITS_OF_RANGE) if isfinite(value) else NONE
+def rounded(value: float, error: float, most: int = DIGITS_OF_RANGE) -> str:
+    """A number to the last digit of which its absolute error is at most a half, so many digits at most."""
+    return _rounded(float(value), 2 * float(error), most) if isfinite(value) else NONE
 
 
 def _rounded(value: float, error: float, most: int) -> str:

@@ -113,15 +113,17 @@ def with_si(layout: Layout, config: Mapping[str, Any]) -> Layout:
     """The layout with what a resolved config that has an arm stores in SI units too."""
     if config.get("parameters", {}).get("arm") is None:
         return layout
-    variables = (*layout.variables, *twins_of(layout, config), *VALIDITY)
+    variables = (*layout.variables, *twins_of(layout, config).values(), *VALIDITY)
     return replace(layout, variables=variables, over=over_of(config))
 
 
-def twins_of(layout: Layout, config: Mapping[str, Any]) -> list[Variable]:
-    """What is stored in SI units too of a rod's layout, for a resolved config that has an arm."""
+def twins_of(layout: Layout, config: Mapping[str, Any]) -> dict[str, Variable]:
+    """What is stored in SI units too of a rod's layout, by the name of its variable there, for a config."""
     as_force = any(name in config["parameters"]["arm"] for name in ("force", "force_over_flutter"))
     units = ((variable, _unit_of(variable, as_force)[0]) for variable in layout.variables)
-    return [real(twin_of(v.name, unit), unit, _meaning(v, unit), *v.extra) for v, unit in units if unit]
+    return {
+        v.name: real(twin_of(v.name, unit), unit, _meaning(v, unit), *v.extra) for v, unit in units if unit
+    }
 
 
 def twin_of(name: str, unit: str) -> str:

@@ -73,9 +73,13 @@ def special_variables(along: str) -> tuple[Variable, ...]:
         real(
             "special_amplitude_coefficient",
             "L",
-            "a of a Hopf point, to three digits: next to it the largest y is "
+            "a of a Hopf point: next to it the largest y is "
             f"|a| sqrt(|{along}/special_at - 1|), a < 0 where the cycles are at smaller {along}",
             SPECIAL,
+        ),
+        *(
+            real(f"special_{name}_error", "1", f"estimate of the relative error of special_{name}", SPECIAL)
+            for name in ("period", "tip_y_max", "amplitude_coefficient")
         ),
         whole("special_branch", "number of the branch, from 1", SPECIAL),
         whole(

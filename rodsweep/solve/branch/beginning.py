@@ -19,6 +19,7 @@ from ..cycle.neighbour import with_coordinate
 from ..cycle.orbit import Orbit
 from ..cycle.orbit_mesh import stages_for, wanted_mesh
 from ..cycle.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tolerance
+from ..hopf.hopf_coefficients import HopfCoefficients, hopf_coefficients
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..point import Unsolvable
 from .arc import ArcPoint, first_point
@@ -31,6 +32,8 @@ SHARE = 0.05
 LEAST_UNIT = 0.1
 """Tip y, in L, of the small cycle whose moment is the least unit of moments."""
 FIRST_STEP = 0.02
+FREQUENCY_ROUNDING = 1e-14
+"""Relative error of the frequency of a Hopf point that rounding leaves, a root of D."""
 MOMENT = np.array([1.0, 0.0, 0.0])
 
 
@@ -38,7 +41,8 @@ MOMENT = np.array([1.0, 0.0, 0.0])
 class HopfBirth:
     """A Hopf point along a parameter with what is born there.
 
-    coordinate: the parameter's; slope: dw/d(coordinate); normal: the normal form at the rod.
+    coordinate: the parameter's; slope: dw/d(coordinate); normal: the normal form at the rod, as accurate as
+    the start of a branch needs; coefficients: those of a finer one, with their errors.
     """
 
     crossing: Crossing
@@ -48,6 +52,7 @@ class HopfBirth:
     coordinate: float
     slope: complex
     normal: NormalForm
+    coefficients: HopfCoefficients
 
     @property
     def period(self) -> float:
@@ -58,11 +63,25 @@ class HopfBirth:
     def amplitude_coefficient(self) -> float:
         """a, in L: at p' next to the Hopf point at p the largest tip y is |a| sqrt(|p' - p|/p).
 
-        p is the parameter; a < 0 where the cycles are at p' < p. As accurate as NORMAL_FORM_ACCURACY.
+        p is the parameter; a < 0 where the cycles are at p' < p.
         """
         turned = -1.0 if Path(self.rod, self.name).inverse else 1.0
-        squared = -turned * self.slope.real * self.coordinate / self.normal.c.real
+        squared = -turned * self.slope.real * self.coordinate / self.coefficients.landau.real
         return float(np.copysign(abs(squared) ** 0.5, squared))
+
+    @property
+    def coefficient_error(self) -> float:
+        """Relative error of the amplitude coefficient: half of those of c, of the slope and of the place."""
+        c, slope = self.coefficients.landau, self.slope
+        landau = self.coefficients.landau_error * abs(c) / abs(c.real)
+        slope_error = self.coefficients.growth_slope_error * abs(slope) / abs(slope.real)
+        return (landau + slope_error + self.crossing.error / abs(self.crossing.at)) / 2
+
+    @property
+    def period_error(self) -> float:
+        """Relative error of the period: by how much the frequency changes within the error of the place."""
+        place = self.crossing.error / abs(self.crossing.at) * abs(self.coordinate)
+        return abs(self.slope) * place / self.crossing.frequency + FREQUENCY_ROUNDING
 
     def moved_by(self, amplitude: float) -> tuple[float, float]:
         """(change of the coordinate, frequency) of the cycle whose largest tip y is given."""
@@ -88,6 +107,7 @@ def hopf_point(rod: Rod, gamma1: float, name: str, crossing: Crossing) -> HopfBi
         coordinate=path.variable(crossing.at),
         slope=complex(slope),
         normal=normal,
+        coefficients=hopf_coefficients(at, gamma1, crossing, NORMAL_FORM_ACCURACY),
     )
 
 

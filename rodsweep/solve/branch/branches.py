@@ -40,7 +40,7 @@ class BranchStatus(PointStatus):
     stopped = (
         1,
         "a branch stops short where no further cycle was found, the others are complete; the message says "
-        "where; ask for a lower accuracy, or shorten the range",
+        "where; a smaller or a larger number for the accuracy may lead on, or shorten the range",
     )
     list_full = 2, "there are more cycles or special points than are kept; raise cycles or special"
     special_undecided = (

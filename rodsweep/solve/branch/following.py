@@ -49,7 +49,8 @@ its period, relative."""
 EXACT = 1e-15
 """Relative error of an end of the range."""
 CLOSE = 1e-6
-"""Distance from a Hopf point, relative, that need not be less."""
+"""Distance from a Hopf point, relative, that need not be less; nor need it be below the accuracy asked for,
+to which the branch knows its own end."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,14 +131,24 @@ def special_hopf(hopf: HopfBirth) -> SpecialPoint:
         period=hopf.period,
         tip_y_max=0.0,
         error=hopf.crossing.error,
+        period_error=hopf.period_error,
+        size_error=0.0,
         amplitude_coefficient=hopf.amplitude_coefficient,
+        coefficient_error=hopf.coefficient_error,
     )
 
 
 def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> SpecialPoint:
     """The end of a branch that has no cycles, where it begins."""
     born = curve.special[0]
-    return replace(born, kind=SpecialKind.end, reason=reason, message=message, amplitude_coefficient=nan)
+    return replace(
+        born,
+        kind=SpecialKind.end,
+        reason=reason,
+        message=message,
+        amplitude_coefficient=nan,
+        coefficient_error=nan,
+    )
 
 
 def _beyond(point: ArcPoint, course: Course) -> int:
@@ -216,7 +227,7 @@ def _arrived(curve: BranchCurve, here: ArcPoint, there: ArcPoint, course: Course
     share = here.moment / (2 * here.ahead[0] * scale.moment)
     at, period = here.at - share * tangent[-1], here.orbit.period - share * tangent[-2]
     for number, hopf in enumerate(course.hopfs):
-        near = WITHIN * abs(here.at - hopf.coordinate) + CLOSE * abs(hopf.coordinate)
+        near = WITHIN * abs(here.at - hopf.coordinate) + max(CLOSE, course.accuracy) * abs(hopf.coordinate)
         also = WITHIN * abs(here.orbit.period - hopf.period) + WITHIN_PERIOD * hopf.period
         if abs(at - hopf.coordinate) <= near and abs(period - hopf.period) <= also:
             curve.arrives = number

@@ -87,7 +87,8 @@ class EndReason(IntEnum):
 class SpecialPoint:
     """A special point: the parameter's value there, the cycle's period in tau2 and largest tip y in L.
 
-    error: absolute, of the parameter's value. after: the place on its branch of the last cycle before it, -1
+    error: absolute, of the parameter's value; period_error, size_error: relative, of the period and the
+    largest tip y at the special point itself. after: the place on its branch of the last cycle before it, -1
     for none. reason: of an end. message: why no cycle was found, or why the error is large. orbit: of a point
     that was located, the cycle.
     """
@@ -97,12 +98,16 @@ class SpecialPoint:
     period: float
     tip_y_max: float
     error: float
+    period_error: float = nan
+    size_error: float = nan
     after: int = -1
     reason: EndReason | None = None
     message: str = ""
     orbit: Orbit | None = field(default=None, repr=False, compare=False)
     amplitude_coefficient: float = nan
     """At a Hopf point how fast the amplitude grows from there."""
+    coefficient_error: float = nan
+    """Relative, of amplitude_coefficient."""
 
 
 def unstable_returns(point: ArcPoint) -> int:
@@ -244,9 +249,8 @@ def located(kind: SpecialKind, here: ArcPoint, there: ArcPoint, accuracy: float)
             length, found, slope = _zero(kind, segment, length, slope)
             last, point = point, _point_at(kind, found)
             if last is not None:
-                error = SAFETY * abs(point.at - last.at) + ROUNDING * abs(point.at)
-                point = replace(point, error=error)
-                if error <= aim * abs(point.at):
+                point = _with_errors(point, last, here, there)
+                if point.error <= aim * abs(point.at):
                     break
             mesh = replace(
                 mesh, order=mesh.order + MORE_ORDERS, intervals=ceil(MORE_INTERVALS * mesh.intervals)
@@ -258,6 +262,23 @@ def located(kind: SpecialKind, here: ArcPoint, there: ArcPoint, accuracy: float)
     except Unsolvable as why:
         return _between(kind, here, there, f"the {kind.name} is not located: {why}")
     return point
+
+
+def _with_errors(point: SpecialPoint, last: SpecialPoint, here: ArcPoint, there: ArcPoint) -> SpecialPoint:
+    """A special point with its errors: by how much it differs from that on a coarser mesh.
+
+    The place on the branch is known to the last step of the secant method, and period and size as well.
+    """
+    place = ZERO_OF_A_FOLD if point.kind is SpecialKind.fold else ZERO
+    one, other = here.cycle.measures, there.cycle.measures
+    period = SAFETY * abs(point.period - last.period) + place * abs(one.period - other.period)
+    size = SAFETY * abs(point.tip_y_max - last.tip_y_max) + place * abs(one.tip_y_max - other.tip_y_max)
+    return replace(
+        point,
+        error=SAFETY * abs(point.at - last.at) + ROUNDING * abs(point.at),
+        period_error=period / point.period + ROUNDING,
+        size_error=size / point.tip_y_max + ROUNDING,
+    )
 
 
 def _point_at(kind: SpecialKind, found: Converged) -> SpecialPoint:
@@ -274,7 +295,7 @@ def _point_at(kind: SpecialKind, found: Converged) -> SpecialPoint:
 
 def _between(kind: SpecialKind, here: ArcPoint, there: ArcPoint, message: str) -> SpecialPoint:
     """A special point of which only is known between which cycles it lies."""
-    name, measures = here.scale.name, there.cycle.measures
+    name, measures, before = here.scale.name, there.cycle.measures, here.cycle.measures
     at, other = (value_of(point.orbit.form, name) for point in (there, here))
     return SpecialPoint(
         kind=kind,
@@ -282,6 +303,8 @@ def _between(kind: SpecialKind, here: ArcPoint, there: ArcPoint, message: str) -
         period=measures.period,
         tip_y_max=measures.tip_y_max,
         error=max(abs(at - other), ACCURACY * abs(at)),
+        period_error=abs(before.period / measures.period - 1),
+        size_error=abs(before.tip_y_max / measures.tip_y_max - 1),
         message=message,
     )
 

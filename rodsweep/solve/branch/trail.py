@@ -70,7 +70,10 @@ class Trail:
             curve.special[:] = [point for point in curve.special if point.after < len(curve.points)]
             message = f"the errors of the cycles beyond cannot be measured: {why}"
             end = BranchEnd(end_at(self._measured, EndReason.no_cycle_found, message), complete=False)
-        special = end.special
+        special, last = end.special, curve.points[-1]
         if np.isnan(special.error):
-            special = replace(special, error=curve.points[-1].at_error * abs(special.at))
+            special = replace(special, error=last.at_error * abs(special.at))
+        if np.isnan(special.period_error):  # the end is the last cycle
+            errors = last.errors
+            special = replace(special, period_error=errors.period_error, size_error=errors.amplitude_error)
         curve.end(special, end.complete)

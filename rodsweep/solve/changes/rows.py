@@ -19,6 +19,9 @@ from .along_path import Transitions, transitions
 from .thresholds import Thresholds, ThresholdStatus, judged, nothing_found
 from .unstable_modes import SHORT_OF_CRUSHED
 
+MEETS_K1 = 1e-12
+"""Relative distance of F from k1 that rounding makes: two axes in steps may meet there but for it."""
+
 
 class Motion(IntEnum):
     """How a small deflection of the straight rod evolves.
@@ -80,7 +83,7 @@ def _searched(fixed: dict[str, float], request: RowRequest) -> DiagramRow:
     F = values if name == "F" else np.full(len(values), fixed["F"])
     k1 = values if name == "k1" else np.full(len(values), fixed["k1"])
     alive = k1 * (1 - SHORT_OF_CRUSHED) > F
-    crushed = k1 <= F
+    crushed = k1 * (1 - MEETS_K1) <= F
     if not alive.any():
         row = _uniform(ThresholdStatus.ok, values, Motion.crushed)
         row.motion[~crushed] = Motion.undecided

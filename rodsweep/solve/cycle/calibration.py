@@ -36,7 +36,7 @@ TOLERANCE, DISTANCE = 0.1, 1e-3
 """What Newton's method leaves on the other meshes, in units of the accuracy, and how far from the orbit the
 matrix may be that their multipliers are of."""
 SAFETY = 3.0
-HEIGHT_SHARE, PERIOD_SHARE, OTHERS_SHARE, SHARE_IN_TIME = 0.16, 0.16, 1.25, 0.004
+HEIGHT_SHARE, PERIOD_SHARE, OTHERS_SHARE, SHARE_IN_TIME = 0.16, 0.16, 1.6, 0.004
 """Shares of the distance between the tip's paths that count at least as an error: a number may agree by luck,
 and no more do so at the next cycle. In time they differ most in theta, which is stiff and matters least."""
 EACH_OTHERS = 2.0

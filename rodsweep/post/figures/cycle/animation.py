@@ -26,6 +26,8 @@ GHOSTS = 6
 """Earlier shapes that fade away behind the arm."""
 DIGITS_OF_TIME = 3
 """Of the period, which the running time has too."""
+ROOM_FOR_TIME = 0.08
+"""Height of the running time in a panel, below all that the arm and its force reach."""
 GHOSTS_BACK = 0.2
 """How far back in periods the last of them is."""
 
@@ -59,6 +61,8 @@ def first_frame(selection: Selection) -> tuple[Figure, list["MovingArm"]]:
     panels[0].set_ylabel(cycles[0].units.along("y"))
     arms = [MovingArm(axes, cycle) for axes, cycle in zip(panels, cycles, strict=True)]
     frame(panels, cycles)
+    low, high = panels[0].get_ylim()  # which all panels share
+    panels[0].set_ylim(low - ROOM_FOR_TIME * (high - low), high)
     for arm in arms:
         arm.show(0)
     fit(figure)

@@ -9,7 +9,7 @@ from matplotlib.ticker import MaxNLocator
 
 from ....discretization.periodic import derivative, resampled
 from ....results.file.view import View
-from ...summary.limit_cycle import power_error
+from ...summary.errors import power_error
 from ...summary.ranges import rounded
 from ..arm_quantities import TOGETHER
 from ..style import FIRST, SECOND, THIRD, legend_below

@@ -12,6 +12,7 @@ from ....arrays import Array, Complex
 from ....results.file.view import View
 from ...hopf_points import Bracket, HopfPoint, Located, lines_over
 from ...stability_changes import thresholds_on
+from ..arm_quantities import TOGETHER
 from ..eigenvalues import spread
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, fixed_text, heading, legend_below, scale
 
@@ -157,7 +158,7 @@ def _point_along(axes: Axes, w: Complex, colour: str) -> None:
 def threshold_text(threshold: Located) -> str:
     """What a threshold is called, and its force."""
     word, _ = THRESHOLD_LOOKS[threshold.kind]
-    return f"{word} = {threshold.position:#.{THRESHOLD_DIGITS}g}"
+    return f"{word} ={TOGETHER}{threshold.position:#.{THRESHOLD_DIGITS}g}"
 
 
 def edge_of_flutter(change: HopfPoint | Bracket) -> float:

@@ -1,0 +1,268 @@
+"""What `show` says of branches, against branches followed far more accurately, and against other solvers.
+
+Hopf points are held against the covering, stable cycles against motions solved in time from the middle of
+every range that is called stable, and straight rods that are called stable against their eigenvalues.
+"""
+
+import re
+
+import numpy as np
+
+import rodsweep as rs
+from rodsweep.model.rod import Rod
+from rodsweep.post.branch_curves import both, curves_of, straight_ranges, union
+from rodsweep.post.summary.branch import ends_of
+
+from .page import NUMBER, as_stated, counts, range_as_stated, ranges, read, with_error
+from .truths import leading
+
+KINDS = {
+    "fold": "fold",
+    "torus": "torus",
+    "symmetry breaking": "symmetry_breaking",
+    "period doubling": "period_doubling",
+}
+PLURALS = {
+    "folds?": "fold",
+    "torus points?": "torus",
+    "symmetry breakings?": "symmetry_breaking",
+    "period doublings?": "period_doubling",
+}
+LEADS_TO = {
+    "where h1 = 0": "left_the_model",
+    "the end of the range": "range_end",
+    "where F all but reaches k1": "crushed",
+    "where no further cycle is found": "no_cycle_found",
+}
+CURVED = 2e-3
+"""Relative error of a spline through the cycles of a finer branch, which stands for cycles between them."""
+DECIDED = 0.02
+"""Least relative width of a range in whose middle a motion is solved: near an end it takes too long."""
+
+
+def branch_sentences(view, page, keywords, fine):
+    rods = range(view.variables["status"].size)
+    true = {rod: curves_of(fine, rod) for rod in rods}
+    own = {rod: curves_of(view, rod) for rod in rods}
+    kinds = [
+        {rod: [[(s.kind, s.reason) for s in curve.special] for curve in each] for rod, each in some.items()}
+        for some in (own, true)
+    ]
+    if kinds[0] != kinds[1]:
+        return [(page[0], f"special points {kinds[0]} are {kinds[1]}")]
+    found = []
+    if len(rods) == 1:
+        found += _one_rod(view, page, fine, own[0], true[0])
+    else:
+        found += _grid(view, page, fine, own, true)
+    found += ranges(
+        page, "^followed in F from RANGE to RANGE;", [keywords.get("start", 0.0)], [keywords["stop"]]
+    )
+    proved = (view.variables["certified"].sum(), len(rods))
+    return found + counts(page, r"no Hopf point is missing is proved at NUMBER of NUMBER rod", *proved)
+
+
+def _one_rod(view, page, fine, own, true):
+    found, at = [], -1
+    for line in page:
+        if match := re.match(r"branch (\d+),", line):
+            at = int(match[1]) - 1
+            found += _branch_line(view, page, line, own[at], true[at])
+            page.mark(line, match.span(1))
+        elif line.startswith("  stable cycles at"):
+            found += _ranges_line(page, line, true[at].stable_ranges)
+            found += [(line, _unstable(view, true[at].stable_ranges, 0))]
+        elif line.startswith("  no stable cycle"):
+            found.append((line, f"there are at {true[at].stable_ranges}" if true[at].stable_ranges else ""))
+        elif match := re.match(rf"  ({'|'.join(KINDS)})(?:, where branch (\d+) meets it,)? at F", line):
+            found += _special_line(page, line, KINDS[match[1]], true[at])
+            if match[2]:
+                page.mark(line, match.span(2))
+        elif line.startswith("stable cycles beside a stable straight rod:"):
+            common = _beside(fine, 0)
+            found += _ranges_line(page, line, common) + [(line, _growing(view, common, 0))]
+        elif line.startswith("stable cycles of two branches"):
+            found += _ranges_line(page, line, _pairs(true))
+    return found
+
+
+def _branch_line(view, page, line, own, true):
+    """From where to where a branch leads, its cycles, and how wide they beat."""
+    first, last, found = true.special[0], true.special[-1], []
+    places = read(page, rf"F = NUMBER \(\+- ({NUMBER})\)", only=line)
+    for place, special in zip(places, (first, last), strict=False):
+        found.append((line, with_error(place[1][1], place[1][2], special.at)))
+    for word, reason in LEADS_TO.items():
+        if f"to {word}, F =" in line:
+            found.append((line, "" if reason in (last.reason, last.kind) else f"it ends by {last.reason}"))
+            for _, match in read(page, rf"to {word}, F = NUMBER:", only=line):
+                found.append((line, as_stated(match[1], last.at)))
+    cycles = own.cycles
+    for _, match in read(page, r": NUMBER cycles?, F = RANGE, largest tip y RANGE L", only=line):
+        why = [] if int(match[1]) == cycles.sum() else [f"there are {cycles.sum()} cycles"]
+        why.append(range_as_stated(match[2], own.at[cycles]))
+        why += [
+            _size(true, own, text, pick)
+            for text, pick in zip(_ends(match[3]), (np.argmin, np.argmax), strict=True)
+        ]
+        found.append((line, "; ".join(filter(None, why))))
+    found += [(line, "") for _ in read(page, r"from branch NUMBER|to branch NUMBER", only=line)]
+    return found
+
+
+def _ends(text):
+    low, _, high = text.partition(" to ")
+    return low, high or low
+
+
+def _size(true, own, text, pick):
+    """Why the smallest or the largest of the stored sizes is not that of the true branch at its place."""
+    i = pick(np.where(own.cycles, own.y, np.inf if pick is np.argmin else -np.inf))
+    at, y = float(own.at[i]), float(own.y[i])
+    s = np.concatenate(
+        [[0.0], np.cumsum(np.hypot(np.diff(true.at) / np.ptp(true.at), np.diff(true.y) / np.ptp(true.y)))]
+    )
+    step = np.linspace(0, s[-1], 20001)
+    along, sizes = (
+        np.interp(step, s, values) for values in (true.at, true.y**2)
+    )  # y^2 is smooth at Hopf points
+    near = np.flatnonzero(np.diff(np.sign(along - at)) != 0)
+    places = np.append(near, np.argmin(np.abs(along - at)))
+    size = min(np.sqrt(sizes[places]), key=lambda one: abs(one - y))
+    return as_stated(text, size, CURVED * size + 0.02 * np.ptp(true.y) * (len(true.at) < 12))
+
+
+def _special_line(page, line, kind, true):
+    """A special point with its errors."""
+    found = []
+    stated = rf"F = NUMBER \(\+- ({NUMBER})\), period (?:NUMBER|({NUMBER}) \(\+- ({NUMBER})\)) tau2"
+    for _, match in read(
+        page, stated + rf", largest tip y (?:NUMBER|({NUMBER}) \(\+- ({NUMBER})\)) L", only=line
+    ):
+        near = min((s for s in true.special if s.kind == kind), key=lambda s: abs(s.at - float(match[1])))
+        why = [with_error(match[1], match[2], near.at)]
+        for (plain, stated_, error), value in zip(
+            ((match[3], match[4], match[5]), (match[6], match[7], match[8])),
+            (near.period, near.tip_y_max),
+            strict=True,
+        ):
+            why.append(as_stated(plain, value) if plain else with_error(stated_, error, value))
+        found.append((line, "; ".join(filter(None, why))))
+    return found or [(line, "nothing reads the special point")]
+
+
+def _ranges_line(page, line, true):
+    """A list of ranges, or that there is none."""
+    told = line.split("F = ", 1)[1] if "F = " in line else ""
+    offset = len(line) - len(told)
+    stated = [match for match in re.finditer(rf"({NUMBER}) to ({NUMBER})", told)]
+    for match in stated:
+        for group in (1, 2):
+            page.mark(line, tuple(offset + place for place in match.span(group)))
+    if len(stated) != len(true):
+        return [(line, f"the ranges are {true}")]
+    why = [
+        as_stated(text, value)
+        for match, ends in zip(stated, true, strict=True)
+        for text, value in zip(match.groups(), ends, strict=True)
+    ]
+    return [(line, "; ".join(filter(None, why)))]
+
+
+def _beside(fine, rod):
+    """Where stable cycles are beside a stable straight rod."""
+    stable = union(piece for curve in curves_of(fine, rod) for piece in curve.stable_ranges)
+    return both(stable, straight_ranges(fine, rod, ends_of(fine))[0])
+
+
+def _pairs(curves):
+    ranges_ = [curve.stable_ranges for curve in curves]
+    return union(
+        piece for i in range(len(ranges_)) for j in range(i) for piece in both(ranges_[i], ranges_[j])
+    )
+
+
+def _rod(view, rod, F):
+    columns = view.point_columns
+    return Rod(F, *(float(columns[name][rod]) for name in ("k1", "k2", "gamma3")))
+
+
+def _growing(view, some, rod):
+    """Why the straight rod is not stable in the middle of ranges that say so."""
+    for low, high in some:
+        rate = leading(_rod(view, rod, (low + high) / 2))[0].real
+        if rate > 0:
+            return f"the straight rod grows at {rate} at {(low + high) / 2}"
+    return ""
+
+
+def _unstable(view, some, rod):
+    """Why no stable cycle is found by motions in the middle of ranges that say so."""
+    columns = view.point_columns
+    given = {name: float(columns[name][rod]) for name in ("k1", "k2", "gamma3", "gamma1")}
+    for low, high in some:
+        F = (low + high) / 2
+        if high - low < DECIDED * high:
+            continue
+        ends = []
+        for start in ({}, {"amplitude": 0.3}):
+            data = rs.sweep("limit_cycle", F=F, **given, accuracy=1e-4, progress=False, **start)
+            flags = data.status.attrs
+            words = dict(
+                zip(np.ravel(flags["flag_values"]).tolist(), flags["flag_meanings"].split(), strict=True)
+            )
+            ends.append(words[int(data.status.values.ravel()[0])])
+            if ends[-1] == "cycle":
+                break
+        else:
+            return f"motions at F = {F} end {ends}"
+    return ""
+
+
+def _grid(view, page, fine, own, true):
+    count = len(true)
+    curves = [curve for each in own.values() for curve in each]
+    with_one = sum(bool(each) for each in own.values())
+    cycles = int(sum(curve.cycles.sum() for curve in curves))
+    found = counts(
+        page,
+        r"^NUMBER branch(?:es)? at NUMBER of NUMBER rods?, NUMBER cycles?",
+        len(curves),
+        with_one,
+        count,
+        cycles,
+    )
+    stored = view.variables
+    sizes = [stored[name][np.isfinite(stored[name])] for name in ("period", "tip_y_max")]
+    # The cycles of a finer branch are at other places.
+    found += ranges(page, "cycles: period RANGE tau2, largest tip y RANGE L", *sizes)
+    specials = [
+        (rod, s)
+        for rod, each in true.items()
+        for number, curve in enumerate(each, 1)
+        for s in curve.special
+        if not 0 < s.meets < number
+    ]
+    for words, kind in PLURALS.items():
+        at = [s.at for _, s in specials if s.kind == kind]
+        for line, match in read(page, rf"^NUMBER (?:{words}): F = RANGE"):
+            why = [] if int(match[1]) == len(at) else [f"there are {len(at)}"]
+            found.append((line, "; ".join(filter(None, [*why, range_as_stated(match[2], at)]))))
+    for words, reason in LEADS_TO.items():
+        at = [s.at for _, s in specials if reason in (s.kind, s.reason)]
+        for line, match in read(page, rf"^NUMBER branch(?:es)? leads? to {words}: F = RANGE"):
+            why = [] if int(match[1]) == len(at) else [f"there are {len(at)}"]
+            found.append((line, "; ".join(filter(None, [*why, range_as_stated(match[2], at)]))))
+    for words, of in (
+        ("beside a stable straight rod", _beside),
+        ("of two branches", lambda f, r: _pairs(true[r])),
+    ):
+        having = {rod: some for rod in true if (some := of(fine, rod))}
+        found += counts(page, rf"^stable cycles {words} at NUMBER of NUMBER rod", len(having), count)
+        begins = [i for i, line in enumerate(page) if line.startswith(f"stable cycles {words} at")]
+        if begins and having:
+            lines = page[begins[0] + 1 : begins[0] + 1 + len(having)]
+            for line, (rod, some) in zip(lines, having.items(), strict=True):
+                found += _ranges_line(page, line, some) + [(line, _growing(view, some, rod))]
+                read(page, r"^  \w+ = NUMBER: ", only=line)
+    return found

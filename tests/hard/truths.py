@@ -1,0 +1,63 @@
+"""True numbers of straight rods: eigenvalues, and where they change, from both sides of a stated place."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from rodsweep.determinant.parameter_path import Path as ParameterPath
+from rodsweep.model.parameters import LINEAR_PARAMETERS
+from rodsweep.model.rod import Rod
+from rodsweep.post.hopf_points import lines_over
+from rodsweep.solve.changes.along_path import transitions
+from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
+
+BESIDE = 1e-7
+"""Relative distance from a stated threshold at which eigenvalues are computed on both its sides."""
+EXACT = SpectrumRequest(2, 1e-11, True)
+SHORT_OF_CRUSHED = 1 - 1e-6
+
+
+def rods_of(view):
+    """The rod of every point, in their order."""
+    columns = view.point_columns
+    rows = zip(*(columns[name] for name in LINEAR_PARAMETERS), strict=True)
+    return [Rod(*map(float, row)) for row in rows]
+
+
+def leading(rod):
+    """(leading eigenvalue, the next one)."""
+    w = solve_spectrum(rod, EXACT).eigenvalues
+    return complex(w[0]), complex(w[1])
+
+
+def is_change(rod, name, at, kind):
+    """Whether the straight rod changes in this way where a parameter has a value."""
+    before, after = (leading(replace(rod, **{name: at * (1 + side * BESIDE)})) for side in (-1, 1))
+    if kind == "onset":
+        return before[0].imag == before[1].imag == 0 and after[0].imag > 0
+    signs = {"hopf": (-1, 1), "restabilization": (1, -1)}[kind]
+    return tuple(np.sign([before[0].real, after[0].real])) == signs
+
+
+def changes_along(rod, name, low, high):
+    """All that changes between two values of a parameter."""
+    return transitions(ParameterPath(rod, name), low, high).crossings
+
+
+def changes_over_force(rod, top):
+    """All that changes from F = 0 up to a force, or to where the rod is crushed."""
+    return changes_along(rod, "F", 0.0, min(top, rod.k1 * SHORT_OF_CRUSHED))
+
+
+def changes_of(view, name):
+    """(rod, kind, value, frequency) of every change of stability and onset on the lines over a parameter."""
+    found = []
+    for line in lines_over(view, name):
+        low, high = float(line.x.min()), float(line.x.max())
+        low = min(low, 0.0) if name == "F" and view.task == "limit_cycle" and low < high else low
+        rod = Rod(**{n: line.parameters.get(n, low) for n in LINEAR_PARAMETERS})
+        for crossing in changes_along(rod, name, low, high) if low < high else ():
+            kind, after = crossing.kind.name, crossing.unstable_after
+            if kind == "onset" or (kind, after) in (("hopf", 2), ("restabilization", 0)):
+                found.append((rod, kind, crossing.at, crossing.frequency))
+    return found
