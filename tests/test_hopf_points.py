@@ -321,5 +321,5 @@ def test_a_threshold_below_the_first_force_is_told(tmp_path):
     (line,) = lines_over(view, "F")
     assert stored.on(line) == []
     assert [point.position for point in stored.up_to(line)] == pytest.approx(WINDOW[:1], rel=1e-12)
-    (sentence,) = stability_lines(view, "F", stored.up_to)
+    (sentence,), _ = stability_lines(view, "F", stored.up_to)
     assert sentence.startswith("F** (straight rod starts to beat): 49.7580049161")
