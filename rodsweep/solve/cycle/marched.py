@@ -66,8 +66,6 @@ FARTHER = 2.0
 from its cycle as that differs from the limit's, for cycles change in proportion."""
 STAGES, INTERVALS = 3, 48
 """Of the orbit that is measured: times at which the motion is interpolated, for each return of the tip."""
-MEASURED = 1.25
-"""Length of the run on which a cycle is measured, in periods."""
 
 
 class MarchedStatus(PointStatus):
@@ -236,6 +234,8 @@ class _Marching:
         limit = _returns(angle_weights(self.beam), settled.z, returns)
         run = self._run(settled.z, 3 * returns * self.mode.period, settled.step, limit)
         times = self._crossings(run)[0]
+        if len(times) <= settled.turns:
+            raise _Ended(MarchedStatus.not_settled, f"the tip does not return after {self.waited} returns")
         period = float(times[settled.turns] - times[0])
         spline = CubicSpline(run.times, run.states)
         states = spline(times[0] + period * node_times(INTERVALS * settled.turns, STAGES))
