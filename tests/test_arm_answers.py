@@ -99,7 +99,8 @@ def test_no_digit_in_si_units_is_told_that_is_not_known():
         for accuracy in (1e-3, 1e-8)
     ]
     rough, fine = (
-        dict(re.findall(r"(\w+) = (\S+)", next(x for x in page if x.startswith("in the arm's units")))) for page in told
+        dict(re.findall(r"(\w+) = (\S+)", next(x for x in page if x.startswith("in the arm's units"))))
+        for page in told
     )
     assert rough.keys() == fine.keys() >= {"period", "injection_rms", "tip_x_min"}
     for name, text in rough.items():

@@ -235,7 +235,7 @@ def test_search_that_fails_is_a_status(monkeypatch):
 
 
 def test_place_of_a_long_solve_says_how_far_it_is(monkeypatch):
-    """Half of the eliminations are done at a share of a quarter to three quarters; no clock is asked."""
+    """Half of the eliminations are done at a share of a fifth to four fifths; no clock is asked."""
     done, places = [], []
     eliminate = bordered.eliminate
     monkeypatch.setattr(bordered, "eliminate", lambda *values: done.append(1) or eliminate(*values))
@@ -249,4 +249,4 @@ def test_place_of_a_long_solve_says_how_far_it_is(monkeypatch):
     assert words[0].endswith(" on the way to 150, 1 cycles")
     assert shares[0] < 0.1
     assert shares[-1] > 0.8
-    assert 0.25 < np.interp(0.5 * len(done), work, shares) < 0.75
+    assert 0.2 < np.interp(0.5 * len(done), work, shares) < 0.8

@@ -11,8 +11,8 @@ import pytest
 import xarray as xr
 
 import rodsweep as rs
-from rodsweep.cli import job
 from rodsweep.results.file.seal import seal
+from rodsweep.tasks import job
 from rodsweep.tasks.job import make_job
 
 SPECTRA = """

@@ -12,7 +12,7 @@ from .grid import Points
 from .stretches import Stretches
 
 SAMPLE = 200
-HARDER_IF_LARGER = ("F", "k1")
+HARDER_IF_LARGER = frozenset({"k1", "F"})
 """Parameters of which the largest value decides what branches cost; of others the smallest."""
 FIXED_MS, LINEAR_MS, CUBIC_MS = 0.03, 2.2e-3, 1.5e-7
 """Time of a solve with n unknowns: overhead, orthogonalisation and dense factorisation, measured."""
