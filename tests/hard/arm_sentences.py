@@ -1,4 +1,4 @@
-"""What is said of arms in SI units, on the page of `show` and in the report of `rodsweep arm`.
+"""What is said of arms in their own units, on the page of `show` and in the report of `rodsweep arm`.
 
 Scales are computed here anew from the quantities of the arm: section, drag of a slender cylinder (Cox 1970,
 Gray and Hancock 1955, Lighthill 1976), k3/L^2 and tau2. Thresholds are those of the covering for every drag.
@@ -11,12 +11,19 @@ import numpy as np
 
 import rodsweep as rs
 from rodsweep.model.arm import SlenderArm
-from rodsweep.model.neglected import HALF_LENGTH, Validity, effects_of, fastest_rate, worst_validity
+from rodsweep.model.drag import DRAGS
+from rodsweep.model.neglected import (
+    HALF_LENGTH,
+    WIDE_CURVATURE,
+    Validity,
+    effects_of,
+    fastest_rate,
+    worst_validity,
+)
 from rodsweep.model.rod import Rod
-from rodsweep.post.hopf_points import lines_over
 
 from .page import NUMBER, Page, as_stated, range_as_stated, read
-from .truths import changes_along, changes_over_force, leading, rods_of
+from .truths import changes_on_lines, changes_over_force, leading, rods_of
 
 PREFIXES = {"p": 1e-12, "n": 1e-9, "µ": 1e-6, "m": 1e-3, "c": 1e-2, "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}
 BASES = ("Pa s", "Pa", "N m^2", "N", "Hz", "1/s", "s", "m^2", "m^4", "m", "J", "W", "kg/m^3")
@@ -25,7 +32,14 @@ UNITS |= {"m^2": 1.0, "mm": 1e-3, "g/cm^3": 1e3}
 UNIT = "|".join(sorted(map(re.escape, UNITS), key=len, reverse=True))
 SIDES = ("radius", "inner_radius", "width", "height")
 LOADS = ("pressure", "force")
-KINDS = {"F** (straight": "hopf", "restabilization (straight": "restabilization", "F* (straight": "onset"}
+SAID = {
+    "flutters at": "hopf",
+    "is straight again from": "restabilization",
+    "a disturbance swings as it dies away from": "onset",
+}
+NAMED = {"Young's modulus": "young", "Poisson's ratio": "poisson"}
+EQUAL_LOADS = 1e-12
+"""Relative difference of loads that are one."""
 TWO_DIGITS = 0.06
 """Relative difference that two digits leave."""
 
@@ -89,7 +103,7 @@ def scales_of(q):
     """Units of an arm whose quantities are numbers in SI: tau2, force_scale, pressure_scale, length."""
     _, moment, face, *_ = section_of(q)
     force = q["young"] * moment / q["length"] ** 2
-    tau2 = drags_of(q)[0][1] * q["length"] ** 4 / (q["young"] * moment)
+    tau2 = drags_of(q)[int(q.get("drag", 0))][1] * q["length"] ** 4 / (q["young"] * moment)
     return {"tau2": tau2, "force_scale": force, "pressure_scale": force / face, "length": q["length"]}
 
 
@@ -102,6 +116,12 @@ def quantities_at_points(view):
         if name not in ("tau2", "force_scale", "pressure_scale") and np.size(values) in (1, count)
     }
     return [{name: float(values[i]) for name, values in given.items()} for i in range(count)]
+
+
+def arm_of(q):
+    """The arm of quantities at a point."""
+    given = {n: x for n, x in q.items() if not np.isnan(x) and n != "drag" and not n.endswith("over_flutter")}
+    return SlenderArm(**given, drag=DRAGS[int(q.get("drag", 0))])
 
 
 def in_si(view):
@@ -118,15 +138,13 @@ def force_unit(view):
 
 
 def arm_sentences(view, page, fine):
-    """The check of every line in SI units of a sweep of an arm."""
+    """The check of every line in its own units of a sweep of an arm."""
     scales = in_si(view)
     found = _quantity_lines(view, page) + _validity_line(view, page, fine)
-    for i, line in enumerate(page):
-        if line.startswith("in SI units: "):
+    for line in page:
+        if line.startswith("in the arm's units: "):
             found += [_item(view, page, line, match, fine, scales) for match in _items(line)]
-        elif line.startswith("  in SI units: "):
-            found.append((line, _threshold_in_si(view, page, line, page[i - 1], scales)))
-    return found + _answer(view, page, fine, scales)
+    return found + _thresholds(view, page, scales) + _answer(view, page, fine, scales)
 
 
 def _quantity_lines(view, page):
@@ -146,7 +164,7 @@ def _items(line):
 
 
 def _item(view, page, line, match, fine, scales):
-    """An item of what is said in SI units of a whole file, such as "period = 1 to 2 s"."""
+    """An item of what is said of a whole file, such as "period = 1 to 2 s"."""
     page.mark(line, match.span(2))
     name, text, unit = match.groups()
     base = UNITS[unit]
@@ -174,57 +192,147 @@ def _item(view, page, line, match, fine, scales):
     return line, f"{name}: {why}" if why else ""
 
 
-def _threshold_in_si(view, page, line, before, scales):
-    """Why thresholds in SI units are not those of the line before."""
-    kind = next((kind for start, kind in KINDS.items() if before.startswith(start)), None)
-    to_load, to_hertz = scales[force_unit(view)], 1 / (2 * pi * scales["tau2"])
-    if kind:
-        pairs = []
-        for path in lines_over(view, "F"):
-            rod = Rod(float(path.x.min()), *(path.parameters[n] for n in ("k1", "k2", "gamma3")))
-            low = 0.0 if view.task == "limit_cycle" else float(path.x.min())
-            for c in changes_along(rod, "F", low, float(path.x.max())):
-                after = {"hopf": 2, "restabilization": 0}.get(kind, c.unstable_after)
-                if c.kind.name == kind and c.unstable_after == after:
-                    pairs += [(c.at * to_load[i], c.frequency * to_hertz[i]) for i in path.at]
-    elif match := re.match(rf"(\w+) at F = ({NUMBER})", before):
-        rod = Rod(0.0, *(float(view.point_columns[n][0]) for n in ("k1", "k2", "gamma3")))
-        at = min(changes_over_force(rod, 2 * float(match[2])), key=lambda c: abs(c.at - float(match[2])))
-        pairs = [(at.at * to_load[0], at.frequency * to_hertz[0])]
-    elif match := re.match(r"(\w+): on", before):
-        pairs, top = [], float(view.variables["F"][-1])
-        for i in range(len(to_load)):
-            rod = Rod(0.0, *(float(view.point_columns[n][i]) for n in ("k1", "k2", "gamma3")))
-            pairs += [
-                (c.at * to_load[i], nan_)
-                for c in changes_over_force(rod, top)
-                if c.kind.name == match[1]
-                for nan_ in [0.0]
-            ]
-    else:
-        return "it follows no threshold"
-    loads, frequencies = np.array(pairs).T
-    why = []
-    for _, match in read(page, rf"in SI units: RANGE ({UNIT})(?:, frequency RANGE ({UNIT}))?$", only=line):
-        why.append(range_as_stated(match[1], loads / UNITS[match[2]]))
-        if match[3]:
-            why.append(range_as_stated(match[3], frequencies / UNITS[match[4]]))
-    return "; ".join(filter(None, why)) if why else "nothing reads it"
+def _thresholds(view, page, scales):
+    """The check of the loads at which straight arms change, between the points of a file or on its rods."""
+    to_load, to_hertz, found = scales[force_unit(view)], 1 / (2 * pi * scales["tau2"]), []
+    value = rf"RANGE ({UNIT})"
+    if view.task in ("spectrum", "modes", "limit_cycle"):
+        changes = changes_on_lines(view, "F")
+        for start, kind in SAID.items():
+            of_kind = [(c, i) for _, c, at in changes if c.kind.name == kind for i in at]
+            loads = [c.at * to_load[i] for c, i in of_kind]
+            hertz = [c.frequency * to_hertz[i] for c, i in of_kind]
+            pattern = rf"^{start} {value}(?: on)?(?:, where it begins to beat at {value})?$"
+            found += [(line, _in_units(match.groups(), loads, hertz)) for line, match in read(page, pattern)]
+        return found
+    if view.task == "branch":
+        return found
+    rods = _rods_without_load(view)
+    every = [changes_over_force(rod, top) for rod, top in zip(rods, _tops(view), strict=True)]
+    for line, match in read(page, rf"^(\w+) at {value}: .*?(?:; frequency {value})?$"):
+        unit = UNITS[match[3]]
+        near = min(every[0], key=lambda c: abs(c.at * to_load[0] / unit - float(match[2])))
+        why = _in_units(match.groups()[1:], [near.at * to_load[0]], [near.frequency * to_hertz[0]])
+        found.append((line, why if near.kind.name == match[1] else f"it is {near.kind.name}"))
+    for line, match in read(page, rf"^(\w+): on (?:all )?NUMBER (?:of NUMBER )?rows?, at {value}$"):
+        of_kind = [
+            [c.at * to_load[i] for c in each if c.kind.name == match[1]] for i, each in enumerate(every)
+        ]
+        having = sum(map(bool, of_kind))
+        why = [] if (int(match[2]), int(match[3] or having)) == (having, len(rods)) else [f"on {having}"]
+        why.append(_in_units(match.groups()[3:], sum(of_kind, [])))
+        found.append((line, "; ".join(filter(None, why))))
+    return found
 
 
-def _first_flutter(view, scales):
-    """(load, frequency in Hz) of the first Hopf point of every rod of a file, nan without."""
+def _in_units(groups, *true):
+    """Why ranges with their units, texts one after another, are not those of arrays in SI."""
+    pairs = zip(groups[::2], groups[1::2], true, strict=False)
+    return "; ".join(
+        filter(None, (range_as_stated(t, np.asarray(x) / UNITS[unit]) for t, unit, x in pairs if t))
+    )
+
+
+def _rods_without_load(view):
+    """The rod of every point, or row, at F = 0."""
+    columns = [np.asarray(view.point_columns[name], float) for name in ("k1", "k2", "gamma3")]
+    return [Rod(0.0, *map(float, each)) for each in zip(*columns, strict=True)]
+
+
+def _tops(view):
+    """Up to which force changes are searched, of every rod."""
+    if view.task == "phase_diagram":
+        return [float(view.variables["F"][-1])] * view.variables["status"].size
+    return view.variables["F_end"].ravel().tolist()
+
+
+def _first(view, scales, kind):
+    """(load, frequency in Hz) of the first change of a kind of every rod of a file, nan without."""
     found = []
-    columns = view.point_columns
-    line = view.variables["F"] if view.task == "phase_diagram" and "F" in view.variables else None
-    tops = view.variables["F_end"].ravel() if line is None else np.full(len(columns["k1"]), line[-1])
-    for i, top in enumerate(tops):
-        rod = Rod(0.0, *(float(columns[name][i]) for name in ("k1", "k2", "gamma3")))
-        hopf = next((c for c in changes_over_force(rod, float(top)) if c.kind.name == "hopf"), None)
-        nothing = (np.nan, np.nan)
+    for i, (rod, top) in enumerate(zip(_rods_without_load(view), _tops(view), strict=True)):
+        first = next((c for c in changes_over_force(rod, top) if c.kind.name == kind), None)
         to_hertz = 1 / (2 * pi * scales["tau2"][i])
-        found.append((hopf.at * scales[force_unit(view)][i], hopf.frequency * to_hertz) if hopf else nothing)
+        nothing = (np.nan, np.nan)
+        found.append(
+            (first.at * scales[force_unit(view)][i], first.frequency * to_hertz) if first else nothing
+        )
     return np.array(found).T
+
+
+# --- quantities of arms where something happens, and the range of drag ---
+
+
+def varied_quantities(view):
+    """The quantities of arms that differ among the points of a file, each (points,)."""
+    each = quantities_at_points(view)
+    names = [name for name in each[0] if len({q[name] for q in each}) > 1]
+    return {name: np.array([q[name] for q in each]) for name in names}
+
+
+def region_as_stated(view, text, mask):
+    """Why a text such as "Young's modulus 162 to 227 kPa, drag most" is not the region of points, a mask."""
+    columns, why, told = varied_quantities(view), [], set()
+    for item in text.split(", "):
+        if match := re.fullmatch(r"drag (.*)", item):
+            name = "drag"
+            names = {DRAGS[int(x)].replace("_", " ") for x in columns[name][mask]}
+            why += [] if set(match[1].split(" and ")) == names else [f"drags {names}"]
+        elif match := re.fullmatch(rf"({NUMBER}(?: to {NUMBER})?) of flutter", item):
+            name = next(name for name in columns if name.endswith("over_flutter"))
+            why.append(range_as_stated(match[1], columns[name][mask]))
+        elif match := re.fullmatch(rf"(.*?) ({NUMBER}(?: to {NUMBER})?)(?: (\S.*))?", item):
+            name = NAMED.get(match[1], match[1].replace(" ", "_"))
+            why.append(range_as_stated(match[2], columns[name][mask] / UNITS.get(match[3], 1.0)))
+        else:
+            return f"nothing reads {item}"
+        told.add(name)
+    whole = "drag" in columns and set(columns["drag"][mask]) == set(columns["drag"])
+    left = {n for n in columns if not n.startswith(LOADS) or n + "_over_flutter" not in columns} - told
+    left -= {"drag"} if whole else set()
+    return "; ".join(filter(None, [*why, f"{sorted(left)} are left out" if left else ""]))
+
+
+def _alike_but_for_drag(view):
+    """A number for each point, equal where the same arm has the same load, whatever its drag."""
+    columns = varied_quantities(view)
+    columns.pop("drag", None)
+    load = [name for name in columns if name.endswith("over_flutter")]
+    names = [name for name in columns if not load or name not in LOADS]
+    table = np.array([np.zeros(len(quantities_at_points(view))), *(columns[name] for name in names)])
+    return np.unique(table, axis=1, return_inverse=True)[1].ravel()
+
+
+def _drag_sentences(view, page, start, chosen, numbers):
+    """The check of how much drag changes numbers at chosen points, by their name in the sentence."""
+    found, alike = [], _alike_but_for_drag(view)
+    for line, match in read(page, rf"{start}over NUMBER drags of its range one arm varies: (.*)$"):
+        why = [] if int(match[1]) == len(DRAGS) else ["drags"]
+        items = re.findall(
+            rf"([a-z ]+?) by (up to )?(?:({NUMBER}) %|a factor of ({NUMBER}))(?:, |$)", match[2]
+        )
+        why += [] if items and len(items) == match[2].count(" by ") else ["nothing reads it"]
+        for name, _, percent, factor in items:
+            values = np.where(chosen, numbers[name], np.nan)
+            each = [values[(alike == n) & np.isfinite(values)] for n in np.unique(alike)]
+            most = max(some.max() / some.min() for some in each if len(some) > 1)
+            said, true = (percent, 100 * (most - 1)) if percent else (factor, most)
+            off = abs(float(said) - true) > TWO_DIGITS * true
+            why += [f"{name} by {most}"] if off else []
+        found.append((line, "; ".join(filter(None, why))))
+    beats = np.isfinite(numbers.get("frequency", np.array([])))
+    of_each = [beats[(alike == n) & chosen] for n in np.unique(alike[chosen])] if beats.size else []
+    true = {
+        "with every drag": sum(b.all() for b in of_each),
+        "with part of the range of drag": sum(b.any() and not b.all() for b in of_each),
+        "with none": sum(not b.any() for b in of_each),
+    }
+    for line, match in read(page, rf"{start}of NUMBER combinations? of arm and load: beats (.*)$"):
+        told = {
+            words: int(n) for words, n in re.findall(rf"([a-z ]+) at ({NUMBER})", match[2].replace(", ", ","))
+        }
+        right = told == {words: n for words, n in true.items() if n} and int(match[1]) == len(of_each)
+        found.append((line, "" if right else f"it is {true}"))
+    return found
 
 
 def _answer(view, page, fine, scales):
@@ -250,12 +358,7 @@ def _answer(view, page, fine, scales):
             found.append((line, "; ".join(filter(None, why))))
 
     if view.task in ("thresholds", "criticality", "phase_diagram"):
-        loads, hertz = (values[chosen] for values in _first_flutter(view, scales))
-        there = np.isfinite(loads)
-        told(rf"flutters{some} from {value}; beats at {value}$", there.sum(), loads, hertz)
-        if "F_end" in view.variables:
-            ends = (view.variables["F_end"].ravel() * scales[force_unit(view)])[chosen]
-            told(rf"does not flutter{some} up to {value}$", (~there).sum(), ends)
+        found += _flutter_answer(view, page, told, start, chosen, scales)
     elif view.task in ("spectrum", "modes"):
         w = np.array([leading(rod)[0] for rod in rods_of(view)])
         gives_way = chosen & (w.real > 0)
@@ -275,6 +378,9 @@ def _answer(view, page, fine, scales):
             hertz[chosen],
             y[chosen],
         )
+        power = v["injection_mean"].ravel() * scales["force_scale"] * scales["length"] / scales["tau2"]
+        numbers = {"frequency": hertz, "reach of the tip": y, "power": power}
+        found += _drag_sentences(view, page, start, chosen, numbers)
     elif view.task == "branch":
         v, rows = view.variables, len(scales["tau2"])
         loads = v["branch_F"].reshape(rows, -1) * scales[force_unit(view)][:, None]
@@ -283,13 +389,52 @@ def _answer(view, page, fine, scales):
     return found
 
 
+def _flutter_answer(view, page, told, start, chosen, scales):
+    """The same of flutter, at chosen rods; told: checks a pattern with a number and true values."""
+    some, value = r"(?: at NUMBER of NUMBER points?)?", rf"RANGE ({UNIT})"
+    loads, hertz = _first(view, scales, "hopf")
+    there = np.isfinite(loads[chosen])
+    told(rf"flutters{some} from {value}; beats at {value}$", there.sum(), loads[chosen], hertz[chosen])
+    if "F_end" in view.variables:
+        ends = view.variables["F_end"].ravel() * scales[force_unit(view)]
+        told(rf"does not flutter{some} up to {value}$", (~there).sum(), ends[chosen])
+    if view.task == "thresholds" and len(chosen) > 1:
+        onset, back = (_first(view, scales, kind)[0][chosen] for kind in ("onset", "restabilization"))
+        told(rf"a disturbance{some} swings as it dies away from {value} on$", 0, onset)
+        told(rf"is straight again{some}, from {value} on$", np.isfinite(back).sum(), back)
+    numbers = {"flutter": loads, "its frequency": hertz}
+    found = _drag_sentences(view, page, start, chosen, numbers)
+    return found + _extremes(view, page, start, loads, chosen)
+
+
+def _extremes(view, page, start, loads, chosen):
+    """The check of which arms flutter at the least and at the largest of loads."""
+    loads, found = np.where(chosen, loads, np.nan), []
+    for line, match in read(page, rf"{start}least at (.*); most at (.*)$"):
+        ends = (np.nanmin(loads), np.nanmax(loads))
+        why = [_of_one(view, text, loads, end) for text, end in zip(match.groups(), ends, strict=True)]
+        found.append((line, "; ".join(filter(None, why))))
+    return found
+
+
+def _of_one(view, text, loads, end):
+    """Why a text tells no arm that flutters at a load; empty where one of equal ones is it."""
+    there = np.flatnonzero(np.abs(loads / end - 1) < EQUAL_LOADS)
+    each = [region_as_stated(view, text, np.arange(len(loads)) == i) for i in there]
+    return "" if "" in each else each[0]
+
+
 def _validity_line(view, page, fine):
     """The check of whether the model applies, and of the largest of what it leaves out."""
     excess, applies = [], []
     for i, q in enumerate(quantities_at_points(view)):
-        arm = SlenderArm(**{name: value for name, value in q.items() if not np.isnan(value)})
-        rate, F, amplitude, cycles = _motion(view, fine, i, arm)
-        effects = effects_of(arm, fastest_rate(arm, rate), F, amplitude=amplitude)
+        arm = arm_of(q)
+        rate, F, amplitude, cycles = _motion(view, fine, i)
+        if "drag" in q and view.task != "phase_diagram":
+            rate = np.asarray(rate) / scales_of(q)["tau2"]
+            effects = effects_of(arm, rate, F, drag=arm.own_drag, amplitude=amplitude)
+        else:
+            effects = effects_of(arm, fastest_rate(arm, rate), F, amplitude=amplitude)
         of = [e for e in effects if cycles or not e.of_cycles_only]
         applies.append(int(np.max(worst_validity(effects, of_cycles=cycles))))
         excess.append(max(float(np.nanmax(np.append(e.excess, -1.0))) for e in of))
@@ -315,7 +460,7 @@ def _validity_line(view, page, fine):
     return found or [(page[0], "nothing is said of whether the model applies")]
 
 
-def _motion(view, fine, i, arm):
+def _motion(view, fine, i):
     """(frequencies, forces, amplitudes, whether they are of cycles) at a point of a file."""
     columns = view.point_columns
     if view.task in ("thresholds", "criticality", "phase_diagram"):
@@ -337,7 +482,6 @@ def _motion(view, fine, i, arm):
         return 2 * pi / period, F, y, True
     modes = np.abs(view.variables["frequency"].reshape(len(columns["F"]), -1)[i])
     moving = modes[modes > 0]
-    assert arm is not None
     return moving[0] if len(moving) else np.nan, float(columns["F"][i]), HALF_LENGTH, False
 
 
@@ -625,6 +769,10 @@ class ArmTruth:
         ]
         for line, match in read(page, r"Reynolds number: NUMBER if"):
             found.append((line, _two(match[1], effects["Reynolds number"])))
+        for line, match in read(page, r"Wall: .* which (?:takes some NUMBER % of its|(folds) the tube)"):
+            lost = lost_by_flattening(self.q)
+            why = _two(match[1], 100 * lost) if match[1] else "" if lost >= 1 else f"it loses {lost}"
+            found.append((line, why))
         for line, match in read(page, r"buoyancy is NUMBER of what buckles"):
             found.append((line, _two(match[1], effects["weight"])))
         for line, match in read(page, r"sags by NUMBER of its length"):
@@ -632,6 +780,23 @@ class ArmTruth:
         for line, match in read(page, r"Poisson's ratio: NUMBER,(?:.*near NUMBER;)?"):
             found.append((line, as_stated(match[1], self.q["poisson"])))
         return found
+
+
+def lost_by_flattening(q):
+    """Fraction of its bending stiffness that a tube loses at the curvature of wide beating.
+
+    The ring's radial displacement r z cos 2 theta, without extension, minimises the energies of bending the
+    tube and the wall; the second moment is that of the displaced ring to first order in z.
+    """
+    outer, inner = q["radius"], q["inner_radius"]
+    r, t = (outer + inner) / 2, outer - inner
+    theta = 2 * pi * (np.arange(64) + 0.5) / 64
+    y, dy = np.sin(theta), np.cos(2 * theta) * np.sin(theta) - np.sin(2 * theta) * np.cos(theta) / 2
+    moment, slope = 2 * pi * r**3 * t * np.mean(y**2), 2 * pi * r**3 * t * np.mean(2 * y * dy)
+    wall = 2 * pi / r * t**3 / (12 * (1 - q["poisson"] ** 2)) * np.mean((3 * np.cos(2 * theta)) ** 2)
+    curvature = WIDE_CURVATURE * HALF_LENGTH / q["length"]
+    z = -(curvature**2) * slope / (2 * wall)
+    return -slope * z / moment
 
 
 def _two(text, true, slack=TWO_DIGITS):

@@ -39,15 +39,15 @@ WIDEST = "500"
 
 
 class Page(list):
-    """The lines of a page but for the first; what is said in SI units of a whole file is one line."""
+    """The lines of a page but for the first; the block in an arm's units is one line."""
 
     def __init__(self, text):
-        lines, into_si = [], False
+        lines, in_block = [], False
         for line in text.splitlines()[1:]:
-            if into_si and line.startswith("  "):
+            if in_block and line.startswith("  "):
                 lines[-1] += f" {line.strip()}"
                 continue
-            into_si = line == "in SI units:"
+            in_block = line == "in the arm's units:"
             lines += [line.rstrip()] * bool(line.strip())
         super().__init__(lines)
         self.seen = {line: set() for line in lines}
@@ -71,8 +71,11 @@ class Page(list):
         return found
 
 
-def regions(page, before, mask, columns):
-    """The check of how many points do something, NUMBER in brackets behind words, and where these lie."""
+def regions(page, before, mask, columns, of_arms=None):
+    """The check of how many points do something, NUMBER in brackets behind words, and where these lie.
+
+    of_arms: why an arm's quantities are not those of a mask, from what the brackets hold and the mask.
+    """
     found = []
     for line, match in read(page, rf"{before} NUMBER(?: \(([^()]*)\))?(?=[,;.]|$)"):
         why = [] if int(match[1]) == mask.sum() else [f"it is {mask.sum()} points"]
@@ -80,6 +83,8 @@ def regions(page, before, mask, columns):
             values = columns[item[1]][mask]
             why += [] if (item[3] is not None) == bool(np.isinf(values).any()) else ["inf is there or not"]
             why += [range_as_stated(item[2], values)] if item[2] else []
+        if match[2] and "=" not in match[2]:
+            why.append(of_arms(match[2], mask))
         found.append((line, "; ".join(filter(None, why))))
     return found
 

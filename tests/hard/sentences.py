@@ -23,7 +23,7 @@ from rodsweep.post.branch_curves import curves_of
 from rodsweep.post.hopf_points import lines_over
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
-from .arm_sentences import arm_sentences, random_arm
+from .arm_sentences import arm_sentences, random_arm, region_as_stated
 from .branch_sentences import branch_sentences
 from .page import (
     NUMBER,
@@ -91,6 +91,8 @@ def random_sweep(index):
         keywords |= _over_force(random, task, top)
         if task == "phase_diagram":
             keywords |= {varied: np.sort(_drawn(random, varied, 3)).tolist()} | _of_diagrams(random)
+    if "arm" in keywords and task != "phase_diagram":
+        _over_drag(np.random.default_rng([34, index]), keywords["arm"])
     if task in ("thresholds", "criticality"):
         keywords["F_max"] = top
     if task == "branch":
@@ -142,6 +144,15 @@ def _of_an_arm(random, task, count):
         return {"arm": arm}
     arm["pressure"] = {"start": "0 kPa", "stop": f"{most:.5g} kPa", "num": 7}
     return {"arm": arm, "gamma3": np.sort(10 ** random.uniform(-4, -1, 3)).tolist()}
+
+
+def _over_drag(random, arm):
+    """Give an arm in some cases all drags, and loads relative to its flutter."""
+    if random.random() < 0.4:
+        arm["drag"] = "range"
+    if "pressure" in arm and random.random() < 0.3:
+        del arm["pressure"]
+        arm["pressure_over_flutter"] = np.sort(random.uniform(0.5, 2, 2)).round(3).tolist()
 
 
 def _drawn(random, name, count):
@@ -541,7 +552,8 @@ def cycle_sentences(view, page, keywords, fine):
     found = counts(page, r"^of NUMBER points?: \w", same.size)
     for word in set(words[0]):
         said = {"cycle": "beats", "straight": "stays straight"}.get(word, word.replace("_", " "))
-        found += regions(page, rf"(?<=[:,)\d] ){said} at", words[0] == word, view.point_columns)
+        where = (words[0] == word, view.point_columns, lambda text, mask: region_as_stated(view, text, mask))
+        found += regions(page, rf"(?<=[:,)\d] ){said} at", *where)
         found += counts(page, rf"^{said} at all NUMBER point", same.size)
     w = np.array([leading(rod)[0] for rod in rods_of(view)])
     found += ranges(

@@ -49,8 +49,8 @@ def changes_over_force(rod, top):
     return changes_along(rod, "F", 0.0, min(top, rod.k1 * SHORT_OF_CRUSHED))
 
 
-def changes_of(view, name):
-    """(rod, kind, value, frequency) of every change of stability and onset on the lines over a parameter."""
+def changes_on_lines(view, name):
+    """(rod, crossing, points) of every change of stability and onset on the lines over a parameter."""
     found = []
     for line in lines_over(view, name):
         low, high = float(line.x.min()), float(line.x.max())
@@ -59,5 +59,10 @@ def changes_of(view, name):
         for crossing in changes_along(rod, name, low, high) if low < high else ():
             kind, after = crossing.kind.name, crossing.unstable_after
             if kind == "onset" or (kind, after) in (("hopf", 2), ("restabilization", 0)):
-                found.append((rod, kind, crossing.at, crossing.frequency))
+                found.append((rod, crossing, line.at))
     return found
+
+
+def changes_of(view, name):
+    """(rod, kind, value, frequency) of all these."""
+    return [(rod, c.kind.name, c.at, c.frequency) for rod, c, _ in changes_on_lines(view, name)]
