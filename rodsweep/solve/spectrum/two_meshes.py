@@ -95,12 +95,15 @@ def _errors(w: Complex, coarser: Complex, scale: float) -> Array:
     """Absolute errors of sorted eigenvalues, (k,), by those of a coarser mesh, (l,), in any order.
 
     scale: of the rates to which the matrix is rounded, in 1/tau2. Two meshes may round one eigenvalue alike
-    by chance: each gets the relative error of its neighbours, too.
+    by chance: each gets the relative error of its neighbours, too. Where two eigenvalues are about to meet,
+    rounding grows as the inverse of their distance.
     """
     apart = np.abs(w[:, None] - coarser).min(axis=1) / np.abs(w)
     padded = np.pad(apart, 1)
     relative = np.max([padded[:-2], padded[1:-1], padded[2:]], axis=0)
-    errors: Array = SAFETY * relative * np.abs(w) + ROUNDING * (np.abs(w) + scale)
+    others = np.abs(w[:, None] - w) + np.diag(np.full(len(w), np.inf))
+    meeting = 1 + np.abs(w) / others.min(axis=1, initial=np.inf)
+    errors: Array = SAFETY * relative * np.abs(w) + ROUNDING * meeting * (np.abs(w) + scale)
     return errors
 
 
