@@ -16,6 +16,7 @@ from ranks import kill, ranks_in
 
 ROOT = Path(__file__).parents[1]
 BIN = Path(sys.executable).parent
+RANK = ROOT / "tests" / "faults" / "rank.py"
 
 LONGEST = (
     "test_slurm",
@@ -102,16 +103,21 @@ class Command:
                 kill(process.pid)
             kill(*ranks_in(directory).values())
 
-    def argv(self, *words: object, ranks: int = 0) -> list[str]:
+    def argv(self, *words: object, ranks: int = 0, place: str = "") -> list[str]:
+        """The words of a process; with a `place`, ranks are children of the loaded process that is there."""
         launcher = [str(BIN / "mpiexec"), "-n", str(ranks)] if ranks else []
-        return [*launcher, str(BIN / "rodsweep"), *map(str, words)]
+        command = [sys.executable, "-SE", str(RANK), place] if place else [str(BIN / "rodsweep")]
+        return [*launcher, *command, *map(str, words)]
 
     def __call__(
         self, *words: object, ranks: int = 0, timeout: float = 300, patch: str = "", **variables: str
     ) -> subprocess.CompletedProcess:
         """Runs the command to its end. Every process executes `patch` first, with the variables added."""
-        if ranks or not self.loaded:
+        if not self.loaded:
             return self.afresh(*words, ranks=ranks, timeout=timeout, patch=patch, **variables)
+        if ranks:
+            place = str(self.loaded().ranks)
+            return self.afresh(*words, ranks=ranks, timeout=timeout, patch=patch, place=place, **variables)
         run, limits = self.loaded(), {"seconds": None, "memory": None, "patience": timeout}
         ended = run(self.directory, *words, patch=patch, environment=variables, **limits)
         if ended.slow:
@@ -129,11 +135,17 @@ class Command:
         return subprocess.CompletedProcess(process.args, process.returncode, out, err)
 
     def started(
-        self, *words: object, ranks: int = 0, patch: str = "", stdout=subprocess.PIPE, **variables: str
+        self,
+        *words: object,
+        ranks: int = 0,
+        patch: str = "",
+        place: str = "",
+        stdout=subprocess.PIPE,
+        **variables: str,
     ) -> subprocess.Popen:
         """The processes, started and left running, in a session of their own."""
         process = subprocess.Popen(
-            self.argv(*words, ranks=ranks),
+            self.argv(*words, ranks=ranks, place=place),
             cwd=self.directory,
             # As this process got it: MPI, once started in here, adds to the one in C.
             env=os.environ | {"COLUMNS": "120"} | self._path_of(patch) | variables,

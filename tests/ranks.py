@@ -9,6 +9,8 @@ from pathlib import Path
 
 VARIABLES = (b"OMPI_COMM_WORLD_RANK", b"PMIX_RANK", b"PMI_RANK")
 """Variables of the environment in which a launcher tells a process its rank."""
+COMMANDS = (b"/rodsweep", b"/faults/rank.py")
+"""Ends of the words that start a rank: the command, or what has it forked from a loaded process."""
 PATIENCE = 120.0
 """Seconds after which a wait is given up: what hangs is to fail, and nothing else on the busiest machine."""
 
@@ -36,7 +38,9 @@ def ranks_in(directory: Path) -> dict[int, int]:
             given = dict(v.partition(b"=")[::2] for v in (entry / "environ").read_bytes().split(b"\0"))
             number = next((given[name] for name in VARIABLES if name in given), None)
             # The launcher has the command among its words as well, behind its own.
-            if number is not None and any(word.endswith(b"/rodsweep") for word in words[:2]):
+            if number is not None and any(
+                word.endswith((b"/rodsweep", b"/faults/rank.py")) for word in words[:3]
+            ):
                 found[int(number)] = pid
     return found
 
