@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from faults import small
 from faults.isolated import Isolated, isolated
-from ranks import kill, ranks_in
+from ranks import kill, ranks_in, wait_for_children
 
 ROOT = Path(__file__).parents[1]
 BIN = Path(sys.executable).parent
@@ -81,6 +81,18 @@ def pytest_collection_modifyitems(items):
     items.sort(key=lambda item: places.get(item.path.stem, len(LONGEST)))
 
 
+class Started(subprocess.Popen):
+    """A process that ends once the child of the loaded process to which it handed over has ended too."""
+
+    directory: Path
+
+    def wait(self, timeout: float | None = None) -> int:
+        status = super().wait(timeout)
+        if "mpiexec" not in self.args[0]:  # ranks may outlive their launcher
+            wait_for_children(self.directory)
+        return status
+
+
 class Command:
     """`rodsweep` in a directory of its own, alone or under mpiexec."""
 
@@ -103,21 +115,20 @@ class Command:
                 kill(process.pid)
             kill(*ranks_in(directory).values())
 
-    def argv(self, *words: object, ranks: int = 0, place: str = "") -> list[str]:
-        """The words of a process; with a `place`, ranks are children of the loaded process that is there."""
+    def argv(self, *words: object, ranks: int = 0, afresh: bool = True) -> list[str]:
+        """The words that start processes; unless `afresh` each hands over to a child of a loaded one."""
         launcher = [str(BIN / "mpiexec"), "-n", str(ranks)] if ranks else []
-        command = [sys.executable, "-SE", str(RANK), place] if place else [str(BIN / "rodsweep")]
-        return [*launcher, *command, *map(str, words)]
+        if afresh or not self.loaded:
+            return [*launcher, str(BIN / "rodsweep"), *map(str, words)]
+        return [*launcher, sys.executable, "-SE", str(RANK), str(self.loaded().ranks), *map(str, words)]
 
     def __call__(
         self, *words: object, ranks: int = 0, timeout: float = 300, patch: str = "", **variables: str
     ) -> subprocess.CompletedProcess:
         """Runs the command to its end. Every process executes `patch` first, with the variables added."""
-        if not self.loaded:
-            return self.afresh(*words, ranks=ranks, timeout=timeout, patch=patch, **variables)
-        if ranks:
-            place = str(self.loaded().ranks)
-            return self.afresh(*words, ranks=ranks, timeout=timeout, patch=patch, place=place, **variables)
+        if ranks or not self.loaded:
+            how = {"ranks": ranks, "patch": patch, "afresh": False}
+            return self.afresh(*words, timeout=timeout, **how, **variables)
         run, limits = self.loaded(), {"seconds": None, "memory": None, "patience": timeout}
         ended = run(self.directory, *words, patch=patch, environment=variables, **limits)
         if ended.slow:
@@ -126,7 +137,7 @@ class Command:
 
     def afresh(self, *words: object, timeout: float = 300, **how) -> subprocess.CompletedProcess:
         """The same in processes of its own, without a launcher too."""
-        process = self.started(*words, **how)
+        process = self.started(*words, **{"afresh": True} | how)
         try:
             out, err = process.communicate(timeout=timeout)
         except subprocess.TimeoutExpired:
@@ -139,13 +150,13 @@ class Command:
         *words: object,
         ranks: int = 0,
         patch: str = "",
-        place: str = "",
+        afresh: bool = False,
         stdout=subprocess.PIPE,
         **variables: str,
     ) -> subprocess.Popen:
         """The processes, started and left running, in a session of their own."""
-        process = subprocess.Popen(
-            self.argv(*words, ranks=ranks, place=place),
+        process = Started(
+            self.argv(*words, ranks=ranks, afresh=afresh),
             cwd=self.directory,
             # As this process got it: MPI, once started in here, adds to the one in C.
             env=os.environ | {"COLUMNS": "120"} | self._path_of(patch) | variables,
@@ -154,6 +165,7 @@ class Command:
             text=True,
             start_new_session=True,
         )
+        process.directory = self.directory
         self.left.append((process, self.directory))
         return process
 

@@ -143,6 +143,9 @@ def keep_rank(rank: socket.socket) -> None:
     if not pid:
         rank.close()
         raise IsRank(request, streams)
+    for stream in streams:
+        os.close(stream)
+    rank.sendall(pid.to_bytes(4, "big"))
     handle = os.pidfd_open(pid)
     if handle not in select.select([handle, rank], [], [])[0]:
         os.kill(pid, signal.SIGKILL)
