@@ -8,6 +8,7 @@ lines on standard output, one each; `faults.isolated` is the other end. `test_st
 of it against the command that is started afresh.
 """
 
+import gc
 import io
 import json
 import os
@@ -242,9 +243,11 @@ def load_for_ranks() -> None:
 def main() -> None:
     if sys.argv[1] == "solving":
         load_for_ranks()
+        gc.freeze()
         if not os.fork():
             keep_ranks(sys.argv[2])
     load(sys.argv[1] == "solving", sys.argv[3:])
+    gc.freeze()  # collecting garbage, children would copy all that is loaded
     requests = sys.stdin.buffer
     with open(os.dup(1), "w", encoding="utf-8") as answers:
         os.dup2(2, 1)
