@@ -119,9 +119,6 @@ REFUSED = [
     ),
     (config("amplitud: 1"), "unknown key limit_cycle.amplitud; did you mean amplitude?"),
     (config("start: next"), "start = 'next' is not allowed; it should be mode, neighbour or hopf"),
-    (config("continue_from: next"), "continue_from = 'next' is not allowed; it should be none or previous"),
-    (config("continue_from: null"), "continue_from = None is not allowed; it should be none or previous"),
-    (config("continue_from: none, start: mode"), "continue_from and start are both given"),
     (
         config("start: hopf, amplitude: 0.1"),
         "limit_cycle.amplitude is given but not used; set limit_cycle.start",
@@ -163,13 +160,6 @@ REFUSED = [
         "parameters.points and parameters.gamma1 are both given",
     ),
 ]
-
-
-@pytest.mark.parametrize("former, start", [("none", "mode"), ("previous", "neighbour")])
-def test_former_key_is_understood(tmp_path, former, start):
-    options = job_of(tmp_path, config(f"continue_from: {former}")).config.limit_cycle
-    assert options.start == start
-    assert job_of(tmp_path, config(f"start: {start}")).config.limit_cycle == options
 
 
 def test_neighbours_follow_each_other_along_the_longest_axis(tmp_path):

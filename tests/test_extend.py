@@ -252,7 +252,6 @@ def test_extend_makes_a_new_file_and_continues_its_own(command):
         (SPECTRA, "[10, 30]", "[10, 30.000000000000004]", False),
         (CHAINS, "along: F", "along: longest", True),
         (CHAINS, "along: F", "along: k1", False),
-        (CHAINS, "start: neighbour", "continue_from: previous", True),
         (CHAINS, "start: neighbour, along: F", "start: mode", False),
         (CYCLES, "k2: 100", "k2: [100], gamma1: 1", True),
         (DIAGRAM, "{start: 10, stop: 60, num: 6}", "[10, 20, 30, 40, 50, 60]", True),

@@ -193,3 +193,21 @@ def test_map_of_beating(command):
         assert file["status"][here].tolist() == [1, 0, 0]
         assert file["period"][here][2] == pytest.approx(period, rel=1e-4)
         assert file["tip_y_max"][here][2] == pytest.approx(height, rel=1e-4)
+
+
+def test_krylov_schur_alone_counts_what_d_counts(command):
+    below, above = stated("krylov_schur")
+    forces = [F * (1 + side) for F in (below, above) for side in (-1e-6, 1e-6)]
+    with run(command, "krylov_schur", f"parameters.F={forces}") as file:
+        assert file["unstable_count"][:, 0, 0, 0].tolist() == [0, 2, 2, 0]
+        assert not file["certified"][...].any()
+        assert (file["elements"][...] > 0).all()
+
+
+def test_integration_alone_gives_the_cycle_that_collocation_gives(command):
+    period, height = stated("integration")
+    with run(command, "integration", "parameters.F=[30, 40]") as file:
+        assert file["period"][1].item() == pytest.approx(period, rel=file["period_error"][1].item())
+        assert file["tip_y_max"][1].item() == pytest.approx(height, rel=file["amplitude_error"][1].item())
+        assert file["period_error"][1].item() < 1e-6
+        assert isnan(file["multiplier"][1].item())

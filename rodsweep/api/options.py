@@ -67,9 +67,9 @@ class OfBranch(OfEveryTask, total=False):
 class OfLimitCycle(OfEveryTask, total=False):
     """Keys of the section `limit_cycle`."""
 
+    method: Literal["collocation", "integration"]
     amplitude: float
     start: Literal["mode", "neighbour", "hopf"]
-    continue_from: Literal["none", "previous"]
     along: str
     direction: Literal["up", "down"]
     harmonics: int

@@ -10,9 +10,6 @@ from .axes import NonlinearParameters, words
 from .schema import Config, Nodes
 from .values import Number, Strict
 
-FORMER_STARTS = {"none": "mode", "previous": "neighbour"}
-"""Values of the former key `continue_from`."""
-
 LONGEST = "longest"
 Along = Literal[(*NONLINEAR_PARAMETERS, *AXIS_OF, LONGEST)]  # type: ignore[valid-type]  # pydantic reads it at run time, from the table
 
@@ -20,12 +17,12 @@ Along = Literal[(*NONLINEAR_PARAMETERS, *AXIS_OF, LONGEST)]  # type: ignore[vali
 class LimitCycleOptions(Strict):
     """From where each point starts, how long it may take, and what is stored of its cycle."""
 
+    method: Literal["collocation", "integration"] = "collocation"
+    """Cycles by collocation in time, with their multipliers, or by time integration alone, without."""
     amplitude: Annotated[Number, Field(gt=0, le=1, description="a number above 0, at most 1")] = 0.01
     """Tip deflection of the leading mode from which a point starts, in L."""
     start: Literal["mode", "neighbour", "hopf"] = "mode"
     """From where each point starts: the leading mode, its neighbour's cycle, or the Hopf point."""
-    continue_from: Annotated[Literal[tuple(FORMER_STARTS)], Field(exclude=True)] = "none"  # type: ignore[valid-type]
-    """What `start` was called, which stays understood: none is mode, previous is neighbour."""
     along: Along = LONGEST
     """The parameter along which neighbours follow each other, or the arm's quantity that moves it; longest is
     the one with most points."""
@@ -45,18 +42,6 @@ class LimitCycleOptions(Strict):
     """Periods after which a point that is not settled is given up."""
     time: Literal["tau2", "tau1"] = "tau2"
     """tau1 adds the period in units of tau1; all else stays in tau2."""
-
-    @model_validator(mode="before")
-    @classmethod
-    def _with_former_key(cls, given: Any) -> Any:
-        """`continue_from` is what `start` was called."""
-        former = given.get("continue_from") if isinstance(given, dict) else None
-        if not isinstance(former, str) or former not in FORMER_STARTS:
-            return given
-        if "start" in given:
-            raise ValueError("continue_from and start are both given; continue_from is its former name")
-        rest = {key: value for key, value in given.items() if key != "continue_from"}
-        return rest | {"start": FORMER_STARTS[former]}
 
 
 class LimitCycleConfig(Config):
@@ -87,6 +72,9 @@ class LimitCycleConfig(Config):
         found: dict[str, str] = {}
         if options.start != "neighbour":
             found |= dict.fromkeys(("along", "direction"), "start: neighbour")
+        if options.method == "integration":
+            found |= dict.fromkeys(("start", "along", "direction", "transient"), "method: collocation")
+            return found if options.shapes else found | {"nodes": "shapes"}
         if options.start == "hopf":
             found |= dict.fromkeys(("amplitude", "most_periods", "transient"), "start: mode")
         return found if options.shapes else found | {"nodes": "shapes"}

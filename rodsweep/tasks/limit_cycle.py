@@ -21,7 +21,7 @@ from ..results.layouts.limit_cycle import (
 from ..results.layouts.variables import Filled, Variable
 from ..solve.backend.availability import require_solvers
 from ..sweep.chains import Chains, State
-from ..sweep.estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, Estimate
+from ..sweep.estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, MARCHED_CYCLE_SECONDS, Estimate
 from ..sweep.grid import refuse_outside
 from ..wording import counted
 from .hopf_lines import HopfLine, hopf_lines_of, hopf_variables
@@ -31,8 +31,9 @@ from .protocol import InOrder, Part, Solver, Task, alone
 if TYPE_CHECKING:
     from ..solve.cycle.limit_cycle import Cycle
 
-OF_THE_SWEEP = ("along", "direction", "time")
-"""Options that say how points follow each other and what the file adds; a cycle is asked for all others."""
+OF_THE_SWEEP = ("method", "along", "direction", "time")
+"""Options that say by which method, how points follow each other and what the file adds; a cycle is asked for
+all others."""
 FINITE_STIFFNESS = Range(isfinite, "a finite number")
 POSITIVE_DRAG = Range(lambda value: value > 0, "a number above 0")
 
@@ -90,12 +91,13 @@ class LimitCycleTask(Task):
 
     def parts(self) -> list[Part]:
         options = self.config.limit_cycle
-        gamma1 = np.unique(self.points.of_rods["gamma1"])[:5]
+        gamma1, marched = np.unique(self.points.of_rods["gamma1"])[:5], options.method == "integration"
         return [
             *rod_parts(self.points.of_rods),
             ("axial drag", True, f"gamma1 = {', '.join(f'{value:g}' for value in gamma1)}"),
             ("nonlinear motion", True, "task: limit_cycle; in the plane, geometrically exact"),
             ("energy budget", True, "means and fluctuations over a cycle"),
+            ("Floquet multipliers", not marched, f"limit_cycle.method: {options.method}"),
             self._stored("tip and energy over a cycle", "samples", TIP + ENERGY),
             self._stored("shapes over a cycle", "shapes", SHAPE),
             self._stored("tip from the start to the cycle", "transient", TRANSIENT),
@@ -114,11 +116,15 @@ class LimitCycleTask(Task):
         return what, True, f"{each} a point{nodes}, {self.points.count * each} in all: {8e-6 * values:.3g} MB"
 
     def cost(self) -> Estimate:
+        if self.config.limit_cycle.method == "integration":
+            return Estimate(self.points.count * MARCHED_CYCLE_SECONDS)
         first = self.chains.count if self.chains else self.points.count
         rest = self.points.count - first
         return Estimate(first * CYCLE_SECONDS + rest * CHAINED_CYCLE_SECONDS)
 
     def solver(self) -> Solver:
+        if self.config.limit_cycle.method == "integration":
+            return self._integration()
         from ..solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle, warm_up
 
         options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
@@ -139,6 +145,20 @@ class LimitCycleTask(Task):
             solve=solve,
             record=lambda index, cycle: self.record(self.points.values(index), cycle),
             chained=(chains, solve_from) if chains else None,
+        )
+
+    def _integration(self) -> Solver:
+        """How points are solved by time integration alone."""
+        from ..solve.cycle.limit_cycle import CyclePoint, CycleRequest, warm_up
+        from ..solve.cycle.marched import MarchedStatus, solve_by_integration
+
+        options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
+        request = CycleRequest(accuracy=self.config.accuracy, **options)
+        return Solver(
+            statuses=tuple(MarchedStatus),
+            warm_up=warm_up,
+            solve=lambda index: solve_by_integration(CyclePoint(**self.points.values(index)), request),
+            record=lambda index, cycle: self.record(self.points.values(index), cycle),
         )
 
     def record(self, point: dict[str, float], cycle: "Cycle") -> dict[str, Any]:

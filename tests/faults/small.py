@@ -34,7 +34,7 @@ modes: {nodes: 5}
     "limit_cycle": """
 task: limit_cycle
 parameters: {F: [20, 40, 41], k1: 1.0e4, k2: 1.0e2, gamma3: 1.0e-2}
-limit_cycle: {continue_from: previous, samples: 8, shapes: 4, nodes: 5, harmonics: 2}
+limit_cycle: {start: neighbour, samples: 8, shapes: 4, nodes: 5, harmonics: 2}
 accuracy: 1.0e-3
 """,
 }

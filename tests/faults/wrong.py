@@ -63,7 +63,6 @@ FOR_KEY: dict[tuple[str, ...], list[str]] = {
     ],
     ("thresholds", "F_max"): [*NO_NUMBER, "~", "0", "-3", ".inf", "[3]"],
     ("limit_cycle", "amplitude"): [*NO_NUMBER, "~", "0", "-3", "1.1", ".inf", "[3]"],
-    ("limit_cycle", "continue_from"): ["next", "~", "3", "[previous]"],
     ("limit_cycle", "start"): ["next", "~", "3", "[mode]"],
     ("limit_cycle", "along"): ["f", "k3", "~", "3", "[F]"],
     ("limit_cycle", "direction"): ["left", "~", "3", "[up]"],

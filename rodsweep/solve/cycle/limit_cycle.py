@@ -28,6 +28,7 @@ from ..hopf.normal_form import accurate_normal_form
 from ..motion.integrator import forget_integrators
 from ..motion.time_scheme import CYCLE_PREFIX
 from ..point import Unsolvable, solved
+from ..status import PointStatus
 from .cycle_errors import UNKNOWN_ERRORS, CycleErrors
 from .hopf_start import hopf_point_below, orbit_from_hopf, small_orbit
 from .measures import Measures
@@ -112,7 +113,7 @@ class Cycle:
     neighbour: what the next point of a chain starts from.
     """
 
-    status: CycleStatus
+    status: PointStatus
     message: str = ""
     seconds: float = 0.0
     linear_growth_rate: float = nan
@@ -303,11 +304,19 @@ def _fades(rod: Rod, gamma1: float, w: complex, amplitude: float) -> str:
 
 def _beam_and_form(rod: Rod, gamma1: float) -> tuple[Beam, StressForm]:
     """The rod as the time stepper sees it, and as the orbit does, on one mesh."""
-    wave = max(expected_wave_number(EXPECTED_MODES, most_amplified_wave(rod)[1]), FOLDS * abs(rod.F) ** 0.5)
-    resolution = resolution_for(wave, MOTION_ACCURACY)
+    resolution = resolution_for(motion_wave(rod), MOTION_ACCURACY)
     grid = mesh(resolution.elements, resolution.order)
-    near = Rod(rod.F, min(rod.k1, STIFFEST), min(rod.k2, STIFFEST), max(rod.gamma3, LEAST_DRAG))
-    return Beam(near, gamma1, grid), StressForm(rod, gamma1, grid)
+    return Beam(near_rod(rod), gamma1, grid), StressForm(rod, gamma1, grid)
+
+
+def motion_wave(rod: Rod) -> float:
+    """The wave number by which the first mesh of a motion is chosen."""
+    return max(expected_wave_number(EXPECTED_MODES, most_amplified_wave(rod)[1]), FOLDS * abs(rod.F) ** 0.5)
+
+
+def near_rod(rod: Rod) -> Rod:
+    """The rod itself, or one near the limit that it is: the time stepper takes no limits."""
+    return Rod(rod.F, min(rod.k1, STIFFEST), min(rod.k2, STIFFEST), max(rod.gamma3, LEAST_DRAG))
 
 
 def _from_motion(
@@ -326,7 +335,7 @@ def _measured(cycle: Cycle, found: RefinedCycle, request: CycleRequest) -> Cycle
     """The cycle with its numbers, and what is stored of it where it is asked for."""
     orbit, path = found.orbit, found.path
     # Harmonics that are not resolved are below the error of the cycle.
-    amplitudes = _first_of(found.measures.harmonic_amplitude, request.harmonics, 0.0)
+    amplitudes = first_of(found.measures.harmonic_amplitude, request.harmonics, 0.0)
     wanted = request.shapes and request.nodes
     return replace(
         cycle,
@@ -349,7 +358,7 @@ def _with_multipliers(cycle: Cycle, found: RefinedCycle) -> Cycle:
 
 def _stability(found: RefinedCycle) -> dict[str, Any]:
     """What the multipliers tell, as `Cycle` names it."""
-    mu = _first_of(found.multipliers, STORED_MULTIPLIERS, UNTOLD)
+    mu = first_of(found.multipliers, STORED_MULTIPLIERS, UNTOLD)
     mu[np.abs(mu) < LEAST_MULTIPLIER] = UNTOLD
     return {
         "multiplier": found.largest_multiplier,
@@ -358,7 +367,7 @@ def _stability(found: RefinedCycle) -> dict[str, Any]:
     }
 
 
-def _first_of(values: Array | Complex, count: int, other: complex) -> Any:
+def first_of(values: Array | Complex, count: int, other: complex) -> Any:
     """So many of the values, (m,), and another one where there are none, (count,)."""
     first = np.full(count, other, values.dtype)
     first[: len(values)] = values[:count]

@@ -10,6 +10,7 @@ from math import nan
 from ...model.rod import Rod
 from ..hopf.hopf_beside import SubcriticalHopf, subcritical_hopf_beside
 from ..point import FAILURES
+from ..status import PointStatus
 from .status import CycleStatus
 
 
@@ -23,7 +24,7 @@ class SecondState(IntEnum):
 
 
 def second_state(
-    rod: Rod, gamma1: float, status: CycleStatus, stable: bool | None
+    rod: Rod, gamma1: float, status: PointStatus, stable: bool | None
 ) -> tuple[SecondState, float, str]:
     """(what is known, force of the subcritical Hopf point or NaN, a sentence) of a point that ended so.
 

@@ -13,6 +13,7 @@ does while a large stretch relaxes slowly, it starts again from a small deflecti
 """
 
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf, isnan, nan
 from operator import mul
@@ -327,7 +328,7 @@ class Transient:
     def _closed(self, z: Array, times: Array, states: Array) -> TransientOutcome | None:
         """The cycle, if the returns repeat and Newton's method finds it from z, the end of the run."""
         growth, linear = self._growth(times, states)
-        turns, distance = self._repetition()
+        turns, distance = repetition([state for _, state in self.past][-1 - LONGEST_ORBIT :])
         known = self.bend > 0 and self._slow(times, growth, linear)
         decays = linear < 0 and growth < linear * (1 - SLOW_GROWTH) + (self.noise if known else 0)
         if decays or distance >= self._near_enough() or self.waited < self.next_attempt:
@@ -359,18 +360,16 @@ class Transient:
             self.unstable = found
         return found if found.stable and 1 - found.largest_multiplier >= NEUTRAL else None
 
-    def _repetition(self) -> tuple[int, float]:
-        """(m, relative distance): after how many returns the state comes closest to itself.
 
-        By the bending moments: what the interpolation between two steps misses of the stiff components, 1e-2
-        at k1 = 1e7, is no distance.
-        """
-        moments = [state for _, state in self.past][-1 - LONGEST_ORBIT :]
-        size = np.linalg.norm(moments[-1])
-        if size < STRAIGHT_SIZE:  # what is left of them is rounding, which repeats nothing
-            return 1, inf
-        found = [
-            (float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))
-        ]
-        enough = max(2 * min(found)[0], SAME_CROSSING)
-        return next((m, distance) for distance, m in found if distance <= enough)
+def repetition(moments: Sequence[Array]) -> tuple[int, float]:
+    """(m, relative distance): after how many returns the last of some states comes closest to itself.
+
+    moments: the bending moments at returns of the tip, (nodes,) each. What the interpolation between two
+    steps misses of the stiff components, 1e-2 at k1 = 1e7, is no distance.
+    """
+    size = np.linalg.norm(moments[-1])
+    if size < STRAIGHT_SIZE:  # what is left of them is rounding, which repeats nothing
+        return 1, inf
+    found = [(float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))]
+    enough = max(2 * min(found)[0], SAME_CROSSING)
+    return next((m, distance) for distance, m in found if distance <= enough)

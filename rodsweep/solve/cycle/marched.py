@@ -1,0 +1,315 @@
+"""The limit cycle of one rod by time integration alone: ARKIMEX marches until the motion repeats.
+
+Neither collocation nor D takes part, and no Floquet multiplier is known: that the motion settles shows that
+the cycle is stable in the plane. Period and extrema are those of the motion, twice: the second time on a
+finer mesh with a smaller tolerance. What the two differ by is the error. Near a Hopf point, where motions
+settle slowly, the periods allowed may not be enough.
+"""
+
+from collections import deque
+from dataclasses import dataclass, replace
+from math import isnan, nan
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from ...arrays import Array
+from ...discretization.beam import Beam
+from ...discretization.mesh import mesh
+from ...discretization.resolution import resolution_for
+from ...discretization.stress_form import StressForm
+from ...model.rod import Rod
+from ...watch import Whereabouts, report
+from ..motion.integrator import (
+    Ending,
+    RunLimit,
+    Trajectory,
+    forget_integrators,
+    integrator,
+    relaxed,
+)
+from ..motion.leading_mode import LeadingMode, leading_mode
+from ..motion.time_scheme import TimeScheme
+from ..point import solved
+from ..status import PointStatus
+from .cycle_errors import CycleErrors
+from .from_motion import stressed
+from .limit_cycle import Cycle, CyclePoint, CycleRequest, first_of, motion_wave, near_rod
+from .measures import CyclePath, measures_of
+from .orbit import Orbit, node_times
+from .transient import (
+    LONGEST_ORBIT,
+    STEPS_PER_CHUNK,
+    STRAIGHT_SIZE,
+    angle_weights,
+    repetition,
+    section_crossings,
+)
+
+TOLERANCE = 0.01
+"""Local tolerance of the integrator in units of the accuracy: errors of cycles are up to ten times it."""
+TIGHTER, MORE_ORDERS = 0.2, 2
+"""Tolerance of the second integration in units of the first's, and orders that its mesh has more."""
+MOST_PAIRS = 3
+"""Pairs of integrations, each with the smaller tolerance of the one before as its larger one."""
+SETTLED = 0.1
+"""What is left of the way to the cycle when a motion has settled, relative, in units of the accuracy."""
+NOISE = 10.0
+"""Distance of two returns, in units of the tolerance, that may be the integrator's error."""
+CHUNK = 5
+"""Returns of the tip from one judgement to the next."""
+SAFETY = 2.0
+"""Factor on what two integrations differ by."""
+FARTHER = 2.0
+"""A rod in a limit is replaced by one near it. The cycle of a rod so many times as far from the limit differs
+from its cycle as that differs from the limit's, for cycles change in proportion."""
+STAGES, INTERVALS = 3, 48
+"""Of the orbit that is measured: times at which the motion is interpolated, for each return of the tip."""
+MEASURED = 1.25
+"""Length of the run on which a cycle is measured, in periods."""
+
+
+class MarchedStatus(PointStatus):
+    """Outcome of a point of the task limit_cycle with `method: integration`."""
+
+    cycle = (
+        0,
+        "the rod beats: its motion repeats, and its period and largest y are as accurate as asked for; no "
+        "Floquet multipliers are computed",
+        True,
+    )
+    straight = 1, "the motion has decayed to rounding: nothing beats from this start", True
+    not_settled = (
+        2,
+        "the motion does not repeat within the periods allowed, or not to the accuracy asked for, as its "
+        "errors say; raise the periods allowed, ask for a lower accuracy, or use `method: collocation`",
+    )
+    left_the_model = (
+        3,
+        "the rod was crushed somewhere (h1 <= 0), where the model ends; start from a smaller amplitude, or "
+        "lower F or raise k1",
+    )
+    failed = 4, "the integration failed and nothing is stored; the message says why"
+
+
+@dataclass(frozen=True, eq=False)
+class _Settled:
+    """Where the motion is when it has settled: z, (unknowns,), and returns of the tip in a period."""
+
+    z: Array
+    turns: int
+    step: float
+
+
+class _Ended(Exception):
+    """The motion ends otherwise than on a cycle."""
+
+    def __init__(self, status: MarchedStatus, why: str) -> None:
+        super().__init__(why)
+        self.status, self.why = status, why
+
+
+def solve_by_integration(point: CyclePoint, request: CycleRequest) -> Cycle:
+    """The cycle that the rod reaches from its leading mode; failures are a status, never an exception."""
+    if not point.k1 > point.F:
+        crushed = f"F = {point.F:g} crushes a rod of k1 = {point.k1:g} at rest"
+        return Cycle(status=MarchedStatus.left_the_model, message=crushed)
+
+    def failed(cause: str) -> Cycle:
+        forget_integrators()  # a PETSc object is not usable after an error inside it
+        return Cycle(status=MarchedStatus.failed, message=cause)
+
+    return solved(lambda: _Marching(point, request).cycle(), failed)
+
+
+class _Marching:
+    """The motion of one rod, on one mesh after the other."""
+
+    def __init__(self, point: CyclePoint, request: CycleRequest) -> None:
+        rod = Rod(point.F, point.k1, point.k2, point.gamma3)
+        self.request, self.gamma1, self.limit, self.rod = request, point.gamma1, rod, near_rod(rod)
+        self.in_a_limit = self.rod != rod
+        self.resolution = resolution_for(motion_wave(rod), request.accuracy)
+        self.scheme = TimeScheme("arkimex", "5", tolerance=TOLERANCE * request.accuracy)
+        self.beam = self._beam()
+        self.mode: LeadingMode = leading_mode(self.beam)
+        self.waited = 0
+
+    def cycle(self) -> Cycle:
+        """The outcome."""
+        known = Cycle(
+            status=MarchedStatus.straight,
+            linear_growth_rate=self.mode.w.real,
+            linear_frequency=abs(self.mode.w.imag),
+        )
+        try:
+            z = relaxed(self.beam, self.request.amplitude * self.mode.z.real, self.mode.period)
+            settled = self._settled(z)
+            path = self._path(settled)
+            for _ in range(MOST_PAIRS):
+                settled = self._refined(settled)
+                before, path = path, self._path(settled)
+                errors = _errors(_apart(before, path), SETTLED * self.request.accuracy)
+                if errors.largest <= self.request.accuracy:
+                    break
+            if self.in_a_limit:
+                errors = self._errors_of_the_limit(settled, path, errors)
+        except _Ended as end:
+            return replace(known, status=end.status, message=end.why, periods=self.waited)
+        return self._measured(known, path, errors)
+
+    def _beam(self) -> Beam:
+        return Beam(self.rod, self.gamma1, mesh(self.resolution.elements, self.resolution.order))
+
+    def _refined(self, settled: _Settled) -> _Settled:
+        """The same motion on a finer mesh with a smaller tolerance, from where it has settled."""
+        before = self.beam
+        self.resolution = replace(self.resolution, order=self.resolution.order + MORE_ORDERS)
+        self.scheme = replace(self.scheme, tolerance=TIGHTER * self.scheme.tolerance)
+        self.beam = self._beam()
+        stresses = (settled.z.reshape(3, -1) / before.roots[:, None]) @ before.mesh.evaluation(
+            self.beam.mesh.positions
+        )[:, :-1].T
+        z = (stresses[:, :-1] * self.beam.roots[:, None]).ravel()
+        return self._settled(relaxed(self.beam, z, self.mode.period))
+
+    def _settled(self, z: Array) -> _Settled:
+        """Where the motion from z, (unknowns,), has settled; raises _Ended."""
+        past: deque[Array] = deque(maxlen=LONGEST_ORBIT + 1)
+        row, step = angle_weights(self.beam), self.mode.period / 1000
+        last, rate, most = nan, 0.0, self.request.most_periods
+        while self.waited < most:
+            report(lambda: Whereabouts(f"{self.waited} of at most {most} returns of the tip"))
+            run = self._run(z, 3 * CHUNK * self.mode.period, step, _returns(row, z, CHUNK))
+            z, step = run.states[-1], float(run.times[-1] - run.times[-2])
+            states = self._crossings(run)[1]
+            past.extend(states[:, 2 * self.beam.mesh.nodes :])
+            self.waited += max(len(states), 1)
+            if self.mode.w.real < 0 and np.linalg.norm(z) < STRAIGHT_SIZE:
+                raise _Ended(MarchedStatus.straight, "decayed to rounding")
+            if len(past) <= CHUNK:
+                continue
+            turns, distance = repetition(list(past))
+            noise = NOISE * self.scheme.tolerance
+            if last > noise:
+                rate = min(max(distance, noise) / last, 1.0) ** (turns / CHUNK)
+            elif isnan(last):
+                rate = 0.0 if distance <= noise else 1.0
+            last = distance
+            if distance <= SETTLED * self.request.accuracy * (1 - rate):
+                return _Settled(z, turns, step)
+        why = f"{self.waited} returns of the tip, the last at a relative distance of {last:.1e}"
+        raise _Ended(MarchedStatus.not_settled, why)
+
+    def _run(self, z: Array, duration: float, step: float, limit: RunLimit) -> Trajectory:
+        """A run that comes to its end; raises _Ended where it does not."""
+        run = integrator(self.beam.mesh, self.scheme).run(self.beam, z, duration, step, limit)
+        if run.ending in (Ending.reached, Ending.stopped):
+            return run
+        if run.ending == Ending.left_the_model:
+            least = self.beam.least_stretch(run.states[-1])
+            raise _Ended(MarchedStatus.left_the_model, f"h1 = {least:.3g} somewhere, {self.waited} returns")
+        why = run.message or ("too many steps" if run.ending == Ending.too_many_steps else "no step succeeds")
+        raise _Ended(MarchedStatus.failed, why)
+
+    def _crossings(self, run: Trajectory) -> tuple[Array, Array]:
+        """Times, (k,), and states, (k, unknowns), at which theta of the tip rises through 0 on a run.
+
+        Between two steps the cubic through them is less accurate than the steps, so each crossing is marched
+        to from the step before it.
+        """
+        row, times = angle_weights(self.beam), section_crossings(self.beam, run)[0]
+        states = np.empty((len(times), self.beam.mesh.unknowns))
+        for i, rough in enumerate(times):
+            before = int(np.searchsorted(run.times, rough, side="right")) - 1
+            left = float(rough - run.times[before])
+            z = run.states[before]
+            if left > 0:
+                z = self._run(z, left, left, RunLimit()).states[-1]
+            rates = self.beam.rate(z[None])[0]
+            late = float(row @ z) / float(row @ rates)
+            times[i], states[i] = rough - late, z - late * rates
+        return times, states
+
+    def _path(self, settled: _Settled) -> CyclePath:
+        """One period of the settled motion; raises _Ended."""
+        returns = settled.turns + 2
+        limit = _returns(angle_weights(self.beam), settled.z, returns)
+        run = self._run(settled.z, 3 * returns * self.mode.period, settled.step, limit)
+        times = self._crossings(run)[0]
+        period = float(times[settled.turns] - times[0])
+        spline = CubicSpline(run.times, run.states)
+        states = spline(times[0] + period * node_times(INTERVALS * settled.turns, STAGES))
+        form = StressForm(self.rod, self.gamma1, self.beam.mesh)
+        return CyclePath(Orbit.of(form, False, period, stressed(self.beam, form, states), STAGES))
+
+    def _errors_of_the_limit(self, settled: _Settled, path: CyclePath, errors: CycleErrors) -> CycleErrors:
+        """The errors with what the rod is off by that stands for a limit; raises _Ended."""
+        known, r = path.orbit.form.rod, self.limit
+        self.rod = Rod(
+            r.F,
+            known.k1 / FARTHER if known.k1 != r.k1 else r.k1,
+            known.k2 / FARTHER if known.k2 != r.k2 else r.k2,
+            known.gamma3 * FARTHER if known.gamma3 != r.gamma3 else r.gamma3,
+        )
+        self.beam = self._beam()
+        apart = _apart(path, self._path(self._settled(relaxed(self.beam, settled.z, self.mode.period))))
+        more = _errors(apart, 0.0)
+        return CycleErrors(
+            errors.period_error + more.period_error,
+            errors.amplitude_error + more.amplitude_error,
+            errors.extrema_error + more.extrema_error,
+            nan,
+        )
+
+    def _measured(self, known: Cycle, path: CyclePath, errors: CycleErrors) -> Cycle:
+        """The cycle with its numbers."""
+        request, enough = self.request, errors.largest <= self.request.accuracy
+        measures = measures_of(path)
+        amplitudes = first_of(measures.harmonic_amplitude, request.harmonics, 0.0)
+        return replace(
+            known,
+            status=MarchedStatus.cycle if enough else MarchedStatus.not_settled,
+            message="" if enough else f"its errors are up to {errors.largest:.1e}",
+            periods=self.waited,
+            elements=self.resolution.elements,
+            order=self.resolution.order,
+            measures=replace(measures, harmonic_amplitude=amplitudes),
+            errors=errors,
+            tip=path.tip(request.samples) if request.samples else None,
+            energy=path.energy(request.samples) if request.samples else None,
+            shape=path.shapes(request.shapes, request.nodes) if request.shapes and request.nodes else None,
+        )
+
+
+def _apart(one: CyclePath, other: CyclePath) -> Array:
+    """What two cycles differ by, relative: period, largest y, worst extremum in units of it, (3,)."""
+    a, b = one.extrema, other.extrema
+    worst = max(abs(a[name] - b[name]) for name in a)
+    size = abs(b["tip_y_max"])
+    return np.array(
+        [
+            abs(one.orbit.period / other.orbit.period - 1),
+            abs(a["tip_y_max"] - b["tip_y_max"]) / size,
+            worst / size,
+        ]
+    )
+
+
+def _errors(apart: Array, more: float) -> CycleErrors:
+    """Errors by what two integrations differ by, (3,), and a further share of each."""
+    period, height, others = (float(error) for error in SAFETY * apart + more)
+    return CycleErrors(period, height, others, nan)
+
+
+def _returns(row: Array, z: Array, wanted: int) -> RunLimit:
+    """Ends a run from z after so many returns of the tip: theta, row . z, rises through 0."""
+    count, last = 0, float(row @ z)
+
+    def enough(state: Array) -> bool:
+        nonlocal count, last
+        here = float(row @ state)
+        count, last = count + int(last < 0 <= here), here
+        return count >= wanted
+
+    return RunLimit(enough, STEPS_PER_CHUNK)

@@ -1,0 +1,101 @@
+"""Cycles by time integration alone: against those of collocation, and how points end that have none."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from surveyed import RODS
+
+from rodsweep.solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.cycle.marched import MarchedStatus, solve_by_integration
+
+ACCURACY = 1e-5
+MOST_NOT_SETTLED = 0.15
+"""Share of random rods whose motion settles too slowly for the returns allowed: 4 of 60 were seen."""
+
+
+def request(accuracy, samples=0, shapes=0, nodes=0, most_periods=400):
+    return CycleRequest(accuracy, 0.05, 5, samples, shapes, nodes, most_periods)
+
+
+def random_rods(count):
+    rng = np.random.default_rng(11)
+    for _ in range(count):
+        k1, k2, gamma3, gamma1 = 10 ** rng.uniform((2.2, 1.3, -4, -0.5), (4, 4, -1, 1))
+        yield CyclePoint(rng.uniform(40, min(0.9 * k1, 160)), k1, k2, gamma3, gamma1)
+
+
+@cache
+def pairs():
+    """(cycle by collocation, cycle by integration) of random rods."""
+    return [
+        (
+            solve_cycle(rod, request(1e-8)),
+            solve_by_integration(rod, request(ACCURACY)),
+        )
+        for rod in random_rods(max(RODS // 5, 8))
+    ]
+
+
+def test_cycles_are_those_of_collocation_within_their_errors():
+    assert any(other.status == MarchedStatus.cycle for _, other in pairs())
+    for one, other in pairs():
+        if other.status != MarchedStatus.cycle:
+            continue
+        assert one.status == CycleStatus.cycle
+        a, b, errors = one.measures, other.measures, other.errors
+        assert abs(b.period / a.period - 1) <= errors.period_error <= ACCURACY
+        assert abs(b.tip_y_max / a.tip_y_max - 1) <= errors.amplitude_error <= ACCURACY
+        for name in ("tip_x_min", "tip_x_max", "tip_y_min", "tip_theta_max"):
+            off = abs(getattr(a, name) - getattr(b, name))
+            assert off <= (errors.extrema_error + one.errors.extrema_error) * a.tip_y_max, name
+        assert b.harmonic_amplitude == pytest.approx(a.harmonic_amplitude, abs=10 * ACCURACY)
+        assert b.injection_mean == pytest.approx(a.injection_mean, rel=1e-3)
+        assert np.isnan(other.multiplier)
+
+
+def test_a_motion_that_ends_otherwise_ends_so_by_collocation_too():
+    """But for motions that settle too slowly to be waited for."""
+    slow = 0
+    for one, other in pairs():
+        if other.status == MarchedStatus.not_settled:
+            slow += 1
+        elif other.status != MarchedStatus.cycle:
+            assert other.status.name == one.status.name, (one, other)
+    assert slow <= MOST_NOT_SETTLED * len(pairs()) + 1
+
+
+def test_a_straight_rod_stays_straight():
+    rod = CyclePoint(20.0, 1e4, 1e2, 1e-2, 1.0)
+    found = solve_by_integration(rod, request(ACCURACY))
+    assert (found.status, found.message) == (MarchedStatus.straight, "decayed to rounding")
+    assert np.isnan(found.measures.period)
+
+
+def test_a_motion_beside_the_hopf_point_is_not_called_a_cycle_before_it_has_settled():
+    """F** = 27.43: here it needs some thousands of returns."""
+    rod = CyclePoint(27.45, 1e4, 1e2, 1e-2, 1.0)
+    found = solve_by_integration(rod, request(1e-6, most_periods=60))
+    assert found.status == MarchedStatus.not_settled
+    assert "returns of the tip, the last at a relative distance of" in found.message
+
+
+def test_a_crushed_rod_leaves_the_model():
+    found = solve_by_integration(CyclePoint(210.0, 200.0, 1e4, 1e-4, 1.0), request(ACCURACY, most_periods=9))
+    assert found.status == MarchedStatus.left_the_model
+
+
+@pytest.mark.parametrize("rod", [(np.inf, np.inf, 0.0), (np.inf, 300.0, 1e-3), (400.0, np.inf, 1e-3)])
+def test_a_rod_in_a_limit_states_what_the_rod_near_it_is_off_by(rod):
+    point = CyclePoint(60.0, *rod, 1.0)
+    one, other = solve_cycle(point, request(1e-8)), solve_by_integration(point, request(1e-4))
+    assert (one.status.name, other.status.name) == ("cycle", "cycle")
+    assert abs(other.measures.period / one.measures.period - 1) <= other.errors.period_error
+    assert abs(other.measures.tip_y_max / one.measures.tip_y_max - 1) <= other.errors.amplitude_error
+
+
+def test_samples_and_shapes_are_those_of_collocation():
+    rod, asked = CyclePoint(40.0, 1e4, 1e2, 1e-2, 1.0), {"samples": 16, "shapes": 4, "nodes": 9}
+    one, other = solve_cycle(rod, request(1e-8, **asked)), solve_by_integration(rod, request(1e-6, **asked))
+    assert other.tip == pytest.approx(one.tip, abs=1e-4)
+    assert other.shape == pytest.approx(one.shape, abs=1e-4)
