@@ -12,32 +12,33 @@ from pathlib import Path
 import pytest
 from faults import small
 from faults.isolated import Isolated, isolated
-from ranks import kill, ranks_in
+from ranks import kill, ranks_in, wait_for_children
 
 ROOT = Path(__file__).parents[1]
 BIN = Path(sys.executable).parent
+RANK = ROOT / "tests" / "faults" / "rank.py"
 
 LONGEST = (
     "test_slurm",
     "test_bad_files",
-    "test_figure_layout",
-    "test_joint",
-    "test_paper",
-    "test_start",
     "test_bad_input",
     "test_bench_sweep",
-    "test_run",
-    "test_stop",
-    "test_arm_grids",
-    "test_stretches",
+    "test_figure_layout",
     "test_branch_task",
+    "test_arm_grids",
+    "test_paper",
+    "test_run",
+    "test_extend",
+    "test_joint",
+    "test_stop",
+    "test_start",
+    "test_figures",
+    "test_cycle_figures",
     "test_stress",
+    "test_stretches",
     "test_interrupts",
     "test_generalised_hopf",
     "test_peers_limit_cycle",
-    "test_cycle_figures",
-    "test_extend",
-    "test_figures",
     "test_cycles_task",
     "test_arm_sweeps",
     "test_api",
@@ -80,6 +81,18 @@ def pytest_collection_modifyitems(items):
     items.sort(key=lambda item: places.get(item.path.stem, len(LONGEST)))
 
 
+class Started(subprocess.Popen):
+    """A process that ends once the child of the loaded process to which it handed over has ended too."""
+
+    directory: Path
+
+    def wait(self, timeout: float | None = None) -> int:
+        status = super().wait(timeout)
+        if "mpiexec" not in self.args[0]:  # ranks may outlive their launcher
+            wait_for_children(self.directory)
+        return status
+
+
 class Command:
     """`rodsweep` in a directory of its own, alone or under mpiexec."""
 
@@ -102,16 +115,20 @@ class Command:
                 kill(process.pid)
             kill(*ranks_in(directory).values())
 
-    def argv(self, *words: object, ranks: int = 0) -> list[str]:
+    def argv(self, *words: object, ranks: int = 0, afresh: bool = True) -> list[str]:
+        """The words that start processes; unless `afresh` each hands over to a child of a loaded one."""
         launcher = [str(BIN / "mpiexec"), "-n", str(ranks)] if ranks else []
-        return [*launcher, str(BIN / "rodsweep"), *map(str, words)]
+        if afresh or not self.loaded:
+            return [*launcher, str(BIN / "rodsweep"), *map(str, words)]
+        return [*launcher, sys.executable, "-SE", str(RANK), str(self.loaded().ranks), *map(str, words)]
 
     def __call__(
         self, *words: object, ranks: int = 0, timeout: float = 300, patch: str = "", **variables: str
     ) -> subprocess.CompletedProcess:
         """Runs the command to its end. Every process executes `patch` first, with the variables added."""
         if ranks or not self.loaded:
-            return self.afresh(*words, ranks=ranks, timeout=timeout, patch=patch, **variables)
+            how = {"ranks": ranks, "patch": patch, "afresh": False}
+            return self.afresh(*words, timeout=timeout, **how, **variables)
         run, limits = self.loaded(), {"seconds": None, "memory": None, "patience": timeout}
         ended = run(self.directory, *words, patch=patch, environment=variables, **limits)
         if ended.slow:
@@ -120,7 +137,7 @@ class Command:
 
     def afresh(self, *words: object, timeout: float = 300, **how) -> subprocess.CompletedProcess:
         """The same in processes of its own, without a launcher too."""
-        process = self.started(*words, **how)
+        process = self.started(*words, **{"afresh": True} | how)
         try:
             out, err = process.communicate(timeout=timeout)
         except subprocess.TimeoutExpired:
@@ -129,11 +146,17 @@ class Command:
         return subprocess.CompletedProcess(process.args, process.returncode, out, err)
 
     def started(
-        self, *words: object, ranks: int = 0, patch: str = "", stdout=subprocess.PIPE, **variables: str
+        self,
+        *words: object,
+        ranks: int = 0,
+        patch: str = "",
+        afresh: bool = False,
+        stdout=subprocess.PIPE,
+        **variables: str,
     ) -> subprocess.Popen:
         """The processes, started and left running, in a session of their own."""
-        process = subprocess.Popen(
-            self.argv(*words, ranks=ranks),
+        process = Started(
+            self.argv(*words, ranks=ranks, afresh=afresh),
             cwd=self.directory,
             # As this process got it: MPI, once started in here, adds to the one in C.
             env=os.environ | {"COLUMNS": "120"} | self._path_of(patch) | variables,
@@ -142,6 +165,7 @@ class Command:
             text=True,
             start_new_session=True,
         )
+        process.directory = self.directory
         self.left.append((process, self.directory))
         return process
 

@@ -135,9 +135,9 @@ def test_a_closed_curve_is_followed_once():
 
 
 @pytest.fixture(scope="module")
-def diagram(tmp_path_factory):
+def diagram(tmp_path_factory, loaded):
     """The command in a directory with a diagram, `c.h5`, put together from two shards."""
-    command = Command(tmp_path_factory.mktemp("coexistence"))
+    command = Command(tmp_path_factory.mktemp("coexistence"), lambda: loaded)
     command.write("c.yaml", DIAGRAM)
     for number in (1, 2):
         assert command("run", "c.yaml", "--shard", f"{number}/2").returncode == 0

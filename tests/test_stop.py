@@ -30,9 +30,9 @@ limit_cycle: {start: neighbour}
 """
 
 
-def started(command, ranks, pause):
+def started(command, ranks, pause, afresh=False):
     """A run whose journals hold points; each rank takes `pause` seconds for every further one."""
-    process = command.started("run", "c.yaml", ranks=ranks, patch=slowly(pause))
+    process = command.started("run", "c.yaml", ranks=ranks, patch=slowly(pause), afresh=afresh)
     pause_until_journalled(process, command.directory / "c.h5", 1)
     return process
 
@@ -72,7 +72,7 @@ def test_stopped_run_ends_with_its_points_in_the_file_and_goes_on(command, numbe
 def test_further_signals_do_not_change_the_status(command):
     """Python forgets its handlers long before MPI is through with its end: they come until all is over."""
     command.write("c.yaml", SPECTRA)
-    process = started(command, ranks=0, pause=0.2)
+    process = started(command, ranks=0, pause=0.2, afresh=True)
     process.send_signal(signal.SIGUSR1)
     said = ""
     while "the same command continues" not in said:

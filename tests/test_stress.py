@@ -126,7 +126,7 @@ def test_run_killed_at_random_ends_in_the_file_of_an_undisturbed_one(command, co
     struck, kept, told = 0, 0, []
     while struck < KILLS:
         ranks, fault, instant = random.randint(1, 4), random.choice(FAULTS), random_instant(points - kept)
-        process = command.started("run", "c.yaml", ranks=ranks)
+        process = command.started("run", "c.yaml", ranks=ranks, afresh=True)
         if is_struck := wait_for(instant, process, path, record):
             strike(process, command.directory, fault)
             struck += 1
@@ -160,7 +160,7 @@ def test_run_struck_within_points_and_curves_ends_in_the_file_of_an_undisturbed_
     whole, struck, told = time.monotonic() - began, 0, []
     while struck < KILLS // 2:
         ranks, fault = random.randint(1, 2), random.choice(FAULTS)
-        process = command.started("run", "c.yaml", ranks=ranks)
+        process = command.started("run", "c.yaml", ranks=ranks, afresh=True)
         with suppress(subprocess.TimeoutExpired):
             process.wait(random.uniform(0, whole))
         if process.poll() is None:

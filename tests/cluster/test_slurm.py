@@ -56,9 +56,9 @@ def running():
 
 
 @pytest.fixture(scope="module")
-def expected(tmp_path_factory):
+def expected(tmp_path_factory, loaded):
     """The content that a plain run gives."""
-    plain = Command(tmp_path_factory.mktemp("plain"))
+    plain = Command(tmp_path_factory.mktemp("plain"), lambda: loaded)
     plain.write("c.yaml", CONFIG)
     assert plain("run", "c.yaml").returncode == 0
     return content(plain.directory / "c.h5")

@@ -55,6 +55,8 @@ class Isolated:
 
     def __init__(self, server: subprocess.Popen, directory: Path):
         self.server, self.directory = server, directory
+        self.ranks = directory / "ranks"
+        """Socket of the process from which ranks are forked, where solvers are loaded."""
 
     def __call__(
         self,
@@ -111,7 +113,10 @@ def isolated(configs: list[Path], solving: bool = False) -> Iterator[Isolated]:
     """Isolated runs; what `configs` need is loaded before. Unless `solving`, no solver may be imported."""
     with tempfile.TemporaryDirectory() as name:
         server = subprocess.Popen(
-            [sys.executable, str(SERVER), "solving" if solving else "reading", *map(str, configs)],
+            [
+                *(sys.executable, str(SERVER), "solving" if solving else "reading"),
+                *(str(Path(name) / "ranks"), *map(str, configs)),
+            ],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,

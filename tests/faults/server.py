@@ -1,17 +1,21 @@
 """The command `rodsweep` in forked children of one process that has everything loaded already.
 
+So are ranks, by a process that has started neither MPI nor PETSc: `faults.rank` hands over to it.
+
 A run takes milliseconds instead of a start-up, and one that hangs, takes too much memory or crashes
 natively ends only its own child. Requests come as lines of JSON on standard input and are answered by
 lines on standard output, one each; `faults.isolated` is the other end. `test_start.py` holds what comes
 of it against the command that is started afresh.
 """
 
+import gc
 import io
 import json
 import os
 import resource
 import select
 import signal
+import socket
 import sys
 import traceback
 from contextlib import suppress
@@ -114,6 +118,70 @@ def answer(request: dict) -> dict:
     return {"status": status, "slow": waits or status == -signal.SIGXCPU}
 
 
+def keep_ranks(place: str) -> NoReturn:
+    """Forks a child for each rank that comes to a socket, until the process that started this one ends."""
+    parent = os.pidfd_open(os.getppid())
+    with socket.socket(socket.AF_UNIX) as server:
+        server.bind(place)
+        server.listen(64)
+        while parent not in select.select([server, parent], [], [])[0]:
+            rank, _ = server.accept()
+            if not os.fork():
+                server.close()
+                keep_rank(rank)
+            rank.close()
+            with suppress(ChildProcessError):
+                while os.waitpid(-1, os.WNOHANG)[0]:
+                    pass
+    os._exit(0)
+
+
+def keep_rank(rank: socket.socket) -> None:
+    """Lets a child be the rank that is at the other end, until one of them ends; returns in the child."""
+    head, streams, *_ = socket.recv_fds(rank, 4, 3)
+    request = json.loads(rank.recv(int.from_bytes(head, "big"), socket.MSG_WAITALL))
+    pid = os.fork()
+    if not pid:
+        rank.close()
+        raise IsRank(request, streams)
+    for stream in streams:
+        os.close(stream)
+    rank.sendall(pid.to_bytes(4, "big"))
+    handle = os.pidfd_open(pid)
+    if handle not in select.select([handle, rank], [], [])[0]:
+        os.kill(pid, signal.SIGKILL)
+    status = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+    with suppress(OSError):
+        rank.sendall(status.to_bytes(4, "big", signed=True))
+    os._exit(0)
+
+
+class IsRank(Exception):
+    """This process is a rank: what was requested of it, and its streams."""
+
+    def __init__(self, request: dict, streams: list[int]):
+        self.request, self.streams = request, streams
+
+
+def be_rank(request: dict, streams: list[int]) -> None:
+    """Runs the command as one rank, in this process, which ends as any other does: MPI wants that."""
+    for stream, given in enumerate(streams):
+        os.dup2(given, stream)
+        os.close(given)
+    sys.stderr = open(2, "w", 1, "utf-8", "backslashreplace", closefd=False)  # noqa: SIM115
+    sys.stdout = open(1, "w", encoding="utf-8", closefd=False)  # noqa: SIM115
+    os.chdir(request["directory"])
+    os.environ.clear()
+    os.environ.update(request["environment"])
+    sys.argv = ["rodsweep", *request["words"]]
+    patch = Path("patch/sitecustomize.py")
+    if str(patch.parent.absolute()) in os.environ.get("PYTHONPATH", ""):
+        exec(patch.read_text(), {"__name__": "sitecustomize"})
+    from rodsweep.cli import main
+
+    main()
+
+
 def load(solving: bool, configs: list[str]) -> None:
     """Imports everything and compiles what is compiled at first use for some configs."""
     import rodsweep.cli.checking
@@ -149,8 +217,37 @@ def draw() -> None:
     figure.savefig(io.BytesIO(), dpi=300)
 
 
+def load_for_ranks() -> None:
+    """Imports and compiles what starts neither MPI nor PETSc."""
+    import scipy.interpolate
+    import scipy.optimize
+    import scipy.sparse.linalg  # noqa: F401
+
+    import rodsweep.cli.running
+    import rodsweep.discretization.straight_elements  # noqa: F401
+    from rodsweep.determinant.covering import cover, first_boxes
+    from rodsweep.determinant.newton import refined  # noqa: F401
+    from rodsweep.determinant.parameter_path import Path as ParameterPath
+    from rodsweep.determinant.winding_number import count_right_of
+    from rodsweep.model.rod import Rod
+
+    rod = Rod(30.0, 1e4, 1e4, 1e-4)
+    count_right_of(0.0, rod)
+    path = ParameterPath(rod, "F")
+    boxes = first_boxes(path, 10.0, 11.0)
+    assert boxes is not None
+    cover(boxes, path.origin, path.direction)
+    assert not {"mpi4py.MPI", "petsc4py.PETSc"} & set(sys.modules)
+
+
 def main() -> None:
-    load(sys.argv[1] == "solving", sys.argv[2:])
+    if sys.argv[1] == "solving":
+        load_for_ranks()
+        gc.freeze()
+        if not os.fork():
+            keep_ranks(sys.argv[2])
+    load(sys.argv[1] == "solving", sys.argv[3:])
+    gc.freeze()  # collecting garbage, children would copy all that is loaded
     requests = sys.stdin.buffer
     with open(os.dup(1), "w", encoding="utf-8") as answers:
         os.dup2(2, 1)
@@ -160,4 +257,11 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except IsRank as rank:
+        found = rank
+    else:
+        found = None
+    if found:
+        be_rank(found.request, found.streams)

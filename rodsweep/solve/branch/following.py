@@ -6,7 +6,6 @@ from functools import partial
 from math import nan
 
 import numpy as np
-from scipy.optimize import brentq
 
 from ...watch import Whereabouts, report
 from ..cycle.linearisation import coordinate
@@ -258,6 +257,8 @@ def _edge(here: ArcPoint, course: Course, which: int) -> Condition:
 
 def _on_the_edge(here: ArcPoint, there: ArcPoint, edge: Condition, course: Course) -> ArcPoint:
     """The cycle at an end of the range that lies between two; raises Unsolvable."""
+    from scipy.optimize import brentq  # a tenth of a second of every start
+
     scale, segment = here.scale, Segment(here, there)
 
     def beyond(length: float) -> float:

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from enum import IntEnum
 
 import numpy as np
-from scipy.optimize import brentq
 
 from ...arrays import Array
 from ...determinant.parameter_plane import Plane, PlaneAxis
@@ -188,6 +187,8 @@ class CurveCourse:
 
     def _alive(self, points: Sequence[OnCurve], step: float) -> float:
         """A step, or the longest one whose prediction is a rod that is all but crushed."""
+        from scipy.optimize import brentq  # a tenth of a second of every start
+
         known = points[-PREDICTED_BY:]
         lengths = lengths_of(known)
 

@@ -14,7 +14,6 @@ from enum import IntEnum
 from math import ceil, nan
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from ...arrays import Array
 from ...discretization.periodic import maxima, samples_of
@@ -366,6 +365,8 @@ def stretch_at(point: ArcPoint) -> float:
 
 def least_stretch(path: CyclePath) -> float:
     """The least h1 of a cycle over the whole rod and the whole period."""
+    from scipy.optimize import minimize_scalar  # a tenth of a second of every start
+
     grid, c = path.orbit.form.mesh, path.strain_coefficients[:, 0]
 
     def least(u: Array) -> Array:

@@ -1,7 +1,6 @@
 """From the motion of a rod near a cycle to an orbit from which Newton's method can start."""
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from ...arrays import Array
 from ...discretization.beam import Beam
@@ -24,6 +23,8 @@ def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: flo
 
     turns: returns of the tip in a period. form may be the limit of a rod that the beam is near.
     """
+    from scipy.interpolate import CubicSpline  # a tenth of a second of every start
+
     spline = CubicSpline(run.times, run.states)
     begin = float(run.times[-1]) - period
     times = begin + period * np.arange(PHASES) / PHASES

@@ -13,7 +13,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from ...arrays import Array
 from ..point import Unsolvable
@@ -105,6 +104,8 @@ def modulation_of(returns: Array, angle: float) -> Modulation | None:
 
 def fitted_angle(returns: Array, angle: float) -> float:
     """The angle of a return, rad, next to the given one whose multiples leave least of states (k, n)."""
+    from scipy.optimize import minimize_scalar  # a tenth of a second of every start
+
     numbers = np.arange(len(returns))
 
     def left(at: float, harmonics: int) -> float:

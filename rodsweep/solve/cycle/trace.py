@@ -5,7 +5,6 @@ is some hundred numbers, the tip with its velocity six.
 """
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from ...arrays import Array
 from ...discretization.beam import Beam
@@ -45,6 +44,8 @@ class TipTrace:
 
     def at_equal_times(self, count: int) -> Array:
         """Time in tau2 and x, y, theta of the tip, (4, count), from the start to the end of the last run."""
+        from scipy.interpolate import CubicHermiteSpline  # a tenth of a second of every start
+
         times = np.linspace(0.0, self.times[-1][-1], count)
         starts = np.array([run[0] for run in self.times])
         of = np.searchsorted(starts, times, side="right") - 1

@@ -10,7 +10,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from ...arrays import Array
 from ...determinant.boundary import Boundary, OnBoundary
@@ -131,6 +130,8 @@ class HopfCurve:
 
     def located(self, first: int, last: int) -> GeneralisedHopfPoint | None:
         """The point with Re c = 0 between two of opposite signs, or None where it is not found."""
+        from scipy.optimize import brentq  # a tenth of a second of every start
+
         start, chord = self.scaled[first], self.scaled[last] - self.scaled[first]
         normal = chord / np.linalg.norm(chord)
 
