@@ -169,6 +169,14 @@ def test_show_answers_of_every_task(command, task, arm, more, told):
     assert any(line.startswith(told) for line in lines)
 
 
+def test_show_of_a_diagram_without_flutter_says_up_to_which_load(command):
+    quantities = "length: 10 cm, radius: 5 mm, young: 100 kPa, viscosity: 40 Pa s, poisson: [0.4, 0.5]"
+    loads = "pressure: {start: 0 kPa, stop: 1 kPa, num: 3}"
+    command.write("a.yaml", f"task: phase_diagram\nparameters: {{arm: {{{quantities}, {loads}}}}}\n")
+    assert command("run", "a.yaml").returncode == 0
+    assert "does not flutter up to 1 kPa\n" in command("show", "a.h5").stdout
+
+
 def test_lines_that_are_asked_for_over_an_arm_name_what_draws_them(command):
     command.write("a.yaml", MAP)
     assert command("run", "a.yaml").returncode == 0

@@ -2,11 +2,13 @@
 
 import re
 
+import numpy as np
 import pytest
 from conftest import ROOT
 
 from rodsweep.post.hopf_points import Bracket, lines_over
 from rodsweep.post.stability_changes import stability_changes
+from rodsweep.post.summary.errors import errors_of, span_of
 from rodsweep.post.summary.ranges import to_error
 from rodsweep.post.summary.stability import stability_lines
 from rodsweep.results.file.view import read_view
@@ -94,6 +96,18 @@ def test_modes_of_a_single_point_are_told_with_their_eigenvalues(command):
     )
     assert "unstable modes: 0, proved" in told
     assert "largest transient growth: 1.26004 times" in told
+
+
+def test_the_time_of_a_growth_that_is_hardly_known_from_1_is_not_told():
+    """Of a parabola from 1 up to 1.001 the error 1e-5 hides the top but for a tenth of its time."""
+    v = {
+        "transient_growth": np.array([1.001, 1.00005]),
+        "transient_time": np.array([2.0, 0.04]),
+        "growth_error": np.array([1e-5, 2e-4]),
+    }
+    assert errors_of(v, "transient_time")[0] == pytest.approx(0.2, rel=1e-3)
+    assert span_of(v, "transient_time", np.array([True, True])) == "2"
+    assert span_of(v, "transient_time", np.array([False, True])) == "none"
 
 
 @pytest.mark.parametrize("task", ["spectrum", "modes"])

@@ -23,7 +23,7 @@ from rodsweep.model.neglected import (
 from rodsweep.model.rod import Rod
 
 from .page import NUMBER, Page, as_stated, range_as_stated, read
-from .truths import changes_on_lines, changes_over_force, leading, rods_of
+from .truths import changes_on_lines, changes_over_force, leading, rods_of, time_is_known
 
 PREFIXES = {"p": 1e-12, "n": 1e-9, "µ": 1e-6, "m": 1e-3, "c": 1e-2, "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}
 BASES = ("Pa s", "Pa", "N m^2", "N", "Hz", "1/s", "s", "m^2", "m^4", "m", "J", "W", "kg/m^3")
@@ -176,6 +176,8 @@ def _item(view, page, line, match, fine, scales):
     )
     stored_there = name in view.variables and view.task == "branch" and not name.startswith("special")
     values = np.asarray((view if stored_there else fine).variables[name], float)  # its cycles are elsewhere
+    if name == "transient_time":
+        values = np.where((view.variables[name] == 0) | time_is_known(view), values, np.nan)
     scale = {"Pa": scales[force_unit(view)], "N": scales[force_unit(view)], "s": scales["tau2"]}
     scale |= {"1/s": 1 / scales["tau2"], "Hz": 1 / (2 * pi * scales["tau2"]), "m": scales["length"]}
     scale |= {"J": scales["force_scale"] * scales["length"]}
@@ -395,9 +397,10 @@ def _flutter_answer(view, page, told, start, chosen, scales):
     loads, hertz = _first(view, scales, "hopf")
     there = np.isfinite(loads[chosen])
     told(rf"flutters{some} from {value}; beats at {value}$", there.sum(), loads[chosen], hertz[chosen])
-    if "F_end" in view.variables:
-        ends = view.variables["F_end"].ravel() * scales[force_unit(view)]
-        told(rf"does not flutter{some} up to {value}$", (~there).sum(), ends[chosen])
+    if view.task != "criticality" or "F_end" in view.variables:
+        tops = np.minimum(_tops(view), view.point_columns["k1"])
+        ends = (tops * scales[force_unit(view)])[chosen]
+        told(rf"does not flutter{some} up to {value}$", (~there).sum(), ends)
     if view.task == "thresholds" and len(chosen) > 1:
         onset, back = (_first(view, scales, kind)[0][chosen] for kind in ("onset", "restabilization"))
         told(rf"a disturbance{some} swings as it dies away from {value} on$", 0, onset)

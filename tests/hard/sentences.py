@@ -49,6 +49,7 @@ from .truths import (
     is_change,
     leading,
     rods_of,
+    time_is_known,
 )
 
 TASKS = ("spectrum", "modes", "thresholds", "criticality", "limit_cycle", "phase_diagram", "branch")
@@ -319,9 +320,13 @@ def modes_sentences(view, page, keywords, fine):
     v, own = fine.variables, view.variables
     unbounded = np.isinf(v["transient_growth"])
     growth, time = (np.where(unbounded, np.nan, v[n]) for n in ("transient_growth", "transient_time"))
+    time = np.where((own["transient_time"] == 0) | time_is_known(view), time, np.nan)
     found = ranges(page, "condition of the leading eigenvalue: RANGE", v["condition"][..., 0])
     found += ranges(page, "numerical abscissa: RANGE 1/tau2", v["numerical_abscissa"])
-    found += ranges(page, "largest transient growth: RANGE times, at t = RANGE tau2", growth, time)
+    found += ranges(page, "largest transient growth: RANGE times", growth)
+    when = ranges(page, "largest transient growth: .* times, at t = RANGE tau2", time)
+    told = bool(when) == bool(np.isfinite(time).any())
+    found += when if told else [(page[0], "the time of the largest growth is left out, or not known")]
     found += counts(page, "^growth without bound at NUMBER point", unbounded.sum())
     fields = [own[f"{name}_real"] + 1j * own[f"{name}_imag"] for name in MODE_FIELDS]
     exact = [v[f"{name}_real"] + 1j * v[f"{name}_imag"] for name in MODE_FIELDS]

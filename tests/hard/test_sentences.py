@@ -4,15 +4,18 @@ A number that nothing compares fails as well. The suite takes a sweep of each ta
 as it says (`make survey`: 300).
 """
 
+import functools
 import os
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from . import sentences
+from . import arm_sentences, sentences
 from .arm_sentences import random_report, wrong_report
+from .page import IN_SIGHT, Page, page_of, unit_of
 from .sentences import TASKS, random_sweep, solved, wrong_sentences
+from .truths import changes_over_force
 
 SWEEPS, BATCH = int(os.environ.get("RODSWEEP_RODS", str(len(TASKS)))), len(TASKS)
 LEAST_READ = 10
@@ -59,3 +62,52 @@ def test_the_reader_finds_a_number_that_is_wrong(name, monkeypatch):
 
     monkeypatch.setattr(sentences, "solved", off)
     assert wrong_sentences("limit_cycle", ROD)[0] != []
+
+
+ARM = {
+    "length": "2.4 cm",
+    "young": ["160 kPa", "200 kPa"],
+    "radius": "1.5 mm",
+    "inner_radius": "0.7 mm",
+    "poisson": 0.42,
+    "viscosity": "273.7 Pa s",
+    "drag": "range",
+}
+LOADED = {"young": "160 kPa", "pressure_over_flutter": [0.97, 1.5]}
+OF_ARMS = {
+    "thresholds": {"arm": ARM, "F_max": 60.0},
+    "spectrum": {"arm": ARM | LOADED},
+    "limit_cycle": {"arm": ARM | LOADED, "accuracy": 1e-3},
+}
+LEAST_LINES = 3
+"""Lines in the units of an arm, below which its page has lost some."""
+UNITS_OFF = 3
+"""Units of its last digit by which a number is wrong that has to be found; a third of it, where more."""
+
+
+@pytest.mark.parametrize("task", OF_ARMS)
+def test_the_reader_finds_a_number_of_an_arm_that_is_wrong(task, monkeypatch):
+    """The first number of every line in the arm's units, one after another."""
+    views = functools.cache(lambda accuracy: solved(task, OF_ARMS[task] | accuracy_of(accuracy)))
+    for reader in (sentences, arm_sentences):
+        monkeypatch.setattr(reader, "changes_over_force", functools.cache(changes_over_force))
+    monkeypatch.setattr(sentences, "solved", lambda _, keywords: views(keywords.get("accuracy")))
+    page = page_of(views(OF_ARMS[task].get("accuracy")))
+    lines = page[: page.index("the rods without dimension:")]
+    assert wrong_sentences(task, OF_ARMS[task])[0] == []
+    missed = []
+    for i, line in enumerate(lines):
+        if (number := IN_SIGHT.search(line)) is None:
+            continue
+        value = float(number[1])
+        off = max(UNITS_OFF * unit_of(number[1]), abs(value) / 3)
+        changed = f"{line[: number.start(1)]}{value + off:.12g}{line[number.end(1) :]}"
+        other = Page("\n".join(["", *page[:i], changed, *page[i + 1 :]]))
+        monkeypatch.setattr(sentences, "page_of", lambda _, other=other: other)
+        missed += [] if wrong_sentences(task, OF_ARMS[task])[0] else [changed]
+    assert missed == []
+    assert len(lines) >= LEAST_LINES
+
+
+def accuracy_of(accuracy):
+    return {} if accuracy is None else {"accuracy": accuracy}

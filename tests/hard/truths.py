@@ -30,6 +30,15 @@ def leading(rod):
     return complex(w[0]), complex(w[1])
 
 
+def time_is_known(view):
+    """Whether the time of the largest growth is known to a half of itself, at every point.
+
+    Between 0 and twice that time the growth is a parabola about, from 1 up and back.
+    """
+    v = view.variables
+    return v["growth_error"] < (1 - 1 / v["transient_growth"]) / 4
+
+
 def is_change(rod, name, at, kind):
     """Whether the straight rod changes in this way where a parameter has a value."""
     before, after = (leading(replace(rod, **{name: at * (1 + side * BESIDE)})) for side in (-1, 1))

@@ -18,7 +18,7 @@ from ...results.layouts.arm import FORCES, HERTZ, QUANTITY_UNITS, twins_of
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ..hopf_points import Located
 from ..tables.rows import quantities_at_points
-from .errors import errors_of
+from .errors import errors_of, is_known
 from .ranges import rounded, span
 
 WIDTH = 80
@@ -124,7 +124,8 @@ def arm_lines(view: View, done: np.ndarray) -> list[str]:
         for own, v in twins.items()
         if "error" not in v.name and (not v.extra or (done.size == 1 and v.extra != ("crossing",)))
     }
-    values = {own: view.variables[v.name][done] for own, v in shown.items()}
+    known = {own: is_known(view.variables, own)[done] for own in shown}
+    values = {own: np.where(known[own], view.variables[v.name][done], np.nan) for own, v in shown.items()}
     values = {own: column for own, column in values.items() if np.isfinite(column).any()}
     largest: dict[str, float] = {}
     for own, column in values.items():

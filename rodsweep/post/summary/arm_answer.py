@@ -194,8 +194,9 @@ def _of_diagram(view: View, rods: np.ndarray) -> list[str]:
     first, v = _first_hopf(view, rods), view.variables
     _, (scale,), _ = FORCES[load_of(view)]
     loads = _at(v["crossing_at"][rods], first) * np.broadcast_to(v[scale], rods.shape)[rods]
-    nowhere = np.full(len(first), np.nan)
-    return _flutter(view, loads, nowhere, _at(v["crossing_frequency_hz"][rods], first))
+    last = np.minimum(v["F"][-1], view.point_columns["k1"].reshape(rods.shape)[rods])
+    ends = last * np.broadcast_to(v[scale], rods.shape)[rods]
+    return _flutter(view, loads, ends, _at(v["crossing_frequency_hz"][rods], first))
 
 
 def load_of(view: View) -> str:

@@ -38,6 +38,8 @@ EXTREMA = ("tip_x_min", "tip_x_max", "tip_y_min", "tip_theta_max", "least_stretc
 BETWEEN_NODES = 1e-3
 """How much less h1 may be between nodes than at them, in units of how far it is from 1."""
 POWERS = ("injection_mean", "injection_rms", "dissipation_mean", "dissipation_rms")
+LEAST_KNOWN = 0.5
+"""Relative error from which not one digit of a time is known."""
 OF_THE_STRAIGHT_ROD = ("linear_growth_rate", "linear_frequency")
 
 
@@ -57,7 +59,9 @@ def _errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
         beside = BETWEEN_NODES * np.abs(1 - v[name]) if name == "least_stretch" else 0.0
         return v["extrema_error"] * v["tip_y_max"] + beside
     if name == "transient_time" and "growth_error" in v:
-        return values * np.sqrt(v["growth_error"])  # next to its flat maximum the growth falls quadratically
+        # Next to its flat maximum the growth falls quadratically, down to 1 at t = 0.
+        rise = np.maximum(1 - 1 / v["transient_growth"], np.finfo(float).tiny)
+        return values * np.sqrt(v["growth_error"] / rise)
     if RELATIVE.get(name, "") in v:
         return values * v[RELATIVE[name]]
     return v[ABSOLUTE[name]] if ABSOLUTE.get(name, "") in v else np.zeros_like(values, float)
@@ -69,6 +73,15 @@ def power_error(v: Mapping[str, np.ndarray], fluctuation: bool = False) -> np.nd
     return mean + 2 * v["extrema_error"] if fluctuation else mean
 
 
+def is_known(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
+    """Where a variable is known at all, a mask of its shape: a maximum hardly above 1 may be anywhere."""
+    values = np.asarray(v[name])
+    if name != "transient_time" or "growth_error" not in v:
+        return np.ones(values.shape, bool)
+    return (values == 0) | ~(errors_of(v, name) >= LEAST_KNOWN * values)
+
+
 def span_of(v: Mapping[str, np.ndarray], name: str, there: np.ndarray) -> str:
     """The range of a variable over the points that are `there`, a mask of their shape, as far as known."""
+    there = there & is_known(v, name) if name == "transient_time" else there
     return span(v[name][there], errors_of(v, name)[there])

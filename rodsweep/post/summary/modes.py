@@ -5,7 +5,7 @@ import numpy as np
 from ...results.file.view import View
 from ...wording import counted
 from .errors import errors_of, span_of
-from .ranges import span
+from .ranges import NONE, span
 from .spectrum import (
     eigenvalue_lines,
     error_lines,
@@ -46,7 +46,8 @@ def growth_lines(view: View, done: np.ndarray) -> list[str]:
     if np.isfinite(growth).any():
         finite = done & np.isfinite(v["transient_growth"])
         most, when = (span_of(v, f"transient_{name}", finite) for name in ("growth", "time"))
-        lines.append(f"largest transient growth: {most} times, at t = {when} tau2")
+        at = "" if when == NONE else f", at t = {when} tau2"
+        lines.append(f"largest transient growth: {most} times{at}")
     if np.isinf(growth).any():
         points = counted(int(np.isinf(growth).sum()), "point")
         lines.append(f"growth without bound at {points}: a mode is unstable")
