@@ -31,7 +31,7 @@ SPARE = 2
 """Eigenvalues asked for at first beyond the wanted ones."""
 UNCHANGED = 1e-9
 """Relative change of the leading eigenvalues below which more eigenvalues do not change them."""
-SAFETY, ROUNDING = 3.0, 1e-13
+SAFETY, ROUNDING = 3.0, 3e-13
 """Factor on what two meshes differ by, and rounding error of an eigenvalue in units of its modulus, the shift
 and F^2: under a pull the first eigenvalue is exponentially small against the latter."""
 
@@ -96,13 +96,13 @@ def _errors(w: Complex, coarser: Complex, scale: float) -> Array:
 
     scale: of the rates to which the matrix is rounded, in 1/tau2. Two meshes may round one eigenvalue alike
     by chance: each gets the relative error of its neighbours, too. Where two eigenvalues are about to meet,
-    rounding grows as the inverse of their distance.
+    rounding grows, and the difference of the meshes with it.
     """
     apart = np.abs(w[:, None] - coarser).min(axis=1) / np.abs(w)
     padded = np.pad(apart, 1)
     relative = np.max([padded[:-2], padded[1:-1], padded[2:]], axis=0)
     others = np.abs(w[:, None] - w) + np.diag(np.full(len(w), np.inf))
-    meeting = 1 + np.abs(w) / others.min(axis=1, initial=np.inf)
+    meeting = np.sqrt(1 + np.abs(w) / others.min(axis=1, initial=np.inf))
     errors: Array = SAFETY * relative * np.abs(w) + ROUNDING * meeting * (np.abs(w) + scale)
     return errors
 
