@@ -62,9 +62,10 @@ def _solve(rod: Rod, request: SpectrumRequest) -> Spectrum:
             break
         found = _leading(rod, mesh, modes, shift)
         if len(found.w) >= modes and len(before.w):
-            best = _spectrum(rod, request, mesh, found, _errors(found.w, before.w, abs(shift) + rod.F**2))
-            if best.status == SpectrumStatus.ok:
-                return best
+            here = _spectrum(rod, request, mesh, found, _errors(found.w, before.w, abs(shift) + rod.F**2))
+            if here.status == SpectrumStatus.ok:
+                return here
+            best = here if best is None else min(best, here, key=_worst)  # the finest may round most
         before = found
     if best is None:
         raise Unsolvable("no mesh within the limit has as many eigenvalues as are wanted")
@@ -89,6 +90,11 @@ def _leading(rod: Rod, mesh: Resolution, modes: int, shift: float) -> _Found:
         if same or 2 * wanted > mesh.unknowns // 3:
             return _Found(raw[order], order)
         before, wanted = leading, 2 * wanted
+
+
+def _worst(found: Spectrum) -> float:
+    """The largest relative error."""
+    return float((found.error_estimate / np.abs(found.eigenvalues)).max())
 
 
 def _errors(w: Complex, coarser: Complex, scale: float) -> Array:
