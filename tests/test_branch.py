@@ -246,7 +246,7 @@ def test_place_of_a_long_solve_says_how_far_it_is(monkeypatch):
     work, words, shares = zip(*[place for place in places if place[1]], strict=True)
     assert all(0 <= share <= 1 for share in shares)
     assert words[0].startswith("branch from Hopf point 1 of 2: F = 3")
-    assert words[0].endswith(" on the way to 150, 1 cycles")
+    assert words[0].endswith(" on the way to 150, 1 cycle")
     assert shares[0] < 0.1
     assert shares[-1] > 0.8
     assert 0.2 < np.interp(0.5 * len(done), work, shares) < 0.8

@@ -361,3 +361,16 @@ def test_errors_at_special_points_contain_a_finer_branch_and_the_amplitude_of_cr
     error = found.special_amplitude_coefficient_error[[0, 2]]
     assert (np.abs(found.special_amplitude_coefficient[[0, 2]] / a - 1) <= error).all()
     assert (error < 1e-3).all(), "three digits are known"
+
+
+def test_check_foresees_no_time_for_a_pulled_rod(command):
+    def seconds(forces):
+        branches = "branch: {along: k1, start: 70, stop: 1.0e3}"
+        command.write(
+            "f.yaml", f"task: branch\nparameters: {{F: {forces}, k2: 100, gamma3: 1.0e-3}}\n{branches}\n"
+        )
+        told = " ".join(command("check", "f.yaml").stdout.split())
+        return float(re.search(r"expected: ([\d.e-]+) s on one rank", told)[1])
+
+    assert seconds("[-20, 60]") == pytest.approx(seconds("[60]"), rel=1e-2)
+    assert seconds("[-20]") == 0

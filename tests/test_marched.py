@@ -50,7 +50,7 @@ def test_cycles_are_those_of_collocation_within_their_errors():
             off = abs(getattr(a, name) - getattr(b, name))
             assert off <= (errors.extrema_error + one.errors.extrema_error) * a.tip_y_max, name
         assert b.harmonic_amplitude == pytest.approx(a.harmonic_amplitude, abs=10 * ACCURACY)
-        assert b.injection_mean == pytest.approx(a.injection_mean, rel=1e-3)
+        assert b.injection_mean == pytest.approx(a.injection_mean, rel=10 * ACCURACY)
         assert np.isnan(other.multiplier)
 
 
@@ -97,5 +97,5 @@ def test_a_rod_in_a_limit_states_what_the_rod_near_it_is_off_by(rod):
 def test_samples_and_shapes_are_those_of_collocation():
     rod, asked = CyclePoint(40.0, 1e4, 1e2, 1e-2, 1.0), {"samples": 16, "shapes": 4, "nodes": 9}
     one, other = solve_cycle(rod, request(1e-8, **asked)), solve_by_integration(rod, request(1e-6, **asked))
-    assert other.tip == pytest.approx(one.tip, abs=1e-4)
-    assert other.shape == pytest.approx(one.shape, abs=1e-4)
+    assert other.tip == pytest.approx(one.tip, abs=1e-5)
+    assert other.shape == pytest.approx(one.shape, abs=1e-5)

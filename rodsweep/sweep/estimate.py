@@ -76,7 +76,7 @@ def estimate_branches(points: Points, along: str, reach: tuple[float, float], ac
     indices = np.unique(np.linspace(0, points.count - 1, min(SAMPLE, points.count)).astype(np.int64))
     indices = indices[[points.has_rod(int(index)) for index in indices]]
     values: dict[str, Array | float] = points.values_of(indices) | {along: reach[along in HARDER_IF_LARGER]}
-    F = np.minimum(values["F"], values["k1"])
+    F = np.clip(values["F"], 0.0, values["k1"])  # nothing that is pulled beats
     per_force = BRANCH_SECONDS * (accuracy / 1e-7) ** BRANCH_ACCURACY
     each = per_force * F * (1 + F / values["k2"]) ** BRANCH_BENDING
     return Estimate(float(np.mean(each)) * points.count if indices.size else 0.0)

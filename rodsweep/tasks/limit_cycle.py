@@ -100,7 +100,9 @@ class LimitCycleTask(Task):
             ("Floquet multipliers", not marched, f"limit_cycle.method: {options.method}"),
             self._stored("tip and energy over a cycle", "samples", TIP + ENERGY),
             self._stored("shapes over a cycle", "shapes", SHAPE),
-            self._stored("tip from the start to the cycle", "transient", TRANSIENT),
+            ("tip from the start to the cycle", False, f"limit_cycle.method: {options.method}")
+            if marched
+            else self._stored("tip from the start to the cycle", "transient", TRANSIENT),
             ("period in tau1 too", options.time == "tau1", f"limit_cycle.time: {options.time}"),
             ("gravity, inertia, motion out of the plane", False, "not part of the overdamped problem"),
         ]

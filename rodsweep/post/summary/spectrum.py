@@ -88,7 +88,9 @@ def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
     v = view.variables
     unknowns = 3 * v["elements"][done].astype(int) * v["order"][done]
     if (followed := int((unknowns == 0).sum())) == unknowns.size:
-        return ["every point was followed from its neighbours, or failed: none was solved on a mesh"]
+        return [
+            "every point was followed from the first one of its stretch, whose modes a mesh gave, or failed"
+        ]
     without = f"; none at {followed} that were followed or failed" if followed else ""
     return [f"unknowns a point: {span(unknowns[unknowns > 0])}{without}"]
 

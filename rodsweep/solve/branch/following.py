@@ -8,6 +8,7 @@ from math import nan
 import numpy as np
 
 from ...watch import Whereabouts, report
+from ...wording import counted
 from ..cycle.linearisation import coordinate
 from ..cycle.neighbour import value_at, value_of
 from ..cycle.orbit_mesh import mesh_of
@@ -118,7 +119,7 @@ def _place_on(curve: BranchCurve, here: ArcPoint, course: Course) -> Whereabouts
     name = here.scale.name
     aim = course.ends[1 if here.ahead[-1] > 0 else 0]
     there, end = value_at(name, here.at), value_at(name, aim)
-    words = f"{name} = {there:.5g} on the way to {end:.5g}, {len(curve.points)} cycles"
+    words = f"{name} = {there:.5g} on the way to {end:.5g}, {counted(len(curve.points), 'cycle')}"
     return Whereabouts(words, share_done(coordinate(name, curve.special[0].at), here.at, aim))
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from ...arrays import Array
 from ...determinant.parameter_plane import Plane, PlaneAxis
 from ...watch import Whereabouts, report
+from ...wording import counted
 from ..cycle.measures import CyclePath
 from ..cycle.newton import relative_change
 from ..cycle.orbit import Orbit
@@ -136,7 +137,11 @@ class CurveCourse:
         """
         points, step = [first_point(special, self.line.name, self.rows, row)], FIRST
         while len(points) < MOST_POINTS:
-            report(lambda: Whereabouts(f"{self.rows.name} = {points[-1].row:.5g}, {len(points)} points"))
+            report(
+                lambda: Whereabouts(
+                    f"{self.rows.name} = {points[-1].row:.5g}, {counted(len(points), 'point')}"
+                )
+            )
             try:
                 there, off = self._next(points, step, side)
             except FAILURES:

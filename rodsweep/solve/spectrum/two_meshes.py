@@ -28,6 +28,7 @@ from .search import SHIFT_ABOVE_GROWTH, Spectrum, SpectrumRequest, no_spectrum, 
 from .status import SpectrumStatus
 
 MOST_FINER = 8
+"""Meshes tried after the first, each a third finer."""
 SPARE = 2
 """Eigenvalues asked for at first beyond the wanted ones."""
 UNCHANGED = 1e-9
@@ -82,15 +83,20 @@ class _Found(NamedTuple):
 
 
 def _leading(rod: Rod, mesh: Resolution, modes: int, shift: float) -> _Found:
-    """At least so many leading eigenvalues of a mesh, if it has them, among all that were found on it."""
+    """At least so many leading eigenvalues of a mesh among all that were found on it.
+
+    None of a mesh so coarse that twice as many cannot be asked for.
+    """
     solver, wanted, before = eigen_solver(mesh), modes + SPARE, np.empty(0, complex)
     while True:
         raw = solver.solve(rod, shift, wanted, tight=True)
         order = np.lexsort((-raw.imag, -raw.real))
         leading = raw[order[:modes]]
         same = len(leading) == len(before) == modes and np.allclose(leading, before, rtol=UNCHANGED, atol=0)
-        if same or 2 * wanted > mesh.unknowns // 3:
+        if same:
             return _Found(raw[order], order)
+        if 2 * wanted > mesh.unknowns // 3:
+            return _Found(raw[:0], order[:0])
         before, wanted = leading, 2 * wanted
 
 
