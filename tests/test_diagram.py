@@ -5,11 +5,11 @@ from math import inf
 import numpy as np
 import pytest
 
-from rodsweep.determinant.curves import trace
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.determinant.winding_number import count_right_of
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.boundaries import curves_through, seed_of
+from rodsweep.solve.changes.boundary_curves import trace
 from rodsweep.solve.changes.rows import Motion, RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import ThresholdStatus
 from rodsweep.solve.changes.unstable_modes import Kind

@@ -11,12 +11,12 @@ from second_normal_form import Shape, coefficients
 from test_paper import run, stated
 
 import rodsweep as rs
-from rodsweep.determinant.curves import trace
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
 from rodsweep.post.figures.diagram_curves import parts_of_one_side
 from rodsweep.results.file.view import read_view
+from rodsweep.solve.changes.boundary_curves import trace
 from rodsweep.solve.hopf import bautin_curves, generalised
 from rodsweep.solve.hopf.bautin_curves import BautinCurvePoint, BautinEnd, BautinSpace, bautin_curve, lies_on
 from rodsweep.solve.hopf.generalised import curve_criticality

@@ -1,7 +1,6 @@
 """Curves of folds and torus points of cycles, from where they were located on rows to where they end."""
 
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from enum import IntEnum
 
@@ -11,28 +10,35 @@ from ...arrays import Array
 from ...determinant.parameter_plane import Plane, PlaneAxis
 from ...watch import Whereabouts, report
 from ...wording import counted
+from ..continuation.follower import End, StepControl, Stepped, follow, zero_along
 from ..cycle.measures import CyclePath
 from ..cycle.newton import relative_change
 from ..cycle.orbit import Orbit
 from ..cycle.orbit_mesh import OrbitMesh, mesh_of
 from ..hopf.generalised import GeneralisedHopfPoint
-from ..point import FAILURES, Unsolvable
+from ..point import Unsolvable
 from .bordered import BorderedMatrix
 from .special_family import CycleFamily, OnCurve, crossing_pair, first_point, with_parameters
 from .special_points import SpecialKind, SpecialPoint, least_stretch
 
-FIRST, LONGEST, SHORTEST = 0.01, 0.1, 1e-4
-"""Steps along a curve: the axis of the rows has length 1, a branch the length of `Scale.place`."""
-GOOD_PREDICTION, FAR, LONGER, SHORTER = 3e-3, 0.1, 2.0, 0.5
-"""Relative distance of a cycle from its prediction that the next step is chosen for, beyond which it may be
-another one, and by how much a step may differ from the one before."""
-STRAIGHT = 0.85
-"""Least cosine of the angle between steps."""
 PREDICTED_BY = 4
 """Points of a curve through which the prediction goes, at most."""
-MOST_POINTS, MOST_LANDINGS, LEAST_LOOP = 400, 15, 5
-LANDED = 1e-8
-"""Distance from an edge, scaled, that is none."""
+STEPS = StepControl(
+    first=0.01,
+    longest=0.1,
+    shortest=1e-4,
+    aim=3e-3,
+    far=0.1,
+    order=PREDICTED_BY,
+    sharpest=0.55,
+    growth=2.0,
+    most=400,
+)
+"""Lengths along a curve: the axis of the rows has length 1, a branch the length of `Scale.place`."""
+LEAST_LOOP = 5
+"""Points of a closed curve, at least."""
+LANDED, LAST_BRACKET = 1e-8, 1e-10
+"""Distance from an edge, scaled, that is none, and share of a step to which its place is sought."""
 SHORT_OF_CRUSHED = 1e-3
 """How far below k1 a curve ends, relatively."""
 VANISHING = 0.01
@@ -122,65 +128,58 @@ class CycleCurve:
         return cls(kind, points, (before.end, ahead.end), (vanishing[0], vanishing[1]))
 
 
+EDGES, ROW_EDGES = 4, (2, 3)
+"""The margins of a curve begin with the distances from the edges of the plane, of which these are rows."""
+END_AT_MARGIN = (*EDGES * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_model, CurveEnd.hopf)
+"""Why a curve ends where a margin is 0."""
+
+
 @dataclass(frozen=True, slots=True)
 class CurveCourse:
-    """A kind of special points, over the line's parameter between two values and the rows' axis."""
+    """A kind of special points, over the line's parameter between two values and the rows' axis.
+
+    side: 1 or -1, to which the curve goes first along the rows' axis.
+    """
 
     kind: SpecialKind
     line: PlaneAxis
     rows: PlaneAxis
+    side: float = 1.0
 
-    def followed(self, special: SpecialPoint, row: float, side: float) -> tuple[list[OnCurve], CurveEnd]:
-        """(the curve from a special point of a row on, why it ends); raises Unsolvable.
+    def followed(self, special: SpecialPoint, row: float) -> tuple[list[OnCurve], CurveEnd]:
+        """(the curve from a special point of a row on, why it ends); raises Unsolvable."""
+        curve = follow(self, first_point(special, self.line.name, self.rows, row), STEPS, self._report)
+        if curve.end is End.margin:
+            return curve.solutions, END_AT_MARGIN[curve.margin]
+        if curve.end is End.closed:
+            return curve.solutions, CurveEnd.closed
+        lost = curve.end is End.lost
+        return curve.solutions, self._why_lost(curve.solutions[-1]) if lost else CurveEnd.not_followed
 
-        side: 1 or -1, to which the curve goes first along the rows' axis.
-        """
-        points, step = [first_point(special, self.line.name, self.rows, row)], FIRST
-        while len(points) < MOST_POINTS:
-            report(
-                lambda: Whereabouts(
-                    f"{self.rows.name} = {points[-1].row:.5g}, {counted(len(points), 'point')}"
-                )
-            )
-            try:
-                there, off = self._next(points, step, side)
-            except FAILURES:
-                step /= 2
-                if step < SHORTEST:
-                    return points, self._why_lost(points[-1])
-                continue
-            end = self._beyond(there)
-            if end is not CurveEnd.none:
-                return points + self._landed(points[-1], there, end), end
-            if comes_back(points, there):
-                return [*points, points[0]], CurveEnd.closed
-            points.append(there)
-            if there.tip_y_max < VANISHING and there.tip_y_max < points[-2].tip_y_max:
-                return points, CurveEnd.hopf
-            order = min(len(points), PREDICTED_BY)
-            factor = (GOOD_PREDICTION / max(off, 1e-9)) ** (1 / order)
-            step = min(LONGEST, step * float(np.clip(factor, SHORTER, LONGER)))
-        return points, CurveEnd.not_followed
+    def _report(self, points: Sequence[OnCurve]) -> None:
+        """Says where the curve is."""
+        report(
+            lambda: Whereabouts(f"{self.rows.name} = {points[-1].row:.5g}, {counted(len(points), 'point')}")
+        )
 
-    def _next(self, points: Sequence[OnCurve], step: float, side: float) -> tuple[OnCurve, float]:
-        """(the point a step ahead, relative distance of its cycle from the prediction); raises Unsolvable."""
-        last = points[-1]
-        if len(points) == 1:
-            start, place = last.orbit, last.place + side * step
-            across, slope = ALONG_BRANCH, 0.0
+    def step(self, behind: Sequence[OnCurve], length: float) -> Stepped[OnCurve]:
+        """The point a step ahead; raises Unsolvable."""
+        last = behind[-1]
+        if len(behind) == 1:
+            start, place = last.orbit, last.place + self.side * length
+            across, slope, rates = ALONG_BRANCH, 0.0, None
         else:
-            start, place = self._predicted(points, self._alive(points, step))
+            start, place = self._predicted(behind, self._alive(behind, length))
             way = np.append(last.scale.place(start) - last.scale.place(last.orbit), place - last.place)
-            across, slope = last.across(way), slope_of(*points[-2:])
-        there = self._family(last).point(start, place, across, slope, last.rates if len(points) > 1 else None)
+            across, slope, rates = last.across(way), slope_of(*behind[-2:]), last.rates
+        there = self._family(last).point(start, place, across, slope, rates)
         mesh = mesh_of(there.orbit)
         predicted = start if mesh == mesh_of(start) else mesh.carry(start)
         off = relative_change(predicted, there.orbit.values - predicted.values)
-        if len(points) > 1:
-            one, other = last.step_from(points[-2]), there.step_from(last)
-            if off > FAR or one @ other < STRAIGHT * np.linalg.norm(one) * np.linalg.norm(other):
-                raise Unsolvable("the point is far from its prediction")
-        return there, off
+        if len(behind) == 1:  # the cycle of another row was the prediction
+            return Stepped(there, min(off, STEPS.far), 1.0)
+        one, other = last.step_from(behind[-2]), there.step_from(last)
+        return Stepped(there, off, float(one @ other / np.linalg.norm(one) / np.linalg.norm(other)))
 
     def _family(self, point: OnCurve) -> CycleFamily:
         return CycleFamily.about(self.kind, self.rows, point)
@@ -216,53 +215,41 @@ class CurveCourse:
         changed = {self.line.name: at, self.rows.name: self.rows.value(place)}
         return with_parameters(replace(mesh.carry(points[-1].orbit), values=values), changed), place
 
-    def _beyond(self, point: OnCurve) -> CurveEnd:
-        """Why a curve ends before a point."""
-        rod = point.orbit.form.rod
-        if rod.F / rod.k1 > 1 - SHORT_OF_CRUSHED:
-            return CurveEnd.crushed
-        if not (-LANDED <= point.place <= 1 + LANDED and -LANDED <= self.line.scaled(point.at) <= 1 + LANDED):
-            return CurveEnd.edge
-        return CurveEnd.left_the_model if least_stretch(CyclePath(point.orbit)) <= 0 else CurveEnd.none
+    def margins(self, point: OnCurve) -> Array:
+        """Scaled distances from the edges and from crushing, h1, and the size of the cycle, (7,)."""
+        x, y, rod = self.line.scaled(point.at), point.place, point.orbit.form.rod
+        alive, stretch = 1 - SHORT_OF_CRUSHED - rod.F / rod.k1, least_stretch(CyclePath(point.orbit))
+        return np.array([x, 1 - x, y, 1 - y, alive, stretch, point.tip_y_max - VANISHING])
 
-    def _margins(self, point: OnCurve, end: CurveEnd) -> Array:
-        """What is negative beyond an end: distances from the edges scaled, from crushing, or h1."""
-        if end is CurveEnd.edge:
-            x, y = self.line.scaled(point.at), point.place
-            return np.array([x, 1 - x, y, 1 - y])
-        if end is CurveEnd.crushed:
-            rod = point.orbit.form.rod
-            return np.array([1 - SHORT_OF_CRUSHED - rod.F / rod.k1])
-        return np.array([least_stretch(CyclePath(point.orbit))])
+    def landed(self, behind: Sequence[OnCurve], outer: OnCurve, margin: int) -> OnCurve | None:
+        """The point between the last of some and the next at which a margin is 0; None if not found."""
+        inner = behind[-1]
+        if END_AT_MARGIN[margin] is CurveEnd.hopf:
+            return outer  # cycles vanish where no branch leads on: what lies beyond is extrapolated
+        ends = float(self.margins(inner)[margin]), float(self.margins(outer)[margin])
+        if ends[0] <= LANDED:
+            return None
+        try:
+            if margin in ROW_EDGES:
+                there = self.on_row(inner, outer, float(margin - ROW_EDGES[0]))
+                return self._family(outer).point(there.orbit, there.place, ALONG_BRANCH, rates=there.rates)
+            found: dict[float, OnCurve] = {1.0: outer}
 
-    def _landed(self, inner: OnCurve, outer: OnCurve, end: CurveEnd) -> list[OnCurve]:
-        """The point between two at which the curve ends, or none where it is not found."""
-        one, other = self._margins(inner, end), self._margins(outer, end)
-        # Of what is passed between the two the first.
-        which = int(np.argmin(np.where(other < 0, one / np.maximum(one - other, LANDED), np.inf)))
-        low, high, f_low, f_high, kept = 0.0, 1.0, float(one[which]), float(other[which]), 0
-        if f_low <= LANDED:
-            return []
-        if end is CurveEnd.edge and which >= 2:
-            with suppress(Unsolvable):
-                there = self.on_row(inner, outer, float(which - 2))
-                return [self._family(outer).point(there.orbit, there.place, ALONG_BRANCH, rates=there.rates)]
-        for _ in range(MOST_LANDINGS):
-            share = low + f_low / (f_low - f_high) * (high - low)
-            try:
-                there = self.between(inner, outer, share)
-            except Unsolvable:
-                return []
-            f = float(self._margins(there, end)[which])
-            if abs(f) <= LANDED:
-                return [there]
-            # An end that is kept twice has its value halved, lest it be kept for ever (Illinois method).
-            if f > 0:
-                low, f_low, f_high = share, f, f_high / (2 if kept > 0 else 1)
-            else:
-                high, f_high, f_low = share, f, f_low / (2 if kept < 0 else 1)
-            kept = 1 if f > 0 else -1
-        return []
+            def left(share: float) -> float:
+                found[share] = self.between(inner, outer, share)
+                return float(self.margins(found[share])[margin])
+
+            return found[zero_along(left, ends, 1.0, LANDED, LAST_BRACKET)]
+        except Unsolvable:
+            return None
+
+    def closes(self, behind: Sequence[OnCurve], there: OnCurve) -> bool:
+        """Whether the first point lies between the last one and the next."""
+        first, last = behind[0], behind[-1]
+        step, back = there.step_from(last), there.step_from(first)
+        passed = float(back @ step) / float(step @ step)
+        near = float(np.linalg.norm(back)) <= float(np.linalg.norm(step))
+        return len(behind) > LEAST_LOOP and 0 <= passed <= 1 and near
 
     def between(self, one: OnCurve, other: OnCurve, share: float) -> OnCurve:
         """The point at a share of the way between two; raises Unsolvable."""
@@ -299,15 +286,6 @@ def ending_at(curve: CycleCurve, plane: Plane, known: Sequence[GeneralisedHopfPo
 
     first, last = map(located, curve.vanishing)
     return replace(curve, vanishing=(first, last))
-
-
-def comes_back(points: Sequence[OnCurve], there: OnCurve) -> bool:
-    """Whether the first point of a curve lies between the last one and the next."""
-    first, last = points[0], points[-1]
-    step, back = there.step_from(last), there.step_from(first)
-    passed = float(back @ step) / float(step @ step)
-    near = float(np.linalg.norm(back)) <= float(np.linalg.norm(step))
-    return len(points) > LEAST_LOOP and 0 <= passed <= 1 and near
 
 
 def polynomial_weights(places: Array, at: float) -> list[float]:
