@@ -239,7 +239,7 @@ class CurveCourse:
                 found[share] = self.between(inner, outer, share)
                 return float(self.margins(found[share])[margin])
 
-            return found[zero_along(left, ends, 1.0, LANDED, LAST_BRACKET)]
+            return found[zero_along(left, ends, 1.0, LAST_BRACKET, LAST_BRACKET)]
         except Unsolvable:
             return None
 
