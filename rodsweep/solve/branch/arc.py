@@ -7,11 +7,12 @@ measured at every third cycle or so (`errors`), and the mesh is changed where th
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
 from ...arrays import Array, Complex
+from ..continuation.follower import StepControl, Stepped, advance
 from ..cycle.neighbour import carried, coordinate_of
 from ..cycle.newton import Converged, multiplier_change, multipliers_of, relative_change
 from ..cycle.orbit import Orbit
@@ -21,15 +22,18 @@ from ..point import Unsolvable
 from .bordered import BorderedMatrix, Condition, Scale, bordered, moment_of, moved
 from .errors import BranchCalibration, Place, measured_errors, slope_at
 
-LONGEST, SHORTEST = 0.25, 1e-5
-"""Steps in units of the scale."""
-STRAIGHT = 0.9
-"""Least cosine of the angle between the tangents at the ends of a step."""
-GOOD_PREDICTION, FAR = 5e-4, 0.1
-"""Relative distance of a cycle from its prediction that the next step is chosen for, and beyond which it may
-be of another branch."""
-LONGER, SHORTER = 2.0, 0.5
-"""By how much a step may differ from the one before."""
+STEPS = StepControl(
+    first=0.02,
+    longest=0.25,
+    shortest=5e-6,
+    aim=5e-4,
+    far=0.1,
+    order=4,
+    sharpest=0.45,
+    growth=2.0,
+)
+"""Lengths in units of the scale: the moments at the clamp, the period or the parameter change by a few parts
+in a hundred."""
 MOST_MESHES = 8
 CHEAPER = 0.5
 """Cost of another mesh, in units of the present one's, for which it is taken."""
@@ -132,13 +136,11 @@ class ArcPoint:
         return np.array([self.tangent, 3 * A - 2 * B, (A - B) * (2 / step)])
 
 
-def first_point(
-    found: Converged, scale: Scale, side: Array, born: float, accuracy: float, step: float
-) -> ArcPoint:
+def first_point(found: Converged, scale: Scale, side: Array, born: float, accuracy: float) -> ArcPoint:
     """The first cycle of a branch with its errors, on a finer mesh if need be; raises Unsolvable.
 
     side: on which the branch goes on, (3,); born: distance of the place where it is born, in the scale, about
-    which parameter and multipliers go with the square of the distance; step: length of the next.
+    which parameter and multipliers go with the square of the distance.
     """
     place = _place(found, scale, tangent_at(found.orbit, scale, side, bordered(found)))
     multipliers = multipliers_of(found)[0]
@@ -146,7 +148,7 @@ def first_point(
     place = replace(place, curvature=place.rate / born, multiplier_rate=2 * lost / born)
     calibration = measured_errors(found, place, accuracy, None)
     cycle = judged_by(calibration.known, found, accuracy)
-    return refined(ArcPoint(cycle=cycle, place=place, length=step, calibration=calibration), accuracy)
+    return refined(ArcPoint(cycle=cycle, place=place, length=STEPS.first, calibration=calibration), accuracy)
 
 
 def _place(found: Converged, scale: Scale, tangent: Array) -> Place:
@@ -166,29 +168,28 @@ def tangent_at(orbit: Orbit, scale: Scale, side: Array, matrix: BorderedMatrix |
 
 def next_point(here: ArcPoint, accuracy: float) -> ArcPoint:
     """The next point of a branch; raises Unsolvable where there is none."""
-    length = min(here.length, LONGEST)
-    while True:
-        try:
-            return point_at(here, length, accuracy)
-        except Unsolvable:
-            if length <= SHORTEST:
-                raise
-            length /= 2
+    there, length = advance(partial(_stepped, here, accuracy), here.length, STEPS)
+    return replace(there.solution, length=STEPS.next_length(length, there, STEPS.order))
 
 
 def point_at(here: ArcPoint, length: float, accuracy: float) -> ArcPoint:
     """The point at some length of the arc from another one; raises Unsolvable where it is no step from it."""
+    return STEPS.accepted(_stepped(here, accuracy, length)).solution
+
+
+def _stepped(here: ArcPoint, accuracy: float, length: float) -> Stepped[ArcPoint]:
+    """The point at some length of the arc from another one, with a step as long behind it.
+
+    Raises Unsolvable.
+    """
     condition, predicted = here.condition(length), here.predicted(length)
     found = condition.solved(predicted, newton_tolerance(accuracy), matrix_distance(accuracy))
     off = relative_change(predicted, found.orbit.values - predicted.values)
-    if off > FAR:
-        raise Unsolvable("the cycle is far from its prediction")
+    if here.before is None and off <= STEPS.far:
+        off = STEPS.aim  # a tangent alone does not tell how good a cubic would be
     tangent = tangent_at(found.orbit, here.scale, here.ahead, bordered(found))
-    if here.scale.moved(found.orbit, tangent) @ here.ahead < STRAIGHT:  # both are of unit length
-        raise Unsolvable("the branch bends")
-    factor = (GOOD_PREDICTION / max(off, 1e-9)) ** 0.25 if here.before is not None else 1.0
-    ahead = length * float(np.clip(factor, SHORTER, LONGER))
-    return there_from(here, found, tangent, length, ahead, accuracy)
+    cosine = float(here.scale.moved(found.orbit, tangent) @ here.ahead)  # both are of unit length
+    return Stepped(there_from(here, found, tangent, length, length, accuracy), off, cosine)
 
 
 def there_from(

@@ -31,7 +31,6 @@ SHARE = 0.05
 """Largest one in units of the amplitude coefficient: beyond, the normal form's third order is not enough."""
 LEAST_UNIT = 0.1
 """Tip y, in L, of the small cycle whose moment is the least unit of moments."""
-FIRST_STEP = 0.02
 FREQUENCY_ROUNDING = 1e-14
 """Relative error of the frequency of a Hopf point that rounding leaves, a root of D."""
 MOMENT = np.array([1.0, 0.0, 0.0])
@@ -136,7 +135,7 @@ def _cycle_of(hopf: HopfBirth, amplitude: float, accuracy: float) -> ArcPoint:
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
     first = condition.on(mesh, near, newton_tolerance(accuracy), matrix_distance(accuracy))
     born = abs(moment_of(first.orbit)) / scale.moment
-    return first_point(first, scale, border, born, accuracy, FIRST_STEP)
+    return first_point(first, scale, border, born, accuracy)
 
 
 def predicted_cycle(hopf: HopfBirth, amplitude: float) -> Orbit:

@@ -17,6 +17,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...discretization.periodic import maxima, samples_of
+from ..continuation.follower import zero_along
 from ..cycle.measures import CyclePath
 from ..cycle.neighbour import value_of
 from ..cycle.newton import Converged
@@ -47,8 +48,8 @@ the square of the distance."""
 MATRIX_SHARE = 1e-2
 """Relative distance of a matrix from its cycle, in units of the step that led there, for a test function that
 tells the next step to two digits."""
-MOST_ENCLOSINGS, ROUGHLY = 30, 1e-3
-"""Steps by which a zero is enclosed, and the value that ends them in units of those at the ends."""
+ROUGHLY = 1e-3
+"""Where a zero is known roughly: value in units of those at the ends, bracket in units of the step."""
 MOST_PAIRS, MORE_ORDERS, MORE_INTERVALS, SAFETY = 4, 4, 1.3, 3.0
 ROUNDING = 1e-13
 PLACES = 8
@@ -318,21 +319,18 @@ def _enclosed(kind: SpecialKind, segment: Segment) -> tuple[float, float]:
     def value(length: float) -> float:
         return test_function(kind, segment, segment.at(length, rough))
 
-    a, b = 0.0, segment.length
-    f_b, f_a = value(b), value(a)
-    if not f_a * f_b < 0:
-        raise Unsolvable("its test function has no change of sign between two cycles")
-    least = ROUGHLY * min(abs(f_a), abs(f_b))
-    for _ in range(MOST_ENCLOSINGS):
-        middle = a + min(max(f_a / (f_a - f_b), 0.1), 0.9) * (b - a)
-        f, slope = value(middle), (f_b - f_a) / (b - a)
-        if f * f_a > 0:
-            a, f_a = middle, f
-        else:
-            b, f_b = middle, f
-        if abs(f) <= least:
-            return middle, slope
-    return a + f_a / (f_a - f_b) * (b - a), slope
+    values = {at: value(at) for at in (segment.length, 0.0)}
+
+    def kept(length: float) -> float:
+        values[length] = value(length)
+        return values[length]
+
+    ends = values[0.0], values[segment.length]
+    least = ROUGHLY * min(map(abs, ends))
+    at = zero_along(kept, ends, segment.length, least, ROUGHLY)
+    # The nearest other place tells the slope with this one.
+    other = min((x for x in values if x != at), key=lambda x: abs(x - at))
+    return at, (values[at] - values[other]) / (at - other)
 
 
 def _zero(kind: SpecialKind, segment: Segment, guess: float, slope: float) -> tuple[float, Converged, float]:

@@ -10,6 +10,7 @@ Knows nothing of rods, meshes, eigenvalues or cycles. Reference: Keller 1977; Go
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import Enum
+from functools import partial
 from math import acos, inf
 from typing import Generic, NamedTuple, Protocol, TypeVar
 
@@ -59,7 +60,7 @@ class StepControl:
     from the prediction that the next step is chosen for; far: beyond which the solution may be of another
     curve. order: of the prediction, whose distance grows as length**order; with fewer solutions behind it is
     their number. turn: angle in radians that the next step is chosen for; sharpest: the largest one of a
-    step. growth, shrinkage: ratios of successive steps. most: solutions on one curve.
+    step. growth, shrinkage: ratios of successive steps. most: solutions on one curve, more than any has.
     """
 
     first: float
@@ -72,11 +73,15 @@ class StepControl:
     sharpest: float
     growth: float
     shrinkage: float = 0.5
-    most: int
+    most: int = 5000
 
-    def accepts(self, there: Stepped[Solution]) -> bool:
-        """Whether a solution is the next one of the same curve."""
-        return there.off <= self.far and _angle(there.cosine) <= self.sharpest
+    def accepted(self, there: Stepped[Solution]) -> Stepped[Solution]:
+        """A solution that is the next one of the same curve; raises Unsolvable where it may not be."""
+        if not there.off <= self.far:
+            raise Unsolvable("the solution is far from its prediction")
+        if not _angle(there.cosine) <= self.sharpest:
+            raise Unsolvable("the curve bends")
+        return there
 
     def next_length(self, length: float, there: Stepped[Solution], solutions: int) -> float:
         """Length of the step after one that was accepted, when the curve has a number of solutions."""
@@ -113,6 +118,24 @@ class Curve(Generic[Solution]):
     margin: int = -1
 
 
+def advance(
+    step: Callable[[float], Stepped[Solution]], length: float, control: StepControl
+) -> tuple[Stepped[Solution], float]:
+    """(the next solution of a curve, the length of the step to it), the length given or halves of it.
+
+    step: the solution at a length ahead; raises one of FAILURES where none is near. So does this where no
+    step is short enough.
+    """
+    length = min(length, control.longest)
+    while True:
+        try:
+            return control.accepted(step(length)), length
+        except FAILURES:
+            if length / 2 < control.shortest:
+                raise
+            length /= 2
+
+
 def follow(
     problem: CurveProblem[Solution],
     start: Solution,
@@ -125,14 +148,9 @@ def follow(
     while len(solutions) < control.most:
         report(solutions)
         try:
-            there = problem.step(solutions, length)
-            if not control.accepts(there):
-                raise Unsolvable("the solution is far from its prediction")
+            there, length = advance(partial(problem.step, solutions), length, control)
         except FAILURES:
-            length /= 2
-            if length < control.shortest:
-                return Curve(solutions, End.lost)
-            continue
+            return Curve(solutions, End.lost)
         ahead = problem.margins(there.solution)
         outside = crossed(margins, ahead)
         if outside >= 0:
