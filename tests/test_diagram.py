@@ -122,9 +122,12 @@ def test_the_tangent_of_a_boundary_touches_it(axes, rod):
         boundary = Boundary(plane, seed.sign)
         scaled = [axis.scaled(value) for axis, value in zip(axes, seed.values, strict=True)]
         start = boundary.corrected(np.array([*scaled, log(abs(seed.eigenvalue))]), np.array([0.0, 1.0, 0.0]))
+        assert boundary.eigenvalue(start.v[2])[int(seed.sign == 0)] == pytest.approx(
+            seed.eigenvalue, rel=1e-6
+        )
         tangent = start.tangent
-        if not plane.inside(*(start.v + 1e-3 * tangent)[:2]):
-            tangent = -tangent
+        if (scaled[1] < 0.5) != (tangent[1] > 0):
+            tangent = -tangent  # into the plane
         bends = []
         for step in (1e-3, 1e-4):
             guess = start.v + step * tangent
