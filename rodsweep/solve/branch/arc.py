@@ -37,7 +37,7 @@ in a hundred."""
 MOST_MESHES = 8
 CHEAPER = 0.5
 """Cost of another mesh, in units of the present one's, for which it is taken."""
-MARGIN = 0.3
+MARGIN = 0.5
 """Share of the accuracy that a mesh is chosen for, so that it serves the cycles that follow."""
 SLOWER, SIMILAR = 0.7, 2.0
 """Rate of the parameter at a cycle between two, in units of the smaller one of theirs, below which their
@@ -282,13 +282,18 @@ def settled(
     whole, end = end.way, measured(end, accuracy)
     known = [_with_errors_between(last, point, end, point.way / whole, accuracy) for point in between]
     end = refined(end, accuracy, condition)
-    mesh = mesh_of(end.orbit)
-    rough = [point.calibration.largest(accuracy) > accuracy for point in known]
     again = [
-        refined(on_mesh(point, mesh, point.condition(0.0), accuracy), accuracy) if bad else point
-        for point, bad in zip(known, rough, strict=True)
+        point if point.calibration.largest(accuracy) <= accuracy else _on_mesh_of(end, point, accuracy)
+        for point in known
     ]
     return [*again, end]
+
+
+def _on_mesh_of(end: ArcPoint, point: ArcPoint, accuracy: float) -> ArcPoint:
+    """A cycle that is too inaccurate on the mesh of a later one, by that one's errors; raises Unsolvable."""
+    there = on_mesh(point, mesh_of(end.orbit), point.condition(0.0), accuracy)
+    there = _with_errors_between(end, there, end, 1.0, accuracy)
+    return refined(there, accuracy)
 
 
 def _with_errors_between(

@@ -19,7 +19,7 @@ from ..hopf.generalised import GeneralisedHopfPoint
 from ..point import Unsolvable
 from .bordered import BorderedMatrix
 from .special_family import CycleFamily, OnCurve, crossing_pair, first_point, with_parameters
-from .special_points import SpecialKind, SpecialPoint, least_stretch
+from .special_points import SAFE_AT_PLACES, SpecialKind, SpecialPoint, least_stretch
 
 PREDICTED_BY = 4
 """Points of a curve through which the prediction goes, at most."""
@@ -218,7 +218,8 @@ class CurveCourse:
     def margins(self, point: OnCurve) -> Array:
         """Scaled distances from the edges and from crushing, h1, and the size of the cycle, (7,)."""
         x, y, rod = self.line.scaled(point.at), point.place, point.orbit.form.rod
-        alive, stretch = 1 - SHORT_OF_CRUSHED - rod.F / rod.k1, least_stretch(CyclePath(point.orbit))
+        alive = 1 - SHORT_OF_CRUSHED - rod.F / rod.k1
+        stretch = least_stretch(CyclePath(point.orbit), SAFE_AT_PLACES)
         return np.array([x, 1 - x, y, 1 - y, alive, stretch, point.tip_y_max - VANISHING])
 
     def landed(self, behind: Sequence[OnCurve], outer: OnCurve, margin: int) -> OnCurve | None:

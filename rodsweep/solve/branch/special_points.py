@@ -11,7 +11,7 @@ error.
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
-from math import ceil, nan
+from math import ceil, inf, nan
 
 import numpy as np
 
@@ -56,6 +56,8 @@ PLACES = 8
 """Places in a node's neighbourhood at which the least stretch is looked for."""
 SAFE_STRETCH = 0.2
 """Least h1 at the nodes above which it is positive between them too."""
+SAFE_AT_PLACES = 0.02
+"""The same at PLACES places between two nodes, which a polynomial that is resolved hardly leaves."""
 
 
 Step = Callable[[ArcPoint, float], ArcPoint]
@@ -358,11 +360,14 @@ def _zero(kind: SpecialKind, segment: Segment, guess: float, slope: float) -> tu
 def stretch_at(point: ArcPoint) -> float:
     """The least h1 of a cycle in space and time, or of its nodes where that is far from 0."""
     rough = point.cycle.measures.least_stretch
-    return rough if rough > SAFE_STRETCH else least_stretch(point.cycle.path)
+    return rough if rough > SAFE_STRETCH else least_stretch(point.cycle.path, SAFE_AT_PLACES)
 
 
-def least_stretch(path: CyclePath) -> float:
-    """The least h1 of a cycle over the whole rod and the whole period."""
+def least_stretch(path: CyclePath, enough: float = inf) -> float:
+    """The least h1 of a cycle over the whole rod and the whole period.
+
+    enough: a least value at PLACES times as many places as nodes that is as good as the true one.
+    """
     from scipy.optimize import minimize_scalar  # a tenth of a second of every start
 
     grid, c = path.orbit.form.mesh, path.strain_coefficients[:, 0]
@@ -374,6 +379,8 @@ def least_stretch(path: CyclePath) -> float:
     places = np.linspace(0.0, 1.0, PLACES * len(grid.positions))
     values = least(places)
     best = int(np.argmin(values))
+    if values[best] > enough:
+        return float(values[best])
     ends = places[max(best - 1, 0)], places[min(best + 1, len(places) - 1)]
     found = minimize_scalar(
         lambda u: float(least(np.array([u]))[0]), bounds=ends, method="bounded", options={"xatol": 1e-9}
