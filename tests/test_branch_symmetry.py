@@ -13,12 +13,14 @@ from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import CurveOfCycles, SpecialOfBranch
 from rodsweep.post.summary.branch import _ends
 from rodsweep.solve.branch import following, special_points
-from rodsweep.solve.branch.arc import next_point, refined
+from rodsweep.solve.branch.arc import next_point
 from rodsweep.solve.branch.beginning import hopf_point
 from rodsweep.solve.branch.branch_curve import BranchCurve
 from rodsweep.solve.branch.branches import BranchesOfRod, BranchStatus
 from rodsweep.solve.branch.following import Course, follow_branch, follow_without_symmetry, followed_from
-from rodsweep.solve.branch.special_points import EndReason, SpecialKind, changes_between
+from rodsweep.solve.branch.settling import refined
+from rodsweep.solve.branch.special_point import EndReason, SpecialKind
+from rodsweep.solve.branch.special_points import changes_between
 from rodsweep.solve.branch.symmetry import (
     asymmetry,
     beginning_without_symmetry,

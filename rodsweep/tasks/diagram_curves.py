@@ -25,7 +25,7 @@ from .diagram_records import bautin_curve_record, criticality_record, curve_reco
 if TYPE_CHECKING:
     from ..solve.branch.coexistence import CoexistenceRow
     from ..solve.branch.special_boundaries import SpecialBoundaries
-    from ..solve.branch.special_points import SpecialPoint
+    from ..solve.branch.special_point import SpecialPoint
     from ..solve.changes.boundaries import Boundaries
     from ..solve.hopf.generalised import CurveCriticality
     from .phase_diagram import PhaseDiagramTask

@@ -14,9 +14,10 @@ import numpy as np
 from ...arrays import Array
 from ...determinant.parameter_plane import PlaneAxis
 from ..point import FAILURES, Unsolvable
-from .special_curves import VANISHING, CurveCourse, CurveEnd, CurvePoint, CycleCurve, HalfCurve
+from .cycle_curves import CurveEnd, CurvePoint, CycleCurve, HalfCurve
+from .special_curves import VANISHING, CurveCourse
 from .special_family import OnCurve
-from .special_points import SpecialKind, SpecialPoint
+from .special_point import SpecialKind, SpecialPoint
 
 Arrays = dict[str, Array]
 """What a unit of work gives, as it is stored."""
