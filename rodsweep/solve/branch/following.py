@@ -19,11 +19,11 @@ from .arc import STEPS, ArcPoint, arc_between, next_point, point_at, tangent_at,
 from .beginning import HopfBirth, beginning
 from .bordered import Condition, bordered
 from .branch_curve import BranchCurve
-from .least_stretch import stretch_at
-from .locating import Segment, located
 from .settling import due
-from .special_point import EndReason, SpecialKind, SpecialPoint
-from .special_points import special_points
+from .special.least_stretch import stretch_at
+from .special.locating import Segment, located
+from .special.point import EndReason, SpecialKind, SpecialPoint
+from .special.points import special_points
 from .symmetry import Breaking, beginning_without_symmetry, mirrored, symmetric_end
 from .trail import BranchEnd, Trail, end_at
 from .work import share_done

@@ -25,7 +25,7 @@ from .arc import STEPS, ArcPoint, arc_between
 from .beginning import MOMENT
 from .bordered import BorderedMatrix, Condition, Scale, moment_of, moved
 from .settling import first_point
-from .special_point import SpecialKind, SpecialPoint
+from .special.point import SpecialKind, SpecialPoint
 
 SHARES = (0.03, 0.01, 0.1)
 """Relative change from the symmetric cycle to the first one without symmetry, tried one after the other."""

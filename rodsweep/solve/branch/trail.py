@@ -11,7 +11,7 @@ from .arc import ArcPoint
 from .bordered import Condition
 from .branch_curve import BranchCurve, BranchPoint
 from .settling import settled
-from .special_point import EndReason, SpecialKind, SpecialPoint
+from .special.point import EndReason, SpecialKind, SpecialPoint
 
 
 @dataclass(frozen=True, slots=True)

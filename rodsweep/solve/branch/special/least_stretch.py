@@ -4,10 +4,10 @@ from math import inf
 
 import numpy as np
 
-from ...arrays import Array
-from ...discretization.periodic import maxima, samples_of
-from ..cycle.measures import CyclePath
-from .arc import ArcPoint
+from ....arrays import Array
+from ....discretization.periodic import maxima, samples_of
+from ...cycle.measures import CyclePath
+from ..arc import ArcPoint
 
 PLACES = 8
 """Places in a node's neighbourhood at which the least stretch is looked for."""

@@ -6,11 +6,11 @@ from enum import IntEnum
 
 import numpy as np
 
-from ...arrays import Array
-from ...determinant.parameter_plane import Plane
-from ..hopf.generalised import GeneralisedHopfPoint
-from .special_family import OnCurve
-from .special_point import SpecialKind
+from ....arrays import Array
+from ....determinant.parameter_plane import Plane
+from ...hopf.generalised import GeneralisedHopfPoint
+from .family import OnCurve
+from .point import SpecialKind
 
 PREDICTED_BY = 4
 """Points of a curve through which the prediction goes, at most."""

@@ -10,10 +10,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..point import Unsolvable
-from .arc import ArcPoint, arc_between
+from ...point import Unsolvable
+from ..arc import ArcPoint, arc_between
 from .locating import REAL, located, through_minus_one
-from .special_point import SpecialKind, SpecialPoint
+from .point import SpecialKind, SpecialPoint
 
 NEAR_ONE = 3e-3
 """Distance of a multiplier from 1 within which rounding may put it on the other side; a fold has two."""

@@ -5,21 +5,21 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...arrays import Array
-from ...determinant.parameter_plane import PlaneAxis
-from ...watch import Whereabouts, report
-from ...wording import counted
-from ..continuation.follower import End, StepControl, Stepped, follow, zero_along
-from ..cycle.measures import CyclePath
-from ..cycle.newton import relative_change
-from ..cycle.orbit import Orbit
-from ..cycle.orbit_mesh import OrbitMesh, mesh_of
-from ..point import Unsolvable
-from .bordered import BorderedMatrix
+from ....arrays import Array
+from ....determinant.parameter_plane import PlaneAxis
+from ....watch import Whereabouts, report
+from ....wording import counted
+from ...continuation.follower import CurveStop, StepControl, Stepped, follow, zero_along
+from ...cycle.measures import CyclePath
+from ...cycle.newton import relative_change
+from ...cycle.orbit import Orbit
+from ...cycle.orbit_mesh import OrbitMesh, mesh_of
+from ...point import Unsolvable
+from ..bordered import BorderedMatrix
 from .cycle_curves import PREDICTED_BY, CurveEnd, polynomial_weights
+from .family import CycleFamily, OnCurve, crossing_pair, first_on_curve, with_parameters
 from .least_stretch import SAFE_AT_PLACES, least_stretch
-from .special_family import CycleFamily, OnCurve, crossing_pair, first_on_curve, with_parameters
-from .special_point import SpecialKind, SpecialPoint
+from .point import SpecialKind, SpecialPoint
 
 STEPS = StepControl(
     first=0.01,
@@ -67,11 +67,11 @@ class CurveCourse:
     def followed(self, special: SpecialPoint, row: float) -> tuple[list[OnCurve], CurveEnd]:
         """(the curve from a special point of a row on, why it ends); raises Unsolvable."""
         curve = follow(self, first_on_curve(special, self.line.name, self.rows, row), STEPS, self._report)
-        if curve.end is End.margin:
+        if curve.end is CurveStop.margin:
             return curve.solutions, END_AT_MARGIN[curve.margin]
-        if curve.end is End.closed:
+        if curve.end is CurveStop.closed:
             return curve.solutions, CurveEnd.closed
-        lost = curve.end is End.lost
+        lost = curve.end is CurveStop.lost
         return curve.solutions, self._why_lost(curve.solutions[-1]) if lost else CurveEnd.not_followed
 
     def _report(self, points: Sequence[OnCurve]) -> None:

@@ -11,13 +11,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...arrays import Array
-from ...determinant.parameter_plane import PlaneAxis
-from ..point import FAILURES, Unsolvable
+from ....arrays import Array
+from ....determinant.parameter_plane import PlaneAxis
+from ...point import FAILURES, Unsolvable
+from .curves import VANISHING, CurveCourse
 from .cycle_curves import CurveEnd, CurvePoint, CycleCurve, HalfCurve
-from .special_curves import VANISHING, CurveCourse
-from .special_family import OnCurve
-from .special_point import SpecialKind, SpecialPoint
+from .family import OnCurve
+from .point import SpecialKind, SpecialPoint
 
 Arrays = dict[str, Array]
 """What a unit of work gives, as it is stored."""

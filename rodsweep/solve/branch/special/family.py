@@ -14,18 +14,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
-from ...determinant.parameter_plane import PlaneAxis
-from ..cycle.neighbour import coordinate_of, value_of
-from ..cycle.newton import Converged
-from ..cycle.orbit import Orbit
-from ..cycle.orbit_mesh import OrbitMesh, mesh_of, stages_for
-from ..point import Unsolvable
-from .arc import tangent_at
-from .beginning import LEAST_UNIT, MOMENT
-from .bordered import BorderedMatrix, Condition, Scale, bordered, moment_of, moved
+from ....arrays import Array
+from ....determinant.parameter_plane import PlaneAxis
+from ...cycle.neighbour import coordinate_of, value_of
+from ...cycle.newton import Converged
+from ...cycle.orbit import Orbit
+from ...cycle.orbit_mesh import OrbitMesh, mesh_of, stages_for
+from ...point import Unsolvable
+from ..arc import tangent_at
+from ..beginning import LEAST_UNIT, MOMENT
+from ..bordered import BorderedMatrix, Condition, Scale, bordered, moment_of, moved
 from .locating import REAL
-from .special_point import SpecialKind, SpecialPoint
+from .point import SpecialKind, SpecialPoint
 
 ACCURACY = 1e-7
 """Relative, of the line's parameter on a curve; that of the special points of rows is 1e-9."""

@@ -9,18 +9,18 @@ from math import ceil, nan
 
 import numpy as np
 
-from ...arrays import Array
-from ..continuation.follower import zero_along
-from ..cycle.measures import CyclePath
-from ..cycle.neighbour import value_of
-from ..cycle.newton import Converged
-from ..cycle.orbit import Orbit
-from ..cycle.orbit_mesh import OrbitMesh, mesh_of, stages_for
-from ..point import Unsolvable
-from .arc import ArcPoint, arc_between, tangent_at
-from .bordered import BorderedMatrix, bordered, moved
+from ....arrays import Array
+from ...continuation.follower import zero_along
+from ...cycle.measures import CyclePath
+from ...cycle.neighbour import value_of
+from ...cycle.newton import Converged
+from ...cycle.orbit import Orbit
+from ...cycle.orbit_mesh import OrbitMesh, mesh_of, stages_for
+from ...point import Unsolvable
+from ..arc import ArcPoint, arc_between, tangent_at
+from ..bordered import BorderedMatrix, bordered, moved
 from .least_stretch import least_stretch
-from .special_point import SpecialKind, SpecialPoint
+from .point import SpecialKind, SpecialPoint
 
 REAL = 1e-7
 """Imaginary part of a multiplier, relative, below which it is real."""
