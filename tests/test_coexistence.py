@@ -17,14 +17,9 @@ from rodsweep.results.layouts.phase_diagram import CYCLE_CURVE_ENDS
 from rodsweep.solve.branch import coexistence
 from rodsweep.solve.branch.branches import BranchStatus
 from rodsweep.solve.branch.coexistence import CoexistenceStatus, Stable, solve_coexistence
-from rodsweep.solve.branch.special_curves import (
-    CurveCourse,
-    CurveEnd,
-    CurvePoint,
-    CycleCurve,
-    HalfCurve,
-)
-from rodsweep.solve.branch.special_points import SpecialKind
+from rodsweep.solve.branch.special.curves import CurveCourse
+from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, CycleCurve, HalfCurve
+from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.changes.rows import RowRequest
 from rodsweep.tasks.job import make_job
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rodsweep.solve.continuation.follower import End, StepControl, Stepped, crossed, follow, zero_along
+from rodsweep.solve.continuation.follower import CurveStop, StepControl, Stepped, crossed, follow, zero_along
 from rodsweep.solve.point import Unsolvable
 
 STEPS = StepControl(first=0.01, longest=0.2, shortest=1e-6, turn=0.1, sharpest=0.3, growth=2.0, most=500)
@@ -74,7 +74,7 @@ def followed(curve, control=STEPS, start=0.0):
 def test_a_closed_curve_is_followed_once_through_its_folds(a, b, start):
     curve = Ellipse(a, b)
     found = followed(curve, start=start)
-    assert found.end is End.closed
+    assert found.end is CurveStop.closed
     assert found.solutions[0] is found.solutions[-1]
     angles = np.unwrap([curve.angle(point) for point in found.solutions])
     assert angles[-1] - angles[0] == pytest.approx(2 * np.pi, abs=1e-9)
@@ -84,21 +84,21 @@ def test_a_closed_curve_is_followed_once_through_its_folds(a, b, start):
 @given(st.floats(0.3, 3.0), st.floats(-0.95, 0.95))
 def test_a_curve_ends_where_its_margin_is_zero(b, share):
     found = followed(Ellipse(1.0, b, least=share), start=np.arccos(share) / 2)
-    assert (found.end, found.margin) == (End.margin, 0)
+    assert (found.end, found.margin) == (CurveStop.margin, 0)
     assert found.solutions[-1] == pytest.approx([share, b * np.sqrt(1 - share**2)], abs=1e-12)
     assert (np.array(found.solutions[:-1])[:, 0] > share).all()
 
 
 def test_a_curve_that_is_lost_ends_at_its_last_solution_beside_the_gap():
     found = followed(Ellipse(1.0, 1.0, gap=(1.0, 1.5)))
-    assert found.end is End.lost
+    assert found.end is CurveStop.lost
     assert Ellipse(1.0, 1.0).angle(found.solutions[-1]) == pytest.approx(1.0, abs=2e-6)
 
 
 def test_a_curve_has_no_more_solutions_than_are_kept():
     found = followed(Ellipse(1.0, 1.0), StepControl(first=0.01, longest=0.01, shortest=1e-6, sharpest=0.3,
                                                     growth=2.0, most=7))  # fmt: skip
-    assert (found.end, len(found.solutions)) == (End.full, 7)
+    assert (found.end, len(found.solutions)) == (CurveStop.full, 7)
 
 
 def test_steps_are_as_long_as_turns_and_predictions_allow():

@@ -15,7 +15,7 @@ from .protocol import Part, Solver, Task
 if TYPE_CHECKING:
     from ..solve.branch.branch_curve import BranchCurve, BranchPoint
     from ..solve.branch.branches import BranchesOfRod
-    from ..solve.branch.special_points import SpecialPoint
+    from ..solve.branch.special.point import SpecialPoint
     from ..solve.changes.unstable_modes import Crossing
 
 

@@ -24,8 +24,8 @@ from .diagram_records import bautin_curve_record, criticality_record, curve_reco
 
 if TYPE_CHECKING:
     from ..solve.branch.coexistence import CoexistenceRow
-    from ..solve.branch.special_boundaries import SpecialBoundaries
-    from ..solve.branch.special_points import SpecialPoint
+    from ..solve.branch.special.boundaries import SpecialBoundaries
+    from ..solve.branch.special.point import SpecialPoint
     from ..solve.changes.boundaries import Boundaries
     from ..solve.hopf.generalised import CurveCriticality
     from .phase_diagram import PhaseDiagramTask
@@ -63,7 +63,7 @@ class DiagramCurves:
 
     def units(self, view: View) -> "SpecialBoundaries | None":
         """The curves of cycles as units of work, from a view with all rows; None where there are none."""
-        from ..solve.branch.special_boundaries import SpecialBoundaries
+        from ..solve.branch.special.boundaries import SpecialBoundaries
 
         plane = self.plane if self.task.config.phase_diagram.cycles else None
         if plane is None:
@@ -78,7 +78,7 @@ class DiagramCurves:
 
     def nothing(self) -> dict[str, np.ndarray]:
         """The result of a unit that finds no curve, arrays of no length along their first shape."""
-        from ..solve.branch.special_boundaries import TracedHalf
+        from ..solve.branch.special.boundaries import TracedHalf
 
         return TracedHalf(None).arrays()
 

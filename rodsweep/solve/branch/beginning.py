@@ -22,8 +22,9 @@ from ..cycle.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tol
 from ..hopf.hopf_coefficients import HopfCoefficients, hopf_coefficients
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..point import Unsolvable
-from .arc import ArcPoint, first_point
+from .arc import ArcPoint
 from .bordered import Condition, Scale, moment_of
+from .settling import first_point
 
 AMPLITUDES = (0.02, 0.008, 0.003)
 """Largest tip y, in L, of the first cycle, tried one after the other."""

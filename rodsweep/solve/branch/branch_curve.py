@@ -9,7 +9,7 @@ from ..cycle.measures import Measures
 from ..cycle.neighbour import value_of
 from ..cycle.refinement import MULTIPLIER_FACTOR
 from .arc import ArcPoint
-from .special_points import SpecialPoint
+from .special.point import SpecialPoint
 from .symmetry import Breaking
 
 

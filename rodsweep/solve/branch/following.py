@@ -15,28 +15,15 @@ from ..cycle.neighbour import value_at, value_of
 from ..cycle.orbit_mesh import mesh_of
 from ..cycle.refinement import matrix_distance, newton_tolerance
 from ..point import Unsolvable
-from .arc import (
-    STEPS,
-    ArcPoint,
-    due,
-    next_point,
-    point_at,
-    tangent_at,
-    there_from,
-)
+from .arc import STEPS, ArcPoint, arc_between, next_point, point_at, tangent_at, there_from
 from .beginning import HopfBirth, beginning
 from .bordered import Condition, bordered
 from .branch_curve import BranchCurve
-from .special_points import (
-    EndReason,
-    Segment,
-    SpecialKind,
-    SpecialPoint,
-    arc_between,
-    located,
-    special_points,
-    stretch_at,
-)
+from .settling import due
+from .special.least_stretch import stretch_at
+from .special.locating import Segment, located
+from .special.point import EndReason, SpecialKind, SpecialPoint
+from .special.points import special_points
 from .symmetry import Breaking, beginning_without_symmetry, mirrored, symmetric_end
 from .trail import BranchEnd, Trail, end_at
 from .work import share_done

@@ -21,10 +21,11 @@ from ..cycle.orbit_mesh import stages_for, wanted_mesh
 from ..cycle.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tolerance
 from ..cycle.symmetry import NONE
 from ..point import Unsolvable
-from .arc import STEPS, ArcPoint, first_point
+from .arc import STEPS, ArcPoint, arc_between
 from .beginning import MOMENT
 from .bordered import BorderedMatrix, Condition, Scale, moment_of, moved
-from .special_points import SpecialKind, SpecialPoint, arc_between
+from .settling import first_point
+from .special.point import SpecialKind, SpecialPoint
 
 SHARES = (0.03, 0.01, 0.1)
 """Relative change from the symmetric cycle to the first one without symmetry, tried one after the other."""

@@ -7,10 +7,11 @@ import numpy as np
 
 from ..cycle.neighbour import value_of
 from ..point import Unsolvable
-from .arc import ArcPoint, settled
+from .arc import ArcPoint
 from .bordered import Condition
 from .branch_curve import BranchCurve, BranchPoint
-from .special_points import EndReason, SpecialKind, SpecialPoint
+from .settling import settled
+from .special.point import EndReason, SpecialKind, SpecialPoint
 
 
 @dataclass(frozen=True, slots=True)

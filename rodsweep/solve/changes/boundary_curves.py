@@ -16,7 +16,7 @@ from ...arrays import Array
 from ...determinant.boundary import Boundary, OnBoundary
 from ...determinant.parameter_plane import Plane
 from ...watch import report
-from ..continuation.follower import End, StepControl, Stepped, follow, zero_along
+from ..continuation.follower import CurveStop, StepControl, Stepped, follow, zero_along
 from ..point import Unsolvable
 
 STEPS = StepControl(first=0.01, longest=0.04, shortest=1e-9, turn=0.15, sharpest=0.3, growth=1.5, most=5000)
@@ -140,7 +140,7 @@ def trace(sign: float, plane: Plane, start: tuple[float, float], eigenvalue: flo
         return None
     ahead = follow(curve, first, STEPS, lambda _: report())
     passed = ahead.solutions
-    if ahead.end is not End.closed:
+    if ahead.end is not CurveStop.closed:
         back = follow(curve, _Passed(first.v, -first.tangent), STEPS, lambda _: report())
         passed = [*back.solutions[:0:-1], *passed]
     points = np.array([point.v for point in passed])

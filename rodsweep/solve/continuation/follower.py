@@ -96,7 +96,7 @@ def _angle(cosine: float) -> float:
     return acos(min(1.0, max(-1.0, cosine)))
 
 
-class End(Enum):
+class CurveStop(Enum):
     """Why a curve ends."""
 
     margin = "a margin is zero"
@@ -114,7 +114,7 @@ class Curve(Generic[Solution]):
     """
 
     solutions: list[Solution]
-    end: End
+    end: CurveStop
     margin: int = -1
 
 
@@ -150,18 +150,18 @@ def follow(
         try:
             there, length = advance(partial(problem.step, solutions), length, control)
         except FAILURES:
-            return Curve(solutions, End.lost)
+            return Curve(solutions, CurveStop.lost)
         ahead = problem.margins(there.solution)
         outside = crossed(margins, ahead)
         if outside >= 0:
             last = problem.landed(solutions, there.solution, outside)
-            return Curve(solutions if last is None else [*solutions, last], End.margin, outside)
+            return Curve(solutions if last is None else [*solutions, last], CurveStop.margin, outside)
         if problem.closes(solutions, there.solution):
-            return Curve([*solutions, start], End.closed)
+            return Curve([*solutions, start], CurveStop.closed)
         solutions.append(there.solution)
         margins = ahead
         length = control.next_length(length, there, len(solutions))
-    return Curve(solutions, End.full)
+    return Curve(solutions, CurveStop.full)
 
 
 def crossed(before: Array, after: Array) -> int:

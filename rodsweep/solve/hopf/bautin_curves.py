@@ -19,7 +19,7 @@ from ...determinant.boundary import Boundary
 from ...determinant.parameter_plane import Plane, PlaneAxis
 from ...model.rod import Rod
 from ...watch import Whereabouts, report
-from ..continuation.follower import End, StepControl, Stepped, follow
+from ..continuation.follower import CurveStop, StepControl, Stepped, follow
 from ..point import FAILURES, Unsolvable
 from .generalised import FINEST, GeneralisedHopfPoint, HopfCurve
 
@@ -46,9 +46,9 @@ class BautinEnd(IntEnum):
 
 
 END_OTHERWISE = {
-    End.closed: BautinEnd.closed,
-    End.lost: BautinEnd.not_found,
-    End.full: BautinEnd.list_full,
+    CurveStop.closed: BautinEnd.closed,
+    CurveStop.lost: BautinEnd.not_found,
+    CurveStop.full: BautinEnd.list_full,
 }
 """Why a curve ends that reaches no end of a range."""
 
@@ -219,7 +219,7 @@ def _followed(space: BautinSpace, start: _Place) -> tuple[list[_Place], BautinEn
             places += [*_asked_between(space, here, there), there]
         except (*FAILURES, ValueError):
             return places, BautinEnd.not_found
-    if curve.end is End.margin:
+    if curve.end is CurveStop.margin:
         return places, BautinEnd.range_end if curve.margin // 2 == 2 else BautinEnd.plane_edge
     return places, END_OTHERWISE[curve.end]
 

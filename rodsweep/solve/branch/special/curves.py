@@ -2,27 +2,25 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from enum import IntEnum
 
 import numpy as np
 
-from ...arrays import Array
-from ...determinant.parameter_plane import Plane, PlaneAxis
-from ...watch import Whereabouts, report
-from ...wording import counted
-from ..continuation.follower import End, StepControl, Stepped, follow, zero_along
-from ..cycle.measures import CyclePath
-from ..cycle.newton import relative_change
-from ..cycle.orbit import Orbit
-from ..cycle.orbit_mesh import OrbitMesh, mesh_of
-from ..hopf.generalised import GeneralisedHopfPoint
-from ..point import Unsolvable
-from .bordered import BorderedMatrix
-from .special_family import CycleFamily, OnCurve, crossing_pair, first_point, with_parameters
-from .special_points import SpecialKind, SpecialPoint, least_stretch
+from ....arrays import Array
+from ....determinant.parameter_plane import PlaneAxis
+from ....watch import Whereabouts, report
+from ....wording import counted
+from ...continuation.follower import CurveStop, StepControl, Stepped, follow, zero_along
+from ...cycle.measures import CyclePath
+from ...cycle.newton import relative_change
+from ...cycle.orbit import Orbit
+from ...cycle.orbit_mesh import OrbitMesh, mesh_of
+from ...point import Unsolvable
+from ..bordered import BorderedMatrix
+from .cycle_curves import PREDICTED_BY, CurveEnd, polynomial_weights
+from .family import CycleFamily, OnCurve, crossing_pair, first_on_curve, with_parameters
+from .least_stretch import SAFE_AT_PLACES, least_stretch
+from .point import SpecialKind, SpecialPoint
 
-PREDICTED_BY = 4
-"""Points of a curve through which the prediction goes, at most."""
 STEPS = StepControl(
     first=0.01,
     longest=0.1,
@@ -45,87 +43,7 @@ VANISHING = 0.01
 """Largest tip y, in L, of cycles from which a curve is extrapolated to the Hopf point where they vanish."""
 ALMOST_REAL = 0.2
 """Angle in radians from the real axis of multipliers that are about to meet on it."""
-SAFETY = 10.0
-"""Of the extrapolation: on a mesh the Hopf point moves along the curve, which no point's error tells."""
-AT_HOPF = 0.01
-"""Scaled distance of an extrapolated Hopf point from a generalised one that is located on a Hopf curve."""
 ALONG_BRANCH = np.array([1.0, 0.0])
-
-
-class CurveEnd(IntEnum):
-    """Where a curve of special points ends; none is within a curve."""
-
-    none = 0
-    edge = 1
-    crushed = 2
-    hopf = 3
-    left_the_model = 4
-    resonance = 5
-    closed = 6
-    not_followed = 7
-
-
-@dataclass(frozen=True, slots=True)
-class VanishingPoint:
-    """A Hopf point at which a curve ends: both parameters, the error of the line's, the period in tau2."""
-
-    at: float
-    row: float
-    error: float
-    period: float
-
-
-@dataclass(frozen=True, slots=True)
-class CurvePoint:
-    """The numbers of a point of a curve: both parameters, the place on the rows' axis, scaled, from 0 to 1.
-
-    error: absolute, of the line's parameter. period in tau2, tip_y_max in L.
-    """
-
-    at: float
-    row: float
-    place: float
-    error: float
-    period: float
-    tip_y_max: float
-
-    @classmethod
-    def of(cls, point: OnCurve) -> "CurvePoint":
-        """The numbers of a cycle on a curve."""
-        period = point.orbit.period
-        return cls(point.at, point.row, point.place, point.error, period, point.tip_y_max)
-
-
-@dataclass(frozen=True, slots=True)
-class HalfCurve:
-    """A curve from a special point of a row to one of its ends."""
-
-    points: tuple[CurvePoint, ...]
-    end: CurveEnd
-
-
-@dataclass(frozen=True, slots=True)
-class CycleCurve:
-    """A curve of folds or torus points: its points in order, and why it ends before and behind them.
-
-    vanishing: the Hopf points where the cycles vanish, if it ends at such.
-    """
-
-    kind: SpecialKind
-    points: tuple[CurvePoint, ...]
-    ends: tuple[CurveEnd, CurveEnd]
-    vanishing: tuple[VanishingPoint | None, VanishingPoint | None]
-
-    @classmethod
-    def joined(cls, kind: SpecialKind, ahead: HalfCurve, behind: HalfCurve | None) -> "CycleCurve":
-        """The curve of its two halves from one point. Of a closed curve the half ahead is all of it."""
-        before = behind or HalfCurve(ahead.points[:1], ahead.end)
-        points = (*before.points[:0:-1], *ahead.points)
-        vanishing = [
-            vanishing_point(side) if end is CurveEnd.hopf else None
-            for end, side in ((before.end, points[::-1]), (ahead.end, points))
-        ]
-        return cls(kind, points, (before.end, ahead.end), (vanishing[0], vanishing[1]))
 
 
 EDGES, ROW_EDGES = 4, (2, 3)
@@ -148,12 +66,12 @@ class CurveCourse:
 
     def followed(self, special: SpecialPoint, row: float) -> tuple[list[OnCurve], CurveEnd]:
         """(the curve from a special point of a row on, why it ends); raises Unsolvable."""
-        curve = follow(self, first_point(special, self.line.name, self.rows, row), STEPS, self._report)
-        if curve.end is End.margin:
+        curve = follow(self, first_on_curve(special, self.line.name, self.rows, row), STEPS, self._report)
+        if curve.end is CurveStop.margin:
             return curve.solutions, END_AT_MARGIN[curve.margin]
-        if curve.end is End.closed:
+        if curve.end is CurveStop.closed:
             return curve.solutions, CurveEnd.closed
-        lost = curve.end is End.lost
+        lost = curve.end is CurveStop.lost
         return curve.solutions, self._why_lost(curve.solutions[-1]) if lost else CurveEnd.not_followed
 
     def _report(self, points: Sequence[OnCurve]) -> None:
@@ -218,7 +136,8 @@ class CurveCourse:
     def margins(self, point: OnCurve) -> Array:
         """Scaled distances from the edges and from crushing, h1, and the size of the cycle, (7,)."""
         x, y, rod = self.line.scaled(point.at), point.place, point.orbit.form.rod
-        alive, stretch = 1 - SHORT_OF_CRUSHED - rod.F / rod.k1, least_stretch(CyclePath(point.orbit))
+        alive = 1 - SHORT_OF_CRUSHED - rod.F / rod.k1
+        stretch = least_stretch(CyclePath(point.orbit), SAFE_AT_PLACES)
         return np.array([x, 1 - x, y, 1 - y, alive, stretch, point.tip_y_max - VANISHING])
 
     def landed(self, behind: Sequence[OnCurve], outer: OnCurve, margin: int) -> OnCurve | None:
@@ -272,29 +191,6 @@ class CurveCourse:
         return CurveEnd.not_followed
 
 
-def ending_at(curve: CycleCurve, plane: Plane, known: Sequence[GeneralisedHopfPoint]) -> CycleCurve:
-    """A curve of folds with the Hopf points at its ends as they are located on Hopf curves."""
-
-    def located(end: VanishingPoint | None) -> VanishingPoint | None:
-        if end is None or curve.kind != SpecialKind.fold:
-            return end
-        for point in known:
-            pairs = zip(plane.axes, point.values, (end.at, end.row), strict=True)
-            if all(abs(axis.scaled(a) - axis.scaled(b)) <= AT_HOPF for axis, a, b in pairs):
-                return VanishingPoint(*point.values, point.errors[0], 2 * np.pi / point.frequency)
-        return end
-
-    first, last = map(located, curve.vanishing)
-    return replace(curve, vanishing=(first, last))
-
-
-def polynomial_weights(places: Array, at: float) -> list[float]:
-    """Of the values at some places, (n,), in the polynomial through them at another place."""
-    return [
-        float(np.prod([(at - other) / (own - other) for other in places if other != own])) for own in places
-    ]
-
-
 def lengths_of(points: Sequence[OnCurve]) -> Array:
     """Lengths from the last of some points to each, not positive, (points,)."""
     steps = [float(np.linalg.norm(b.step_from(a))) for a, b in zip(points[:-1], points[1:], strict=True)]
@@ -306,15 +202,3 @@ def slope_of(one: OnCurve, other: OnCurve) -> float:
     """d(line's value)/d(place) between two points, 0 where they do not tell."""
     apart = other.place - one.place
     return (other.at - one.at) / apart if apart else 0.0
-
-
-def vanishing_point(points: Sequence[CurvePoint]) -> VanishingPoint | None:
-    """Where the largest y is 0 behind the last point, by polynomials in its square."""
-    known = points[-PREDICTED_BY:]
-    if len(known) < PREDICTED_BY:
-        return None
-    squares = np.array([point.tip_y_max**2 for point in known])
-    table = np.array([[point.at, point.row, point.period] for point in known])
-    best, other = (np.dot(polynomial_weights(squares[i:], 0.0), table[i:]) for i in (0, 1))
-    error = SAFETY * (abs(best[0] - other[0]) + max(point.error for point in known))
-    return VanishingPoint(float(best[0]), float(best[1]), float(error), float(best[2]))

@@ -11,12 +11,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...arrays import Array
-from ...determinant.parameter_plane import PlaneAxis
-from ..point import FAILURES, Unsolvable
-from .special_curves import VANISHING, CurveCourse, CurveEnd, CurvePoint, CycleCurve, HalfCurve
-from .special_family import OnCurve
-from .special_points import SpecialKind, SpecialPoint
+from ....arrays import Array
+from ....determinant.parameter_plane import PlaneAxis
+from ...point import FAILURES, Unsolvable
+from .curves import VANISHING, CurveCourse
+from .cycle_curves import CurveEnd, CurvePoint, CycleCurve, HalfCurve
+from .family import OnCurve
+from .point import SpecialKind, SpecialPoint
 
 Arrays = dict[str, Array]
 """What a unit of work gives, as it is stored."""
