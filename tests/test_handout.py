@@ -4,7 +4,10 @@ import threading
 import time
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from rodsweep.sweep.handout import (
     ANSWER_TAG,
@@ -23,15 +26,32 @@ from rodsweep.sweep.stop import StopRequest
 from rodsweep.watch import Whereabouts
 
 
-def test_every_point_is_handed_out_once():
-    handout = Handout([(0, 10), (20, 25)], ranks=2)
-    seen = []
-    chunk = handout.take(0)
-    while chunk != OVER:
-        seen += range(*chunk)
-        handout.settle(0, Report(chunk[1] - chunk[0], 1e-3))
-        chunk = handout.take(0)
-    assert sorted(seen) == [*range(10), *range(20, 25)]
+@given(st.lists(st.integers(1, 40), min_size=1, max_size=4), st.integers(1, 4), st.integers(0, 2**32 - 1))
+def test_every_unit_is_done_once_whatever_ranks_give_back_and_none_ends_before(sizes, ranks, seed):
+    """Each rank does at least one unit of a chunk; it may have got the next one ahead."""
+    rng = np.random.default_rng(seed)
+    ends = np.cumsum(np.array(sizes) + 1)  # a unit between two ranges is not to do
+    todo = [(int(end) - size, int(end)) for size, end in zip(sizes, ends, strict=True)]
+    units = [unit for start, stop in todo for unit in range(start, stop)]
+    handout, done = Handout(todo, ranks), []
+    held = {rank: [] for rank in range(ranks)}
+    while held:
+        rank = rng.choice(list(held))
+        chunks = held[rank]
+        if len(chunks) == 1 and rng.random() < 0.5:
+            ahead = handout.take_ahead(rank)
+            chunks += [ahead] if ahead else []
+        if chunks:
+            start, stop = chunks.pop(0)
+            at = int(rng.integers(start, stop)) + 1
+            done += range(start, at)
+            handout.settle(rank, Report(at - start, 10 ** rng.uniform(-4, 1), (at, stop)))
+        chunk = None if chunks else handout.take(rank)
+        if chunk == OVER:
+            assert sorted(done) == units
+            del held[rank]
+        elif chunk:
+            chunks.append(chunk)
 
 
 def test_chunks_follow_the_pace_and_shrink_towards_the_end():
