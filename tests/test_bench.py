@@ -13,6 +13,7 @@ import pytest
 from conftest import ROOT
 
 from rodsweep.bench import peers as bench_peers
+from rodsweep.bench.machine import machine
 from rodsweep.bench.peers import LEFT_OUT, NO_PEERS, Peers, left_out, peer_package, peers_of
 from rodsweep.bench.spectrum import study as spectrum
 from rodsweep.bench.spectrum.exact import exact_spectrum, relative_error
@@ -241,3 +242,8 @@ def test_a_folder_of_this_name_that_is_no_checkouts_is_left_alone(monkeypatch, t
 def test_who_is_left_out_is_said_for_every_study_with_peers():
     rooms = [path.parent.name for path in (ROOT / "benchmarks").glob("*/__init__.py")]
     assert sorted(LEFT_OUT) == sorted(rooms)
+
+
+def test_a_benchmark_names_its_processor():
+    """By words, as /proc/cpuinfo or else the platform has it, and not by the number of a core."""
+    assert re.search("[A-Za-z]{2}", machine()["processor"])

@@ -49,6 +49,17 @@ def test_read_only_directory_is_refused_before_anything_is_solved(command, ranks
         assert [path.name for path in small.directory.iterdir()] == ["c.yaml"]
 
 
+def test_too_small_a_disk_for_an_extension_leaves_the_file(command):
+    with disk(command, "size=1m") as small:
+        small.write("c.yaml", CONFIG.replace("{start: 0, stop: 60, num: 500}", "60"))
+        assert small("run", "c.yaml").returncode == 0
+        before = (small.directory / "c.h5").read_bytes()
+        small.write("c.yaml", CONFIG)
+        one_sentence(small("run", "c.yaml", "--extend"), "MB are free")
+        assert (small.directory / "c.h5").read_bytes() == before
+        assert sorted(path.name for path in small.directory.iterdir()) == ["c.h5", "c.yaml"]
+
+
 @pytest.mark.parametrize("word", ["check", "run"])
 def test_full_disk_under_a_log_of_both_streams_ends_with_3(command, word):
     """Nothing can be said any more; at exit Python flushes again, which must not change the status."""

@@ -12,6 +12,7 @@ from rodsweep.results.file import points, validation
 from rodsweep.results.file.creation import Plan
 from rodsweep.results.file.identity import config_difference
 from rodsweep.results.file.merge import merge
+from rodsweep.results.file.seal import seal
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.validation import read_header
 from rodsweep.results.file.view import read_view
@@ -207,6 +208,22 @@ def test_foreign_file_is_refused_and_left_alone(tmp_path):
         assert path.read_bytes() == content
         with pytest.raises(InputError, match="not a whole rodsweep result"):
             read_view(path)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [np.zeros((3, 2, 1, 2), "i4"), np.zeros((3, 2, 1, 3), "f8")],  # as another version might have it
+    ids=["type", "shape"],
+)
+def test_a_sealed_file_whose_variables_do_not_fit_its_config_is_refused(tmp_path, other):
+    path = tmp_path / "a.h5"
+    Store(path, plan()).close()
+    with h5py.File(path, "r+") as file:
+        del file["seconds"]
+        file["seconds"] = other
+    seal(path)
+    with pytest.raises(InputError, match="its variable seconds does not fit its config"):
+        read_header(path)
 
 
 def test_two_runs_on_one_file_are_refused(tmp_path, monkeypatch):
