@@ -111,6 +111,25 @@ def test_steps_are_as_long_as_turns_and_predictions_allow():
     assert np.hypot(*by_distance.T) == pytest.approx([0.1] * 10, rel=1e-2)
 
 
+def test_a_turn_of_0_or_180_degrees_is_one_whatever_rounding_makes_of_its_cosine():
+    above = np.nextafter(1.0, 2.0)
+    straight, back = (Stepped(None, 0.0, cosine) for cosine in (above, -above))
+    assert STEPS.accepted(straight) is straight
+    assert STEPS.next_length(0.01, straight, 5) == 0.01 * STEPS.growth
+    with pytest.raises(Unsolvable, match="bends"):
+        STEPS.accepted(back)
+
+
+def test_every_step_is_reported_with_the_solutions_before_it():
+    heard = []
+    found = follow(
+        Ellipse(1.0, 1.0, least=0.0), np.array([1.0, 0.0]), STEPS, lambda points: heard.append(list(points))
+    )
+    assert found.end is End.margin
+    assert [len(points) for points in heard] == list(range(1, len(found.solutions)))
+    assert all(point is kept for point, kept in zip(heard[-1], found.solutions, strict=False))
+
+
 @pytest.mark.parametrize(
     ("before", "after", "which"),
     [
@@ -119,6 +138,7 @@ def test_steps_are_as_long_as_turns_and_predictions_allow():
         ([1.0, 0.1], [-1.0, -1e-3], 0),
         ([0.0, 1.0], [-1.0, 1.0], 0),
         ([-0.5, 1.0], [-0.3, 1.0], -1),
+        ([-0.5, 1.0], [-0.5, 1.0], -1),
         ([-0.5, 1.0], [-0.6, 1.0], 0),
     ],
 )
@@ -138,3 +158,11 @@ def test_a_zero_along_a_step_needs_two_signs_and_no_value_at_the_ends():
     assert not {0.0, 1.0} & set(asked)
     with pytest.raises(Unsolvable, match="change of sign"):
         zero_along(cube, (0.1, 0.8), 1.0, 1e-14, 1e-14)
+
+
+@given(st.floats(-6.0, 3.0), st.floats(0.01, 0.99), st.floats(-12.0, -2.0))
+def test_a_zero_along_a_step_of_any_length_is_as_accurate_as_asked_for(decades, share, digits):
+    length, relative = 10.0**decades, 10.0**digits
+    ends = -(share**3), 1 - share**3
+    found = zero_along(lambda x: (x / length) ** 3 - share**3, ends, length, 0.0, relative)
+    assert abs(found - share * length) <= 2 * relative * length

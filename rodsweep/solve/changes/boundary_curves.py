@@ -100,7 +100,7 @@ class _Trace:
         """Distances from the four edges of the plane, and whether the rod is not crushed, (5,)."""
         x, y = map(float, point.v[:2])
         on_plane = 0 <= x <= 1 and 0 <= y <= 1
-        alive = 1.0 if not on_plane or self.boundary.plane.inside(x, y) else -1.0
+        alive = 1.0 if not on_plane or self.boundary.plane.uncrushed(x, y) else -1.0
         return np.array([x, 1 - x, y, 1 - y, alive])
 
     def landed(self, behind: Sequence[_Passed], outer: _Passed, margin: int) -> _Passed | None:
