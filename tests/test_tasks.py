@@ -255,7 +255,7 @@ def test_variables_added_when_a_run_ends_have_their_own_dimensions(tmp_path, cou
         (Variable("curve_F", "<f8", np.nan, "k3/L^2", "F", ("curve_point",)), np.arange(count) / 2),
         (Variable("fold_F", "<f8", np.nan, "k3/L^2", "F", ("fold",)), np.array([3.5])),
     ]
-    store.fold({"finished": "now"}, curve)
+    store.finish({"finished": "now"}, curve)
     store.close()
     with h5py.File(path) as file:
         assert dimensions(file["curve_F"]) == dimensions(file["curve_number"]) == ("curve_point",)

@@ -1,5 +1,6 @@
 """The task modes: the leading modes with their adjoints, and what non-normality makes of them."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -10,7 +11,9 @@ from ..discretization.quadrature import lobatto_points
 from ..discretization.resolution import mesh_accuracy
 from ..model.rod import Rod
 from ..results.layouts.modes import GROWTH
+from ..results.layouts.variables import Filled
 from ..sweep.estimate import Estimate, estimate_modes, estimate_spectra
+from .force_changes import force_changes
 from .parts import LinearTask, count_of
 from .protocol import Part, Solver
 from .spectrum import record as spectrum_record
@@ -30,6 +33,10 @@ class ModesTask(LinearTask):
     def coordinates(self) -> dict[str, np.ndarray]:
         """The material coordinate of the modes' nodes, shape (nodes,)."""
         return {"u": lobatto_points(self.config.modes.nodes)}
+
+    def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
+        """Where the rods change along F."""
+        return force_changes(self.points, values)
 
     def headline(self) -> str:
         options = self.config.modes

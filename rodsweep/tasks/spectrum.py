@@ -1,5 +1,6 @@
 """The task spectrum: the leading eigenvalues at every point."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -15,6 +16,7 @@ from ..results.layouts.spectrum import longitudinal
 from ..results.layouts.variables import Filled
 from ..sweep.estimate import Estimate, estimate_followed, estimate_spectra, estimate_two_meshes
 from ..sweep.stretches import Stretches, Together, along_the_longest
+from .force_changes import force_changes
 from .parts import LinearTask, count_of
 from .protocol import InOrder, Part, Solver, alone
 
@@ -58,6 +60,10 @@ class SpectrumTask(LinearTask):
         rates = np.array([longitudinal_rates(float(k), gamma1, modes) for k in k1])
         along = tuple(self.points.over) or ("k1" if self.points.is_grid else "point",)
         return ((longitudinal(gamma1, *along), rates.reshape(*shape, modes)),)
+
+    def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
+        """Where the rods change along F."""
+        return force_changes(self.points, values)
 
     def headline(self) -> str:
         return f"{count_of(self.points)}, {self.config.spectrum.modes} leading modes each"

@@ -8,7 +8,7 @@ the fingerprint of their points, whatever has become of the file; others are set
 
 import json
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -43,6 +43,14 @@ SPACE_FACTOR, SPACE_FIXED = 3, 300_000
 """Room that a run needs: the file, the journals and the copy in units of the file, and bytes besides."""
 BEFORE = "before-*.h5"
 """Files beside the journals as they were before an extension that is not complete yet."""
+
+Additions = Callable[[h5py.File], Sequence[Filled]]
+"""Whole variables that a file gets, from its own."""
+
+
+def nothing(file: h5py.File) -> Sequence[Filled]:
+    """No variables."""
+    return ()
 
 
 class Store:
@@ -164,7 +172,11 @@ class Store:
         with reading(self.path):
             return missing_ranges(self.path)
 
-    def fold(self, attributes: dict[str, Any], additions: Sequence[Filled] = ()) -> None:
+    def finish(self, attributes: dict[str, Any], variables: Sequence[Filled] = ()) -> None:
+        """Folds, and adds whole variables with those that the points of the whole file give at once."""
+        self.fold(attributes, lambda file: (*variables, *self.plan.afterwards(file)))
+
+    def fold(self, attributes: dict[str, Any], additions: Additions = nothing) -> None:
         """Puts journalled points, attributes and whole variables into the file at once; drops journals."""
         plan = self.plan
         with disk_refusals(self.path, self._kept):
@@ -202,18 +214,18 @@ class Store:
         layout: Layout,
         fingerprint: str,
         attributes: dict[str, Any],
-        additions: Sequence[Filled] = (),
+        additions: Additions = nothing,
     ) -> None:
         with disk_refusals(self.path, self._kept):
             journals = journals_of(self.journals, fingerprint)
             first = next(blocks, None)
-            if first is not None or attributes or additions:
+            if first is not None or attributes:
                 with self.exchange.replacing(self.path) as copy:
                     if first is not None:
                         write_points(copy, chain([first], blocks), layout)
-                    if attributes or additions:
+                    if attributes:
                         with h5py.File(copy, "r+") as file:
-                            add_variables(file, additions)
+                            add_variables(file, additions(file))
                             file.attrs.update(attributes)
             for journal in journals:
                 journal.unlink(missing_ok=True)

@@ -22,7 +22,7 @@ from .seal import HDF5_SIGNATURE, check_frame
 
 PROGRAM = "rodsweep"
 """The attribute `program` of our files."""
-FORMAT = 7
+FORMAT = 8
 """The attribute `format` of our files: grows when a variable is added or changes its meaning. Only files of
 this format are read: 5 was the first whose content is sealed, 6 has frequencies in Hz, counts from 1,
 the Hopf points of the lines of limit cycles, and grids over an arm's quantities."""

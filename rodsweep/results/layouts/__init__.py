@@ -32,6 +32,7 @@ INCREASES: dict[str, dict[str, Increase]] = {
 
 BESIDE_POINTS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
     "spectrum": spectrum.beside_points,
+    "modes": lambda config, is_grid: spectrum.FORCE_CHANGES,
     "phase_diagram": phase_diagram.beside_points,
     "limit_cycle": lambda config, is_grid: limit_cycle.HOPF_POINTS,
 }

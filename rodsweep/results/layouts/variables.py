@@ -36,6 +36,7 @@ DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
     "cycle_curve_point": ("1", "points of all curves of folds and torus points, one curve after another"),
     "bautin": ("1", "generalised Hopf points, of each Hopf curve one after another"),
     "bautin_step": ("1", "points of curves of generalised Hopf points, each curve's one after another"),
+    "change": ("1", "changes of the rod on the lines over F between the points, one line after another"),
     "hopf": ("1", "Hopf points on the lines between the points, each line's in increasing order"),
     "harmonic": ("1", "multiple of the cycle's frequency"),
     "multiplier_number": ("1", "Floquet multipliers by descending modulus, without the trivial one"),
