@@ -103,7 +103,7 @@ def _opened(paths: Sequence[Path]) -> list[Header]:
 
 def _is_continued(first: Header, other: Header) -> bool:
     """Whether two files were made for the same; InputError if yet their variables are not the same."""
-    if first.asked != other.asked:
+    if first.fingerprint != other.fingerprint:
         return False
     if (first.layout.record, first.points) != (other.layout.record, other.points):
         raise InputError(f"{other.path} was written by another version of rodsweep than {first.path}")

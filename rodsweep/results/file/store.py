@@ -78,20 +78,15 @@ class Store:
             self._create(fresh)
         else:
             header = self._header()
-            if header.asked == self.plan.fingerprint:
-                self._continue(header)
+            if header.fingerprint == self.plan.fingerprint:
+                snapshot = {SNAPSHOT: ""} if self.attributes().get(SNAPSHOT) else {}
+                self.fold(self._new_title() | snapshot)
             elif extend:
                 self._extend(header)
             else:
                 self._refuse(header)
         self._set_aside(other_journals(self.journals, self.plan.fingerprint), "journals of other points")
         drop_files(self.journals, JOURNALS)  # what is left has no points
-
-    def _continue(self, header: Header) -> None:
-        """Takes up the file of the plan."""
-        if header.fingerprint != header.asked:  # an earlier version's, and its journals have it
-            self._fold(header, {"fingerprint": header.asked})
-        self.fold(self._new_title() | ({SNAPSHOT: ""} if self.attributes().get(SNAPSHOT) else {}))
 
     def _create(self, fresh: bool) -> None:
         """Makes the file of the plan, with the points of its journals unless all is to be computed anew."""
@@ -114,7 +109,8 @@ class Store:
         points = parameters_of(self.path, header.layout)
         extension = extension_of(header, points, self.plan)
         self._need_room()
-        self._fold(header, {})
+        blocks = read_journals(self.journals, header.layout, header.fingerprint, header.points)
+        self._fold_blocks(blocks, header.layout, header.fingerprint, {})
         done = header.points - total(self.missing())
         history = merged_history([header.attributes])
         with self.exchange.replacing(None) as copy:
@@ -198,15 +194,10 @@ class Store:
             return
         try:
             header = self._header()
-            if header.asked != self.plan.fingerprint:
+            if header.fingerprint != self.plan.fingerprint:
                 self._refuse(header)
         except InputError as error:
             raise EnvironmentLacks(f"another file was put in its place meanwhile: {error}") from None
-
-    def _fold(self, header: Header, attributes: dict[str, Any]) -> None:
-        """Folds in the journals that were written for the file as it is."""
-        blocks = read_journals(self.journals, header.layout, header.fingerprint, header.points)
-        self._fold_blocks(blocks, header.layout, header.fingerprint, attributes)
 
     def _fold_blocks(
         self,
