@@ -12,6 +12,7 @@ import gc
 import io
 import json
 import os
+import pickle
 import resource
 import select
 import signal
@@ -19,8 +20,9 @@ import socket
 import sys
 import traceback
 from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
-from typing import NoReturn
+from typing import BinaryIO, NoReturn
 
 SOLVERS = ("petsc4py", "slepc4py")
 UNCAUGHT = 70
@@ -118,12 +120,17 @@ def answer(request: dict) -> dict:
     return {"status": status, "slow": waits or status == -signal.SIGXCPU}
 
 
-def keep_ranks(place: str) -> NoReturn:
-    """Forks a child for each rank that comes to a socket, until the process that started this one ends."""
+def keep_ranks(place: str, kernels: BinaryIO) -> NoReturn:
+    """Forks a child for each rank that comes to a socket, until the process that started this one ends.
+
+    `kernels`: which compiled functions are loaded first, as `loaded_kernels` writes them.
+    """
     parent = os.pidfd_open(os.getppid())
     with socket.socket(socket.AF_UNIX) as server:
         server.bind(place)
         server.listen(64)
+        load_for_ranks(kernels)
+        gc.freeze()
         while parent not in select.select([server, parent], [], [])[0]:
             rank, _ = server.accept()
             if not os.fork():
@@ -217,36 +224,51 @@ def draw() -> None:
     figure.savefig(io.BytesIO(), dpi=300)
 
 
-def load_for_ranks() -> None:
-    """Imports and compiles what starts neither MPI nor PETSc."""
-    import scipy.interpolate
-    import scipy.optimize
-    import scipy.sparse.linalg  # noqa: F401
+def loaded_kernels() -> bytes:
+    """{module: {name: the types of arguments for which it is compiled}} of all that the package has loaded."""
+    from numba.core.dispatcher import Dispatcher
 
-    import rodsweep.cli.running
-    import rodsweep.discretization.straight_elements  # noqa: F401
-    from rodsweep.determinant.covering import cover, first_boxes
-    from rodsweep.determinant.newton import refined  # noqa: F401
-    from rodsweep.determinant.parameter_path import Path as ParameterPath
-    from rodsweep.determinant.winding_number import count_right_of
-    from rodsweep.model.rod import Rod
+    modules = {name: vars(module) for name, module in sys.modules.items() if name.startswith("rodsweep.")}
+    return pickle.dumps(
+        {
+            name: {
+                key: value.signatures
+                for key, value in content.items()
+                if isinstance(value, Dispatcher) and value.py_func.__module__ == name
+            }
+            for name, content in modules.items()
+        }
+    )
 
-    rod = Rod(30.0, 1e4, 1e4, 1e-4)
-    count_right_of(0.0, rod)
-    path = ParameterPath(rod, "F")
-    boxes = first_boxes(path, 10.0, 11.0)
-    assert boxes is not None
-    cover(boxes, path.origin, path.direction)
+
+def load_for_ranks(kernels: BinaryIO) -> None:
+    """Loads what the process that solves has loaded, but what starts MPI or PETSc."""
+    with kernels:
+        modules = pickle.load(kernels)
+    refusal = NoSolver()
+    sys.meta_path.insert(0, refusal)
+    for name, functions in modules.items():
+        with suppress(AssertionError):
+            module = import_module(name)
+            for function, signatures in functions.items():
+                for signature in signatures:
+                    getattr(module, function).compile(signature)
+    sys.meta_path.remove(refusal)
     assert not {"mpi4py.MPI", "petsc4py.PETSc"} & set(sys.modules)
 
 
 def main() -> None:
-    if sys.argv[1] == "solving":
-        load_for_ranks()
-        gc.freeze()
+    solving = sys.argv[1] == "solving"
+    if solving:
+        reading, writing = os.pipe()
         if not os.fork():
-            keep_ranks(sys.argv[2])
-    load(sys.argv[1] == "solving", sys.argv[3:])
+            os.close(writing)
+            keep_ranks(sys.argv[2], os.fdopen(reading, "rb"))
+        os.close(reading)
+    load(solving, sys.argv[3:])
+    if solving:
+        with os.fdopen(writing, "wb") as kernels:
+            kernels.write(loaded_kernels())
     gc.freeze()  # collecting garbage, children would copy all that is loaded
     requests = sys.stdin.buffer
     with open(os.dup(1), "w", encoding="utf-8") as answers:
