@@ -191,10 +191,16 @@ def be_rank(request: dict, streams: list[int]) -> None:
 
 def load(solving: bool, configs: list[str]) -> None:
     """Imports everything and compiles what is compiled at first use for some configs."""
+    import email.parser  # noqa: F401
+    import encodings.ascii  # noqa: F401
+
+    import rich._emoji_codes  # noqa: F401
+
     import rodsweep.cli.checking
     import rodsweep.cli.running
     import rodsweep.post.figures
-    import rodsweep.post.summary  # noqa: F401
+    import rodsweep.post.summary
+    import rodsweep.tasks.cycle_shapes  # noqa: F401
     from rodsweep.errors import EnvironmentLacks
     from rodsweep.sweep.team import Team
     from rodsweep.tasks.job import make_job
@@ -225,7 +231,7 @@ def draw() -> None:
 
 
 def loaded_kernels() -> bytes:
-    """{module: {name: the types of arguments for which it is compiled}} of all that the package has loaded."""
+    """{module: {name: the types of arguments for which it is compiled}} of what the package has loaded."""
     from numba.core.dispatcher import Dispatcher
 
     modules = {name: vars(module) for name, module in sys.modules.items() if name.startswith("rodsweep.")}
