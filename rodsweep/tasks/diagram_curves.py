@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..config.values import Axis
-from ..determinant.parameter_plane import Plane, PlaneAxis
 from ..model.parameters import CRUSHING
 from ..model.rod import Rod
 from ..results.file.view import View
@@ -23,6 +22,7 @@ from .diagram_cycles import cycle_curve_record, row_specials, unstored_specials,
 from .diagram_records import bautin_curve_record, criticality_record, curve_record
 
 if TYPE_CHECKING:
+    from ..determinant.parameter_plane import Plane
     from ..solve.branch.coexistence import CoexistenceRow
     from ..solve.branch.special.boundaries import SpecialBoundaries
     from ..solve.branch.special.point import SpecialPoint
@@ -117,8 +117,10 @@ class DiagramCurves:
         return np.isfinite(self.task.points.by_name[self.task.config.plane[1]])
 
     @property
-    def plane(self) -> Plane | None:
+    def plane(self) -> "Plane | None":
         """The plane of the line's parameter and the finite rows; None where these are fewer than two."""
+        from ..determinant.parameter_plane import Plane, PlaneAxis
+
         line, row = self.task.config.plane
         finite = self.task.points.by_name[row][self._finite]
         if len(finite) < 2:
@@ -131,7 +133,7 @@ class DiagramCurves:
         )
         return Plane(Rod(**not_crushed), (abscissa, ordinate))
 
-    def _boundaries(self, plane: Plane, view: View, rows: np.ndarray) -> "Boundaries":
+    def _boundaries(self, plane: "Plane", view: View, rows: np.ndarray) -> "Boundaries":
         """The curves through the crossings of all finite rows, whose values are given, (rows,)."""
         from ..solve.changes.boundaries import curves_through, seed_of
 
@@ -159,7 +161,7 @@ class DiagramCurves:
             return special_of(branches)
         return self.special[number]
 
-    def _criticality(self, plane: Plane, found: "Boundaries") -> "list[CurveCriticality]":
+    def _criticality(self, plane: "Plane", found: "Boundaries") -> "list[CurveCriticality]":
         """On which side of each curve cycles are born, if it is one of Hopf points."""
         from ..solve.hopf.generalised import CurveCriticality, curve_criticality
 
@@ -172,9 +174,10 @@ class DiagramCurves:
         ]
 
     def _bautin_curves(
-        self, plane: Plane, told: Sequence["CurveCriticality"], name: str, axis: Axis
+        self, plane: "Plane", told: Sequence["CurveCriticality"], name: str, axis: Axis
     ) -> dict[str, Any]:
         """The curves of generalised Hopf points over the third parameter, as variables of the file."""
+        from ..determinant.parameter_plane import PlaneAxis
         from ..solve.hopf.bautin_curves import BautinCurve, BautinSpace, bautin_curve, lies_on, on_curve
 
         options = self.task.config

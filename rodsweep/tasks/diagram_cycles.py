@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..determinant.parameter_plane import Plane
 from ..results.file.view import View
 from ..results.layouts.phase_diagram import CYCLE_SPECIAL, MOST_SPECIAL, cycle_variables
 from ..results.layouts.variables import listed, recorded
 
 if TYPE_CHECKING:
+    from ..determinant.parameter_plane import Plane
     from ..solve.branch.coexistence import CoexistenceRow
     from ..solve.branch.special.boundaries import CycleCurves, RowSpecial
     from ..solve.hopf.generalised import CurveCriticality
@@ -59,7 +59,7 @@ def unstored_specials(view: View, finite: np.ndarray) -> int:
 
 
 def with_hopf_ends(
-    found: "CycleCurves", plane: Plane, told: "Sequence[CurveCriticality]", unstored: int
+    found: "CycleCurves", plane: "Plane", told: "Sequence[CurveCriticality]", unstored: int
 ) -> "CycleCurves":
     """The curves with the generalised Hopf points at their ends as they are located on Hopf curves."""
     from ..solve.branch.special.cycle_curves import ending_at
