@@ -125,7 +125,7 @@ def test_every_step_is_reported_with_the_solutions_before_it():
     found = follow(
         Ellipse(1.0, 1.0, least=0.0), np.array([1.0, 0.0]), STEPS, lambda points: heard.append(list(points))
     )
-    assert found.end is End.margin
+    assert found.end is CurveStop.margin
     assert [len(points) for points in heard] == list(range(1, len(found.solutions)))
     assert all(point is kept for point, kept in zip(heard[-1], found.solutions, strict=False))
 
