@@ -156,7 +156,7 @@ def _of_arm(arm: object, **given: Any) -> dict[str, Any]:
     known = known_load(arm)
     left_out = {name: value is None or value is NOT_GIVEN for name, value in given.items()}
     of_arm = (name for name in given if left_out[name] and not (name == "F" and known.load is None))
-    return given | {name: getattr(known, name) for name in of_arm}
+    return given | {name: known.parameter(name) for name in of_arm}
 
 
 def _number(name: str, value: Any) -> float:

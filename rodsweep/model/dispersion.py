@@ -20,7 +20,8 @@ LOWEST = 1e-4
 
 def most_amplified_wave(rod: Rod) -> tuple[float, float]:
     """(growth rate in 1/tau2, wave number in 1/L) of the most amplified wave; (0, 0) if all decay."""
-    return _peak(rod.F * rod.g, rod.c2 + rod.gamma3, rod.g * rod.nu, rod.c2 * rod.gamma3)
+    F, nu, c2, gamma3 = rod.coefficients
+    return _peak(F * rod.g, c2 + gamma3, rod.g * nu, c2 * gamma3)
 
 
 @compiled

@@ -231,7 +231,7 @@ def load_for_ranks() -> None:
     from rodsweep.determinant.winding_number import count_right_of
     from rodsweep.model.rod import Rod
 
-    rod = Rod(30.0, 1e4, 1e4, 1e-4)
+    rod = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
     count_right_of(0.0, rod)
     path = ParameterPath(rod, "F")
     boxes = first_boxes(path, 10.0, 11.0)

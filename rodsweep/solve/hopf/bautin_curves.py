@@ -6,7 +6,7 @@ turn back in any of them. In the plane of the other two the secant method finds 
 along the Hopf curve beside what the last two points predict.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import IntEnum
 from functools import partial
 
@@ -68,7 +68,7 @@ class _Place:
 
 @dataclass(frozen=True, slots=True)
 class BautinSpace:
-    """Three parameters in their ranges, the third with the values asked for; gamma1 in gamma2.
+    """Three parameters in their ranges, the third with the values asked for.
 
     rod: for the parameters that do not vary; accuracy: of c, relative.
     """
@@ -76,7 +76,6 @@ class BautinSpace:
     rod: Rod
     axes: tuple[PlaneAxis, PlaneAxis, PlaneAxis]
     asked: Array
-    gamma1: float
     accuracy: float
 
     def scaled(self, values: Array, frequency: float) -> Array:
@@ -88,9 +87,9 @@ class BautinSpace:
         """The point near a guess, (4,), with one of its three places held; raises Unsolvable."""
         free = [i for i in range(3) if i != held]
         values = {axis.name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)}
-        plane = Plane(replace(self.rod, **values), (self.axes[free[0]], self.axes[free[1]]))
+        plane = Plane(self.rod.changed(**values), (self.axes[free[0]], self.axes[free[1]]))
         boundary = Boundary(plane, 0.0)
-        hopf = HopfCurve(boundary, np.empty((0, 3)), self.gamma1, min(self.accuracy, FINEST))
+        hopf = HopfCurve(boundary, np.empty((0, 3)), min(self.accuracy, FINEST))
         start = guess[[*free, 3]]
         way = boundary.tangent(start)
         point = self._zero(hopf, start, way)
