@@ -54,20 +54,14 @@ class BranchTask(Task):
         return estimate_branches(self.points, options.along, reach, self.config.accuracy)
 
     def solver(self) -> Solver:
-        from ..solve.branch.branches import (
-            BranchRequest,
-            BranchRod,
-            BranchStatus,
-            solve_branches,
-            warm_up,
-        )
+        from ..solve.branch.branches import BranchRequest, BranchStatus, solve_branches, warm_up
 
         options = self.config.branch
         request = BranchRequest(**options.model_dump(), accuracy=self.config.accuracy)
         return Solver(
             statuses=tuple(BranchStatus),
             warm_up=warm_up,
-            solve=lambda index: solve_branches(BranchRod(**self.points.values(index)), request),
+            solve=lambda index: solve_branches(self.points.rod(index), request),
             record=lambda index, result: record(result, options.along, options.cycles, options.special),
         )
 

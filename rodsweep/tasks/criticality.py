@@ -52,7 +52,6 @@ class CriticalityTask(Task):
         from ..solve.hopf.criticality import (
             CriticalityRequest,
             CriticalityStatus,
-            RodInFluid,
             solve_criticality,
             warm_up,
         )
@@ -62,7 +61,7 @@ class CriticalityTask(Task):
         return Solver(
             statuses=tuple(CriticalityStatus),
             warm_up=warm_up,
-            solve=lambda index: solve_criticality(RodInFluid(**self.points.values(index)), request),
+            solve=lambda index: solve_criticality(self.points.rod(index), request),
             record=lambda index, result: record(result, options.crossings),
         )
 
