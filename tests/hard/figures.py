@@ -585,7 +585,17 @@ def thresholds_figure(d, view, _):
         low = axes.get_ylim()[0]
         found.append((y, "" if y == "critical force F" or not y else "the label"))
         found.append((y, "" if low == 0 else f"forces begin at {low}"))
-    return searched + found + parameters_told(d, columns) + parameters_told(d, columns, 3)
+    return searched + found + _values_of_lines(d, columns) + parameters_told(d, columns)
+
+
+def _values_of_lines(d, columns):
+    """The check of the values that the legend of a panel gives, to three digits, several for one line."""
+    found = []
+    for text in {text for axes in d.panels for _, text in d.legend_entries(axes)}:
+        for line, match in read(d.page, r"^(\w+) = NUMBER(?:, NUMBER)?(?:, NUMBER)?", only=text):
+            why = (one_of(number, columns[match[1]], 3) for number in match.groups()[1:] if number)
+            found.append((line, "; ".join(filter(None, why))))
+    return found
 
 
 def _rods_of_line(line, entries, columns):
@@ -646,7 +656,7 @@ CLASSES = {"monotone", "oscillatory", "flutter", "undecided", "crushed"}
 
 def class_of(rod):
     """What a straight rod does."""
-    if rod.k1 <= rod.F:
+    if rod is None:
         return "crushed"
     w = roots_of(rod, 2)[0]
     return "flutter" if w.real > 0 else "oscillatory" if w.imag else "monotone"
@@ -1191,7 +1201,8 @@ def diagram_figure(d, view, _):
     }
 
     def rods(x, y):
-        return Rod(**(fixed | {line: float(x), row: float(y)}))
+        values = fixed | {line: float(x), row: float(y)}
+        return Rod(**values) if values["F"] < values["k1"] else None
 
     words = {colour_of(h): text for h, text in d.legend_entries() if isinstance(h, Patch)}
     covers = d.take(axes, Collection, lambda one: not isinstance(one, QuadMesh))
@@ -1303,7 +1314,7 @@ def _curves(d, axes, view, line, row, rods, states):
     for one in thin:
         found += [("chord of a curve", why) for why in _chords(d, axes, one, view, line, row, rods)]
     folds = d.lines(axes, lambda one: one.get_marker() == "o")
-    of = (v["fold_kind"] == 1) & (v["fold_of"] == 1)
+    of = (v["fold_kind"] == 1) & (v["fold_of"] == 1) & (not states)
     places = [v[f"fold_{name}"][of] for name in (line, row)]
     found.append(("folds", d.compare(axes, xy(folds), places)))
     for text, match in read(d.page, rf"^fold {line} = NUMBER, {row} = NUMBER$"):
@@ -1523,18 +1534,25 @@ def _smooth(d, axes, lines, curves, name):
     drawn = []
     for line in lines:
         at = d.places(axes, *xy([line]))
-        steps = np.linspace(0, 1, 20, endpoint=False)[:, None]
-        drawn += [a + (b - a) * steps for a, b in zip(at[:-1], at[1:], strict=True)] + [at[-1:]]
-    tree = cKDTree(np.concatenate(drawn))
+        drawn += zip(at[:-1], at[1:], strict=True)
+    begins, ends = (np.array(some) for some in zip(*drawn, strict=True))
     worst, where = 0.0, None
     for curve in curves:
         some = curve.cycles
         places = d.places(axes, curve.at[some], getattr(curve, name)[some])
         inside = (np.abs(places - 0.5) <= 0.5).all(axis=1)
-        off = tree.query(places)[0]
+        off = np.array([_beside_pieces(begins, ends, place) for place in places])
         if len(off) and (off * inside).max() > worst:
             worst, where = (off * inside).max(), float(curve.at[some][np.argmax(off * inside)])
     return "" if worst <= LINE else f"a cycle at {where} lies {worst:.2g} beside the curve"
+
+
+def _beside_pieces(begins, ends, place):
+    """The distance of a place from the nearest of straight pieces, (n, 2) from, (n, 2) to."""
+    sides = ends - begins
+    lengths = np.maximum((sides**2).sum(axis=1), np.finfo(float).tiny)
+    share = np.clip(((place - begins) * sides).sum(axis=1) / lengths, 0, 1)
+    return np.linalg.norm(place - begins - share[:, None] * sides, axis=1).min()
 
 
 def _stable(d, line, own, rods, colours, columns, view):
@@ -1900,7 +1918,7 @@ def _cycles(random, keywords, top):
     if kind == "maps":
         keywords = _single(keywords) | {"F": [0.4 * top, 0.7 * top, top]}
         keywords["k2"] = [keywords["k2"], 1.3 * keywords["k2"]]
-    return keywords, {"what": kind} if kind != "amplitude" else {}
+    return keywords, {"what": kind}
 
 
 _CHANGES = {"spectrum": _spectra, "thresholds": _forces, "criticality": _sides, "limit_cycle": _cycles}
