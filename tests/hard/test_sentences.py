@@ -1,6 +1,6 @@
-"""Every number on the page of `show`, in figures of random rods and arms, in reports on arms, against the solvers.
+"""Every number on the page of `show` and in figures of random rods and arms, and in reports on arms.
 
-A number that nothing compares fails as well. The suite takes a sweep of each task, RODSWEEP_RODS as many
+Each is held against the solvers; a number or a mark that nothing compares fails as well. The suite takes a sweep of each task, RODSWEEP_RODS as many
 as it says (`make survey`: 300).
 """
 
