@@ -275,5 +275,3 @@ def in_steps(start: Followed, form: StressForm, name: str, tolerance: float) -> 
         followed = followed_from(at_orbit(ahead.solution, TANGENT_DISTANCE, name), followed, name)
         length = STEPS.next_length(length, ahead, STEPS.order)
     raise Unsolvable("the branch of cycles cannot be followed in so many steps")
-
-
