@@ -102,15 +102,15 @@ def test_a_plane_of_two_material_parameters():
 
 TOUCHED = [
     # double eigenvalues at gamma3 = 0, where differences are one-sided, and Hopf points
-    ((PlaneAxis("F", 5.0, 60.0), PlaneAxis("gamma3", 0.0, 1.0)), Rod(30.0, 1e4, 20.0, 0.01)),
+    ((PlaneAxis("F", 5.0, 60.0), PlaneAxis("gamma3", 0.0, 1.0)), Rod(F=30.0, k1=1e4, k2=20.0, gamma3=0.01)),
     # double eigenvalues beside a crushed rod
     (
         (PlaneAxis("F", 0.0, 99.999), PlaneAxis("k1", 100.0, 1e3, logarithmic=True)),
-        Rod(0.0, 200.0, 1e4, 1e-4),
+        Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4),
     ),
     (
         (PlaneAxis("k2", 20.0, 1e5, logarithmic=True), PlaneAxis("gamma3", 1e-4, 0.1, logarithmic=True)),
-        Rod(30.0, 1e4, 1e3, 1e-3),
+        Rod(F=30.0, k1=1e4, k2=1e3, gamma3=1e-3),
     ),
 ]
 
