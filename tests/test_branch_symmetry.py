@@ -39,8 +39,9 @@ ROUGH, STOP = 1e-3, 20.5
 @pytest.fixture(scope="module")
 def course():
     """The first Hopf point of a rod that is soft in shear, whose stable cycles lose their symmetry."""
-    straight = Rod(0.0, 30.0, 0.5, 0.1)
-    hopf = hopf_point(straight, 1.0, "F", pair_crossings(Path(straight, "F"), 0.0, 5.0).crossings[0])
+    straight = Rod(F=0.0, k1=30.0, k2=0.5, gamma3=0.1)
+    path = Path(straight, "F")
+    hopf = hopf_point(path, pair_crossings(path, 0.0, 5.0).crossings[0])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(locating, "ACCURACY", 1e-5)
         yield Course([hopf], (0.0, STOP), (EndReason.range_end,) * 2, ROUGH, 500)

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from math import exp, log
 from typing import NamedTuple
 
-from ..model.parameters import CRUSHING, LINEAR_PARAMETERS, PARAMETERS
+from ..model.parameters import CRUSHING, PARAMETERS
 from ..model.rod import Rod
-from .parameter_path import ValueAlong, determinant_along, direction_of
+from .parameter_path import ValueAlong, determinant_along
 from .value import ROUND_OFF
 
 BEYOND_AN_END = 1e-12
@@ -68,10 +68,8 @@ class Plane:
 
     def at(self, x: float, y: float) -> Rod:
         """The rod at scaled coordinates; ValueError where the model has none."""
-        values = {name: getattr(self.rod, name) for name in LINEAR_PARAMETERS}
-        values[self.axes[0].name] = self.axes[0].value(x)
-        values[self.axes[1].name] = self.axes[1].value(y)
-        return Rod(**values)
+        first, second = self.axes
+        return self.rod.changed(**{first.name: first.value(x), second.name: second.value(y)})
 
     def determinant(self, w: complex, x: float, y: float) -> ValueOnPlane:
         """D at w and scaled coordinates, and its derivatives."""
@@ -85,7 +83,7 @@ class Plane:
     @staticmethod
     def _along(w: complex, rod: Rod, axis: PlaneAxis) -> tuple[ValueAlong, complex]:
         """(D along the axis's parameter, its derivative by the scaled coordinate)."""
-        value = determinant_along(w, rod.coefficients, direction_of(rod, axis.name))
+        value = determinant_along(w, rod.coefficients, rod.direction(axis.name))
         return value, value.D_p * axis.slope(getattr(rod, axis.name))
 
     def small_step(self, x: float, y: float, which: int, largest: float) -> float:

@@ -75,11 +75,13 @@ def random_case(index: int) -> Case:
 
 def cycles_of(case: Case) -> Iterator[ArcPoint]:
     """The cycles of the first branch, with the errors that it states, as far as MOST_CYCLES."""
-    rod = Rod(0.0, case.k1, case.k2, case.gamma3)
+    rod = Rod(F=0.0, k1=case.k1, k2=case.k2, gamma3=case.gamma3)
     crossings = pair_crossings(Path(rod, "F"), 0.0, case.stop).crossings
     if not crossings:
         return
-    here = last = beginning(hopf_point(rod, case.gamma1, "F", crossings[0]), case.accuracy)
+    here = last = beginning(
+        hopf_point(Path(rod.changed(gamma1=case.gamma1), "F"), crossings[0]), case.accuracy
+    )
     yield last
     waiting: list[ArcPoint] = []
     for _ in range(MOST_CYCLES):

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ..continuation.follower import StepControl, Stepped, advance
-from ..cycle.neighbour import carried, coordinate_of
+from ..cycle.neighbour import carried
 from ..cycle.newton import Converged, multiplier_change, relative_change
 from ..cycle.orbit import Orbit
 from ..cycle.orbit_mesh import mesh_of
@@ -76,7 +76,7 @@ class ArcPoint:
     @property
     def at(self) -> float:
         """The parameter's coordinate."""
-        return coordinate_of(self.orbit.form, self.scale.name)
+        return self.orbit.form.rod.coordinate(self.scale.name)
 
     @property
     def rises(self) -> float:
@@ -109,7 +109,7 @@ class ArcPoint:
         """Coefficients of the cubic in the length, from the first, (3, N + 1)."""
         name, mesh = self.scale.name, mesh_of(self.orbit)
         last = mesh.carry(before.orbit)
-        there = coordinate_of(last.form, name)
+        there = last.form.rod.coordinate(name)
         slope = np.append(carried(before.orbit, before.tangent[:-1], mesh), before.tangent[-1])
         step = float(self.ahead @ (self.scale.place(self.orbit) - self.scale.place(last)))
         rate = float(self.ahead @ self.scale.moved(last, slope))

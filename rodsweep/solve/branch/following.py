@@ -7,11 +7,10 @@ from math import nan
 
 import numpy as np
 
+from ...model.parameters import PARAMETERS
 from ...watch import Whereabouts, report
 from ...wording import counted
 from ..continuation.follower import zero_along
-from ..cycle.linearisation import coordinate
-from ..cycle.neighbour import value_at, value_of
 from ..cycle.orbit_mesh import mesh_of
 from ..cycle.refinement import matrix_distance, newton_tolerance
 from ..point import Unsolvable
@@ -108,9 +107,9 @@ def _place_on(curve: BranchCurve, here: ArcPoint, course: Course) -> Whereabouts
     """Where on a branch its last cycle is, and the share of the branch's work that is done there."""
     name = here.scale.name
     aim = course.ends[1 if here.ahead[-1] > 0 else 0]
-    there, end = value_at(name, here.at), value_at(name, aim)
+    there, end = PARAMETERS[name].value(here.at), PARAMETERS[name].value(aim)
     words = f"{name} = {there:.5g} on the way to {end:.5g}, {counted(len(curve.points), 'cycle')}"
-    return Whereabouts(words, share_done(coordinate(name, curve.special[0].at), here.at, aim))
+    return Whereabouts(words, share_done(PARAMETERS[name].coordinate(curve.special[0].at), here.at, aim))
 
 
 def special_hopf(hopf: HopfBirth) -> SpecialPoint:
@@ -171,7 +170,7 @@ def _next(trail: Trail, here: ArcPoint, course: Course) -> ArcPoint | BranchEnd:
         return BranchEnd(end_at(here, EndReason.no_cycle_found, message), complete=False)
     if edge is None:
         return last
-    at = value_of(last.orbit.form, last.scale.name)
+    at = getattr(last.orbit.form.rod, last.scale.name)
     return BranchEnd(replace(end_at(last, course.reasons[outside]), error=EXACT * abs(at)), complete=True)
 
 

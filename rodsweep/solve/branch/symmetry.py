@@ -14,7 +14,6 @@ import numpy as np
 
 from ...arrays import Array
 from ..cycle.measures import CyclePath
-from ..cycle.neighbour import coordinate_of
 from ..cycle.newton import relative_change
 from ..cycle.orbit import Orbit, node_times
 from ..cycle.orbit_mesh import stages_for, wanted_mesh
@@ -170,7 +169,7 @@ def _nearest(here: ArcPoint, known: Sequence[Breaking], accuracy: float) -> int:
         symmetric = breaking.point.orbit
         if symmetric is None:
             continue
-        place = coordinate_of(symmetric.form, here.scale.name)
+        place = symmetric.form.rod.coordinate(here.scale.name)
         near = WITHIN * abs(here.at - place) + max(CLOSE_PLACE, accuracy) * abs(place)
         also = WITHIN * abs(here.orbit.period - symmetric.period)
         also += max(CLOSE_PERIOD, accuracy) * symmetric.period

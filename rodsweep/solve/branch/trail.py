@@ -5,7 +5,6 @@ from math import nan
 
 import numpy as np
 
-from ..cycle.neighbour import value_of
 from ..point import Unsolvable
 from .arc import ArcPoint
 from .bordered import Condition
@@ -24,7 +23,7 @@ class BranchEnd:
 
 def end_at(point: ArcPoint, reason: EndReason, message: str = "") -> SpecialPoint:
     """The end of a branch at a cycle, whose errors may not be known yet."""
-    measures, at = point.cycle.measures, value_of(point.orbit.form, point.scale.name)
+    measures, at = point.cycle.measures, getattr(point.orbit.form.rod, point.scale.name)
     return SpecialPoint(
         kind=SpecialKind.end,
         at=at,

@@ -81,7 +81,7 @@ class _Place:
 
 @dataclass(frozen=True, slots=True)
 class BautinSpace:
-    """Three parameters in their ranges, the third with the values asked for; gamma1 in gamma2.
+    """Three parameters in their ranges, the third with the values asked for.
 
     rod: for the parameters that do not vary; accuracy: of c, relative. side: 1 or -1, to which a curve goes
     first along the third.
@@ -90,7 +90,6 @@ class BautinSpace:
     rod: Rod
     axes: tuple[PlaneAxis, PlaneAxis, PlaneAxis]
     asked: Array
-    gamma1: float
     accuracy: float
     side: float = 1.0
 
@@ -103,9 +102,9 @@ class BautinSpace:
         """The point near a guess, (4,), with one of its three places held; raises Unsolvable."""
         free = [i for i in range(3) if i != held]
         values = {axis.name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)}
-        plane = Plane(replace(self.rod, **values), (self.axes[free[0]], self.axes[free[1]]))
+        plane = Plane(self.rod.changed(**values), (self.axes[free[0]], self.axes[free[1]]))
         boundary = Boundary(plane, 0.0)
-        hopf = HopfCurve(boundary, np.empty((0, 3)), self.gamma1, min(self.accuracy, FINEST))
+        hopf = HopfCurve(boundary, np.empty((0, 3)), min(self.accuracy, FINEST))
         start = guess[[*free, 3]]
         way = boundary.tangent(start)
         point = self._zero(hopf, start, way)

@@ -12,7 +12,6 @@ import numpy as np
 from ....arrays import Array
 from ...continuation.follower import zero_along
 from ...cycle.measures import CyclePath
-from ...cycle.neighbour import value_of
 from ...cycle.newton import Converged
 from ...cycle.orbit import Orbit
 from ...cycle.orbit_mesh import OrbitMesh, mesh_of, stages_for
@@ -156,7 +155,7 @@ def _point_at(kind: SpecialKind, found: Converged) -> SpecialPoint:
     path, name = CyclePath(found.orbit), bordered(found).scale.name
     return SpecialPoint(
         kind=kind,
-        at=value_of(found.orbit.form, name),
+        at=getattr(found.orbit.form.rod, name),
         period=found.orbit.period,
         tip_y_max=path.extrema["tip_y_max"],
         error=nan,
@@ -167,7 +166,7 @@ def _point_at(kind: SpecialKind, found: Converged) -> SpecialPoint:
 def _between(kind: SpecialKind, here: ArcPoint, there: ArcPoint, message: str) -> SpecialPoint:
     """A special point of which only is known between which cycles it lies."""
     name, measures, before = here.scale.name, there.cycle.measures, here.cycle.measures
-    at, other = (value_of(point.orbit.form, name) for point in (there, here))
+    at, other = (getattr(point.orbit.form.rod, name) for point in (there, here))
     return SpecialPoint(
         kind=kind,
         at=at,
