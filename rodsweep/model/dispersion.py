@@ -22,13 +22,14 @@ def most_amplified_wave(rod: Rod) -> tuple[float, float]:
 
     Not compiled: `check` needs it, and would load numba for nothing else.
     """
-    top, square = rod.F * rod.g, rod.c2 * rod.gamma3
+    F, nu, c2, gamma3 = rod.coefficients
+    top, square = F * rod.g, c2 * gamma3
     if top <= 0:
         return 0.0, 0.0
     K = top * LOWEST ** (1 - np.arange(SAMPLES) / SAMPLES)
     with np.errstate(all="ignore"):
         drive = K * (top - K)
-        linear = (rod.c2 + rod.gamma3) * K + rod.g * rod.nu
+        linear = (c2 + gamma3) * K + rod.g * nu
         spread = np.sqrt(linear**2 + 4 * square * drive)
         slow = (spread - linear) / (2 * square) if square > 0 else 0.0
         rates = np.where(linear > 0, 2 * drive / (linear + spread), slow)

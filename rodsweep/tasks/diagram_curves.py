@@ -24,8 +24,8 @@ from .diagram_records import bautin_curve_record, criticality_record, curve_reco
 if TYPE_CHECKING:
     from ..determinant.parameter_plane import Plane
     from ..solve.branch.coexistence import CoexistenceRow
-    from ..solve.branch.special_boundaries import SpecialBoundaries
-    from ..solve.branch.special_points import SpecialPoint
+    from ..solve.branch.special.boundaries import SpecialBoundaries
+    from ..solve.branch.special.point import SpecialPoint
     from ..solve.changes.boundaries import Boundaries
     from ..solve.hopf.generalised import CurveCriticality
     from .phase_diagram import PhaseDiagramTask
@@ -63,7 +63,7 @@ class DiagramCurves:
 
     def units(self, view: View) -> "SpecialBoundaries | None":
         """The curves of cycles as units of work, from a view with all rows; None where there are none."""
-        from ..solve.branch.special_boundaries import SpecialBoundaries
+        from ..solve.branch.special.boundaries import SpecialBoundaries
 
         plane = self.plane if self.task.config.phase_diagram.cycles else None
         if plane is None:
@@ -78,7 +78,7 @@ class DiagramCurves:
 
     def nothing(self) -> dict[str, np.ndarray]:
         """The result of a unit that finds no curve, arrays of no length along their first shape."""
-        from ..solve.branch.special_boundaries import TracedHalf
+        from ..solve.branch.special.boundaries import TracedHalf
 
         return TracedHalf(None).arrays()
 
@@ -131,7 +131,7 @@ class DiagramCurves:
             PlaneAxis(name, float(values[0]), float(values[-1]), axes[name].logarithmic)
             for name, values in ((line, self.task.line), (row, finite))
         )
-        return Plane(Rod(**not_crushed), (abscissa, ordinate))
+        return Plane(Rod(**not_crushed, gamma1=self.task.config.gamma1), (abscissa, ordinate))
 
     def _boundaries(self, plane: "Plane", view: View, rows: np.ndarray) -> "Boundaries":
         """The curves through the crossings of all finite rows, whose values are given, (rows,)."""
@@ -156,18 +156,16 @@ class DiagramCurves:
         from ..solve.branch.coexistence import row_branches, special_of
 
         if number not in self.special:
-            fixed = self.task.points.values(number)
-            branches = row_branches(fixed, self.task.config.gamma1, self.task.row_request(), MOST_SPECIAL)
-            return special_of(branches)
+            return special_of(row_branches(self.task.rod(number), self.task.row_request(), MOST_SPECIAL))
         return self.special[number]
 
     def _criticality(self, plane: "Plane", found: "Boundaries") -> "list[CurveCriticality]":
         """On which side of each curve cycles are born, if it is one of Hopf points."""
         from ..solve.hopf.generalised import CurveCriticality, curve_criticality
 
-        gamma1, accuracy = self.task.config.gamma1, self.task.config.accuracy
+        accuracy = self.task.config.accuracy
         return [
-            curve_criticality(plane, curve, gamma1, accuracy)
+            curve_criticality(plane, curve, accuracy)
             if curve.hopf
             else CurveCriticality(np.full(len(curve.values), np.nan), (), 0)
             for curve in found.curves
@@ -183,9 +181,7 @@ class DiagramCurves:
         options = self.task.config
         asked, here = axis.array(), float(options.parameters.axes[name].array()[0])
         third = PlaneAxis(name, float(asked[0]), float(asked[-1]), axis.logarithmic)
-        space = BautinSpace(
-            plane.rod, (*plane.axes, third), np.append(asked, here), options.gamma1, options.accuracy
-        )
+        space = BautinSpace(plane.rod, (*plane.axes, third), np.append(asked, here), options.accuracy)
         curves: list[BautinCurve] = []
         for point in (on_curve(found, here) for curve in told for found in curve.points):
             if not any(lies_on(space, point, curve) for curve in curves):
