@@ -148,7 +148,7 @@ def end(*words):
         os.kill(os.getpid(), signal.SIGKILL)
 {module}.{step} = end
 """
-    assert command.afresh(*words, patch=patch).returncode == -9
+    assert command(*words, patch=patch).returncode == -9
     assert (path.read_bytes() == before) == (step != "drop_files")
     again = command(*words)
     assert again.returncode == 0, again.stderr

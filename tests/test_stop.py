@@ -5,9 +5,11 @@ import pty
 import re
 import signal
 from contextlib import suppress
+from functools import cache
 
 import h5py
 import pytest
+from conftest import Command
 from contents import content, same
 from ranks import PATIENCE, kill, pause_until, ranks_in, wait_for_end
 from slow_runs import FOR_EVER, pause_until_journalled, slowly
@@ -30,6 +32,20 @@ limit_cycle: {start: neighbour}
 """
 
 
+@pytest.fixture(scope="module")
+def content_of(tmp_path_factory, loaded):
+    """What the file of a config holds after a run that nothing stops, each computed once."""
+
+    @cache
+    def whole(config):
+        command = Command(tmp_path_factory.mktemp("whole"), lambda: loaded)
+        command.write("c.yaml", config)
+        assert command("run", "c.yaml").returncode == 0
+        return content(command.directory / "c.h5")
+
+    return whole
+
+
 def started(command, ranks, pause, afresh=False):
     """A run whose journals hold points; each rank takes `pause` seconds for every further one."""
     process = command.started("run", "c.yaml", ranks=ranks, patch=slowly(pause), afresh=afresh)
@@ -45,7 +61,7 @@ def started(command, ranks, pause, afresh=False):
     ],
     ids=["Ctrl-C", "last rank"],
 )
-def test_stopped_run_ends_with_its_points_in_the_file_and_goes_on(command, number, ranks, rank):
+def test_stopped_run_ends_with_its_points_in_the_file_and_goes_on(command, content_of, number, ranks, rank):
     command.write("c.yaml", SPECTRA)
     process = started(command, ranks, pause=0.2)
     os.kill(ranks_in(command.directory)[rank] if ranks else process.pid, number)
@@ -65,8 +81,7 @@ def test_stopped_run_ends_with_its_points_in_the_file_and_goes_on(command, numbe
     again = command("run", "c.yaml")
     assert again.returncode == 0, again.stderr
     assert f"{1200 - done} of 1200 points to do, {done} kept" in again.stdout
-    assert command("run", "c.yaml", "-o", "whole.h5").returncode == 0
-    assert same(content(command.directory / "c.h5"), content(command.directory / "whole.h5"))
+    assert same(content(command.directory / "c.h5"), content_of(SPECTRA))
 
 
 def test_further_signals_do_not_change_the_status(command):
@@ -184,7 +199,7 @@ RankListener.__call__ = hear_and_wait
     [(signal.SIGINT, 0, None), (signal.SIGTERM, 2, 1)],
     ids=["Ctrl-C", "other rank"],
 )
-def test_run_is_stopped_within_a_point_that_is_then_solved_anew(command, number, ranks, rank):
+def test_run_is_stopped_within_a_point_that_is_then_solved_anew(command, content_of, number, ranks, rank):
     """Whichever rank hears the signal, both end where they are, and what they were at is missing."""
     command.write("c.yaml", BRANCHES)
     process = command.started("run", "c.yaml", ranks=ranks, patch=FOR_EVER_INSIDE)
@@ -206,8 +221,7 @@ def test_run_is_stopped_within_a_point_that_is_then_solved_anew(command, number,
     again = command("run", "c.yaml")
     assert again.returncode == 0, again.stderr
     assert "2 of 3 points to do, 1 kept" in again.stdout
-    assert command("run", "c.yaml", "-o", "whole.h5").returncode == 0
-    assert same(content(command.directory / "c.h5"), content(command.directory / "whole.h5"))
+    assert same(content(command.directory / "c.h5"), content_of(BRANCHES))
 
 
 def test_shares_of_the_ranks_are_kept_and_shown(command):

@@ -35,8 +35,8 @@ if (
     and os.environ.get("SLURM_ARRAY_TASK_ID", "2") == "2"
 ):
     exec({slowly(FOR_EVER, points=15)!r})
-with open(f"threads-{{os.getpid()}}", "w") as note:
-    note.write(f"{{os.environ['OMP_NUM_THREADS']}} thread on {{len(os.sched_getaffinity(0))}} core")
+with open(f"threads-{{os.getpid()}}", "w") as threads:
+    threads.write(f"{{os.environ['OMP_NUM_THREADS']}} thread on {{len(os.sched_getaffinity(0))}} core")
 """
 """A sitecustomize.py that, with HALT, lets every rank wait after 15 points until it is asked to stop, of an
 array those of the second shard; not once the job was requeued. It notes where a rank may run."""
@@ -90,7 +90,7 @@ def clone_in(directory: Path) -> Path:
     return directory
 
 
-HALTED = "--export=ALL,HALT=1,PYTHONPATH=.,OMP_NUM_THREADS=8"
+HALTED = f"--export=ALL,HALT=1,PYTHONPATH=.:{ROOT},OMP_NUM_THREADS=8"
 """The option of sbatch with which a job waits until it is warned, cancelled or requeued."""
 
 
@@ -117,7 +117,7 @@ def test_script_hands_the_warning_on_and_asks_for_a_requeue(tmp_path):
     variables |= {"PATH": f"{tmp_path}:{os.environ['PATH']}"}
     words = ["bash", str(ROOT / "jobs" / "one_node.sh"), "c.yaml"]
     warned = subprocess.Popen(
-        words, cwd="/", env=os.environ | variables | {"HALT": "1", "PYTHONPATH": str(tmp_path)}
+        words, cwd="/", env=os.environ | variables | {"HALT": "1", "PYTHONPATH": f"{tmp_path}:{ROOT}"}
     )
     until_some_are_done(tmp_path / "results" / "c.h5")
     warned.send_signal(signal.SIGUSR1)
@@ -218,7 +218,7 @@ def test_srun_starts_the_ranks_where_it_can(slurm, expected):
     if reason := slurm.refuses("srun", "--ntasks=1", "--mpi=pmix", "true"):
         pytest.skip(f"this Slurm cannot load PMIx (on Debian: apt install libpmix-dev): {reason}")
     words = (
-        "--export=ALL,LAUNCH=srun --mpi=pmix,HALT=1,PYTHONPATH=.",
+        f"--export=ALL,LAUNCH=srun --mpi=pmix,HALT=1,PYTHONPATH=.:{ROOT}",
         "jobs/one_node.sh",
         "c.yaml",
         "c.h5",
