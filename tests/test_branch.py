@@ -12,7 +12,7 @@ from rodsweep.solve.branch import bordered, branches, following
 from rodsweep.solve.branch.beginning import hopf_point
 from rodsweep.solve.branch.branches import BranchRequest, BranchStatus, solve_branches
 from rodsweep.solve.branch.following import Course, follow_branch
-from rodsweep.solve.branch.special_points import EndReason, SpecialKind
+from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.point import Unsolvable

@@ -15,10 +15,12 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.discretization.mesh import mesh
 from rodsweep.discretization.stress_form import StressForm
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.arc import due, next_point, refined
+from rodsweep.solve.branch.arc import next_point
 from rodsweep.solve.branch.beginning import beginning, hopf_point
 from rodsweep.solve.branch.following import Course, _edge, _on_the_edge
-from rodsweep.solve.branch.special_points import EndReason, SpecialKind, special_points
+from rodsweep.solve.branch.settling import due, refined
+from rodsweep.solve.branch.special.point import EndReason, SpecialKind
+from rodsweep.solve.branch.special.points import special_points
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.newton import newton

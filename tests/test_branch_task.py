@@ -22,7 +22,7 @@ from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.branch import END_REASONS, SPECIAL_KINDS
 from rodsweep.results.layouts.variables import MISSING
 from rodsweep.solve.branch.branches import BranchRequest, solve_branches
-from rodsweep.solve.branch.special_points import EndReason, SpecialKind
+from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.tasks.branch import record
 from rodsweep.tasks.job import make_job
 

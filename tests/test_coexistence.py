@@ -18,15 +18,9 @@ from rodsweep.results.layouts.phase_diagram import CYCLE_CURVE_ENDS
 from rodsweep.solve.branch import coexistence
 from rodsweep.solve.branch.branches import BranchStatus
 from rodsweep.solve.branch.coexistence import CoexistenceStatus, Stable, solve_coexistence
-from rodsweep.solve.branch.special_curves import (
-    CurveCourse,
-    CurveEnd,
-    CurvePoint,
-    CycleCurve,
-    HalfCurve,
-    comes_back,
-)
-from rodsweep.solve.branch.special_points import SpecialKind
+from rodsweep.solve.branch.special.curves import CurveCourse
+from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, CycleCurve, HalfCurve
+from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.changes.rows import RowRequest
 from rodsweep.tasks.job import make_job
 
@@ -100,10 +94,10 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     """From the row k1 = 149.9 down, and up to the edge of the plane, where AUTO-07p has the fold."""
     row = solve_coexistence(FIG_2C.changed(k1=149.9), request([60, 110]), 64)
     (fold,) = [point for point in row.special if point.kind == SpecialKind.fold]
-    course = CurveCourse(SpecialKind.fold, PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 149.5, 150.0))
+    plane = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 149.5, 150.0)
     halves = []
     for side in (1.0, -1.0):
-        points, end = course.followed(fold, 149.9, side)
+        points, end = CurveCourse(SpecialKind.fold, *plane, side).followed(fold, 149.9)
         halves.append(HalfCurve(tuple(map(CurvePoint.of, points)), end))
     curve = CycleCurve.joined(SpecialKind.fold, *halves)
     assert curve.ends == (CurveEnd.hopf, CurveEnd.edge)
@@ -117,22 +111,6 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     assert curve.vanishing[1] is None
     heights = [point.tip_y_max for point in curve.points]
     assert heights == sorted(heights)
-
-
-class Place:
-    """A point of a curve in a plane, as far as `comes_back` looks at it."""
-
-    def __init__(self, x, y):
-        self.at = np.array([x, y], dtype=float)
-
-    def step_from(self, other):
-        return self.at - other.at
-
-
-def test_a_closed_curve_is_followed_once():
-    circle = [Place(np.cos(angle), np.sin(angle)) for angle in np.arange(0, 7, 0.5)]
-    closed = [i for i in range(1, len(circle)) if comes_back(circle[:i], circle[i])]
-    assert closed == [13]  # from the angle 6 to 6.5, past a whole turn
 
 
 @pytest.fixture(scope="module")

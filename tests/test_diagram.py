@@ -1,16 +1,17 @@
 """Curves through folds against known ones, and rows and curves against each other."""
 
 from dataclasses import replace
-from math import inf
+from math import inf, log
 
 import numpy as np
 import pytest
 
-from rodsweep.determinant.curves import trace
+from rodsweep.determinant.boundary import Boundary
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.determinant.winding_number import count_right_of
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.boundaries import curves_through, seed_of
+from rodsweep.solve.changes.boundary_curves import trace
 from rodsweep.solve.changes.rows import Motion, RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import ThresholdStatus
 from rodsweep.solve.changes.unstable_modes import Kind
@@ -97,6 +98,43 @@ def test_a_plane_of_two_material_parameters():
     for k2, motion, unstable in zip(values, found[2].motion, found[2].unstable_count, strict=True):
         assert count_right_of(0.0, Rod(F=30.0, k1=1e4, k2=float(k2), gamma3=gamma3)).number == unstable
         assert (motion == Motion.flutter) == (unstable > 0)
+
+
+TOUCHED = [
+    # double eigenvalues at gamma3 = 0, where differences are one-sided, and Hopf points
+    ((PlaneAxis("F", 5.0, 60.0), PlaneAxis("gamma3", 0.0, 1.0)), Rod(F=30.0, k1=1e4, k2=20.0, gamma3=0.01)),
+    # double eigenvalues beside a crushed rod
+    (
+        (PlaneAxis("F", 0.0, 99.999), PlaneAxis("k1", 100.0, 1e3, logarithmic=True)),
+        Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4),
+    ),
+    (
+        (PlaneAxis("k2", 20.0, 1e5, logarithmic=True), PlaneAxis("gamma3", 1e-4, 0.1, logarithmic=True)),
+        Rod(F=30.0, k1=1e4, k2=1e3, gamma3=1e-3),
+    ),
+]
+
+
+@pytest.mark.parametrize(("axes", "rod"), TOUCHED)
+def test_the_tangent_of_a_boundary_touches_it(axes, rod):
+    """A step along it leaves the curve by the curvature alone, in proportion to the square of the step."""
+    plane = Plane(rod, axes)
+    _, seeds = rows(axes, rod, 2)
+    for seed in seeds:
+        boundary = Boundary(plane, seed.sign)
+        scaled = [axis.scaled(value) for axis, value in zip(axes, seed.values, strict=True)]
+        start = boundary.corrected(np.array([*scaled, log(abs(seed.eigenvalue))]), np.array([0.0, 1.0, 0.0]))
+        assert boundary.eigenvalue(start.v[2])[int(seed.sign == 0)] == pytest.approx(
+            seed.eigenvalue, rel=1e-6
+        )
+        tangent = start.tangent
+        if (scaled[1] < 0.5) != (tangent[1] > 0):
+            tangent = -tangent  # into the plane
+        bends = []
+        for step in (1e-3, 1e-4):
+            guess = start.v + step * tangent
+            bends.append(np.linalg.norm(boundary.corrected(guess, tangent).v - guess) / step**2)
+        assert bends[0] == pytest.approx(bends[1], rel=0.02)
 
 
 def test_a_value_on_a_boundary_is_undecided_and_its_neighbours_are_not():

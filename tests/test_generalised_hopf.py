@@ -11,12 +11,12 @@ from second_normal_form import Shape, coefficients
 from test_paper import run, stated
 
 import rodsweep as rs
-from rodsweep.determinant.curves import trace
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
 from rodsweep.post.figures.diagram_curves import parts_of_one_side
 from rodsweep.results.file.view import read_view
+from rodsweep.solve.changes.boundary_curves import trace
 from rodsweep.solve.hopf import bautin_curves, generalised
 from rodsweep.solve.hopf.bautin_curves import BautinCurvePoint, BautinEnd, BautinSpace, bautin_curve, lies_on
 from rodsweep.solve.hopf.generalised import curve_criticality
@@ -304,6 +304,30 @@ def test_curve_that_turns_back_in_the_third_parameter_is_followed_through_it(mon
     assert sum(abs(z - 0.6) < 1e-9) == 2
     beyond = on_parabola(space, np.array([0.7, 0.5, 0.6, 0.0]), 2)
     assert lies_on(space, beyond.point, curve)
+
+
+def test_a_closed_curve_over_three_parameters_is_followed_once(monkeypatch):
+    """Instead of rods a circle of radius 0.3 about (1/2, 1/2) in x and z."""
+
+    def on_circle(space, guess, held):
+        x, z = guess[[0, 2]] - 0.5
+        other = np.sqrt(np.maximum(0.09 - (z if held == 2 else x) ** 2, 0))
+        if other == 0:
+            raise Unsolvable("beyond the circle")
+        x, z = (np.copysign(other, x), z) if held == 2 else (x, np.copysign(other, z))
+        v = np.array([0.5 + x, 0.5, 0.5 + z, guess[3]])
+        point = BautinCurvePoint(values=v[:3], errors=np.zeros(3), frequency=1.0, landau_imag=0.0)
+        return bautin_curves._Place(v, point)
+
+    monkeypatch.setattr(BautinSpace, "solved", on_circle)
+    unit = tuple(PlaneAxis(name, 0.0, 1.0) for name in ("F", "k1", "gamma3"))
+    space = BautinSpace(Rod(F=0.0, k1=2.0, k2=1.0, gamma3=1.0), unit, np.array([0.5]), 1.0, 1e-10)
+    curve = bautin_curve(space, on_circle(space, np.array([0.7, 0.5, 0.7, 0.0]), 0).point)
+    assert curve.ends == (BautinEnd.closed, BautinEnd.closed)
+    x, _, z = np.array([point.values for point in curve.points]).T - 0.5
+    turned = np.unwrap(np.arctan2(z, x))
+    assert abs(turned[-1] - turned[0]) == pytest.approx(2 * np.pi)
+    assert (np.abs(np.diff(turned)) < 0.5).all()
 
 
 @pytest.mark.parametrize(

@@ -9,13 +9,16 @@ import pytest
 from rodsweep.sweep.handout import (
     CHUNK_SECONDS,
     OVER,
+    PLACE_TAG,
     REQUEST_TAG,
+    STOP_TAG,
     FirstRankClaims,
     Handout,
     Report,
     chunk_seconds,
 )
 from rodsweep.sweep.stop import StopRequest
+from rodsweep.watch import Whereabouts
 
 
 def test_every_point_is_handed_out_once():
@@ -83,6 +86,13 @@ def test_two_threads_share_the_work_without_losing_any():
     assert sorted(seen[0] + seen[1]) == list(range(5000))
 
 
+def test_points_that_all_ranks_have_kept_are_counted():
+    handout = Handout([(0, 9)], ranks=2)
+    for rank, points in ((0, 2), (1, 3), (0, 1)):
+        handout.settle(rank, Report(points=points))
+    assert handout.points == 6
+
+
 def test_after_a_stop_nobody_gets_more_and_nobody_waits():
     handout = Handout([(0, 100)], ranks=2)
     assert handout.take(0) == (0, 1)
@@ -123,16 +133,19 @@ class Mail:
     ANY_SOURCE = -1
 
     def __init__(self):
-        self.reports, self.sent = [], []
+        self.received, self.sent = {}, []
+
+    def post(self, tag, what):
+        self.received.setdefault(tag, []).append(what)
 
     def Iprobe(self, source, tag, status):
-        return tag == REQUEST_TAG and bool(self.reports)
+        return bool(self.received.get(tag))
 
     def Get_source(self):
         return 1
 
     def recv(self, source, tag):
-        return self.reports.pop(0)
+        return self.received[tag].pop(0)
 
     def send(self, what, dest, tag):
         self.sent.append(what)
@@ -141,11 +154,11 @@ class Mail:
         return self
 
 
-def claims(mail, todo, monkeypatch):
+def claims(mail, todo, monkeypatch, show=lambda words, begun: None):
     """The first rank's claims among two ranks, without a thread."""
     monkeypatch.setattr(FirstRankClaims, "_serve_until_over", lambda self: None)
     team = SimpleNamespace(MPI=mail, comm=mail, size=2, first=True)
-    return FirstRankClaims(team, Handout(todo, 2), StopRequest())
+    return FirstRankClaims(team, Handout(todo, 2), StopRequest(), show)
 
 
 def test_each_chunk_is_answered_once_whether_asked_for_ahead_or_not(monkeypatch):
@@ -154,7 +167,7 @@ def test_each_chunk_is_answered_once_whether_asked_for_ahead_or_not(monkeypatch)
     first = claims(mail, [(0, 10)], monkeypatch)
     answers = []
     for report in [Report(), ahead, done, ahead, done, ahead, done, ahead, done]:
-        mail.reports.append(report)
+        mail.post(REQUEST_TAG, report)
         first.between_points()
         answers.append(mail.sent.pop() if mail.sent else None)
     # Ahead while eight units are left, then only once the last chunk is done.
@@ -166,7 +179,7 @@ def test_what_a_stopped_rank_gives_back_is_for_another_run(monkeypatch):
     mail = Mail()
     first = claims(mail, [(0, 1)], monkeypatch)
     for report in (Report(), Report(0, 9.0, (0, 1), 1, stop="SIGTERM")):
-        mail.reports.append(report)
+        mail.post(REQUEST_TAG, report)
         first.between_points()
     assert first.stop.name == "SIGTERM"
     assert mail.sent == [(0, 1), "SIGTERM", OVER]
@@ -178,3 +191,33 @@ def test_what_the_first_rank_gives_back_when_stopped_is_for_another_run(monkeypa
     assert first.claim(Report()) == (0, 1)
     first.stop.name = "SIGUSR1"
     assert first.claim(Report(0, 9.0, (0, 1), 1)) == OVER
+
+
+@pytest.mark.parametrize("asked", ["the first", "another"])
+def test_a_rank_that_is_asked_to_stop_stops_all(monkeypatch, asked):
+    mail = Mail()
+    first = claims(mail, [(0, 9)], monkeypatch)
+    if asked == "another":
+        mail.post(STOP_TAG, "SIGTERM")
+    else:
+        first.stop.name = "SIGTERM"
+    first.between_points()
+    assert first.stop.name == "SIGTERM"
+    assert mail.sent == ["SIGTERM"]
+    mail.post(REQUEST_TAG, Report())
+    first.between_points()
+    assert mail.sent == ["SIGTERM", OVER]
+    assert first.claim(Report()) == OVER
+
+
+def test_progress_counts_what_is_done_of_every_long_point_until_it_is_reported(monkeypatch):
+    mail, shown = Mail(), []
+    first = claims(mail, [(0, 9)], monkeypatch, lambda words, begun: shown.append((words, begun)))
+    mail.post(PLACE_TAG, Whereabouts("branch", 0.5))
+    first.between_points()
+    first.tell_place(Whereabouts("mesh"))  # its share is not known
+    first.tell_place(Whereabouts("cycle", 0.25))
+    mail.post(REQUEST_TAG, Report(1, 9.0))
+    first.between_points()
+    first.tell_place(Whereabouts("cycle", 0.75))
+    assert shown == [("mesh", 0.5), ("cycle", 0.75), ("cycle", 0.75)]

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import xarray
 from contents import content, same
+from faults import small
 from ranks import PATIENCE, kill, ranks_in, wait_for_end
 from slow_runs import FOR_EVER, pause_until_journalled, slowly
 
@@ -315,6 +316,22 @@ def test_package_imports_start_neither_mpi_nor_petsc(command):
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == "[]"
+
+
+def test_checking_and_drawing_load_no_compiler(command):
+    """Its import takes as long as all else that `check` does."""
+    command.write("points.csv", small.POINTS)
+    for name, text in small.CONFIGS.items():
+        command.write(f"{name}.yaml", text)
+    code = (
+        "import sys, rodsweep.cli, rodsweep.post.figures, rodsweep.post.summary\n"
+        "for name in sys.argv[1:]:\n"
+        "    rodsweep.cli.commands.main(['check', name], standalone_mode=False)\n"
+        "    assert 'numba' not in sys.modules, name\n"
+    )
+    words = [sys.executable, "-c", code, *(f"{name}.yaml" for name in small.CONFIGS)]
+    run = subprocess.run(words, capture_output=True, text=True, check=True, cwd=command.directory)
+    assert run.stdout.count("valid") == len(small.CONFIGS)
 
 
 @pytest.mark.parametrize("F", [1e30, 1e150])

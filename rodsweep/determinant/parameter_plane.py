@@ -1,7 +1,7 @@
 """Planes of rods: two parameters vary, each on a linear or a logarithmic axis scaled to [0, 1]."""
 
 from dataclasses import dataclass
-from math import exp, inf, log
+from math import exp, log
 from typing import NamedTuple
 
 from ..model.parameters import CRUSHING, PARAMETERS
@@ -101,10 +101,7 @@ class Plane:
             return False
         return True
 
-    def inside(self, x: float, y: float) -> bool:
-        """Whether the coordinates lie on the plane and the rod is not crushed."""
-        if not (0 <= x <= 1 and 0 <= y <= 1):
-            return False
+    def uncrushed(self, x: float, y: float) -> bool:
+        """Whether the rod at coordinates on the plane is not crushed."""
         values = {axis.name: axis.value(v) for axis, v in zip(self.axes, (x, y), strict=True)}
-        k1, F = values.get("k1", self.rod.k1), values.get("F", self.rod.F)
-        return F < k1 <= inf
+        return values.get("F", self.rod.F) < values.get("k1", self.rod.k1)

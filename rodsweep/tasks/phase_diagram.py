@@ -103,7 +103,7 @@ class PhaseDiagramTask(LinearTask):
             statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
             solve=solve,
-            record=lambda index, result: record(result, options.crossings),
+            record=lambda index, result: record(result, self.config.plane[0], options.crossings),
             together=DiagramCurves(self) if options.curves else None,
         )
 
@@ -144,13 +144,13 @@ class PhaseDiagramTask(LinearTask):
             warm_up=warm_up,
             solve=solve,
             record=lambda index, result: (
-                record(result.row, request.crossings) | cycles_record(result, request.name)
+                record(result.row, request.name, request.crossings) | cycles_record(result, request.name)
             ),
             together=curves if self.config.phase_diagram.curves else None,
         )
 
 
-def record(result: "DiagramRow", most: int) -> dict[str, Any]:
+def record(result: "DiagramRow", line: str, most: int) -> dict[str, Any]:
     """A row as the variables of the file."""
     classes = {"class": result.motion, "unstable_count": result.unstable_count}
-    return classes | search_record(result.changes, most, "crossing_at") | {"seconds": result.seconds}
+    return classes | search_record(result.changes, most, line, "crossing_at") | {"seconds": result.seconds}

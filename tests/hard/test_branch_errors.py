@@ -16,9 +16,10 @@ import pytest
 
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.arc import ArcPoint, due, next_point, settled
+from rodsweep.solve.branch.arc import ArcPoint, next_point
 from rodsweep.solve.branch.beginning import beginning, hopf_point
 from rodsweep.solve.branch.branch_curve import BranchPoint
+from rodsweep.solve.branch.settling import due, settled
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.measures import CyclePath
 from rodsweep.solve.cycle.newton import linearised, multipliers_of, newton

@@ -21,8 +21,9 @@ from ..cycle.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tol
 from ..hopf.hopf_coefficients import HopfCoefficients, hopf_coefficients
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..point import Unsolvable
-from .arc import ArcPoint, first_point
+from .arc import ArcPoint
 from .bordered import Condition, Scale, moment_of
+from .settling import first_point
 
 AMPLITUDES = (0.02, 0.008, 0.003)
 """Largest tip y, in L, of the first cycle, tried one after the other."""
@@ -30,7 +31,6 @@ SHARE = 0.05
 """Largest one in units of the amplitude coefficient: beyond, the normal form's third order is not enough."""
 LEAST_UNIT = 0.1
 """Tip y, in L, of the small cycle whose moment is the least unit of moments."""
-FIRST_STEP = 0.02
 FREQUENCY_ROUNDING = 1e-14
 """Relative error of the frequency of a Hopf point that rounding leaves, a root of D."""
 MOMENT = np.array([1.0, 0.0, 0.0])
@@ -130,7 +130,7 @@ def _cycle_of(hopf: HopfBirth, amplitude: float, accuracy: float) -> ArcPoint:
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
     first = condition.on(mesh, near, newton_tolerance(accuracy), matrix_distance(accuracy))
     born = abs(moment_of(first.orbit)) / scale.moment
-    return first_point(first, scale, border, born, accuracy, FIRST_STEP)
+    return first_point(first, scale, border, born, accuracy)
 
 
 def predicted_cycle(hopf: HopfBirth, amplitude: float) -> Orbit:

@@ -8,7 +8,7 @@ from ..cycle.cycle_errors import CycleErrors
 from ..cycle.measures import Measures
 from ..cycle.refinement import MULTIPLIER_FACTOR
 from .arc import ArcPoint
-from .special_points import SpecialPoint
+from .special.point import SpecialPoint
 from .symmetry import Breaking
 
 

@@ -18,7 +18,7 @@ from ..status import PointStatus
 from .beginning import hopf_point
 from .branch_curve import BranchCurve
 from .following import Course, follow_branch, follow_without_symmetry
-from .special_points import EndReason
+from .special.point import EndReason
 from .symmetry import Breaking, breakings_of
 from .work import shares_of_branches
 

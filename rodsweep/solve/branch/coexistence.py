@@ -17,7 +17,7 @@ from ..changes.thresholds import ThresholdStatus
 from ..status import PointStatus
 from .branch_curve import BranchCurve
 from .branches import BranchesOfRod, BranchRequest, BranchStatus, solve_branches
-from .special_points import EndReason, SpecialPoint
+from .special.point import EndReason, SpecialPoint
 from .work import DIAGRAM_ACCURACY
 
 MOST_CYCLES = 500

@@ -6,10 +6,11 @@ from math import nan
 import numpy as np
 
 from ..point import Unsolvable
-from .arc import ArcPoint, settled
+from .arc import ArcPoint
 from .bordered import Condition
 from .branch_curve import BranchCurve, BranchPoint
-from .special_points import EndReason, SpecialKind, SpecialPoint
+from .settling import settled
+from .special.point import EndReason, SpecialKind, SpecialPoint
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,6 +17,7 @@ from ...arrays import Array
 from ...discretization.stress_form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
+from ..continuation.follower import StepControl, Stepped, advance
 from ..point import Unsolvable
 from .calibration import LENGTH, Calibration
 from .newton import Converged, at_orbit, newton, relative_change
@@ -34,11 +35,11 @@ from .symmetry import NONE, REFLECTION
 
 FARTHEST = 0.3
 """Relative distance of a cycle from its prediction beyond which it may be another one."""
-MOST_HALVINGS, MOST_STEPS = 6, 100
-"""Of a step along the axis, and steps in all."""
-AIMED_DISTANCE, SHORTER_STEP, LONGER_STEP = 0.15, 0.5, 3.0
-"""How far off a prediction should be for Newton's method to take two matrices; bounds of a step in units of
-the one before, whose error is taken to grow as its cube."""
+STEPS = StepControl(
+    first=0.5, longest=1.0, shortest=2.0**-6, aim=0.15, order=3, sharpest=inf, growth=3.0, most=100
+)
+"""Shares of the way to a cycle that is too far for one step; the aim is what Newton's method takes two
+matrices for. What is far off is told by `_near`."""
 TANGENT_DISTANCE = 1e-2
 """Relative distance from its orbit of a matrix whose tangent is good enough for a step of many."""
 ENOUGH = 0.9
@@ -252,29 +253,25 @@ def _distance(predicted: Orbit, found: Converged) -> float:
 
 
 def in_steps(start: Followed, form: StressForm, name: str, tolerance: float) -> Converged:
-    """The orbit at the end of steps that Newton's method can follow."""
+    """The orbit at the end of steps that Newton's method can follow; raises Unsolvable."""
     here, there = start.orbit.form.rod.coordinate(name), form.rod.coordinate(name)
-    share, step = 0.0, 0.5
-    followed = start
-    for _ in range(MOST_STEPS):
-        step = min(step, 1.0 - share)
-        if step < 2.0**-MOST_HALVINGS and share + step < 1.0:
-            raise Unsolvable("the branch of cycles cannot be followed: it ends or turns")
-        end = share + step >= 1.0
-        between = form if end else form.with_coordinate(name, here + (share + step) * (there - here))
+    share, length, followed = 0.0, STEPS.first, start
+
+    def step(length: float) -> Stepped[Converged]:
+        at = share + length
+        between = form if at >= 1.0 else form.with_coordinate(name, here + at * (there - here))
+        predicted = followed.at(between, name)
+        found = _near(predicted, tolerance, name)
+        return Stepped(found, _distance(predicted, found), 1.0)
+
+    for _ in range(STEPS.most):
         try:
-            predicted = followed.at(between, name)
-            found = _near(predicted, tolerance, name)
-        except Unsolvable:
-            step /= 2
-            continue
-        if end:
-            return found
-        followed = followed_from(at_orbit(found, TANGENT_DISTANCE, name), followed, name)
-        share, step = share + step, step * _step_factor(_distance(predicted, found))
+            ahead, length = advance(step, min(length, 1.0 - share), STEPS)
+        except Unsolvable as why:
+            raise Unsolvable("the branch of cycles cannot be followed: it ends or turns") from why
+        share += length
+        if share >= 1.0:
+            return ahead.solution
+        followed = followed_from(at_orbit(ahead.solution, TANGENT_DISTANCE, name), followed, name)
+        length = STEPS.next_length(length, ahead, STEPS.order)
     raise Unsolvable("the branch of cycles cannot be followed in so many steps")
-
-
-def _step_factor(distance: float) -> float:
-    """By how much the next step is longer than one whose prediction was this far off."""
-    return float(np.clip((AIMED_DISTANCE / max(distance, 1e-300)) ** (1 / 3), SHORTER_STEP, LONGER_STEP))

@@ -13,10 +13,10 @@ import numpy as np
 
 from ...arrays import Array
 from ...determinant.boundary import Boundary, OnBoundary
-from ...determinant.curves import BoundaryCurve
 from ...determinant.parameter_path import determinant_along
 from ...determinant.parameter_plane import Plane
 from ...watch import Whereabouts, report
+from ..changes.boundary_curves import BoundaryCurve
 from ..changes.unstable_modes import Crossing, Kind
 from ..point import FAILURES, Unsolvable
 from .hopf_coefficients import HopfCoefficients, hopf_coefficients

@@ -55,45 +55,6 @@ class Stretch:
 
 
 @dataclass(frozen=True, slots=True)
-class Spectra:
-    """The spectra of n points, with the fields of `rodsweep.solve.spectrum.search.Spectrum` as arrays.
-
-    eigenvalues: complex, shape (n, modes), in 1/tau2; error_estimate: (n, modes), what Newton's method leaves
-    or rounding; all others (n,). elements, order: 0 where no mesh was needed; seconds: the even share of each
-    point in the time of all; message: of those points that have one.
-    """
-
-    eigenvalues: Complex
-    error_estimate: Array
-    unstable_count: NDArray[np.int64]
-    certified: NDArray[np.bool_]
-    elements: NDArray[np.int64]
-    order: NDArray[np.int64]
-    seconds: Array
-    status: NDArray[np.int64]
-    message: dict[int, str]
-
-    @property
-    def succeeded(self) -> NDArray[np.bool_]:
-        """Whether each point ended as it should, shape (n,)."""
-        return self.status == SpectrumStatus.ok
-
-    def told(self, i: int) -> str:
-        """The name of a point's status, and what the solver adds."""
-        status = next(status for status in SpectrumStatus if status == self.status[i])
-        return f"{status.name} {self.message.get(i, '')}".rstrip()
-
-    def put(self, i: int, spectrum: Spectrum) -> None:
-        """Makes a spectrum that of point i."""
-        self.eigenvalues[i], self.error_estimate[i] = spectrum.eigenvalues, spectrum.error_estimate
-        self.unstable_count[i], self.certified[i] = spectrum.unstable_count, spectrum.certified
-        self.elements[i], self.order[i] = spectrum.resolution.elements, spectrum.resolution.order
-        self.status[i] = spectrum.status
-        if not spectrum.status.succeeded:
-            self.message[i] = spectrum.message
-
-
-@dataclass(frozen=True, slots=True)
 class Reached:
     """The first n points of what is left of a stretch: eigenvalues and errors, shape (n, modes).
 
@@ -106,12 +67,12 @@ class Reached:
     good: NDArray[np.bool_]
 
 
-def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectra:
+def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
     """The leading `request.modes` eigenvalues of every rod, all certified; failures are statuses."""
     began = time.perf_counter()
     n, modes = len(stretch), request.modes
     whole = np.zeros(n, np.int64)
-    spectra = Spectra(
+    spectra = Spectrum(
         eigenvalues=np.full((n, modes), np.nan + 0j),
         error_estimate=np.full((n, modes), np.nan),
         unstable_count=whole - 1,
@@ -120,7 +81,7 @@ def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectra:
         order=whole.copy(),
         seconds=np.zeros(n),
         status=whole + SpectrumStatus.ok,
-        message={},
+        message=np.full(n, "", object),
     )
     place, patience = 0, 1
     while place < n:

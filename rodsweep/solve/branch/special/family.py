@@ -14,16 +14,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
-from ...determinant.parameter_plane import PlaneAxis
-from ..cycle.newton import Converged
-from ..cycle.orbit import Orbit
-from ..cycle.orbit_mesh import OrbitMesh, mesh_of, stages_for
-from ..point import Unsolvable
-from .arc import tangent_at
-from .beginning import LEAST_UNIT, MOMENT
-from .bordered import BorderedMatrix, Condition, Scale, bordered, moment_of, moved
-from .special_points import REAL, SpecialKind, SpecialPoint
+from ....arrays import Array
+from ....determinant.parameter_plane import PlaneAxis
+from ...cycle.newton import Converged
+from ...cycle.orbit import Orbit
+from ...cycle.orbit_mesh import OrbitMesh, mesh_of, stages_for
+from ...point import Unsolvable
+from ..arc import tangent_at
+from ..beginning import LEAST_UNIT, MOMENT
+from ..bordered import BorderedMatrix, Condition, Scale, bordered, moment_of, moved
+from .locating import REAL
+from .point import SpecialKind, SpecialPoint
 
 ACCURACY = 1e-7
 """Relative, of the line's parameter on a curve; that of the special points of rows is 1e-9."""
@@ -248,7 +249,7 @@ def with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
     return replace(orbit, form=form)
 
 
-def first_point(special: SpecialPoint, line: str, rows: PlaneAxis, row: float) -> OnCurve:
+def first_on_curve(special: SpecialPoint, line: str, rows: PlaneAxis, row: float) -> OnCurve:
     """A special point that was located on a row as the first point of a curve; raises Unsolvable."""
     orbit = special.orbit
     if orbit is None:
