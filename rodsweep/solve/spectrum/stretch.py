@@ -138,8 +138,8 @@ def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Reached
 def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
     """(eigenvalues to follow, how many of the first of them are proved to be all), pairs whole; or None."""
     try:
-        search = Search(rod, replace(request, modes=request.modes + FURTHER_MODES - 1, certify=True))
-        search.wanted = request.modes + FURTHER_MODES
+        modes = request.modes + FURTHER_MODES
+        search = Search(rod, replace(request, modes=modes - 1, certify=True), wanted=modes)
         with np.errstate(all="ignore"):
             outcome = search.outcome()
     except FAILURES:
