@@ -54,6 +54,16 @@ def test_derivative_along_a_path_is_that_of_the_determinant(path):
 
 
 @pytest.mark.parametrize("path", PATHS)
+def test_a_small_error_of_the_path_variable_becomes_that_of_the_parameter(path):
+    value = getattr(path.rod, path.name)
+    p = path.variable(value)
+    assert path.value(p, 0.0) == (pytest.approx(value, rel=1e-15), 0.0)
+    error = 1e-6 * abs(p)
+    apart = abs(path.value(p + error, 0.0)[0] - path.value(p - error, 0.0)[0]) / 2
+    assert path.value(p, error)[1] == pytest.approx(apart, rel=1e-8)
+
+
+@pytest.mark.parametrize("path", PATHS)
 def test_bound_on_a_bidisc_holds_for_the_determinant_in_complex_p(path):
     """Against D with complex coefficients in mpmath, on the distinguished boundary, where the maximum is."""
     rng = np.random.default_rng(3)

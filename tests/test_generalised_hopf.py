@@ -321,7 +321,7 @@ def test_a_closed_curve_over_three_parameters_is_followed_once(monkeypatch):
 
     monkeypatch.setattr(BautinSpace, "solved", on_circle)
     unit = tuple(PlaneAxis(name, 0.0, 1.0) for name in ("F", "k1", "gamma3"))
-    space = BautinSpace(Rod(F=0.0, k1=2.0, k2=1.0, gamma3=1.0), unit, np.array([0.5]), 1.0, 1e-10)
+    space = BautinSpace(Rod(F=0.0, k1=2.0, k2=1.0, gamma3=1.0), unit, np.array([0.5]), 1e-10)
     curve = bautin_curve(space, on_circle(space, np.array([0.7, 0.5, 0.7, 0.0]), 0).point)
     assert curve.ends == (BautinEnd.closed, BautinEnd.closed)
     x, _, z = np.array([point.values for point in curve.points]).T - 0.5

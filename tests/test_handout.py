@@ -4,9 +4,13 @@ import threading
 import time
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from rodsweep.sweep.handout import (
+    ANSWER_TAG,
     CHUNK_SECONDS,
     OVER,
     PLACE_TAG,
@@ -14,6 +18,7 @@ from rodsweep.sweep.handout import (
     STOP_TAG,
     FirstRankClaims,
     Handout,
+    OtherRankClaims,
     Report,
     chunk_seconds,
 )
@@ -21,15 +26,32 @@ from rodsweep.sweep.stop import StopRequest
 from rodsweep.watch import Whereabouts
 
 
-def test_every_point_is_handed_out_once():
-    handout = Handout([(0, 10), (20, 25)], ranks=2)
-    seen = []
-    chunk = handout.take(0)
-    while chunk != OVER:
-        seen += range(*chunk)
-        handout.settle(0, Report(chunk[1] - chunk[0], 1e-3))
-        chunk = handout.take(0)
-    assert sorted(seen) == [*range(10), *range(20, 25)]
+@given(st.lists(st.integers(1, 40), min_size=1, max_size=4), st.integers(1, 4), st.integers(0, 2**32 - 1))
+def test_every_unit_is_done_once_whatever_ranks_give_back_and_none_ends_before(sizes, ranks, seed):
+    """Each rank does at least one unit of a chunk; it may have got the next one ahead."""
+    rng = np.random.default_rng(seed)
+    ends = np.cumsum(np.array(sizes) + 1)  # a unit between two ranges is not to do
+    todo = [(int(end) - size, int(end)) for size, end in zip(sizes, ends, strict=True)]
+    units = [unit for start, stop in todo for unit in range(start, stop)]
+    handout, done = Handout(todo, ranks), []
+    held = {rank: [] for rank in range(ranks)}
+    while held:
+        rank = rng.choice(list(held))
+        chunks = held[rank]
+        if len(chunks) == 1 and rng.random() < 0.5:
+            ahead = handout.take_ahead(rank)
+            chunks += [ahead] if ahead else []
+        if chunks:
+            start, stop = chunks.pop(0)
+            at = int(rng.integers(start, stop)) + 1
+            done += range(start, at)
+            handout.settle(rank, Report(at - start, 10 ** rng.uniform(-4, 1), (at, stop)))
+        chunk = None if chunks else handout.take(rank)
+        if chunk == OVER:
+            assert sorted(done) == units
+            del held[rank]
+        elif chunk:
+            chunks.append(chunk)
 
 
 def test_chunks_follow_the_pace_and_shrink_towards_the_end():
@@ -128,26 +150,29 @@ def test_next_chunk_is_given_ahead_while_plenty_is_left():
 
 
 class Mail:
-    """In the place of MPI: what the first rank receives from rank 1, in order, and what it sends."""
+    """In the place of MPI: what one rank receives from another, in order, and what it sends."""
 
     ANY_SOURCE = -1
 
-    def __init__(self):
+    def __init__(self, sender=1):
+        self.sender = sender
         self.received, self.sent = {}, []
 
     def post(self, tag, what):
         self.received.setdefault(tag, []).append(what)
 
-    def Iprobe(self, source, tag, status):
-        return bool(self.received.get(tag))
+    def Iprobe(self, source, tag, status=None):
+        return source in (self.sender, self.ANY_SOURCE) and bool(self.received.get(tag))
 
     def Get_source(self):
-        return 1
+        return self.sender
 
     def recv(self, source, tag):
+        assert source == self.sender
         return self.received[tag].pop(0)
 
     def send(self, what, dest, tag):
+        assert dest == self.sender
         self.sent.append(what)
 
     def Status(self):
@@ -221,3 +246,36 @@ def test_progress_counts_what_is_done_of_every_long_point_until_it_is_reported(m
     first.between_points()
     first.tell_place(Whereabouts("cycle", 0.75))
     assert shown == [("mesh", 0.5), ("cycle", 0.75), ("cycle", 0.75)]
+
+
+def other_claims(mail):
+    """The claims of a rank that is not the first."""
+    return OtherRankClaims(SimpleNamespace(comm=mail), StopRequest())
+
+
+def test_another_rank_asks_for_its_next_chunk_when_it_begins_one():
+    mail = Mail(sender=0)
+    rank, done = other_claims(mail), Report(3, 9.0)
+    mail.post(ANSWER_TAG, (4, 7))
+    assert rank.claim(done) == (4, 7)
+    assert mail.sent == [done, Report(ahead=True)]
+    mail.post(ANSWER_TAG, OVER)
+    assert rank.claim(done) == OVER
+    assert mail.sent[2:] == [done]
+
+
+def test_another_rank_tells_the_first_of_a_stop_or_hears_of_it_once():
+    mail = Mail(sender=0)
+    asked, told = other_claims(mail), other_claims(mail)
+    for _ in range(2):
+        told.between_points()
+    assert not told.stop
+    asked.stop.name = "SIGUSR1"
+    for _ in range(2):
+        asked.between_points()
+    assert mail.sent == ["SIGUSR1"]
+    mail.post(STOP_TAG, "SIGUSR1")
+    for _ in range(2):
+        told.between_points()
+    assert told.stop.name == "SIGUSR1"
+    assert mail.sent == ["SIGUSR1"]

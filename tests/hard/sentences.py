@@ -92,7 +92,8 @@ def random_sweep(index):
         top = min(0.97 * min(rods["k1"]), top)
         keywords |= _over_force(random, task, top)
         if task == "phase_diagram":
-            keywords |= {varied: np.sort(_drawn(random, varied, 3)).tolist()} | _of_diagrams(random)
+            rows = np.sort(_drawn(random, varied, 3)).tolist()
+            keywords |= {varied: rows if len(rows) > 1 else [*rows, 1.0]} | _of_diagrams(random)
     if "arm" in keywords and task != "phase_diagram":
         _over_drag(np.random.default_rng([34, index]), keywords["arm"])
     if task in ("thresholds", "criticality"):

@@ -46,6 +46,9 @@ MARKS = {
 """Marker and words of a special point, by its kind or, of an end, the reason; other ends are not marked."""
 MIRRORED, IMAGE = 3, np.array([1.0, -1.0, 1.0])
 """Cycles that are mirrored at a Hopf point, as many as a slope of Akima's cubic depends on; their image."""
+SHARES = np.array([0.5, 1.0, 1.0])
+"""Of the parameter, of y and of the logarithm of the period in the length along a branch, in units of their
+extents: next to a Hopf point the parameter goes with the square of y, and a length that is y is smoothest."""
 OF_SLOPE = 5
 """Cycles through which the polynomial goes whose slope the curve has, so that few cycles suffice."""
 CORNER = 0.15
@@ -147,7 +150,7 @@ def through_cycles(curve: CurveOfCycles) -> tuple[Array, Array, Array, NDArray[n
     before, behind = (some * IMAGE for some in (own[MIRRORED:0:-1], own[-2 : -MIRRORED - 2 : -1]))
     first, last = (int(vertex[1] == 0) * MIRRORED for vertex in (own[0], own[-1]))
     whole = np.concatenate([before[:first], own, behind[:last]])
-    s = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(whole / extent, axis=0), axis=1)))
+    s = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(whole / extent * SHARES, axis=0), axis=1)))
     ends = s[first : first + len(own)]
     finer = np.append(np.linspace(ends[:-1], ends[1:], BETWEEN, endpoint=False, axis=1).ravel(), ends[-1])
     at, y, log_period = CubicHermiteSpline(s, whole, slopes_at_cycles(s, whole))(finer).T
