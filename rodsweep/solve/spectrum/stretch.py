@@ -51,7 +51,10 @@ class Stretch:
     def coefficients(self) -> Array:
         """(F, nu, c2, gamma3) of every rod, shape (n, 4), bit by bit as `Rod.coefficients`."""
         columns = coefficients_of({**self.path.rod.values, self.path.name: self.values})
-        return np.stack(np.broadcast_arrays(*columns), axis=1)
+        table = np.empty((len(self), len(columns)))
+        for place, column in enumerate(columns):
+            table[:, place] = column
+        return table
 
 
 @dataclass(frozen=True, slots=True)
