@@ -1,7 +1,5 @@
 """The compiled balance with the algebra of space, se(3), and with rods that are not uniform, on meshes."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy.linalg import expm
@@ -28,7 +26,7 @@ def tapered(material, grid):
     profile = 1 + 0.4 * np.sin(2 * u + phase)
     compliance, drag = material.compliance[:, None] * profile, material.drag[:, None] * profile[::-1]
     rest = material.straight[:, None] + compliance * material.tip_stress[:, None]
-    return replace(material, compliance=compliance, drag=drag, rest=rest)
+    return material._replace(compliance=compliance, drag=drag, rest=rest)
 
 
 def state(rod, grid):
@@ -126,7 +124,7 @@ def test_a_rigid_motion_strains_no_rod():
     bracket = np.stack([ad(E[:, None], column[:, None])[:, 0] for column in np.eye(6)], axis=1)
     seen = np.array([0.3, -1.0, 0.5, 2.0, 0.4, -0.6])
     V = np.stack([expm(-u * bracket) @ seen for u in grid.positions], axis=1)
-    G, rod = np.empty(V.shape), nodal_rod(replace(SPACE, compliance=np.zeros(6), rest=E), grid)
+    G, rod = np.empty(V.shape), nodal_rod(SPACE._replace(compliance=np.zeros(6), rest=E), grid)
     strain_rates.of(SE3)(np.zeros(6 * grid.nodes), V, G, rod, grid.matrices)
     G[:, 0] -= V[:, 0]  # what a clamp would hold
     G[:, -1] += V[:, -1]  # and the reaction

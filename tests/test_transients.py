@@ -46,7 +46,7 @@ def test_transient_is_the_motion_that_another_integrator_finds():
     """SciPy's LSODA on the same compiled equations, over the first two periods."""
     c = followed(60.0, STRETCHABLE, 0.1)
     time, *tip = c.transient[:, c.transient[0] < 2 * c.measures.period]
-    beam, _ = _beam_and_form(rod_of(60.0, *STRETCHABLE[:3]), 1.0)
+    beam, _ = _beam_and_form(rod_of(60.0, *STRETCHABLE[:3]))
     z = 0.1 * leading_mode(beam).z.real
     atol = 1e-7 * np.abs(z).max()
     found = solve_ivp(

@@ -64,7 +64,7 @@ class Path:
     @property
     def origin(self) -> Coefficients:
         """(F, nu, c2, gamma3) at p = 0, where the model may have no rod."""
-        return coefficients_of(self.rod.values | {self.name: self.parameter.value(0.0)})
+        return coefficients_of({**self.rod.values, self.name: self.parameter.value(0.0)})
 
     def variable(self, value: float) -> float:
         """The path variable p at a value of the parameter."""

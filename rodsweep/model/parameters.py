@@ -141,12 +141,8 @@ NONLINEAR_PARAMETERS = tuple(PARAMETERS)
 """Names of the parameters of the nonlinear rod."""
 LINEAR_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if parameter.linear)
 """Names of the parameters of the linear problem."""
-FACTORS_OF = {
-    name: (name, *(other.name for other in PARAMETERS.values() if name in other.scales))
-    for name, parameter in PARAMETERS.items()
-    if not parameter.scales
-}
-"""The parameters of which a load, a stiffness or a drag is the product, by its name."""
+SCALINGS = tuple((name, scaled) for name, parameter in PARAMETERS.items() for scaled in parameter.scales)
+"""(parameter, stiffness or drag that it multiplies) of all that multiply any."""
 CRUSHING = ("F", "k1")
 """The parameters that crush the rod where the first reaches the second."""
 

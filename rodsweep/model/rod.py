@@ -5,16 +5,18 @@ stiffness or a drag by the name of a parameter: other parameters may multiply it
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import inf
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from .balance import Material, first_component
-from .parameters import FACTORS_OF, LINEAR_PARAMETERS, PARAMETERS, STIFFNESSES
+from .parameters import LINEAR_PARAMETERS, PARAMETERS, SCALINGS, STIFFNESSES
 
 Decorated = TypeVar("Decorated")
+ALLOWED = [(name, parameter.allowed.contains) for name, parameter in PARAMETERS.items()]
+"""The test of each parameter's range: rods are made often."""
 
 
 class Crushed(ValueError):
@@ -32,17 +34,19 @@ class Coefficients(NamedTuple):
 
 def coefficients_of(values: Mapping[str, Any]) -> Coefficients:
     """The coefficients of parameters by name: floats, or arrays for many rods, (n,). Checks no range."""
-    F, k1 = _product("F", values), _product("k1", values)
-    return Coefficients(F, _compression(F, k1), 1 / _product("k2", values), _product("gamma3", values))
+    own = scaled(values)
+    F, k1 = own["F"], own["k1"]
+    return Coefficients(F, _compression(F, k1), 1 / own["k2"], own["gamma3"])
 
 
-def _product(name: str, values: Mapping[str, Any], without: str = "") -> Any:
-    """A load, a stiffness or a drag as the product of parameters, but for one of them."""
-    product: Any = 1.0
-    for factor in FACTORS_OF[name]:
-        if factor != without:
-            product = product * values[factor]
-    return product
+def scaled(values: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Loads, stiffnesses and drags by name: parameters, multiplied by those that scale them."""
+    if not SCALINGS:
+        return values
+    own = dict(values)
+    for factor, of in SCALINGS:
+        own[of] = own[of] * values[factor]
+    return own
 
 
 def _compression(F: Any, k1: Any) -> Any:
@@ -79,23 +83,22 @@ class Rod:
     k2: float
     gamma3: float
     gamma1: float = PARAMETERS["gamma1"].neutral
+    values: Mapping[str, float] = field(init=False, repr=False, compare=False)
+    """All parameters by name."""
     coefficients: Coefficients = field(init=False, repr=False, compare=False)
     """What the transverse operator contains of this rod, as floats."""
 
     def __post_init__(self) -> None:
-        values = {}
-        for name, parameter in PARAMETERS.items():
-            values[name] = getattr(self, name)
-            parameter.require(values[name])
+        values: dict[str, float] = {}
+        for name, contains in ALLOWED:
+            values[name] = value = getattr(self, name)
+            if not contains(value):
+                PARAMETERS[name].require(value)
         coefficients = coefficients_of(values)
         if not coefficients.nu > 0:
             raise Crushed(f"F = {self.F} is not below k1 = {self.k1}")
+        object.__setattr__(self, "values", values)
         object.__setattr__(self, "coefficients", coefficients)
-
-    @property
-    def values(self) -> dict[str, float]:
-        """All parameters by name."""
-        return {name: getattr(self, name) for name in PARAMETERS}
 
     @property
     def linear(self) -> "Rod":
@@ -112,13 +115,12 @@ class Rod:
 
     def changed(self, **values: float) -> "Rod":
         """The rod with other values of some parameters; ValueError where the model has none."""
-        others: Any = values
-        return replace(self, **others)
+        return Rod(**{**self.values, **values})  # `dataclasses.replace` takes a third longer
 
     @property
     def stretch_stiffness(self) -> float:
         """The force in k3/L^2 that would crush the rod; inf for an inextensible one."""
-        return float(_product("k1", self.values))
+        return float(scaled(self.values)["k1"])
 
     @property
     def c1(self) -> float:
@@ -148,13 +150,14 @@ class Rod:
     @property
     def axial_drag(self) -> float:
         """Drag on the axial velocity, in gamma2."""
-        return float(_product("gamma1", self.values))
+        return float(scaled(self.values)["gamma1"])
 
     def direction(self, name: str) -> Coefficients:
         """The derivative of the coefficients by the coordinate of a parameter, the same all along it."""
-        F, c1 = self._slope("F", name), self._slope("k1", name)
-        nu = 0.0 - (F * self.c1 + self.F * c1)
-        return Coefficients(F, nu, self._slope("k2", name), self._slope("gamma3", name))
+        slopes = self._slopes(name)
+        F, c1 = slopes.get("F", 0.0), slopes.get("k1", 0.0)
+        nu = 0.0 - (F * self.c1 + self.F * c1) if F or c1 else 0.0
+        return Coefficients(F, nu, slopes.get("k2", 0.0), slopes.get("gamma3", 0.0))
 
     @property
     def material(self) -> Material:
@@ -172,14 +175,16 @@ class Rod:
 
     def material_change(self, name: str) -> Material:
         """The derivative of the material by the coordinate of a parameter."""
-        F, nu, c2, gamma3 = self.direction(name)
-        compliance = np.array([self._slope("k1", name), c2, 0.0])
-        drag = np.array([self._slope("gamma1", name), 0.0, gamma3])
+        slopes, (F, nu, c2, gamma3) = self._slopes(name), self.direction(name)
+        compliance = np.array([slopes.get("k1", 0.0), c2, 0.0])
+        drag = np.array([slopes.get("gamma1", 0.0), 0.0, gamma3])
         return Material(compliance, drag, F, first_component(nu, 3))
 
-    def _slope(self, of: str, name: str) -> float:
-        """The derivative of a load, a compliance or a drag by the coordinate of a parameter."""
-        if name not in FACTORS_OF[of]:
-            return 0.0
-        others = _product(of, self.values, without=name)
-        return float(1 / others if of in STIFFNESSES else others)
+    def _slopes(self, name: str) -> dict[str, float]:
+        """The derivatives that are not 0 of the force, compliances and drags by a parameter's coordinate.
+
+        Each is a product of coordinates, or of values, of which the parameter is one.
+        """
+        others = scaled({**self.values, name: 1.0})
+        each = PARAMETERS[name].scales or (name,)
+        return {of: float(1 / others[of] if of in STIFFNESSES else others[of]) for of in each}

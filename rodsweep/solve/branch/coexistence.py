@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...model.rod import Rod
-from ..changes.rows import DiagramRow, Motion, RowRequest, crushed_row, solve_row
+from ..changes.rows import DiagramRow, Motion, RowRequest, solve_row
 from ..changes.thresholds import ThresholdStatus
 from ..status import PointStatus
 from .branch_curve import BranchCurve
@@ -91,13 +91,6 @@ def solve_coexistence(rod: Rod, request: RowRequest, special: int) -> Coexistenc
         message=message,
         seconds=row.seconds + branches.seconds,
     )
-
-
-def crushed_coexistence(request: RowRequest) -> CoexistenceRow:
-    """The row on which every rod is crushed."""
-    row = crushed_row(request)
-    states = stable_states(row.motion, np.zeros(len(row.motion), np.int8))
-    return CoexistenceRow(row=row, stable_states=states, special=(), status=CoexistenceStatus.ok)
 
 
 def row_branches(rod: Rod, request: RowRequest, special: int) -> BranchesOfRod:

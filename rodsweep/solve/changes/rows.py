@@ -77,11 +77,6 @@ def solve_row(rod: Rod, request: RowRequest) -> DiagramRow:
     return solved(lambda: _searched(rod, request), failed, also=(ValueError,))
 
 
-def crushed_row(request: RowRequest) -> DiagramRow:
-    """The row on which every rod is crushed."""
-    return _uniform(ThresholdStatus.ok, request.values, Motion.crushed)
-
-
 def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
     """The row between its first and its last rod that is not crushed."""
     name, values = request.name, request.values
@@ -90,7 +85,7 @@ def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
     alive = k1 * (1 - SHORT_OF_CRUSHED) > F
     crushed = k1 * (1 - MEETS_K1) <= F
     if not alive.any():
-        row = crushed_row(request)
+        row = _uniform(ThresholdStatus.ok, values, Motion.crushed)
         row.motion[~crushed] = Motion.undecided
         return row
     start, stop = float(values[alive][0]), float(values[alive][-1])

@@ -194,8 +194,10 @@ def _solve(
     traced = request.transient > 0
     if faded and not traced:
         return replace(straight, message=faded)
-    transient = Transient(beam, form, stability, request.accuracy, request.most_periods, along, traced=traced)
-    transient.unstable = found if found is not None and found.stable is False else None
+    unstable = found if found is not None and found.stable is False else None
+    transient = Transient(
+        beam, form, stability, request.accuracy, request.most_periods, along, traced=traced, unstable=unstable
+    )
     end = _from_motion(transient, request, neighbour)
     cycle = _after_motion(straight, transient, end, faded, request)
     if faded or end.found is None:

@@ -134,8 +134,8 @@ class Transient:
 
     beam: the rod as the time stepper sees it, form: the rod whose cycle is wanted; they differ in a limit
     only, which the time stepper comes near. straight: the stability of that rod when straight. along: the
-    parameter along which the cycle's tangent is wanted. traced: whether `trace` is to hold the tip's path;
-    without it that is None.
+    parameter along which the cycle's tangent is wanted. unstable: a cycle near by that is unstable.
+    traced: whether `trace` is to hold the tip's path; without it that is None.
     """
 
     def __init__(  # noqa: PLR0913 - one motion and what is asked of it
@@ -148,6 +148,7 @@ class Transient:
         along: str | None = None,
         *,
         traced: bool = False,
+        unstable: RefinedCycle | None = None,
     ) -> None:
         self.beam, self.form, self.along = beam, form, along
         self.accuracy, self.most_periods = accuracy, most_periods
@@ -169,7 +170,7 @@ class Transient:
         """Times and bending moments of the last returns of one motion."""
         self.clock = 0.0
         self.last_run: Trajectory | None = None
-        self.unstable: RefinedCycle | None = None
+        self.unstable = unstable
         self.waited = self.jumps = self.attempts = self.next_attempt = 0
 
     def follow(self, z: Array) -> TransientOutcome:

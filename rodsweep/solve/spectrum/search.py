@@ -133,9 +133,12 @@ def warm_up() -> None:
 
 
 class Search:
-    """The search for one rod's leading eigenvalues: what to try next, the best so far, what went wrong."""
+    """The search for one rod's leading eigenvalues: what to try next, the best so far, what went wrong.
 
-    def __init__(self, rod: Rod, request: SpectrumRequest):
+    wanted: how many eigenvalues the mesh is asked for at first, by default as many as the request.
+    """
+
+    def __init__(self, rod: Rod, request: SpectrumRequest, wanted: int | None = None):
         growth, wave = most_amplified_wave(rod)
         self.rod, self.request, self.modes = rod, request, request.modes
         self.with_vectors = request.vector_nodes > 0
@@ -143,7 +146,7 @@ class Search:
         self.bounded = isfinite(squared_amplification(rod))
         self.aim = mesh_accuracy(request.accuracy, self.with_vectors) if self.bounded else request.accuracy
         self.mesh = resolution_for(expected_wave_number(request.modes, wave), self.aim)
-        self.wanted = request.modes
+        self.wanted = request.modes if wanted is None else wanted
         self.best: Judged | None = None
         self.stalled = self.failures = 0
         self.lost: Verdict | None = None

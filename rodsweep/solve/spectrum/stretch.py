@@ -51,7 +51,10 @@ class Stretch:
     def coefficients(self) -> Array:
         """(F, nu, c2, gamma3) of every rod, shape (n, 4), bit by bit as `Rod.coefficients`."""
         columns = coefficients_of({**self.path.rod.values, self.path.name: self.values})
-        return np.stack(np.broadcast_arrays(*columns), axis=1)
+        table = np.empty((len(self), len(columns)))
+        for place, column in enumerate(columns):
+            table[:, place] = column
+        return table
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,8 +141,8 @@ def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Reached
 def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
     """(eigenvalues to follow, how many of the first of them are proved to be all), pairs whole; or None."""
     try:
-        search = Search(rod, replace(request, modes=request.modes + FURTHER_MODES - 1, certify=True))
-        search.wanted = request.modes + FURTHER_MODES
+        modes = request.modes + FURTHER_MODES
+        search = Search(rod, replace(request, modes=modes - 1, certify=True), wanted=modes)
         with np.errstate(all="ignore"):
             outcome = search.outcome()
     except FAILURES:
