@@ -34,7 +34,7 @@ class BranchTask(NonlinearTask):
 
     @property
     def moved(self) -> dict[str, np.ndarray]:
-        """The parameters of the rods, with the one that is followed."""
+        """The parameters of the rods, (points,) each, and the ends of the one that is followed, (2,)."""
         options = self.config.branch
         return self.points.of_rods | {options.along: np.array([options.start, options.stop])}
 
