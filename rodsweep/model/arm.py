@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from ..errors import InputError
 from .drag import DRAGS, LEAST_SLENDERNESS, Drag, range_of_drag
+from .parameters import PARAMETERS
 from .section import Circle, Rectangle, Section, Tube
 from .units import Given, in_si, share_of_flutter, unit_of, written_in
 
@@ -180,6 +181,11 @@ class SlenderArm:
         value = in_si(name, given, *UNITS[name])
         if name not in SIGNED and not value > 0:
             raise InputError(f"{self._told(name)} is not above 0")
+        return value
+
+    def parameter(self, name: str) -> float:
+        """A parameter of the arm as a rod; the default of what no arm determines."""
+        value: float = getattr(self, name, PARAMETERS[name].neutral)
         return value
 
     def _told(self, name: str) -> str:

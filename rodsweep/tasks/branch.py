@@ -16,7 +16,7 @@ from .protocol import Part, Solver
 if TYPE_CHECKING:
     from ..solve.branch.branch_curve import BranchCurve, BranchPoint
     from ..solve.branch.branches import BranchesOfRod
-    from ..solve.branch.special_points import SpecialPoint
+    from ..solve.branch.special.point import SpecialPoint
     from ..solve.changes.unstable_modes import Crossing
 
 
@@ -56,20 +56,14 @@ class BranchTask(NonlinearTask):
         return estimate_branches(self.points, options.along, reach, self.config.accuracy)
 
     def solver(self) -> Solver:
-        from ..solve.branch.branches import (
-            BranchRequest,
-            BranchRod,
-            BranchStatus,
-            solve_branches,
-            warm_up,
-        )
+        from ..solve.branch.branches import BranchRequest, BranchStatus, solve_branches, warm_up
 
         options = self.config.branch
         request = BranchRequest(**options.model_dump(), accuracy=self.config.accuracy)
         return Solver(
             statuses=tuple(BranchStatus),
             warm_up=warm_up,
-            solve=lambda index: solve_branches(BranchRod(**self.points.values(index)), request),
+            solve=lambda index: solve_branches(self.points.rod(index), request),
             record=lambda index, result: record(result, options.along, options.cycles, options.special),
         )
 

@@ -40,7 +40,6 @@ class CriticalityTask(NonlinearTask):
         from ..solve.hopf.criticality import (
             CriticalityRequest,
             CriticalityStatus,
-            RodInFluid,
             solve_criticality,
             warm_up,
         )
@@ -50,7 +49,7 @@ class CriticalityTask(NonlinearTask):
         return Solver(
             statuses=tuple(CriticalityStatus),
             warm_up=warm_up,
-            solve=lambda index: solve_criticality(RodInFluid(**self.points.values(index)), request),
+            solve=lambda index: solve_criticality(self.points.rod(index), request),
             record=lambda index, result: record(result, options.crossings),
         )
 

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..determinant.parameter_plane import Plane
 from ..results.file.view import View
 from ..results.layouts.phase_diagram import CYCLE_SPECIAL, MOST_SPECIAL, cycle_variables
 from ..results.layouts.variables import listed, recorded
 
 if TYPE_CHECKING:
+    from ..determinant.parameter_plane import Plane
     from ..solve.branch.coexistence import CoexistenceRow
-    from ..solve.branch.special_boundaries import CycleCurves, RowSpecial
+    from ..solve.branch.special.boundaries import CycleCurves, RowSpecial
     from ..solve.hopf.generalised import CurveCriticality
 
 
@@ -29,8 +29,8 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
 
 def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecial]":
     """The folds and torus points of all finite rows as the file has them. rows: all values, (rows,)."""
-    from ..solve.branch.special_boundaries import CURVE_KINDS, RowSpecial
-    from ..solve.branch.special_points import SpecialKind
+    from ..solve.branch.special.boundaries import CURVE_KINDS, RowSpecial
+    from ..solve.branch.special.point import SpecialKind
 
     kinds = view.variables["cycle_special_kind"].reshape(len(rows), -1)
     at, period, height = (
@@ -59,10 +59,10 @@ def unstored_specials(view: View, finite: np.ndarray) -> int:
 
 
 def with_hopf_ends(
-    found: "CycleCurves", plane: Plane, told: "Sequence[CurveCriticality]", unstored: int
+    found: "CycleCurves", plane: "Plane", told: "Sequence[CurveCriticality]", unstored: int
 ) -> "CycleCurves":
     """The curves with the generalised Hopf points at their ends as they are located on Hopf curves."""
-    from ..solve.branch.special_curves import ending_at
+    from ..solve.branch.special.cycle_curves import ending_at
 
     known = [point for curve in told for point in curve.points]
     curves = tuple(ending_at(curve, plane, known) for curve in found.curves)

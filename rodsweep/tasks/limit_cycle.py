@@ -130,14 +130,14 @@ class LimitCycleTask(Task):
     def solver(self) -> Solver:
         if self.config.limit_cycle.method == "integration":
             return self._integration()
-        from ..solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle, warm_up
+        from ..solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle, warm_up
 
         options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
         request = CycleRequest(accuracy=self.config.accuracy, **options)
         along = self.config.along if self.chains else None
 
         def solve(index: int, start: State = None) -> "Cycle":
-            return solve_cycle(CyclePoint(**self.points.values(index)), request, start, along)
+            return solve_cycle(self.points.rod(index), request, start, along)
 
         def solve_from(index: int, start: State) -> "tuple[Cycle, State]":
             cycle = solve(index, start)
@@ -154,7 +154,7 @@ class LimitCycleTask(Task):
 
     def _integration(self) -> Solver:
         """How points are solved by time integration alone."""
-        from ..solve.cycle.limit_cycle import CyclePoint, CycleRequest, warm_up
+        from ..solve.cycle.limit_cycle import CycleRequest, warm_up
         from ..solve.cycle.marched import MarchedStatus, solve_by_integration
 
         options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
@@ -162,7 +162,7 @@ class LimitCycleTask(Task):
         return Solver(
             statuses=tuple(MarchedStatus),
             warm_up=warm_up,
-            solve=lambda index: solve_by_integration(CyclePoint(**self.points.values(index)), request),
+            solve=lambda index: solve_by_integration(self.points.rod(index), request),
             record=lambda index, cycle: self.record(self.points.values(index), cycle),
         )
 

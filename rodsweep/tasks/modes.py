@@ -69,7 +69,7 @@ class ModesTask(ProvedTask):
         first = ModesRequest(2, 1e-4, 9, options.growth, True)
         return Solver(
             statuses=tuple(SpectrumStatus),
-            warm_up=lambda: solve_modes(Rod(30.0, 1e4, 1e4, 1e-4), first),
+            warm_up=lambda: solve_modes(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), first),
             solve=lambda index: solve_modes(self.points.rod(index), request),
             record=lambda index, result: record(result, options.growth),
         )

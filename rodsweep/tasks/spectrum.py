@@ -115,13 +115,15 @@ class SpectrumTask(ProvedTask):
 
     def _together(self, indices: NDArray[np.int64], request: "SpectrumRequest") -> Together:
         """What comes of the points of a stretch."""
+        from ..determinant.parameter_path import Path
         from ..solve.spectrum.status import SpectrumStatus
         from ..solve.spectrum.stretch import Stretch, solve_stretch
 
         stretches = self.stretches
         assert stretches is not None
         varied = self.points.moved[stretches.axis]
-        found = solve_stretch(Stretch(varied, self.points.values_of(indices)), request)
+        path = Path(self.points.rod(int(indices[0])), varied)
+        found = solve_stretch(Stretch(path, self.points.values_of(indices)[varied]), request)
         words = {status.value: status.name for status in SpectrumStatus}
         return Together(
             values=record(found),

@@ -50,7 +50,7 @@ class ThresholdsTask(ProvedTask):
         return Solver(
             statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
-            solve=lambda index: solve_thresholds(**self.points.values(index), request=request),
+            solve=lambda index: solve_thresholds(self.points.rod(index), request),
             record=lambda index, result: record(result, options.crossings),
         )
 

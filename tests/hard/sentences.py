@@ -12,6 +12,7 @@ from math import inf, log10
 from pathlib import Path
 
 import numpy as np
+from rods import rod_of
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of
@@ -91,7 +92,8 @@ def random_sweep(index):
         top = min(0.97 * min(rods["k1"]), top)
         keywords |= _over_force(random, task, top)
         if task == "phase_diagram":
-            keywords |= {varied: np.sort(_drawn(random, varied, 3)).tolist()} | _of_diagrams(random)
+            rows = np.sort(_drawn(random, varied, 3)).tolist()
+            keywords |= {varied: rows if len(rows) > 1 else [*rows, 1.0]} | _of_diagrams(random)
     if "arm" in keywords and task != "phase_diagram":
         _over_drag(np.random.default_rng([34, index]), keywords["arm"])
     if task in ("thresholds", "criticality"):
@@ -339,7 +341,7 @@ def thresholds_sentences(view, page, keywords, _):
     """Of a grid the first thresholds of every kind, of a single rod all with their errors."""
     columns, v = view.point_columns, view.variables
     count = v["status"].size
-    rods = [Rod(0.0, *(float(columns[name][i]) for name in LINEAR_PARAMETERS[1:])) for i in range(count)]
+    rods = [rod_of(0.0, *(float(columns[name][i]) for name in LINEAR_PARAMETERS[1:])) for i in range(count)]
     top = keywords.get("F_max", 200.0)
     every = [changes_over_force(rod, top) for rod in rods]
     found = _search_sentences(view, page, every, "rod")
@@ -658,7 +660,7 @@ def diagram_sentences(view, page, keywords, fine):
     fixed = {name: float(view.axes[name][0]) for name in view.parameters if name in LINEAR_PARAMETERS}
     every, table = [], []
     for value in rows:
-        rod = Rod(0.0, **(fixed | {row: float(value)}))
+        rod = Rod(F=0.0, **fixed | {row: float(value)})
         stop = min(float(values[-1]), rod.k1 * SHORT_OF_CRUSHED)
         every.append(changes_along(rod, "F", float(values[0]), stop))
         table.append([_class_of(replace(rod, F=float(F))) if rod.k1 > F else "crushed" for F in values])
@@ -719,7 +721,7 @@ def _curve_sentences(view, page, row):
         found.append((line, "; ".join(why)))
     fixed = {name: float(view.axes[name][0]) for name in view.parameters if name != row}
     for i in range(0, len(v["curve_kind"]), max(1, len(v["curve_kind"]) // 6)):
-        rod = Rod(float(v["curve_F"][i]), **(fixed | {row: float(v[f"curve_{row}"][i])}))
+        rod = Rod(F=float(v["curve_F"][i]), **fixed | {row: float(v[f"curve_{row}"][i])})
         w = solve_spectrum(rod, SpectrumRequest(MANY, 1e-10, False)).eigenvalues
         at = complex(v["curve_growth_rate"][i], v["curve_frequency"][i])
         off = np.sort(np.abs(w - at))[0] / abs(at)

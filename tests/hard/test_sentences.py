@@ -1,6 +1,6 @@
-"""Every number on the page of `show` for random rods and arms, and in reports on arms, against the solvers.
+"""Every number on the page of `show` and in figures of random rods and arms, and in reports on arms.
 
-A number that nothing compares fails as well. The suite takes a sweep of each task, RODSWEEP_RODS as many
+Each is held against the solvers; a number or a mark that nothing compares fails as well. The suite takes a sweep of each task, RODSWEEP_RODS as many
 as it says (`make survey`: 300).
 """
 
@@ -11,8 +11,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from . import arm_sentences, sentences
+from . import arm_sentences, figures, sentences
 from .arm_sentences import random_report, wrong_report
+from .figures import random_figure, wrong_figure
 from .page import IN_SIGHT, Page, page_of, unit_of
 from .sentences import TASKS, random_sweep, solved, wrong_sentences
 from .truths import changes_over_force
@@ -42,6 +43,57 @@ def test_no_number_in_the_report_on_an_arm_is_wrong(first):
         read += count
     assert wrong == []
     assert read >= LEAST_READ * min(BATCH, SWEEPS - first)
+
+
+LEAST_MARKS = 10
+"""Marks of a figure, on average, below which the reader no longer reads."""
+
+
+@pytest.mark.parametrize("first", range(0, SWEEPS, BATCH))
+def test_no_text_and_no_mark_of_a_figure_is_wrong(first):
+    wrong, marks, drawn = [], 0, 0
+    for index in range(first, min(first + BATCH, SWEEPS)):
+        found, counts = wrong_figure(*random_figure(index))
+        wrong += [(index, *why) for why in found]
+        drawn += counts is not None
+        marks += counts[-1] if counts else 0
+    assert wrong == []
+    assert marks >= LEAST_MARKS * drawn > 0
+
+
+LINE_OF_SPECTRA = {"F": [10.0, 20.0, 30.0, 40.0], "k1": 1e4, "k2": 1e2, "gamma3": 1e-2, "modes": 2}
+DRAWN = {
+    "spectrum": (LINE_OF_SPECTRA, {}, "growth_rate"),
+    "thresholds": ({"k1": [150.0, 200.0, 300.0], "k2": 1e4, "gamma3": 1e-4, "F_max": 60.0}, {}, "F_hopf"),
+}
+
+
+@pytest.mark.parametrize("task", DRAWN)
+def test_the_reader_finds_a_mark_that_is_wrong(task, monkeypatch):
+    """A hundredth off, in the file that is drawn."""
+    keywords, choices, name = DRAWN[task]
+    true = figures.view_of
+
+    def off(*given):
+        view = true(*given)
+        values = {n: np.asarray(view.variables[n]) for n in view.variables}
+        return replace(view, variables=values | {name: 1.01 * values[name]})
+
+    assert wrong_figure(task, keywords, choices, None)[0] == []
+    monkeypatch.setattr(figures, "view_of", off)
+    assert wrong_figure(task, keywords, choices, None)[0] != []
+
+
+TEXTS_OFF = {"27.4272": "27.4372", "14.7993": "14.7893", "10^{4}": "10^{5}"}
+
+
+@pytest.mark.parametrize("number", TEXTS_OFF)
+def test_the_reader_finds_a_number_in_a_figure_that_is_wrong(number, monkeypatch):
+    true = figures.Drawing._texts
+    monkeypatch.setattr(
+        figures.Drawing, "_texts", lambda d: (text.replace(number, TEXTS_OFF[number]) for text in true(d))
+    )
+    assert wrong_figure("spectrum", LINE_OF_SPECTRA, {}, None)[0] != []
 
 
 ROD = {"F": [45.0, 60.0], "k1": 200.0, "k2": 1e4, "gamma3": 1e-4, "accuracy": 1e-4}

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+from rods import rod_of
 
 from rodsweep.determinant.parameter_path import Path as ParameterPath
 from rodsweep.model.parameters import LINEAR_PARAMETERS
@@ -21,7 +22,7 @@ def rods_of(view):
     """The rod of every point, in their order."""
     columns = view.point_columns
     rows = zip(*(columns[name] for name in LINEAR_PARAMETERS), strict=True)
-    return [Rod(*map(float, row)) for row in rows]
+    return [rod_of(*map(float, row)) for row in rows]
 
 
 def leading(rod):

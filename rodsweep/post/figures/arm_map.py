@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
@@ -30,8 +29,6 @@ from .request import FigureRequest
 
 MAPS = ("map", "maps")
 """What may be asked for of a task that has several figures."""
-DECADE = 10
-"""Ratio of the largest to the smallest value above which colours are logarithmic."""
 HATCHES: tuple[tuple[str, int, str, dict[str, Any]], ...] = (
     ("model_applies", Validity.doubtful, "model doubtful", {"fc": "none", "hatch": "..."}),
     ("model_applies", Validity.does_not_apply, "model does not apply", {"fc": "none", "hatch": "////"}),
@@ -85,7 +82,7 @@ def draw_arm_map(request: FigureRequest) -> str:
     handles: list[Artist] = []
     for subplot, panel in zip(drawn, panels, strict=True):
         if y:
-            handles = [*handles, *_map(figure, subplot, panel, view, (x, y), place)]
+            handles = [*handles, *_map(subplot, panel, view, (x, y), place)]
         else:
             handles = [*handles, *_lines(subplot, panel, view, x, place)]
     covers = [
@@ -130,20 +127,13 @@ def _panels(count: int, narrow: bool, maps: bool) -> tuple[Figure, list[Axes]]:
     return figure, list(figure.subplots(*shape, sharex=True, sharey=maps, squeeze=False).ravel())
 
 
-def _map(
-    figure: Figure, axes: Axes, panel: Panel, view: View, names: tuple[str, str], place: Any
-) -> list[Artist]:
+def _map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], place: Any) -> list[Artist]:
     """A panel as colours over two axes; returns what the legend says of its line."""
     (x, x_label), (y, y_label) = (_axis(view, name) for name in names)
     values = np.ma.masked_invalid(panel.values[place].T)
-    low, high = float(values.min()), float(values.max())
-    norm = LogNorm(low, high) if high > DECADE * low > 0 else Normalize(low, high)
-    mesh = axes.pcolormesh(cell_edges(x), cell_edges(y), values, norm=norm, rasterized=True)
-    bar = figure.colorbar(mesh, ax=axes, label=panel.label)
-    if isinstance(norm, LogNorm):
-        style.label_few_decades(bar.ax.yaxis, low, high)
+    style.colour_cells(axes, (cell_edges(x), cell_edges(y)), panel.values[place].T, panel.label)
     handles: list[Artist] = []
-    if panel.turns and low < 0 < high:
+    if panel.turns and values.min() < 0 < values.max():
         axes.contour(x, y, values, [0.0], colors="k", linewidths=1.4)
         handles.append(Line2D([], [], color="k", lw=1.4, label=panel.turns))
     style.scale(axes, "x", x)

@@ -4,7 +4,7 @@ from math import floor, log10
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, Normalize
+from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -14,7 +14,7 @@ from ...errors import InputError
 from ...results.file.view import View
 from . import style
 from .cycle.maps import label_maps, map_panels
-from .cycle.point_map import PointMap, cell_edges, point_map, varied_parameters
+from .cycle.point_map import PointMap, cell_edges, is_map, point_map, varied_parameters
 from .fitting import MAP_ASPECT
 from .normal_forms import draw_predictions
 from .request import FigureRequest
@@ -33,8 +33,6 @@ CLASSES = (
     ("undecided", "0.4"),
 )
 """What a rod's first Hopf point is, and its colour: told apart by all, and in grey."""
-DECADE = 10
-"""Ratio of the largest to the smallest |a| above which their colours are logarithmic."""
 FEW = 0.1
 """Share of the Hopf points whose |Re c| is on the linear part of an axis that has both signs."""
 
@@ -46,7 +44,7 @@ def draw_criticality(request: FigureRequest) -> str:
     varied = varied_parameters(view)
     if len(varied) == 1:
         return request.write(_along(view, varied[0]), f"the normal forms of Hopf points along {varied[0]}")
-    if len(varied) != 2:
+    if not is_map(view):
         return request.write(*draw_predictions(view))
     points = point_map(view)
     shown = f"the normal form of the first Hopf point over {' and '.join(points.names)}{points.left_out}"
@@ -109,13 +107,8 @@ def _map(view: View, points: PointMap, narrow: bool) -> Figure:
     norm = BoundaryNorm(np.arange(len(CLASSES) + 1) - 0.5, len(CLASSES))
     colours = ListedColormap([colour for _, colour in CLASSES])
     panels[0].pcolormesh(*edges, classes, cmap=colours, norm=norm, rasterized=True)
-    low, high = float(np.nanmin(a)), float(np.nanmax(a))
-    sizes = LogNorm(low, high) if high > DECADE * low > 0 else Normalize(low, high)
-    mesh = panels[1].pcolormesh(*edges, np.ma.masked_invalid(a), norm=sizes, rasterized=True)
+    style.colour_cells(panels[1], edges, a, "amplitude coefficient $|a|/L$")
     panels[1].set_facecolor(CLASSES[0][1])
-    bar = figure.colorbar(mesh, ax=panels[1], label="amplitude coefficient $|a|/L$")
-    if isinstance(mesh.norm, LogNorm):
-        style.label_few_decades(bar.ax.yaxis, low, high)
     label_maps(panels, points)
     there = [Patch(facecolor=c, label=word) for i, (word, c) in enumerate(CLASSES) if (classes == i).any()]
     style.legend_below(figure, there, columns=3)

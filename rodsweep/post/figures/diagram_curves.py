@@ -100,10 +100,17 @@ def _points(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
     if "partial_beam_k1" in v:
         F, k = float(v["partial_beam_F"]), float(v["partial_beam_k1"])
         x, y = (F, k) if line == "F" else (k, F)
+        if not (_holds(v[line], x) and _holds(view.axes[row], y)):
+            return handles
         label = rf"partial beam $2F_c = {F:.6g}$, $4F_c = {k:.6g}$"
         (cross,) = axes.plot(x, y, "+", color="k", ls="", ms=10, mew=1.2, label=label)
         handles.append(cross)
     return handles
+
+
+def _holds(values: Array, at: float) -> bool:
+    """Whether a place lies between the ends of an axis, (n,)."""
+    return bool(values[0] <= at <= values[-1])
 
 
 def draw_cycle_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:

@@ -8,7 +8,7 @@ from .cycle.amplitude import BRANCH_LOOKS, abscissa, draw_amplitude
 from .cycle.animation import FILMS, write_animation
 from .cycle.energy import draw_energy
 from .cycle.maps import draw_maps
-from .cycle.point_map import point_map, varied_parameters
+from .cycle.point_map import is_map, point_map, varied_parameters
 from .cycle.portrait import draw_portrait
 from .cycle.selection import ENERGIES, MOST_CYCLES, SHAPES, TRACE, chosen_cycles, outcomes
 from .cycle.transient import draw_transients
@@ -90,9 +90,8 @@ def _suggested(request: FigureRequest) -> str:
 
 def _has_many_lines(view: View) -> bool:
     """Whether the points form a map of more lines than the figure of amplitudes has room for."""
-    try:
-        points = point_map(view)
-    except InputError:
+    if not is_map(view):
         return False
+    points = point_map(view)
     across = next(name for name in points.names if name != abscissa(view))
     return len(np.unique(view.point_columns[across])) > len(BRANCH_LOOKS)

@@ -131,6 +131,8 @@ def _fixed(view: View, line: str, row: str) -> str:
 
 def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
     """Covers rods that the force x crushes, x > y, and draws the edge x = y; returns it for the legend."""
+    if x[-1] <= y[0]:
+        return []
     ends = np.linspace(max(x[0], y[0]), min(x[-1], y[-1]), 1000)
     below = np.append(ends, x[-1])
     axes.fill_between(below, np.minimum(below, y[-1]), y[0], color=CLASS_COLOURS["crushed"], lw=0)

@@ -7,6 +7,7 @@ from typing import Any, Literal
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
+from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
@@ -21,6 +22,8 @@ CRITICAL_FORCE = f"critical force ${SYMBOLS['F']}$"
 INVERSE_DRAG = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$"
 FIRST, SECOND, THIRD = "#0072B2", "#D55E00", "#009E73"
 """Blue, vermilion and green of Okabe and Ito: told apart by the colour-blind."""
+DECADE = 10
+"""Ratio of the largest to the smallest value of a map above which its colours are logarithmic."""
 FEW_DECADES, IN_ONE_DECADE = 50, 6
 """Ratio of the ends of a logarithmic axis below which 1, 2 and 5 of each decade are labelled, and below which
 more are, since only one or two of these may be in sight."""
@@ -135,3 +138,27 @@ def label_few_decades(axis: Axis, low: float, high: float) -> None:
             FuncFormatter(lambda value, _: f"{value:g}" if written_out else f"${number(value)}$")
         )
         axis.set_minor_formatter(NullFormatter())
+
+
+def colour_cells(
+    axes: Axes,
+    edges: tuple[np.ndarray, np.ndarray],
+    values: np.ndarray,
+    label: str,
+    colours: str = "viridis",
+    ratios: bool = True,
+) -> None:
+    """Cells in the colours of their values, (ny, nx), nan where there is none, and a bar that has a label.
+
+    ratios: whether the colours are logarithmic over more than a decade.
+    """
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    if ratios and high > DECADE * low > 0:
+        norm: Normalize = LogNorm(low, high)
+    else:
+        norm = Normalize(low, high if high != low or low else 1.0)  # no bar of zeros reaches below zero
+    drawn = np.ma.masked_invalid(values)
+    mesh = axes.pcolormesh(*edges, drawn, norm=norm, cmap=colours, rasterized=True)
+    bar = axes.figure.colorbar(mesh, ax=axes, label=label)
+    if isinstance(norm, LogNorm):
+        label_few_decades(bar.ax.yaxis, low, high)

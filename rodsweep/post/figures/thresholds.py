@@ -1,8 +1,6 @@
 """Critical forces against parameters: lines, a map over two of them, or bars of single rods."""
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
@@ -21,8 +19,6 @@ NO_THRESHOLD = "#DDDDDD"
 """Colour of rods without the threshold."""
 SEARCH_DIGITS = 4
 """To which the end of the search is written."""
-DECADE = 10
-"""Ratio of the largest to the smallest force above which their colours are logarithmic."""
 
 
 def draw_thresholds(request: FigureRequest) -> str:
@@ -70,7 +66,8 @@ def _map(view: View, names: list[str], narrow: bool) -> tuple[Figure, str]:
     ):
         values = view.variables[name].ravel()[points.at]
         style.need(view, np.isfinite(values).any(), f"{name} of rods with finite parameters")
-        _coloured(axes, (cell_edges(points.x), cell_edges(points.y)), values, f"{word} in $k_3/L^2$")
+        style.colour_cells(axes, (cell_edges(points.x), cell_edges(points.y)), values, f"{word} in $k_3/L^2$")
+        axes.set_facecolor(NO_THRESHOLD)
         lacking |= bool(np.isnan(values).any())
     label_maps(panels, points)
     if lacking:
@@ -78,14 +75,3 @@ def _map(view: View, names: list[str], narrow: bool) -> tuple[Figure, str]:
     heading = style.heading(view, style.parameter_text(points.shared), searched(view))
     figure.suptitle(heading)
     return figure, points.left_out
-
-
-def _coloured(axes: Axes, edges: tuple[np.ndarray, np.ndarray], values: np.ndarray, label: str) -> None:
-    """Cells in the colours of their forces, shape (ny, nx), with a bar."""
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
-    norm = LogNorm(low, high) if high > DECADE * low > 0 else Normalize(low, high)
-    mesh = axes.pcolormesh(*edges, np.ma.masked_invalid(values), norm=norm, rasterized=True)
-    axes.set_facecolor(NO_THRESHOLD)
-    bar = axes.figure.colorbar(mesh, ax=axes, label=label)
-    if isinstance(norm, LogNorm):
-        style.label_few_decades(bar.ax.yaxis, low, high)

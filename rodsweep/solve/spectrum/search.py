@@ -129,7 +129,7 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
 
 def warm_up() -> None:
     """Loads what is compiled and created at first use, so that no point pays for it."""
-    Search(Rod(30.0, 1e4, 1e4, 1e-4), SpectrumRequest(2, 1e-4, certify=True)).outcome()
+    Search(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), SpectrumRequest(2, 1e-4, certify=True)).outcome()
 
 
 class Search:

@@ -12,10 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...determinant.parameter_path import direction_of
+from ...determinant.parameter_path import Path
 from ...determinant.winding_number import count_right_of
-from ...model.parameters import LINEAR_PARAMETERS
-from ...model.rod import Coefficients, Rod
+from ...model.rod import Rod, coefficients_of
 from ..point import FAILURES
 from .carried_count import best_gap, carry, judge_points, leading, line_in
 from .following import follow
@@ -31,31 +30,28 @@ FURTHER_MODES = 2
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """Rods that differ in the parameter `name` only: F, k1, k2, gamma3 by name, each of shape (n,)."""
+    """Rods on a path, at values of its parameter, shape (n,)."""
 
-    name: str
-    values: dict[str, Array]
+    path: Path
+    values: Array
 
     def __len__(self) -> int:
-        return len(self.values[self.name])
+        return len(self.values)
 
     def rod(self, i: int) -> Rod:
         """The i-th rod."""
-        return Rod(**{name: float(column[i]) for name, column in self.values.items()})
+        return self.path.rod.changed(**{self.path.name: float(self.values[i])})
+
+    @property
+    def coordinates(self) -> Array:
+        """The path variable of every rod, shape (n,)."""
+        return 1 / self.values if self.path.inverse else self.values
 
     @property
     def coefficients(self) -> Array:
         """(F, nu, c2, gamma3) of every rod, shape (n, 4), bit by bit as `Rod.coefficients`."""
-        F, k1, k2, gamma3 = (self.values[name] for name in LINEAR_PARAMETERS)
-        with np.errstate(invalid="ignore"):  # inf/inf where k1 = inf
-            nu = np.where(np.isinf(k1), 1.0, (k1 - F) / k1)
-        return np.stack([F, nu, 1 / k2, gamma3], axis=1)
-
-    @property
-    def path_variable(self) -> Array:
-        """F, 1/k1, 1/k2 or gamma3, as the name says, shape (n,)."""
-        varied = self.values[self.name]
-        return 1 / varied if self.name in ("k1", "k2") else varied.copy()
+        columns = coefficients_of({**self.path.rod.values, self.path.name: self.values})
+        return np.stack(np.broadcast_arrays(*columns), axis=1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,8 +112,9 @@ def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Reached
     order[0] = np.arange(len(first))
     track = Track(np.empty(shape, complex), np.empty(shape, complex), np.empty(shape), order)
     track.w[0] = first
-    coefficients, p = stretch.coefficients[start:], stretch.path_variable[start:]
-    direction = Coefficients(*map(float, direction_of(stretch.rod(start), stretch.name)))
+    path = stretch.path
+    coefficients, p = stretch.coefficients[start:], stretch.coordinates[start:]
+    direction = path.direction
     n = follow(track, coefficients, p, direction, modes)
     if n == 0:
         return None
@@ -163,6 +160,5 @@ def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | No
 def warm_up() -> None:
     """Loads what is compiled and created at first use, so that no point pays for it."""
     warm_up_search()
-    forces = np.linspace(15.0, 45.0, 12)
-    values = {"F": forces, "k1": forces * 0 + 1e4, "k2": forces * 0 + 1e4, "gamma3": forces * 0 + 1e-4}
-    solve_stretch(Stretch("F", values), SpectrumRequest(2, 1e-4, certify=True))
+    path = Path(Rod(F=15.0, k1=1e4, k2=1e4, gamma3=1e-4), "F")
+    solve_stretch(Stretch(path, np.linspace(15.0, 45.0, 12)), SpectrumRequest(2, 1e-4, certify=True))

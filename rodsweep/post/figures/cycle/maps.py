@@ -10,8 +10,6 @@ from typing import Any
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.collections import QuadMesh
-from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
@@ -24,8 +22,8 @@ from ....config.arm_axes import MOVES
 from ....results.file.view import View
 from ..style import (
     LABELS,
+    colour_cells,
     heading,
-    label_few_decades,
     legend_below,
     need,
     parameter_text,
@@ -60,8 +58,6 @@ QUANTITIES = (
     ("tip_y_max", "plasma", False),
 )
 """Variable and colours of each panel, and whether those are logarithmic over more than a decade."""
-DECADE = 10
-"""Ratio of the longest to the shortest period above which their colours are logarithmic."""
 
 
 def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
@@ -80,11 +76,8 @@ def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
     for axes, label, (name, colours, ratios) in zip(panels, (period, largest_y), QUANTITIES, strict=True):
         drawn = units.drawn({name: view.variables[name].ravel()[points.at.ravel()]})[name]
         values = np.where(cycles, drawn.reshape(points.at.shape), np.nan)
-        mesh = _heat_map(axes, points, values, ratios)
-        mesh.set_cmap(colours)
-        bar = figure.colorbar(mesh, ax=axes, label=label)
-        if isinstance(mesh.norm, LogNorm):
-            label_few_decades(bar.ax.yaxis, *mesh.get_clim())
+        edges = cell_edges(points.x), cell_edges(points.y)
+        colour_cells(axes, edges, values, label, colours, ratios)
         handles = _draw_hopf_lines(axes, points, lines)
         handles += _draw_statuses(axes, points, words)
         handles += _mark_unstable(axes, points, words == "unstable")
@@ -123,14 +116,6 @@ def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
             axes.set_xlabel(LABELS[points.names[0]])
         if place is None or place.is_first_col():
             axes.set_ylabel(LABELS[points.names[1]])
-
-
-def _heat_map(axes: Axes, points: PointMap, values: Array, ratios: bool) -> QuadMesh:
-    """The cells in the colours of their values, shape (ny, nx), NaN where there are none."""
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
-    norm = LogNorm(low, high) if ratios and high > DECADE * low > 0 else Normalize(low, high)
-    edges = cell_edges(points.x), cell_edges(points.y)
-    return axes.pcolormesh(*edges, np.ma.masked_invalid(values), norm=norm, rasterized=True)
 
 
 def _draw_statuses(axes: Axes, points: PointMap, words: NDArray[np.str_]) -> list[Artist]:

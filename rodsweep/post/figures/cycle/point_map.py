@@ -63,6 +63,15 @@ def point_map(view: View) -> PointMap:
     )
 
 
+def is_map(view: View) -> bool:
+    """Whether the file's points form a map over two parameters."""
+    try:
+        point_map(view)
+    except InputError:
+        return False
+    return True
+
+
 def _varying(names: list[str]) -> str:
     """How many parameters vary, which is not two, and what to do about it."""
     if not names:
