@@ -22,7 +22,7 @@ from ..results.layouts.variables import Filled
 from ..sweep.grid import Points
 from ..sweep.lines import lines_over
 
-POINTS_AT_ONCE = 1 << 18
+POINTS_AT_ONCE = 1 << 13
 """Points whose eigenvalues are read together; memory does not grow with the file beyond that."""
 
 
@@ -49,8 +49,10 @@ def force_changes(points: Points, values: Mapping[str, Any]) -> tuple[Filled, ..
     if len(np.unique(F[np.isfinite(F)])) < 2:
         return ()
     lines = _of_grid(points, values) if points.is_grid else _of_list(points, values)
-    rows = [row for some in lines for row in _changes_on(some)]
-    return tuple((v, np.array([row[v.name] for row in rows], v.dtype)) for v in FORCE_CHANGES)
+    kind = np.dtype([(v.name, v.dtype) for v in FORCE_CHANGES])
+    rows = (tuple(row[v.name] for v in FORCE_CHANGES) for some in lines for row in _changes_on(some))
+    table = np.fromiter(rows, kind)
+    return tuple((v, table[v.name]) for v in FORCE_CHANGES)
 
 
 def _of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
