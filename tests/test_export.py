@@ -48,7 +48,8 @@ def test_numbers_of_a_grid_are_those_of_the_file_to_the_last_bit(command):
     assert set(columns["status"]) == {"ok"}
     assert {"200", "inf", "0.0001"} <= {*columns["k1"], *columns["gamma3"]}  # no 200.0
     assert said == (
-        "wrote c.csv: 42 rows of modes in 9 columns; --table takes points or mode_shapes instead\n"
+        "wrote c.csv: 42 rows of modes in 9 columns; --table takes points, mode_shapes or force_changes "
+        "instead\n"
     )
 
 

@@ -11,7 +11,7 @@ from contents import content, same
 from ranks import PATIENCE, pause_until, wait_for_end
 
 from rodsweep.determinant.parameter_plane import PlaneAxis
-from rodsweep.results.run.unit_results import UnitResults
+from rodsweep.results.run.checkpoints import UnitResults
 from rodsweep.solve.branch.special.boundaries import RowSpecial, SpecialBoundaries, TracedHalf
 from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, HalfCurve
 from rodsweep.solve.branch.special.point import SpecialKind
@@ -29,7 +29,7 @@ phase_diagram: {cycles: true}
 """
 HALT = """
 import pathlib, time
-from rodsweep.results.run.unit_results import UnitResults
+from rodsweep.results.run.checkpoints import UnitResults
 import rodsweep.watch as watch
 from rodsweep.sweep.listener import RankListener
 

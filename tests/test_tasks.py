@@ -341,7 +341,8 @@ import os
 import rodsweep.solve.changes.thresholds as real
 from types import SimpleNamespace as Value
 
-def solve_thresholds(k1, k2, gamma3, request):
+def solve_thresholds(rod, request):
+    k1, k2 = rod.k1, rod.k2
     if os.environ.get("DIE_AT") == f"{k1:g}":
         os._exit(9)
     status = real.ThresholdStatus.list_full if k1 == 14 else real.ThresholdStatus.ok

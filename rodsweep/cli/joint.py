@@ -8,8 +8,8 @@ from typing import Any
 
 from ..results.file.view import read_view
 from ..results.layouts.variables import Filled
+from ..results.run.checkpoints import UnitResults
 from ..results.run.journal import journal_directory
-from ..results.run.unit_results import UnitResults
 from ..solve.backend.kept import forget_all
 from ..sweep.handout import Handout
 from ..sweep.listener import RankListener

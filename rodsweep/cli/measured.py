@@ -19,7 +19,8 @@ from ..bench.sweep.launch import FIRST_RANK, KILLED, OTHER_RANKS, SOLVED
 from ..tasks import TASKS
 from ..tasks.protocol import Solver
 from ..tasks.spectrum import SpectrumTask
-from . import _speaks, main
+from . import main
+from .command_line import speaks
 
 OUTCOMES = 4096
 """That the points take in turn: more than any compression looks back."""
@@ -66,7 +67,7 @@ class InstantSpectra(SpectrumTask):
 
 def note_memory(directory: Path) -> None:
     """Leaves this rank's peak memory so far."""
-    (directory / f"{FIRST_RANK if _speaks() else OTHER_RANKS}-{os.getpid()}").write_text(str(peak_memory()))
+    (directory / f"{FIRST_RANK if speaks() else OTHER_RANKS}-{os.getpid()}").write_text(str(peak_memory()))
 
 
 def peak_memory() -> int:

@@ -84,11 +84,8 @@ class BranchConfig(Config):
     @model_validator(mode="after")
     def _follows_one_parameter(self) -> "BranchConfig":
         along = self.branch.along
-        if along in self.parameters.given_axes:
-            raise ValueError(
-                f"parameters.{along} is given but the task branch follows {along}; remove it and set "
-                "branch.start and branch.stop, or another branch.along"
-            )
+        why = f"follows {along}; remove it and set branch.start and branch.stop, or another branch.along"
+        self.refuse_found(along, why)
         if self.parameters.arm is not None and along != "F":
             raise ValueError(
                 f"branch.along: {along} is not allowed with parameters.arm, which gives {along}; follow F, "

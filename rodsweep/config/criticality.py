@@ -43,10 +43,6 @@ class CriticalityConfig(Config):
 
     @model_validator(mode="after")
     def _finds_the_force_itself(self) -> "CriticalityConfig":
-        if "F" in self.parameters.given_axes:
-            raise ValueError(
-                "parameters.F is given but the task criticality finds F itself; remove it and set "
-                "criticality.F_max"
-            )
+        self.refuse_found("F", f"finds F itself; remove it and set {self.task}.F_max")
         self.parameters.require(self.names)
         return self

@@ -78,6 +78,11 @@ class Config(Strict, ABC):
             meant["parameters"] |= {k: v for k, v in beside.items() if k not in self.parameters.over}
         return meant | {"arm": self.parameters.arm.meaning}
 
+    def refuse_found(self, name: str, why: str) -> None:
+        """ValueError, which says why, where a parameter is given that the task itself finds."""
+        if name in self.parameters.given_axes:
+            raise ValueError(f"parameters.{name} is given but the task {self.task} {why}")
+
 
 class LinearConfig(Config, ABC):
     """What the configs of the linear problem share."""

@@ -38,10 +38,6 @@ class ThresholdsConfig(LinearConfig):
 
     @model_validator(mode="after")
     def _finds_the_force_itself(self) -> "ThresholdsConfig":
-        if "F" in self.parameters.given_axes:
-            raise ValueError(
-                "parameters.F is given but the task thresholds finds F itself; remove it and set "
-                "thresholds.F_max"
-            )
+        self.refuse_found("F", f"finds F itself; remove it and set {self.task}.F_max")
         self.parameters.require(self.names)
         return self

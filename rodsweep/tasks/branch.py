@@ -10,8 +10,8 @@ from ..config.branch import BranchConfig
 from ..results.layouts.branch import followed_variables, special_variables
 from ..results.layouts.variables import listed, recorded
 from ..sweep.estimate import Estimate, estimate_branches
-from .parts import count_of, rod_parts
-from .protocol import Part, Solver, Task
+from .parts import NonlinearTask, count_of
+from .protocol import Part, Solver
 
 if TYPE_CHECKING:
     from ..solve.branch.branch_curve import BranchCurve, BranchPoint
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class BranchTask(Task):
+class BranchTask(NonlinearTask):
     """Branches of cycles and their special points."""
 
     config: BranchConfig
@@ -32,20 +32,22 @@ class BranchTask(Task):
         ends = f"from {options.start:g} to {options.stop:g}"
         return f"{count_of(self.points)}, each followed in {along} {ends}{short}"
 
-    def parts(self) -> list[Part]:
+    @property
+    def moved(self) -> dict[str, np.ndarray]:
+        """The parameters of the rods, (points,) each, and the ends of the one that is followed, (2,)."""
         options = self.config.branch
-        why = "winding number of D" if options.certify else "branch.certify: false; Hopf points may be missed"
+        return self.points.of_rods | {options.along: np.array([options.start, options.stop])}
+
+    def asked(self) -> list[Part]:
+        options = self.config.branch
         kept = f"at most {options.cycles} cycles and {options.special} special points of a rod are stored"
         return [
-            *rod_parts(self.points.of_rods | {options.along: np.array([options.start, options.stop])}),
-            ("axial drag", True, "parameters.gamma1; it moves no Hopf point, and every cycle"),
+            self.AXIAL,
             ("branches born at Hopf points", True, kept),
             ("unstable cycles", True, "with all their Floquet multipliers"),
             ("branches without mirror symmetry", True, "from where the symmetry of those breaks"),
             ("branches of twice the period, tori", False, "where they are born is found"),
             ("cycles on no such branch", False, "task: limit_cycle finds stable ones from a motion"),
-            ("certificate", options.certify, why),
-            ("gravity, inertia, motion out of the plane", False, "not part of the overdamped problem"),
         ]
 
     def cost(self) -> Estimate:

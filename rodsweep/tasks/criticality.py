@@ -7,8 +7,8 @@ from ..config.criticality import CriticalityConfig
 from ..results.layouts.criticality import NORMAL_FORM, OF_NO_HOPF_POINT
 from ..results.layouts.variables import listed, recorded
 from ..sweep.estimate import Estimate, estimate_criticality
-from .parts import count_of, rod_parts
-from .protocol import Part, Solver, Task
+from .parts import NonlinearTask, count_of
+from .protocol import Part, Solver
 from .thresholds import search_record
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class CriticalityTask(Task):
+class CriticalityTask(NonlinearTask):
     """Hopf points and their normal forms."""
 
     config: CriticalityConfig
@@ -25,24 +25,12 @@ class CriticalityTask(Task):
         F_max = self.config.criticality.F_max
         return f"{count_of(self.points)}, each searched from F = 0 to {F_max:g}, or to just below k1"
 
-    def parts(self) -> list[Part]:
-        options = self.config.criticality
-        why = (
-            "winding number of D"
-            if options.certify
-            else "criticality.certify: false; Hopf points may be missed"
-        )
+    def asked(self) -> list[Part]:
+        most = self.config.criticality.crossings
         return [
-            *rod_parts(self.points.of_rods),
-            ("axial drag", True, "parameters.gamma1; it moves no Hopf point, and every cycle"),
-            (
-                "Hopf points and their normal forms",
-                True,
-                f"at most {options.crossings} are stored for each rod",
-            ),
+            self.AXIAL,
+            ("Hopf points and their normal forms", True, f"at most {most} are stored for each rod"),
             ("cycles", False, "to third order in their amplitude only; task: limit_cycle computes them"),
-            ("certificate", options.certify, why),
-            ("gravity, inertia, motion out of the plane", False, "not part of the overdamped problem"),
         ]
 
     def cost(self) -> Estimate:

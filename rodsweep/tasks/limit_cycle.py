@@ -1,11 +1,12 @@
 """The task limit_cycle: the beating of the nonlinear rod at every point, or that it straightens."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import isfinite, nan
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..arrays import Complex
 from ..config.limit_cycle import LimitCycleConfig
 from ..discretization.quadrature import lobatto_points
 from ..model.parameters import Range
@@ -168,9 +169,9 @@ class LimitCycleTask(Task):
     def record(self, point: dict[str, float], cycle: "Cycle") -> dict[str, Any]:
         """A Cycle as the variables of the file, which are its fields and those of its measures and errors."""
         options = self.config.limit_cycle
-        if cycle.multipliers is None:
-            cycle = replace(cycle, multipliers=np.full(STORED_MULTIPLIERS, complex(nan, nan)))
-        values = recorded(CYCLE, cycle.errors, cycle.measures, cycle, names=MULTIPLIERS)
+        found = cycle.multipliers
+        stored = _Stored(np.full(STORED_MULTIPLIERS, complex(nan, nan)) if found is None else found)
+        values = recorded(CYCLE, stored, cycle.errors, cycle.measures, cycle, names=MULTIPLIERS)
         if options.time == "tau1":  # t/tau1 = (t/tau2) k2/gamma3
             values[PERIOD_TAU1.name] = cycle.measures.period * point["k2"] / point["gamma3"]
         if options.samples:
@@ -180,6 +181,12 @@ class LimitCycleTask(Task):
         if options.transient:
             values |= _along(TRANSIENT, cycle.transient)
         return values
+
+
+class _Stored(NamedTuple):
+    """The Floquet multipliers of a cycle as the file has them, complex, (STORED_MULTIPLIERS,)."""
+
+    multipliers: Complex
 
 
 def _along(variables: tuple[Variable, ...], arrays: np.ndarray | None) -> dict[str, Any]:

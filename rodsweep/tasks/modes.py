@@ -15,7 +15,7 @@ from ..results.layouts.spectrum import EACH_MODE, EACH_POINT
 from ..results.layouts.variables import Filled, recorded
 from ..sweep.estimate import Estimate, estimate_modes, estimate_spectra
 from .force_changes import force_changes
-from .parts import LinearTask, count_of
+from .parts import ProvedTask, count_of
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class ModesTask(LinearTask):
+class ModesTask(ProvedTask):
     """Modes on their points."""
 
     config: ModesConfig

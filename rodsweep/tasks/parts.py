@@ -14,15 +14,25 @@ from .protocol import Part, Task
 
 
 @dataclass(frozen=True, slots=True)
-class LinearTask(Task):
-    """A task of the linear problem: what it asks for stands between what rods can do and what is left out."""
+class ProvedTask(Task):
+    """A task that may be proved complete; what it asks for stands between what rods can do and what not."""
 
     not_proved: ClassVar[str]
     """What may happen without a certificate."""
+    left_out: ClassVar[tuple[str, str]] = (
+        "gravity, inertia, nonlinear motion",
+        "not part of the linear overdamped problem",
+    )
+    """What no option of the task models, and why."""
 
     @abstractmethod
     def asked(self) -> list[Part]:
         """What the task's options ask for."""
+
+    @property
+    def moved(self) -> dict[str, np.ndarray]:
+        """The values of the parameters that the task's rods have, each of any shape."""
+        return self.points.of_rods | self.coordinates()
 
     def certificate(self) -> tuple[bool, str]:
         """Whether completeness is proved, and by what, or why not."""
@@ -32,12 +42,25 @@ class LinearTask(Task):
         return False, f"{task}.certify: false; {self.not_proved}"
 
     def parts(self) -> list[Part]:
+        what, why = self.left_out
         return [
-            *rod_parts(self.points.of_rods | self.coordinates()),
+            *rod_parts(self.moved),
             *self.asked(),
             ("certificate", *self.certificate()),
-            ("gravity, inertia, nonlinear motion", False, "not part of the linear overdamped problem"),
+            (what, False, why),
         ]
+
+
+@dataclass(frozen=True, slots=True)
+class NonlinearTask(ProvedTask):
+    """A task of cycles next to or on branches, which Hopf points of the straight rod begin."""
+
+    not_proved: ClassVar[str] = "Hopf points may be missed"
+    left_out: ClassVar[tuple[str, str]] = (
+        "gravity, inertia, motion out of the plane",
+        "not part of the overdamped problem",
+    )
+    AXIAL: ClassVar[Part] = ("axial drag", True, "parameters.gamma1; it moves no Hopf point, and every cycle")
 
 
 def count_of(points: Points) -> str:

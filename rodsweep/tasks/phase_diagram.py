@@ -13,7 +13,7 @@ from ..results.layouts.phase_diagram import (
 from ..sweep.estimate import Estimate, estimate_branches, estimate_lines
 from .diagram_curves import DiagramCurves
 from .diagram_cycles import cycles_record
-from .parts import LinearTask
+from .parts import ProvedTask
 from .protocol import Part, Solver
 from .thresholds import search_record
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class PhaseDiagramTask(LinearTask):
+class PhaseDiagramTask(ProvedTask):
     """A phase diagram; its points are the rows, each a line of values of the first of its two parameters."""
 
     config: PhaseDiagramConfig
@@ -68,7 +68,7 @@ class PhaseDiagramTask(LinearTask):
 
     def parts(self) -> list[Part]:
         """As of a linear task, but for the cycles, which are motions of the nonlinear rod."""
-        linear = LinearTask.parts(self)
+        linear = ProvedTask.parts(self)
         if not self.config.phase_diagram.cycles:
             return linear
         nonlinear = ("nonlinear motion", True, "of the cycles; in the plane, geometrically exact")

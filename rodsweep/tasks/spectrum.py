@@ -17,7 +17,7 @@ from ..results.layouts.variables import Filled, recorded
 from ..sweep.estimate import Estimate, estimate_followed, estimate_spectra, estimate_two_meshes
 from ..sweep.stretches import Stretches, Together, along_the_longest
 from .force_changes import force_changes
-from .parts import LinearTask, count_of
+from .parts import ProvedTask, count_of
 from .protocol import InOrder, Part, Solver, alone
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class SpectrumTask(LinearTask):
+class SpectrumTask(ProvedTask):
     """Spectra on their points."""
 
     config: SpectrumConfig
@@ -82,7 +82,7 @@ class SpectrumTask(LinearTask):
 
     def certificate(self) -> tuple[bool, str]:
         if self.config.spectrum.method == "determinant":
-            return LinearTask.certificate(self)
+            return ProvedTask.certificate(self)
         return False, f"spectrum.method: {self.config.spectrum.method}; {self.not_proved}"
 
     def cost(self) -> Estimate:

@@ -9,7 +9,7 @@ from ..config.thresholds import ThresholdsConfig
 from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
 from ..results.layouts.variables import listed, recorded
 from ..sweep.estimate import Estimate, estimate_lines
-from .parts import LinearTask, count_of
+from .parts import ProvedTask, count_of
 from .protocol import Part, Solver
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ EVENTS = {"onset": "growth_rate", "hopf": "frequency", "restabilization": "frequ
 
 
 @dataclass(frozen=True, slots=True)
-class ThresholdsTask(LinearTask):
+class ThresholdsTask(ProvedTask):
     """Thresholds of every rod."""
 
     config: ThresholdsConfig

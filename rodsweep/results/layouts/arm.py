@@ -23,7 +23,7 @@ from ...model.drag import DRAGS
 from ...model.neglected import Validity
 from ...model.parameters import PARAMETERS
 from ...sweep.grid import Points
-from .variables import ANGULAR, DIMENSIONS, Filled, Layout, Variable, real
+from .variables import ANGULAR, DIMENSIONS, Filled, Layout, Variable, real, word
 
 SUFFIX, OF_HERTZ = "_si", "_hz"
 HERTZ = "Hz"
@@ -66,21 +66,15 @@ MEANINGS = {name: meaning for name, (_, meaning) in _DESCRIBED.items()}
 EFFECTS = ("inertia_of_the_arm", "inertia_of_the_fluid", "compression", "weight", "Reynolds_number")
 """What the model leaves out, as `rodsweep.model.neglected` names it but for the blanks."""
 VALIDITY = (
-    Variable(
+    word(
         "model_applies",
-        "|i1",
-        -1,
-        "1",
         "whether the model applies to the arm, by all that it leaves out",
-        flags=((-1, "not_known"), *((int(each), each.name) for each in Validity)),
+        ((-1, "not_known"), *((int(each), each.name) for each in Validity)),
     ),
-    Variable(
+    word(
         "neglected_effect",
-        "|i1",
-        -1,
-        "1",
         "what the model leaves out that is largest, in units of its limit",
-        flags=((-1, "none"), *enumerate(EFFECTS)),
+        ((-1, "none"), *enumerate(EFFECTS)),
     ),
     real(
         "neglected_excess",

@@ -3,7 +3,7 @@
 from typing import Any
 
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS
-from .variables import ANEW, SECONDS, STATUS, Increase, Layout, Variable, real, truth, whole
+from .variables import ANEW, SECONDS, STATUS, Increase, Layout, Variable, real, truth, whole, word
 
 ALONG, SPECIAL = "branch_point", "special"
 
@@ -63,9 +63,8 @@ def followed_variables(along: str) -> tuple[Variable, ...]:
 def special_variables(along: str) -> tuple[Variable, ...]:
     """The special points of all branches, one branch after another."""
     unit = PARAMETERS[along].unit
-    kinds, reasons = tuple(enumerate(SPECIAL_KINDS)), tuple(enumerate(END_REASONS))
     return (
-        Variable("special_kind", "|i1", 0, "1", "what happens at the special point", (SPECIAL,), kinds),
+        word("special_kind", "what happens at the special point", SPECIAL_KINDS, SPECIAL),
         real("special_at", unit, f"{along} at the special point", SPECIAL),
         real("special_error", unit, "estimate of the absolute error of special_at", SPECIAL),
         real("special_period", "tau2", "period of the cycle there", SPECIAL),
@@ -87,7 +86,7 @@ def special_variables(along: str) -> tuple[Variable, ...]:
             "branch_point, from 1, behind which it lies on its branch; 0: before the first cycle of it",
             SPECIAL,
         ),
-        Variable("special_reason", "|i1", 0, "1", "why the branch ends there", (SPECIAL,), reasons),
+        word("special_reason", "why the branch ends there", END_REASONS, SPECIAL),
         whole(
             "special_meets",
             "at a symmetry breaking, number of the other branch that begins or ends there; -1: none",

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, PARAMETERS
 from .thresholds import CROSSING_KINDS
-from .variables import ANEW, ANGULAR, MESH, SECONDS, STATUS, Increase, Layout, Variable, real, whole
+from .variables import ANEW, ANGULAR, MESH, SECONDS, STATUS, Increase, Layout, Variable, real, whole, word
 
 POWER = "k3/(L tau2)"
 STORED_MULTIPLIERS = 6
@@ -22,14 +22,11 @@ CYCLE = (
         ANGULAR,
         "angular frequency of the leading mode of the straight rod, imaginary part of its eigenvalue",
     ),
-    Variable(
+    word(
         "second_state",
-        "|i1",
-        -1,
-        "1",
         "a stable state beside the one in which the point ended: straight, the straight rod is stable too; "
         "cycle_possible, the straight rod is stable and the Hopf point at subcritical_F is subcritical",
-        flags=SECOND_STATES,
+        SECOND_STATES,
     ),
     real(
         "subcritical_F", "k3/L^2", "force of the subcritical Hopf point whose unstable cycles lie at this F"
@@ -89,23 +86,17 @@ HOPF_ALONG = LINEAR_PARAMETERS
 OF_PAIRS = ("none", "hopf", "hopf_reverse", "restabilization")
 """What changes where a pair crosses the imaginary axis."""
 HOPF_POINTS = (
-    Variable(
+    word(
         "hopf_along",
-        "|i1",
-        0,
-        "1",
         "parameter along which the Hopf point was searched, between the points of a line",
-        (HOPF,),
-        tuple(enumerate(HOPF_ALONG)),
+        HOPF_ALONG,
+        HOPF,
     ),
-    Variable(
+    word(
         "hopf_kind",
-        "|i1",
-        0,
-        "1",
         "what changes at the Hopf point as that parameter grows",
-        (HOPF,),
-        tuple((CROSSING_KINDS.index(kind), kind) for kind in OF_PAIRS),
+        ((CROSSING_KINDS.index(kind), kind) for kind in OF_PAIRS),
+        HOPF,
     ),
     *(real(f"hopf_{name}", PARAMETERS[name].unit, f"{name} at the Hopf point", HOPF) for name in HOPF_ALONG),
     real("hopf_error", "1", "estimate of the relative error of the parameter along which was searched", HOPF),

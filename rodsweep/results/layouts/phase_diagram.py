@@ -7,7 +7,7 @@ from .branch import SPECIAL_KINDS
 from .criticality import LANDAU, SLOPE, side
 from .spectrum import UNSTABLE_COUNT
 from .thresholds import CROSSINGS, search_variables
-from .variables import ANEW, ANGULAR, BESIDE, MISSING, Layout, Variable, real, whole
+from .variables import ANEW, ANGULAR, BESIDE, Layout, Variable, real, whole, word
 
 CLASSES = (
     (-1, "missing"),
@@ -75,7 +75,7 @@ def layout(config: dict[str, Any]) -> Layout:
     options = config["phase_diagram"]
     (line, _), sizes = plane_of(config)
     variables: tuple[Variable, ...] = (
-        Variable("class", "|i1", MISSING, "1", "what the rod does", (line,), CLASSES),
+        word("class", "what the rod does", CLASSES, line),
         whole("unstable_count", UNSTABLE_COUNT.long_name, line),
         *search_variables(line, "crossing_at"),
     )
@@ -88,13 +88,12 @@ def layout(config: dict[str, Any]) -> Layout:
 
 def cycle_variables(line: str) -> tuple[Variable, ...]:
     """What `phase_diagram.cycles` adds to every row: its stable states and special points of its cycles."""
-    unit, kinds = PARAMETERS[line].unit, tuple(enumerate(SPECIAL_KINDS))
-    what, along = "what happens on a branch of cycles there", (CYCLE_SPECIAL,)
+    unit, what = PARAMETERS[line].unit, "what happens on a branch of cycles there"
     at, error = f"{line} at the special point", f"estimate of the absolute error of cycle_special_{line}"
     return (
-        Variable("stable_states", "|i1", MISSING, "1", "which states are stable", (line,), STABLE_STATES),
+        word("stable_states", "which states are stable", STABLE_STATES, line),
         whole("cycle_special_count", "special points of the branches of the row, stored or not"),
-        Variable("cycle_special_kind", "|i1", 0, "1", what, along, kinds),
+        word("cycle_special_kind", what, SPECIAL_KINDS, CYCLE_SPECIAL),
         real(f"cycle_special_{line}", unit, at, CYCLE_SPECIAL),
         real("cycle_special_error", unit, error, CYCLE_SPECIAL),
         real("cycle_special_period", "tau2", "period of the cycle there", CYCLE_SPECIAL),
@@ -104,19 +103,19 @@ def cycle_variables(line: str) -> tuple[Variable, ...]:
 
 def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
     """What `phase_diagram.cycles` adds when all rows are done, by name: curves of folds and torus points."""
-    along, kinds = "cycle_curve_point", tuple(enumerate(SPECIAL_KINDS))
+    along = "cycle_curve_point"
     force = PARAMETERS[line].unit
     what, end = "what happens to the cycles on the curve: fold or torus", "why the curve ends at the point"
     error = f"estimate of the absolute error of cycle_curve_{line} on the curve"
     variables = (
         whole("cycle_curve_number", "number of the curve of special points of cycles, from 1", along),
-        Variable("cycle_curve_kind", "|i1", 0, "1", what, (along,), kinds),
+        word("cycle_curve_kind", what, SPECIAL_KINDS, along),
         real(f"cycle_curve_{line}", force, f"{line} on the curve", along),
         real(f"cycle_curve_{row}", PARAMETERS[row].unit, f"{row} on the curve", along),
         real("cycle_curve_error", force, error, along),
         real("cycle_curve_period", "tau2", "period of the cycle on the curve", along),
         real("cycle_curve_tip_y_max", "L", "largest y of the tip; 0 where the cycles vanish", along),
-        Variable("cycle_curve_end", "|i1", 0, "1", end, (along,), tuple(enumerate(CYCLE_CURVE_ENDS))),
+        word("cycle_curve_end", end, CYCLE_CURVE_ENDS, along),
         real("cycle_curve_agreement", "1", f"largest distance of a fold or torus point of a row from its "
              f"curve, in units of the axis of {line}"),
         whole("cycle_curves_untraced", "folds and torus points of rows through which no curve was followed"),
@@ -132,16 +131,13 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
     error = "estimate of the error of fold_"
     variables = (
         whole("curve_number", "number of the curve, from 1", "curve_point"),
-        Variable("curve_kind", "|i1", 0, "1", kind, ("curve_point",), CURVE_KINDS),
+        word("curve_kind", kind, CURVE_KINDS, "curve_point"),
         *(real(f"curve_{name}", units[name], f"{name} on the curve", "curve_point") for name in along),
         real("curve_frequency", ANGULAR, "angular frequency of the modes on the curve", "curve_point"),
         real("curve_growth_rate", "1/tau2", "growth rate of the modes on the curve", "curve_point"),
         whole("fold_curve", "number of the curve on which the fold lies", "fold"),
-        Variable("fold_kind", "|i1", 0, "1", kind, ("fold",), CURVE_KINDS),
-        Variable(
-            "fold_of", "|i1", 0, "1", "parameter that is extremal on the curve at the fold", ("fold",),
-            tuple(enumerate(along)),
-        ),
+        word("fold_kind", kind, CURVE_KINDS, "fold"),
+        word("fold_of", "parameter that is extremal on the curve at the fold", along, "fold"),
         *(real(f"fold_{name}", units[name], f"{name} at the fold", "fold") for name in along),
         *(real(f"fold_{name}_error", units[name], f"{error}{name}", "fold") for name in along),
         real("fold_frequency", ANGULAR, "angular frequency of the modes at the fold", "fold"),
@@ -188,6 +184,6 @@ def bautin_curve_variables(line: str, row: str, third: str) -> dict[str, Variabl
         *(real(f"bautin_along_{name}_error", unit[name], f"{error}{name}", at) for name in names),
         real("bautin_along_frequency", ANGULAR, "angular frequency of the pair there", at),
         real("bautin_along_landau_imag", LANDAU, "imaginary part of the Landau coefficient c there", at),
-        Variable("bautin_along_end", "|i1", 0, "1", why, (at,), tuple(enumerate(BAUTIN_ENDS))),
+        word("bautin_along_end", why, BAUTIN_ENDS, at),
     )
     return {variable.name: variable for variable in variables}

@@ -5,7 +5,20 @@ from typing import Any
 
 from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
 from .thresholds import CROSSING_KINDS
-from .variables import ANEW, ANGULAR, BESIDE, MESH, SECONDS, STATUS, Layout, Variable, real, truth, whole
+from .variables import (
+    ANEW,
+    ANGULAR,
+    BESIDE,
+    MESH,
+    SECONDS,
+    STATUS,
+    Layout,
+    Variable,
+    real,
+    truth,
+    whole,
+    word,
+)
 
 
 def complex_pair(name: str, units: str, long_name: str) -> tuple[Variable, Variable]:
@@ -58,14 +71,11 @@ def longitudinal(gamma1: float, *along: str) -> Variable:
 CHANGE = "change"
 """Dimension of the changes of the straight rod between the points of a file, on lines over F."""
 FORCE_CHANGES = (
-    Variable(
+    word(
         "change_kind",
-        "|i1",
-        0,
-        "1",
         "what changes there as F grows",
-        (CHANGE,),
-        tuple((CROSSING_KINDS.index(kind), kind) for kind in ("none", "onset", "hopf", "restabilization")),
+        ((CROSSING_KINDS.index(kind), kind) for kind in ("none", "onset", "hopf", "restabilization")),
+        CHANGE,
     ),
     *(real(f"change_{p}", PARAMETERS[p].unit, f"{p} at the change", CHANGE) for p in LINEAR_PARAMETERS),
     real("change_error", "1", "estimate of the relative error of change_F", CHANGE),

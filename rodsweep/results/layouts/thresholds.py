@@ -3,7 +3,7 @@
 from typing import Any
 
 from ...model.parameters import PARAMETERS, all_but
-from .variables import ANEW, ANGULAR, SECONDS, STATUS, Increase, Layout, Variable, real, truth, whole
+from .variables import ANEW, ANGULAR, SECONDS, STATUS, Increase, Layout, Variable, real, truth, whole, word
 
 FORCE = PARAMETERS["F"].unit
 THRESHOLDS = (
@@ -34,10 +34,10 @@ CROSSING_KINDS = tuple(CROSSING_MEANINGS)
 
 def crossing_variables(line: str, at: str) -> tuple[Variable, ...]:
     """The crossings along `line`; `at` names the variable of their places."""
-    units, kinds = PARAMETERS[line].unit, tuple(enumerate(CROSSING_KINDS))
+    units = PARAMETERS[line].unit
     return (
         real(at, units, f"{line} at the crossing", "crossing"),
-        Variable("crossing_kind", "|i1", 0, "1", "what changes at the crossing", ("crossing",), kinds),
+        word("crossing_kind", "what changes at the crossing", CROSSING_KINDS, "crossing"),
         real("crossing_frequency", ANGULAR, "angular frequency of the modes that cross", "crossing"),
         real("crossing_growth_rate", "1/tau2", "growth rate of the modes that cross", "crossing"),
         real("crossing_error", units, f"estimate of the absolute error of {at}", "crossing"),

@@ -83,6 +83,16 @@ def whole(name: str, long_name: str, *extra: str) -> Variable:
     return Variable(name, "<i4", -1, "1", long_name, extra)
 
 
+def word(name: str, long_name: str, words: Iterable[str | tuple[int, str]], *extra: str) -> Variable:
+    """A variable that stands for a word: by its place in a list, or by numbers of their own.
+
+    -1 where it is not known, where that is one of them; else 0, the first word of a list.
+    """
+    flags = tuple(each if isinstance(each, tuple) else (place, each) for place, each in enumerate(words))
+    fill = -1 if any(value == -1 for value, _ in flags) else 0
+    return Variable(name, "|i1", fill, "1", long_name, extra, flags)
+
+
 def truth(name: str, long_name: str) -> Variable:
     """A variable that is 1 where something is so, and 0 elsewhere."""
     return Variable(name, "|i1", 0, "1", long_name)

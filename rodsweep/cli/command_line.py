@@ -1,0 +1,260 @@
+"""What the command `rodsweep` takes: each of its commands with options, and what does the work."""
+
+import os
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from .. import __version__
+from ..config.values import printable
+from ..errors import InputError
+from .arm_options import arm_options
+from .file_names import beside, followed, result_file
+
+FILE = click.Path(path_type=Path)
+overrides_option = click.option(
+    "--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Override a key, e.g. parameters.F.num=50."
+)
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True)
+@click.version_option(__version__, prog_name="rodsweep")
+@click.pass_context
+def commands(context: click.Context) -> None:
+    """Spectra, thresholds, phase diagrams, modes, limit cycles and their branches of soft rods in a fluid."""
+    if context.invoked_subcommand is None:  # as click does, but with all lines and with every release of it
+        click.echo(context.get_help(), err=True)
+        sys.exit(2)
+
+
+@commands.command()
+@click.argument("config", type=FILE)
+@click.option("-o", "--output", type=FILE, help="Result file; by default CONFIG's name with .h5, here.")
+@overrides_option
+@click.option("--fresh", is_flag=True, help="Replace an existing result file instead of continuing it.")
+@click.option("--extend", is_flag=True, help="Add to a result file whose config this one contains.")
+@click.option("--shard", metavar="I/N", default="1/1", help="Compute the I-th of N parts only, to be merged.")
+@click.option("--strict", is_flag=True, help="End the run at the first exception that is a bug.")
+@click.option("-q", "--quiet", is_flag=True, help="Say nothing but what is amiss; show no progress.")
+def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: str, **options: bool) -> None:
+    """Compute CONFIG, continuing an interrupted result file. Start it with mpiexec for many ranks."""
+    from ..sweep.stop import StopRequest
+
+    stop = StopRequest(speaks=not rank_variables())
+    stop.listen()  # before everything that takes time: a warning may come early
+    from ..sweep.shards import shard_of
+    from .run_options import RunOptions
+    from .running import run_config
+
+    if options["fresh"] and options["extend"]:
+        raise InputError("--fresh and --extend are both given: one replaces the file, the other adds to it")
+    part = shard_of(shard)
+    suffix = f"-{part.number}-of-{part.of}.h5" if part.of > 1 else ".h5"
+    output = result_file(output or Path(config.stem + suffix))
+    asked = RunOptions(overrides=overrides, shard=part, **options)
+    code = run_config(config, output, asked, stop)
+    stop.ignore()  # the status is decided
+    sys.exit(code)
+
+
+@commands.command()
+@click.argument("output", type=FILE)
+@click.argument("shards", type=FILE, nargs=-1, required=True, metavar="SHARD...")
+def merge(output: Path, shards: tuple[Path, ...]) -> None:
+    """Put the points of all SHARD files into OUTPUT: parts of a sweep, or grids that make a larger one."""
+    from .merging import merge_files
+    from .running import CONTINUE
+
+    output = result_file(output)
+    merged = merge_files(output, tuple(map(followed, shards)))
+    if merged.missing:
+        click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing ones")
+        sys.exit(CONTINUE)
+    if not merged.finished:
+        click.echo(f"`rodsweep run CONFIG -o {output}` adds what only all points together give")
+
+
+@commands.command()
+@click.argument("file", type=FILE)
+@click.option("-o", "--output", type=FILE, help="By default FILE's name with -snapshot before .h5.")
+def snapshot(file: Path, output: Path | None) -> None:
+    """Write what is done of the result FILE so far, without disturbing the run that computes it."""
+    from ..results.file.recent import take_snapshot
+
+    output = result_file(output or beside(file, f"-snapshot{file.suffix}"))
+    done, points = take_snapshot(followed(file), output)
+    click.echo(f"wrote {output}: {done} of {points} points are done")
+
+
+@commands.command()
+@click.argument("config", type=FILE)
+@overrides_option
+def check(config: Path, overrides: tuple[str, ...]) -> None:
+    """Validate CONFIG and say what it would compute, at what cost, without computing."""
+    from ..tasks.job import make_job
+    from .checking import describe_job
+
+    describe_job(make_job(config, overrides))
+
+
+@commands.command()
+@click.argument("file", type=FILE)
+@click.option(
+    "--statuses", is_flag=True, help="List every status that the task knows, not only those present."
+)
+def show(file: Path, statuses: bool) -> None:
+    """Print what the result FILE says: its numbers or their headline, statuses, accuracy, cost."""
+    from ..post.summary import show_summary
+    from ..results.file.view import read_view
+
+    show_summary(read_view(followed(file)), statuses)
+
+
+@commands.command()
+@click.argument("files", type=FILE, nargs=-1, required=True, metavar="FILE...")
+@click.option(
+    "-o",
+    "--output",
+    type=FILE,
+    help="Figure file (.png, .pdf, .svg; .gif or .mp4 for an animation); by default FILE's name.",
+)
+@click.option(
+    "--roots",
+    type=click.Choice(["rightmost", "smallest", "all"]),
+    help="Which roots of spectra: all that are stored, or two to follow, the smallest in magnitude, as the "
+    "paper does, or the rightmost; by default those that change places with others less often.",
+)
+@click.option(
+    "--what",
+    type=click.Choice(["cycle", "amplitude", "maps", "energy", "transient", "animation", "lines", "map"]),
+    help="Which figure of limit_cycle, or, lines and map, of thresholds; by default what the file suggests.",
+)
+@click.option(
+    "--point",
+    "points",
+    type=int,
+    multiple=True,
+    metavar="N",
+    help="Which points of limit_cycle, from 1; up to 3 times.",
+)
+@click.option(
+    "--at",
+    "at",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="Draw the points with this value of a parameter, as k1=150, or of a listed arm, as 'length=12 cm'.",
+)
+@click.option("--title", is_flag=True, help="Put the title of the config above the figure.")
+@click.option(
+    "--width",
+    metavar="WIDTH",
+    help="Of a journal's column, with type of 8 pt: single (3.375 in), double (7 in), or as '89 mm'.",
+)
+@click.option("--style", metavar="STYLE", help="A style of matplotlib's, by its name or file.")
+def plot(
+    files: tuple[Path, ...],
+    output: Path | None,
+    roots: str | None,
+    what: str | None,
+    points: tuple[int, ...],
+    at: tuple[str, ...],
+    **look: Any,
+) -> None:
+    """Draw the result FILE; or several: spectra in panels, amplitudes of limit cycles in one figure."""
+    from ..post.figures import draw
+    from ..post.figures.request import Look
+    from ..post.figures.sections import section
+    from ..results.file.view import read_view
+    from ..tasks.cycle_shapes import with_shapes
+
+    output = output or beside(files[0], ".gif" if what == "animation" else ".png")
+    values = _values(at)
+    views = [section(read_view(followed(file)), values) for file in files]
+    drawn = draw(views, output, look=Look(**look), shapes=with_shapes, roots=roots, what=what, points=points)
+    click.echo(drawn)
+
+
+def _values(at: tuple[str, ...]) -> dict[str, str]:
+    """The values of `--at NAME=VALUE` by name; InputError for what has not this form."""
+    found = {}
+    for text in at:
+        name, equals, value = text.partition("=")
+        if not equals:
+            raise InputError(f"--at {printable(text)} is no parameter with a number, as k1=150 is")
+        found[name.strip()] = value.strip()
+    return found
+
+
+@commands.command()
+@click.argument("file", type=FILE)
+@click.option("-o", "--output", type=FILE, help="A .csv or .tsv file; by default FILE's name with .csv.")
+@click.option("--table", metavar="NAME", help="Which table: points, or a list of the task's, as crossings.")
+@click.option("--columns", metavar="A,B,C", help="Which columns, in their order; by default all.")
+@click.option("--units", is_flag=True, help="Put units into the headings: F_onset [k3/L^2].")
+@click.option("--replace", is_flag=True, help="Write over a file that is there already.")
+def export(
+    file: Path, output: Path | None, table: str | None, columns: str | None, units: bool, replace: bool
+) -> None:
+    """Write a table of the result FILE as CSV: a row a point, or a row an item of a list."""
+    from ..post.export import Request
+    from ..post.export import export as export_view
+    from ..results.file.view import read_view
+
+    output = followed(output or beside(file, ".csv"))
+    names = tuple(name.strip() for name in columns.split(",")) if columns is not None else ()
+    request = Request(table=table, columns=names, units=units, replace=replace)
+    click.echo(f"wrote {output}: {export_view(read_view(followed(file)), output, request)}")
+
+
+@commands.command()
+def schema() -> None:
+    """Print the JSON schema of a config, from which editors complete keys and mark mistakes."""
+    import json
+
+    from ..config.json_schema import json_schema
+
+    click.echo(json.dumps(json_schema(), indent=2, allow_nan=False))
+
+
+@commands.command()
+@click.argument("what", type=click.Choice(["spectrum", "thresholds", "limit_cycle", "sweep"]), required=False)
+@click.option("--quick", is_flag=True, help="Fewer rounds, for a first impression.")
+@click.option("-o", "--output", type=FILE, help="Markdown file; the numbers (.h5) and figures go beside it.")
+@click.option(
+    "--peers",
+    "directory",
+    type=FILE,
+    help="Folder of what is timed beside rodsweep; by default `benchmarks` of the checkout that is run.",
+)
+def bench(what: str | None, quick: bool, output: Path | None, directory: Path | None) -> None:
+    """Time WHAT (by default all), its peers beside it where they are there, and state every error."""
+    from .benching import run_benchmarks
+
+    output = output or Path("bench.md")
+    unfit = output.exists() and not output.is_file()
+    if unfit or not output.parent.is_dir() or output.suffix != ".md":
+        raise InputError(f"--output {output}: the name must end in .md, in an existing directory")
+    run_benchmarks(what, quick, output, directory)
+
+
+@commands.command()
+@arm_options
+@click.option("--poisson", type=float, default=0.5, show_default=True, help="Poisson's ratio of the arm.")
+def arm(poisson: float, **quantities: str | None) -> None:
+    """Say when an arm flutters, from quantities with units such as "10 cm" and "100 kPa"."""
+    from .arm_report import describe_arm
+
+    describe_arm(quantities, poisson)
+
+
+def rank_variables() -> list[str]:
+    """The rank of this process as each launcher tells it; nothing where there is none."""
+    names = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID")
+    return [os.environ[name] for name in names if name in os.environ]
+
+
+def speaks() -> bool:
+    """Whether this process is the one that talks, before MPI has been started."""
+    return next(iter(rank_variables()), "0") == "0"
