@@ -33,6 +33,8 @@ class SquareRootLaw:
     """Whether the cycles lie at F > F**."""
     end: float
     """The last F whose amplitude still follows it."""
+    error: float
+    """Of a, in L: its relative size is about the square of how much the extrapolation to F** changes a^2."""
 
     def curve(self, points: int = 100) -> tuple[Array, Array]:
         """(F, amplitude) from the Hopf point to the end, each of shape (points,), close where it is steep."""
@@ -76,4 +78,5 @@ def _law(F: Array, amplitude: Array, point: HopfPoint, side: int) -> SquareRootL
         return None
     last = len(size) if follows.all() else int(np.argmin(follows))
     end = point.position + side * abs(point.position) * float(distance[last - 1])
-    return SquareRootLaw(point.position, sqrt(square), side > 0, end)
+    error = sqrt(square) * ((q[0] - square) / square) ** 2
+    return SquareRootLaw(point.position, sqrt(square), side > 0, end, error)
