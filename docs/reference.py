@@ -32,6 +32,7 @@ from rodsweep.results.layouts.phase_diagram import (
     curve_variables,
     cycle_curve_variables,
 )
+from rodsweep.results.layouts.spectrum import FORCE_CHANGES
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from rodsweep.results.layouts.variables import DIMENSIONS, MISSING, Variable
 from rodsweep.tasks.arm_points import NoRod
@@ -72,6 +73,7 @@ LENGTHS = {
     "u": "`spectrum.nodes`, `modes.nodes`, `limit_cycle.nodes`",
     "crossing": "`thresholds.crossings`, `phase_diagram.crossings`, `criticality.crossings`",
     "curve_point": "as found",
+    "change": "as found",
     "hopf": "as found",
     "fold": "as found",
     "bautin": "as found",
@@ -394,7 +396,10 @@ def curve_rows(job: Job) -> Iterator[list[str]]:
 def variables_of(job: Job) -> dict[str, tuple[Variable, list[str]]]:
     """The variables of a job's file by name, each with its dimensions."""
     found = {v.name: (v, ["...", *v.extra]) for v in job.layout.variables}
-    return found | {v.name: (v, list(v.extra)) for v, _ in job.task.constants()}
+    beside = [v for v, _ in job.task.constants()]
+    if job.config.task in ("spectrum", "modes"):
+        beside += FORCE_CHANGES
+    return found | {v.name: (v, list(v.extra)) for v in beside}
 
 
 def variable_row(variable: Variable, dims: list[str], only: str) -> list[str]:

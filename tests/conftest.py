@@ -1,6 +1,7 @@
 """What tests share: the command as a user runs it, and the reference spectra."""
 
 import compileall
+import gc
 import json
 import os
 import signal
@@ -12,42 +13,50 @@ from pathlib import Path
 import pytest
 from faults import small
 from faults.isolated import Isolated, isolated
+from hypothesis import settings
 from ranks import kill, ranks_in, wait_for_children
 
 ROOT = Path(__file__).parents[1]
+
+# The same examples on every machine, however busy: another sample is `make survey`.
+settings.register_profile("same", derandomize=True, deadline=None, database=None, max_examples=40)
+settings.load_profile("same")
 BIN = Path(sys.executable).parent
 RANK = ROOT / "tests" / "faults" / "rank.py"
 
 LONGEST = (
     "test_slurm",
     "test_bad_files",
-    "test_bad_input",
-    "test_bench_sweep",
-    "test_figure_layout",
     "test_branch_task",
-    "test_arm_grids",
-    "test_paper",
-    "test_run",
+    "test_figure_layout",
+    "test_bad_input",
     "test_extend",
+    "test_paper",
+    "test_arm_grids",
+    "test_figures",
     "test_joint",
     "test_stop",
-    "test_start",
-    "test_figures",
     "test_cycle_figures",
+    "test_run",
     "test_stress",
-    "test_stretches",
     "test_interrupts",
-    "test_generalised_hopf",
+    "test_start",
     "test_peers_limit_cycle",
-    "test_cycles_task",
     "test_arm_sweeps",
     "test_api",
+    "test_arm_report",
+    "test_generalised_hopf",
     "test_branch",
-    "test_coexistence",
-    "test_modes",
+    "test_stretches",
     "test_compilation",
+    "test_modes",
+    "test_cycles_task",
+    "test_bench_sweep",
     "test_arm_validity",
     "test_hosts",
+    "test_sentences",
+    "test_docs",
+    "test_coexistence",
 )
 """Modules that take longest, begun first, so that no worker is left alone with one of them. Each stays on one
 worker of pytest-xdist (`--dist loadfile`), which makes what its tests share once."""
@@ -56,6 +65,7 @@ worker of pytest-xdist (`--dist loadfile`), which makes what its tests share onc
 def pytest_configure(config):
     """Compiles the package: where bytecode is not written, each process that a test starts would do it.
 
+    For the same reason the tests as pytest rewrites them are kept: each worker would rewrite all of them.
     Before NumPy is loaded BLAS is given one core, as by the command: two workers' threads would compete.
     Ranks that wait leave the core to others: a test next door has something to do.
     Where the tests were started in the background SIGINT is ignored, and all processes would inherit that.
@@ -65,14 +75,20 @@ def pytest_configure(config):
     for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
     os.environ.setdefault("OMPI_MCA_mpi_yield_when_idle", "1")
+    sys.dont_write_bytecode = False
     if not hasattr(config, "workerinput"):  # the workers of pytest-xdist come later
         compileall.compile_dir(ROOT / "rodsweep", quiet=2)
 
 
 @pytest.hookimpl(optionalhook=True)  # of pytest-xdist, which need not be there
 def pytest_xdist_auto_num_workers(config):
-    """One worker more than cores, four at most: some tests wait for other processes, or sleep."""
-    return min(len(os.sched_getaffinity(0)) + 1, 4)
+    """Two workers more than cores, four at most: some tests wait for other processes, or sleep."""
+    return min(len(os.sched_getaffinity(0)) + 2, 4)
+
+
+def pytest_collection_finish():
+    """What is loaded by now stays, and collecting garbage would go through all of it each time."""
+    gc.freeze()
 
 
 def pytest_collection_modifyitems(items):

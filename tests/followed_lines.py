@@ -6,6 +6,7 @@ import numpy as np
 
 from benchmarks.lapack import inverse_spectrum, whole_matrices
 from rodsweep.determinant.box import eigenvalue_box
+from rodsweep.determinant.parameter_path import Path
 from rodsweep.discretization.resolution import expected_wave_number, resolution_for
 from rodsweep.model.dispersion import most_amplified_wave
 from rodsweep.model.rod import Rod
@@ -25,15 +26,12 @@ CLEAR = 1e-6
 def line(name: str, values, **others: float) -> Stretch:
     """Rods that differ in one parameter."""
     values = np.asarray(values, float)
-    return Stretch(name, {name: values} | {k: np.full(len(values), float(v)) for k, v in others.items()})
+    return Stretch(Path(Rod(**others, **{name: values[0]}), name), values)
 
 
 def parts(whole: Stretch) -> list[Stretch]:
     """A line cut as a sweep cuts it."""
-    return [
-        Stretch(whole.name, {name: column[at : at + LONGEST] for name, column in whole.values.items()})
-        for at in range(0, len(whole), LONGEST)
-    ]
+    return [Stretch(whole.path, whole.values[at : at + LONGEST]) for at in range(0, len(whole), LONGEST)]
 
 
 def random_line(rng: np.random.Generator) -> Stretch:

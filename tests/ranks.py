@@ -12,7 +12,7 @@ VARIABLES = (b"OMPI_COMM_WORLD_RANK", b"PMIX_RANK", b"PMI_RANK")
 COMMANDS = (b"/rodsweep", b"/faults/rank.py")
 """Ends of the words that start a rank: the command, or what has it forked from a loaded process."""
 SERVER = b"/faults/server.py"
-PATIENCE = 120.0
+PATIENCE = 300.0
 """Seconds after which a wait is given up: what hangs is to fail, and nothing else on the busiest machine."""
 
 

@@ -9,6 +9,7 @@ import pytest
 from rodsweep import Arm
 from rodsweep.errors import InputError
 from rodsweep.model.drag import cox, gray_hancock, least_rotational, lighthill, most_rotational
+from rodsweep.model.rod import Rod
 from rodsweep.model.section import Circle, Rectangle, Tube
 from rodsweep.model.units import share_of_flutter
 from rodsweep.solve.changes.along_path import Transitions
@@ -216,7 +217,9 @@ def test_thresholds_inside_the_range_of_drag_lie_in_that_of_forces():
     all_gamma3 = [rod.gamma3_with(drag) for drag in rod.drags]
     low, high = min(all_gamma3), max(all_gamma3)
     for share in (0.1, 0.3, 0.5, 0.7, 0.9):
-        found = solve_thresholds(rod.k1, rod.k2, low * (high / low) ** share, REQUEST)
+        found = solve_thresholds(
+            Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=low * (high / low) ** share), REQUEST
+        )
         first = next(c.at for c in found.crossings if c.kind == Kind.hopf)
         assert flutter.low <= first <= flutter.high
 

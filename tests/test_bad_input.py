@@ -8,6 +8,7 @@ import re
 import socket
 import subprocess
 from contextlib import closing
+from functools import cache
 from random import Random
 
 import pytest
@@ -42,6 +43,7 @@ def run():
         yield run
 
 
+@cache
 def cases_of(kind):
     """The cases of a kind, the same ones every time."""
     cases = []

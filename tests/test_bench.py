@@ -11,6 +11,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 from conftest import ROOT
+from rods import rod_of
 
 from rodsweep.bench import peers as bench_peers
 from rodsweep.bench.peers import LEFT_OUT, NO_PEERS, Peers, left_out, peer_package, peers_of
@@ -22,12 +23,12 @@ from rodsweep.bench.study import Contender, Measurement, Study, contest, every_n
 from rodsweep.model.rod import Rod
 from rodsweep.results.file.measurements import write_measurements
 
-EASY = Rod(30.0, 1e4, 1e4, 1e-4)
+EASY = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
 
 
 def test_exact_eigenvalues_are_those_of_the_reference(reference_spectra):
     for point in reference_spectra[::20]:
-        rod = Rod(*(float(point[name]) for name in ("F", "k1", "k2", "gamma3")))
+        rod = rod_of(*(float(point[name]) for name in ("F", "k1", "k2", "gamma3")))
         if rod.F < 0 or max(point["condition"]) > 50:
             continue
         with mp.workdps(40):
@@ -38,7 +39,7 @@ def test_exact_eigenvalues_are_those_of_the_reference(reference_spectra):
 
 def test_exact_eigenvalues_are_refused_where_they_are_not_proved():
     with pytest.raises(ArithmeticError, match="undecided"):
-        exact_spectrum(Rod(37.6559805452711, 1e4, 1e4, 1e-4), 2)
+        exact_spectrum(Rod(F=37.6559805452711, k1=1e4, k2=1e4, gamma3=1e-4), 2)
 
 
 def test_error_is_that_of_the_worst_eigenvalue_and_infinite_for_none():

@@ -1,5 +1,6 @@
 """The benchmark of the sweep: it writes its tables; memory and file stay within what a point may take."""
 
+import sys
 from dataclasses import replace
 from functools import partial
 from math import isnan
@@ -7,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import RANK
 
 from rodsweep.bench.sweep import followed
 from rodsweep.bench.sweep import study as sweep
@@ -51,12 +53,14 @@ def row(name, points, ranks, seconds, memory):
     return measured(case, ranks, runs)
 
 
-def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch):
+def test_quick_study_writes_its_tables_and_its_measurements(monkeypatch, loaded):
+    """Its runs are forked from a loaded process; the tests below start theirs as users do."""
     monkeypatch.setattr(sweep, "QUICK_SIZES", (400,))
     monkeypatch.setattr(sweep, "QUICK_SPECTRA", 16)
     monkeypatch.setattr(sweep, "QUICK_CYCLES", 2)
     monkeypatch.setattr(followed, "QUICK_AXES", followed.QUICK_AXES[1:])
-    study = sweep_study(quick=True, command=MEASURED)
+    command = (sys.executable, "-SE", str(RANK), str(loaded.ranks), *MEASURED[1:])
+    study = sweep_study(quick=True, command=command)
     assert "| spectra | 16 | 1 |" in study.text
     assert (f"| {APART} | 16 | 1 |" in study.text) == bool(launcher(2))
     assert "| no solver | 400 | 1 |" in study.text

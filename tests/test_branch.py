@@ -10,16 +10,16 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch import bordered, branches, following
 from rodsweep.solve.branch.beginning import hopf_point
-from rodsweep.solve.branch.branches import BranchRequest, BranchRod, BranchStatus, solve_branches
+from rodsweep.solve.branch.branches import BranchRequest, BranchStatus, solve_branches
 from rodsweep.solve.branch.following import Course, follow_branch
-from rodsweep.solve.branch.special_points import EndReason, SpecialKind
+from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.solve.changes.along_path import pair_crossings
-from rodsweep.solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.point import Unsolvable
 from rodsweep.watch import heard_by
 
-FIG_2C = BranchRod(k1=200.0, k2=1e4, gamma3=1e-4)
-SHORT = BranchRod(k1=150.0, k2=1e4, gamma3=1e-4)
+FIG_2C = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)
+SHORT = Rod(F=0.0, k1=150.0, k2=1e4, gamma3=1e-4)
 """Its window of flutter is short, and so is its branch, with a fold just beyond the window."""
 
 
@@ -39,9 +39,9 @@ def only(curve, kind):
 
 def first_branch(rod, stop, accuracy=1e-7):
     """The branch from the first Hopf point alone."""
-    straight = Rod(0.0, rod.k1, rod.k2, rod.gamma3)
+    straight = Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3)
     crossing = pair_crossings(Path(straight, "F"), 0.0, stop).crossings[0]
-    hopf = hopf_point(straight, rod.gamma1, "F", crossing)
+    hopf = hopf_point(Path(rod, "F"), crossing)
     return follow_branch(0, Course([hopf], (0.0, stop), (EndReason.range_end,) * 2, accuracy, 500))
 
 
@@ -101,7 +101,7 @@ def test_fold_moves_no_further_than_its_error_on_finer_meshes(rod):
 
 @pytest.mark.parametrize(
     ("along", "rod", "ends"),
-    [("F", FIG_2C, (0.0, 200.0)), ("k1", BranchRod(F=100.0, k2=1e4, gamma3=1e-4), (100.0, 400.0))],
+    [("F", FIG_2C, (0.0, 200.0)), ("k1", Rod(k1=np.inf, F=100.0, k2=1e4, gamma3=1e-4), (100.0, 400.0))],
 )
 def test_first_cycles_have_the_amplitude_that_the_hopf_point_tells(along, rod, ends):
     """To the third order of the normal form, on the side that its sign says."""
@@ -122,7 +122,7 @@ def test_first_cycles_have_the_amplitude_that_the_hopf_point_tells(along, rod, e
 
 def test_branch_without_a_fold():
     """The filament: no stretch, no shear, no rotational drag."""
-    found = solved(BranchRod(k1=np.inf, k2=np.inf, gamma3=0.0), 0.0, 60.0)
+    found = solved(Rod(F=0.0, k1=np.inf, k2=np.inf, gamma3=0.0), 0.0, 60.0)
     (curve,) = found.curves
     assert found.status == BranchStatus.ok
     assert kinds(curve) == ["hopf", "end"]
@@ -131,18 +131,18 @@ def test_branch_without_a_fold():
 
 
 def test_branch_that_leaves_the_model_ends_where_h1_is_0():
-    found = solved(BranchRod(k1=100.0, k2=1e4, gamma3=0.1), 60.0, 120.0)
+    found = solved(Rod(F=0.0, k1=100.0, k2=1e4, gamma3=0.1), 60.0, 120.0)
     (curve,) = found.curves
     end = curve.special[-1]
     assert end.kind == SpecialKind.left_the_model
     assert end.at == pytest.approx(99.14065359, abs=1e-6)
     assert 0 < curve.points[-1].measures.least_stretch < 0.05
-    finer = solved(BranchRod(k1=100.0, k2=1e4, gamma3=0.1), 60.0, 120.0, 1e-9).curves[0].special[-1]
+    finer = solved(Rod(F=0.0, k1=100.0, k2=1e4, gamma3=0.1), 60.0, 120.0, 1e-9).curves[0].special[-1]
     assert abs(end.at - finer.at) <= end.error + finer.error
 
 
 def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
-    rod = BranchRod(k1=1e4, k2=1e2, gamma3=1e-2)
+    rod = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
     curve = first_branch(rod, 207.0)
     assert kinds(curve) == ["hopf", "torus", "end"]
     torus = only(curve, SpecialKind.torus)
@@ -152,7 +152,7 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
     request = CycleRequest(1e-6, 0.01, 8, 0, 0, 0, 400, "hopf")
     for side, status in ((-1, CycleStatus.cycle), (1, CycleStatus.unstable)):
         F = torus.at * (1 + side * 2e-4)
-        cycle = solve_cycle(CyclePoint(F, rod.k1, rod.k2, rod.gamma3, rod.gamma1), request)
+        cycle = solve_cycle(Rod(F=F, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3, gamma1=rod.gamma1), request)
         assert cycle.status == status
         assert abs(cycle.multipliers[0].imag) > 0.5
         assert 1e-4 < side * (cycle.multiplier - 1) < 2e-3
@@ -160,9 +160,9 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
 
 
 def test_fold_along_the_stretch_stiffness_is_the_fold_along_the_force():
-    along_k1 = solved(BranchRod(F=100.0, k2=1e4, gamma3=1e-4), 120.0, 170.0, along="k1")
+    along_k1 = solved(Rod(k1=np.inf, F=100.0, k2=1e4, gamma3=1e-4), 120.0, 170.0, along="k1")
     fold = only(along_k1.curves[0], SpecialKind.fold)
-    along_F = solved(BranchRod(k1=fold.at, k2=1e4, gamma3=1e-4), 50.0, 150.0)
+    along_F = solved(Rod(F=0.0, k1=fold.at, k2=1e4, gamma3=1e-4), 50.0, 150.0)
     same = only(along_F.curves[0], SpecialKind.fold)
     assert same.at == pytest.approx(100.0, abs=1e-6)
     assert same.period == pytest.approx(fold.period, rel=1e-6)
@@ -177,13 +177,15 @@ def test_fold_along_the_stretch_stiffness_is_the_fold_along_the_force():
 )
 def test_branch_along_another_parameter_has_the_cycle_that_the_force_has(along, start, stop, values):
     """At its end, where the rod is one of the task limit_cycle."""
-    found = solve_branches(BranchRod(**values), BranchRequest(along, start, stop, 1e-7, True, 500, 50))
+    found = solve_branches(
+        Rod(**values, **{along: start}), BranchRequest(along, start, stop, 1e-7, True, 500, 50)
+    )
     assert found.status == BranchStatus.ok
     curve = found.curves[0]
     end, point = curve.special[-1], curve.points[-1]
     assert end.reason == EndReason.range_end
     request = CycleRequest(1e-7, 0.01, 8, 0, 0, 0, 400, "hopf")
-    cycle = solve_cycle(CyclePoint(gamma1=1.0, **values | {along: end.at}), request)
+    cycle = solve_cycle(Rod(gamma1=1.0, **values | {along: end.at}), request)
     assert cycle.status == CycleStatus.cycle
     assert cycle.measures.period == pytest.approx(point.measures.period, rel=3e-7)
     assert cycle.measures.tip_y_max == pytest.approx(point.measures.tip_y_max, rel=3e-7)
@@ -191,7 +193,7 @@ def test_branch_along_another_parameter_has_the_cycle_that_the_force_has(along, 
 
 
 def test_rod_without_a_hopf_point_has_no_branch():
-    found = solved(BranchRod(k1=100.0, k2=1e4, gamma3=1e-4))
+    found = solved(Rod(F=0.0, k1=100.0, k2=1e4, gamma3=1e-4))
     assert (found.status, found.curves, found.crossings) == (BranchStatus.ok, (), ())
 
 
@@ -241,7 +243,7 @@ def test_place_of_a_long_solve_says_how_far_it_is(monkeypatch):
     monkeypatch.setattr(bordered, "eliminate", lambda *values: done.append(1) or eliminate(*values))
     with heard_by(lambda place: places.append((len(done), *place()))):
         solve_branches(
-            BranchRod(k1=4000, k2=300, gamma3=1e-3), BranchRequest("F", 0, 150, 1e-5, True, 500, 50)
+            Rod(F=0.0, k1=4000, k2=300, gamma3=1e-3), BranchRequest("F", 0, 150, 1e-5, True, 500, 50)
         )
     work, words, shares = zip(*[place for place in places if place[1]], strict=True)
     assert all(0 <= share <= 1 for share in shares)

@@ -15,10 +15,12 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.discretization.mesh import mesh
 from rodsweep.discretization.stress_form import StressForm
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.arc import due, next_point, refined
+from rodsweep.solve.branch.arc import next_point
 from rodsweep.solve.branch.beginning import beginning, hopf_point
 from rodsweep.solve.branch.following import Course, _edge, _on_the_edge
-from rodsweep.solve.branch.special_points import EndReason, SpecialKind, special_points
+from rodsweep.solve.branch.settling import due, refined
+from rodsweep.solve.branch.special.point import EndReason, SpecialKind
+from rodsweep.solve.branch.special.points import special_points
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.newton import newton
@@ -46,7 +48,7 @@ def auto(tmp_path_factory):
 def branch_of_auto(program, rod, setting, place):
     """Lines of fort.7 as (kind, F), and the multipliers of the last cycle; by order, intervals, ..."""
     order, intervals, step, most = setting
-    form = StressForm(rod, 1.0, mesh(1, 16))
+    form = StressForm(rod, mesh(1, 16))
     near = refined_cycle(orbit_from_hopf(form, hopf_point_below(rod)), 1e-6).orbit
     first = newton(near.on(mesh(1, order), 40, 5), 1e-10).orbit
     (place / "rod").write_bytes(rod_file(first.form))
@@ -63,9 +65,9 @@ def branch_of_auto(program, rod, setting, place):
 
 def branch_of_this(rod, kind, F):
     """The special point of a kind on the branch from the first Hopf point, and the cycle at F beyond it."""
-    straight = Rod(0.0, rod.k1, rod.k2, rod.gamma3)
+    straight = Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3)
     crossing = pair_crossings(Path(straight, "F"), 0.0, rod.F).crossings[0]
-    here, special = beginning(hopf_point(straight, 1.0, "F", crossing), ACCURACY), None
+    here, special = beginning(hopf_point(Path(straight, "F"), crossing), ACCURACY), None
     while True:
         there = next_point(here, ACCURACY)
         for point in special_points(here, there, None, ACCURACY)[0]:
@@ -79,7 +81,7 @@ def branch_of_this(rod, kind, F):
 
 
 def test_auto_has_the_same_fold_and_the_same_unstable_cycle_beyond(auto, tmp_path):
-    rod = Rod(85.5, 150.0, 1e4, 1e-4)
+    rod = Rod(F=85.5, k1=150.0, k2=1e4, gamma3=1e-4)
     lines, multipliers = branch_of_auto(auto, rod, (14, 15, 0.05, 16), tmp_path)
     (place,) = [F for kind, F in lines if kind == FOLD]
     fold, cycle = branch_of_this(rod, SpecialKind.fold, lines[-1][1])
@@ -91,7 +93,7 @@ def test_auto_has_the_same_fold_and_the_same_unstable_cycle_beyond(auto, tmp_pat
 
 @survey_only
 def test_auto_has_the_same_torus_point_and_the_same_pair_beyond(auto, tmp_path):
-    rod = Rod(205.2, 1e4, 1e2, 1e-2)
+    rod = Rod(F=205.2, k1=1e4, k2=1e2, gamma3=1e-2)
     lines, multipliers = branch_of_auto(auto, rod, (24, 34, 0.1, 4), tmp_path)
     (place,) = [F for kind, F in lines if kind == TORUS]
     torus, cycle = branch_of_this(rod, SpecialKind.torus, lines[-1][1])

@@ -12,13 +12,16 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import CurveOfCycles, SpecialOfBranch
 from rodsweep.post.summary.branch import _ends
-from rodsweep.solve.branch import following, special_points
-from rodsweep.solve.branch.arc import next_point, refined
+from rodsweep.solve.branch import following
+from rodsweep.solve.branch.arc import next_point
 from rodsweep.solve.branch.beginning import hopf_point
 from rodsweep.solve.branch.branch_curve import BranchCurve
 from rodsweep.solve.branch.branches import BranchesOfRod, BranchStatus
 from rodsweep.solve.branch.following import Course, follow_branch, follow_without_symmetry, followed_from
-from rodsweep.solve.branch.special_points import EndReason, SpecialKind, changes_between
+from rodsweep.solve.branch.settling import refined
+from rodsweep.solve.branch.special import locating
+from rodsweep.solve.branch.special.point import EndReason, SpecialKind
+from rodsweep.solve.branch.special.points import changes_between
 from rodsweep.solve.branch.symmetry import (
     asymmetry,
     beginning_without_symmetry,
@@ -36,10 +39,11 @@ ROUGH, STOP = 1e-3, 20.5
 @pytest.fixture(scope="module")
 def course():
     """The first Hopf point of a rod that is soft in shear, whose stable cycles lose their symmetry."""
-    straight = Rod(0.0, 30.0, 0.5, 0.1)
-    hopf = hopf_point(straight, 1.0, "F", pair_crossings(Path(straight, "F"), 0.0, 5.0).crossings[0])
+    straight = Rod(F=0.0, k1=30.0, k2=0.5, gamma3=0.1)
+    path = Path(straight, "F")
+    hopf = hopf_point(path, pair_crossings(path, 0.0, 5.0).crossings[0])
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(special_points, "ACCURACY", 1e-5)
+        patch.setattr(locating, "ACCURACY", 1e-5)
         yield Course([hopf], (0.0, STOP), (EndReason.range_end,) * 2, ROUGH, 500)
 
 

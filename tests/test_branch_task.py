@@ -12,6 +12,7 @@ from test_show import shown
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of
+from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import both, curves_of, stability_of_pieces, straight_ranges, union
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.branch import through_cycles
@@ -20,8 +21,8 @@ from rodsweep.post.summary.branch import coexistence
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.branch import END_REASONS, SPECIAL_KINDS
 from rodsweep.results.layouts.variables import MISSING
-from rodsweep.solve.branch.branches import BranchRequest, BranchRod, solve_branches
-from rodsweep.solve.branch.special_points import EndReason, SpecialKind
+from rodsweep.solve.branch.branches import BranchRequest, solve_branches
+from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.tasks.branch import record
 from rodsweep.tasks.job import make_job
 
@@ -262,7 +263,9 @@ def test_record_has_all_variables_of_the_layout_and_no_other(tmp_path, along):
     )
     names = {variable.name for variable in make_job(config, ()).layout.variables}
     rod = (
-        BranchRod(k1=150.0, k2=1e4, gamma3=1e-4) if along == "F" else BranchRod(F=100.0, k2=1e4, gamma3=1e-4)
+        Rod(F=0.0, k1=150.0, k2=1e4, gamma3=1e-4)
+        if along == "F"
+        else Rod(k1=np.inf, F=100.0, k2=1e4, gamma3=1e-4)
     )
     found = solve_branches(rod, BranchRequest(along, 50.0, 160.0, 1e-4, True, 500, 64))
     assert set(record(found, along, 500, 64)) == names

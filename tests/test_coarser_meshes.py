@@ -21,9 +21,9 @@ from rodsweep.solve.point import Unsolvable
 ACCURACY = 1e-7
 FINE = OrbitMesh(1, 19, 16, 4)
 RODS = {
-    "soft": (Rod(50.0, 1e4, 1e2, 1e-2), 1.0),
-    "half the axial drag": (Rod(30.0, 1e4, 1e2, 1e-2), 0.5),
-    "filament": (Rod(60.0, float("inf"), float("inf"), 0.0), 1.0),
+    "soft": (Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), 1.0),
+    "half the axial drag": (Rod(F=30.0, k1=1e4, k2=1e2, gamma3=1e-2), 0.5),
+    "filament": (Rod(F=60.0, k1=float("inf"), k2=float("inf"), gamma3=0.0), 1.0),
 }
 
 
@@ -31,7 +31,7 @@ RODS = {
 def near(request):
     """An orbit near the rod's cycle."""
     rod, gamma1 = request.param
-    return orbit_from_hopf(StressForm(rod, gamma1, mesh(1, 16)), hopf_point_below(rod))
+    return orbit_from_hopf(StressForm(rod.changed(gamma1=gamma1), mesh(1, 16)), hopf_point_below(rod))
 
 
 def off(orbit, exact):

@@ -13,26 +13,21 @@ from test_paper import stated
 
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.errors import InputError
+from rodsweep.model.rod import Rod
 from rodsweep.results.layouts.phase_diagram import CYCLE_CURVE_ENDS
 from rodsweep.solve.branch import coexistence
 from rodsweep.solve.branch.branches import BranchStatus
 from rodsweep.solve.branch.coexistence import CoexistenceStatus, Stable, solve_coexistence
-from rodsweep.solve.branch.special_curves import (
-    CurveCourse,
-    CurveEnd,
-    CurvePoint,
-    CycleCurve,
-    HalfCurve,
-    comes_back,
-)
-from rodsweep.solve.branch.special_points import SpecialKind
+from rodsweep.solve.branch.special.curves import CurveCourse
+from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, CycleCurve, HalfCurve
+from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.changes.rows import RowRequest
 from rodsweep.tasks.job import make_job
 
 FOLD, RESTABILIZATION = 199.160114343, 155.600159298791
 """Of Fig. 2c's rod: the one of `configs/branches.yaml`, the other of 40-digit arithmetic."""
 BAUTIN_F, BAUTIN_K1 = stated("generalised_hopf")[1], stated("generalised_hopf")[0]
-FIG_2C = {"k1": 200.0, "k2": 1e4, "gamma3": 1e-4}
+FIG_2C = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)
 DIAGRAM = """
 task: phase_diagram
 parameters:
@@ -53,7 +48,7 @@ def request(values, certify=True):
 @pytest.fixture(scope="module")
 def fig_2c():
     values = [40, 100, 150, 155.6, 155.6002, 180, 199.16, 199.1602, 199.9, 205]
-    return solve_coexistence(FIG_2C, 1.0, request(values), 64)
+    return solve_coexistence(FIG_2C, request(values), 64)
 
 
 def test_fig_2c_has_two_stable_states_from_the_restabilization_to_the_fold(fig_2c):
@@ -67,7 +62,7 @@ def test_fig_2c_has_two_stable_states_from_the_restabilization_to_the_fold(fig_2
 
 
 def test_a_cycle_on_the_last_value_of_a_row_counts():
-    row = solve_coexistence(FIG_2C, 1.0, request([40, 60, 70]), 64)
+    row = solve_coexistence(FIG_2C, request([40, 60, 70]), 64)
     assert row.stable_states.tolist() == [Stable.straight, Stable.cycle, Stable.cycle]
 
 
@@ -78,7 +73,7 @@ def test_what_a_branch_that_stopped_leaves_open_is_undecided(monkeypatch):
         return replace(real(rod, asked), status=BranchStatus.stopped, message="no further cycle")
 
     monkeypatch.setattr(coexistence, "solve_branches", stopped)
-    row = solve_coexistence(FIG_2C, 1.0, request([0, 40, 60, 70]), 64)
+    row = solve_coexistence(FIG_2C, request([0, 40, 60, 70]), 64)
     assert row.status == CoexistenceStatus.branches_stopped
     assert "no further cycle" in row.message
     nothing_beats_without_a_force = Stable.straight
@@ -91,18 +86,18 @@ def test_what_a_branch_that_stopped_leaves_open_is_undecided(monkeypatch):
 
 
 def test_a_list_of_special_points_that_is_full_is_told():
-    row = solve_coexistence(FIG_2C, 1.0, request([40, 60, 70]), 1)
+    row = solve_coexistence(FIG_2C, request([40, 60, 70]), 1)
     assert row.status == CoexistenceStatus.special_full
 
 
 def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     """From the row k1 = 149.9 down, and up to the edge of the plane, where AUTO-07p has the fold."""
-    row = solve_coexistence(FIG_2C | {"k1": 149.9}, 1.0, request([60, 110]), 64)
+    row = solve_coexistence(FIG_2C.changed(k1=149.9), request([60, 110]), 64)
     (fold,) = [point for point in row.special if point.kind == SpecialKind.fold]
-    course = CurveCourse(SpecialKind.fold, PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 149.5, 150.0))
+    plane = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 149.5, 150.0)
     halves = []
     for side in (1.0, -1.0):
-        points, end = course.followed(fold, 149.9, side)
+        points, end = CurveCourse(SpecialKind.fold, *plane, side).followed(fold, 149.9)
         halves.append(HalfCurve(tuple(map(CurvePoint.of, points)), end))
     curve = CycleCurve.joined(SpecialKind.fold, *halves)
     assert curve.ends == (CurveEnd.hopf, CurveEnd.edge)
@@ -116,22 +111,6 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     assert curve.vanishing[1] is None
     heights = [point.tip_y_max for point in curve.points]
     assert heights == sorted(heights)
-
-
-class Place:
-    """A point of a curve in a plane, as far as `comes_back` looks at it."""
-
-    def __init__(self, x, y):
-        self.at = np.array([x, y], dtype=float)
-
-    def step_from(self, other):
-        return self.at - other.at
-
-
-def test_a_closed_curve_is_followed_once():
-    circle = [Place(np.cos(angle), np.sin(angle)) for angle in np.arange(0, 7, 0.5)]
-    closed = [i for i in range(1, len(circle)) if comes_back(circle[:i], circle[i])]
-    assert closed == [13]  # from the angle 6 to 6.5, past a whole turn
 
 
 @pytest.fixture(scope="module")

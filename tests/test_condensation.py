@@ -13,7 +13,6 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.bordered import BorderedMatrix, Scale
 from rodsweep.solve.cycle.condensation import PANEL, eliminate, invert, substitute
 from rodsweep.solve.cycle.linearisation import Linearisation, NewtonWorkspace, change_along
-from rodsweep.solve.cycle.neighbour import coordinate_of, with_coordinate
 from rodsweep.solve.cycle.orbit import Orbit
 from rodsweep.solve.cycle.phase import phase, phase_change
 from rodsweep.solve.cycle.right_sides import equations, residuals, right_sides
@@ -21,15 +20,15 @@ from rodsweep.solve.cycle.symmetry import REFLECTION
 
 INTERVALS, PERIOD, COLUMNS = 4, 0.02, 2
 RODS = {
-    "soft": Rod(50.0, 1e4, 1e2, 1e-2),
-    "no stretch, no shear": Rod(40.0, np.inf, np.inf, 1e-3),
-    "no rotational drag": Rod(40.0, 1e4, np.inf, 0.0),
+    "soft": Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2),
+    "no stretch, no shear": Rod(F=40.0, k1=np.inf, k2=np.inf, gamma3=1e-3),
+    "no rotational drag": Rod(F=40.0, k1=1e4, k2=np.inf, gamma3=0.0),
 }
 
 
 def orbit_with(rod, stages):
     """Any states: what is tested holds for orbits and for what is none."""
-    form = StressForm(rod, 0.7, mesh(1, 8))
+    form = StressForm(rod.changed(gamma1=0.7), mesh(1, 8))
     states = np.random.default_rng(stages).normal(size=(1 + INTERVALS * stages, form.unknowns))
     return Orbit.of(form, REFLECTION, PERIOD, states, stages)
 
@@ -98,7 +97,7 @@ def test_an_inverse_is_as_accurate_in_any_unit(n, unit):
 def balances(orbit, name, change):
     """Residuals of all stages, and the right side of the phase, with a parameter's coordinate changed."""
     form = orbit.form
-    moved = replace(orbit, form=with_coordinate(form, name, coordinate_of(form, name) + change))
+    moved = replace(orbit, form=form.with_coordinate(name, form.rod.coordinate(name) + change))
     p, out = moved.semidiscrete, np.empty_like(orbit.states)
     residuals(orbit.points, orbit.duration, p, out)
     return np.append(out, -phase(orbit.start, p.rod, p.matrices))
@@ -113,7 +112,7 @@ def test_derivative_by_a_parameter_is_the_limit_of_differences(rod, name):
     right_sides(orbit.points, orbit.duration, p, along, V, columns)
     right = columns[:, :, 2]
     shift = phase_change(orbit.start, along.change, p.rod, p.matrices)
-    step = 1e-4 * coordinate_of(orbit.form, name) or 1e-6  # to one side: a limit has no other
+    step = 1e-4 * orbit.form.rod.coordinate(name) or 1e-6  # to one side: a limit has no other
     there = np.array([balances(orbit, name, k * step) for k in range(3)])
     limit, rounding = [-1.5, 2, -0.5] @ there / step, 4e-15 * np.abs(there).max() / step
     assert np.abs(right.ravel() - limit[:-1]).max() < 1e-6 * np.abs(right).max() + rounding

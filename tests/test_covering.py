@@ -20,13 +20,13 @@ from rodsweep.determinant.value import scaled_determinant
 from rodsweep.model.rod import Rod
 
 RODS = [
-    Rod(30.0, 1e4, 1e4, 1e-4),
-    Rod(25.0, 1e4, 1e2, 1e-2),
-    Rod(120.0, 2e2, 1e4, 1e-4),
-    Rod(40.0, inf, inf, 0.0),
-    Rod(19.9, 20.0, 30.0, 1.0),
-    Rod(-12.0, 50.0, 5.0, 3.0),
-    Rod(60.0, 1e3, 50.0, 0.0),
+    Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4),
+    Rod(F=25.0, k1=1e4, k2=1e2, gamma3=1e-2),
+    Rod(F=120.0, k1=2e2, k2=1e4, gamma3=1e-4),
+    Rod(F=40.0, k1=inf, k2=inf, gamma3=0.0),
+    Rod(F=19.9, k1=20.0, k2=30.0, gamma3=1.0),
+    Rod(F=-12.0, k1=50.0, k2=5.0, gamma3=3.0),
+    Rod(F=60.0, k1=1e3, k2=50.0, gamma3=0.0),
 ]
 PATHS = [
     pytest.param(Path(rod, name), id=f"{name}-{rod.F}")
@@ -51,6 +51,16 @@ def test_derivative_along_a_path_is_that_of_the_determinant(path):
     h = 1e-3 * abs(p)
     difference = (8 * (value(p + h) - value(p - h)) - (value(p + 2 * h) - value(p - 2 * h))) / (12 * h)
     assert abs(D_p - difference) < 1e-7 * abs(D_p) + 1e-12 / abs(p)
+
+
+@pytest.mark.parametrize("path", PATHS)
+def test_a_small_error_of_the_path_variable_becomes_that_of_the_parameter(path):
+    value = getattr(path.rod, path.name)
+    p = path.variable(value)
+    assert path.value(p, 0.0) == (pytest.approx(value, rel=1e-15), 0.0)
+    error = 1e-6 * abs(p)
+    apart = abs(path.value(p + error, 0.0)[0] - path.value(p - error, 0.0)[0]) / 2
+    assert path.value(p, error)[1] == pytest.approx(apart, rel=1e-8)
 
 
 @pytest.mark.parametrize("path", PATHS)
@@ -151,7 +161,7 @@ def test_a_priori_bounds_over_a_path_hold_at_each_of_its_rods(path):
 
 
 def test_slabs_reach_from_end_to_end_and_grow_finer_towards_a_crushed_rod():
-    path = Path(Rod(0.0, 100.0, 1e4, 1e-4), "F")
+    path = Path(Rod(F=0.0, k1=100.0, k2=1e4, gamma3=1e-4), "F")
     parts = slabs(path, 0.0, 99.9999)
     assert parts[0][0] == 0.0
     assert parts[-1][1] == 99.9999

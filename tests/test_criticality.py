@@ -26,7 +26,6 @@ from rodsweep.solve.hopf import criticality
 from rodsweep.solve.hopf.criticality import (
     CriticalityRequest,
     CriticalityStatus,
-    RodInFluid,
     solve_criticality,
 )
 from rodsweep.solve.hopf.normal_form import accurate_normal_form, normal_form
@@ -35,9 +34,9 @@ from rodsweep.tasks.criticality import record
 from rodsweep.tasks.job import make_job
 
 INF = math.inf
-STRETCHABLE = RodInFluid(200.0, 1e4, 1e-4)
-FILAMENT = RodInFluid(INF, INF, 0.0)
-SUBCRITICAL = RodInFluid(108.0, 1e4, 0.1, 0.5)
+STRETCHABLE = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)
+FILAMENT = Rod(F=0.0, k1=INF, k2=INF, gamma3=0.0)
+SUBCRITICAL = Rod(F=0.0, k1=108.0, k2=1e4, gamma3=0.1, gamma1=0.5)
 """Already the first Hopf point is subcritical."""
 
 
@@ -50,7 +49,7 @@ def hopf_points(rod, **asked):
     found = solved(rod, **asked)
     assert found.status == CriticalityStatus.ok
     for hopf, known in zip(found.crossings, found.coefficients, strict=True):
-        yield Rod(hopf.at, rod.k1, rod.k2, rod.gamma3), hopf, known
+        yield Rod(F=hopf.at, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3), hopf, known
 
 
 # --- the coefficients -------------------------------------------------------------------------------------
@@ -59,11 +58,11 @@ def hopf_points(rod, **asked):
 @pytest.mark.parametrize(
     ("rod", "signs"),
     [
-        (RodInFluid(1e4, 1e2, 1e-2, 0.5), [-1, -1]),
+        (Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=0.5), [-1, -1]),
         (STRETCHABLE, [-1, 1]),
         (SUBCRITICAL, [1, 1]),
-        (RodInFluid(110.0, 300.0, 0.1), [-1]),
-        (RodInFluid(500.0, 20.0, 1e-2, 0.8), [-1, -1]),
+        (Rod(F=0.0, k1=110.0, k2=300.0, gamma3=0.1), [-1]),
+        (Rod(F=0.0, k1=500.0, k2=20.0, gamma3=1e-2, gamma1=0.8), [-1, -1]),
     ],
 )
 def test_coefficients_are_those_of_another_code(rod, signs):
@@ -79,8 +78,8 @@ def test_coefficients_are_those_of_another_code(rod, signs):
 def cycle_near(at, hopf, known, gamma1, part):
     """(largest tip y squared, frequency less that of the Hopf point), both over F - F_H, of a cycle."""
     F = at.F * (1 + part * math.copysign(1, known.amplitude_coefficient))
-    normal = accurate_normal_form(at, gamma1, 1j * hopf.frequency, 1e-6)
-    form = StressForm(replace(at, F=F), gamma1, mesh(1, normal.form.mesh.nodes))
+    normal = accurate_normal_form(at.changed(gamma1=gamma1), 1j * hopf.frequency, 1e-6)
+    form = StressForm((replace(at, F=F)).changed(gamma1=gamma1), mesh(1, normal.form.mesh.nodes))
     measures = refined_cycle(orbit_of(normal, form), 1e-11).measures
     return np.array([measures.tip_y_max**2, measures.frequency - hopf.frequency]) / (F - at.F)
 
@@ -90,14 +89,14 @@ def cycle_near(at, hopf, known, gamma1, part):
     [
         STRETCHABLE,
         pytest.param(FILAMENT, marks=survey_only),
-        pytest.param(RodInFluid(1e4, 1e2, 1e-2, 0.5), marks=survey_only),
-        pytest.param(RodInFluid(150.0, INF, 5e-3, 0.6), marks=survey_only),
-        pytest.param(RodInFluid(1e6, 50.0, 1.0, 0.7), marks=survey_only),
-        pytest.param(RodInFluid(1e3, INF, 0.0, 0.5), marks=survey_only),
-        pytest.param(RodInFluid(110.0, 300.0, 0.1), marks=survey_only),
-        pytest.param(RodInFluid(INF, 1e4, 1e-6, 0.5), marks=survey_only),
-        pytest.param(RodInFluid(240.0, 1e3, 1e-3, 0.5), marks=survey_only),
-        pytest.param(RodInFluid(1e4, 1e4, 1e-2), marks=survey_only),
+        pytest.param(Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=0.5), marks=survey_only),
+        pytest.param(Rod(F=0.0, k1=150.0, k2=INF, gamma3=5e-3, gamma1=0.6), marks=survey_only),
+        pytest.param(Rod(F=0.0, k1=1e6, k2=50.0, gamma3=1.0, gamma1=0.7), marks=survey_only),
+        pytest.param(Rod(F=0.0, k1=1e3, k2=INF, gamma3=0.0, gamma1=0.5), marks=survey_only),
+        pytest.param(Rod(F=0.0, k1=110.0, k2=300.0, gamma3=0.1), marks=survey_only),
+        pytest.param(Rod(F=0.0, k1=INF, k2=1e4, gamma3=1e-6, gamma1=0.5), marks=survey_only),
+        pytest.param(Rod(F=0.0, k1=240.0, k2=1e3, gamma3=1e-3, gamma1=0.5), marks=survey_only),
+        pytest.param(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-2), marks=survey_only),
     ],
 )
 def test_cycles_at_the_hopf_point_are_those_of_the_coefficients(rod):
@@ -114,7 +113,7 @@ FORCES = np.array([1e-4, 5e-5, 2e-5, 1e-5])
 
 
 @survey_only
-@pytest.mark.parametrize("rod", [SUBCRITICAL, RodInFluid(50.0, 100.0, 1.0)])
+@pytest.mark.parametrize("rod", [SUBCRITICAL, Rod(F=0.0, k1=50.0, k2=100.0, gamma3=1.0)])
 def test_cycles_of_rods_whose_fold_is_near_are_those_of_the_coefficients_too(rod):
     """The force and the frequency are smooth in y squared through the fold, hence extrapolated in that."""
     at, hopf, known = next(iter(hopf_points(rod)))
@@ -137,7 +136,7 @@ def random_rods(count):
     for _ in range(count):
         k1, k2 = (INF if rng.random() < 0.15 else 10 ** rng.uniform(low, 8) for low in (1.5, 1.2))
         gamma3 = 0.0 if rng.random() < 0.2 else 10 ** rng.uniform(-7, 0)
-        yield RodInFluid(k1, k2, gamma3, rng.uniform(0.5, 1))
+        yield Rod(F=0.0, k1=k1, k2=k2, gamma3=gamma3, gamma1=rng.uniform(0.5, 1))
 
 
 @pytest.mark.kernel
@@ -148,7 +147,9 @@ def test_errors_are_below_their_estimates(accuracy):
     for rod in random_rods(30):
         for at, hopf, known in hopf_points(rod, accuracy=accuracy, F_max=100.0):
             finer = max(known.order + 8, known.order * 4 // 3) | 1
-            exact = normal_form(mixed_form(at, rod.gamma1, known.elements, finer), 1j * hopf.frequency)
+            exact = normal_form(
+                mixed_form(at.changed(gamma1=rod.gamma1), known.elements, finer), 1j * hopf.frequency
+            )
             assert abs(known.landau / exact.c - 1) <= known.landau_error <= accuracy
             assert abs(known.growth_slope / exact.slope - 1) <= known.growth_slope_error <= accuracy
             assert abs(known.amplitude_coefficient / exact.amplitude - 1) <= known.amplitude_coefficient_error
@@ -161,11 +162,11 @@ def test_errors_are_below_their_estimates(accuracy):
 @pytest.mark.parametrize("k1, k2", [(260.3967, 7.1442), (136.5294, 20.2691), (168.2091, 28.0025)])
 def test_errors_are_below_their_estimates_where_rounding_is_largest(k1, k2):
     """Of rods soft in stretch and shear, up to where they are nearly crushed."""
-    rod = RodInFluid(k1, k2, 0.0, 0.7)
+    rod = Rod(F=0.0, k1=k1, k2=k2, gamma3=0.0, gamma1=0.7)
     found = solved(rod, accuracy=1e-12, F_max=300.0, most=40)
     for hopf, known in zip(found.crossings, found.coefficients, strict=True):
-        at = Rod(hopf.at, rod.k1, rod.k2, rod.gamma3)
-        finer = mixed_form(at, rod.gamma1, known.elements, known.order + 8)
+        at = Rod(F=hopf.at, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3)
+        finer = mixed_form(at.changed(gamma1=rod.gamma1), known.elements, known.order + 8)
         off = abs(normal_form(finer, 1j * hopf.frequency).c / known.landau - 1)
         assert off <= known.landau_error <= 5e-11
     assert hopf.at > 0.8 * k1
@@ -174,7 +175,10 @@ def test_errors_are_below_their_estimates_where_rounding_is_largest(k1, k2):
 def test_errors_tell_how_near_two_hopf_points_are_to_meeting():
     """The real part of dw/dF passes through 0 where a window closes, and with it the digits of a."""
     errors = [
-        max(known.amplitude_coefficient_error for _, _, known in hopf_points(RodInFluid(k1, 1e4, 1e-4)))
+        max(
+            known.amplitude_coefficient_error
+            for _, _, known in hopf_points(Rod(F=0.0, k1=k1, k2=1e4, gamma3=1e-4))
+        )
         for k1 in (200.0, 147.93, 147.9221)
     ]
     assert errors[0] < 1e-11
@@ -185,10 +189,12 @@ def test_errors_tell_how_near_two_hopf_points_are_to_meeting():
 @pytest.mark.parametrize("k1", [150.0, 147.93, 147.9221])
 def test_error_of_the_force_is_in_that_of_the_coefficient(k1):
     """What c does within the error of F_H, by a difference over a distance that rounding does not feel."""
-    rod = RodInFluid(k1, 1e4, 1e-4)
+    rod = Rod(F=0.0, k1=k1, k2=1e4, gamma3=1e-4)
     for at, hopf, known in hopf_points(rod):
         step = 1e-6 * at.F
-        beside = mixed_form(replace(at, F=at.F + step), rod.gamma1, known.elements, known.order)
+        beside = mixed_form(
+            (replace(at, F=at.F + step)).changed(gamma1=rod.gamma1), known.elements, known.order
+        )
         moved = normal_form(beside, 1j * hopf.frequency + known.growth_slope * step).c
         by_force = abs(moved / known.landau - 1) * hopf.error / step
         assert known.landau_error >= by_force
@@ -197,9 +203,14 @@ def test_error_of_the_force_is_in_that_of_the_coefficient(k1):
 
 
 def test_hopf_points_are_those_of_all_transitions():
-    for rod in (STRETCHABLE, RodInFluid(1e4, 1e2, 1e-2), FILAMENT, RodInFluid(60.0, 10.0, 0.5)):
+    for rod in (
+        STRETCHABLE,
+        Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2),
+        FILAMENT,
+        Rod(F=0.0, k1=60.0, k2=10.0, gamma3=0.5),
+    ):
         end = min(200.0, rod.k1 * (1 - 1e-6))
-        path = Path(Rod(0.0, rod.k1, rod.k2, rod.gamma3), "F")
+        path = Path(Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3), "F")
         every, pairs = transitions(path, 0.0, end), pair_crossings(path, 0.0, end)
         crossings = [c for c in every.crossings if not c.kind.of_the_leader]
         assert [(c.at, c.kind, c.unstable_after) for c in pairs.crossings] == [
@@ -214,7 +225,7 @@ def test_hopf_points_are_those_of_all_transitions():
 
 def test_sign_within_its_error_is_undecided():
     """Next to a generalised Hopf point: Re c is 2e-6 of |c|, and as large by the other code."""
-    rod = RodInFluid(150.0, 1e4, 1e-6)
+    rod = Rod(F=0.0, k1=150.0, k2=1e4, gamma3=1e-6)
     rough, fine = solved(rod, accuracy=1e-3, F_max=100.0), solved(rod, F_max=100.0)
     assert (rough.status, fine.status) == (CriticalityStatus.sign_undecided, CriticalityStatus.ok)
     assert [known.criticality for known in rough.coefficients] == [-1, 0]
@@ -229,10 +240,10 @@ def test_sign_within_its_error_is_undecided():
 def test_hopf_point_that_fails_does_not_lose_the_others(monkeypatch):
     made = criticality.hopf_coefficients
 
-    def first_fails(at, gamma1, hopf, accuracy):
+    def first_fails(at, hopf, accuracy):
         if at.F < 100:
             raise Unsolvable("no mesh is fine enough")
-        return made(at, gamma1, hopf, accuracy)
+        return made(at, hopf, accuracy)
 
     monkeypatch.setattr(criticality, "hopf_coefficients", first_fails)
     found = solved(STRETCHABLE)
@@ -256,7 +267,7 @@ def test_search_that_fails_is_a_status(monkeypatch):
 
 
 def test_more_than_rounding_leaves_is_not_promised():
-    found = solved(RodInFluid(1e4, 20.0, 0.0), accuracy=1e-13, F_max=60.0)
+    found = solved(Rod(F=0.0, k1=1e4, k2=20.0, gamma3=0.0), accuracy=1e-13, F_max=60.0)
     assert found.status == CriticalityStatus.accuracy_not_reached
     assert all(1e-13 < known.landau_error < 1e-11 for known in found.coefficients)
 

@@ -6,23 +6,19 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from rods import rod_of
 
 from rodsweep.discretization.mesh import mesh
 from rodsweep.discretization.periodic import derivative, resampled
 from rodsweep.discretization.quadrature import lobatto_points
 from rodsweep.errors import EnvironmentLacks
+from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.cycle import transient
 from rodsweep.solve.cycle.condensation import powers
 from rodsweep.solve.cycle.cycle_errors import EXTREMA_SLACK
-from rodsweep.solve.cycle.limit_cycle import (
-    CyclePoint,
-    CycleRequest,
-    CycleStatus,
-    solve_cycle,
-    warm_up,
-)
+from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle, warm_up
 from rodsweep.solve.cycle.measures import CyclePath, measures_of
 from rodsweep.solve.cycle.minimal_period import common_divisor, shortened, undecided_divisor
 from rodsweep.solve.cycle.neighbour import Neighbour
@@ -43,7 +39,7 @@ REQUEST = CycleRequest(
 @cache
 def cycle(F, rod=SOFT, amplitude=0.1, accuracy=1e-6):
     """A solved cycle, once for all tests."""
-    return solve_cycle(CyclePoint(F, *rod), CycleRequest(accuracy, amplitude, 5, 100, 8, 33, 300), None, "F")
+    return solve_cycle(rod_of(F, *rod), CycleRequest(accuracy, amplitude, 5, 100, 8, 33, 300), None, "F")
 
 
 def reference():
@@ -53,7 +49,7 @@ def reference():
 @cache
 def hopf():
     """F** of the soft rod."""
-    found = solve_thresholds(*SOFT[:3], ThresholdsRequest(40.0, 1e-12, False, 4))
+    found = solve_thresholds(rod_of(0.0, *SOFT), ThresholdsRequest(40.0, 1e-12, False, 4))
     return next(c.at for c in found.crossings if c.kind.name == "hopf")
 
 
@@ -166,7 +162,7 @@ def test_a_stable_rod_may_also_beat():
     far = cycle(170.0, STRETCHABLE, 0.1)
     below = cycle(150.0, STRETCHABLE, 0.1)
     near = solve_cycle(
-        CyclePoint(170.0, *STRETCHABLE), CycleRequest(1e-6, 0.01, 5, 0, 0, 0, 300), below.neighbour, "F"
+        rod_of(170.0, *STRETCHABLE), CycleRequest(1e-6, 0.01, 5, 0, 0, 0, 300), below.neighbour, "F"
     )
     for c in (far, near):
         assert c.status == CycleStatus.cycle
@@ -178,7 +174,7 @@ def test_a_stable_rod_may_also_beat():
 def test_below_the_hopf_point_a_neighbours_cycle_decays():
     above = cycle(27.43)
     for F in (27.42, 25.0):
-        found = solve_cycle(CyclePoint(F, *SOFT), REQUEST, above.neighbour, "F")
+        found = solve_cycle(rod_of(F, *SOFT), REQUEST, above.neighbour, "F")
         assert found.status == CycleStatus.straight
 
 
@@ -188,7 +184,7 @@ def test_what_a_neighbour_hands_on_is_its_cycle():
     assert np.array_equal(handed.pack(), c.neighbour, equal_nan=True)
     assert handed.branch.orbit.period == c.measures.period
     assert handed.branch.orbit.form.tip(handed.branch.orbit.start)[1] == pytest.approx(c.measures.tip_y_max)
-    again = solve_cycle(CyclePoint(50.0, *SOFT), REQUEST, c.neighbour, "F")
+    again = solve_cycle(rod_of(50.0, *SOFT), REQUEST, c.neighbour, "F")
     assert again.measures.period == pytest.approx(c.measures.period, rel=1e-9)
     assert again.periods == 0
 
@@ -215,17 +211,16 @@ def test_what_is_stored_agrees_with_the_numbers():
 
 
 def test_a_crushed_rod_has_left_the_model():
-    for F, amplitude in ((195.0, 0.5), (250.0, 0.1)):
-        c = cycle(F, STRETCHABLE, amplitude)
-        assert c.status == CycleStatus.left_the_model
-        assert not c.status.succeeded
-        assert c.message
-        assert np.isnan(c.measures.period)
-        assert c.tip is c.neighbour is None
+    c = cycle(195.0, STRETCHABLE, 0.5)
+    assert c.status == CycleStatus.left_the_model
+    assert not c.status.succeeded
+    assert c.message
+    assert np.isnan(c.measures.period)
+    assert c.tip is c.neighbour is None
 
 
 def test_a_rod_that_needs_longer_is_not_settled():
-    c = solve_cycle(CyclePoint(30.0, *SOFT), CycleRequest(1e-6, 1e-7, 3, 10, 2, 5, 3))
+    c = solve_cycle(rod_of(30.0, *SOFT), CycleRequest(1e-6, 1e-7, 3, 10, 2, 5, 3))
     assert c.status == CycleStatus.not_settled
     assert c.periods >= 3
     assert np.isnan(c.measures.period)
@@ -238,7 +233,7 @@ def test_a_failed_integration_is_a_status():
         PETSc.Options()[name] = value
     forget_integrators()
     try:
-        c = solve_cycle(CyclePoint(50.0, *SOFT), REQUEST)
+        c = solve_cycle(rod_of(50.0, *SOFT), REQUEST)
     finally:
         for name in options:
             PETSc.Options().delValue(name)
@@ -253,7 +248,7 @@ def test_an_error_inside_is_a_status(monkeypatch):
         raise np.linalg.LinAlgError("Singular matrix")
 
     monkeypatch.setattr(transient, "refined_cycle", fail)
-    c = solve_cycle(CyclePoint(50.0, *SOFT), REQUEST)
+    c = solve_cycle(rod_of(50.0, *SOFT), REQUEST)
     assert (c.status, c.message) == (CycleStatus.failed, "Singular matrix")
 
 
@@ -270,14 +265,15 @@ def test_warm_up_solves_a_cycle():
 def test_a_mesh_is_not_refined_for_what_is_left_of_time():
     """The extrema of two meshes are sampled at different phases, which no mesh can make agree to 1e-9."""
     cycle = solve_cycle(
-        CyclePoint(88.9376, 629.929, 60628.4, 5.59844e-4, 2.07035), replace(REQUEST, accuracy=1e-9)
+        Rod(F=88.9376, k1=629.929, k2=60628.4, gamma3=5.59844e-4, gamma1=2.07035),
+        replace(REQUEST, accuracy=1e-9),
     )
     assert cycle.status == CycleStatus.cycle
     assert cycle.order * cycle.elements < 60
 
 
 def test_within_rounding_of_the_hopf_point_no_cycle_is_claimed():
-    cycle = solve_cycle(CyclePoint(27.42719413, 1e4, 1e2, 1e-2, 1.0), REQUEST)
+    cycle = solve_cycle(Rod(F=27.42719413, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0), REQUEST)
     assert cycle.status == CycleStatus.not_settled
     assert np.isnan(cycle.measures.period)
 
@@ -308,7 +304,7 @@ def test_options_that_lose_the_cycle_are_refused_in_one_sentence():
     ],
 )
 def test_period_is_the_minimal_one(rod, period, accuracy, amplitude):
-    c = solve_cycle(CyclePoint(*rod), CycleRequest(accuracy, amplitude, 9, 0, 0, 0, 400))
+    c = solve_cycle(rod_of(*rod), CycleRequest(accuracy, amplitude, 9, 0, 0, 0, 400))
     assert c.status == CycleStatus.cycle
     assert c.measures.period == pytest.approx(period, rel=1e-5)
     assert np.argmax(c.measures.harmonic_amplitude) == 0
@@ -419,7 +415,7 @@ def test_harmonics_in_common_are_a_shorter_period_for_all_that_is_known(sizes, e
 
 def test_a_period_in_doubt_is_not_called_a_cycle(monkeypatch):
     monkeypatch.setattr("rodsweep.solve.cycle.refinement.undecided_divisor", lambda *given: 2)
-    c = solve_cycle(CyclePoint(50.0, *SOFT), CycleRequest(1e-4, 0.1, 3, 0, 0, 0, 300))
+    c = solve_cycle(rod_of(50.0, *SOFT), CycleRequest(1e-4, 0.1, 3, 0, 0, 0, 300))
     assert c.status == CycleStatus.not_settled
     assert "2 times shorter cannot be excluded" in c.message
 
@@ -428,14 +424,14 @@ def test_a_start_off_the_slow_manifold_does_not_fail():
     """The fast components of k2 = 6e5, gamma3 = 6e-6 turn a scaled state into a rate of 1e7."""
     rod = (38.7203737525035, 893.9849423743017, 608319.4594422684, 5.91245928044301e-06, 0.7551516248693426)
     for amplitude in (0.1, 0.01):
-        c = solve_cycle(CyclePoint(*rod), CycleRequest(1e-6, amplitude, 3, 0, 0, 0, 400))
+        c = solve_cycle(rod_of(*rod), CycleRequest(1e-6, amplitude, 3, 0, 0, 0, 400))
         assert c.status == CycleStatus.straight
 
 
 def test_what_grows_the_faster_the_larger_it_is_need_not_be_waited_for():
     """Just beyond the Hopf point motions grow the faster the larger they are, by 1e-3 a period at first."""
     rod = (85.54, 150.0, 1e4, 1e-4, 1.0)
-    far, near = (solve_cycle(CyclePoint(*rod), CycleRequest(1e-6, a, 3, 0, 0, 0, 400)) for a in (0.1, 0.01))
+    far, near = (solve_cycle(rod_of(*rod), CycleRequest(1e-6, a, 3, 0, 0, 0, 400)) for a in (0.1, 0.01))
     assert far.status == near.status == CycleStatus.cycle
     assert near.measures.period == pytest.approx(far.measures.period, rel=1e-6)
     assert near.measures.tip_y_max == pytest.approx(far.measures.tip_y_max, rel=1e-6)

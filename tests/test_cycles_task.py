@@ -593,7 +593,7 @@ def solve_cycle(point, request, start=None, along=None):
 
 fake = ModuleType("rodsweep.solve.cycle.limit_cycle")
 fake.CycleStatus, fake.solve_cycle = CycleStatus, solve_cycle
-fake.CycleRequest = fake.CyclePoint = SimpleNamespace
+fake.CycleRequest = fake.Rod = SimpleNamespace
 fake.warm_up = lambda: None
 sys.modules[fake.__name__] = fake
 '''

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 from hard.exact import derivatives
 from reference import determinant as reference
+from rods import rod_of
 
-from rodsweep.determinant.parameter_path import determinant_along, direction_of
+from rodsweep.determinant.parameter_path import determinant_along
 from rodsweep.determinant.value import TYPICAL_NOISE, newton_correction, scaled_determinant
 from rodsweep.model.rod import Rod
 
@@ -21,7 +22,7 @@ def cases():
         gamma3 = float(random.choice([0.0, 10 ** random.uniform(-8, 0.5)]))
         F = float(random.uniform(-0.5, 0.999) * min(k1, 300.0))
         w = complex(*(random.normal(size=2) * 10 ** random.uniform(-3, 5)))
-        yield pytest.param(w, Rod(F, k1, k2, gamma3), id=str(i))
+        yield pytest.param(w, Rod(F=F, k1=k1, k2=k2, gamma3=gamma3), id=str(i))
 
 
 @pytest.mark.parametrize(("w", "rod"), list(cases()))
@@ -39,7 +40,7 @@ def test_determinant_is_right_to_rounding(w, rod, evaluation):
 
 def at(place, *rod):
     """(w, rod) beside w = -g nu/(c2 gamma3), where P = 0; `place` is the relative distance."""
-    rod = Rod(*rod)
+    rod = rod_of(*rod)
     return -rod.g * rod.nu / (rod.c2 * rod.gamma3) * (1 + place), rod
 
 
@@ -56,7 +57,7 @@ def hard_cases():
         elif i % 6 == 2:
             F = k1 * (1 - float(10 ** random.uniform(-9, -1)))
         F = min(F, 0.999999 * k1)
-        rod = Rod(F, k1, k2, gamma3)
+        rod = Rod(F=F, k1=k1, k2=k2, gamma3=gamma3)
         drag, shear = rod.c2 + gamma3, rod.c2 - gamma3
         if i % 6 == 3:
             w = complex(-rod.g * rod.nu / (rod.c2 * gamma3) * near)
@@ -101,10 +102,10 @@ PULLS_AND_PUSHES = [
 @pytest.mark.parametrize("rod", PULLS_AND_PUSHES, ids=str)
 def test_nothing_is_lost_where_exponents_vanish(rod, place):
     """D and all of its derivatives, at P = 0 and beside it, where the slopes of z+ and z- are infinite."""
-    w, known = complex(at(place, *rod)[0]), Rod(*rod)
+    w, known = complex(at(place, *rod)[0]), rod_of(*rod)
     exact = derivatives(w, rod, ("w", "F", "c1", "c2", "gamma3"))
     for name, along in zip(("F", "k1", "k2", "gamma3"), exact[1:], strict=True):
-        found = determinant_along(w, known.coefficients, direction_of(known, name))
+        found = determinant_along(w, known.coefficients, known.direction(name))
         size = mp.exp(-mp.mpf(found[3]))
         assert abs(mp.mpc(found[0]) - reference.D(w, *rod, digits=40) * size) < min(found[4], 1e-12)
         assert abs(mp.mpc(found[1]) - exact[0] * size) < 1e-12 * abs(found[1])
@@ -114,14 +115,18 @@ def test_nothing_is_lost_where_exponents_vanish(rod, place):
 def test_the_length_of_newtons_correction_does_not_shrink_where_exponents_vanish():
     for rod in PULLS_AND_PUSHES:
         beside, there = (
-            newton_correction(complex(at(d, *rod)[0]), Rod(*rod).coefficients)[1] for d in (0.3, 1e-14)
+            newton_correction(complex(at(d, *rod)[0]), rod_of(*rod).coefficients)[1] for d in (0.3, 1e-14)
         )
         assert there > beside / 10
 
 
 def test_determinant_is_one_at_rest():
     """D(0) = 1 for every rod: there is no static instability (a follower force never buckles a rod)."""
-    for rod in (Rod(30, 1e4, 1e4, 1e-4), Rod(-50, 100, 20, 0.0), Rod(30, np.inf, np.inf, 0.0)):
+    for rod in (
+        Rod(F=30, k1=1e4, k2=1e4, gamma3=1e-4),
+        Rod(F=-50, k1=100, k2=20, gamma3=0.0),
+        Rod(F=30, k1=np.inf, k2=np.inf, gamma3=0.0),
+    ):
         assert scaled_determinant(0j, rod.coefficients)[0] == pytest.approx(
             np.exp(-scaled_determinant(0j, rod.coefficients)[2]), rel=1e-12
         )
@@ -129,7 +134,7 @@ def test_determinant_is_one_at_rest():
 
 def test_filament_roots_are_those_of_the_cantilever():
     """F = 0, rigid in stretch and shear: w = -b^4 with cosh b cos b = -1, the clamped-free beam."""
-    rod = Rod(0.0, np.inf, np.inf, 0.0)
+    rod = Rod(F=0.0, k1=np.inf, k2=np.inf, gamma3=0.0)
     for n in range(1, 5):
         b = mp.findroot(lambda b: mp.cosh(b) * mp.cos(b) + 1, (n - 0.5) * mp.pi)
         w = float(-(b**4))
@@ -137,7 +142,7 @@ def test_filament_roots_are_those_of_the_cantilever():
 
 
 def test_newton_correction_is_the_distance_to_the_root():
-    rod = Rod(30.0, 1e4, 1e4, 1e-4)
+    rod = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
     root = complex(reference.refine(mp.mpc(-54.3, 145.7), 30, 1e4, 1e4, 1e-4))
     for distance in (1e-3, 1e-6j, 1e-9 - 1e-9j):
         found = newton_correction(root + distance, rod.coefficients)[0]

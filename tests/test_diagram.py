@@ -1,15 +1,17 @@
 """Curves through folds against known ones, and rows and curves against each other."""
 
-from math import inf
+from dataclasses import replace
+from math import inf, log
 
 import numpy as np
 import pytest
 
-from rodsweep.determinant.curves import trace
+from rodsweep.determinant.boundary import Boundary
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.determinant.winding_number import count_right_of
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.boundaries import curves_through, seed_of
+from rodsweep.solve.changes.boundary_curves import trace
 from rodsweep.solve.changes.rows import Motion, RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import ThresholdStatus
 from rodsweep.solve.changes.unstable_modes import Kind
@@ -28,9 +30,8 @@ def rows(plane_axes, rod, count):
     found, seeds = [], []
     for y in np.linspace(0, 1, count):
         value = across.value(float(y))
-        values = {n: getattr(rod, n) for n in ("F", "k1", "k2", "gamma3") if n != along.name}
         request = RowRequest(along.name, np.linspace(along.start, along.stop, 41), 1e-9, True, 50)
-        row = solve_row(values | {across.name: value}, request)
+        row = solve_row(replace(rod, **{across.name: value}), request)
         assert row.status == ThresholdStatus.ok, row.message
         found.append(row)
         seeds += [seed_of((c.at, value), c.kind, c.frequency, c.growth_rate) for c in row.changes.crossings]
@@ -40,11 +41,11 @@ def rows(plane_axes, rod, count):
 @pytest.mark.parametrize(("k2", "gamma3", "k1", "F", "frequency"), FOLDS)
 def test_the_flutter_window_closes_at_the_fold_to_nine_digits(k2, gamma3, k1, F, frequency):
     plane = Plane(
-        Rod(0.0, 200.0, k2, gamma3),
+        Rod(F=0.0, k1=200.0, k2=k2, gamma3=gamma3),
         (PlaneAxis("F", 0.0, 119.0), PlaneAxis("k1", 120.0, 1000.0, logarithmic=True)),
     )
     row = solve_row(
-        {"k1": 300.0, "k2": k2, "gamma3": gamma3}, RowRequest("F", np.array([0.0, 119.0]), 1e-9, True, 9)
+        Rod(F=0.0, k1=300.0, k2=k2, gamma3=gamma3), RowRequest("F", np.array([0.0, 119.0]), 1e-9, True, 9)
     )
     hopf = next(c for c in row.changes.crossings if c.kind == Kind.hopf)
     curve = trace(0.0, plane, (plane.axes[0].scaled(hopf.at), plane.axes[1].scaled(300.0)), hopf.frequency)
@@ -59,7 +60,9 @@ def test_the_flutter_window_closes_at_the_fold_to_nine_digits(k2, gamma3, k1, F,
 def test_the_hopf_curve_of_the_partial_beam_is_the_parabola_of_the_paper():
     """F (1 - F/k1) = Fc with k2 = inf, gamma3 = 0 (Sec. VIII), all along the curve and through its fold."""
     Fc = 37.6954308403185779
-    plane = Plane(Rod(0.0, 200.0, inf, 0.0), (PlaneAxis("F", 0.0, 140.0), PlaneAxis("k1", 145.0, 400.0)))
+    plane = Plane(
+        Rod(F=0.0, k1=200.0, k2=inf, gamma3=0.0), (PlaneAxis("F", 0.0, 140.0), PlaneAxis("k1", 145.0, 400.0))
+    )
     start = 200.0 * (0.5 - np.sqrt(0.25 - Fc / 200.0))
     curve = trace(0.0, plane, (plane.axes[0].scaled(start), plane.axes[1].scaled(200.0)), 341.801)
     F, k1 = curve.values.T
@@ -71,7 +74,7 @@ def test_the_hopf_curve_of_the_partial_beam_is_the_parabola_of_the_paper():
 
 def test_rows_and_curves_agree_and_every_change_lies_on_a_curve():
     axes = (PlaneAxis("F", 0.0, 99.0), PlaneAxis("k1", 100.0, 1000.0, logarithmic=True))
-    rod = Rod(0.0, 200.0, 1e4, 1e-4)
+    rod = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)
     _, seeds = rows(axes, rod, 12)
     curves = curves_through(Plane(rod, axes), seeds)
     assert curves.untraced == 0
@@ -85,7 +88,7 @@ def test_rows_and_curves_agree_and_every_change_lies_on_a_curve():
 def test_a_plane_of_two_material_parameters():
     """k2 against gamma3 at fixed force: rows along k2, curves through both, counts on either side."""
     axes = (PlaneAxis("k2", 20.0, 1e5, logarithmic=True), PlaneAxis("gamma3", 1e-4, 0.1, logarithmic=True))
-    rod = Rod(30.0, 1e4, 1e3, 1e-3)
+    rod = Rod(F=30.0, k1=1e4, k2=1e3, gamma3=1e-3)
     found, seeds = rows(axes, rod, 6)
     curves = curves_through(Plane(rod, axes), seeds)
     assert seeds
@@ -93,14 +96,51 @@ def test_a_plane_of_two_material_parameters():
     values = np.linspace(20.0, 1e5, 41)
     gamma3 = axes[1].value(0.4)
     for k2, motion, unstable in zip(values, found[2].motion, found[2].unstable_count, strict=True):
-        assert count_right_of(0.0, Rod(30.0, 1e4, float(k2), gamma3)).number == unstable
+        assert count_right_of(0.0, Rod(F=30.0, k1=1e4, k2=float(k2), gamma3=gamma3)).number == unstable
         assert (motion == Motion.flutter) == (unstable > 0)
+
+
+TOUCHED = [
+    # double eigenvalues at gamma3 = 0, where differences are one-sided, and Hopf points
+    ((PlaneAxis("F", 5.0, 60.0), PlaneAxis("gamma3", 0.0, 1.0)), Rod(F=30.0, k1=1e4, k2=20.0, gamma3=0.01)),
+    # double eigenvalues beside a crushed rod
+    (
+        (PlaneAxis("F", 0.0, 99.999), PlaneAxis("k1", 100.0, 1e3, logarithmic=True)),
+        Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4),
+    ),
+    (
+        (PlaneAxis("k2", 20.0, 1e5, logarithmic=True), PlaneAxis("gamma3", 1e-4, 0.1, logarithmic=True)),
+        Rod(F=30.0, k1=1e4, k2=1e3, gamma3=1e-3),
+    ),
+]
+
+
+@pytest.mark.parametrize(("axes", "rod"), TOUCHED)
+def test_the_tangent_of_a_boundary_touches_it(axes, rod):
+    """A step along it leaves the curve by the curvature alone, in proportion to the square of the step."""
+    plane = Plane(rod, axes)
+    _, seeds = rows(axes, rod, 2)
+    for seed in seeds:
+        boundary = Boundary(plane, seed.sign)
+        scaled = [axis.scaled(value) for axis, value in zip(axes, seed.values, strict=True)]
+        start = boundary.corrected(np.array([*scaled, log(abs(seed.eigenvalue))]), np.array([0.0, 1.0, 0.0]))
+        assert boundary.eigenvalue(start.v[2])[int(seed.sign == 0)] == pytest.approx(
+            seed.eigenvalue, rel=1e-6
+        )
+        tangent = start.tangent
+        if (scaled[1] < 0.5) != (tangent[1] > 0):
+            tangent = -tangent  # into the plane
+        bends = []
+        for step in (1e-3, 1e-4):
+            guess = start.v + step * tangent
+            bends.append(np.linalg.norm(boundary.corrected(guess, tangent).v - guess) / step**2)
+        assert bends[0] == pytest.approx(bends[1], rel=0.02)
 
 
 def test_a_value_on_a_boundary_is_undecided_and_its_neighbours_are_not():
     hopf = 37.6559805452710668
     row = solve_row(
-        {"k1": 1e4, "k2": 1e4, "gamma3": 1e-4},
+        Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4),
         RowRequest("F", np.array([10.0, 30.0, hopf, 40.0]), 1e-9, True, 9),
     )
     assert row.motion.tolist() == [Motion.monotone, Motion.oscillatory, Motion.undecided, Motion.flutter]
@@ -109,7 +149,7 @@ def test_a_value_on_a_boundary_is_undecided_and_its_neighbours_are_not():
 
 def test_a_row_without_a_bound_fails_with_its_reason():
     row = solve_row(
-        {"k1": 1e4, "k2": 10.0, "gamma3": 0.0}, RowRequest("F", np.linspace(-50.0, 20.0, 8), 1e-9, True, 9)
+        Rod(F=0.0, k1=1e4, k2=10.0, gamma3=0.0), RowRequest("F", np.linspace(-50.0, 20.0, 8), 1e-9, True, 9)
     )
     assert row.status == ThresholdStatus.failed
     assert "bound" in row.message
@@ -119,7 +159,7 @@ def test_a_row_without_a_bound_fails_with_its_reason():
 def test_a_diagram_that_begins_at_the_limit_of_the_model_has_its_curves():
     """gamma3 = 0 is the first row: nothing lies beyond it, neither for steps nor for differences."""
     axes = (PlaneAxis("F", 5.0, 60.0), PlaneAxis("gamma3", 0.0, 1.0))
-    rod = Rod(30.0, 1e4, 20.0, 0.01)
+    rod = Rod(F=30.0, k1=1e4, k2=20.0, gamma3=0.01)
     _, seeds = rows(axes, rod, 3)
     curves = curves_through(Plane(rod, axes), seeds)
     assert {seed.values[1] for seed in seeds} == {0.0, 0.5, 1.0}
@@ -132,11 +172,10 @@ def test_a_diagram_that_begins_at_the_limit_of_the_model_has_its_curves():
 def test_each_curve_is_followed_once_and_ends_are_no_folds(k1, top, folds):
     """Rows on the border, and rows where the curve of double eigenvalues runs along the crushed rods."""
     axes = (PlaneAxis("F", 0.0, top), PlaneAxis("k1", k1[0], k1[-1], logarithmic=k1[-1] > 10 * k1[0]))
-    rod = Rod(0.0, k1[-1], 1e4, 1e-4)
+    rod = Rod(F=0.0, k1=k1[-1], k2=1e4, gamma3=1e-4)
     seeds = []
     for value in k1:
-        fixed = {"k1": value, "k2": 1e4, "gamma3": 1e-4}
-        row = solve_row(fixed, RowRequest("F", np.linspace(0.0, top, 13), 1e-9, True, 50))
+        row = solve_row(replace(rod, k1=value), RowRequest("F", np.linspace(0.0, top, 13), 1e-9, True, 50))
         seeds += [seed_of((c.at, value), c.kind, c.frequency, c.growth_rate) for c in row.changes.crossings]
     curves = curves_through(Plane(rod, axes), seeds).curves
     found = [fold for curve in curves for fold in curve.folds]
@@ -149,5 +188,5 @@ def test_a_force_that_is_k1_but_for_rounding_is_crushed(off):
     """Two axes in logarithmic steps meet at F = k1 up to rounding: nothing is undecided there."""
     k1 = 10**2.5
     values = np.array([0.5 * k1, k1 * (1 + off), 2 * k1])
-    row = solve_row({"k1": k1, "k2": 1e4, "gamma3": 1e-4}, RowRequest("F", values, 1e-9, True, 9))
+    row = solve_row(Rod(F=0.0, k1=k1, k2=1e4, gamma3=1e-4), RowRequest("F", values, 1e-9, True, 9))
     assert [Motion(motion).name for motion in row.motion] == ["flutter", "crushed", "crushed"]

@@ -48,7 +48,7 @@ def dense(rod, elements, order):
 @pytest.mark.parametrize("order", [2, 3, 4])
 def test_eigenvalues_converge_with_twice_the_order(order):
     """h-refinement of a filament: the error of the first eigenvalue falls as h^(2 p)."""
-    rod = Rod(5.0, np.inf, np.inf, 0.0)
+    rod = Rod(F=5.0, k1=np.inf, k2=np.inf, gamma3=0.0)
     exact = dense(rod, 2, 20)[0].real
     errors = [abs(dense(rod, n, order)[0].real - exact) for n in (4, 8)]
     assert np.log2(errors[0] / errors[1]) == pytest.approx(2 * order, abs=0.35)
@@ -57,7 +57,7 @@ def test_eigenvalues_converge_with_twice_the_order(order):
 def test_pencil_at_rest_is_symmetric_and_negative():
     """At F = 0 the operator is self-adjoint and negative definite in the Gamma inner product (Sec. VI)."""
     pencil = assemble(2, 7)
-    rod = Rod(0.0, 50.0, 30.0, 0.5)
+    rod = Rod(F=0.0, k1=50.0, k2=30.0, gamma3=0.5)
     A = np.zeros((pencil.unknowns,) * 2)
     A[pencil.rows, pencil.columns] = pencil.stiffness(rod)
     n = pencil.nodes

@@ -271,29 +271,6 @@ def asked(text):
     return fingerprint_of(canonical(config), columns)
 
 
-def test_file_of_an_earlier_version_is_continued_with_its_journal(command):
-    """What was written before files had a format, and fingerprints were those of today."""
-    command.write("c.yaml", SPECTRA)
-    process = command.started("run", "c.yaml", ranks=1, patch=EARLIER + slowly(FOR_EVER, 5))
-    path = command.directory / "c.h5"
-    pause_until_journalled(process, path, 5)
-    kill(process.pid, *ranks_in(command.directory).values())
-    process.communicate()
-    wait_for_end(command.directory)
-    with h5py.File(path) as file:
-        assert file.attrs["fingerprint"] == "earlier"
-    done = command("run", "c.yaml")
-    assert "3 of 8 points to do, 5 kept" in done.stdout
-    with h5py.File(path) as file:
-        assert file.attrs["fingerprint"] == asked(SPECTRA)
-
-
-EARLIER = """
-from rodsweep.results.file import creation
-creation.Plan.fingerprint = property(lambda plan: "earlier")
-"""
-
-
 @pytest.mark.parametrize(
     "words", [("run", "c.yaml"), ("show", "c.h5"), ("merge", "m.h5", "c.h5"), ("export", "c.h5")]
 )

@@ -11,12 +11,12 @@ from second_normal_form import Shape, coefficients
 from test_paper import run, stated
 
 import rodsweep as rs
-from rodsweep.determinant.curves import trace
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
 from rodsweep.post.figures.diagram_curves import parts_of_one_side
 from rodsweep.results.file.view import read_view
+from rodsweep.solve.changes.boundary_curves import trace
 from rodsweep.solve.hopf import bautin_curves, generalised
 from rodsweep.solve.hopf.bautin_curves import BautinCurvePoint, BautinEnd, BautinSpace, bautin_curve, lies_on
 from rodsweep.solve.hopf.generalised import curve_criticality
@@ -41,7 +41,7 @@ def curve_of(plane, F, k1, frequency):
 def over_F_and_k1(F=(60.0, 110.0), k1=(145.0, 160.0), logarithmic=False):
     """A plane of the rod and the Hopf curve through its fold."""
     axes = PlaneAxis("F", *F), PlaneAxis("k1", *k1, logarithmic=logarithmic)
-    plane = Plane(Rod(0.0, 200.0, K2, GAMMA3), axes)
+    plane = Plane(Rod(F=0.0, k1=200.0, k2=K2, gamma3=GAMMA3), axes)
     return plane, curve_of(plane, *FOLD)
 
 
@@ -49,7 +49,7 @@ def over_F_and_k1(F=(60.0, 110.0), k1=(145.0, 160.0), logarithmic=False):
 def found():
     """Plane, curve, and what is found along it."""
     plane, curve = over_F_and_k1()
-    return plane, curve, curve_criticality(plane, curve, 1.0, 1e-10)
+    return plane, curve, curve_criticality(plane, curve, 1e-10)
 
 
 def test_a_generalised_hopf_point_is_that_of_other_equations(found):
@@ -90,9 +90,9 @@ def test_the_side_changes_once_and_at_the_point(found):
 
 def test_it_is_the_same_on_finer_meshes_and_from_other_neighbours(found):
     (point,) = found[2].points
-    finer = curve_criticality(*found[:2], 1.0, 1e-12).points
+    finer = curve_criticality(*found[:2], 1e-12).points
     elsewhere = over_F_and_k1((50.0, 125.0), (146.0, 300.0), logarithmic=True)
-    others = curve_criticality(*elsewhere, 1.0, 1e-10).points
+    others = curve_criticality(*elsewhere, 1e-10).points
     for (other,) in (finer, others):
         for value, error, theirs, their_error in zip(
             point.values, point.errors, other.values, other.errors, strict=True
@@ -105,14 +105,17 @@ def test_another_plane_through_the_same_rod_has_it_too(found):
     (point,) = found[2].points
     F, k1 = point.values
     axes = PlaneAxis("k1", 140.0, 160.0), PlaneAxis("gamma3", 1e-5, 1e-3, logarithmic=True)
-    plane = Plane(Rod(F, 200.0, K2, GAMMA3), axes)
-    (other,) = curve_criticality(plane, curve_of(plane, F, k1, point.frequency), 1.0, 1e-10).points
+    plane = Plane(Rod(F=F, k1=200.0, k2=K2, gamma3=GAMMA3), axes)
+    (other,) = curve_criticality(plane, curve_of(plane, F, k1, point.frequency), 1e-10).points
     assert other.values == pytest.approx((k1, GAMMA3), rel=1e-8)
 
 
 def test_axial_drag_moves_it_along_the_hopf_curve(found):
     plane, curve, told = found
-    (point,), (other,) = told.points, curve_criticality(plane, curve, 0.5, 1e-10).points
+    (point,), (other,) = (
+        told.points,
+        curve_criticality(replace(plane, rod=plane.rod.changed(gamma1=0.5)), curve, 1e-10).points,
+    )
     assert abs(other.values[0] - point.values[0]) > 1e-3
     c = coefficients((*other.values, K2, GAMMA3, 0.5), 1j * other.frequency, 24)[0]
     assert abs(c.real) < 1e-7 * abs(c)
@@ -129,7 +132,7 @@ def test_where_the_normal_form_fails_the_side_is_not_known_and_no_other_is_lost(
         return real(rod, *more)
 
     monkeypatch.setattr(generalised, "hopf_coefficients", fails_at_one)
-    again = curve_criticality(plane, curve, 1.0, 1e-10)
+    again = curve_criticality(plane, curve, 1e-10)
     assert np.flatnonzero(np.isnan(again.criticality)).tolist() == [3]
     assert np.array_equal(np.delete(again.criticality, 3), np.delete(told.criticality, 3))
     assert again.points == told.points
@@ -145,7 +148,7 @@ def test_a_change_that_cannot_be_located_is_counted(found, monkeypatch):
         return replace(c, landau=complex(np.sign(c.landau.real), 1.0))
 
     monkeypatch.setattr(generalised, "hopf_coefficients", jumps)
-    again = curve_criticality(plane, curve, 1.0, 1e-10)
+    again = curve_criticality(plane, curve, 1e-10)
     assert (again.points, again.unlocated) == ((), 1)
     assert np.array_equal(again.criticality, told.criticality)
 
@@ -156,7 +159,7 @@ def test_a_point_within_the_error_of_the_change_is_undecided_and_brackets_nothin
     (point,) = told.points
     x, y = (axis.scaled(v) for axis, v in zip(plane.axes, point.values, strict=True))
     there = np.insert(curve.scaled, point.after + 1, [x, y, np.log(point.frequency)], axis=0)
-    again = curve_criticality(plane, replace(curve, scaled=there), 1.0, 1e-10)
+    again = curve_criticality(plane, replace(curve, scaled=there), 1e-10)
     assert again.criticality[point.after + 1] == 0
     assert again.points[0].values == pytest.approx(point.values, rel=1e-10)
     assert again.points[0].after in (point.after, point.after + 1)
@@ -290,7 +293,7 @@ def test_curve_that_turns_back_in_the_third_parameter_is_followed_through_it(mon
 
     monkeypatch.setattr(BautinSpace, "solved", on_parabola)
     unit = tuple(PlaneAxis(name, 0.0, 1.0) for name in ("F", "k1", "gamma3"))
-    space = BautinSpace(Rod(0.0, 2.0, 1.0, 1.0), unit, np.array([0.5, 0.6]), 1.0, 1e-10)
+    space = BautinSpace(Rod(F=0.0, k1=2.0, k2=1.0, gamma3=1.0), unit, np.array([0.5, 0.6]), 1e-10)
     start = on_parabola(space, np.array([0.3, 0.5, 0.6, 0.0]), 2)
     curve = bautin_curve(space, start.point)
     assert curve.ends == (BautinEnd.plane_edge, BautinEnd.plane_edge) or curve.ends[1] == BautinEnd.range_end
@@ -301,6 +304,30 @@ def test_curve_that_turns_back_in_the_third_parameter_is_followed_through_it(mon
     assert sum(abs(z - 0.6) < 1e-9) == 2
     beyond = on_parabola(space, np.array([0.7, 0.5, 0.6, 0.0]), 2)
     assert lies_on(space, beyond.point, curve)
+
+
+def test_a_closed_curve_over_three_parameters_is_followed_once(monkeypatch):
+    """Instead of rods a circle of radius 0.3 about (1/2, 1/2) in x and z."""
+
+    def on_circle(space, guess, held):
+        x, z = guess[[0, 2]] - 0.5
+        other = np.sqrt(np.maximum(0.09 - (z if held == 2 else x) ** 2, 0))
+        if other == 0:
+            raise Unsolvable("beyond the circle")
+        x, z = (np.copysign(other, x), z) if held == 2 else (x, np.copysign(other, z))
+        v = np.array([0.5 + x, 0.5, 0.5 + z, guess[3]])
+        point = BautinCurvePoint(values=v[:3], errors=np.zeros(3), frequency=1.0, landau_imag=0.0)
+        return bautin_curves._Place(v, point)
+
+    monkeypatch.setattr(BautinSpace, "solved", on_circle)
+    unit = tuple(PlaneAxis(name, 0.0, 1.0) for name in ("F", "k1", "gamma3"))
+    space = BautinSpace(Rod(F=0.0, k1=2.0, k2=1.0, gamma3=1.0), unit, np.array([0.5]), 1e-10)
+    curve = bautin_curve(space, on_circle(space, np.array([0.7, 0.5, 0.7, 0.0]), 0).point)
+    assert curve.ends == (BautinEnd.closed, BautinEnd.closed)
+    x, _, z = np.array([point.values for point in curve.points]).T - 0.5
+    turned = np.unwrap(np.arctan2(z, x))
+    assert abs(turned[-1] - turned[0]) == pytest.approx(2 * np.pi)
+    assert (np.abs(np.diff(turned)) < 0.5).all()
 
 
 @pytest.mark.parametrize(

@@ -4,29 +4,54 @@ import threading
 import time
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from rodsweep.sweep.handout import (
+    ANSWER_TAG,
     CHUNK_SECONDS,
     OVER,
+    PLACE_TAG,
     REQUEST_TAG,
+    STOP_TAG,
     FirstRankClaims,
     Handout,
+    OtherRankClaims,
     Report,
     chunk_seconds,
 )
 from rodsweep.sweep.stop import StopRequest
+from rodsweep.watch import Whereabouts
 
 
-def test_every_point_is_handed_out_once():
-    handout = Handout([(0, 10), (20, 25)], ranks=2)
-    seen = []
-    chunk = handout.take(0)
-    while chunk != OVER:
-        seen += range(*chunk)
-        handout.settle(0, Report(chunk[1] - chunk[0], 1e-3))
-        chunk = handout.take(0)
-    assert sorted(seen) == [*range(10), *range(20, 25)]
+@given(st.lists(st.integers(1, 40), min_size=1, max_size=4), st.integers(1, 4), st.integers(0, 2**32 - 1))
+def test_every_unit_is_done_once_whatever_ranks_give_back_and_none_ends_before(sizes, ranks, seed):
+    """Each rank does at least one unit of a chunk; it may have got the next one ahead."""
+    rng = np.random.default_rng(seed)
+    ends = np.cumsum(np.array(sizes) + 1)  # a unit between two ranges is not to do
+    todo = [(int(end) - size, int(end)) for size, end in zip(sizes, ends, strict=True)]
+    units = [unit for start, stop in todo for unit in range(start, stop)]
+    handout, done = Handout(todo, ranks), []
+    held = {rank: [] for rank in range(ranks)}
+    while held:
+        rank = rng.choice(list(held))
+        chunks = held[rank]
+        if len(chunks) == 1 and rng.random() < 0.5:
+            ahead = handout.take_ahead(rank)
+            chunks += [ahead] if ahead else []
+        if chunks:
+            start, stop = chunks.pop(0)
+            at = int(rng.integers(start, stop)) + 1
+            done += range(start, at)
+            handout.settle(rank, Report(at - start, 10 ** rng.uniform(-4, 1), (at, stop)))
+        chunk = None if chunks else handout.take(rank)
+        if chunk == OVER:
+            assert sorted(done) == units
+            del held[rank]
+        elif chunk:
+            chunks.append(chunk)
 
 
 def test_chunks_follow_the_pace_and_shrink_towards_the_end():
@@ -83,6 +108,13 @@ def test_two_threads_share_the_work_without_losing_any():
     assert sorted(seen[0] + seen[1]) == list(range(5000))
 
 
+def test_points_that_all_ranks_have_kept_are_counted():
+    handout = Handout([(0, 9)], ranks=2)
+    for rank, points in ((0, 2), (1, 3), (0, 1)):
+        handout.settle(rank, Report(points=points))
+    assert handout.points == 6
+
+
 def test_after_a_stop_nobody_gets_more_and_nobody_waits():
     handout = Handout([(0, 100)], ranks=2)
     assert handout.take(0) == (0, 1)
@@ -118,34 +150,40 @@ def test_next_chunk_is_given_ahead_while_plenty_is_left():
 
 
 class Mail:
-    """In the place of MPI: what the first rank receives from rank 1, in order, and what it sends."""
+    """In the place of MPI: what one rank receives from another, in order, and what it sends."""
 
     ANY_SOURCE = -1
 
-    def __init__(self):
-        self.reports, self.sent = [], []
+    def __init__(self, sender=1):
+        self.sender = sender
+        self.received, self.sent = {}, []
 
-    def Iprobe(self, source, tag, status):
-        return tag == REQUEST_TAG and bool(self.reports)
+    def post(self, tag, what):
+        self.received.setdefault(tag, []).append(what)
+
+    def Iprobe(self, source, tag, status=None):
+        return source in (self.sender, self.ANY_SOURCE) and bool(self.received.get(tag))
 
     def Get_source(self):
-        return 1
+        return self.sender
 
     def recv(self, source, tag):
-        return self.reports.pop(0)
+        assert source == self.sender
+        return self.received[tag].pop(0)
 
     def send(self, what, dest, tag):
+        assert dest == self.sender
         self.sent.append(what)
 
     def Status(self):
         return self
 
 
-def claims(mail, todo, monkeypatch):
+def claims(mail, todo, monkeypatch, show=lambda words, begun: None):
     """The first rank's claims among two ranks, without a thread."""
     monkeypatch.setattr(FirstRankClaims, "_serve_until_over", lambda self: None)
     team = SimpleNamespace(MPI=mail, comm=mail, size=2, first=True)
-    return FirstRankClaims(team, Handout(todo, 2), StopRequest())
+    return FirstRankClaims(team, Handout(todo, 2), StopRequest(), show)
 
 
 def test_each_chunk_is_answered_once_whether_asked_for_ahead_or_not(monkeypatch):
@@ -154,7 +192,7 @@ def test_each_chunk_is_answered_once_whether_asked_for_ahead_or_not(monkeypatch)
     first = claims(mail, [(0, 10)], monkeypatch)
     answers = []
     for report in [Report(), ahead, done, ahead, done, ahead, done, ahead, done]:
-        mail.reports.append(report)
+        mail.post(REQUEST_TAG, report)
         first.between_points()
         answers.append(mail.sent.pop() if mail.sent else None)
     # Ahead while eight units are left, then only once the last chunk is done.
@@ -166,7 +204,7 @@ def test_what_a_stopped_rank_gives_back_is_for_another_run(monkeypatch):
     mail = Mail()
     first = claims(mail, [(0, 1)], monkeypatch)
     for report in (Report(), Report(0, 9.0, (0, 1), 1, stop="SIGTERM")):
-        mail.reports.append(report)
+        mail.post(REQUEST_TAG, report)
         first.between_points()
     assert first.stop.name == "SIGTERM"
     assert mail.sent == [(0, 1), "SIGTERM", OVER]
@@ -178,3 +216,66 @@ def test_what_the_first_rank_gives_back_when_stopped_is_for_another_run(monkeypa
     assert first.claim(Report()) == (0, 1)
     first.stop.name = "SIGUSR1"
     assert first.claim(Report(0, 9.0, (0, 1), 1)) == OVER
+
+
+@pytest.mark.parametrize("asked", ["the first", "another"])
+def test_a_rank_that_is_asked_to_stop_stops_all(monkeypatch, asked):
+    mail = Mail()
+    first = claims(mail, [(0, 9)], monkeypatch)
+    if asked == "another":
+        mail.post(STOP_TAG, "SIGTERM")
+    else:
+        first.stop.name = "SIGTERM"
+    first.between_points()
+    assert first.stop.name == "SIGTERM"
+    assert mail.sent == ["SIGTERM"]
+    mail.post(REQUEST_TAG, Report())
+    first.between_points()
+    assert mail.sent == ["SIGTERM", OVER]
+    assert first.claim(Report()) == OVER
+
+
+def test_progress_counts_what_is_done_of_every_long_point_until_it_is_reported(monkeypatch):
+    mail, shown = Mail(), []
+    first = claims(mail, [(0, 9)], monkeypatch, lambda words, begun: shown.append((words, begun)))
+    mail.post(PLACE_TAG, Whereabouts("branch", 0.5))
+    first.between_points()
+    first.tell_place(Whereabouts("mesh"))  # its share is not known
+    first.tell_place(Whereabouts("cycle", 0.25))
+    mail.post(REQUEST_TAG, Report(1, 9.0))
+    first.between_points()
+    first.tell_place(Whereabouts("cycle", 0.75))
+    assert shown == [("mesh", 0.5), ("cycle", 0.75), ("cycle", 0.75)]
+
+
+def other_claims(mail):
+    """The claims of a rank that is not the first."""
+    return OtherRankClaims(SimpleNamespace(comm=mail), StopRequest())
+
+
+def test_another_rank_asks_for_its_next_chunk_when_it_begins_one():
+    mail = Mail(sender=0)
+    rank, done = other_claims(mail), Report(3, 9.0)
+    mail.post(ANSWER_TAG, (4, 7))
+    assert rank.claim(done) == (4, 7)
+    assert mail.sent == [done, Report(ahead=True)]
+    mail.post(ANSWER_TAG, OVER)
+    assert rank.claim(done) == OVER
+    assert mail.sent[2:] == [done]
+
+
+def test_another_rank_tells_the_first_of_a_stop_or_hears_of_it_once():
+    mail = Mail(sender=0)
+    asked, told = other_claims(mail), other_claims(mail)
+    for _ in range(2):
+        told.between_points()
+    assert not told.stop
+    asked.stop.name = "SIGUSR1"
+    for _ in range(2):
+        asked.between_points()
+    assert mail.sent == ["SIGUSR1"]
+    mail.post(STOP_TAG, "SIGUSR1")
+    for _ in range(2):
+        told.between_points()
+    assert told.stop.name == "SIGUSR1"
+    assert mail.sent == ["SIGUSR1"]

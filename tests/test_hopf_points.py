@@ -8,8 +8,9 @@ from known_cycles import UNSTABLE, hopf_variables, make_view, store
 
 from rodsweep.post.figures.cycle.amplitude import draw_amplitude
 from rodsweep.post.figures.cycle.square_root import square_root_laws
-from rodsweep.post.hopf_points import Bracket, HopfPoint, StoredHopfPoints, lines_over
+from rodsweep.post.hopf_points import Bracket, HopfPoint, StoredChanges
 from rodsweep.post.summary.stability import stability_lines
+from rodsweep.sweep.lines import lines_over
 from rodsweep.tasks.job import make_job
 from rodsweep.tasks.protocol import alone
 
@@ -79,8 +80,8 @@ def test_points_that_are_listed_make_the_lines_that_a_grid_makes(tmp_path):
 
 
 def changes_on(view, name="F"):
-    (line,) = lines_over(view, name)
-    return StoredHopfPoints(view, name).on(line)
+    (line,) = lines_over(view.point_columns, name)
+    return StoredChanges(view, name).on(line)
 
 
 def test_a_window_of_flutter_has_a_hopf_point_at_each_end():
@@ -96,7 +97,7 @@ def test_a_change_that_no_search_has_located_lies_between_two_points():
     view = swept((100,), constant)
     view.variables.update(hopf_variables("F", []))
     assert changes_on(view) == [Bracket(27.0, 28.0, True)]
-    (line,), _ = stability_lines(view, "F", StoredHopfPoints(view, "F").on)
+    (line,), _ = stability_lines(view, "F", StoredChanges(view, "F").on)
     assert line == "F** (straight rod starts to beat): between 27 and 28"
 
 
@@ -238,13 +239,13 @@ def test_no_hopf_point_is_marked_over_another_parameter():
     view.variables["linear_growth_rate"][0, 0, 2] = -1
     figure = draw_amplitude([view])[0]
     assert dotted(figure.axes[1]) == []
-    assert stability_lines(view, "F", StoredHopfPoints(view, "F").on) == ([], [])
+    assert stability_lines(view, "F", StoredChanges(view, "F").on) == ([], [])
 
 
 def test_lines_over_a_parameter_hold_every_point_once_in_the_order_of_the_file():
     axes = ([20.0, 30, 40], [1e4], [200.0, 100], [1e-2], [1.0, 0.5])
     view = make_view(axes, [0] * 12, stored=())
-    lines = list(lines_over(view, "F"))
+    lines = list(lines_over(view.point_columns, "F"))
     keys = [(line.parameters["k2"], line.parameters["gamma1"]) for line in lines]
     assert keys == [(200, 1), (200, 0.5), (100, 1), (100, 0.5)]
     assert sorted(np.concatenate([line.at for line in lines])) == list(range(12))
@@ -270,7 +271,7 @@ def test_lines_over_a_parameter_hold_every_point_once_in_the_order_of_the_file()
     ],
 )
 def test_the_summary_tells_hopf_points_one_by_one_or_their_range(view, expected):
-    (line,), _ = stability_lines(view, "F", StoredHopfPoints(view, "F").on)
+    (line,), _ = stability_lines(view, "F", StoredChanges(view, "F").on)
     assert line == f"F** (straight rod starts to beat): {expected}"
 
 
@@ -281,7 +282,7 @@ def test_the_summary_tells_every_window_of_flutter_on_a_line():
     places = [9.0, 29.0, 49.0, 69.0, 89.0]
     kinds = ["hopf", "restabilization"] * 2 + ["hopf"]
     view.variables.update(hopf_variables("F", [(F, 1e4, 1e2, 1e-2) for F in places], kinds=kinds))
-    (beats, again), _ = stability_lines(view, "F", StoredHopfPoints(view, "F").on)
+    (beats, again), _ = stability_lines(view, "F", StoredChanges(view, "F").on)
     assert re.findall(r"(\d+)\.0+", beats) == ["9", "49", "89"]
     assert re.findall(r"(\d+)\.0+", again) == ["29", "69"]
 
@@ -317,8 +318,8 @@ def test_a_threshold_below_the_first_force_is_told(tmp_path):
     assert found["hopf_F"] == pytest.approx(WINDOW[:1], rel=1e-12)
     view = make_view(([60.0, 75], [200.0], [1e4], [1e-4], [1.0]), [0, 0], stored=())
     view.variables.update(found | {"linear_growth_rate": np.ones((2, 1, 1, 1, 1))})
-    stored = StoredHopfPoints(view, "F")
-    (line,) = lines_over(view, "F")
+    stored = StoredChanges(view, "F")
+    (line,) = lines_over(view.point_columns, "F")
     assert stored.on(line) == []
     assert [point.position for point in stored.up_to(line)] == pytest.approx(WINDOW[:1], rel=1e-12)
     (sentence,), _ = stability_lines(view, "F", stored.up_to)

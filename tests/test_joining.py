@@ -95,6 +95,9 @@ def test_another_file_is_joined_to_one_that_is_there(command):
     names = computed(command, SPECTRA, [(RANGE, "[0, 10]")], [(RANGE, "[20, 30, 40]")])
     assert command("merge", "m.h5", names[0]).returncode == 0
     assert "30 points from 1 file," in command("merge", "m.h5", names[1]).stdout
+    with h5py.File(command.directory / "m.h5") as file:
+        assert file.attrs["ranks"] == 2  # of both runs
+        assert "num: 5" in file.attrs["config"]  # the axis is a range again
     command.write("c.yaml", SPECTRA)
     assert "complete, nothing to do" in command("run", "c.yaml", "-o", "m.h5").stdout
 

@@ -12,9 +12,9 @@ from ranks import PATIENCE, pause_until, wait_for_end
 
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.results.run.unit_results import UnitResults
-from rodsweep.solve.branch.special_boundaries import RowSpecial, SpecialBoundaries, TracedHalf
-from rodsweep.solve.branch.special_curves import CurveEnd, CurvePoint, HalfCurve
-from rodsweep.solve.branch.special_points import SpecialKind
+from rodsweep.solve.branch.special.boundaries import RowSpecial, SpecialBoundaries, TracedHalf
+from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, HalfCurve
+from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.sweep.handout import OVER, Report
 from rodsweep.sweep.pool import Pool
 
@@ -117,15 +117,15 @@ def test_curves_are_stopped_said_to_be_missing_and_resumed(whole, units, ranks, 
 
 def test_two_ranks_share_the_halves_of_one_curve(whole):
     """Each waits within its first half until the other is within one."""
-    patch = """
+    patch = f"""
 import os, pathlib, time
 from rodsweep.tasks.diagram_curves import DiagramCurves
 
 solve, rank = DiagramCurves.solve, os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK"))
 
 def solve_beside_another(self, units, unit):
-    pathlib.Path(f"follows-{rank}-{unit}").touch()
-    end = time.monotonic() + 60
+    pathlib.Path(f"follows-{{rank}}-{{unit}}").touch()
+    end = time.monotonic() + {PATIENCE / 2}
     while len(list(pathlib.Path().glob("follows-*"))) < 2 and time.monotonic() < end:
         time.sleep(0.01)
     return solve(self, units, unit)

@@ -1,12 +1,15 @@
 """Cycles by time integration alone: against those of collocation, and how points end that have none."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
+from rods import rod_of
 from surveyed import RODS
 
-from rodsweep.solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle
+from rodsweep.model.rod import Rod
+from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.marched import MarchedStatus, solve_by_integration
 
 ACCURACY = 1e-5
@@ -22,7 +25,7 @@ def random_rods(count):
     rng = np.random.default_rng(11)
     for _ in range(count):
         k1, k2, gamma3, gamma1 = 10 ** rng.uniform((2.2, 1.3, -4, -0.5), (4, 4, -1, 1))
-        yield CyclePoint(rng.uniform(40, min(0.9 * k1, 160)), k1, k2, gamma3, gamma1)
+        yield Rod(F=rng.uniform(40, min(0.9 * k1, 160)), k1=k1, k2=k2, gamma3=gamma3, gamma1=gamma1)
 
 
 @cache
@@ -66,7 +69,7 @@ def test_a_motion_that_ends_otherwise_ends_so_by_collocation_too():
 
 
 def test_a_straight_rod_stays_straight():
-    rod = CyclePoint(20.0, 1e4, 1e2, 1e-2, 1.0)
+    rod = Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
     found = solve_by_integration(rod, request(ACCURACY))
     assert (found.status, found.message) == (MarchedStatus.straight, "decayed to rounding")
     assert np.isnan(found.measures.period)
@@ -74,20 +77,22 @@ def test_a_straight_rod_stays_straight():
 
 def test_a_motion_beside_the_hopf_point_is_not_called_a_cycle_before_it_has_settled():
     """F** = 27.43: here it needs some thousands of returns."""
-    rod = CyclePoint(27.45, 1e4, 1e2, 1e-2, 1.0)
+    rod = Rod(F=27.45, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
     found = solve_by_integration(rod, request(1e-6, most_periods=60))
     assert found.status == MarchedStatus.not_settled
     assert "returns of the tip, the last at a relative distance of" in found.message
 
 
 def test_a_crushed_rod_leaves_the_model():
-    found = solve_by_integration(CyclePoint(210.0, 200.0, 1e4, 1e-4, 1.0), request(ACCURACY, most_periods=9))
+    found = solve_by_integration(
+        Rod(F=195.0, k1=200.0, k2=1e4, gamma3=1e-4), replace(request(ACCURACY, most_periods=9), amplitude=0.5)
+    )
     assert found.status == MarchedStatus.left_the_model
 
 
 @pytest.mark.parametrize("rod", [(np.inf, np.inf, 0.0), (np.inf, 300.0, 1e-3), (400.0, np.inf, 1e-3)])
 def test_a_rod_in_a_limit_states_what_the_rod_near_it_is_off_by(rod):
-    point = CyclePoint(60.0, *rod, 1.0)
+    point = rod_of(60.0, *rod, 1.0)
     one, other = solve_cycle(point, request(1e-8)), solve_by_integration(point, request(1e-4))
     assert (one.status.name, other.status.name) == ("cycle", "cycle")
     assert abs(other.measures.period / one.measures.period - 1) <= other.errors.period_error
@@ -95,7 +100,10 @@ def test_a_rod_in_a_limit_states_what_the_rod_near_it_is_off_by(rod):
 
 
 def test_samples_and_shapes_are_those_of_collocation():
-    rod, asked = CyclePoint(40.0, 1e4, 1e2, 1e-2, 1.0), {"samples": 16, "shapes": 4, "nodes": 9}
+    rod, asked = (
+        Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0),
+        {"samples": 16, "shapes": 4, "nodes": 9},
+    )
     one, other = solve_cycle(rod, request(1e-8, **asked)), solve_by_integration(rod, request(1e-6, **asked))
     assert other.tip == pytest.approx(one.tip, abs=1e-5)
     assert other.shape == pytest.approx(one.shape, abs=1e-5)

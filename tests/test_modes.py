@@ -7,6 +7,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 from numpy.polynomial import legendre
+from rods import rod_of
 from scipy.linalg import expm
 
 from rodsweep.determinant.value import distance_to_next
@@ -187,7 +188,7 @@ def relative(found, exact):
     "k1, k2, gamma3", [(1e4, 1e4, 1e-4), (1e4, 5.0, 0.5), (INF, INF, 0.0), (1e4, 50.0, 0.0)]
 )
 def test_at_rest_left_and_right_modes_are_equal(k1, k2, gamma3):
-    result = solve_modes(Rod(0.0, k1, k2, gamma3), TIGHT)
+    result = solve_modes(Rod(F=0.0, k1=k1, k2=k2, gamma3=gamma3), TIGHT)
     assert result.status == SpectrumStatus.ok
     assert (result.spectrum.eigenvalues.imag == 0).all()
     assert (result.spectrum.eigenvalues.real < 0).all()
@@ -201,7 +202,7 @@ def test_at_rest_left_and_right_modes_are_equal(k1, k2, gamma3):
 @pytest.mark.parametrize("parameters", RODS)
 def test_modes_are_those_of_appendix_c(parameters):
     """The closed form, deformations included, and condition numbers."""
-    rod = Rod(*parameters)
+    rod = rod_of(*parameters)
     result = solve_modes(rod, SHAPES)
     assert result.status == SpectrumStatus.ok
     for n, w in enumerate(result.spectrum.eigenvalues):
@@ -219,7 +220,7 @@ def test_modes_are_those_of_appendix_c(parameters):
 
 def test_printed_form_of_appendix_c():
     """Y and Theta as printed (G, g1, g2, chi), with the corrected quartic, normalised to Y(1) = 1."""
-    rod = Rod(*FIG_2A)
+    rod = rod_of(*FIG_2A)
     result = solve_modes(rod, SHAPES)
     w, mu = result.spectrum.eigenvalues[1], rod.k2 * rod.nu + rod.F
     b = rod.F * mu - (1 + rod.k2 * rod.gamma3) * w
@@ -237,7 +238,7 @@ def test_printed_form_of_appendix_c():
 @pytest.mark.kernel
 @pytest.mark.parametrize("parameters", RODS)
 def test_left_and_right_modes_are_biorthogonal(parameters):
-    rod = Rod(*parameters)
+    rod = rod_of(*parameters)
     result = solve_modes(rod, SHAPES)
     products, norms = gamma_products(result, rod.gamma3)
     off = products - np.diag(np.diag(products))
@@ -251,7 +252,7 @@ def test_left_and_right_modes_are_biorthogonal(parameters):
 @pytest.mark.parametrize("parameters", RODS)
 def test_left_modes_have_the_ends_of_appendix_b(parameters):
     """psi(0) = 0, (K D psi + ad*_psi Sigma0)(1) = 0: Theta+' = -F Y+, Y+' - nu Theta+ = c2 F Theta+."""
-    rod = Rod(*parameters)
+    rod = rod_of(*parameters)
     result = solve_modes(rod, SHAPES)
     slope = result.vectors.left @ SLOPE.T
     size = abs(slope).max(axis=2)
@@ -265,7 +266,7 @@ def test_left_null_vector_of_the_pencil_has_the_adjoint_ends():
 
     This holds the shear condition where k2 = inf makes it invisible in Y+, and to the order of the mesh.
     """
-    rod = Rod(15.0, INF, INF, 0.0)
+    rod = Rod(F=15.0, k1=INF, k2=INF, gamma3=0.0)
     w = complex(ClosedForm(rod, -43.923).w)
     left_over = []
     for order in (8, 12, 16):
@@ -284,7 +285,7 @@ def test_condition_diverges_at_the_onset_like_a_square_root():
     distances = [1e-2, 1e-4]
     condition = []
     for distance in distances:
-        rod = Rod(ONSET * (1 - distance), 1e4, 1e4, 1e-4)
+        rod = Rod(F=ONSET * (1 - distance), k1=1e4, k2=1e4, gamma3=1e-4)
         result = solve_modes(rod, ModesRequest(2, 1e-8, 9, growth=False))
         assert result.status == SpectrumStatus.ok
         condition.append(result.vectors.condition)
@@ -295,7 +296,7 @@ def test_condition_diverges_at_the_onset_like_a_square_root():
 
 @pytest.mark.kernel
 def test_a_rod_at_the_onset_says_that_its_modes_are_inaccurate():
-    result = solve_modes(Rod(ONSET, 1e4, 1e4, 1e-4), TIGHT)
+    result = solve_modes(Rod(F=ONSET, k1=1e4, k2=1e4, gamma3=1e-4), TIGHT)
     assert result.status == SpectrumStatus.accuracy_not_reached
     assert result.vectors.condition[:2].min() > 1e5
     assert result.vectors.condition_error[:2].max() > 1e-3
@@ -306,7 +307,7 @@ def test_a_rod_at_the_onset_says_that_its_modes_are_inaccurate():
 def test_modes_next_to_the_onset_are_not_called_accurate():
     """The eigenvalues are right to 1e-10 there, their condition numbers are not."""
     request = ModesRequest(modes=4, accuracy=1e-10, nodes=9, growth=False)
-    rod = Rod(20.008, 1e4, 1e4, 1e-4)
+    rod = Rod(F=20.008, k1=1e4, k2=1e4, gamma3=1e-4)
     assert solve_spectrum(rod, SpectrumRequest(4, 1e-10, True)).status == SpectrumStatus.ok
     result = solve_modes(rod, request)
     assert result.status == SpectrumStatus.accuracy_not_reached
@@ -316,8 +317,8 @@ def test_modes_next_to_the_onset_are_not_called_accurate():
 
 def test_a_decaying_rod_may_grow_at_first():
     """Fig. 2a's rod at F = 15: all modes decay like exp(-44 t) or faster, yet the abscissa is positive."""
-    result = solve_modes(Rod(*FIG_2A), TIGHT)
-    exact = ClosedForm(Rod(*FIG_2A), result.spectrum.eigenvalues[0]).w
+    result = solve_modes(rod_of(*FIG_2A), TIGHT)
+    exact = ClosedForm(rod_of(*FIG_2A), result.spectrum.eigenvalues[0]).w
     assert result.spectrum.eigenvalues[0].real == pytest.approx(float(mp.re(exact)), rel=1e-11)
     assert result.spectrum.eigenvalues[0].real < -44
     assert result.growth.numerical_abscissa > 21.9
@@ -326,7 +327,7 @@ def test_a_decaying_rod_may_grow_at_first():
 
 @pytest.mark.parametrize("parameters", RODS)
 def test_abscissa_is_the_largest_root_of_the_averaged_ends(parameters):
-    rod = Rod(*parameters)
+    rod = rod_of(*parameters)
     found = numerical_abscissa(rod, assemble(1, 24))
     exact = ClosedForm(rod, found, 0.5).w
     assert found == pytest.approx(float(mp.re(exact)), rel=1e-11, abs=1e-10)
@@ -335,7 +336,7 @@ def test_abscissa_is_the_largest_root_of_the_averaged_ends(parameters):
 
 def test_abscissa_is_found_where_no_bound_is_known():
     """A soft rod without rotational drag, pulled beyond its shear stiffness (g < 0)."""
-    rod = Rod(-48.0, 1e6, 3.5, 0.0)
+    rod = Rod(F=-48.0, k1=1e6, k2=3.5, gamma3=0.0)
     found = numerical_abscissa(rod, assemble(2, 32))
     leading = solve_modes(rod, ModesRequest(1, 1e-8, 9, growth=False, certify=False)).spectrum.eigenvalues[0]
     assert rod.g < 0
@@ -382,7 +383,7 @@ def polynomial_suprema(rod, degree):
 )
 def test_abscissa_is_the_supremum_over_the_domain(parameters):
     """The form domain reaches it at once; fields with the ends of L only in the limit, like 1/degree^2."""
-    rod = Rod(*parameters)
+    rod = rod_of(*parameters)
     exact = numerical_abscissa(rod, assemble(1, 24))
     over_form, over_domain = np.array([polynomial_suprema(rod, degree) for degree in (14, 28)]).T
     assert over_form == pytest.approx(exact, rel=1e-7)
@@ -393,11 +394,11 @@ def test_abscissa_is_the_supremum_over_the_domain(parameters):
 
 def test_unshearable_limit_is_reached_at_first_order():
     """k2 -> inf at gamma3 = 1e-2, every number; h2 = c2 s is exactly 0 there."""
-    limit = solve_modes(Rod(15.0, 1e4, INF, 1e-2), TIGHT)
+    limit = solve_modes(Rod(F=15.0, k1=1e4, k2=INF, gamma3=1e-2), TIGHT)
     assert (limit.vectors.deformation[0] == 0).all()
     differences = []
     for k2 in (1e5, 1e6):
-        near = solve_modes(Rod(15.0, 1e4, k2, 1e-2), TIGHT)
+        near = solve_modes(Rod(F=15.0, k1=1e4, k2=k2, gamma3=1e-2), TIGHT)
         differences.append(
             [
                 abs(near.growth.numerical_abscissa - limit.growth.numerical_abscissa),
@@ -413,8 +414,10 @@ def test_unshearable_limit_is_reached_at_first_order():
 
 def test_without_rotational_drag_only_the_abscissa_jumps():
     """gamma3 -> 0 at c2 > 0: theta loses the freedom to start anywhere, which the norm does not notice."""
-    limit = solve_modes(Rod(15.0, 1e4, 200.0, 0.0), TIGHT)
-    near, nearer = (solve_modes(Rod(15.0, 1e4, 200.0, gamma3), TIGHT) for gamma3 in (1e-6, 1e-8))
+    limit = solve_modes(Rod(F=15.0, k1=1e4, k2=200.0, gamma3=0.0), TIGHT)
+    near, nearer = (
+        solve_modes(Rod(F=15.0, k1=1e4, k2=200.0, gamma3=gamma3), TIGHT) for gamma3 in (1e-6, 1e-8)
+    )
     vectors = ("vectors.condition", "vectors.left", "vectors.right", "vectors.deformation")
     for name in ("spectrum.eigenvalues", *vectors, "growth.transient_growth"):
         value = attrgetter(name)
@@ -426,10 +429,16 @@ def test_without_rotational_drag_only_the_abscissa_jumps():
 
 def test_abscissa_is_continuous_where_theta_is_no_state_of_its_own():
     """c2 = 0, gamma3 -> 0 at first order; and c2 -> 0 at gamma3 = 0 like the layer's thickness, sqrt(c2)."""
-    limit = numerical_abscissa(Rod(15.0, 1e4, INF, 0.0), assemble(1, 24))
-    drags = [abs(numerical_abscissa(Rod(15.0, 1e4, INF, x), assemble(1, 24)) - limit) for x in (1e-4, 1e-5)]
+    limit = numerical_abscissa(Rod(F=15.0, k1=1e4, k2=INF, gamma3=0.0), assemble(1, 24))
+    drags = [
+        abs(numerical_abscissa(Rod(F=15.0, k1=1e4, k2=INF, gamma3=x), assemble(1, 24)) - limit)
+        for x in (1e-4, 1e-5)
+    ]
     assert drags[0] / drags[1] == pytest.approx(10, rel=0.02)
-    shears = [abs(numerical_abscissa(Rod(15.0, 1e4, x, 0.0), assemble(1, 24)) - limit) for x in (1e6, 1e8)]
+    shears = [
+        abs(numerical_abscissa(Rod(F=15.0, k1=1e4, k2=x, gamma3=0.0), assemble(1, 24)) - limit)
+        for x in (1e6, 1e8)
+    ]
     assert shears[0] / shears[1] == pytest.approx(10, rel=0.02)
 
 
@@ -448,7 +457,7 @@ def test_abscissa_is_continuous_where_theta_is_no_state_of_its_own():
     ],
 )
 def test_transient_growth_is_the_largest_norm_of_the_exact_propagator(parameters):
-    rod = Rod(*parameters)
+    rod = rod_of(*parameters)
     result = solve_modes(rod, TIGHT)
     # Ten modes represent exp(L t) to 1e-12 at these times.
     exact = ReferenceGrowth(
@@ -498,7 +507,7 @@ def test_no_pair_is_cut():
 
 def test_all_modes_of_a_mesh_say_the_same_as_few():
     """Most have decayed by 1e-100 then, and must not cost digits: w t is up to 1e6."""
-    propagator = growth_module.propagator_of(Rod(12.0, INF, INF, 0.0), assemble(1, 32))
+    propagator = growth_module.propagator_of(Rod(F=12.0, k1=INF, k2=INF, gamma3=0.0), assemble(1, 32))
     norms = []
     for k in (12, 18, 32):
         assert propagator.keep(k) == k
@@ -514,7 +523,7 @@ def test_a_mesh_that_makes_an_unstable_eigenvalue_up_is_refused():
 
 def test_where_nothing_can_grow_no_propagator_is_needed(monkeypatch):
     monkeypatch.setattr(growth_module, "propagator_of", None)
-    result = solve_modes(Rod(9.8, 1e4, 1e4, 1e-4), TIGHT)
+    result = solve_modes(Rod(F=9.8, k1=1e4, k2=1e4, gamma3=1e-4), TIGHT)
     assert result.status == SpectrumStatus.ok
     assert result.growth.numerical_abscissa < 0
     assert (result.growth.transient_growth, result.growth.transient_time, result.growth.growth_error) == (
@@ -628,7 +637,7 @@ EARLY = [(10.5, 1e4, 1e4, 1e-4), (11.0, 1e4, 1e8, 1e-8), (9.9, 1e4, 1e2, 1e-2)]
 @pytest.mark.parametrize("parameters", EARLY)
 def test_early_growth_is_that_of_the_exact_propagator(parameters):
     """Abscissae of 2 to 4, peaks at 1e-6 to 1e-4 of S - 1 from 1e-7 to 1e-4: 26 exact modes."""
-    rod = Rod(*parameters)
+    rod = rod_of(*parameters)
     result = solve_modes(rod, TIGHT)
     assert result.status == SpectrumStatus.ok
     exact = ReferenceGrowth(
@@ -643,7 +652,7 @@ def test_early_growth_is_that_of_the_exact_propagator(parameters):
 @pytest.mark.parametrize("F", [9.8697, 9.87, 9.88, 9.9, 9.95, 10.0, 10.2, 10.5, 11.0])
 def test_growth_is_as_accurate_as_it_says_where_the_abscissa_is_small(F):
     """Abscissae from 1e-4 to 4; S - 1 below the accuracy is 0 at 0 and covered by the error estimate."""
-    rod = Rod(F, 1e4, 1e4, 1e-4)
+    rod = Rod(F=F, k1=1e4, k2=1e4, gamma3=1e-4)
     fine = solve_modes(rod, TIGHT)
     assert fine.status == SpectrumStatus.ok
     assert 0 < fine.growth.numerical_abscissa < 4.1
@@ -661,7 +670,7 @@ def test_transient_growth_is_smooth_across_the_onset():
     """Eigenvectors become parallel there and exp(L t) does not notice: second differences are O(h^2)."""
     growth = {}
     for h in (-2, -1, 0, 1, 2):
-        result = solve_modes(Rod(ONSET + 0.01 * h, 1e4, 1e4, 1e-4), TIGHT)
+        result = solve_modes(Rod(F=ONSET + 0.01 * h, k1=1e4, k2=1e4, gamma3=1e-4), TIGHT)
         assert result.growth.growth_error < 1e-10
         growth[h] = result.growth.transient_growth
     second, wide = (growth[h] - 2 * growth[0] + growth[-h] for h in (1, 2))
@@ -669,7 +678,7 @@ def test_transient_growth_is_smooth_across_the_onset():
 
 
 def test_an_unstable_rod_grows_without_end():
-    result = solve_modes(Rod(40.0, 1e4, 1e4, 1e-4), TIGHT)
+    result = solve_modes(Rod(F=40.0, k1=1e4, k2=1e4, gamma3=1e-4), TIGHT)
     assert result.status == SpectrumStatus.ok
     assert result.spectrum.unstable_count == 2
     assert (result.growth.transient_growth, result.growth.transient_time) == (INF, INF)
@@ -678,7 +687,7 @@ def test_an_unstable_rod_grows_without_end():
 
 def test_growth_lies_between_one_and_what_the_abscissa_allows():
     for F in (5.0, 9.9, 10.0, 11.0, 20.0, 35.0):
-        result = solve_modes(Rod(F, 1e4, 1e4, 1e-4), ModesRequest(2, 1e-6, 9, growth=True))
+        result = solve_modes(Rod(F=F, k1=1e4, k2=1e4, gamma3=1e-4), ModesRequest(2, 1e-6, 9, growth=True))
         assert result.status == SpectrumStatus.ok
         bound = np.exp(max(result.growth.numerical_abscissa, 0) * result.growth.transient_time)
         assert 1 <= result.growth.transient_growth <= bound * (1 + 1e-12)
@@ -687,7 +696,7 @@ def test_growth_lies_between_one_and_what_the_abscissa_allows():
 
 
 def test_growth_is_computed_only_where_asked_for():
-    result = solve_modes(Rod(*FIG_2A), SHAPES)
+    result = solve_modes(rod_of(*FIG_2A), SHAPES)
     assert result.status == SpectrumStatus.ok
     assert np.isnan(
         [result.growth.numerical_abscissa, result.growth.transient_growth, result.growth.growth_error]
@@ -695,7 +704,7 @@ def test_growth_is_computed_only_where_asked_for():
 
 
 def test_a_point_that_fails_is_a_status():
-    result = solve_modes(Rod(1e200, INF, 1e-5, 1e-4), TIGHT)
+    result = solve_modes(Rod(F=1e200, k1=INF, k2=1e-5, gamma3=1e-4), TIGHT)
     assert result.status == SpectrumStatus.failed
     assert result.message
     assert np.isnan(result.vectors.right).all()
@@ -712,23 +721,23 @@ def test_a_failing_mesh_is_a_status(monkeypatch):
         raise np.linalg.LinAlgError("Singular matrix")
 
     monkeypatch.setattr(convergence_module, "mode_vectors", broken)
-    result = solve_modes(Rod(*FIG_2A), TIGHT)
+    result = solve_modes(rod_of(*FIG_2A), TIGHT)
     assert result.status == SpectrumStatus.failed
     assert result.message == "Singular matrix"
 
 
 def test_coarse_meshes_are_refined_until_they_agree(monkeypatch):
     monkeypatch.setattr(convergence_module, "first_mesh", lambda *_: Resolution(1, 8))
-    result = solve_modes(Rod(*FIG_2A), SHAPES)
+    result = solve_modes(rod_of(*FIG_2A), SHAPES)
     assert result.status == SpectrumStatus.ok
     assert result.vectors.resolution.order > 16
-    y, *_ = ClosedForm(Rod(*FIG_2A), result.spectrum.eigenvalues[3]).fields(POINTS)
+    y, *_ = ClosedForm(rod_of(*FIG_2A), result.spectrum.eigenvalues[3]).fields(POINTS)
     assert relative(result.vectors.right[0, 3], y) < 1e-10
 
 
 def test_a_tip_that_does_not_move_leaves_a_mode_without_scale():
     """Y(1) = 0 is met at single points only: a made-up vector has it."""
-    rod, pencil = Rod(*FIG_2A), assemble(1, 12)
+    rod, pencil = rod_of(*FIG_2A), assemble(1, 12)
     vectors = np.ones((pencil.unknowns, 3), complex)
     vectors[pencil.nodes - 1] = [0.0, 1e-15, 2.0]
     with np.errstate(all="ignore"):
@@ -745,7 +754,7 @@ def test_a_mode_whose_tip_does_not_move_is_nan_and_not_called_accurate(monkeypat
         return x, z
 
     monkeypatch.setattr(inverse_module, "null_vectors", still)
-    result = solve_modes(Rod(*FIG_2A), SHAPES)
+    result = solve_modes(rod_of(*FIG_2A), SHAPES)
     still_tips = result.spectrum.eigenvalues.real < -100
     assert (np.isnan(result.vectors.right).all(axis=(0, 2)) == still_tips).all()
     assert np.isfinite(result.vectors.left).all()
@@ -761,7 +770,7 @@ def test_of_a_pair_only_one_vector_is_computed(monkeypatch):
         calls.append(w)
         return null_vectors(A, B, w)
 
-    rod, pencil = Rod(30.0, 1e4, 1e4, 1e-4), assemble(1, 24)
+    rod, pencil = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), assemble(1, 24)
     pair = solve_spectrum(rod, SpectrumRequest(2, 1e-10, True)).eigenvalues
     other = pair[1] - 5j  # no eigenvalue: its vector is the nearest one's, from a shift of its own
     monkeypatch.setattr(inverse_module, "null_vectors", counted)
@@ -776,14 +785,14 @@ def test_of_a_pair_only_one_vector_is_computed(monkeypatch):
 def test_the_distance_to_the_next_eigenvalue_is_sharp_where_it_is_small():
     """Beside the onset F* = 20.008 the two lie close together."""
     for force, tolerance in ((20.0080207, 1e-3), (20.0081, 1e-3), (20.0, 1e-2)):
-        rod = Rod(force, 1e4, 1e4, 1e-4)
+        rod = Rod(F=force, k1=1e4, k2=1e4, gamma3=1e-4)
         w = solve_spectrum(rod, SpectrumRequest(2, 1e-10, True)).eigenvalues
         found = distance_to_next(complex(w[0]), rod.coefficients)
         assert found == pytest.approx(abs(w[0] - w[1]), rel=tolerance)
 
 
 def test_growth_on_a_coarse_mesh_is_refined_until_meshes_agree():
-    rod = Rod(*FIG_2A)
+    rod = rod_of(*FIG_2A)
     exact = solve_modes(rod, TIGHT)
     coarse, fine = (growth_module.propagator_of(rod, assemble(1, order)) for order in (4, 6))
     first = growth_module.transient_growth(coarse, fine, 23.0, 1e-10)

@@ -5,12 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rodsweep.solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle
+from rodsweep.model.rod import Rod
+from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.neighbour import MOST_BEHIND, Followed, Neighbour
 from rodsweep.solve.cycle.newton import newton, relative_change
 from rodsweep.solve.cycle.orbit_mesh import mesh_of
 
-ROD = CyclePoint(34.0, 1e4, 1e2, 1e-2, 1.0)
+ROD = Rod(F=34.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
 HOPF = 27.4271941267593
 REQUEST = CycleRequest(1e-7, 0.1, 1, 0, 0, 0, 100)
 STEP = 0.99

@@ -7,30 +7,31 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rods import rod_of
 
 from rodsweep.determinant.newton import eigenvalue_newton
 from rodsweep.determinant.value import newton_correction
 from rodsweep.discretization.mixed_form import mixed_form
 from rodsweep.model.rod import Coefficients, Rod
-from rodsweep.solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.hopf.normal_form import accurate_normal_form, normal_form
 from rodsweep.solve.point import Unsolvable
 
 INF = np.inf
 # Hopf points to 25 digits: tests/reference/thresholds.json.
-STIFF = Rod(37.6559805452710669, 1e4, 1e4, 1e-4), 191.209209231243243j
-SOFT = Rod(27.4271941267592812, 1e4, 1e2, 1e-2), 113.547607864984988j
-STRETCHABLE = Rod(49.758004916191496, 200.0, 1e4, 1e-4), 334.321465737703369j
-RESTABILIZED = Rod(155.60015929879066, 200.0, 1e4, 1e-4), 3367.2809575968313j
-FILAMENT = Rod(37.6954308403185826, INF, INF, 0.0), 191.258635765253103j
-CLOSING = Rod(75.97818719759563, 147.93, 1e4, 1e-4), 782.8760757884106j
+STIFF = Rod(F=37.6559805452710669, k1=1e4, k2=1e4, gamma3=1e-4), 191.209209231243243j
+SOFT = Rod(F=27.4271941267592812, k1=1e4, k2=1e2, gamma3=1e-2), 113.547607864984988j
+STRETCHABLE = Rod(F=49.758004916191496, k1=200.0, k2=1e4, gamma3=1e-4), 334.321465737703369j
+RESTABILIZED = Rod(F=155.60015929879066, k1=200.0, k2=1e4, gamma3=1e-4), 3367.2809575968313j
+FILAMENT = Rod(F=37.6954308403185826, k1=INF, k2=INF, gamma3=0.0), 191.258635765253103j
+CLOSING = Rod(F=75.97818719759563, k1=147.93, k2=1e4, gamma3=1e-4), 782.8760757884106j
 EACH = pytest.mark.parametrize("rod, w", [STIFF, SOFT, STRETCHABLE, RESTABILIZED, FILAMENT, CLOSING])
 ORDER = 18
 
 
 @cache
 def form_of(rod, gamma1=1.0, elements=1, order=ORDER):
-    return mixed_form(rod, gamma1, elements, order)
+    return mixed_form(rod.changed(gamma1=gamma1), elements, order)
 
 
 @cache
@@ -82,7 +83,7 @@ def test_nearest_eigenvalue_is_found_from_a_rough_guess(rod, w):
 
 def test_no_normal_form_where_nothing_oscillates():
     with pytest.raises(Unsolvable, match="real: nothing oscillates"):
-        normal_form(form_of(Rod(5.0, 1e4, 1e4, 1e-4)), -17.8 + 0j)
+        normal_form(form_of(Rod(F=5.0, k1=1e4, k2=1e4, gamma3=1e-4)), -17.8 + 0j)
     with np.errstate(invalid="ignore"), pytest.raises(Unsolvable, match="no eigenvalue is found"):
         normal_form(form_of(STIFF[0]), complex(np.nan, 1.0))
 
@@ -119,8 +120,8 @@ def test_accuracy_asked_for_is_reached(accuracy):
     """At all Hopf points of the reference."""
     seen = 0
     for rod, w in hopf_points():
-        normal = accurate_normal_form(rod, 1.0, w, accuracy)
-        exact = accurate_normal_form(rod, 1.0, w, accuracy**1.5)
+        normal = accurate_normal_form(rod, w, accuracy)
+        exact = accurate_normal_form(rod, w, accuracy**1.5)
         assert exact.form.unknowns > normal.form.unknowns
         assert abs(normal.c / exact.c - 1) <= accuracy
         seen += 1
@@ -133,16 +134,16 @@ def hopf_points():
         for event in row["events"]:
             if event["kind"].startswith("hopf"):
                 numbers = event["F"], row["k1"], row["k2"], row["gamma3"]
-                rod, w = Rod(*map(float, numbers)), 1j * float(event["frequency"])
+                rod, w = rod_of(*map(float, numbers)), 1j * float(event["frequency"])
                 if newton_correction(w, rod.coefficients)[2] < 10 * np.pi:
                     yield rod, w
 
 
 def test_what_is_no_eigenvalue_has_no_normal_form():
     with pytest.raises(Unsolvable, match="^0.01\\+191.2j is no eigenvalue at F = 37.656; the nearest is"):
-        accurate_normal_form(STIFF[0], 1.0, 0.01 + 191.2j, 1e-8)
+        accurate_normal_form(STIFF[0], 0.01 + 191.2j, 1e-8)
     with pytest.raises(Unsolvable, match="needs [0-9]+ nodes, more than"):
-        accurate_normal_form(STIFF[0], 1.0, 1e12j, 1e-8)
+        accurate_normal_form(STIFF[0], 1e12j, 1e-8)
 
 
 def test_filament_is_the_limit_of_rods():
@@ -150,7 +151,7 @@ def test_filament_is_the_limit_of_rods():
     exact = normal_of(*FILAMENT).c
     off = []
     for small in (1e-7, 1e-8):
-        rod = Rod(FILAMENT[0].F, 1 / small, 1 / small, small)
+        rod = Rod(F=FILAMENT[0].F, k1=1 / small, k2=1 / small, gamma3=small)
         off.append(abs(normal_form(form_of(rod), FILAMENT[1]).c / exact - 1))
     assert off[0] <= 1e-3
     assert off[1] == pytest.approx(off[0] / 10, rel=0.05)
@@ -214,7 +215,7 @@ def solved_cycle(form, X, frequency):
 def near_by(point, part, gamma1, order=14, phases=9):
     """(squared amplitude, frequency less that of the Hopf point), both over F - F_H, of a cycle near by."""
     normal, rod = normal_of(*point, gamma1, order=order), beyond(point, part)
-    form, step = mixed_form(rod, gamma1, 1, order), part * point[0].F
+    form, step = mixed_form(rod.changed(gamma1=gamma1), 1, order), part * point[0].F
     squared, frequency = normal.cycle(rod.F)
     start = normal.motion(squared**0.5, 2 * np.pi * np.arange(phases) / phases)
     amplitude, frequency = solved_cycle(form, start, frequency)
@@ -263,7 +264,7 @@ def test_cycles_that_a_motion_in_time_reaches_are_born_as_the_normal_form_says()
     for part in (2e-3, 4e-3):
         rod = beyond(SOFT, part)
         y = normal_of(*SOFT).cycle(rod.F)[0] ** 0.5
-        point = CyclePoint(rod.F, rod.k1, rod.k2, rod.gamma3, 1.0)
+        point = Rod(F=rod.F, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3, gamma1=1.0)
         cycle = solve_cycle(point, CycleRequest(1e-8, y, 1, 0, 0, 0, 300))
         assert cycle.status == CycleStatus.cycle
         change = [cycle.measures.tip_y_max**2, cycle.measures.frequency - SOFT[1].imag]

@@ -14,7 +14,7 @@ from rodsweep.bench.spectrum.own_solvers import WANTED_MODES
 from rodsweep.bench.spectrum.study import HARD_RODS, RACE
 from rodsweep.model.rod import Rod
 
-EASY = Rod(30.0, 1e4, 1e4, 1e-4)
+EASY = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
 
 
 @pytest.mark.parametrize("peer", PEERS, ids=lambda peer: peer.name)

@@ -1,18 +1,20 @@
 """`rodsweep show` tells the answer: the numbers of a single point, the headline of a grid, every status."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from conftest import ROOT
 
-from rodsweep.post.hopf_points import Bracket, lines_over
-from rodsweep.post.stability_changes import stability_changes
+from rodsweep.post.hopf_points import Bracket, HopfPoint, StoredChanges
 from rodsweep.post.summary.errors import errors_of, span_of
 from rodsweep.post.summary.ranges import to_error
 from rodsweep.post.summary.stability import stability_lines
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.thresholds import ThresholdStatus
+from rodsweep.sweep.lines import lines_over
+from rodsweep.tasks.job import make_job
 
 HOPF, STABLE_AGAIN = 49.7580049161915, 155.600159298791
 """Of configs/fig2c.yaml, 40-digit roots of D."""
@@ -53,12 +55,45 @@ def test_thresholds_between_grid_points_do_not_depend_on_the_grid(command, step,
     config = f"task: spectrum\nparameters: {{F: {forces}, {ROD}}}\nspectrum: {{certify: {certify}}}\n"
     shown(command, config)
     view = read_view(command.directory / "c.h5")
-    (line,) = lines_over(view, "F")
-    found = stability_changes(line, view)
+    (line,) = lines_over(view.point_columns, "F")
+    found = [change for change in StoredChanges(view, "F").on(line) if isinstance(change, HopfPoint)]
     assert [point.destabilises for point in found] == [True, False]
     for point, exact in zip(found, (HOPF, STABLE_AGAIN), strict=True):
         assert abs(point.position - exact) <= point.error + 1e-12
         assert point.error < 1e-12
+
+
+def test_changes_do_not_depend_on_how_points_are_given(command):
+    """A grid whose longest axis is another one than F, and the same points as a list in another order."""
+    k1 = [180.0, 200, 400, 600, 800, 1e3, 2e3, 4e3, 1e4]
+    axes = {"F": [20.0, 40, 60, 150, 170], "k1": k1, "k2": [1e2, 1e4]}
+    grid = ", ".join(f"{name}: {values}" for name, values in axes.items())
+    rods = [(F, first, k2) for k2 in axes["k2"] for F in reversed(axes["F"]) for first in k1]
+    command.write("p.csv", "F,k1,k2,gamma3\n" + "".join(f"{F},{k1},{k2},1e-4\n" for F, k1, k2 in rods))
+    found = []
+    for number, parameters in enumerate((f"{{{grid}, gamma3: 1.0e-4}}", "{points: p.csv}")):
+        command.write("c.yaml", f"task: spectrum\nparameters: {parameters}\n")
+        assert command("run", "c.yaml", "-o", f"{number}.h5").returncode == 0
+        v = read_view(command.directory / f"{number}.h5").variables
+        rows = zip(*(v[f"change_{name}"] for name in ("k1", "k2", "kind", "F", "frequency")), strict=True)
+        found.append(sorted(tuple(map(float, row)) for row in rows))
+    assert len(found[0]) == len(found[1]) > len(k1)
+    assert np.array(found[0]) == pytest.approx(np.array(found[1]), rel=1e-11)
+
+
+def test_an_unfinished_file_says_between_which_forces_stability_changes(command):
+    """Of two shards the first has the first point of a line and misses the others."""
+    command.write("c.yaml", f"task: spectrum\nparameters: {{F: [40, 45, 60, 70], {ROD}}}\n")
+    parts = [("1.h5", "1/2"), ("2.h5", "2/2")]
+    for output, shard in parts:
+        assert command("run", "c.yaml", "-o", output, "--shard", shard).returncode == 0
+        view = read_view(command.directory / output)
+        assert "change_F" not in view.variables
+    view.variables["growth_rate"][:] = np.array([-1.0, -1, 1, 1]).reshape(-1, 1, 1, 1, 1)
+    (line,) = lines_over(view.point_columns, "F")
+    assert StoredChanges(view, "F").on(line) == [Bracket(45, 60, True)]
+    assert command("merge", "all.h5", "1.h5", "2.h5").returncode == 0
+    assert "beat): 49.758004916" in command("show", "all.h5").stdout
 
 
 def test_a_change_that_is_not_understood_is_a_bracket(command):
@@ -66,9 +101,11 @@ def test_a_change_that_is_not_understood_is_a_bracket(command):
     shown(command, f"task: spectrum\nparameters: {{F: [40, 60], {ROD}}}\n")
     view = read_view(command.directory / "c.h5")
     view.variables["unstable_count"][-1] = 4
-    (line,) = lines_over(view, "F")
-    assert stability_changes(line, view) == [Bracket(40, 60, True)]
-    (told,), _ = stability_lines(view, "F", lambda one: stability_changes(one, view))
+    located = make_job(command.directory / "c.yaml", ()).task.afterwards(view.variables)
+    view = replace(view, variables=dict(view.variables) | {v.name: values for v, values in located})
+    (line,) = lines_over(view.point_columns, "F")
+    assert StoredChanges(view, "F").on(line) == [Bracket(40, 60, True)]
+    (told,), _ = stability_lines(view, "F", StoredChanges(view, "F").on)
     assert told == "F** (straight rod starts to beat): between 40 and 60"
 
 

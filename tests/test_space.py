@@ -11,12 +11,12 @@ from rodsweep.discretization.nodal_rod import nodal_rod
 from rodsweep.discretization.stress_balance import balance, strain_rates, velocity_balance
 from rodsweep.discretization.stress_jacobian import jacobian
 from rodsweep.model.algebra import ALGEBRAS, SE3
-from rodsweep.model.balance import IN_SPACE, ad, plane_material, space_material
+from rodsweep.model.balance import IN_SPACE, ad
 from rodsweep.model.rod import Rod
 
-ROD, GAMMA1 = Rod(50.0, 1e3, 1e2, 1e-2), 0.7
-PLANE = plane_material(ROD, GAMMA1)
-SPACE = space_material(ROD, GAMMA1, twist_stiffness=0.6, twist_drag=0.02)
+ROD, GAMMA1 = Rod(F=50.0, k1=1e3, k2=1e2, gamma3=1e-2), 0.7
+PLANE = ROD.changed(gamma1=GAMMA1).material
+SPACE = ROD.changed(gamma1=GAMMA1).material_in_space(twist_stiffness=0.6, twist_drag=0.02)
 MATERIALS = {"plane": PLANE, "space": SPACE}
 ALL = pytest.mark.parametrize("material", MATERIALS.values(), ids=MATERIALS.keys())
 MESHES = pytest.mark.parametrize("grid", [mesh(1, 9), mesh(3, 4)], ids=["1 element", "3 elements"])

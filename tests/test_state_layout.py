@@ -12,8 +12,8 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.symmetry import NONE, REFLECTION, Symmetry
 
 FORMS = {
-    "Omega eliminated": StressForm(Rod(50.0, 1e4, 1e2, 1e-2), 0.7, mesh(2, 4)),
-    "Omega unknown": StressForm(Rod(50.0, np.inf, 1e2, 0.0), 0.7, mesh(2, 4)),
+    "Omega eliminated": StressForm(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=0.7), mesh(2, 4)),
+    "Omega unknown": StressForm(Rod(F=50.0, k1=np.inf, k2=1e2, gamma3=0.0, gamma1=0.7), mesh(2, 4)),
 }
 EACH = pytest.mark.parametrize("form", FORMS.values(), ids=FORMS.keys())
 
@@ -69,9 +69,9 @@ def test_a_symmetry_maps_motions_to_motions(form, symmetry):
 
 @EACH
 def test_the_reflection_is_the_one_of_the_mixed_form(form):
-    x, layout = states(form.layout), MixedForm(form.rod, form.gamma1, form.mesh).layout
+    x, layout = states(form.layout), MixedForm(form.rod, form.mesh).layout
     X = states(layout)
-    assert np.array_equal(REFLECTION.of(X, layout), MixedForm(form.rod, form.gamma1, form.mesh).parity * X)
+    assert np.array_equal(REFLECTION.of(X, layout), MixedForm(form.rod, form.mesh).parity * X)
     assert np.array_equal(REFLECTION.reversed(form.layout) * x, (x - REFLECTION.of(x, form.layout)) / 2)
 
 

@@ -11,6 +11,7 @@ from rodsweep.errors import InputError
 from rodsweep.results.file import points, validation
 from rodsweep.results.file.creation import Plan
 from rodsweep.results.file.identity import config_difference
+from rodsweep.results.file.merge import merge
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.validation import read_header
 from rodsweep.results.file.view import read_view
@@ -32,8 +33,8 @@ CONFIG = canonical(
 LAYOUT = layout_of(CONFIG)
 
 
-def plan(is_grid=True, **config):
-    columns = tuple(np.arange(1.0, n + 1) for n in ((3, 2, 1, 2) if is_grid else (5, 5, 5, 5)))
+def plan(is_grid=True, count=5, **config):
+    columns = tuple(np.arange(1.0, n + 1) for n in ((3, 2, 1, 2) if is_grid else (count,) * 4))
     return Plan(
         Points(LAYOUT.parameters, columns, is_grid),
         LAYOUT,
@@ -45,11 +46,11 @@ def plan(is_grid=True, **config):
     )
 
 
-def record(index):
+def record(index, error=1e-12):
     return {
         "growth_rate": [index + 0.25, -index],
         "frequency": [0.0, index],
-        "error_estimate": [1e-12, 2e-12],
+        "error_estimate": [error, 2e-12],
         "unstable_count": index % 3,
         "certified": 1,
         "elements": 1,
@@ -59,10 +60,10 @@ def record(index):
     }
 
 
-def journal(store, indices, rank=0):
+def journal(store, indices, rank=0, error=1e-12):
     pages = Journal(store.journals, rank, LAYOUT, store.plan.fingerprint)
     for index in indices:
-        pages.append(index, record(index))
+        pages.append(index, record(index, error))
     pages.close()
 
 
@@ -109,6 +110,25 @@ def test_blocks_of_any_size_give_the_same_file(tmp_path, monkeypatch, is_grid):
             assert np.array_equal(one[variable.name][...], other[variable.name][...])
     store.close()
     whole.close()
+
+
+def test_a_merge_reaches_every_point_of_files_larger_than_what_is_read_at_once(tmp_path):
+    """The first file keeps what both have; what neither has is missing."""
+    paths = [tmp_path / "a.h5", tmp_path / "b.h5"]
+    whole = 65_536  # points that are read together
+    shares = [1, whole - 1, whole + 1], [0, 1, whole - 1, whole, whole + 1, whole + 4]
+    for path, indices, error in zip(paths, shares, (1e-12, 1e-11), strict=True):
+        store = Store(path, plan(False, count=whole + 5))
+        journal(store, indices, error=error)
+        store.fold({})
+        store.close()
+    merged = merge(tmp_path / "m.h5", paths, planner=None)
+    assert (merged.points, merged.missing, merged.finished) == (6, whole - 1, False)
+    with h5py.File(tmp_path / "m.h5") as file:
+        done = np.flatnonzero(file["status"][...] == 0)
+        assert done.tolist() == shares[1]
+        assert file["growth_rate"][done, 0].tolist() == [index + 0.25 for index in shares[1]]
+        assert file["error_estimate"][done, 0].tolist() == [1e-11, 1e-12, 1e-12, 1e-11, 1e-12, 1e-11]
 
 
 def test_variables_are_read_when_they_are_asked_for(tmp_path):

@@ -11,10 +11,10 @@ INF = np.inf
 RODS = pytest.mark.parametrize(
     "rod",
     [
-        Rod(40.0, 200.0, 1e4, 1e-4),
-        Rod(75.0, 100.0, 5.0, 1.0),
-        Rod(37.7, INF, INF, 0.0),
-        Rod(-20.0, 1.5, 3.0, 1e-6),
+        Rod(F=40.0, k1=200.0, k2=1e4, gamma3=1e-4),
+        Rod(F=75.0, k1=100.0, k2=5.0, gamma3=1.0),
+        Rod(F=37.7, k1=INF, k2=INF, gamma3=0.0),
+        Rod(F=-20.0, k1=1.5, k2=3.0, gamma3=1e-6),
     ],
 )
 MESHES = pytest.mark.parametrize("elements, order", [(1, 12), (1, 17), (2, 9), (5, 13), (9, 25)])
@@ -31,7 +31,7 @@ def vectors(form, parity, seed=0):
 @MESHES
 @PARTS
 def test_products_are_those_of_the_whole_rod(rod, elements, order, components, parity):
-    form = mixed_form(rod, 0.7, elements, order)
+    form = mixed_form(rod.changed(gamma1=0.7), elements, order)
     by_elements = StraightElements(form, components)
     p, q = vectors(form, parity)
     A, M = form.A, form.M
@@ -47,7 +47,7 @@ def test_products_are_those_of_the_whole_rod(rod, elements, order, components, p
 @PARTS
 @pytest.mark.parametrize("shift", [0.0, 190j, 3 + 2500j])
 def test_solutions_are_those_of_the_whole_rod(rod, elements, order, components, parity, shift):
-    form = mixed_form(rod, 0.7, elements, order)
+    form = mixed_form(rod.changed(gamma1=0.7), elements, order)
     factors = StraightElements(form, components).factors(shift)
     b, _ = vectors(form, parity)
     K = form.A - shift * np.diag(form.M)
@@ -59,4 +59,6 @@ def test_solutions_are_those_of_the_whole_rod(rod, elements, order, components, 
 
 def test_several_elements_of_even_order_are_refused():
     with pytest.raises(ValueError, match="odd order, not 8"):
-        StraightElements(mixed_form(Rod(30.0, 1e4, 1e4, 1e-4), 1.0, 2, 8), LONGITUDINAL).factors(0.0)
+        StraightElements(mixed_form(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), 2, 8), LONGITUDINAL).factors(
+            0.0
+        )

@@ -3,17 +3,18 @@
 from math import inf, nan
 
 import pytest
+from rods import rod_of
 
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle import limit_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below
-from rodsweep.solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.second_state import SecondState
 from rodsweep.solve.cycle.straight_rod import StraightRod, straight_rod
 from rodsweep.solve.hopf.normal_form import accurate_normal_form
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
-BESIDE = CyclePoint(28.201858565493147, inf, 100.0, 1e-3, 100.0)
+BESIDE = Rod(F=28.201858565493147, k1=inf, k2=100.0, gamma3=1e-3, gamma1=100.0)
 """2e-7 above its Hopf point, which the rod with k1 = 1e8 has above this force."""
 LIMITS = {
     "inextensible": (inf, 1.8e7, 2.5e-4, 27.5),
@@ -48,19 +49,21 @@ def test_the_sign_of_a_growth_rate_is_sure_beyond_its_error(w, error, stable, gr
 
 
 def test_the_leading_eigenvalue_is_the_spectrums_also_from_a_rod_near_by():
-    rod, near = Rod(28.0, 1e4, 1e2, 1e-2), Rod(27.5, 1e4, 1e2, 1e-2)
+    rod, near = Rod(F=28.0, k1=1e4, k2=1e2, gamma3=1e-2), Rod(F=27.5, k1=1e4, k2=1e2, gamma3=1e-2)
     leading = straight_rod(rod)
     w = solve_spectrum(rod, SpectrumRequest(1, 1e-9, True)).eigenvalues[0]
     assert leading.w == pytest.approx(complex(w.real, abs(w.imag)), rel=1e-12)
     assert straight_rod(rod, straight_rod(near).w).w == pytest.approx(leading.w, rel=1e-12)
-    assert leading.stable is False and straight_rod(Rod(27.0, 1e4, 1e2, 1e-2)).stable is True
+    assert leading.stable is False and straight_rod(Rod(F=27.0, k1=1e4, k2=1e2, gamma3=1e-2)).stable is True
 
 
 def test_an_unstable_rod_beside_its_hopf_point_ends_at_its_small_cycle():
     c = ended(BESIDE)
     assert (c.status, c.linear_growth_rate > 0) == (CycleStatus.cycle, True)
-    rod = Rod(BESIDE.F, BESIDE.k1, BESIDE.k2, BESIDE.gamma3)
-    form = accurate_normal_form(rod, BESIDE.gamma1, complex(c.linear_growth_rate, c.linear_frequency), 1e-3)
+    rod = Rod(F=BESIDE.F, k1=BESIDE.k1, k2=BESIDE.k2, gamma3=BESIDE.gamma3)
+    form = accurate_normal_form(
+        rod.changed(gamma1=BESIDE.gamma1), complex(c.linear_growth_rate, c.linear_frequency), 1e-3
+    )
     assert c.measures.tip_y_max == pytest.approx(form.cycle(BESIDE.F)[0] ** 0.5, rel=1e-2)
 
 
@@ -69,10 +72,15 @@ def test_an_unstable_rod_beside_its_hopf_point_ends_at_its_small_cycle():
 def test_on_either_side_of_a_hopf_point_the_verdict_agrees_with_the_spectrum(rod, where):
     distance, returns = DISTANCES[where]
     k1, k2, gamma3, gamma1 = rod
-    hopf = hopf_point_below(Rod(45.0, k1, k2, gamma3)).F
+    hopf = hopf_point_below(Rod(F=45.0, k1=k1, k2=k2, gamma3=gamma3)).F
     for F in (hopf * (1 - distance), hopf * (1 + distance)):
-        stable = solve_spectrum(Rod(F, k1, k2, gamma3), SpectrumRequest(1, 1e-9, True)).unstable_count == 0
-        c = ended(CyclePoint(F, k1, k2, gamma3, gamma1), most_periods=returns)
+        stable = (
+            solve_spectrum(
+                Rod(F=F, k1=k1, k2=k2, gamma3=gamma3), SpectrumRequest(1, 1e-9, True)
+            ).unstable_count
+            == 0
+        )
+        c = ended(Rod(F=F, k1=k1, k2=k2, gamma3=gamma3, gamma1=gamma1), most_periods=returns)
         assert c.status != CycleStatus.straight or stable
         if where == "far enough":
             assert c.status == (CycleStatus.straight if stable else CycleStatus.cycle)
@@ -82,26 +90,26 @@ def test_on_either_side_of_a_hopf_point_the_verdict_agrees_with_the_spectrum(rod
 def test_a_growth_rate_that_is_0_within_its_error_leaves_it_open(start, monkeypatch):
     """Far below the Hopf point the motion decays; the spectrum is made to say that it does not know."""
     monkeypatch.setattr(limit_cycle, "straight_rod", lambda rod, near: StraightRod(-1e-13 + 60j, 1e-13))
-    c = ended(CyclePoint(20.0, 1e4, 1e2, 1e-2, 1.0), start=start)
+    c = ended(Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0), start=start)
     assert (c.status, c.second_state) == (CycleStatus.not_settled, SecondState.not_told)
     assert start == "hopf" or "so whether it stays straight is not decided" in c.message
 
 
 @pytest.mark.parametrize(("F", "status"), [(43.0, "straight"), (44.2616704983273, "cycle"), (46.0, "cycle")])
 def test_a_rod_that_stops_swinging_while_its_stretch_relaxes_goes_where_its_spectrum_says(F, status):
-    c = ended(CyclePoint(F, *SLOW_STRETCH), 0.5)
+    c = ended(rod_of(F, *SLOW_STRETCH), 0.5)
     assert c.status.name == status
     assert (c.linear_growth_rate > 0) == (status == "cycle")
 
 
 @pytest.mark.parametrize(("F", "why"), [(44.2616704983273, "the straight rod is unstable"), (43.0, "")])
 def test_a_stored_motion_does_not_leave_the_straight_state_by_a_jump(F, why):
-    c = ended(CyclePoint(F, *SLOW_STRETCH), 0.5, transient=50)
+    c = ended(rod_of(F, *SLOW_STRETCH), 0.5, transient=50)
     assert c.status == (CycleStatus.not_settled if why else CycleStatus.straight)
     assert why in c.message
 
 
 def test_a_stretch_that_has_not_relaxed_is_named():
-    c = ended(CyclePoint(20.0, 100.0, 1e2, 1e-3, 1e4), 0.8)
+    c = ended(Rod(F=20.0, k1=100.0, k2=1e2, gamma3=1e-3, gamma1=1e4), 0.8)
     assert c.status == CycleStatus.not_settled
     assert "its stretch has not relaxed" in c.message

@@ -17,6 +17,8 @@ from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 from rodsweep.results.layouts.variables import Variable
 from rodsweep.results.run.journal import Journal
+from rodsweep.solve.spectrum.search import Spectrum
+from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.tasks import modes, spectrum, thresholds
 from rodsweep.tasks.job import make_job
 from rodsweep.tasks.thresholds import search_record
@@ -90,13 +92,14 @@ def search(index=0, **more):
 
 
 def of_spectrum(number, nodes):
-    return SimpleNamespace(
-        status=0,
+    return Spectrum(
+        status=SpectrumStatus.ok,
         eigenvalues=np.array([-1 + 2j, -1 - 2j, -5 + 0j][:number]),
         error_estimate=np.full(number, 1e-12),
         unstable_count=0,
         certified=True,
-        resolution=Resolution(1, 20),
+        elements=1,
+        order=20,
         seconds=0.25,
         vectors=(np.arange(2 * number * nodes) * (1 + 2j)).reshape(2, number, nodes),
     )
@@ -132,7 +135,7 @@ def record_of(task, index=0):
     if task == "thresholds":
         return thresholds.record(search(index), 4)
     row = {"class": [0, 1, 2], "unstable_count": [0, 0, 2]}
-    return search_record(search(index), 16, "crossing_at") | row
+    return search_record(search(index), 16, "F", "crossing_at") | row
 
 
 def filled_file(tmp_path, task):
@@ -255,7 +258,7 @@ def test_variables_added_when_a_run_ends_have_their_own_dimensions(tmp_path, cou
         (Variable("curve_F", "<f8", np.nan, "k3/L^2", "F", ("curve_point",)), np.arange(count) / 2),
         (Variable("fold_F", "<f8", np.nan, "k3/L^2", "F", ("fold",)), np.array([3.5])),
     ]
-    store.fold({"finished": "now"}, curve)
+    store.finish({"finished": "now"}, curve)
     store.close()
     with h5py.File(path) as file:
         assert dimensions(file["curve_F"]) == dimensions(file["curve_number"]) == ("curve_point",)

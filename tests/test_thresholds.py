@@ -22,7 +22,9 @@ SAME_KIND = {"restabilization": "hopf_reverse"}
 
 
 def thresholds(k1, k2, gamma3, F_max=200.0, accuracy=1e-11):
-    return solve_thresholds(k1, k2, gamma3, ThresholdsRequest(F_max, accuracy, True, 200))
+    return solve_thresholds(
+        Rod(F=0.0, k1=k1, k2=k2, gamma3=gamma3), ThresholdsRequest(F_max, accuracy, True, 200)
+    )
 
 
 @pytest.mark.kernel
@@ -100,10 +102,10 @@ def test_classes_agree_with_certified_spectra_at_random_points_of_random_rods():
         k1, k2 = (10 ** rng.uniform(1.3, 6) if rng.random() < 0.85 else inf for _ in range(2))
         gamma3 = 10 ** rng.uniform(-6, 1) if rng.random() < 0.85 else 0.0
         end = min(150.0, 0.999 * k1)
-        found = transitions(Path(Rod(0.0, k1, k2, gamma3), "F"), 0.0, end)
+        found = transitions(Path(Rod(F=0.0, k1=k1, k2=k2, gamma3=gamma3), "F"), 0.0, end)
         forces = np.sort(rng.uniform(0, end, 20))
         for F, motion, unstable in zip(forces, *classes(found, forces), strict=True):
-            spectrum = solve_spectrum(Rod(F, k1, k2, gamma3), SpectrumRequest(2, 1e-6, True))
+            spectrum = solve_spectrum(Rod(F=F, k1=k1, k2=k2, gamma3=gamma3), SpectrumRequest(2, 1e-6, True))
             if spectrum.certified:
                 leads = 2 if spectrum.unstable_count else int(spectrum.eigenvalues[0].imag != 0)
                 assert (motion, unstable) == (leads, spectrum.unstable_count), (F, k1, k2, gamma3)
@@ -114,9 +116,9 @@ def test_classes_agree_with_certified_spectra_at_random_points_of_random_rods():
 @pytest.mark.parametrize(
     ("name", "fixed", "start", "stop"),
     [
-        ("k1", Rod(60.0, 1e3, 1e4, 1e-4), 70.0, 1e5),
-        ("k2", Rod(30.0, 1e4, 1e3, 1e-4), 3.0, 1e6),
-        ("gamma3", Rod(30.0, 1e4, 1e3, 1e-4), 1e-6, 10.0),
+        ("k1", Rod(F=60.0, k1=1e3, k2=1e4, gamma3=1e-4), 70.0, 1e5),
+        ("k2", Rod(F=30.0, k1=1e4, k2=1e3, gamma3=1e-4), 3.0, 1e6),
+        ("gamma3", Rod(F=30.0, k1=1e4, k2=1e3, gamma3=1e-4), 1e-6, 10.0),
     ],
 )
 def test_a_change_along_any_parameter_is_a_change_along_the_force(name, fixed, start, stop):
@@ -156,7 +158,9 @@ def test_the_search_ends_below_a_crushed_rod_and_says_where():
 
 
 def test_more_changes_than_the_list_holds_are_counted():
-    found = solve_thresholds(1e4, 1e4, 1e-4, ThresholdsRequest(200.0, 1e-10, True, 2))
+    found = solve_thresholds(
+        Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), ThresholdsRequest(200.0, 1e-10, True, 2)
+    )
     assert found.status == ThresholdStatus.list_full
     assert len(found.crossings) == 3
 
@@ -170,7 +174,7 @@ def test_what_overflows_fails_with_a_reason():
 
 def test_a_rod_pulled_beyond_its_shear_stiffness_buckles_and_every_kind_of_change_occurs():
     """F c2 < -nu: two positive real eigenvalues become a pair, which later a real one overtakes."""
-    found = transitions(Path(Rod(-8.0, 1e4, 3.0, 0.01), "F"), -8.0, 20.0)
+    found = transitions(Path(Rod(F=-8.0, k1=1e4, k2=3.0, gamma3=0.01), "F"), -8.0, 20.0)
     kinds = [c.kind for c in found.crossings]
     assert found.unstable_at_start == 2
     assert not found.oscillates_at_start
@@ -180,10 +184,14 @@ def test_a_rod_pulled_beyond_its_shear_stiffness_buckles_and_every_kind_of_chang
     assert onset.growth_rate > 60
     for change, before, after in ((onset, False, True), (overtaken, True, False)):
         for F, pair in ((change.at - 1e-3, before), (change.at + 1e-3, after)):
-            w = solve_spectrum(Rod(F, 1e4, 3.0, 0.01), SpectrumRequest(4, 1e-8, True)).eigenvalues
+            w = solve_spectrum(
+                Rod(F=F, k1=1e4, k2=3.0, gamma3=0.01), SpectrumRequest(4, 1e-8, True)
+            ).eigenvalues
             assert (w[0].imag != 0) == pair
     # A real eigenvalue and a pair have the same real part where the one overtakes the other.
-    w = solve_spectrum(Rod(overtaken.at, 1e4, 3.0, 0.01), SpectrumRequest(3, 1e-10, True)).eigenvalues
+    w = solve_spectrum(
+        Rod(F=overtaken.at, k1=1e4, k2=3.0, gamma3=0.01), SpectrumRequest(3, 1e-10, True)
+    ).eigenvalues
     assert w.real == pytest.approx(overtaken.growth_rate, rel=1e-9)
     assert w.imag.max() == pytest.approx(overtaken.frequency, rel=1e-9)
 
@@ -202,7 +210,7 @@ def test_a_narrow_window_of_oscillations_is_found(beyond):
 
 def test_a_pair_about_to_cross_the_axis_leads():
     """The onset and an overtaking lie close together before it, between two spectra that agree in kind."""
-    rod = Rod(-27.0, 424.7068961055969, 2.2470358417416847, 0.00041823639524173143)
+    rod = Rod(F=-27.0, k1=424.7068961055969, k2=2.2470358417416847, gamma3=0.00041823639524173143)
     found = transitions(Path(rod, "F"), -27.170544378578725, 100.0)
     kinds = [c.kind for c in found.crossings]
     assert Kind.onset in kinds
@@ -219,7 +227,7 @@ def test_no_change_outside_the_path_is_reported():
     assert before.status == ThresholdStatus.ok
     assert [c.kind for c in before.crossings] == [Kind.onset]
     assert before.transitions.unstable_at_end == 0
-    beyond = transitions(Path(Rod(0.0, 1e4, 1e4, 1e-4), "F"), hopf * (1 + 1e-6), 50.0)
+    beyond = transitions(Path(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), "F"), hopf * (1 + 1e-6), 50.0)
     assert (beyond.unstable_at_start, beyond.crossings) == (2, ())
 
 
@@ -227,7 +235,7 @@ def test_no_change_outside_the_path_is_reported():
 def test_a_change_on_the_border_of_two_boxes_is_one(k1):
     """A path along k1 at a force for which the Hopf point lies where the error of k1 is large."""
     hopf = next(c.at for c in thresholds(k1, 1e4, 1e-4, F_max=60.0).crossings if c.kind == Kind.hopf)
-    found = transitions(Path(Rod(hopf, k1, 1e4, 1e-4), "k1"), 100.0, 1e12)
+    found = transitions(Path(Rod(F=hopf, k1=k1, k2=1e4, gamma3=1e-4), "k1"), 100.0, 1e12)
     assert [c.unstable_after for c in found.crossings if c.kind == Kind.hopf] == [2]
 
 
@@ -240,7 +248,7 @@ def test_a_search_that_ends_before_anything_happens(F_max):
 @pytest.mark.parametrize("k1", [1e4, 200.0])
 def test_strong_pulls_cost_no_more_than_pushes(k1):
     """Both exponentials of D grow there and cancel; bounded apart they would take a million boxes."""
-    path = Path(Rod(0.0, k1, 1e4, 1e-4), "F")
+    path = Path(Rod(F=0.0, k1=k1, k2=1e4, gamma3=1e-4), "F")
     for start in (-400.0, -100.0):
         zeros, left, examined = transitions_module.cover(
             transitions_module.first_boxes(path, start, 0.0), path.origin, path.direction
@@ -251,5 +259,5 @@ def test_strong_pulls_cost_no_more_than_pushes(k1):
 
 def test_a_box_that_holds_only_the_neighbourhood_of_zero_is_counted():
     """A rod so quiet that D is near 1 along the whole imaginary axis within the a-priori box."""
-    assert count_right_of(0.0, Rod(1e-3, 1e4, 1e4, 1e-4)).number == 0
-    assert count_right_of(0.0, Rod(0.0, 1e4, 1e4, 1e-4)).number == 0
+    assert count_right_of(0.0, Rod(F=1e-3, k1=1e4, k2=1e4, gamma3=1e-4)).number == 0
+    assert count_right_of(0.0, Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4)).number == 0

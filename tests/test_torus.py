@@ -4,14 +4,14 @@ from functools import cache
 
 import numpy as np
 import pytest
+from rods import rod_of
 from scipy.integrate import LSODA
 from surveyed import survey_only
 
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.mesh import mesh
-from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle import transient
-from rodsweep.solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.torus import PREDICTED, modulation_of
 from rodsweep.solve.cycle.transient import angle_weights
 from rodsweep.solve.motion.leading_mode import leading_mode
@@ -26,7 +26,7 @@ NUMBERS, ANGLE = np.arange(260), 1.3
 
 @cache
 def rod(F, most_periods):
-    return solve_cycle(CyclePoint(F, *SOFT), CycleRequest(1e-6, 0.1, 3, 16, 4, 5, most_periods))
+    return solve_cycle(rod_of(F, *SOFT), CycleRequest(1e-6, 0.1, 3, 16, 4, 5, most_periods))
 
 
 def test_a_torus_is_told_with_its_second_frequency_and_the_cycle_that_it_surrounds():
@@ -67,7 +67,7 @@ def test_a_motion_that_spirals_into_a_stable_cycle_is_no_torus(monkeypatch):
 @survey_only
 def test_another_integrator_on_another_mesh_is_on_the_same_torus():
     """SciPy's LSODA; the states where theta of the tip rises through 0, by its dense output."""
-    beam = Beam(Rod(207.0, *SOFT[:3]), SOFT[3], mesh(1, 21))
+    beam = Beam(rod_of(207.0, *SOFT[:3], gamma1=SOFT[3]), mesh(1, 21))
     z, row = 0.1 * leading_mode(beam).z.real, angle_weights(beam)
     run = LSODA(
         lambda _, z: beam.rate(z), 0.0, z, np.inf, rtol=1e-7, atol=1e-7 * np.abs(z).max(),

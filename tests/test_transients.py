@@ -5,17 +5,17 @@ from functools import cache
 import numpy as np
 import pytest
 from known_cycles import make_view
+from rods import rod_of
 from scipy.integrate import solve_ivp
 
 from rodsweep.errors import InputError
-from rodsweep.model.rod import Rod
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.portrait import draw_portrait
 from rodsweep.post.figures.cycle.transient import draw_transients
 from rodsweep.post.figures.limit_cycle import figure_name
 from rodsweep.post.figures.request import FigureRequest
 from rodsweep.solve.cycle import transient
-from rodsweep.solve.cycle.limit_cycle import CyclePoint, CycleRequest, _beam_and_form, solve_cycle
+from rodsweep.solve.cycle.limit_cycle import CycleRequest, _beam_and_form, solve_cycle
 from rodsweep.solve.motion.integrator import RELAXATION_SHARE
 from rodsweep.solve.motion.leading_mode import leading_mode
 
@@ -27,7 +27,7 @@ COUNT = 1000
 @cache
 def followed(F, rod=SOFT, amplitude=0.01, count=COUNT):
     """A rod whose transient is stored, once for all tests."""
-    return solve_cycle(CyclePoint(F, *rod), CycleRequest(1e-6, amplitude, 3, 0, 0, 0, 400, transient=count))
+    return solve_cycle(rod_of(F, *rod), CycleRequest(1e-6, amplitude, 3, 0, 0, 0, 400, transient=count))
 
 
 def test_transient_begins_at_the_start_and_ends_at_the_cycle_at_equal_times():
@@ -46,7 +46,7 @@ def test_transient_is_the_motion_that_another_integrator_finds():
     """SciPy's LSODA on the same compiled equations, over the first two periods."""
     c = followed(60.0, STRETCHABLE, 0.1)
     time, *tip = c.transient[:, c.transient[0] < 2 * c.measures.period]
-    beam, _ = _beam_and_form(Rod(60.0, *STRETCHABLE[:3]), 1.0)
+    beam, _ = _beam_and_form(rod_of(60.0, *STRETCHABLE[:3]), 1.0)
     z = 0.1 * leading_mode(beam).z.real
     atol = 1e-7 * np.abs(z).max()
     found = solve_ivp(
@@ -74,14 +74,14 @@ def test_a_stored_motion_has_no_jumps():
 @pytest.mark.parametrize("F, rod, amplitude", [(50.0, SOFT, 0.01), (28.0, SOFT, 0.05), (10.0, SOFT, 0.01)])
 def test_storing_the_transient_does_not_change_the_fate(F, rod, amplitude):
     with_it = followed(F, rod, amplitude)
-    without = solve_cycle(CyclePoint(F, *rod), CycleRequest(1e-6, amplitude, 3, 0, 0, 0, 400))
+    without = solve_cycle(rod_of(F, *rod), CycleRequest(1e-6, amplitude, 3, 0, 0, 0, 400))
     assert with_it.status == without.status
     assert with_it.measures.period == pytest.approx(without.measures.period, rel=1e-6, nan_ok=True)
     assert without.transient is None
 
 
 def test_a_rod_that_is_known_to_straighten_is_followed_all_the_same():
-    quick = solve_cycle(CyclePoint(27.0, *SOFT), CycleRequest(1e-6, 0.01, 3, 0, 0, 0, 400))
+    quick = solve_cycle(rod_of(27.0, *SOFT), CycleRequest(1e-6, 0.01, 3, 0, 0, 0, 400))
     c = followed(27.0)
     assert quick.periods == 0 < c.periods
     assert (c.status, c.message) == (quick.status, quick.message)
@@ -102,7 +102,7 @@ def test_a_rod_that_leaves_the_model_has_its_transient():
 
 
 def test_a_rod_that_does_not_settle_in_time_has_its_transient():
-    c = solve_cycle(CyclePoint(30.0, *SOFT), CycleRequest(1e-6, 1e-7, 3, 0, 0, 0, 3, transient=50))
+    c = solve_cycle(rod_of(30.0, *SOFT), CycleRequest(1e-6, 1e-7, 3, 0, 0, 0, 3, transient=50))
     assert c.status.name == "not_settled"
     assert c.transient[2, 0] == pytest.approx(1e-7, rel=1e-3)
     assert np.isfinite(c.transient).all()
@@ -110,8 +110,8 @@ def test_a_rod_that_does_not_settle_in_time_has_its_transient():
 
 def test_a_cycle_predicted_from_its_neighbour_has_no_transient():
     request = CycleRequest(1e-6, 0.1, 3, 0, 0, 0, 400, start="neighbour", transient=50)
-    first = solve_cycle(CyclePoint(50.0, *SOFT), request, None, "F")
-    second = solve_cycle(CyclePoint(51.0, *SOFT), request, first.neighbour, "F")
+    first = solve_cycle(rod_of(50.0, *SOFT), request, None, "F")
+    second = solve_cycle(rod_of(51.0, *SOFT), request, first.neighbour, "F")
     assert first.transient is not None
     assert (second.status.name, second.transient) == ("cycle", None)
 

@@ -11,14 +11,13 @@ from rodsweep.discretization.nodal_rod import nodal_change, nodal_rod
 from rodsweep.discretization.stress_balance import balance, balance_change
 from rodsweep.discretization.stress_jacobian import jacobian
 from rodsweep.model.algebra import SE2, SE3
-from rodsweep.model.balance import plane_change, plane_material, space_material
 from rodsweep.model.kernel_digest import digest, kernel_of
 from rodsweep.model.rod import Rod
 from rodsweep.model.unrolling import OverAlgebra
 
-ROD, GRID = Rod(50.0, 1e3, 1e2, 1e-2), mesh(2, 3)
-SPACE = space_material(ROD, 0.7, twist_stiffness=0.6, twist_drag=0.02)
-MATERIALS = {SE2: plane_material(ROD, 0.7), SE3: SPACE}
+ROD, GRID = Rod(F=50.0, k1=1e3, k2=1e2, gamma3=1e-2), mesh(2, 3)
+SPACE = ROD.changed(gamma1=0.7).material_in_space(twist_stiffness=0.6, twist_drag=0.02)
+MATERIALS = {SE2: ROD.changed(gamma1=0.7).material, SE3: SPACE}
 HEAD = "from rodsweep.model.unrolling import OverAlgebra\n\n@OverAlgebra\n"
 BOTH = pytest.mark.parametrize("g", [SE2, SE3], ids=["plane", "space"])
 
@@ -42,7 +41,7 @@ def test_compiled_functions_do_what_their_loops_do(g, kept):
 
 
 def test_derivative_along_a_parameter_is_that_of_loops_in_python():
-    rod, change = nodal_rod(MATERIALS[SE2], GRID), nodal_change(plane_change(ROD, "k1"), GRID)
+    rod, change = nodal_rod(MATERIALS[SE2], GRID), nodal_change(ROD.material_change("k1"), GRID)
     x = np.random.default_rng(1).standard_normal(3 * GRID.nodes)
     V, G = np.empty((2, 3, GRID.nodes + 1))
     balance(SE2, x, V, G, rod, GRID.matrices)

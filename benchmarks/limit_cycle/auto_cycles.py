@@ -87,7 +87,7 @@ def continued(program: Path, first: Orbit, setting: AutoSetting, step: float, cy
 def rod_file(form: StressForm) -> bytes:
     """What the equations read as `rod`."""
     rod, matrices = form.rod, form.mesh.matrices
-    numbers = np.array([rod.c1, rod.c2, form.gamma1, rod.gamma3])
+    numbers = np.array([rod.c1, rod.c2, rod.axial_drag, rod.rotational_drag])
     parts = (np.int32(form.mesh.nodes), matrices.D_transposed, matrices.weights, numbers)
     return b"".join(part.tobytes() for part in parts)
 
@@ -118,7 +118,7 @@ def last_solution(fort8: str) -> tuple[Array, Array]:
 
 def largest_y(form: StressForm, times: Array, states: Array) -> float:
     """The tip's largest y in L on a cycle of states z, (m, n), at times, (m,), the first again at the end."""
-    beam = Beam(form.rod, form.gamma1, form.mesh)
+    beam = Beam(form.rod, form.mesh)
     twice = np.concatenate([times, times[-1] + times[1:]]), np.concatenate([states, states[1:]])
     y = beam.tip(twice[1])[1]
     return height_near(beam, Trajectory(Ending.reached, *twice), 1 + int(np.argmax(y[1:-1])))

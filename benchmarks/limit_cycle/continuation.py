@@ -24,7 +24,8 @@ from rodsweep.bench.limit_cycle.tracking import (
 )
 from rodsweep.bench.study import Measurement, Timed, failsafe, race, table
 from rodsweep.discretization.mesh import mesh
-from rodsweep.solve.cycle.limit_cycle import CyclePoint, solve_cycle
+from rodsweep.model.rod import Rod
+from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.cycle.linearisation import Linearisation
 from rodsweep.solve.cycle.newton import newton
 from rodsweep.solve.cycle.orbit import Orbit
@@ -68,9 +69,7 @@ def beside_auto(program: Path, quick: bool, rounds: int) -> tuple[list[str], lis
     return [introduction(RODS[0]), cycle_table(found), ratio_table(found)], found
 
 
-def compared(
-    program: Path, point: CyclePoint, settings: Sequence[AutoSetting], rounds: int
-) -> list[Measurement]:
+def compared(program: Path, point: Rod, settings: Sequence[AutoSetting], rounds: int) -> list[Measurement]:
     """This tool at all targets and AUTO at all settings, timed in turn."""
     rods, step = [swept(point, accuracy) for accuracy in ASKED], STEP * point.F
     starts = first_cycles(replace(point, F=point.F - (MANY - 1) * step), settings)
@@ -99,7 +98,7 @@ def compared(
     return own + peers
 
 
-def first_cycles(point: CyclePoint, settings: Sequence[AutoSetting]) -> dict[int, Orbit]:
+def first_cycles(point: Rod, settings: Sequence[AutoSetting]) -> dict[int, Orbit]:
     """AUTO's first cycle on one element of each order."""
     near = orbit_of(solve_cycle(point, asked(SETTLED_WITHIN), along="F"))
     orders = {setting.order for setting in settings}
@@ -126,7 +125,7 @@ def judged(exact: ExactCycle, m: Measurement, outcome: Any) -> Measurement:
     return replace(m, error=max(errors.values()), extra=errors | {"large": large})
 
 
-def introduction(point: CyclePoint) -> str:
+def introduction(point: Rod) -> str:
     """What is compared."""
     return (
         f"{AUTO} (IPS = 2, ISP = 2, NWTN = 1, the exact Jacobian compiled with -O3) continues the cycles of "

@@ -1,6 +1,7 @@
 """`rs.Rod`: one rod, which answers every task under its name."""
 
 from collections.abc import Callable, Mapping
+from inspect import Parameter, Signature, signature
 from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
@@ -20,8 +21,8 @@ from .axes import plain
 from .options import OfBranch, OfCriticality, OfLimitCycle, OfModes, OfSpectrum, OfThresholds
 from .solving import solve_here
 
-NOT_GIVEN = float("nan")
-"""In place of a stiffness or a drag that is missing: so that a misspelt one is told first."""
+REQUIRED = tuple(name for name, p in PARAMETERS.items() if p.default is None and name != "F")
+"""The parameters that every rod needs."""
 
 
 ARM_EXAMPLE = 'rs.Rod(arm=rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s"))'
@@ -32,7 +33,8 @@ class SoftRod:
 
     F: follower force, k3/L^2; not needed for thresholds, criticality and branch, which find
     it. k1: stretch stiffness, k2: shear stiffness, both k3/L^2, inf for a rigid one. gamma3: rotational drag,
-    gamma2 L^2. gamma1: axial drag, gamma2, by default 1.
+    gamma2 L^2. gamma1: axial drag, gamma2, by default 1. arm: an `rs.Arm`, which has the values that are not
+    given.
 
     Every task is a method of its name. It takes the options of the config as keywords, with the same
     defaults, and returns an `Answer`. Raises InputError, in the command line's words, for values that are not
@@ -42,30 +44,19 @@ class SoftRod:
     __slots__ = ("_values",)
 
     @in_sentences("rs.Rod(F=30, k1=1e4, k2=100, gamma3=0.01)")
-    def __init__(
-        self,
-        *,
-        F: float | None = None,
-        k1: float = NOT_GIVEN,
-        k2: float = NOT_GIVEN,
-        gamma3: float = NOT_GIVEN,
-        gamma1: float | None = None,
-        arm: SlenderArm | None = None,
-        **unknown: Any,
-    ):
-        free = {"F": F, "k1": k1, "k2": k2, "gamma3": gamma3, "gamma1": gamma1, "arm": arm}
-        for name in unknown:
-            left = [other for other, value in free.items() if value is None or value is NOT_GIVEN]
-            hint = hint_of(name, left if nearest(name, left) else (*PARAMETERS, "arm"))
-            raise InputError(f"unknown key parameters.{name}; {hint}")
+    def __init__(self, *, arm: SlenderArm | None = None, **parameters: float | None):
+        given = {name: value for name, value in {**parameters, "arm": arm}.items() if value is not None}
+        for name in parameters:
+            if name not in PARAMETERS:
+                left = [other for other in (*PARAMETERS, "arm") if other not in given]
+                hint = hint_of(name, left if nearest(name, left) else (*PARAMETERS, "arm"))
+                raise InputError(f"unknown key parameters.{name}; {hint}")
         if arm is not None:
-            F, k1, k2, gamma3, gamma1 = _of_arm(arm, F=F, k1=k1, k2=k2, gamma3=gamma3, gamma1=gamma1).values()
-        required = {"k1": k1, "k2": k2, "gamma3": gamma3}
-        for name, value in required.items():
-            if value is NOT_GIVEN:
-                raise InputError(f"parameters.{name} is missing; give {words(tuple(required), 'and')}")
-        given = {"F": F, "k1": k1, "k2": k2, "gamma3": gamma3, "gamma1": gamma1}
-        values = {name: p.default if given[name] is None else given[name] for name, p in PARAMETERS.items()}
+            given = _of_arm(arm) | given
+        for name in REQUIRED:
+            if name not in given:
+                raise InputError(f"parameters.{name} is missing; give {words(REQUIRED, 'and')}")
+        values = {name: given.get(name, parameter.default) for name, parameter in PARAMETERS.items()}
         self._values = {name: _number(name, value) for name, value in values.items() if value is not None}
         refuse_axes({name: np.array([value]) for name, value in self._values.items()})
 
@@ -149,14 +140,13 @@ class SoftRod:
         return hash(tuple(self._values.items()))
 
 
-def _of_arm(arm: object, **given: Any) -> dict[str, Any]:
-    """The parameters that are given, and the arm's where they are not; no F of an arm without load."""
+def _of_arm(arm: object) -> dict[str, Any]:
+    """The parameters of an arm; no F of an arm without load."""
     if not isinstance(arm, SlenderArm):
         raise InputError(f"arm = {short(arm)} is no arm; write it as in {ARM_EXAMPLE}")
     known = known_load(arm)
-    left_out = {name: value is None or value is NOT_GIVEN for name, value in given.items()}
-    of_arm = (name for name in given if left_out[name] and not (name == "F" and known.load is None))
-    return given | {name: getattr(known, name) for name in of_arm}
+    names = [name for name in PARAMETERS if name != "F" or known.load is not None]
+    return {name: known.parameter(name) for name in names}
 
 
 def _number(name: str, value: Any) -> float:
@@ -165,3 +155,9 @@ def _number(name: str, value: Any) -> float:
         return as_number(plain(value))
     except ValueError as error:
         raise InputError(f"parameters.{name}: {error}") from None
+
+
+_KEYWORDS = [
+    Parameter(name, Parameter.KEYWORD_ONLY, default=None, annotation=float | None) for name in PARAMETERS
+]
+SoftRod.__signature__ = Signature([*_KEYWORDS, signature(SoftRod).parameters["arm"]])  # type: ignore[attr-defined]

@@ -61,7 +61,7 @@ def solve_here(
         finally:
             shown.close()
         attributes = {"ranks": 1, "hosts": socket.gethostname(), "started": started, "stopped": ""}
-        filled = (*plan.constants(), *joint)
+        filled = (*plan.constants(), *joint, *plan.afterwards(values))
     return dataset_of(plan, values, filled, attributes | {"finished": now()}), messages
 
 

@@ -5,27 +5,24 @@ from typing import Any
 
 import click
 
-OPTIONS = {
-    "length": "Length of the arm.",
-    "radius": "Radius of a circular section; or give --width and --height.",
-    "inner_radius": "Radius of the bore of a tube, closed at its tip.",
-    "width": "Width of a rectangular section, across the plane of motion.",
-    "height": "Height of a rectangular section, in the plane of motion.",
-    "young": "Young's modulus.",
-    "viscosity": "Viscosity of the fluid.",
-    "pressure": "Pressure on the tip's face, also '1.2 of flutter'; or --force; or no load.",
-    "force": "Follower force at the tip.",
-    "fluid_density": "Density of the fluid, for the Reynolds number; by default 1000 kg/m^3.",
-    "density_difference": "Density of the arm over that of the fluid, for its weight.",
+from ..model.arm import QUANTITIES, UNITS
+
+REMARKS = {
+    "radius": "; or give --width and --height",
+    "pressure": ", also '1.2 of flutter'; or --force; or no load",
+    "fluid_density": ", for the Reynolds number; by default 1000 kg/m^3",
+    "density_difference": ", for its weight",
 }
-"""Quantities with units, and what `--help` says of them."""
+"""What `--help` says of a quantity beside its meaning."""
 REQUIRED = ("length", "young", "viscosity")
 
 
 def arm_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Adds them to a command, in their order."""
-    for name, meaning in reversed(OPTIONS.items()):
+    for name in reversed(UNITS):
+        meaning = QUANTITIES[name].meaning
+        told = f"{meaning[0].upper()}{meaning[1:]}{REMARKS.get(name, '')}."
         option = "--" + name.replace("_", "-")
-        add = click.option(option, name, metavar="QUANTITY", required=name in REQUIRED, help=meaning)
+        add = click.option(option, name, metavar="QUANTITY", required=name in REQUIRED, help=told)
         command = add(command)
     return command

@@ -3,7 +3,7 @@
 from rich.console import Console
 
 from ..errors import InputError
-from .arm_options import OPTIONS
+from ..model.arm import UNITS
 
 STYLES = {"headline": "bold", "warning": "yellow"}
 """How lines of a report look."""
@@ -26,5 +26,5 @@ def describe_arm(given: dict[str, str | None], poisson: float) -> None:
 
 def _as_option(sentence: str) -> str:
     """A sentence whose first word is a quantity, with the name of its option."""
-    name = next((name for name in OPTIONS if sentence.startswith(name)), "")
+    name = next((name for name in UNITS if sentence.startswith(name)), "")
     return name.replace("_", "-") + sentence[len(name) :]

@@ -35,7 +35,6 @@ class InstantSpectra(SpectrumTask):
     killed: Path | None = None
 
     def solver(self) -> Solver:
-        from ..discretization.resolution import Resolution
         from ..solve.spectrum.search import Spectrum
         from ..solve.spectrum.status import SpectrumStatus
 
@@ -48,7 +47,8 @@ class InstantSpectra(SpectrumTask):
                 error_estimate=1e-12 * c,
                 unstable_count=1,
                 certified=True,
-                resolution=Resolution(1, 20),
+                elements=1,
+                order=20,
                 seconds=1e-7,
             )
             for a, b, c in parts

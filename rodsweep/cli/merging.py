@@ -4,31 +4,9 @@ from pathlib import Path
 
 import click
 
-from ..config.reading import canonical
-from ..config.schema import Config
-from ..results.file.creation import Plan
 from ..results.file.merge import Merged, merge
-from ..results.layouts import layout_of
-from ..sweep.grid import Points
-from ..tasks import TASKS
+from ..tasks.planning import plan_without_solver
 from ..wording import counted
-
-
-def plan_without_solver(config: Config, points: Points) -> Plan:
-    """The plan of a config on these points, without attributes and flags."""
-    task = TASKS[config.task](config, points)
-    resolved = canonical(config)
-    return Plan(
-        points=points,
-        layout=layout_of(resolved),
-        coordinates=task.coordinates(),
-        constants=task.constants,
-        config=resolved,
-        attributes={},
-        flags=(),
-        chains=task.chains,
-        stretches=task.stretches,
-    )
 
 
 def merge_files(output: Path, paths: tuple[Path, ...]) -> Merged:

@@ -244,7 +244,7 @@ class _Run:
         if variables is None:
             self.store.fold({"stopped": self.stop.name})
             return True
-        self.store.fold({"finished": provenance.now(), "stopped": self.stop.name}, variables)
+        self.store.finish({"finished": provenance.now(), "stopped": self.stop.name}, variables)
         if self.joint:
             self.joint.kept.drop()
         return False

@@ -173,7 +173,7 @@ class ArmSection(Strict):
         ValueError for what is no slender arm, and where the least load crushes it.
         """
         arm = self._made(self._firsts, place=0)
-        axes = {name: Axis(values=(getattr(arm, name),)) for name in NONLINEAR_PARAMETERS if name != "F"}
+        axes = {name: Axis(values=(arm.parameter(name),)) for name in NONLINEAR_PARAMETERS if name != "F"}
         for name in ("k2", "gamma3"):
             different = {getattr(self._made(each), name) for each in self._sections()}
             axes[name] = Axis(values=tuple(sorted(different)))
@@ -204,7 +204,9 @@ class ArmSection(Strict):
         crossed = dict(zip(beside, np.meshgrid(*beside.values(), indexing="ij"), strict=True))
         shape = (len(arms), len(loads), next(iter(crossed.values())).size if crossed else 1)
         names = [name for name in NONLINEAR_PARAMETERS if name != "F"]
-        of_arms = {name: _along(0, [getattr(arm, name, np.nan) for arm in arms]) for name in names}
+        of_arms = {
+            name: _along(0, [arm.parameter(name) if arm else np.nan for arm in arms]) for name in names
+        }
         units = {name: _along(0, [_units_of(arm)[name] for arm in arms]) for name in UNIT_NAMES}
         if self.load:
             scale = _along(0, [self._force_of(arm, flutter) if arm else np.nan for arm in arms])

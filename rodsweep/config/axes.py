@@ -36,6 +36,14 @@ class Axes(LinearAxes):
     in_diagram: ClassVar[bool] = False
     """Whether the points are rows of a phase diagram, which need a grid of parameters."""
 
+    @model_validator(mode="before")
+    @classmethod
+    def _with_defaults(cls, given: Any) -> Any:
+        """A grid need not name what has a default; a file of points has a column for it, an arm its own."""
+        if not isinstance(given, dict) or given.get("points") is not None or given.get("arm") is not None:
+            return given
+        return {name: DEFAULTS[name] for name in cls.of_arm if name in DEFAULTS} | given
+
     @property
     def axes(self) -> dict[str, Axis]:
         """The axes of a grid of parameters, by name, those of the arm among them; of others the given."""
@@ -124,14 +132,6 @@ class NonlinearParameters(AllAxes):
     """The parameters of the nonlinear rod."""
 
     of_arm: ClassVar[tuple[str, ...]] = NONLINEAR_PARAMETERS
-
-    @model_validator(mode="before")
-    @classmethod
-    def _with_defaults(cls, given: Any) -> Any:
-        """A grid need not name what has a default; a file of points has a column for it, an arm its own."""
-        if not isinstance(given, dict) or given.get("points") is not None or given.get("arm") is not None:
-            return given
-        return DEFAULTS | given
 
 
 def words(names: tuple[str, ...], last: str) -> str:

@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, PARAMETERS
-from .axes import NonlinearParameters
+from .axes import DEFAULTS, NonlinearParameters
 from .schema import Config
 from .values import Number, Strict
 
@@ -69,6 +69,17 @@ class BranchConfig(Config):
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
         return others_than(options.get("along", "F"))
+
+    @model_validator(mode="before")
+    @classmethod
+    def _followed_has_no_default(cls, given: Any) -> Any:
+        """The parameter that is followed has no value, unless one is given, which is refused."""
+        sections = given if isinstance(given, dict) else {}
+        options, parameters = sections.get("branch"), sections.get("parameters")
+        along = options.get("along") if isinstance(options, dict) else None
+        if not isinstance(parameters, dict) or along not in DEFAULTS:
+            return given
+        return sections | {"parameters": {along: None, **parameters}}
 
     @model_validator(mode="after")
     def _follows_one_parameter(self) -> "BranchConfig":

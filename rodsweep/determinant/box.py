@@ -49,7 +49,7 @@ def squared_amplification(rod: Rod) -> float:
     For g > 0 it is F^2 g/(nu + |F| sqrt(c2 gamma3)), in every limit. For g < 0 (a pull beyond the
     shear stiffness) rho g - nu has no zero, and with gamma3 = 0 there is no bound at all.
     """
-    drag = rod.c2 * rod.gamma3
+    drag = rod.c2 * rod.rotational_drag
     level = abs(rod.F) * sqrt(drag)
     if rod.g >= 0:
         return rod.F**2 * rod.g / (rod.nu + level)

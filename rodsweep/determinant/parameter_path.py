@@ -1,16 +1,15 @@
 """Straight paths through the coefficients (F, nu, c2, gamma3), and how D changes along them.
 
-One parameter varies and the other three stay. The path variable p is the parameter in which the
-coefficients are linear: F, c1 = 1/k1, c2 = 1/k2 or gamma3.
+One parameter varies and the others stay. The path variable p is the parameter's coordinate, in which the
+coefficients are affine: F, c1 = 1/k1, c2 = 1/k2 or gamma3.
 """
 
 from dataclasses import dataclass
-from math import inf
 from typing import NamedTuple
 
 from ..model.compilation import compiled
-from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS
-from ..model.rod import Coefficients, Rod
+from ..model.parameters import PARAMETERS, Parameter
+from ..model.rod import Coefficients, Rod, coefficients_of
 from .even_parts import even_parts
 from .value import Branches, from_parts
 
@@ -48,50 +47,36 @@ class Path:
     name: str
 
     @property
+    def parameter(self) -> Parameter:
+        """The entry of the table for the parameter that varies."""
+        return PARAMETERS[self.name]
+
+    @property
     def inverse(self) -> bool:
         """Whether the path variable is the compliance 1/k instead of the parameter itself."""
-        return PARAMETERS[self.name].by_compliance
+        return self.parameter.by_compliance
 
     @property
     def direction(self) -> Coefficients:
         """d(F, nu, c2, gamma3)/dp, the same everywhere on the path."""
-        return direction_of(self.rod, self.name)
+        return self.rod.direction(self.name)
 
     @property
     def origin(self) -> Coefficients:
-        """(F, nu, c2, gamma3) at p = 0."""
-        here = self.rod.coefficients
-        return {
-            "F": here._replace(F=0.0, nu=1.0),
-            "k1": here._replace(nu=1.0),
-            "k2": here._replace(c2=0.0),
-            "gamma3": here._replace(gamma3=0.0),
-        }[self.name]
+        """(F, nu, c2, gamma3) at p = 0, where the model may have no rod."""
+        return coefficients_of(self.rod.values | {self.name: self.parameter.value(0.0)})
 
     def variable(self, value: float) -> float:
-        """The path variable p at a value of the parameter; the same formula turns p into the parameter."""
-        if self.inverse:
-            return 1 / value if value else inf
-        return value
+        """The path variable p at a value of the parameter."""
+        return self.parameter.coordinate(value)
 
     def value(self, p: float, error: float) -> tuple[float, float]:
         """(value of the parameter, its error) from the path variable's."""
-        return self.variable(p), error / p**2 if self.inverse else error
+        return self.parameter.value(p), error / p**2 if self.inverse else error
 
     def at(self, p: float) -> Rod:
         """The rod at p; ValueError where the model has none."""
-        parameters = {name: getattr(self.rod, name) for name in LINEAR_PARAMETERS}
-        return Rod(**parameters | {self.name: self.variable(p)})
-
-
-def direction_of(rod: Rod, name: str) -> Coefficients:
-    """d(F, nu, c2, gamma3)/dp at a rod, where p is F, c1, c2 or gamma3 as `name` says."""
-    return {
-        "F": Coefficients(1.0, -rod.c1, 0.0, 0.0),
-        "k1": Coefficients(0.0, -float(rod.F), 0.0, 0.0),
-        "k2": Coefficients(0.0, 0.0, 1.0, 0.0),
-        "gamma3": Coefficients(0.0, 0.0, 0.0, 1.0),
-    }[name]
+        return self.rod.with_coordinate(self.name, p)
 
 
 @compiled

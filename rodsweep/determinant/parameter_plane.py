@@ -1,12 +1,12 @@
 """Planes of rods: two parameters vary, each on a linear or a logarithmic axis scaled to [0, 1]."""
 
 from dataclasses import dataclass
-from math import exp, inf, log
+from math import exp, log
 from typing import NamedTuple
 
-from ..model.parameters import CRUSHING, LINEAR_PARAMETERS, PARAMETERS
+from ..model.parameters import CRUSHING, PARAMETERS
 from ..model.rod import Rod
-from .parameter_path import ValueAlong, determinant_along, direction_of
+from .parameter_path import ValueAlong, determinant_along
 from .value import ROUND_OFF
 
 BEYOND_AN_END = 1e-12
@@ -68,10 +68,8 @@ class Plane:
 
     def at(self, x: float, y: float) -> Rod:
         """The rod at scaled coordinates; ValueError where the model has none."""
-        values = {name: getattr(self.rod, name) for name in LINEAR_PARAMETERS}
-        values[self.axes[0].name] = self.axes[0].value(x)
-        values[self.axes[1].name] = self.axes[1].value(y)
-        return Rod(**values)
+        first, second = self.axes
+        return self.rod.changed(**{first.name: first.value(x), second.name: second.value(y)})
 
     def determinant(self, w: complex, x: float, y: float) -> ValueOnPlane:
         """D at w and scaled coordinates, and its derivatives."""
@@ -85,7 +83,7 @@ class Plane:
     @staticmethod
     def _along(w: complex, rod: Rod, axis: PlaneAxis) -> tuple[ValueAlong, complex]:
         """(D along the axis's parameter, its derivative by the scaled coordinate)."""
-        value = determinant_along(w, rod.coefficients, direction_of(rod, axis.name))
+        value = determinant_along(w, rod.coefficients, rod.direction(axis.name))
         return value, value.D_p * axis.slope(getattr(rod, axis.name))
 
     def small_step(self, x: float, y: float, which: int, largest: float) -> float:
@@ -103,10 +101,7 @@ class Plane:
             return False
         return True
 
-    def inside(self, x: float, y: float) -> bool:
-        """Whether the coordinates lie on the plane and the rod is not crushed."""
-        if not (0 <= x <= 1 and 0 <= y <= 1):
-            return False
+    def uncrushed(self, x: float, y: float) -> bool:
+        """Whether the rod at coordinates on the plane is not crushed."""
         values = {axis.name: axis.value(v) for axis, v in zip(self.axes, (x, y), strict=True)}
-        k1, F = values.get("k1", self.rod.k1), values.get("F", self.rod.F)
-        return F < k1 <= inf
+        return values.get("F", self.rod.F) < values.get("k1", self.rod.k1)

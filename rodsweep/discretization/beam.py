@@ -22,7 +22,7 @@ TINY = 1e-30
 
 @dataclass(frozen=True, eq=False)
 class Beam(RodOnMesh):
-    """One rod with finite k1, k2 and gamma3 > 0, its axial drag gamma1 in gamma2, on one mesh.
+    """One rod with finite k1, k2 and gamma3 > 0 on one mesh.
 
     z has shape (unknowns,) and the unit of sqrt(energy density), sqrt(k3)/L.
     """

@@ -23,7 +23,7 @@ from functools import cached_property
 import numpy as np
 
 from ..arrays import Array
-from ..model.balance import Material, Values, ad, coad, plane_material
+from ..model.balance import Material, Values, ad, coad
 from ..model.rod import Rod
 from .mesh import Mesh, mesh
 from .state_layout import COMPONENTS, StateLayout, plane_layout
@@ -34,7 +34,7 @@ MIRROR = np.array([1.0, -1.0, -1.0])
 
 @dataclass(frozen=True, eq=False)
 class MixedForm:
-    """One rod, its axial drag gamma1 in gamma2, on one mesh; k1, k2 may be inf and gamma3 may be 0.
+    """One rod on one mesh; k1, k2 may be inf and gamma3 may be 0.
 
     X has the shape (..., unknowns): with N = mesh.nodes first the N values of n1 + F, of n2 (k3/L^2) and of
     m3 (k3/L) at the nodes but the tip, then the N + 1 values of v1, of v2 (L/tau2) and of Omega3 (1/tau2) at
@@ -42,7 +42,6 @@ class MixedForm:
     """
 
     rod: Rod
-    gamma1: float
     mesh: Mesh
 
     @cached_property
@@ -62,7 +61,7 @@ class MixedForm:
     @cached_property
     def material(self) -> Material:
         """C, Gamma and the force."""
-        return plane_material(self.rod, self.gamma1)
+        return self.rod.material
 
     @cached_property
     def straight(self) -> Array:
@@ -128,17 +127,6 @@ class MixedForm:
         S, V = self.fields(X)
         return self.A + self._coupling(self._strain(S), S, V)
 
-    def consistent(self, X: Values) -> Values:
-        """X with the velocities that its stresses give it, shape (..., unknowns).
-
-        Raises ValueError for gamma3 = 0, where the stresses themselves are bound.
-        """
-        if self.rod.gamma3 == 0:
-            raise ValueError("with gamma3 = 0 the stresses do not give the angular velocity")
-        S, _ = self.fields(X)
-        Sigma = S + self._along(self.material.tip_stress, S)
-        return self.unknown(S, self.material.velocity(Sigma, Sigma @ self.mesh.matrices.D.T))
-
     def reaction(self, X: Values) -> Values:
         """r = -D^T W V + W ad_E V at the tip, shape (3, ...): -V(1) in the limit of fine meshes.
 
@@ -187,6 +175,6 @@ class MixedForm:
         return matrix
 
 
-def mixed_form(rod: Rod, gamma1: float, elements: int, order: int) -> MixedForm:
+def mixed_form(rod: Rod, elements: int, order: int) -> MixedForm:
     """The mixed form on `elements` equal elements of order `order`."""
-    return MixedForm(rod, gamma1, mesh(elements, order))
+    return MixedForm(rod, mesh(elements, order))

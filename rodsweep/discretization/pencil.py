@@ -64,7 +64,7 @@ class Pencil:
 
     def finite(self, rod: Rod) -> int:
         """The number of finite eigenvalues: without shear or rotational drag theta follows y."""
-        return self.nodes if rod.c2 == 0 or rod.gamma3 == 0 else 2 * self.nodes
+        return self.nodes if rod.c2 == 0 or rod.rotational_drag == 0 else 2 * self.nodes
 
     def positions(self) -> Array:
         """u of the nodes of y and theta, shape (nodes,)."""
@@ -73,7 +73,7 @@ class Pencil:
 
     def coefficients(self, rod: Rod) -> Array:
         """What the pieces are multiplied by, shape (6,)."""
-        t, g, nu = angle_weight(rod.gamma3), rod.g, rod.nu
+        t, g, nu = angle_weight(rod.rotational_drag), rod.g, rod.nu
         return np.array([1.0, 1 / t**2, rod.F / t, g / t, nu / t, rod.c2])
 
     def stiffness(self, rod: Rod) -> Array:
@@ -96,7 +96,7 @@ class Pencil:
         """The diagonal of B, shape (unknowns,)."""
         B = np.zeros(self.unknowns)
         B[: self.nodes] = 1.0
-        B[self.nodes : 2 * self.nodes] = rod.gamma3 / angle_weight(rod.gamma3) ** 2
+        B[self.nodes : 2 * self.nodes] = rod.rotational_drag / angle_weight(rod.rotational_drag) ** 2
         return B
 
     def fields(self, vectors: Complex, rod: Rod) -> tuple[NDArray, NDArray]:
@@ -104,7 +104,7 @@ class Pencil:
         scale = 1 / np.sqrt(self.mass)[:, None]
         clamp = np.zeros((1, vectors.shape[1]))
         y = vectors[: self.nodes] * scale
-        theta = vectors[self.nodes : 2 * self.nodes] * scale / angle_weight(rod.gamma3)
+        theta = vectors[self.nodes : 2 * self.nodes] * scale / angle_weight(rod.rotational_drag)
         return np.vstack([clamp, y]), np.vstack([clamp, theta])
 
     def evaluation(self, points: Array) -> Array:

@@ -5,13 +5,14 @@ energy.
 """
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 
 from ..arrays import Array
-from ..model.balance import Material, Values, plane_material
+from ..model.balance import Material, Values
 from ..model.rod import Rod
 from .mesh import Mesh, configuration
 from .nodal_rod import NodalRod, nodal_rod
@@ -20,10 +21,9 @@ from .state_layout import StateLayout, plane_layout
 
 @dataclass(frozen=True, eq=False)
 class RodOnMesh(ABC):
-    """One rod, its axial drag gamma1 in gamma2, on one mesh; states have the shape (..., unknowns)."""
+    """One rod on one mesh; states have the shape (..., unknowns)."""
 
     rod: Rod
-    gamma1: float
     mesh: Mesh
 
     @property
@@ -34,6 +34,10 @@ class RodOnMesh(ABC):
     @abstractmethod
     def stresses(self, x: Values) -> Values:
         """(n1 + F, n2, m3) at all nodes, the tip included, shape (3, ..., nodes + 1)."""
+
+    def with_coordinate(self, name: str, coordinate: float) -> Self:
+        """The rod elsewhere along a parameter, on the same mesh; ValueError where the model has none."""
+        return replace(self, rod=self.rod.with_coordinate(name, coordinate))
 
     @cached_property
     def layout(self) -> StateLayout:
@@ -47,7 +51,7 @@ class RodOnMesh(ABC):
     @cached_property
     def material(self) -> Material:
         """Compliances, drags and the force."""
-        return plane_material(self.rod, self.gamma1)
+        return self.rod.material
 
     @cached_property
     def nodal(self) -> NodalRod:

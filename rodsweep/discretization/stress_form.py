@@ -9,20 +9,19 @@ from functools import cached_property
 import numpy as np
 
 from ..arrays import Array
-from ..model.balance import plane_change
 from .nodal_rod import NodalChange, NodalRod, nodal_change
 from .rod_on_mesh import RodOnMesh
 
 LEAST_ELIMINATED_DRAG = 1e-5
-"""gamma3 from which Omega is eliminated: below, the division by gamma3 costs multipliers their digits, 2e-9
-at 1e-6 and 2e-7 at 1e-8, and soft rods their cycles; as an unknown Omega costs 2.4 times the time."""
+"""Rotational drag from which Omega is eliminated: below, the division by it costs multipliers their digits,
+2e-9 at 1e-6 and 2e-7 at 1e-8, and soft rods their cycles; as an unknown Omega costs 2.4 times the time."""
 OMEGA = (2,)
 """Which component of V that is."""
 
 
 @dataclass(frozen=True, eq=False)
 class StressForm(RodOnMesh):
-    """One rod, its axial drag gamma1 in gamma2, on one mesh.
+    """One rod on one mesh.
 
     A state x has shape (..., unknowns): n1 + F, n2 in k3/L^2 and m3 in k3/L at every node but the tip, where
     they vanish, and Omega in 1/tau2 at all nodes where gamma3 is small.
@@ -31,7 +30,7 @@ class StressForm(RodOnMesh):
     @property
     def omega_unknown(self) -> bool:
         """Whether Omega is among the unknowns."""
-        return self.rod.gamma3 < LEAST_ELIMINATED_DRAG
+        return self.rod.rotational_drag < LEAST_ELIMINATED_DRAG
 
     @property
     def kept(self) -> tuple[int, ...]:
@@ -42,7 +41,7 @@ class StressForm(RodOnMesh):
 
     def change(self, name: str) -> NodalChange:
         """The derivative of `nodal` by a parameter, by 1/k of a stiffness k."""
-        return nodal_change(plane_change(self.rod, name), self.mesh)
+        return nodal_change(self.rod.material_change(name), self.mesh)
 
     @cached_property
     def mass(self) -> Array:

@@ -42,7 +42,7 @@ SERIES_BELOW = 1e-4
 
 def slaving_layer(rod: Rod) -> float:
     """T = tanh(kappa)/kappa of the layer in which a rod without rotational drag slaves theta; else 0."""
-    if rod.gamma3 > 0 or rod.c2 == 0:
+    if rod.rotational_drag > 0 or rod.c2 == 0:
         return 0.0
     square = rod.g * rod.nu / rod.c2
     if abs(square) < SERIES_BELOW:

@@ -8,29 +8,50 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from math import inf, isnan
 from numbers import Real
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..errors import InputError
 from .drag import DRAGS, LEAST_SLENDERNESS, Drag, range_of_drag
+from .parameters import PARAMETERS
 from .section import Circle, Rectangle, Section, Tube
 from .units import Given, in_si, share_of_flutter, unit_of, written_in
 
-UNITS = {
-    "length": ("m", "10 cm"),
-    "radius": ("m", "5 mm"),
-    "inner_radius": ("m", "3 mm"),
-    "width": ("m", "10 mm"),
-    "height": ("m", "8 mm"),
-    "young": ("Pa", "100 kPa"),
-    "viscosity": ("Pa*s", "1.4 Pa s"),
-    "pressure": ("Pa", "2 kPa"),
-    "force": ("N", "0.16 N"),
-    "fluid_density": ("kg/m^3", "1260 kg/m^3"),
-    "density_difference": ("kg/m^3", "-160 kg/m^3"),
-}
-"""SI unit of each quantity, and how it may be written."""
 LOADS = ("pressure", "force")
 """What may push the tip; an arm has one of them or none."""
+
+
+class Quantity(NamedTuple):
+    """A quantity of an arm: its SI unit, what it is, and how it may be written where it has a unit."""
+
+    unit: str
+    meaning: str
+    example: str = ""
+
+
+QUANTITIES = {
+    "length": Quantity("m", "length of the arm", "10 cm"),
+    "radius": Quantity("m", "radius of the arm's circular section", "5 mm"),
+    "inner_radius": Quantity("m", "radius of the bore of the arm, closed at its tip", "3 mm"),
+    "width": Quantity("m", "width of the arm's section, across the plane of motion", "10 mm"),
+    "height": Quantity("m", "height of the arm's section, in the plane of motion", "8 mm"),
+    "young": Quantity("Pa", "Young's modulus of the arm", "100 kPa"),
+    "viscosity": Quantity("Pa*s", "viscosity of the fluid", "1.4 Pa s"),
+    "pressure": Quantity("Pa", "pressure on the tip's cross section", "2 kPa"),
+    "force": Quantity("N", "follower force at the tip", "0.16 N"),
+    "fluid_density": Quantity("kg/m^3", "density of the fluid", "1260 kg/m^3"),
+    "density_difference": Quantity("kg/m^3", "density of the arm less that of the fluid", "-160 kg/m^3"),
+    "poisson": Quantity("1", "Poisson's ratio of the arm"),
+    "drag": Quantity("1", "which member of the range of drags"),
+    **{
+        f"{load}_over_flutter": Quantity(
+            "1", f"{load} over that of the first flutter, with the likeliest drag"
+        )
+        for load in LOADS
+    },
+}
+"""All quantities: configs, files, figures and the command take them from here."""
+UNITS = {name: (each.unit, each.example) for name, each in QUANTITIES.items() if each.example}
+"""SI unit of each quantity that has one, and how it may be written."""
 CRUSHED_FROM = 1 - 1e-14
 """Part of k1 from which on F is as large: what conversion of units leaves between them."""
 SIGNED = (*LOADS, "density_difference")
@@ -160,6 +181,11 @@ class SlenderArm:
         value = in_si(name, given, *UNITS[name])
         if name not in SIGNED and not value > 0:
             raise InputError(f"{self._told(name)} is not above 0")
+        return value
+
+    def parameter(self, name: str) -> float:
+        """A parameter of the arm as a rod; the default of what no arm determines."""
+        value: float = getattr(self, name, PARAMETERS[name].neutral)
         return value
 
     def _told(self, name: str) -> str:

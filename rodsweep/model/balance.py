@@ -16,14 +16,12 @@ divided by one. `rodsweep.discretization.mixed_form` is made of these functions,
 `rodsweep.discretization.stress_balance` of those of `algebra` beneath them and of the `Material`.
 """
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .algebra import ALGEBRAS
-from .rod import Rod
 
 Values = NDArray[Any]
 """Real, or complex for a derivative by complex step."""
@@ -58,8 +56,7 @@ def elastic_force(E: Values, Sigma: Values, dSigma: Values) -> Values:
     return dSigma + coad(E, Sigma)
 
 
-@dataclass(frozen=True, eq=False)
-class Material:
+class Material(NamedTuple):
     """The diagonals of C and Gamma, the force on the tip, and rest, E of the straight rod under that force.
 
     Shapes are (3,) or (6,), or with the nodes behind, (3, nodes + 1), where a rod is not uniform.
@@ -73,12 +70,12 @@ class Material:
     @property
     def straight(self) -> Values:
         """Ebar, the undeformed rod: (1, 0, 0) or (1, 0, 0; 0, 0, 0)."""
-        return _first(1.0, len(self.drag))
+        return first_component(1.0, len(self.drag))
 
     @property
     def tip_stress(self) -> Values:
         """Sigma(1)."""
-        return _first(-self.F, len(self.drag))
+        return first_component(-self.F, len(self.drag))
 
     def strain(self, Sigma: Values) -> Values:
         """E = Ebar + C Sigma."""
@@ -97,31 +94,6 @@ class Material:
         return (_along(self.drag, V) * V * V).sum(axis=0)
 
 
-def plane_material(rod: Rod, gamma1: float) -> Material:
-    """The rod that moves in the plane."""
-    compliance, drag = np.array([rod.c1, rod.c2, 1.0]), np.array([gamma1, 1.0, rod.gamma3], float)
-    return Material(compliance, drag, rod.F, _first(rod.nu, 3))
-
-
-def space_material(rod: Rod, gamma1: float, twist_stiffness: float, twist_drag: float) -> Material:
-    """The rod that moves in space; twist stiffness in k3, twist drag in gamma2 L^2."""
-    compliance = np.array([rod.c1, rod.c2, rod.c2, 1 / twist_stiffness, 1.0, 1.0])
-    drag = np.array([gamma1, 1.0, 1.0, twist_drag, rod.gamma3, rod.gamma3])
-    return Material(compliance, drag, rod.F, _first(rod.nu, 6))
-
-
-COMPLIANCES, DRAGS = {"k1": [0], "k2": [1]}, {"gamma1": [0], "gamma3": [2]}
-"""Which components in the plane a parameter is the stiffness or the drag of."""
-
-
-def plane_change(rod: Rod, name: str) -> Material:
-    """The derivative of `plane_material` by a parameter, by 1/k of a stiffness k."""
-    compliance, drag, F = np.zeros(3), np.zeros(3), float(name == "F")
-    compliance[COMPLIANCES.get(name, [])] = 1.0
-    drag[DRAGS.get(name, [])] = 1.0
-    return Material(compliance, drag, F, _first(-(F * rod.c1 + rod.F * compliance[0]), 3))
-
-
 def in_space(plane: Values) -> Values:
     """An element of se(2) or of its dual, (3, ...), among those of space, (6, ...)."""
     space = np.zeros((6, *plane.shape[1:]), plane.dtype)
@@ -129,7 +101,7 @@ def in_space(plane: Values) -> Values:
     return space
 
 
-def _first(number: float, size: int) -> Values:
+def first_component(number: float, size: int) -> Values:
     """An element of which only the first component is not 0, (size,)."""
     element = np.zeros(size)
     element[0] = number

@@ -8,9 +8,8 @@ No eigenvalue of the finite rod is claimed to be near; its largest growth rate a
 tell where to look for eigenvalues and how fine a mesh will be needed.
 """
 
-import math
+import numpy as np
 
-from .compilation import compiled
 from .rod import Rod
 
 SAMPLES = 64
@@ -19,26 +18,20 @@ LOWEST = 1e-4
 
 
 def most_amplified_wave(rod: Rod) -> tuple[float, float]:
-    """(growth rate in 1/tau2, wave number in 1/L) of the most amplified wave; (0, 0) if all decay."""
-    return _peak(rod.F * rod.g, rod.c2 + rod.gamma3, rod.g * rod.nu, rod.c2 * rod.gamma3)
+    """(growth rate in 1/tau2, wave number in 1/L) of the most amplified wave; (0, 0) if all decay.
 
-
-@compiled
-def _peak(top: float, drag: float, stiffness: float, square: float) -> tuple[float, float]:
-    best, at = 0.0, 0.0
+    Not compiled: `check` needs it, and would load numba for nothing else.
+    """
+    F, nu, c2, gamma3 = rod.coefficients
+    top, square = F * rod.g, c2 * gamma3
     if top <= 0:
-        return best, at
-    for i in range(SAMPLES):
-        K = top * LOWEST ** (1 - i / SAMPLES)
+        return 0.0, 0.0
+    K = top * LOWEST ** (1 - np.arange(SAMPLES) / SAMPLES)
+    with np.errstate(all="ignore"):
         drive = K * (top - K)
-        linear = drag * K + stiffness
-        spread = math.sqrt(linear * linear + 4 * square * drive)
-        if linear > 0:
-            rate = 2 * drive / (linear + spread)
-        elif square > 0:
-            rate = (spread - linear) / (2 * square)
-        else:
-            rate = 0.0
-        if rate > best:
-            best, at = rate, math.sqrt(K)
-    return best, at
+        linear = (c2 + gamma3) * K + rod.g * nu
+        spread = np.sqrt(linear**2 + 4 * square * drive)
+        slow = (spread - linear) / (2 * square) if square > 0 else 0.0
+        rates = np.where(linear > 0, 2 * drive / (linear + spread), slow)
+    best = int(np.argmax(np.where(rates > 0, rates, 0.0)))
+    return (float(rates[best]), float(np.sqrt(K[best]))) if rates[best] > 0 else (0.0, 0.0)

@@ -8,6 +8,9 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from math import inf, isfinite
 
+STIFFNESSES = ("k1", "k2")
+"""The parameters of which the equations contain the inverse, a compliance."""
+
 
 @dataclass(frozen=True, slots=True)
 class Range:
@@ -40,12 +43,38 @@ class Parameter:
     rigid: str = ""
     """What a rod is called whose value is inf; empty where inf is not allowed."""
     default: float | None = None
-    """Value in a grid of the nonlinear rod that does not name it; None where it must be named."""
+    """Value in a grid that does not name it; None where it must be named."""
+    scales: tuple[str, ...] = ()
+    """Stiffnesses or drags that the value multiplies; empty where the parameter is itself a load, a stiffness
+    or a drag. One parameter scales either stiffnesses or drags, so that the equations are affine in its
+    coordinate: the covering of a path needs this."""
+
+    def __post_init__(self) -> None:
+        """ValueError where the parameter scales stiffnesses and drags."""
+        if len({name in STIFFNESSES for name in self.scales}) > 1:
+            raise ValueError(
+                f"{self.name} scales {' and '.join(self.scales)}: no coordinate is affine in both"
+            )
 
     @property
     def by_compliance(self) -> bool:
-        """Whether the equations are linear in 1/value, which may be 0, instead of the value."""
-        return bool(self.rigid)
+        """Whether the equations are affine in 1/value, which may be 0, instead of the value."""
+        return bool(self.rigid or set(self.scales) & set(STIFFNESSES))
+
+    def coordinate(self, value: float) -> float:
+        """The number in which the equations are affine: 1/value of a stiffness, which is 0 at inf."""
+        return 1 / value if self.by_compliance else value
+
+    def value(self, coordinate: float) -> float:
+        """The value at a coordinate; of a stiffness it is inf at 0."""
+        if self.by_compliance:
+            return 1 / coordinate if coordinate else inf
+        return coordinate
+
+    @property
+    def neutral(self) -> float:
+        """The default, or else the value at the coordinate 0: with it a rod is one if it is with any."""
+        return self.value(0.0) if self.default is None else self.default
 
     @property
     def long_name(self) -> str:
@@ -112,6 +141,12 @@ NONLINEAR_PARAMETERS = tuple(PARAMETERS)
 """Names of the parameters of the nonlinear rod."""
 LINEAR_PARAMETERS = tuple(name for name, parameter in PARAMETERS.items() if parameter.linear)
 """Names of the parameters of the linear problem."""
+FACTORS_OF = {
+    name: (name, *(other.name for other in PARAMETERS.values() if name in other.scales))
+    for name, parameter in PARAMETERS.items()
+    if not parameter.scales
+}
+"""The parameters of which a load, a stiffness or a drag is the product, by its name."""
 CRUSHING = ("F", "k1")
 """The parameters that crush the rod where the first reaches the second."""
 

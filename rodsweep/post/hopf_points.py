@@ -1,28 +1,27 @@
 """Where the straight rod changes along a line of points of a file: located, or between two points.
 
-Of limit cycles the file holds the Hopf points of its lines, found by the task. Nothing is solved here, and
-nothing is interpolated: a change that no solver has located lies between two points, and no more is said.
+The task has located the changes and stored them. Nothing is solved here, and nothing is interpolated: a
+change that no solver has located lies between two points, and no more is said.
 """
 
-from collections.abc import Iterator
+from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import pairwise
 from math import inf, nan
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ..arrays import Array
 from ..model.parameters import LINEAR_PARAMETERS
 from ..results.file.view import View
 from ..results.layouts.limit_cycle import HOPF_ALONG
 from ..results.layouts.thresholds import CROSSING_KINDS
+from ..sweep.lines import ParameterLine
 
 SAME_PLACE = 1e-9
 """Relative distance below which a point of a file lies on a Hopf point: the growth rate there is rounding."""
 STABILITY_CHANGES = {("hopf", 2): True, ("restabilization", 0): False}
 """Whether the straight rod is unstable beyond a Hopf point, by its kind and the number of modes that grow
 there; at all others further modes join those that grow, or leave them."""
-HOPF_FIELDS = ("along", "kind", "error", "frequency", "unstable_after", *LINEAR_PARAMETERS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,10 +77,6 @@ class Bracket:
         return kind_of_change(self.destabilises)
 
 
-Change = HopfPoint | Bracket
-"""A change of stability of the straight rod along a line, in the direction in which the parameter grows."""
-
-
 def kind_of_change(destabilises: bool) -> str:
     """What a change of stability is called."""
     return "hopf" if destabilises else "restabilization"
@@ -92,86 +87,74 @@ def place_of(change: Located | Bracket) -> float:
     return change.position if isinstance(change, Located) else change.low
 
 
-@dataclass(frozen=True, slots=True)
-class ParameterLine:
-    """The points of a file that differ in one parameter only, in the order of the file."""
+class StoredChanges:
+    """The changes of the straight rod that a file holds of its lines over a parameter.
 
-    name: str
-    """The parameter."""
-    parameters: dict[str, float]
-    """The other ones, by name."""
-    x: Array
-    """The values of the one, shape (n,)."""
-    at: np.ndarray
-    """The indices of the points, shape (n,)."""
-
-
-def lines_over(view: View, name: str) -> Iterator[ParameterLine]:
-    """The lines over a parameter in the order of their first points, without points where it is inf."""
-    columns = view.point_columns
-    x = columns.pop(name)
-    table = np.stack(list(columns.values()), axis=-1)
-    _, first, line = np.unique(table, axis=0, return_index=True, return_inverse=True)
-    by_line = np.argsort(line.ravel(), kind="stable")
-    ends = np.cumsum(np.bincount(line.ravel()))
-    for number in np.argsort(first):
-        at = by_line[ends[number - 1] if number else 0 : ends[number]]
-        at = at[np.isfinite(x[at])]
-        others = dict(zip(columns, table[first[number]].tolist(), strict=True))
-        yield ParameterLine(name, others, x[at], at)
-
-
-class StoredHopfPoints:
-    """The changes of stability that a file of limit cycles holds of its lines over a parameter."""
+    Of spectra and modes these are changes over F, with onsets of oscillation; of limit cycles Hopf points
+    along any parameter. Both lie between the points of lines.
+    """
 
     def __init__(self, view: View, name: str):
-        self.growth = view.variables["linear_growth_rate"].ravel()
+        v, points = view.variables, view.variables["status"].size
+        growth = "linear_growth_rate" if "linear_growth_rate" in v else "growth_rate"
+        self.growth = v[growth].reshape(points, -1)[:, 0]
         self.others = [other for other in LINEAR_PARAMETERS if other != name]
-        self.by_rod: dict[tuple[float, ...], list[HopfPoint]] = {}
-        if "hopf_along" in view.variables:  # which a user may have dropped from a Dataset
-            self._read(view, name)
+        self.by_rod: dict[tuple[float, ...], list[HopfPoint | OscillationOnset]] = {}
+        if "hopf_along" in v:  # which a user may have dropped from a Dataset
+            self._read(v, name, "hopf", v["hopf_along"] == HOPF_ALONG.index(name))
+        if "change_kind" in v and name == "F":
+            self._read(v, name, "change", np.ones(len(v["change_kind"]), bool))
 
-    def _read(self, view: View, name: str) -> None:
-        v = {field: view.variables[f"hopf_{field}"] for field in HOPF_FIELDS}
-        rods = np.stack([v[other] for other in self.others], axis=-1)
-        for i in np.flatnonzero(v["along"] == HOPF_ALONG.index(name)):
-            change = STABILITY_CHANGES.get((CROSSING_KINDS[int(v["kind"][i])], int(v["unstable_after"][i])))
-            if change is not None:
-                at = float(v[name][i])
-                point = HopfPoint(at, float(v["error"][i]) * abs(at), change, float(v["frequency"][i]))
-                self.by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)
+    def _read(self, v: Mapping[str, np.ndarray], name: str, prefix: str, along: NDArray[np.bool_]) -> None:
+        """Reads what stands `along` the parameter, of variables with a prefix."""
+        rods = np.stack([v[f"{prefix}_{other}"] for other in self.others], axis=-1)
+        at, error, frequency, kind = (
+            v[f"{prefix}_{field}"] for field in (name, "error", "frequency", "kind")
+        )
+        after = v["hopf_unstable_after"] if prefix == "hopf" else None
+        for i in np.flatnonzero(along):
+            place, word = float(at[i]), CROSSING_KINDS[int(kind[i])]
+            errors = float(error[i]) * (abs(place) or 1.0)
+            if word == "onset":
+                point: HopfPoint | OscillationOnset = OscillationOnset(place, errors)
+            elif after is None or STABILITY_CHANGES.get((word, int(after[i]))) is not None:
+                point = HopfPoint(place, errors, word == "hopf", float(frequency[i]))
+            else:
+                continue
+            self.by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)
 
-    def up_to(self, line: ParameterLine) -> list[Change]:
-        """The changes of stability on a line and at smaller values, as far as these were searched."""
+    def up_to(self, line: ParameterLine) -> list[Located | Bracket]:
+        """The changes on a line and at smaller values, as far as these were searched."""
         return sorted({*self.on(line), *self._stored(line, -inf)}, key=place_of)
 
-    def _stored(self, line: ParameterLine, low: float) -> list[HopfPoint]:
+    def _stored(self, line: ParameterLine, low: float) -> list[HopfPoint | OscillationOnset]:
         """The stored changes from a value up to the last of a line."""
         rod = tuple(line.parameters[other] for other in self.others)
         high = line.x.max(initial=-inf)
         return [point for point in self.by_rod.get(rod, []) if _within(point, low, high)]
 
-    def on(self, line: ParameterLine) -> list[Change]:
-        """The changes of stability on a line in increasing order.
+    def on(self, line: ParameterLine) -> list[Located | Bracket]:
+        """The changes on a line in increasing order.
 
-        Where the stored growth rates of two neighbours differ in sign and no Hopf point between them explains
-        it, as where a search failed, the change is only known to lie between the two.
+        Where the stored growth rates of two neighbours differ in sign and no stored change between them
+        explains it, as where a search failed, the change is only known to lie between the two.
         """
         if not len(line.x):
             return []
         stored = self._stored(line, line.x.min())
-        found: list[Change] = [*stored]
+        found: list[Located | Bracket] = [*stored]
+        changes = [point for point in stored if isinstance(point, HopfPoint)]
         known = np.flatnonzero(np.isfinite(self.growth[line.at]))
         ordered = known[np.argsort(line.x[known], kind="stable")]
-        for i, j in pairwise(ordered):
-            low, high = float(line.x[i]), float(line.x[j])
-            before, after = self.growth[line.at[[i, j]]] > 0
-            if before != after and sum(_within(point, low, high) for point in stored) % 2 == 0:
-                found.append(Bracket(low, high, bool(after)))
+        x, grows = line.x[ordered], self.growth[line.at[ordered]] > 0
+        for i in np.flatnonzero(grows[1:] != grows[:-1]):
+            low, high = float(x[i]), float(x[i + 1])
+            if sum(_within(point, low, high) for point in changes) % 2 == 0:
+                found.append(Bracket(low, high, bool(grows[i + 1])))
         return sorted(found, key=place_of)
 
 
-def _within(point: HopfPoint, low: float, high: float) -> bool:
-    """Whether a Hopf point lies between two values, or on one of them within rounding."""
+def _within(point: Located, low: float, high: float) -> bool:
+    """Whether a change lies between two values, or on one of them within rounding."""
     margin = max(point.error, SAME_PLACE * abs(point.position))
     return bool(low - margin <= point.position <= high + margin)

@@ -5,7 +5,6 @@ import math
 from array import array
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from math import inf
 from pathlib import Path
 from typing import TextIO
 
@@ -20,12 +19,12 @@ from ..config.schema import Config
 from ..config.values import as_number, overflows, short
 from ..errors import InputError
 from ..model.arm import CRUSHED_FROM, SlenderArm
-from ..model.parameters import CRUSHING, LINEAR_PARAMETERS, PARAMETERS, Range
+from ..model.parameters import CRUSHING, PARAMETERS, Range
 from ..model.rod import Rod
 
 LONGEST_LINE = 10_000
 """Characters of a line of a CSV file."""
-STAND_INS = {"F": 0.0, "k1": inf, "k2": inf, "gamma3": 0.0}
+NEUTRAL = {name: parameter.neutral for name, parameter in PARAMETERS.items()}
 """Values of parameters that are no column, with which a rod is one if it is with any."""
 
 
@@ -105,9 +104,12 @@ class Points:
             name: column[place] for name, column, place in zip(self.names, self.columns, places, strict=True)
         }
 
-    def rod(self, index: int) -> Rod:
-        """The rod at a flat index, where the columns are all four parameters."""
-        return Rod(**self.values(index))
+    def rod(self, index: int, **beside: float) -> Rod:
+        """The rod at a flat index, with other parameters beside the columns'; else they are NEUTRAL.
+
+        Raises Crushed.
+        """
+        return Rod(**{**NEUTRAL, **self.values(index), **beside})
 
 
 def grid_size(config: Config) -> int:
@@ -252,11 +254,8 @@ def _row(row: list[str], header: list[str], where: str) -> list[float]:
             numbers.append(as_number(float(cell)))
         except ValueError:
             raise InputError(f"{where}: {name} = {cell.strip()[:40]!r} is not a number") from None
-    values = STAND_INS | dict(zip(header, numbers, strict=True))
     try:
-        for name in set(header).difference(LINEAR_PARAMETERS):
-            PARAMETERS[name].require(values.pop(name))
-        Rod(**values)
+        Rod(**{**NEUTRAL, **dict(zip(header, numbers, strict=True))})
     except ValueError as error:
         raise InputError(f"{where}: {error}") from None
     return numbers

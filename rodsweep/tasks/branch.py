@@ -8,6 +8,7 @@ import numpy as np
 
 from ..config.branch import BranchConfig
 from ..results.layouts.branch import followed_variables, special_variables
+from ..results.layouts.variables import listed, recorded
 from ..sweep.estimate import Estimate, estimate_branches
 from .parts import count_of, rod_parts
 from .protocol import Part, Solver, Task
@@ -15,7 +16,7 @@ from .protocol import Part, Solver, Task
 if TYPE_CHECKING:
     from ..solve.branch.branch_curve import BranchCurve, BranchPoint
     from ..solve.branch.branches import BranchesOfRod
-    from ..solve.branch.special_points import SpecialPoint
+    from ..solve.branch.special.point import SpecialPoint
     from ..solve.changes.unstable_modes import Crossing
 
 
@@ -53,20 +54,14 @@ class BranchTask(Task):
         return estimate_branches(self.points, options.along, reach, self.config.accuracy)
 
     def solver(self) -> Solver:
-        from ..solve.branch.branches import (
-            BranchRequest,
-            BranchRod,
-            BranchStatus,
-            solve_branches,
-            warm_up,
-        )
+        from ..solve.branch.branches import BranchRequest, BranchStatus, solve_branches, warm_up
 
         options = self.config.branch
         request = BranchRequest(**options.model_dump(), accuracy=self.config.accuracy)
         return Solver(
             statuses=tuple(BranchStatus),
             warm_up=warm_up,
-            solve=lambda index: solve_branches(BranchRod(**self.points.values(index)), request),
+            solve=lambda index: solve_branches(self.points.rod(index), request),
             record=lambda index, result: record(result, options.along, options.cycles, options.special),
         )
 
@@ -94,12 +89,8 @@ def record(result: "BranchesOfRod", along: str, points: int, special: int) -> di
     counts["special"] = len(specials)
     values: dict[str, Any] = {f"{name}_count": count if known else -1 for name, count in counts.items()}
     values |= {"unstable_at_start": result.unstable_at_start, "certified": result.proved}
-    for variables, rows, most in (
-        (followed_variables(along), cycles, points),
-        (special_variables(along), specials, special),
-    ):
-        empty = [{v.name: v.fill for v in variables}] * (most - len(rows))
-        values |= {v.name: [row[v.name] for row in [*rows[:most], *empty]] for v in variables}
+    values |= listed(followed_variables(along), cycles, points)
+    values |= listed(special_variables(along), specials, special)
     return values | {"seconds": result.seconds, "status": result.status}
 
 
@@ -117,31 +108,25 @@ def meetings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, int], int]:
 
 def _cycle(point: "BranchPoint", along: str) -> dict[str, Any]:
     """A cycle of a branch by the names of its variables."""
-    measures, errors = point.measures, point.errors
-    named = {
-        v.name: getattr(measures, v.name, getattr(errors, v.name, None)) for v in followed_variables(along)
-    }
-    return named | {
-        f"branch_{along}": point.at,
-        f"branch_{along}_error": point.at_error,
-        "multiplier": point.multiplier,
-        "unstable_multipliers": point.unstable,
-    }
+    own = {f"branch_{along}": "at", f"branch_{along}_error": "at_error", "unstable_multipliers": "unstable"}
+    variables = [v for v in followed_variables(along) if v.name != "branch"]
+    return recorded(variables, point, point.measures, point.errors, names=own)
+
+
+OTHERWISE = {
+    "special_tip_y_max_error": "size_error",
+    "special_amplitude_coefficient_error": "coefficient_error",
+}
+"""Fields of a special point that are not called as their variables."""
 
 
 def _special(point: "SpecialPoint", start: int, hopf: "Crossing | None") -> dict[str, Any]:
     """A special point by the names of its variables. start: place of its branch's first cycle."""
-    return {
-        "special_kind": int(point.kind),
-        "special_at": point.at,
-        "special_error": point.error,
-        "special_period": point.period,
-        "special_tip_y_max": point.tip_y_max,
-        "special_period_error": point.period_error,
-        "special_tip_y_max_error": point.size_error,
-        "special_amplitude_coefficient": point.amplitude_coefficient,
-        "special_amplitude_coefficient_error": point.coefficient_error,
+    beside = {
         "special_point": start + point.after + 1 if point.after >= 0 else 0,
         "special_reason": int(point.reason or 0),
         "special_unstable_after": hopf.unstable_after if hopf else -1,
     }
+    known = {*beside, "special_branch", "special_meets"}
+    own = [v for v in special_variables("F") if v.name not in known]
+    return beside | recorded(own, point, prefix="special_", names=OTHERWISE)

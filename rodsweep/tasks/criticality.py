@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..config.criticality import CriticalityConfig
 from ..results.layouts.criticality import NORMAL_FORM, OF_NO_HOPF_POINT
+from ..results.layouts.variables import listed, recorded
 from ..sweep.estimate import Estimate, estimate_criticality
 from .parts import count_of, rod_parts
 from .protocol import Part, Solver, Task
@@ -12,7 +13,6 @@ from .thresholds import search_record
 
 if TYPE_CHECKING:
     from ..solve.hopf.criticality import Criticality
-    from ..solve.hopf.hopf_coefficients import HopfCoefficients
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,6 @@ class CriticalityTask(Task):
         from ..solve.hopf.criticality import (
             CriticalityRequest,
             CriticalityStatus,
-            RodInFluid,
             solve_criticality,
             warm_up,
         )
@@ -62,33 +61,17 @@ class CriticalityTask(Task):
         return Solver(
             statuses=tuple(CriticalityStatus),
             warm_up=warm_up,
-            solve=lambda index: solve_criticality(RodInFluid(**self.points.values(index)), request),
+            solve=lambda index: solve_criticality(self.points.rod(index), request),
             record=lambda index, result: record(result, options.crossings),
         )
 
 
 def record(result: "Criticality", most: int) -> dict[str, Any]:
     """A Criticality as the variables of the file."""
-    search = search_record(result, most, "crossing_F")
+    search = search_record(result, most, "F", "crossing_F")
     for name in OF_NO_HOPF_POINT:
         del search[name]
-    rows = [
-        _along(coefficients) | {"crossing_frequency_error": hopf.frequency_error}
-        for coefficients, hopf in zip(result.coefficients, result.crossings, strict=False)
-    ]
-    empty = [{v.name: v.fill for v in NORMAL_FORM}] * (most - len(rows))
-    along = {v.name: [row[v.name] for row in [*rows, *empty]] for v in NORMAL_FORM}
+    pairs = zip(result.coefficients, result.crossings, strict=False)
+    rows = [recorded(NORMAL_FORM, *pair, prefix="crossing_") for pair in pairs]
     ends = {"F_end": result.end, "unstable_at_end": result.transitions.unstable_at_end}
-    return search | ends | along
-
-
-def _along(coefficients: "HopfCoefficients") -> dict[str, Any]:
-    """The coefficients of one Hopf point by the names of their variables."""
-    c, slope = coefficients.landau, coefficients.growth_slope
-    named = {v.name: getattr(coefficients, v.name, None) for v in NORMAL_FORM}
-    return named | {
-        "growth_slope_real": slope.real,
-        "growth_slope_imag": slope.imag,
-        "landau_real": c.real,
-        "landau_imag": c.imag,
-    }
+    return search | ends | listed(NORMAL_FORM, rows, most)

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..config.values import Axis
-from ..determinant.parameter_plane import Plane, PlaneAxis
 from ..model.parameters import CRUSHING
 from ..model.rod import Rod
 from ..results.file.view import View
@@ -23,9 +22,10 @@ from .diagram_cycles import cycle_curve_record, row_specials, unstored_specials,
 from .diagram_records import bautin_curve_record, criticality_record, curve_record
 
 if TYPE_CHECKING:
+    from ..determinant.parameter_plane import Plane
     from ..solve.branch.coexistence import CoexistenceRow
-    from ..solve.branch.special_boundaries import SpecialBoundaries
-    from ..solve.branch.special_points import SpecialPoint
+    from ..solve.branch.special.boundaries import SpecialBoundaries
+    from ..solve.branch.special.point import SpecialPoint
     from ..solve.changes.boundaries import Boundaries
     from ..solve.hopf.generalised import CurveCriticality
     from .phase_diagram import PhaseDiagramTask
@@ -63,7 +63,7 @@ class DiagramCurves:
 
     def units(self, view: View) -> "SpecialBoundaries | None":
         """The curves of cycles as units of work, from a view with all rows; None where there are none."""
-        from ..solve.branch.special_boundaries import SpecialBoundaries
+        from ..solve.branch.special.boundaries import SpecialBoundaries
 
         plane = self.plane if self.task.config.phase_diagram.cycles else None
         if plane is None:
@@ -78,7 +78,7 @@ class DiagramCurves:
 
     def nothing(self) -> dict[str, np.ndarray]:
         """The result of a unit that finds no curve, arrays of no length along their first shape."""
-        from ..solve.branch.special_boundaries import TracedHalf
+        from ..solve.branch.special.boundaries import TracedHalf
 
         return TracedHalf(None).arrays()
 
@@ -117,8 +117,10 @@ class DiagramCurves:
         return np.isfinite(self.task.points.by_name[self.task.config.plane[1]])
 
     @property
-    def plane(self) -> Plane | None:
+    def plane(self) -> "Plane | None":
         """The plane of the line's parameter and the finite rows; None where these are fewer than two."""
+        from ..determinant.parameter_plane import Plane, PlaneAxis
+
         line, row = self.task.config.plane
         finite = self.task.points.by_name[row][self._finite]
         if len(finite) < 2:
@@ -129,9 +131,9 @@ class DiagramCurves:
             PlaneAxis(name, float(values[0]), float(values[-1]), axes[name].logarithmic)
             for name, values in ((line, self.task.line), (row, finite))
         )
-        return Plane(Rod(**not_crushed), (abscissa, ordinate))
+        return Plane(Rod(**not_crushed, gamma1=self.task.config.gamma1), (abscissa, ordinate))
 
-    def _boundaries(self, plane: Plane, view: View, rows: np.ndarray) -> "Boundaries":
+    def _boundaries(self, plane: "Plane", view: View, rows: np.ndarray) -> "Boundaries":
         """The curves through the crossings of all finite rows, whose values are given, (rows,)."""
         from ..solve.changes.boundaries import curves_through, seed_of
 
@@ -154,35 +156,32 @@ class DiagramCurves:
         from ..solve.branch.coexistence import row_branches, special_of
 
         if number not in self.special:
-            fixed = self.task.points.values(number)
-            branches = row_branches(fixed, self.task.config.gamma1, self.task.row_request(), MOST_SPECIAL)
-            return special_of(branches)
+            return special_of(row_branches(self.task.rod(number), self.task.row_request(), MOST_SPECIAL))
         return self.special[number]
 
-    def _criticality(self, plane: Plane, found: "Boundaries") -> "list[CurveCriticality]":
+    def _criticality(self, plane: "Plane", found: "Boundaries") -> "list[CurveCriticality]":
         """On which side of each curve cycles are born, if it is one of Hopf points."""
         from ..solve.hopf.generalised import CurveCriticality, curve_criticality
 
-        gamma1, accuracy = self.task.config.gamma1, self.task.config.accuracy
+        accuracy = self.task.config.accuracy
         return [
-            curve_criticality(plane, curve, gamma1, accuracy)
+            curve_criticality(plane, curve, accuracy)
             if curve.hopf
             else CurveCriticality(np.full(len(curve.values), np.nan), (), 0)
             for curve in found.curves
         ]
 
     def _bautin_curves(
-        self, plane: Plane, told: Sequence["CurveCriticality"], name: str, axis: Axis
+        self, plane: "Plane", told: Sequence["CurveCriticality"], name: str, axis: Axis
     ) -> dict[str, Any]:
         """The curves of generalised Hopf points over the third parameter, as variables of the file."""
+        from ..determinant.parameter_plane import PlaneAxis
         from ..solve.hopf.bautin_curves import BautinCurve, BautinSpace, bautin_curve, lies_on, on_curve
 
         options = self.task.config
         asked, here = axis.array(), float(options.parameters.axes[name].array()[0])
         third = PlaneAxis(name, float(asked[0]), float(asked[-1]), axis.logarithmic)
-        space = BautinSpace(
-            plane.rod, (*plane.axes, third), np.append(asked, here), options.gamma1, options.accuracy
-        )
+        space = BautinSpace(plane.rod, (*plane.axes, third), np.append(asked, here), options.accuracy)
         curves: list[BautinCurve] = []
         for point in (on_curve(found, here) for curve in told for found in curve.points):
             if not any(lies_on(space, point, curve) for curve in curves):

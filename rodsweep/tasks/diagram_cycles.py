@@ -6,39 +6,31 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..determinant.parameter_plane import Plane
 from ..results.file.view import View
-from ..results.layouts.phase_diagram import MOST_SPECIAL
+from ..results.layouts.phase_diagram import CYCLE_SPECIAL, MOST_SPECIAL, cycle_variables
+from ..results.layouts.variables import listed, recorded
 
 if TYPE_CHECKING:
+    from ..determinant.parameter_plane import Plane
     from ..solve.branch.coexistence import CoexistenceRow
-    from ..solve.branch.special_boundaries import CycleCurves, RowSpecial
+    from ..solve.branch.special.boundaries import CycleCurves, RowSpecial
     from ..solve.hopf.generalised import CurveCriticality
 
 
 def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
     """The cycles of a row along a parameter as the variables of the file, with time and status of the row."""
-    kept = result.special[:MOST_SPECIAL]
-    columns: dict[str, tuple[str, float]] = {
-        "kind": ("kind", 0),
-        line: ("at", np.nan),
-        "error": ("error", np.nan),
-        "period": ("period", np.nan),
-        "tip_y_max": ("tip_y_max", np.nan),
-    }
-    values: dict[str, Any] = {
-        f"cycle_special_{name}": [getattr(point, field) for point in kept]
-        + [fill] * (MOST_SPECIAL - len(kept))
-        for name, (field, fill) in columns.items()
-    }
+    variables = [v for v in cycle_variables(line) if v.extra == (CYCLE_SPECIAL,)]
+    at = {f"cycle_special_{line}": "at"}
+    rows = [recorded(variables, point, prefix="cycle_special_", names=at) for point in result.special]
+    values: dict[str, Any] = listed(variables, rows, MOST_SPECIAL)
     values |= {"cycle_special_count": len(result.special), "stable_states": result.stable_states}
     return values | {"seconds": result.seconds, "status": int(result.status)}
 
 
 def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecial]":
     """The folds and torus points of all finite rows as the file has them. rows: all values, (rows,)."""
-    from ..solve.branch.special_boundaries import CURVE_KINDS, RowSpecial
-    from ..solve.branch.special_points import SpecialKind
+    from ..solve.branch.special.boundaries import CURVE_KINDS, RowSpecial
+    from ..solve.branch.special.point import SpecialKind
 
     kinds = view.variables["cycle_special_kind"].reshape(len(rows), -1)
     at, period, height = (
@@ -67,10 +59,10 @@ def unstored_specials(view: View, finite: np.ndarray) -> int:
 
 
 def with_hopf_ends(
-    found: "CycleCurves", plane: Plane, told: "Sequence[CurveCriticality]", unstored: int
+    found: "CycleCurves", plane: "Plane", told: "Sequence[CurveCriticality]", unstored: int
 ) -> "CycleCurves":
     """The curves with the generalised Hopf points at their ends as they are located on Hopf curves."""
-    from ..solve.branch.special_curves import ending_at
+    from ..solve.branch.special.cycle_curves import ending_at
 
     known = [point for curve in told for point in curve.points]
     curves = tuple(ending_at(curve, plane, known) for curve in found.curves)

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from ..determinant.curves import BoundaryCurve
     from ..solve.changes.boundaries import Boundaries
+    from ..solve.changes.boundary_curves import BoundaryCurve
     from ..solve.hopf.bautin_curves import BautinCurve
     from ..solve.hopf.generalised import CurveCriticality
 

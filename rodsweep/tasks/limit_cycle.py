@@ -1,6 +1,6 @@
 """The task limit_cycle: the beating of the nonlinear rod at every point, or that it straightens."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, replace
 from math import isfinite, nan
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +18,7 @@ from ..results.layouts.limit_cycle import (
     TIP,
     TRANSIENT,
 )
-from ..results.layouts.variables import Filled, Variable
+from ..results.layouts.variables import Filled, Variable, recorded
 from ..solve.backend.availability import require_solvers
 from ..sweep.chains import Chains, State
 from ..sweep.estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, MARCHED_CYCLE_SECONDS, Estimate
@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 OF_THE_SWEEP = ("method", "along", "direction", "time")
 """Options that say by which method, how points follow each other and what the file adds; a cycle is asked for
 all others."""
+MULTIPLIERS = {f"multiplier_{part}": f"multipliers_{part}" for part in ("real", "imag")}
+"""Fields of a cycle that are not called as their variables."""
 FINITE_STIFFNESS = Range(isfinite, "a finite number")
 POSITIVE_DRAG = Range(lambda value: value > 0, "a number above 0")
 
@@ -127,14 +129,14 @@ class LimitCycleTask(Task):
     def solver(self) -> Solver:
         if self.config.limit_cycle.method == "integration":
             return self._integration()
-        from ..solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle, warm_up
+        from ..solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle, warm_up
 
         options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
         request = CycleRequest(accuracy=self.config.accuracy, **options)
         along = self.config.along if self.chains else None
 
         def solve(index: int, start: State = None) -> "Cycle":
-            return solve_cycle(CyclePoint(**self.points.values(index)), request, start, along)
+            return solve_cycle(self.points.rod(index), request, start, along)
 
         def solve_from(index: int, start: State) -> "tuple[Cycle, State]":
             cycle = solve(index, start)
@@ -151,7 +153,7 @@ class LimitCycleTask(Task):
 
     def _integration(self) -> Solver:
         """How points are solved by time integration alone."""
-        from ..solve.cycle.limit_cycle import CyclePoint, CycleRequest, warm_up
+        from ..solve.cycle.limit_cycle import CycleRequest, warm_up
         from ..solve.cycle.marched import MarchedStatus, solve_by_integration
 
         options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
@@ -159,20 +161,16 @@ class LimitCycleTask(Task):
         return Solver(
             statuses=tuple(MarchedStatus),
             warm_up=warm_up,
-            solve=lambda index: solve_by_integration(CyclePoint(**self.points.values(index)), request),
+            solve=lambda index: solve_by_integration(self.points.rod(index), request),
             record=lambda index, cycle: self.record(self.points.values(index), cycle),
         )
 
     def record(self, point: dict[str, float], cycle: "Cycle") -> dict[str, Any]:
         """A Cycle as the variables of the file, which are its fields and those of its measures and errors."""
         options = self.config.limit_cycle
-        mu = (
-            np.full(STORED_MULTIPLIERS, complex(nan, nan)) if cycle.multipliers is None else cycle.multipliers
-        )
-        fields = vars(cycle) | vars(cycle.measures) | asdict(cycle.errors)
-        fields |= {"multiplier_real": mu.real, "multiplier_imag": mu.imag}
-        values = {variable.name: fields[variable.name] for variable in CYCLE}
-        values["status"] = int(cycle.status)
+        if cycle.multipliers is None:
+            cycle = replace(cycle, multipliers=np.full(STORED_MULTIPLIERS, complex(nan, nan)))
+        values = recorded(CYCLE, cycle.errors, cycle.measures, cycle, names=MULTIPLIERS)
         if options.time == "tau1":  # t/tau1 = (t/tau2) k2/gamma3
             values[PERIOD_TAU1.name] = cycle.measures.period * point["k2"] / point["gamma3"]
         if options.samples:

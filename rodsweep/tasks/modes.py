@@ -1,5 +1,6 @@
 """The task modes: the leading modes with their adjoints, and what non-normality makes of them."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -9,11 +10,13 @@ from ..config.modes import ModesConfig
 from ..discretization.quadrature import lobatto_points
 from ..discretization.resolution import mesh_accuracy
 from ..model.rod import Rod
-from ..results.layouts.modes import GROWTH
+from ..results.layouts.modes import GROWTH, MODE_NUMBERS
+from ..results.layouts.spectrum import EACH_MODE, EACH_POINT
+from ..results.layouts.variables import Filled, recorded
 from ..sweep.estimate import Estimate, estimate_modes, estimate_spectra
+from .force_changes import force_changes
 from .parts import LinearTask, count_of
 from .protocol import Part, Solver
-from .spectrum import record as spectrum_record
 
 if TYPE_CHECKING:
     from ..solve.modes.leading_modes import Modes
@@ -30,6 +33,10 @@ class ModesTask(LinearTask):
     def coordinates(self) -> dict[str, np.ndarray]:
         """The material coordinate of the modes' nodes, shape (nodes,)."""
         return {"u": lobatto_points(self.config.modes.nodes)}
+
+    def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
+        """Where the rods change along F."""
+        return force_changes(self.points, values)
 
     def headline(self) -> str:
         options = self.config.modes
@@ -62,7 +69,7 @@ class ModesTask(LinearTask):
         first = ModesRequest(2, 1e-4, 9, options.growth, True)
         return Solver(
             statuses=tuple(SpectrumStatus),
-            warm_up=lambda: solve_modes(Rod(30.0, 1e4, 1e4, 1e-4), first),
+            warm_up=lambda: solve_modes(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), first),
             solve=lambda index: solve_modes(self.points.rod(index), request),
             record=lambda index, result: record(result, options.growth),
         )
@@ -71,20 +78,11 @@ class ModesTask(LinearTask):
 def record(result: "Modes", growth: bool) -> dict[str, Any]:
     """Modes as the variables of the file."""
     vectors = result.vectors
-    values: dict[str, Any] = spectrum_record(result.spectrum) | {
-        "mode_error": vectors.mode_error,
-        "pairing_real": vectors.pairing.real,
-        "pairing_imag": vectors.pairing.imag,
-        "condition": vectors.condition,
-        "condition_error": vectors.condition_error,
-        "elements": vectors.resolution.elements,
-        "order": vectors.resolution.order,
-        "seconds": result.seconds,
-        "status": int(result.status),
-    }
+    values = recorded(EACH_MODE + EACH_POINT, vectors.resolution, result, result.spectrum)
+    values |= recorded(MODE_NUMBERS, vectors)
     fields = ("Y", "Theta", "h2", "Pi", "adjoint_Y", "adjoint_Theta")
     for name, field in zip(fields, (*vectors.right, *vectors.deformation, *vectors.left), strict=True):
         values[f"{name}_real"], values[f"{name}_imag"] = field.real, field.imag
     if growth:
-        values |= {variable.name: getattr(result.growth, variable.name) for variable in GROWTH}
+        values |= recorded(GROWTH, result.growth)
     return values

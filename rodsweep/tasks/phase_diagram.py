@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ..config.phase_diagram import PhaseDiagramConfig
+from ..model.rod import Crushed, Rod
 from ..results.layouts.phase_diagram import (
     MOST_SPECIAL,
 )
@@ -85,19 +86,30 @@ class PhaseDiagramTask(LinearTask):
         return replace(lines, seconds=lines.seconds + branches.seconds)
 
     def solver(self) -> Solver:
-        from ..solve.changes.rows import solve_row
+        from ..solve.changes.rows import DiagramRow, crushed_row, solve_row
         from ..solve.changes.thresholds import ThresholdStatus, warm_up
 
         options, request = self.config.phase_diagram, self.row_request()
         if options.cycles:
             return self._with_cycles(request)
+
+        def solve(index: int) -> DiagramRow:
+            try:
+                return solve_row(self.rod(index), request)
+            except Crushed:
+                return crushed_row(request)
+
         return Solver(
             statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
-            solve=lambda index: solve_row(self.points.values(index), request),
-            record=lambda index, result: record(result, options.crossings),
+            solve=solve,
+            record=lambda index, result: record(result, self.config.plane[0], options.crossings),
             together=DiagramCurves(self) if options.curves else None,
         )
+
+    def rod(self, index: int) -> Rod:
+        """One of the rods of a row, with any value along it; raises Crushed where all are crushed."""
+        return self.points.rod(index, gamma1=self.config.gamma1)
 
     def row_request(self) -> "RowRequest":
         """What is asked of every row."""
@@ -111,23 +123,34 @@ class PhaseDiagramTask(LinearTask):
     def _with_cycles(self, request: "RowRequest") -> Solver:
         """How rows with their cycles are solved."""
         from ..solve.branch.branches import warm_up
-        from ..solve.branch.coexistence import CoexistenceStatus, solve_coexistence
+        from ..solve.branch.coexistence import (
+            CoexistenceRow,
+            CoexistenceStatus,
+            crushed_coexistence,
+            solve_coexistence,
+        )
 
-        gamma1, curves = self.config.gamma1, DiagramCurves(self)
+        curves = DiagramCurves(self)
+
+        def solve(index: int) -> CoexistenceRow:
+            try:
+                rod = self.rod(index)
+            except Crushed:
+                return crushed_coexistence(request)
+            return curves.keep(index, solve_coexistence(rod, request, MOST_SPECIAL))
+
         return Solver(
             statuses=tuple(CoexistenceStatus),
             warm_up=warm_up,
-            solve=lambda i: curves.keep(
-                i, solve_coexistence(self.points.values(i), gamma1, request, MOST_SPECIAL)
-            ),
+            solve=solve,
             record=lambda index, result: (
-                record(result.row, request.crossings) | cycles_record(result, request.name)
+                record(result.row, request.name, request.crossings) | cycles_record(result, request.name)
             ),
             together=curves if self.config.phase_diagram.curves else None,
         )
 
 
-def record(result: "DiagramRow", most: int) -> dict[str, Any]:
+def record(result: "DiagramRow", line: str, most: int) -> dict[str, Any]:
     """A row as the variables of the file."""
     classes = {"class": result.motion, "unstable_count": result.unstable_count}
-    return classes | search_record(result.changes, most, "crossing_at") | {"seconds": result.seconds}
+    return classes | search_record(result.changes, most, line, "crossing_at") | {"seconds": result.seconds}

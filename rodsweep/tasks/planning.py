@@ -1,10 +1,38 @@
 """From a job to the plan of its result file."""
 
+from dataclasses import replace
+from typing import Any
+
+from ..config.reading import canonical
+from ..config.schema import Config
 from ..results.file import provenance
 from ..results.file.creation import Plan
+from ..results.layouts import layout_of
+from ..sweep.grid import Points
 from ..sweep.shards import Shard
+from . import TASKS
 from .job import Job
-from .protocol import Solver
+from .protocol import Solver, Task
+
+
+def plan_without_solver(config: Config, points: Points) -> Plan:
+    """The plan of a config on these points, without attributes and flags."""
+    return _plan(TASKS[config.task](config, points), canonical(config))
+
+
+def _plan(task: Task, resolved: dict[str, Any]) -> Plan:
+    return Plan(
+        points=task.points,
+        layout=layout_of(resolved),
+        coordinates=task.coordinates(),
+        constants=task.constants,
+        afterwards=task.afterwards,
+        config=resolved,
+        attributes={},
+        flags=(),
+        chains=task.chains,
+        stretches=task.stretches,
+    )
 
 
 def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
@@ -23,15 +51,9 @@ def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
         provenance.KERNELS: kernels,
     }
     versions = {f"{name}_version": value for name, value in petsc.versions().items()}
-    return Plan(
-        points=job.points,
-        layout=job.layout,
-        coordinates=job.task.coordinates(),
-        constants=job.task.constants,
+    return replace(
+        _plan(job.task, job.resolved),
         quantities=job.quantities,
-        config=job.resolved,
         attributes=attributes | job.config.parameters.numbers | versions | provenance.provenance(),
         flags=tuple((int(s), s.name) for s in solver.statuses),
-        chains=job.task.chains,
-        stretches=job.task.stretches,
     )

@@ -105,6 +105,13 @@ class Task(ABC):
         """Variables that are known before any point is solved. in_order: shares what takes time."""
         return ()
 
+    def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
+        """Variables that all points together give at once, without units of work.
+
+        values: the variables of the points by name, of their shape and their own, to be read by slices.
+        """
+        return ()
+
     @abstractmethod
     def headline(self) -> str:
         """How many points there are, and what is asked of each."""

@@ -1,5 +1,6 @@
 """The task spectrum: the leading eigenvalues at every point."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -11,16 +12,16 @@ from ..discretization.quadrature import lobatto_points
 from ..discretization.resolution import mesh_accuracy
 from ..errors import InputError
 from ..model.longitudinal import longitudinal_rates
-from ..results.layouts.spectrum import longitudinal
-from ..results.layouts.variables import Filled
+from ..results.layouts.spectrum import EACH_FOLLOWED_POINT, EACH_MODE, longitudinal
+from ..results.layouts.variables import Filled, recorded
 from ..sweep.estimate import Estimate, estimate_followed, estimate_spectra, estimate_two_meshes
 from ..sweep.stretches import Stretches, Together, along_the_longest
+from .force_changes import force_changes
 from .parts import LinearTask, count_of
 from .protocol import InOrder, Part, Solver, alone
 
 if TYPE_CHECKING:
     from ..solve.spectrum.search import Spectrum, SpectrumRequest
-    from ..solve.spectrum.stretch import Spectra
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +59,10 @@ class SpectrumTask(LinearTask):
         rates = np.array([longitudinal_rates(float(k), gamma1, modes) for k in k1])
         along = tuple(self.points.over) or ("k1" if self.points.is_grid else "point",)
         return ((longitudinal(gamma1, *along), rates.reshape(*shape, modes)),)
+
+    def afterwards(self, values: Mapping[str, Any]) -> tuple[Filled, ...]:
+        """Where the rods change along F."""
+        return force_changes(self.points, values)
 
     def headline(self) -> str:
         return f"{count_of(self.points)}, {self.config.spectrum.modes} leading modes each"
@@ -110,44 +115,27 @@ class SpectrumTask(LinearTask):
 
     def _together(self, indices: NDArray[np.int64], request: "SpectrumRequest") -> Together:
         """What comes of the points of a stretch."""
+        from ..determinant.parameter_path import Path
+        from ..solve.spectrum.status import SpectrumStatus
         from ..solve.spectrum.stretch import Stretch, solve_stretch
 
         stretches = self.stretches
         assert stretches is not None
         varied = self.points.moved[stretches.axis]
-        found = solve_stretch(Stretch(varied, self.points.values_of(indices)), request)
-        return Together(record_all(found), found.succeeded, found.told)
+        path = Path(self.points.rod(int(indices[0])), varied)
+        found = solve_stretch(Stretch(path, self.points.values_of(indices)[varied]), request)
+        words = {status.value: status.name for status in SpectrumStatus}
+        return Together(
+            values=record(found),
+            succeeded=found.status == SpectrumStatus.ok,
+            told=lambda i: f"{words[int(found.status[i])]} {found.message[i]}".rstrip(),
+        )
 
 
 def record(result: "Spectrum") -> dict[str, Any]:
-    """A Spectrum as the variables of the file."""
-    values: dict[str, Any] = {
-        "growth_rate": result.eigenvalues.real,
-        "frequency": result.eigenvalues.imag,
-        "error_estimate": result.error_estimate,
-        "unstable_count": result.unstable_count,
-        "certified": result.certified,
-        "elements": result.resolution.elements,
-        "order": result.resolution.order,
-        "seconds": result.seconds,
-        "status": int(result.status),
-    }
+    """The spectrum of one point, or of several, as the variables of the file."""
+    values = recorded(EACH_MODE + EACH_FOLLOWED_POINT, result)
     if result.vectors is not None:
         for field, vector in zip(("Y", "Theta"), result.vectors, strict=True):
             values[f"{field}_real"], values[f"{field}_imag"] = vector.real, vector.imag
     return values
-
-
-def record_all(found: "Spectra") -> dict[str, NDArray]:
-    """Spectra of points that were solved together as the variables of the file, each (n, ...)."""
-    return {
-        "growth_rate": found.eigenvalues.real,
-        "frequency": found.eigenvalues.imag,
-        "error_estimate": found.error_estimate,
-        "unstable_count": found.unstable_count,
-        "certified": found.certified,
-        "elements": found.elements,
-        "order": found.order,
-        "seconds": found.seconds,
-        "status": found.status,
-    }

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ..config.thresholds import ThresholdsConfig
-from ..results.layouts.thresholds import CROSSING_KINDS
+from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
+from ..results.layouts.variables import listed, recorded
 from ..sweep.estimate import Estimate, estimate_lines
 from .parts import LinearTask, count_of
 from .protocol import Part, Solver
@@ -49,7 +50,7 @@ class ThresholdsTask(LinearTask):
         return Solver(
             statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
-            solve=lambda index: solve_thresholds(**self.points.values(index), request=request),
+            solve=lambda index: solve_thresholds(self.points.rod(index), request),
             record=lambda index, result: record(result, options.crossings),
         )
 
@@ -62,25 +63,14 @@ def record(result: "Thresholds", most: int) -> dict[str, Any]:
         first = next((crossing for crossing in result.crossings if crossing.kind == place), None)
         for name, field in ((f"F_{kind}", "at"), (f"{kind}_{number}", number)):
             values[name] = getattr(first, field, np.nan)
-    return values | search_record(result, most, "crossing_F")
+    return values | search_record(result, most, "F", "crossing_F")
 
 
-def search_record(result: "Thresholds | Criticality", most: int, at: str) -> dict[str, Any]:
-    """The variables of a search: at most `most` crossings, whose place is the variable `at`."""
-    found, crossings = result.transitions, result.crossings[:most]
-    columns: dict[str, tuple[str, float]] = {
-        at: ("at", np.nan),
-        "crossing_kind": ("kind", 0),
-        "crossing_frequency": ("frequency", np.nan),
-        "crossing_growth_rate": ("growth_rate", np.nan),
-        "crossing_error": ("error", np.nan),
-        "unstable_after": ("unstable_after", -1),
-    }
-    along = {
-        name: [getattr(crossing, field) for crossing in crossings] + [fill] * (most - len(crossings))
-        for name, (field, fill) in columns.items()
-    }
-    return {
+def search_record(result: "Thresholds | Criticality", most: int, line: str, at: str) -> dict[str, Any]:
+    """The variables of a search along `line`: at most `most` crossings, whose place is the variable `at`."""
+    found, variables = result.transitions, crossing_variables(line, at)
+    rows = [recorded(variables, each, prefix="crossing_", names={at: "at"}) for each in result.crossings]
+    return listed(variables, rows, most) | {
         "crossing_count": len(found.crossings),
         "open_from": found.open_range[0],
         "open_to": found.open_range[1],
@@ -89,4 +79,4 @@ def search_record(result: "Thresholds | Criticality", most: int, at: str) -> dic
         "solves": found.solves,
         "seconds": result.seconds,
         "status": int(result.status),
-    } | along
+    }

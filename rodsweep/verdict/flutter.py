@@ -5,6 +5,7 @@ from math import pi
 
 from ..model.arm import SlenderArm
 from ..model.drag import Drag
+from ..model.rod import Rod
 from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
 from ..solve.changes.unstable_modes import Crossing, Kind
 from ..solve.exclusive import solving
@@ -88,7 +89,7 @@ def span_of(values: list[float | None]) -> Span | None:
 
 def flutter_forces(arm: SlenderArm, drag: Drag) -> FlutterForces:
     """All changes of an arm with one drag."""
-    thresholds = solve_thresholds(arm.k1, arm.k2, arm.gamma3_with(drag), REQUEST)
+    thresholds = solve_thresholds(Rod(F=0.0, k1=arm.k1, k2=arm.k2, gamma3=arm.gamma3_with(drag)), REQUEST)
     return FlutterForces(tau2=arm.tau2_with(drag), thresholds=thresholds)
 
 

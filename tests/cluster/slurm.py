@@ -16,11 +16,13 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TypeVar
 
+from ranks import PATIENCE
+
 T = TypeVar("T")
 
 NODES = ("n1", "n2", "n3")
-PATIENCE = 15.0
-"""Seconds in which the daemons have to come up, which takes one or two."""
+COMING_UP = 60.0
+"""Seconds in which the daemons have to come up, which takes one or two, and more on a busy machine."""
 ENDED = {"COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL", "BOOT_FAIL", "OUT_OF_MEMORY"}
 
 CONFIGURATION = """\
@@ -82,7 +84,7 @@ class Slurm:
             env=self.environment,
             capture_output=True,
             text=True,
-            timeout=30,
+            timeout=PATIENCE,
             check=False,
         )
 
@@ -102,25 +104,25 @@ class Slurm:
     def cancel_all(self) -> None:
         """Cancels what is left and waits until it is gone: slurmd does not end its jobs when it is ended."""
         self("scancel", "--user", os.geteuid())
-        wait_for(lambda: not self("squeue", "--noheader"), 60, "the last job to go")
+        wait_for(lambda: not self("squeue", "--noheader"), "the last job to go")
 
     def idle(self) -> bool:
         """Whether all nodes are up and have nothing to do."""
-        words = ("timeout", "1", "sinfo", "--noheader", "--Node", "--format=%T")
+        words = ("timeout", "5", "sinfo", "--noheader", "--Node", "--format=%T")
         run = subprocess.run(words, env=self.environment, capture_output=True, text=True, check=False)
         return run.stdout.split() == ["idle"] * len(NODES)
 
-    def end(self, job: str, timeout: float = 60) -> str:
+    def end(self, job: str) -> str:
         """Waits for the end of a job; returns its state, and its exit status: "COMPLETED 0:0"."""
-        wait_for(lambda: self.about(job, "JobState") in ENDED, timeout, f"the end of job {job}")
+        wait_for(lambda: self.about(job, "JobState") in ENDED, f"the end of job {job}")
         return f"{self.about(job, 'JobState')} {self.about(job, 'ExitCode')}"
 
 
-def wait_for(condition: Callable[[], T], timeout: float, what: str) -> T:
+def wait_for(condition: Callable[[], T], what: str) -> T:
     """Waits until the condition holds; returns what it then gave."""
-    deadline = time.monotonic() + timeout
+    deadline = time.monotonic() + PATIENCE
     while not (value := condition()):
-        assert time.monotonic() < deadline, f"waited {timeout:g} s for {what}"
+        assert time.monotonic() < deadline, f"waited {PATIENCE:g} s for {what}"
         time.sleep(0.05)
     return value
 
@@ -223,14 +225,14 @@ class _Daemons:
 
     def until(self, condition: Callable[[], bool]) -> None:
         """Waits for the condition; CannotStart, with what the logs end with, if it does not come to hold."""
-        deadline = time.monotonic() + PATIENCE
+        deadline = time.monotonic() + COMING_UP
         while not condition():
             ended = [number for number, process in enumerate(self.running) if process.poll() is not None]
             if ended:
                 raise CannotStart(f"a daemon ended at once: {self._last_words(ended[0])}")
             if time.monotonic() > deadline:
                 words = " | ".join(map(self._last_words, range(len(self.running))))
-                raise CannotStart(f"its daemons are not ready after {PATIENCE:g} s: {words}")
+                raise CannotStart(f"its daemons are not ready after {COMING_UP:g} s: {words}")
             time.sleep(0.05)
 
     def _log(self, number: int) -> Path:

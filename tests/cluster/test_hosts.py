@@ -9,6 +9,7 @@ import pytest
 from conftest import BIN
 from contents import content, same, same_spectra
 from kernels import other_kernels
+from ranks import PATIENCE
 
 from rodsweep.results.file.view import read_view
 
@@ -21,7 +22,7 @@ parameters:
   gamma3: [0, 1.0e-4]
 """
 CYCLES = "task: limit_cycle\nparameters: {points: points.csv}\naccuracy: 1.0e-9\n"
-BOTH_BEGIN = """
+BOTH_BEGIN = f"""
 import pathlib, time
 from dataclasses import replace
 import rodsweep.sweep.loop as loop
@@ -29,11 +30,11 @@ import rodsweep.sweep.loop as loop
 real = loop.sweep
 
 def sweep(team, todo, work, *words):
-    own, other = (pathlib.Path(f"begun-{rank}") for rank in (team.rank, 1 - team.rank))
+    own, other = (pathlib.Path(f"begun-{{rank}}") for rank in (team.rank, 1 - team.rank))
 
     def solve(unit):
         own.touch()
-        end = time.monotonic() + 60
+        end = time.monotonic() + {PATIENCE / 2}
         while not other.exists() and time.monotonic() < end:
             time.sleep(0.01)
         return work.solve(unit)
@@ -42,8 +43,8 @@ def sweep(team, todo, work, *words):
 
 loop.sweep = sweep
 """
-"""A sitecustomize.py: the first solve of each rank lasts until the other has begun one (or a minute)."""
-FIRST_RANK_INSIDE = """
+"""A sitecustomize.py: the first solve of each rank lasts until the other has begun one, or a while."""
+FIRST_RANK_INSIDE = f"""
 import os, pathlib, time
 from dataclasses import replace
 import rodsweep.sweep.loop as loop
@@ -52,7 +53,7 @@ real, inside, elsewhere = loop.sweep, pathlib.Path("inside"), pathlib.Path("else
 elsewhere.touch()
 
 def wait(reached):
-    end = time.monotonic() + 60
+    end = time.monotonic() + {PATIENCE / 2}
     while not reached() and time.monotonic() < end:
         time.sleep(0.01)
 
@@ -77,7 +78,7 @@ def sweep(team, todo, work, *words):
 
 loop.sweep = sweep
 """
-"""A sitecustomize.py: the first solve of the first rank lasts until the other has begun 31 (or a minute)."""
+"""A sitecustomize.py: the first solve of the first rank lasts until the other has begun 31, or a while."""
 
 
 BLAS = {name: value for name, value in os.environ.items() if name.startswith(("OPENBLAS_", "MKL_", "BLIS_"))}
@@ -107,7 +108,7 @@ class TwoHosts:
             env={n: v for n, v in os.environ.items() if not n.startswith(foreign)} | variables | (here or {}),
             capture_output=True,
             text=True,
-            timeout=120,
+            timeout=PATIENCE,
             check=False,
         )
 
@@ -160,7 +161,9 @@ def test_hosts_with_different_blas_kernels_agree_within_their_error_estimates(ho
     if not others:
         pytest.skip("this BLAS has no other kernel to choose here")
     command.write("c.yaml", SPECTRA)
-    run = hosts.run("run", "c.yaml", here={"OPENBLAS_CORETYPE": next(iter(others))})
+    command.write("sitecustomize.py", BOTH_BEGIN)
+    path = f".{os.pathsep}{PYTHONPATH}"
+    run = hosts.run("run", "c.yaml", here={"OPENBLAS_CORETYPE": next(iter(others))}, PYTHONPATH=path)
     assert run.returncode == 0, run.stderr
     assert run.stdout.count("computed in parts by 2 BLAS kernels") == 1
     assert next(iter(others.values())) in read_view(command.directory / "c.h5").attributes["blas_kernels"]

@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 from conftest import BIN, ROOT, Command
 from contents import content, same
+from ranks import PATIENCE
+from slow_runs import FOR_EVER, slowly
 
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.variables import MISSING
@@ -24,23 +26,20 @@ parameters:
 spectrum: {modes: 4, follow: false}
 """
 
-SLOWLY = """
-import os, time
-from rodsweep.results.run.journal import Journal
+SLOWLY = f"""
+import os
 
-append = Journal.append
-
-def append_slowly(self, *words):
-    time.sleep(float(os.environ["PAUSE"]))
-    append(self, *words)
-
-if "PAUSE" in os.environ and "SLURM_RESTART_COUNT" not in os.environ:
-    Journal.append = append_slowly
-with open(f"threads-{os.getpid()}", "w") as note:
-    note.write(f"{os.environ['OMP_NUM_THREADS']} thread on {len(os.sched_getaffinity(0))} core")
+if (
+    "HALT" in os.environ
+    and "SLURM_RESTART_COUNT" not in os.environ
+    and os.environ.get("SLURM_ARRAY_TASK_ID", "2") == "2"
+):
+    exec({slowly(FOR_EVER, points=15)!r})
+with open(f"threads-{{os.getpid()}}", "w") as note:
+    note.write(f"{{os.environ['OMP_NUM_THREADS']}} thread on {{len(os.sched_getaffinity(0))}} core")
 """
-"""A sitecustomize.py that makes every point take PAUSE seconds longer until the job has been requeued, and
-notes where a rank may run."""
+"""A sitecustomize.py that, with HALT, lets every rank wait after 15 points until it is asked to stop, of an
+array those of the second shard; not once the job was requeued. It notes where a rank may run."""
 
 STOPPED = "kept, the same command continues"
 
@@ -71,7 +70,7 @@ def out_of_time(running, tmp_path_factory):
     Slurm looks twice a minute who is to be warned; two minutes before the end is 30 to 60 s from now.
     """
     running.directory = clone_in(tmp_path_factory.mktemp("out_of_time"))
-    words = ("--time=00:03:00", "--nodelist=n3", slow(0.8))
+    words = ("--time=00:03:00", "--nodelist=n3", HALTED)
     return running.directory, running.submit(*words, "jobs/one_node.sh", "c.yaml", "c.h5")
 
 
@@ -91,9 +90,8 @@ def clone_in(directory: Path) -> Path:
     return directory
 
 
-def slow(pause: float) -> str:
-    """The option of sbatch with which every point takes longer, until the job has been requeued."""
-    return f"--export=ALL,PAUSE={pause},PYTHONPATH=.,OMP_NUM_THREADS=8"
+HALTED = "--export=ALL,HALT=1,PYTHONPATH=.,OMP_NUM_THREADS=8"
+"""The option of sbatch with which a job waits until it is warned, cancelled or requeued."""
 
 
 def until_some_are_done(result: Path) -> None:
@@ -103,7 +101,7 @@ def until_some_are_done(result: Path) -> None:
         pages = result.with_name(f"{result.name}.journal").glob("rank-*")
         return sum(page.stat().st_size for page in pages) > 1000
 
-    wait_for(growing, 60, f"points in the journal of {result}")
+    wait_for(growing, f"points in the journal of {result}")
 
 
 def log(slurm: Slurm) -> str:
@@ -119,13 +117,13 @@ def test_script_hands_the_warning_on_and_asks_for_a_requeue(tmp_path):
     variables |= {"PATH": f"{tmp_path}:{os.environ['PATH']}"}
     words = ["bash", str(ROOT / "jobs" / "one_node.sh"), "c.yaml"]
     warned = subprocess.Popen(
-        words, cwd="/", env=os.environ | variables | {"PAUSE": "0.1", "PYTHONPATH": str(tmp_path)}
+        words, cwd="/", env=os.environ | variables | {"HALT": "1", "PYTHONPATH": str(tmp_path)}
     )
     until_some_are_done(tmp_path / "results" / "c.h5")
     warned.send_signal(signal.SIGUSR1)
-    assert warned.wait(60) == 75
+    assert warned.wait(PATIENCE) == 75
     assert (tmp_path / "asked").read_text() == "requeue 7\n"
-    again = subprocess.run(words, cwd="/", env=os.environ | variables, check=False, timeout=60)
+    again = subprocess.run(words, cwd="/", env=os.environ | variables, check=False, timeout=PATIENCE)
     assert again.returncode == 0
     assert read_view(tmp_path / "results" / "c.h5").attributes["ranks"] == 2
 
@@ -140,7 +138,7 @@ def test_job_gives_the_content_of_a_plain_run_and_submitted_again_has_nothing_to
 
 
 def test_job_cancelled_in_the_middle_continues_when_submitted_again(slurm, expected):
-    job = slurm.submit(slow(0.05), "jobs/one_node.sh", "c.yaml", "c.h5")
+    job = slurm.submit(HALTED, "jobs/one_node.sh", "c.yaml", "c.h5")
     until_some_are_done(slurm.directory / "c.h5")
     slurm("scancel", job)
     assert slurm.end(job).startswith("CANCELLED")
@@ -152,7 +150,7 @@ def test_job_cancelled_in_the_middle_continues_when_submitted_again(slurm, expec
 
 
 def test_job_requeued_in_the_middle_finishes_by_itself(slurm, expected):
-    job = slurm.submit(slow(0.05), "jobs/one_node.sh", "c.yaml", "c.h5")
+    job = slurm.submit(HALTED, "jobs/one_node.sh", "c.yaml", "c.h5")
     until_some_are_done(slurm.directory / "c.h5")
     slurm("scontrol", "requeue", job)
     assert slurm.end(job) == "COMPLETED 0:0", log(slurm)
@@ -163,7 +161,7 @@ def test_job_requeued_in_the_middle_finishes_by_itself(slurm, expected):
 
 
 def test_job_on_many_nodes_is_warned_on_all_of_them(slurm, expected):
-    words = ("--nodes=2", "--nodelist=n1,n2", "--ntasks-per-node=1", slow(0.05))
+    words = ("--nodes=2", "--nodelist=n1,n2", "--ntasks-per-node=1", HALTED)
     job = slurm.submit(*words, "jobs/many_nodes.sh", "c.yaml", "c.h5")
     until_some_are_done(slurm.directory / "c.h5")
     slurm.warn(job)
@@ -178,7 +176,7 @@ def test_job_on_many_nodes_is_warned_on_all_of_them(slurm, expected):
 
 
 def test_shards_of_an_array_are_merged_when_all_have_ended(slurm, expected):
-    array = slurm.submit("--array=1-3", slow(0.05), "jobs/shards.sh", "c.yaml", "c.h5")
+    array = slurm.submit("--array=1-3", HALTED, "jobs/shards.sh", "c.yaml", "c.h5")
     last = slurm.submit(f"--dependency=afterok:{array}", "jobs/merge.sh", "c.yaml", "c.h5")
     until_some_are_done(slurm.directory / "c-2-of-3.h5")
     slurm.warn(f"{array}_2")
@@ -201,7 +199,7 @@ def test_shard_with_a_failed_point_does_not_hold_up_the_merge(slurm):
 
 
 def test_job_that_may_not_be_requeued_says_so_and_exits_with_75(slurm):
-    job = slurm.submit("--no-requeue", slow(0.1), "jobs/one_node.sh", "c.yaml", "c.h5")
+    job = slurm.submit("--no-requeue", HALTED, "jobs/one_node.sh", "c.yaml", "c.h5")
     until_some_are_done(slurm.directory / "c.h5")
     slurm.warn(job)
     assert slurm.end(job) == "FAILED 75:0", log(slurm)
@@ -220,7 +218,7 @@ def test_srun_starts_the_ranks_where_it_can(slurm, expected):
     if reason := slurm.refuses("srun", "--ntasks=1", "--mpi=pmix", "true"):
         pytest.skip(f"this Slurm cannot load PMIx (on Debian: apt install libpmix-dev): {reason}")
     words = (
-        "--export=ALL,LAUNCH=srun --mpi=pmix,PAUSE=0.05,PYTHONPATH=.",
+        "--export=ALL,LAUNCH=srun --mpi=pmix,HALT=1,PYTHONPATH=.",
         "jobs/one_node.sh",
         "c.yaml",
         "c.h5",
@@ -230,7 +228,7 @@ def test_srun_starts_the_ranks_where_it_can(slurm, expected):
     slurm.warn(stopped)
     assert slurm.end(stopped) == "FAILED 75:0", log(slurm)
     assert log(slurm).count(STOPPED) == 1
-    again = slurm.submit(words[0].replace("PAUSE", "NONE"), *words[1:])
+    again = slurm.submit(words[0].replace("HALT", "NONE"), *words[1:])
     assert slurm.end(again) == "COMPLETED 0:0", log(slurm)
     assert same(content(slurm.directory / "c.h5"), expected)
     assert read_view(slurm.directory / "c.h5").attributes["ranks"] == 2
@@ -238,7 +236,7 @@ def test_srun_starts_the_ranks_where_it_can(slurm, expected):
 
 def test_job_out_of_time_is_warned_and_requeues_itself(slurm, out_of_time, expected):
     slurm.directory, job = out_of_time
-    assert slurm.end(job, 120) == "COMPLETED 0:0", log(slurm)
+    assert slurm.end(job) == "COMPLETED 0:0", log(slurm)
     assert slurm.about(job, "Restarts") == "1"
     assert STOPPED in log(slurm)
     assert " kept" in log(slurm)

@@ -12,6 +12,7 @@ import gc
 import io
 import json
 import os
+import pickle
 import resource
 import select
 import signal
@@ -19,10 +20,12 @@ import socket
 import sys
 import traceback
 from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
-from typing import NoReturn
+from typing import BinaryIO, NoReturn
 
 SOLVERS = ("petsc4py", "slepc4py")
+MEASURED = ["-m", "rodsweep.cli.measured"]
 UNCAUGHT = 70
 """Exit status of a child that an exception ended: the interpreter's own, 1, has a meaning."""
 
@@ -118,12 +121,17 @@ def answer(request: dict) -> dict:
     return {"status": status, "slow": waits or status == -signal.SIGXCPU}
 
 
-def keep_ranks(place: str) -> NoReturn:
-    """Forks a child for each rank that comes to a socket, until the process that started this one ends."""
+def keep_ranks(place: str, kernels: BinaryIO) -> NoReturn:
+    """Forks a child for each rank that comes to a socket, until the process that started this one ends.
+
+    `kernels`: which compiled functions are loaded first, as `loaded_kernels` writes them.
+    """
     parent = os.pidfd_open(os.getppid())
     with socket.socket(socket.AF_UNIX) as server:
         server.bind(place)
         server.listen(64)
+        load_for_ranks(kernels)
+        gc.freeze()
         while parent not in select.select([server, parent], [], [])[0]:
             rank, _ = server.accept()
             if not os.fork():
@@ -164,7 +172,10 @@ class IsRank(Exception):
 
 
 def be_rank(request: dict, streams: list[int]) -> None:
-    """Runs the command as one rank, in this process, which ends as any other does: MPI wants that."""
+    """Runs the command as one rank, in this process, which ends as any other does: MPI wants that.
+
+    Or as the benchmark of the sweep starts it, see `rodsweep.cli.measured`.
+    """
     for stream, given in enumerate(streams):
         os.dup2(given, stream)
         os.close(given)
@@ -177,17 +188,27 @@ def be_rank(request: dict, streams: list[int]) -> None:
     patch = Path("patch/sitecustomize.py")
     if str(patch.parent.absolute()) in os.environ.get("PYTHONPATH", ""):
         exec(patch.read_text(), {"__name__": "sitecustomize"})
-    from rodsweep.cli import main
+    if request["words"][:2] == MEASURED:
+        from rodsweep.cli.measured import run_measured as main
 
+        sys.argv = request["words"][1:]
+    else:
+        from rodsweep.cli import main
     main()
 
 
 def load(solving: bool, configs: list[str]) -> None:
     """Imports everything and compiles what is compiled at first use for some configs."""
+    import email.parser  # noqa: F401
+    import encodings.ascii  # noqa: F401
+
+    import rich._emoji_codes  # noqa: F401
+
     import rodsweep.cli.checking
     import rodsweep.cli.running
     import rodsweep.post.figures
-    import rodsweep.post.summary  # noqa: F401
+    import rodsweep.post.summary
+    import rodsweep.tasks.cycle_shapes  # noqa: F401
     from rodsweep.errors import EnvironmentLacks
     from rodsweep.sweep.team import Team
     from rodsweep.tasks.job import make_job
@@ -217,36 +238,51 @@ def draw() -> None:
     figure.savefig(io.BytesIO(), dpi=300)
 
 
-def load_for_ranks() -> None:
-    """Imports and compiles what starts neither MPI nor PETSc."""
-    import scipy.interpolate
-    import scipy.optimize
-    import scipy.sparse.linalg  # noqa: F401
+def loaded_kernels() -> bytes:
+    """{module: {name: the types of arguments for which it is compiled}} of what the package has loaded."""
+    from numba.core.dispatcher import Dispatcher
 
-    import rodsweep.cli.running
-    import rodsweep.discretization.straight_elements  # noqa: F401
-    from rodsweep.determinant.covering import cover, first_boxes
-    from rodsweep.determinant.newton import refined  # noqa: F401
-    from rodsweep.determinant.parameter_path import Path as ParameterPath
-    from rodsweep.determinant.winding_number import count_right_of
-    from rodsweep.model.rod import Rod
+    modules = {name: vars(module) for name, module in sys.modules.items() if name.startswith("rodsweep.")}
+    return pickle.dumps(
+        {
+            name: {
+                key: value.signatures
+                for key, value in content.items()
+                if isinstance(value, Dispatcher) and value.py_func.__module__ == name
+            }
+            for name, content in modules.items()
+        }
+    )
 
-    rod = Rod(30.0, 1e4, 1e4, 1e-4)
-    count_right_of(0.0, rod)
-    path = ParameterPath(rod, "F")
-    boxes = first_boxes(path, 10.0, 11.0)
-    assert boxes is not None
-    cover(boxes, path.origin, path.direction)
+
+def load_for_ranks(kernels: BinaryIO) -> None:
+    """Loads what the process that solves has loaded, but what starts MPI or PETSc."""
+    with kernels:
+        modules = pickle.load(kernels)
+    refusal = NoSolver()
+    sys.meta_path.insert(0, refusal)
+    for name, functions in modules.items():
+        with suppress(AssertionError):
+            module = import_module(name)
+            for function, signatures in functions.items():
+                for signature in signatures:
+                    getattr(module, function).compile(signature)
+    sys.meta_path.remove(refusal)
     assert not {"mpi4py.MPI", "petsc4py.PETSc"} & set(sys.modules)
 
 
 def main() -> None:
-    if sys.argv[1] == "solving":
-        load_for_ranks()
-        gc.freeze()
+    solving = sys.argv[1] == "solving"
+    if solving:
+        reading, writing = os.pipe()
         if not os.fork():
-            keep_ranks(sys.argv[2])
-    load(sys.argv[1] == "solving", sys.argv[3:])
+            os.close(writing)
+            keep_ranks(sys.argv[2], os.fdopen(reading, "rb"))
+        os.close(reading)
+    load(solving, sys.argv[3:])
+    if solving:
+        with os.fdopen(writing, "wb") as kernels:
+            kernels.write(loaded_kernels())
     gc.freeze()  # collecting garbage, children would copy all that is loaded
     requests = sys.stdin.buffer
     with open(os.dup(1), "w", encoding="utf-8") as answers:

@@ -8,6 +8,7 @@ import re
 from math import floor, inf, log, log10, pi
 
 import numpy as np
+from rods import rod_of
 
 import rodsweep as rs
 from rodsweep.model.arm import SlenderArm
@@ -238,7 +239,7 @@ def _in_units(groups, *true):
 def _rods_without_load(view):
     """The rod of every point, or row, at F = 0."""
     columns = [np.asarray(view.point_columns[name], float) for name in ("k1", "k2", "gamma3")]
-    return [Rod(0.0, *map(float, each)) for each in zip(*columns, strict=True)]
+    return [rod_of(0.0, *map(float, each)) for each in zip(*columns, strict=True)]
 
 
 def _tops(view):
@@ -472,7 +473,7 @@ def _motion(view, fine, i):
             if view.task == "phase_diagram"
             else float(view.variables["F_end"].ravel()[i])
         )
-        rod = Rod(0.0, *(float(columns[name][i]) for name in ("k1", "k2", "gamma3")))
+        rod = rod_of(0.0, *(float(columns[name][i]) for name in ("k1", "k2", "gamma3")))
         hopf = next((c for c in changes_over_force(rod, top) if c.kind.name == "hopf"), None)
         return (hopf.frequency, hopf.at, HALF_LENGTH, False) if hopf else (np.nan, np.nan, HALF_LENGTH, False)
     if view.task == "limit_cycle":
@@ -551,7 +552,7 @@ class ArmTruth:
         found = {"hopf": [], "onset": [], "restabilization": [], "hertz": [], "crossings": [], "gamma3": []}
         for _, gamma2, gamma3 in drags_of(q):
             ratio = gamma3 / (gamma2 * length**2)
-            crossings = changes_over_force(Rod(0.0, k1, k2, ratio), 1000.0)
+            crossings = changes_over_force(Rod(F=0.0, k1=k1, k2=k2, gamma3=ratio), 1000.0)
             for kind in ("hopf", "onset", "restabilization"):
                 first = next((c for c in crossings if c.kind.name == kind), None)
                 found[kind].append(first.at if first else np.nan)
@@ -641,7 +642,10 @@ class ArmTruth:
 
     def _grows(self, n):
         """Whether the straight arm is unstable with the n-th drag."""
-        return leading(Rod(self.F, self.own["k1"], self.own["k2"], self.own["gamma3"][n]))[0].real > 0
+        return (
+            leading(Rod(F=self.F, k1=self.own["k1"], k2=self.own["k2"], gamma3=self.own["gamma3"][n]))[0].real
+            > 0
+        )
 
     def _remedies(self, page):
         """By how much effects are too large, and what would have to change: tried."""

@@ -7,9 +7,9 @@ every range that is called stable, and straight rods that are called stable agai
 import re
 
 import numpy as np
+from rods import rod_of
 
 import rodsweep as rs
-from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import both, curves_of, straight_ranges, union
 from rodsweep.post.summary.branch import ends_of
 
@@ -184,7 +184,7 @@ def _pairs(curves):
 
 def _rod(view, rod, F):
     columns = view.point_columns
-    return Rod(F, *(float(columns[name][rod]) for name in ("k1", "k2", "gamma3")))
+    return rod_of(F, *(float(columns[name][rod]) for name in ("k1", "k2", "gamma3")))
 
 
 def _growing(view, some, rod):

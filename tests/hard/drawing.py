@@ -291,7 +291,8 @@ def unloaded(view):
     """The rods of a file at F = 0, and up to where these were searched."""
     columns, tops = view.point_columns, view.variables["F_end"].ravel()
     rods = [
-        Rod(0.0, *map(float, row)) for row in zip(*(columns[n] for n in LINEAR_PARAMETERS[1:]), strict=True)
+        Rod(F=0.0, **dict(zip(LINEAR_PARAMETERS[1:], map(float, row), strict=True)))
+        for row in zip(*(columns[n] for n in LINEAR_PARAMETERS[1:]), strict=True)
     ]
     return [(rod, float(top)) for rod, top in zip(rods, tops, strict=True)]
 

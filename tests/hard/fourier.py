@@ -29,7 +29,7 @@ def guess_at(orbit, m):
     states, reaction = orbit.at(np.arange(m) / m), np.empty(V.shape[1:])
     for x, velocities in zip(states, V, strict=True):
         balance(x, velocities, reaction, form.nodal, form.mesh.matrices)
-    mixed = MixedForm(form.rod, form.gamma1, form.mesh)
+    mixed = MixedForm(form.rod, form.mesh)
     return mixed.unknown(form.stresses(states), V.swapaxes(0, 1))
 
 
@@ -58,7 +58,7 @@ def solved_cycle(form, X, frequency):
 
 def period_and_largest_y(orbit, phases):
     """Of the cycle near a symmetric orbit, on the orbit's mesh in space."""
-    form = MixedForm(orbit.form.rod, orbit.form.gamma1, orbit.form.mesh)
+    form = MixedForm(orbit.form.rod, orbit.form.mesh)
     X, frequency = solved_cycle(form, guess_at(orbit, phases), 2 * np.pi / orbit.period)
     S, _ = form.fields(X)
     E = S * form.material.compliance[:, None, None] + form.straight[:, None, None]

@@ -4,8 +4,8 @@ from functools import cache
 
 import mpmath as mp
 import numpy as np
+from rods import rod_of
 
-from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 
@@ -22,7 +22,7 @@ rounding may by luck have left less than a tenth of the estimate."""
 
 @cache
 def spectrum(rod, modes=4, accuracy=1e-12):
-    return solve_spectrum(Rod(*rod), SpectrumRequest(modes, accuracy, True))
+    return solve_spectrum(rod_of(*rod), SpectrumRequest(modes, accuracy, True))
 
 
 @cache

@@ -12,6 +12,7 @@ from math import inf, log10
 from pathlib import Path
 
 import numpy as np
+from rods import rod_of
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of
@@ -20,8 +21,8 @@ from rodsweep.model.arm import SlenderArm
 from rodsweep.model.parameters import LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import curves_of
-from rodsweep.post.hopf_points import lines_over
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
+from rodsweep.sweep.lines import lines_over
 
 from .arm_sentences import arm_sentences, random_arm, region_as_stated
 from .branch_sentences import branch_sentences
@@ -238,7 +239,7 @@ def threshold_sentences(view, page):
             columns = np.concatenate(list(view.point_columns.values()))
             why += [near_one_of(text, columns) for text in match.groups() if text]
         for _, match in read(page, r", on NUMBER of NUMBER lines? over", only=line):
-            lines = [each for each in lines_over(view, name) if len(each.x)]
+            lines = [each for each in lines_over(view.point_columns, name) if len(each.x)]
             having = len({tuple(getattr(rod, n) for n in LINEAR_PARAMETERS if n != name) for rod, *_ in true})
             right = int(match[1]) == having and int(match[2]) == len(lines)
             why += [] if right else [f"on {having} of {len(lines)} lines"]
@@ -340,7 +341,7 @@ def thresholds_sentences(view, page, keywords, _):
     """Of a grid the first thresholds of every kind, of a single rod all with their errors."""
     columns, v = view.point_columns, view.variables
     count = v["status"].size
-    rods = [Rod(0.0, *(float(columns[name][i]) for name in LINEAR_PARAMETERS[1:])) for i in range(count)]
+    rods = [rod_of(0.0, *(float(columns[name][i]) for name in LINEAR_PARAMETERS[1:])) for i in range(count)]
     top = keywords.get("F_max", 200.0)
     every = [changes_over_force(rod, top) for rod in rods]
     found = _search_sentences(view, page, every, "rod")
@@ -659,7 +660,7 @@ def diagram_sentences(view, page, keywords, fine):
     fixed = {name: float(view.axes[name][0]) for name in view.parameters if name in LINEAR_PARAMETERS}
     every, table = [], []
     for value in rows:
-        rod = Rod(0.0, **(fixed | {row: float(value)}))
+        rod = Rod(F=0.0, **fixed | {row: float(value)})
         stop = min(float(values[-1]), rod.k1 * SHORT_OF_CRUSHED)
         every.append(changes_along(rod, "F", float(values[0]), stop))
         table.append([_class_of(replace(rod, F=float(F))) if rod.k1 > F else "crushed" for F in values])
@@ -720,7 +721,7 @@ def _curve_sentences(view, page, row):
         found.append((line, "; ".join(why)))
     fixed = {name: float(view.axes[name][0]) for name in view.parameters if name != row}
     for i in range(0, len(v["curve_kind"]), max(1, len(v["curve_kind"]) // 6)):
-        rod = Rod(float(v["curve_F"][i]), **(fixed | {row: float(v[f"curve_{row}"][i])}))
+        rod = Rod(F=float(v["curve_F"][i]), **fixed | {row: float(v[f"curve_{row}"][i])})
         w = solve_spectrum(rod, SpectrumRequest(MANY, 1e-10, False)).eigenvalues
         at = complex(v["curve_growth_rate"][i], v["curve_frequency"][i])
         off = np.sort(np.abs(w - at))[0] / abs(at)

@@ -8,9 +8,10 @@ from functools import cache
 
 import numpy as np
 import pytest
+from rods import rod_of
 
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
-from rodsweep.solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 
 RODS = [
     (1e4, 1e2, 1e-2, 1.0), (557.1, 3933.0, 3.16e-3, 0.21), (4.878e4, 3997.0, 4.11e-4, 0.26),
@@ -22,14 +23,14 @@ ACCURACY = 1e-7
 @cache
 def hopf(rod):
     """F** of a rod."""
-    found = solve_thresholds(*rod[:3], ThresholdsRequest(60.0, 1e-12, False, 4))
+    found = solve_thresholds(rod_of(0.0, *rod), ThresholdsRequest(60.0, 1e-12, False, 4))
     return next(c.at for c in found.crossings if c.kind.name == "hopf")
 
 
 @cache
 def beside(rod, distance, start="mode"):
     """What a rod does at a relative distance from its Hopf point."""
-    point = CyclePoint(hopf(rod) * (1 + distance), *rod)
+    point = rod_of(hopf(rod) * (1 + distance), *rod)
     return solve_cycle(point, CycleRequest(ACCURACY, 0.01, 1, 0, 0, 0, most_periods=400, start=start))
 
 

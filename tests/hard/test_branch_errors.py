@@ -16,9 +16,10 @@ import pytest
 
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.arc import ArcPoint, due, next_point, settled
+from rodsweep.solve.branch.arc import ArcPoint, next_point
 from rodsweep.solve.branch.beginning import beginning, hopf_point
 from rodsweep.solve.branch.branch_curve import BranchPoint
+from rodsweep.solve.branch.settling import due, settled
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.measures import CyclePath
 from rodsweep.solve.cycle.newton import linearised, multipliers_of, newton
@@ -74,11 +75,13 @@ def random_case(index: int) -> Case:
 
 def cycles_of(case: Case) -> Iterator[ArcPoint]:
     """The cycles of the first branch, with the errors that it states, as far as MOST_CYCLES."""
-    rod = Rod(0.0, case.k1, case.k2, case.gamma3)
+    rod = Rod(F=0.0, k1=case.k1, k2=case.k2, gamma3=case.gamma3)
     crossings = pair_crossings(Path(rod, "F"), 0.0, case.stop).crossings
     if not crossings:
         return
-    here = last = beginning(hopf_point(rod, case.gamma1, "F", crossings[0]), case.accuracy)
+    here = last = beginning(
+        hopf_point(Path(rod.changed(gamma1=case.gamma1), "F"), crossings[0]), case.accuracy
+    )
     yield last
     waiting: list[ArcPoint] = []
     for _ in range(MOST_CYCLES):

@@ -12,6 +12,7 @@ from math import inf
 
 import numpy as np
 import pytest
+from rods import rod_of
 
 from rodsweep.determinant.winding_number import count_right_of
 from rodsweep.model.rod import Rod
@@ -52,7 +53,7 @@ def test_an_eigenvalue_where_exponents_vanish_keeps_twelve_digits(place):
 def test_the_count_beside_an_eigenvalue_where_exponents_vanish_is_right(place):
     """A part in a thousand beside it; a part in a million beside it, it may be refused."""
     (F, k1, k2), _, index = place
-    rod = Rod(*rods_at(place)[0])
+    rod = rod_of(*rods_at(place)[0])
     there = -rod.g * rod.nu / (rod.c2 * rod.gamma3)
     assert abs(leading((F, k1, k2, rod.gamma3), MODES)[index] / there - 1) < 1e-12
     for offset, allowed in ((1e-3, ()), (1e-6, (None,))):
@@ -65,7 +66,7 @@ def test_the_count_beside_an_eigenvalue_where_exponents_vanish_is_right(place):
     ("F", "k1", "k2", "gamma3"), [(30.0, 1e4, 1e2, 0.05), (5.0, 1e4, 10.0, 0.1), (-5.0, 50.0, 20.0, 0.3)]
 )
 def test_a_line_that_ends_where_exponents_vanish_counts_right_or_not_at_all(F, k1, k2, gamma3):
-    rod = Rod(F, k1, k2, gamma3)
+    rod = Rod(F=F, k1=k1, k2=k2, gamma3=gamma3)
     there = -rod.g * rod.nu / (rod.c2 * rod.gamma3)
     exact = sum(w.real > there for w in leading((F, k1, k2, gamma3), 9))
     assert exact < 9

@@ -7,9 +7,9 @@ bounded, so in long soft rods they crowd below it: their real parts agree in sev
 
 import numpy as np
 import pytest
+from rods import rod_of
 
 from rodsweep.determinant.winding_number import count_right_of
-from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.status import SpectrumStatus
 
 from .exact import candidates, leading, unstable
@@ -45,7 +45,7 @@ def test_the_count_right_of_any_line_between_unstable_modes_is_right(rod):
     for i in range(0, min(len(w), CROWDED[rod] + 2) - 2, 2):
         if w[i + 1].real - w[i + 2].real > 1e-4 * abs(w[i]):
             line = (w[i + 1].real + w[i + 2].real) / 2
-            assert count_right_of(line, Rod(*rod)).number == i + 2
+            assert count_right_of(line, rod_of(*rod)).number == i + 2
             right += 1
     assert right >= CROWDED[rod] // 2
 

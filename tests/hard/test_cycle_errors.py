@@ -10,11 +10,11 @@ import os
 from math import inf
 
 import pytest
+from rods import rod_of
 
 import rodsweep as rs
 from rodsweep.discretization.mesh import mesh
 from rodsweep.discretization.stress_form import StressForm
-from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.measures import CyclePath
 from rodsweep.solve.cycle.newton import multipliers_of
@@ -99,7 +99,7 @@ def test_the_angle_of_a_cycle_that_a_motion_led_to_is_within_its_error():
 @pytest.mark.parametrize("point, accuracy", AT_FORCES.values(), ids=AT_FORCES.keys())
 def test_meshes_that_agree_by_luck_are_not_believed(point, accuracy, parameter):
     *rod, gamma1 = point
-    form = StressForm(Rod(*rod), gamma1, mesh(1, 16))
+    form = StressForm(rod_of(*rod, gamma1=gamma1), mesh(1, 16))
     found = refined_cycle(orbit_from_hopf(form, hopf_point_below(form.rod)), accuracy, parameter)
     assert broken_promises(found, accuracy) == []
 

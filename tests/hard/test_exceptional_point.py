@@ -7,6 +7,7 @@ digits 8 are left at F*, while F* itself, a simple root of a pair of equations, 
 
 import numpy as np
 import pytest
+from rods import rod_of
 
 from rodsweep.discretization.pencil import assemble
 from rodsweep.model.rod import Rod
@@ -67,7 +68,7 @@ def test_the_threshold_keeps_all_the_digits_that_the_eigenvalues_lose(place):
     k1, k2, gamma3, event = place
     F = event["F"]
     end = min(1.05 * float(F), 0.999 * k1)
-    found = solve_thresholds(k1, k2, gamma3, ThresholdsRequest(end, 1e-12, True, 16))
+    found = solve_thresholds(Rod(F=0.0, k1=k1, k2=k2, gamma3=gamma3), ThresholdsRequest(end, 1e-12, True, 16))
     assert found.status == ThresholdStatus.ok
     nearest = min(found.crossings, key=lambda c: abs(c.at - float(F)))
     assert nearest.kind.name in DOUBLE
@@ -87,7 +88,7 @@ def test_condition_number_and_splitting_follow_the_square_root(place):
 
 
 def solve(rod, accuracy=1e-8):
-    return solve_modes(Rod(*rod), ModesRequest(2, accuracy, 9, False))
+    return solve_modes(rod_of(*rod), ModesRequest(2, accuracy, 9, False))
 
 
 def least_condition(place, there):
@@ -103,7 +104,7 @@ def least_condition(place, there):
     first, second = leading(beside, 4)[:2]
     c_over_b = float(condition(beside, first) * abs(first - second))
     mesh = assemble(there.vectors.resolution.elements, there.vectors.resolution.order)
-    shapes = mode_vectors(Rod(*rod_at(place)), mesh, there.spectrum.eigenvalues, np.array([0.0, 1.0]))
+    shapes = mode_vectors(rod_of(*rod_at(place)), mesh, there.spectrum.eigenvalues, np.array([0.0, 1.0]))
     return np.sqrt(c_over_b * shapes.condition / shapes.rounding) / 2
 
 

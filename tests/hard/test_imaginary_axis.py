@@ -5,9 +5,9 @@ unstable to either side. At the point itself nobody can say which, and a relativ
 """
 
 import pytest
+from rods import rod_of
 
 from rodsweep.determinant.winding_number import count_right_of
-from rodsweep.model.rod import Rod
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
 from rodsweep.solve.spectrum.status import SpectrumStatus
 
@@ -64,14 +64,14 @@ def test_however_near_a_hopf_point_the_count_is_never_wrong(offset):
 
 def test_the_winding_number_along_the_axis_is_refused_where_a_pair_lies_on_it():
     for *rod, event in CROSSINGS[::3]:
-        assert count_right_of(0.0, Rod(*at_force(event["F"], 0, *rod))).number is None
+        assert count_right_of(0.0, rod_of(*at_force(event["F"], 0, *rod))).number is None
         for offset in (1e-9, -1e-9):
-            beside = count_right_of(0.0, Rod(*at_force(event["F"], offset, *rod))).number
+            beside = count_right_of(0.0, rod_of(*at_force(event["F"], offset, *rod))).number
             assert beside in (None, sides(event)[offset > 0])
 
 
 def test_modes_at_a_hopf_point_are_given_but_whether_they_grow_is_undecided():
     for *rod, event in CROSSINGS[:3]:
-        found = solve_modes(Rod(*at_force(event["F"], 0, *rod)), ModesRequest(2, 1e-8, 9, True))
+        found = solve_modes(rod_of(*at_force(event["F"], 0, *rod)), ModesRequest(2, 1e-8, 9, True))
         assert (found.status, found.spectrum.unstable_count) == (SpectrumStatus.undecided, -1)
         assert found.vectors.condition_error.max() < 1e-8

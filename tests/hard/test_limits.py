@@ -12,6 +12,7 @@ from math import inf
 import mpmath as mp
 import numpy as np
 import pytest
+from rods import rod_of
 
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
@@ -58,7 +59,7 @@ def test_spectra_leave_the_limit_at_first_order(path):
 @cache
 def thresholds(path, epsilon):
     _, k1, k2, gamma3 = rod_on(path, epsilon)
-    return solve_thresholds(k1, k2, gamma3, ThresholdsRequest(50.0, 1e-12, True, 16))
+    return solve_thresholds(Rod(F=0.0, k1=k1, k2=k2, gamma3=gamma3), ThresholdsRequest(50.0, 1e-12, True, 16))
 
 
 @pytest.mark.parametrize("path", [p for p in PATHS if p[0] > 0], ids=str)
@@ -84,7 +85,7 @@ def test_thresholds_leave_the_limit_at_first_order(path):
 
 @cache
 def conditions(path, epsilon):
-    return solve_modes(Rod(*rod_on(path, epsilon)), ModesRequest(2, 1e-10, 9, False))
+    return solve_modes(rod_of(*rod_on(path, epsilon)), ModesRequest(2, 1e-10, 9, False))
 
 
 @pytest.mark.parametrize("path", PATHS, ids=str)

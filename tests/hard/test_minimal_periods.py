@@ -10,8 +10,9 @@ from functools import cache
 
 import numpy as np
 import pytest
+from rods import rod_of
 
-from rodsweep.solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 
 RODS, BATCH = int(os.environ.get("RODSWEEP_RODS", "12")), 4
 SETTLED = (CycleStatus.cycle, CycleStatus.straight)
@@ -27,7 +28,7 @@ def random_rod(index):
 
 @cache
 def found(rod, amplitude):
-    return solve_cycle(CyclePoint(*rod), CycleRequest(1e-4, amplitude, 8, 0, 0, 0, 400))
+    return solve_cycle(rod_of(*rod), CycleRequest(1e-4, amplitude, 8, 0, 0, 0, 400))
 
 
 @pytest.mark.parametrize("first", range(0, RODS, BATCH))

@@ -11,6 +11,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
 from rodsweep.solve.changes.unstable_modes import Kind
 from rodsweep.solve.spectrum.status import SpectrumStatus
@@ -55,7 +56,7 @@ def test_the_reference_obeys_the_disguise():
 
 
 def mirrored(k1, end):
-    found = solve_thresholds(k1, inf, 0.0, ThresholdsRequest(end, 1e-10, True, 60))
+    found = solve_thresholds(Rod(F=0.0, k1=k1, k2=inf, gamma3=0.0), ThresholdsRequest(end, 1e-10, True, 60))
     at = np.array([c.at for c in found.crossings])
     assert at + at[::-1] == pytest.approx(np.full(len(at), k1), rel=1e-12)
     opposite = {Kind.onset: {Kind.real_again}, Kind.hopf: {Kind.hopf_reverse, Kind.restabilization}}
@@ -81,7 +82,9 @@ def test_thresholds_of_a_partial_beam_are_proved_up_to_the_crushed_end(k1):
 
 def test_the_last_threshold_before_a_rod_is_crushed_keeps_its_digits():
     """k1 = 100, k2 = 1e4, gamma3 = 1e-4: at 0.989 k1 the pair is born again (30 digits)."""
-    found = solve_thresholds(100.0, 1e4, 1e-4, ThresholdsRequest(200.0, 1e-12, True, 16))
+    found = solve_thresholds(
+        Rod(F=0.0, k1=100.0, k2=1e4, gamma3=1e-4), ThresholdsRequest(200.0, 1e-12, True, 16)
+    )
     assert found.status == ThresholdStatus.ok
     assert found.end < 100.0
     assert found.crossings[-1].kind == Kind.onset

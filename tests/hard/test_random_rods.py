@@ -9,10 +9,10 @@ from math import inf
 
 import numpy as np
 import pytest
+from rods import rod_of
 from surveyed import RODS
 
 from rodsweep.determinant.winding_number import count_right_of
-from rodsweep.model.rod import Rod
 
 from .exact import SHIFT
 from .integral_equation import coefficients_of, dense_eigenvalues, fastest_wave, nodes_for
@@ -68,7 +68,7 @@ def test_certified_counts_are_those_of_a_dense_solver(seed):
         w = dense_eigenvalues(rod, nodes, shift)
         for line in lines_of(w, rng):
             number = int((w.real > line).sum())
-            count = count_right_of(float(line), Rod(*rod)).number
+            count = count_right_of(float(line), rod_of(*rod)).number
             if count == number:
                 agreed += 1
             elif in_doubt(rod, line, number, nodes, shift):

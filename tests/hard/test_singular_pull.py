@@ -9,9 +9,9 @@ there.
 
 import numpy as np
 import pytest
+from rods import rod_of
 
 from rodsweep.determinant.winding_number import count_right_of
-from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.status import SpectrumStatus
 
 from .exact import leading, unstable
@@ -52,7 +52,7 @@ def test_the_count_falls_by_the_runaway_modes_in_the_limit_and_nothing_is_proved
     assert not found.certified
     assert broken_promises(rod) == []
     assert unstable((*PULLED, 1e-3)) - unstable(rod) == len(runaways(*PULLED)) == 1
-    assert count_right_of(0.0, Rod(*rod)).number is None
+    assert count_right_of(0.0, rod_of(*rod)).number is None
     assert abs(found.eigenvalues[0] / complex(leading(rod, 1)[0]) - 1) < 1e-14
 
 

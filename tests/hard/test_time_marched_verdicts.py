@@ -11,8 +11,9 @@ from math import log10
 
 import numpy as np
 import pytest
+from rods import rod_of
 
-from rodsweep.solve.cycle.limit_cycle import CyclePoint, CycleRequest, solve_cycle
+from rodsweep.solve.cycle.limit_cycle import CycleRequest, solve_cycle
 
 from .cycles import first_hopf
 from .displacement_form import Displaced, march
@@ -45,7 +46,7 @@ def marched(rod):
 
 def disagreement(rod):
     """What the two say differently; empty where they agree."""
-    found = solve_cycle(CyclePoint(*rod), CycleRequest(1e-6, AMPLITUDE, 3, 0, 0, 0, MOST_PERIODS))
+    found = solve_cycle(rod_of(*rod), CycleRequest(1e-6, AMPLITUDE, 3, 0, 0, 0, MOST_PERIODS))
     other = marched(rod)
     here = found.status.name
     if here != other.word or here not in SETTLED | {"left_the_model"}:

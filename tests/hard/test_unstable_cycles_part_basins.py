@@ -7,13 +7,13 @@ displacement form (`displacement_form.py`), which has no equation with the progr
 """
 
 import pytest
+from rods import rod_of
 
 from rodsweep.determinant.parameter_path import Path
-from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc import next_point
 from rodsweep.solve.branch.beginning import beginning, hopf_point
 from rodsweep.solve.changes.along_path import pair_crossings
-from rodsweep.solve.cycle.limit_cycle import CyclePoint, CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.measures import CyclePath
 
 from .displacement_form import Displaced, march_from
@@ -30,9 +30,9 @@ PERIODS = 40
 @pytest.fixture(scope="module")
 def unstable():
     """An unstable cycle on the branch from the restabilization."""
-    rod = Rod(0.0, *STIFFNESS)
+    rod = rod_of(0.0, *STIFFNESS)
     crossing = pair_crossings(Path(rod, "F"), 100.0, 199.0).crossings[-1]
-    here = beginning(hopf_point(rod, 1.0, "F", crossing), ACCURACY)
+    here = beginning(hopf_point(Path(rod, "F"), crossing), ACCURACY)
     while here.cycle.measures.tip_y_max < LEAST_Y:
         here = next_point(here, ACCURACY)
     return here
@@ -42,8 +42,8 @@ def unstable():
 def stable(unstable):
     """The stable cycle at the same force, by way of one where the straight rod is unstable."""
     request = CycleRequest(ACCURACY, 0.01, 1, 0, 0, 0, 400)
-    below = solve_cycle(CyclePoint(150.0, *STIFFNESS, 1.0), request, None, "F")
-    return solve_cycle(CyclePoint(unstable.at, *STIFFNESS, 1.0), request, below.neighbour, "F")
+    below = solve_cycle(rod_of(150.0, *STIFFNESS, 1.0), request, None, "F")
+    return solve_cycle(rod_of(unstable.at, *STIFFNESS, 1.0), request, below.neighbour, "F")
 
 
 def marched(unstable, share):

@@ -3,13 +3,14 @@
 from dataclasses import replace
 
 import numpy as np
+from rods import rod_of
 
 from rodsweep.determinant.parameter_path import Path as ParameterPath
 from rodsweep.model.parameters import LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
-from rodsweep.post.hopf_points import lines_over
 from rodsweep.solve.changes.along_path import transitions
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
+from rodsweep.sweep.lines import lines_over
 
 BESIDE = 1e-7
 """Relative distance from a stated threshold at which eigenvalues are computed on both its sides."""
@@ -21,7 +22,7 @@ def rods_of(view):
     """The rod of every point, in their order."""
     columns = view.point_columns
     rows = zip(*(columns[name] for name in LINEAR_PARAMETERS), strict=True)
-    return [Rod(*map(float, row)) for row in rows]
+    return [rod_of(*map(float, row)) for row in rows]
 
 
 def leading(rod):
@@ -61,7 +62,7 @@ def changes_over_force(rod, top):
 def changes_on_lines(view, name):
     """(rod, crossing, points) of every change of stability and onset on the lines over a parameter."""
     found = []
-    for line in lines_over(view, name):
+    for line in lines_over(view.point_columns, name):
         low, high = float(line.x.min()), float(line.x.max())
         low = min(low, 0.0) if name == "F" and view.task == "limit_cycle" and low < high else low
         rod = Rod(**{n: line.parameters.get(n, low) for n in LINEAR_PARAMETERS})

@@ -11,6 +11,7 @@ from math import inf, isfinite, log, nan
 
 import numpy as np
 
+from ...model.parameters import NONLINEAR_PARAMETERS
 from ...solve.cycle.limit_cycle import warm_up
 from ...solve.motion.leading_mode import leading_mode
 from ..peers import Peers
@@ -80,7 +81,7 @@ def limit_cycle_study(quick: bool, peers: Peers) -> Study:
 
 def introduction(rounds: int) -> str:
     """What is measured."""
-    k1, k2, gamma3, gamma1 = FIG5_ROD
+    k1, k2, gamma3, gamma1 = (FIG5_ROD.values[name] for name in NONLINEAR_PARAMETERS[1:])
     return (
         f"The settled cycle of k1 = {k1:g}, k2 = {k2:g}, gamma3 = {gamma3:g}, gamma1 = {gamma1:g}, "
         f"F = {CYCLE_FORCE:g}, followed for {FOLLOWED_PERIODS} periods; one element of order {CYCLE_ORDER}, "

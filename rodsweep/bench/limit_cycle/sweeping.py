@@ -12,7 +12,8 @@ from typing import Any
 
 from ...arrays import Array
 from ...model.parameters import NONLINEAR_PARAMETERS
-from ...solve.cycle.limit_cycle import Cycle, CyclePoint, CycleStatus, solve_cycle
+from ...model.rod import Rod
+from ...solve.cycle.limit_cycle import Cycle, CycleStatus, solve_cycle
 from ...solve.cycle.linearisation import Linearisation
 from ...solve.cycle.measures import CyclePath
 from ...solve.cycle.newton import newton
@@ -23,13 +24,13 @@ from ..study import Contender, Entry, Measurement, grouped, middle, table, tourn
 from .tracking import EXACT, asked, orbit_of
 
 RODS = (
-    CyclePoint(50.0, 1e4, 1e2, 1e-2, 1.0),
-    CyclePoint(50.0, 1e4, 1e2, 1e-2, 0.5),
-    CyclePoint(30.0, 1e4, 1e2, 1e-2, 1.0),
-    CyclePoint(100.0, 1e4, 1e2, 1e-2, 1.0),
-    CyclePoint(40.0, 1e4, 1e4, 1e-4, 1.0),
-    CyclePoint(60.0, 200.0, 1e4, 1e-4, 1.0),
-    CyclePoint(100.0, 200.0, 1e4, 1e-4, 1.0),
+    Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0),
+    Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=0.5),
+    Rod(F=30.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0),
+    Rod(F=100.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0),
+    Rod(F=40.0, k1=1e4, k2=1e4, gamma3=1e-4, gamma1=1.0),
+    Rod(F=60.0, k1=200.0, k2=1e4, gamma3=1e-4, gamma1=1.0),
+    Rod(F=100.0, k1=200.0, k2=1e4, gamma3=1e-4, gamma1=1.0),
 )
 """Cycles near and far from their Hopf point, of stiff rods and of one that its force shortens by a half."""
 QUICK_RODS = (RODS[2],)
@@ -82,12 +83,12 @@ class ExactCycle:
 class SweptRod:
     """A rod, its exact cycle, and for each axis what the point before the stretch to it hands on."""
 
-    point: CyclePoint
+    point: Rod
     exact: ExactCycle
     neighbours: dict[str, Array | None]
 
 
-def swept(point: CyclePoint, accuracy: float) -> SweptRod:
+def swept(point: Rod, accuracy: float) -> SweptRod:
     """The rod with its neighbours, which are points of a sweep downwards, with others before them."""
     neighbours: dict[str, Array | None] = {}
     for axis in SWEPT:
@@ -100,7 +101,7 @@ def swept(point: CyclePoint, accuracy: float) -> SweptRod:
     return SweptRod(point, ExactCycle.near(orbit_of(here)), neighbours)
 
 
-def beyond(point: CyclePoint, axis: str, steps: int) -> CyclePoint:
+def beyond(point: Rod, axis: str, steps: int) -> Rod:
     """The point of the sweep that is so many steps before this one."""
     return replace(point, **{axis: getattr(point, axis) * STEP**steps})
 
@@ -139,14 +140,14 @@ def ways(accuracy: float) -> list[Contender]:
     return warm + cold
 
 
-def sweep_points(points: Sequence[CyclePoint], rounds: int) -> list[Measurement]:
+def sweep_points(points: Sequence[Rod], rounds: int) -> list[Measurement]:
     """All starts of all points, timed in turn."""
     rods = [swept(point, ACCURACY) for point in points]
     entries = [Entry(name_of(rod.point), rod, partial(judged_cycle, rod.exact)) for rod in rods]
     return tournament(entries, ways(ACCURACY), rounds)
 
 
-def name_of(point: CyclePoint) -> str:
+def name_of(point: Rod) -> str:
     """The rod, in the order in which its parameters stand in tables."""
     return f"{point.F:g}, {point.k1:g}, {point.k2:g}, {point.gamma3:g}, {point.gamma1:g}"
 

@@ -20,7 +20,8 @@ from scipy.interpolate import PPoly, make_interp_spline
 from ...arrays import Array
 from ...discretization.beam import Beam
 from ...discretization.mesh import mesh
-from ...solve.cycle.limit_cycle import Cycle, CyclePoint, CycleRequest, solve_cycle
+from ...model.rod import Rod
+from ...solve.cycle.limit_cycle import Cycle, CycleRequest, solve_cycle
 from ...solve.cycle.neighbour import Neighbour
 from ...solve.cycle.newton import newton
 from ...solve.cycle.orbit import Orbit
@@ -30,8 +31,8 @@ from ...solve.motion.time_scheme import TimeScheme
 from ..study import Contender, Measurement, contest
 from .integrators import Leg
 
-FIG5_ROD = (1e4, 1e2, 1e-2, 1.0)
-"""k1, k2, gamma3, gamma1 of the paper's Fig. 5."""
+FIG5_ROD = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
+"""The rod of the paper's Fig. 5 without its force."""
 CYCLE_FORCE = 50.0
 CYCLE_ORDER = 18
 """Of the one element; it leaves 1e-9 of period and amplitude at F = 50."""
@@ -74,7 +75,7 @@ def asked(accuracy: float) -> CycleRequest:
 
 def cycle_at(force: float) -> Cycle:
     """The rod's cycle as the task limit_cycle finds it."""
-    return solve_cycle(CyclePoint(force, *FIG5_ROD), asked(SETTLED_WITHIN), along="F")
+    return solve_cycle(FIG5_ROD.changed(F=force), asked(SETTLED_WITHIN), along="F")
 
 
 def orbit_of(cycle: Cycle) -> Orbit:
@@ -87,7 +88,7 @@ def orbit_of(cycle: Cycle) -> Orbit:
 def on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
     """The rod as integrators see it, and its state z on the cycle where y is largest, shape (unknowns,)."""
     form = orbit.form
-    beam = Beam(form.rod, form.gamma1, form.mesh)
+    beam = Beam(form.rod, form.mesh)
     return beam, (orbit.start.reshape(3, -1) * beam.roots[:, :-1]).ravel()
 
 

@@ -41,10 +41,10 @@ PAPER_RODS = {
 """k1, k2, gamma3 and the largest force."""
 FORCES = 5
 HARD_RODS = {
-    "easy: F = 30, k1 = k2 = 1e4, gamma3 = 1e-4": Rod(30.0, 1e4, 1e4, 1e-4),
-    "stiff: F = 30, k1 = k2 = 1e8, gamma3 = 1e-8": Rod(30.0, 1e8, 1e8, 1e-8),
-    "nearly crushed: F = 0.999 k1, k1 = 200": Rod(199.8, 200.0, 1e4, 1e-4),
-    "12 unstable modes: F = 2000, k1 = 1e4": Rod(2000.0, 1e4, 1e4, 1e-4),
+    "easy: F = 30, k1 = k2 = 1e4, gamma3 = 1e-4": Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4),
+    "stiff: F = 30, k1 = k2 = 1e8, gamma3 = 1e-8": Rod(F=30.0, k1=1e8, k2=1e8, gamma3=1e-8),
+    "nearly crushed: F = 0.999 k1, k1 = 200": Rod(F=199.8, k1=200.0, k2=1e4, gamma3=1e-4),
+    "12 unstable modes: F = 2000, k1 = 1e4": Rod(F=2000.0, k1=1e4, k2=1e4, gamma3=1e-4),
 }
 TARGETS = (1e-12, 1e-10, 1e-6)
 """Errors at which the methods are compared, the strictest first."""
@@ -58,7 +58,7 @@ def spectrum_study(quick: bool, peers: Peers) -> Study:
     warm_up()
     rounds = QUICK_ROUNDS if quick else ROUNDS
     rods = [
-        Rod(float(F), k1, k2, gamma3)
+        Rod(F=float(F), k1=k1, k2=k2, gamma3=gamma3)
         for k1, k2, gamma3, top in PAPER_RODS.values()
         for F in np.linspace(0.1 * top, top, FORCES)
     ]

@@ -27,7 +27,7 @@ class ThresholdCase:
     top: float = 60.0
 
     def rod(self, F: float) -> Rod:
-        return Rod(F, self.k1, self.k2, self.gamma3)
+        return Rod(F=F, k1=self.k1, k2=self.k2, gamma3=self.gamma3)
 
     def error_of(self, kind: str, found: float) -> float:
         """Relative; nan where there is nothing to be found, inf where that is missed or invented."""

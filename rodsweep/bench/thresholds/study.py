@@ -41,7 +41,7 @@ def contenders(kind: str) -> list[Contender]:
 
 def own_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstThreshold:
     """All changes of the rod, and of them the first of a kind."""
-    result = solve_thresholds(case.k1, case.k2, case.gamma3, ThresholdsRequest(F_MAX, 1e-10, certify, 64))
+    result = solve_thresholds(case.rod(0.0), ThresholdsRequest(F_MAX, 1e-10, certify, 64))
     at = next((change.at for change in result.crossings if change.kind.name == kind), nan)
     return FirstThreshold(at, result.transitions.solves, determinants=result.transitions.boxes)
 

@@ -8,7 +8,7 @@ from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.limit_cycle import SECOND_STATES
 from ...wording import counted, some_of
-from ..hopf_points import StoredHopfPoints
+from ..hopf_points import StoredChanges
 from .arm import region_of_arms
 from .errors import span_of
 from .ranges import error_text, span, to_error
@@ -66,7 +66,7 @@ def _stability(view: View) -> tuple[list[str], list[str]]:
     names = [name for name in LINEAR_PARAMETERS if name in varied(view)]
     lines, of_arm = list[str](), list[str]()
     for name in names[:1] if "F" in names else names:
-        found = stability_lines(view, name, StoredHopfPoints(view, name).up_to)
+        found = stability_lines(view, name, StoredChanges(view, name).up_to)
         lines, of_arm = [*lines, *found[0]], [*of_arm, *found[1]]
     return lines, of_arm
 

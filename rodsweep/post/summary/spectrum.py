@@ -4,7 +4,7 @@ import numpy as np
 
 from ...results.file.view import View
 from ...wording import counted, some_of
-from ..stability_changes import thresholds_on
+from ..hopf_points import StoredChanges
 from .ranges import span, to_error
 from .stability import stability_lines
 from .told import Told, in_brackets, region
@@ -54,7 +54,7 @@ def leading_line(view: View, done: np.ndarray) -> str:
 
 def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
     """(where the rod changes along F; how that was found; the first of an arm), empty where F is no axis."""
-    lines, of_arm = stability_lines(view, "F", lambda line: thresholds_on(line, view))
+    lines, of_arm = stability_lines(view, "F", StoredChanges(view, "F").on)
     return lines, [f"thresholds: {HOW_FOUND}"] if lines else [], of_arm
 
 

@@ -5,8 +5,9 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from ...results.file.view import View
+from ...sweep.lines import ParameterLine, lines_over
 from ...wording import counted, some_of
-from ..hopf_points import Bracket, HopfPoint, Located, ParameterLine, lines_over
+from ..hopf_points import Bracket, HopfPoint, Located
 from .arm import thresholds_of_arm
 from .ranges import error_text, stated_error
 
@@ -39,7 +40,7 @@ def stability_lines(
     column = view.point_columns[name]
     if len(np.unique(column[np.isfinite(column)])) < 2:
         return [], []
-    lines = list(lines_over(view, name))
+    lines = list(lines_over(view.point_columns, name))
     names, along = names_of(lines), [found_on(line) for line in lines]
     texts, of_arm = list[str](), list[str]()
     for kind, words in (OVER_FORCE if name == "F" else OVER_OTHERS).items():

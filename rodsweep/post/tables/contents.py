@@ -28,6 +28,7 @@ NAMES = {
     ("curve_point",): "curves",
     ("fold",): "folds",
     ("hopf",): "hopf_points",
+    ("change",): "force_changes",
     ("cycle_curve_point",): "cycle_curves",
     ("bautin",): "generalised_hopf_points",
     ("bautin_step",): "generalised_hopf_curves",

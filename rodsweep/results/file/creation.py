@@ -1,7 +1,7 @@
 """A new result file: netCDF-4-compatible HDF5 with every variable in its place; and what is added later."""
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -40,6 +40,8 @@ class Plan:
     """The chains in which points start one from the other, where they do."""
     stretches: Stretches | None = None
     """The stretches of points that are solved together, where they are."""
+    afterwards: Callable[[Mapping[str, Any]], tuple[Filled, ...]] = lambda values: ()
+    """Variables that those of all points, by name, give at once: asked for when the last point is there."""
 
     @property
     def dimensions(self) -> tuple[str, ...]:

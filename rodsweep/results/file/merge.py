@@ -11,14 +11,14 @@ from pathlib import Path
 
 import h5py
 
+from ...config.reading import config_of
 from ...errors import InputError
 from ...sweep.ranges import total
-from ..layouts.variables import Layout
 from ..run.journal import JOURNALS, journal_directory
-from .creation import create_file
+from .creation import Plan, add_variables, create_file
 from .exchange import Exchange, disk_refusals
 from .joining import Joint, Planner, joint_of
-from .points import missing_ranges, points_to_add, write_points
+from .points import missing_ranges, parameters_of, points_to_add, write_points
 from .provenance import KERNELS, kernels_sentence, merged_history, now
 from .validation import Header, read_header
 
@@ -49,21 +49,22 @@ def merge(output: Path, paths: Sequence[Path], planner: Planner) -> Merged:
             if output.exists():  # it may have appeared while another run had the lock
                 sources = _opened([output, *(path for path in paths if not os.path.samefile(output, path))])
             if all(_is_continued(sources[0], source) for source in sources):
-                return _merge(exchange, sources)
+                return _merge(exchange, sources, planner)
             return _join(exchange, joint_of(sources, planner))
     finally:
         exchange.close()
 
 
-def _merge(exchange: Exchange, sources: Sequence[Header]) -> Merged:
+def _merge(exchange: Exchange, sources: Sequence[Header], planner: Planner) -> Merged:
     """Exchanges the file for the first source with the points that the others add."""
     first = sources[0]
+    plan = planner(config_of(first.config), parameters_of(first.path, first.layout))
     with exchange.replacing(first.path) as copy:
         gave = [first]
         for source in sources[1:]:
             if write_points(copy, points_to_add(copy, source.path, first.layout), first.layout):
                 gave.append(source)
-        return _finished(copy, first.layout, gave)
+        return _finished(copy, plan, gave)
 
 
 def _join(exchange: Exchange, joint: Joint) -> Merged:
@@ -71,16 +72,19 @@ def _join(exchange: Exchange, joint: Joint) -> Merged:
     with exchange.replacing(None) as copy:
         create_file(copy, joint.plan)
         gave = joint.write(copy)
-        return _finished(copy, joint.plan.layout, gave or joint.sources[:1])
+        return _finished(copy, joint.plan, gave or joint.sources[:1])
 
 
-def _finished(copy: Path, layout: Layout, gave: Sequence[Header]) -> Merged:
-    """Notes in the merged file by whom its points were computed, and whether it is whole."""
+def _finished(copy: Path, plan: Plan, gave: Sequence[Header]) -> Merged:
+    """Notes in the merged file by whom its points were computed; a whole one gets what they all give."""
     left = missing_ranges(copy)
-    finished = not left and not layout.needs_all_points
+    finished = not left and not plan.layout.needs_all_points
     history = merged_history([source.attributes for source in gave])
     with h5py.File(copy, "r+") as file:
-        file.attrs.update(history | ({"finished": now()} if finished else {}))
+        if finished and "finished" not in file.attrs:
+            add_variables(file, plan.afterwards(file))
+            file.attrs["finished"] = now()
+        file.attrs.update(history)
         points = file["status"].size
     return Merged(points - total(left), total(left), finished, kernels_sentence(history[KERNELS]))
 
@@ -99,7 +103,7 @@ def _opened(paths: Sequence[Path]) -> list[Header]:
 
 def _is_continued(first: Header, other: Header) -> bool:
     """Whether two files were made for the same; InputError if yet their variables are not the same."""
-    if first.asked != other.asked:
+    if first.fingerprint != other.fingerprint:
         return False
     if (first.layout.record, first.points) != (other.layout.record, other.points):
         raise InputError(f"{other.path} was written by another version of rodsweep than {first.path}")

@@ -8,7 +8,7 @@ the fingerprint of their points, whatever has become of the file; others are set
 
 import json
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -44,6 +44,14 @@ SPACE_FACTOR, SPACE_FIXED = 3, 300_000
 BEFORE = "before-*.h5"
 """Files beside the journals as they were before an extension that is not complete yet."""
 
+Additions = Callable[[h5py.File], Sequence[Filled]]
+"""Whole variables that a file gets, from its own."""
+
+
+def nothing(file: h5py.File) -> Sequence[Filled]:
+    """No variables."""
+    return ()
+
 
 class Store:
     """A result file under one run; only the first rank has one, and only one run at a time."""
@@ -70,20 +78,15 @@ class Store:
             self._create(fresh)
         else:
             header = self._header()
-            if header.asked == self.plan.fingerprint:
-                self._continue(header)
+            if header.fingerprint == self.plan.fingerprint:
+                snapshot = {SNAPSHOT: ""} if self.attributes().get(SNAPSHOT) else {}
+                self.fold(self._new_title() | snapshot)
             elif extend:
                 self._extend(header)
             else:
                 self._refuse(header)
         self._set_aside(other_journals(self.journals, self.plan.fingerprint), "journals of other points")
         drop_files(self.journals, JOURNALS)  # what is left has no points
-
-    def _continue(self, header: Header) -> None:
-        """Takes up the file of the plan."""
-        if header.fingerprint != header.asked:  # an earlier version's, and its journals have it
-            self._fold(header, {"fingerprint": header.asked})
-        self.fold(self._new_title() | ({SNAPSHOT: ""} if self.attributes().get(SNAPSHOT) else {}))
 
     def _create(self, fresh: bool) -> None:
         """Makes the file of the plan, with the points of its journals unless all is to be computed anew."""
@@ -106,7 +109,8 @@ class Store:
         points = parameters_of(self.path, header.layout)
         extension = extension_of(header, points, self.plan)
         self._need_room()
-        self._fold(header, {})
+        blocks = read_journals(self.journals, header.layout, header.fingerprint, header.points)
+        self._fold_blocks(blocks, header.layout, header.fingerprint, {})
         done = header.points - total(self.missing())
         history = merged_history([header.attributes])
         with self.exchange.replacing(None) as copy:
@@ -164,7 +168,11 @@ class Store:
         with reading(self.path):
             return missing_ranges(self.path)
 
-    def fold(self, attributes: dict[str, Any], additions: Sequence[Filled] = ()) -> None:
+    def finish(self, attributes: dict[str, Any], variables: Sequence[Filled] = ()) -> None:
+        """Folds, and adds whole variables with those that the points of the whole file give at once."""
+        self.fold(attributes, lambda file: (*variables, *self.plan.afterwards(file)))
+
+    def fold(self, attributes: dict[str, Any], additions: Additions = nothing) -> None:
         """Puts journalled points, attributes and whole variables into the file at once; drops journals."""
         plan = self.plan
         with disk_refusals(self.path, self._kept):
@@ -186,15 +194,10 @@ class Store:
             return
         try:
             header = self._header()
-            if header.asked != self.plan.fingerprint:
+            if header.fingerprint != self.plan.fingerprint:
                 self._refuse(header)
         except InputError as error:
             raise EnvironmentLacks(f"another file was put in its place meanwhile: {error}") from None
-
-    def _fold(self, header: Header, attributes: dict[str, Any]) -> None:
-        """Folds in the journals that were written for the file as it is."""
-        blocks = read_journals(self.journals, header.layout, header.fingerprint, header.points)
-        self._fold_blocks(blocks, header.layout, header.fingerprint, attributes)
 
     def _fold_blocks(
         self,
@@ -202,18 +205,18 @@ class Store:
         layout: Layout,
         fingerprint: str,
         attributes: dict[str, Any],
-        additions: Sequence[Filled] = (),
+        additions: Additions = nothing,
     ) -> None:
         with disk_refusals(self.path, self._kept):
             journals = journals_of(self.journals, fingerprint)
             first = next(blocks, None)
-            if first is not None or attributes or additions:
+            if first is not None or attributes:
                 with self.exchange.replacing(self.path) as copy:
                     if first is not None:
                         write_points(copy, chain([first], blocks), layout)
-                    if attributes or additions:
+                    if attributes:
                         with h5py.File(copy, "r+") as file:
-                            add_variables(file, additions)
+                            add_variables(file, additions(file))
                             file.attrs.update(attributes)
             for journal in journals:
                 journal.unlink(missing_ok=True)

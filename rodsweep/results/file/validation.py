@@ -22,7 +22,7 @@ from .seal import HDF5_SIGNATURE, check_frame
 
 PROGRAM = "rodsweep"
 """The attribute `program` of our files."""
-FORMAT = 7
+FORMAT = 8
 """The attribute `format` of our files: grows when a variable is added or changes its meaning. Only files of
 this format are read: 5 was the first whose content is sealed, 6 has frequencies in Hz, counts from 1,
 the Hopf points of the lines of limit cycles, and grids over an arm's quantities."""
@@ -64,9 +64,6 @@ class Header:
     fingerprint: str
     layout: Layout
     points: int
-    asked: str
-    """The fingerprint as this version makes it: what the file was made for. `fingerprint` is what its journal
-    has, which an earlier version may have made otherwise."""
 
 
 def open_whole(path: Path, values: bool = True) -> tuple[h5py.File, Header]:
@@ -117,9 +114,8 @@ def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Header
     attributes.setdefault("task", config["task"])
     layout = layout_of(config)
     refuse_misfit(file, layout)
-    asked = fingerprint_of(config, points_in(file, layout).identity)
-    points = file["status"].size
-    return Header(path, attributes, config, str(attributes["fingerprint"]), layout, points, asked)
+    fingerprint = fingerprint_of(config, points_in(file, layout).identity)
+    return Header(path, attributes, config, fingerprint, layout, file["status"].size)
 
 
 def cleaned(value: Any) -> Any:

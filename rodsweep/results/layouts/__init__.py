@@ -8,30 +8,24 @@ from . import branch, criticality, limit_cycle, modes, phase_diagram, spectrum, 
 from .arm import with_si
 from .variables import Increase, Layout, Variable
 
+MODULES = {
+    "spectrum": spectrum,
+    "thresholds": thresholds,
+    "phase_diagram": phase_diagram,
+    "modes": modes,
+    "limit_cycle": limit_cycle,
+    "criticality": criticality,
+    "branch": branch,
+}
 LAYOUTS: dict[str, Callable[[dict[str, Any]], Layout]] = {
-    "spectrum": spectrum.layout,
-    "thresholds": thresholds.layout,
-    "phase_diagram": phase_diagram.layout,
-    "modes": modes.layout,
-    "limit_cycle": limit_cycle.layout,
-    "criticality": criticality.layout,
-    "branch": branch.layout,
+    task: module.layout for task, module in MODULES.items()
 }
-
-
-INCREASES: dict[str, dict[str, Increase]] = {
-    "spectrum": spectrum.INCREASES,
-    "thresholds": thresholds.INCREASES,
-    "phase_diagram": phase_diagram.INCREASES,
-    "modes": modes.INCREASES,
-    "limit_cycle": limit_cycle.INCREASES,
-    "criticality": criticality.INCREASES,
-    "branch": branch.INCREASES,
-}
+INCREASES: dict[str, dict[str, Increase]] = {task: module.INCREASES for task, module in MODULES.items()}
 """The options of every task that ask for more of a point; another value of any other makes another file."""
 
 BESIDE_POINTS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
     "spectrum": spectrum.beside_points,
+    "modes": lambda config, is_grid: spectrum.FORCE_CHANGES,
     "phase_diagram": phase_diagram.beside_points,
     "limit_cycle": lambda config, is_grid: limit_cycle.HOPF_POINTS,
 }

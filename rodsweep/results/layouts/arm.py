@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...config.arm import ArmSection
-from ...config.arm_axes import ALONG, RELATIVE, names_over
+from ...config.arm_axes import ALONG, names_over
 from ...config.axes import Axes
 from ...config.quantities import typed_unit
 from ...config.tasks import makes_diagram
-from ...model.arm import UNITS
+from ...model.arm import QUANTITIES, UNITS
 from ...model.drag import DRAGS
 from ...model.neglected import Validity
 from ...model.parameters import PARAMETERS
@@ -52,35 +52,16 @@ OF_BRANCHES = ("special_at", "special_error")
 """Forces along the branches of an arm, which are followed in nothing else."""
 WITHIN = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))
 """Dimensions beside the points of what is told in SI units too; longer tables are not stored twice."""
-MEANINGS = {
-    "length": "length of the arm",
-    "radius": "radius of the arm's circular section",
-    "inner_radius": "radius of the bore of the arm, closed at its tip",
-    "width": "width of the arm's section, across the plane of motion",
-    "height": "height of the arm's section, in the plane of motion",
-    "young": "Young's modulus of the arm",
-    "poisson": "Poisson's ratio of the arm",
-    "viscosity": "viscosity of the fluid",
-    "fluid_density": "density of the fluid",
-    "density_difference": "density of the arm less that of the fluid",
-    "drag": "which member of the range of drags",
-    **{
-        name: f"{load} over that of the first flutter, with the likeliest drag"
-        for name, load in RELATIVE.items()
-    },
-    "pressure": "pressure on the tip's cross section",
-    "force": "follower force at the tip",
-    "tau2": "unit of time, gamma2 L^4/k3",
-    "force_scale": "unit of force, k3/L^2",
-    "pressure_scale": "pressure on the tip's cross section that makes F = 1, k3/(L^2 A)",
+UNITS_OF_ARMS = {
+    "tau2": ("s", "unit of time, gamma2 L^4/k3"),
+    "force_scale": ("N", "unit of force, k3/L^2"),
+    "pressure_scale": ("Pa", "pressure on the tip's cross section that makes F = 1, k3/(L^2 A)"),
 }
-"""What each quantity is."""
-QUANTITY_UNITS = {name: unit for name, (unit, _) in UNITS.items()} | {
-    **dict.fromkeys(("poisson", "drag", *RELATIVE), "1"),
-    "tau2": "s",
-    "force_scale": "N",
-    "pressure_scale": "Pa",
-}
+"""Units that an arm makes, beside its quantities."""
+_DESCRIBED = {name: (each.unit, each.meaning) for name, each in QUANTITIES.items()} | UNITS_OF_ARMS
+QUANTITY_UNITS = {name: unit for name, (unit, _) in _DESCRIBED.items()}
+MEANINGS = {name: meaning for name, (_, meaning) in _DESCRIBED.items()}
+"""SI unit of each quantity, and what it is."""
 
 EFFECTS = ("inertia_of_the_arm", "inertia_of_the_fluid", "compression", "weight", "Reynolds_number")
 """What the model leaves out, as `rodsweep.model.neglected` names it but for the blanks."""

@@ -18,7 +18,7 @@ CLASSES = (
     (4, "crushed"),
 )
 """What the rod does at a point of a phase diagram."""
-BAUTIN_ENDS = ("none", "range_end", "plane_edge", "not_found", "list_full")
+BAUTIN_ENDS = ("none", "range_end", "plane_edge", "not_found", "list_full", "closed")
 """Why a curve of generalised Hopf points ends; the place in this list is what the file stores."""
 CURVE_KINDS = ((0, "double"), (1, "hopf"))
 """What lies on a curve: double real eigenvalues, where oscillations set in or end, or Hopf points."""

@@ -3,6 +3,8 @@
 from math import nan
 from typing import Any
 
+from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
+from .thresholds import CROSSING_KINDS
 from .variables import ANEW, ANGULAR, BESIDE, MESH, SECONDS, STATUS, Layout, Variable, real, truth, whole
 
 
@@ -53,6 +55,25 @@ def longitudinal(gamma1: float, *along: str) -> Variable:
     )
 
 
+CHANGE = "change"
+"""Dimension of the changes of the straight rod between the points of a file, on lines over F."""
+FORCE_CHANGES = (
+    Variable(
+        "change_kind",
+        "|i1",
+        0,
+        "1",
+        "what changes there as F grows",
+        (CHANGE,),
+        tuple((CROSSING_KINDS.index(kind), kind) for kind in ("none", "onset", "hopf", "restabilization")),
+    ),
+    *(real(f"change_{p}", PARAMETERS[p].unit, f"{p} at the change", CHANGE) for p in LINEAR_PARAMETERS),
+    real("change_error", "1", "estimate of the relative error of change_F", CHANGE),
+    real("change_growth_rate", "1/tau2", "growth rate of the modes that change", CHANGE),
+    real("change_frequency", ANGULAR, "angular frequency of the modes that change", CHANGE),
+)
+"""Where rods start to oscillate, become unstable or stable again: located once all points are there."""
+
 INCREASES = {
     "modes": ANEW,
     "method": ANEW,
@@ -67,7 +88,8 @@ INCREASES = {
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables of the file that are no variables of a point."""
     gamma1 = config["parameters"].get("gamma1")
-    return () if gamma1 is None else (longitudinal(float(gamma1), "k1" if is_grid else "point"),)
+    rates = () if gamma1 is None else (longitudinal(float(gamma1), "k1" if is_grid else "point"),)
+    return (*rates, *FORCE_CHANGES)
 
 
 def layout(config: dict[str, Any]) -> Layout:

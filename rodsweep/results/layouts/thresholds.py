@@ -32,19 +32,26 @@ CROSSING_KINDS = tuple(CROSSING_MEANINGS)
 """What happens at a crossing; the place in this list is what the file stores."""
 
 
-def search_variables(line: str, at: str) -> tuple[Variable, ...]:
-    """What a search along `line` found, how sure that is and what it cost; `at` names a crossing's place."""
-    units = PARAMETERS[line].unit
-    undecided = f"of a range of {line} in which it is undecided whether a window opens and closes"
-    kinds = tuple(enumerate(CROSSING_KINDS))
+def crossing_variables(line: str, at: str) -> tuple[Variable, ...]:
+    """The crossings along `line`; `at` names the variable of their places."""
+    units, kinds = PARAMETERS[line].unit, tuple(enumerate(CROSSING_KINDS))
     return (
-        whole("crossing_count", "number of crossings found, stored or not"),
         real(at, units, f"{line} at the crossing", "crossing"),
         Variable("crossing_kind", "|i1", 0, "1", "what changes at the crossing", ("crossing",), kinds),
         real("crossing_frequency", ANGULAR, "angular frequency of the modes that cross", "crossing"),
         real("crossing_growth_rate", "1/tau2", "growth rate of the modes that cross", "crossing"),
         real("crossing_error", units, f"estimate of the absolute error of {at}", "crossing"),
         whole("unstable_after", "number of modes with positive growth rate beyond the crossing", "crossing"),
+    )
+
+
+def search_variables(line: str, at: str) -> tuple[Variable, ...]:
+    """What a search along `line` found, how sure that is and what it cost; `at` names a crossing's place."""
+    units = PARAMETERS[line].unit
+    undecided = f"of a range of {line} in which it is undecided whether a window opens and closes"
+    return (
+        whole("crossing_count", "number of crossings found, stored or not"),
+        *crossing_variables(line, at),
         real("open_from", units, f"start {undecided}"),
         real("open_to", units, f"end {undecided}"),
         truth("certified", "whether it is proved that no crossing is missing"),

@@ -4,7 +4,7 @@ The same table makes the HDF5 datasets and the records of the journal; `rodsweep
 the table of every task.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import prod
 from typing import Any
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
 
+NO_NAMES: Mapping[str, str] = {}
 TYPED = "typed_unit"
 """The attribute of a variable with the unit in which the user typed it."""
 MISSING = -1
@@ -36,6 +37,7 @@ DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
     "cycle_curve_point": ("1", "points of all curves of folds and torus points, one curve after another"),
     "bautin": ("1", "generalised Hopf points, of each Hopf curve one after another"),
     "bautin_step": ("1", "points of curves of generalised Hopf points, each curve's one after another"),
+    "change": ("1", "changes of the rod on the lines over F between the points, one line after another"),
     "hopf": ("1", "Hopf points on the lines between the points, each line's in increasing order"),
     "harmonic": ("1", "multiple of the cycle's frequency"),
     "multiplier_number": ("1", "Floquet multipliers by descending modulus, without the trivial one"),
@@ -93,6 +95,36 @@ MESH = (
     Variable("order", "<i2", 0, "1", "polynomial order used"),
 )
 """What every layout has, or every layout with a mesh."""
+
+
+def recorded(
+    variables: Iterable[Variable], *outcomes: Any, prefix: str = "", names: Mapping[str, str] = NO_NAMES
+) -> dict[str, Any]:
+    """The values of variables by name: each is a field of the first outcome that has it.
+
+    A field has the name of its variable without `prefix`, or the one that `names` says; x_real and x_imag are
+    the parts of a complex field x. AttributeError where no outcome has a field.
+    """
+    return {v.name: _field(names.get(v.name, v.name.removeprefix(prefix)), outcomes) for v in variables}
+
+
+def _field(name: str, outcomes: Sequence[Any]) -> Any:
+    for outcome in outcomes:
+        if hasattr(outcome, name):
+            return getattr(outcome, name)
+    whole, _, part = name.rpartition("_")
+    if part not in ("real", "imag"):
+        raise AttributeError(f"no outcome has the field {name}")
+    return getattr(_field(whole, outcomes), part)
+
+
+def listed(
+    variables: Iterable[Variable], rows: Sequence[Mapping[str, Any]], room: int | None = None
+) -> dict[str, list[Any]]:
+    """A list of items, one row an item, by variable: as many as there is room for, then fills."""
+    kept = rows[:room]
+    empty = max(0, (room or 0) - len(rows))
+    return {v.name: [row[v.name] for row in kept] + [v.fill] * empty for v in variables}
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,8 +3,6 @@
 import os
 from importlib.util import find_spec
 
-import numba
-
 from ...errors import EnvironmentLacks, InputError
 
 
@@ -18,6 +16,8 @@ def require_directory() -> None:
 
 def require_solvers() -> None:
     """EnvironmentLacks where PETSc cannot be started, InputError where the formulas may not be compiled."""
+    import numba
+
     if numba.config.DISABLE_JIT:
         raise InputError(
             "NUMBA_DISABLE_JIT is set: PETSc calls compiled formulas, which Python cannot replace; unset it"

@@ -15,15 +15,15 @@ from ...discretization.stress_form import StressForm
 from ...model.rod import Rod
 from ..changes.unstable_modes import Crossing
 from ..cycle.hopf_start import NORMAL_FORM_ACCURACY, orbit_with
-from ..cycle.neighbour import with_coordinate
 from ..cycle.orbit import Orbit
 from ..cycle.orbit_mesh import stages_for, wanted_mesh
 from ..cycle.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tolerance
 from ..hopf.hopf_coefficients import HopfCoefficients, hopf_coefficients
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..point import Unsolvable
-from .arc import ArcPoint, first_point
+from .arc import ArcPoint
 from .bordered import Condition, Scale, moment_of
+from .settling import first_point
 
 AMPLITUDES = (0.02, 0.008, 0.003)
 """Largest tip y, in L, of the first cycle, tried one after the other."""
@@ -31,7 +31,6 @@ SHARE = 0.05
 """Largest one in units of the amplitude coefficient: beyond, the normal form's third order is not enough."""
 LEAST_UNIT = 0.1
 """Tip y, in L, of the small cycle whose moment is the least unit of moments."""
-FIRST_STEP = 0.02
 FREQUENCY_ROUNDING = 1e-14
 """Relative error of the frequency of a Hopf point that rounding leaves, a root of D."""
 MOMENT = np.array([1.0, 0.0, 0.0])
@@ -47,7 +46,6 @@ class HopfBirth:
 
     crossing: Crossing
     rod: Rod
-    gamma1: float
     name: str
     coordinate: float
     slope: complex
@@ -90,24 +88,20 @@ class HopfBirth:
         return change, self.crossing.frequency + self.slope.imag * change + c.imag * amplitude**2
 
 
-def hopf_point(rod: Rod, gamma1: float, name: str, crossing: Crossing) -> HopfBirth:
-    """The Hopf point of a rod at a crossing along a parameter; raises Unsolvable.
-
-    rod: with any value of the parameter that is allowed.
-    """
-    path, w = Path(rod, name), complex(0.0, crossing.frequency)
+def hopf_point(path: Path, crossing: Crossing) -> HopfBirth:
+    """The Hopf point at a crossing along the parameter of a path; raises Unsolvable."""
+    w = complex(0.0, crossing.frequency)
     at = path.at(path.variable(crossing.at))
     _, slope, _ = eigenvalue_newton(w, at.coefficients, path.direction)
-    normal = accurate_normal_form(at, gamma1, w, NORMAL_FORM_ACCURACY)
+    normal = accurate_normal_form(at, w, NORMAL_FORM_ACCURACY)
     return HopfBirth(
         crossing=crossing,
         rod=at,
-        gamma1=gamma1,
-        name=name,
+        name=path.name,
         coordinate=path.variable(crossing.at),
         slope=complex(slope),
         normal=normal,
-        coefficients=hopf_coefficients(at, gamma1, crossing, NORMAL_FORM_ACCURACY),
+        coefficients=hopf_coefficients(at, crossing, NORMAL_FORM_ACCURACY),
     )
 
 
@@ -136,15 +130,15 @@ def _cycle_of(hopf: HopfBirth, amplitude: float, accuracy: float) -> ArcPoint:
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
     first = condition.on(mesh, near, newton_tolerance(accuracy), matrix_distance(accuracy))
     born = abs(moment_of(first.orbit)) / scale.moment
-    return first_point(first, scale, border, born, accuracy, FIRST_STEP)
+    return first_point(first, scale, border, born, accuracy)
 
 
 def predicted_cycle(hopf: HopfBirth, amplitude: float) -> Orbit:
     """What the normal form predicts, with the largest tip y in L, on its mesh in space, coarse in time."""
     change, frequency = hopf.moved_by(amplitude)
-    form = StressForm(hopf.rod, hopf.gamma1, hopf.normal.form.mesh)
+    form = StressForm(hopf.rod, hopf.normal.form.mesh)
     try:
-        form = with_coordinate(form, hopf.name, hopf.coordinate + change)
+        form = form.with_coordinate(hopf.name, hopf.coordinate + change)
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the branch leaves the rods: {error}") from error
     return orbit_with(hopf.normal, form, amplitude, frequency)

@@ -2,7 +2,7 @@
 
 At a fold the parameter does not tell cycles apart. What is prescribed instead is a combination of three
 numbers that no mesh changes the meaning of: the bending moment at the clamp at t = 0, in units of about its
-largest over the cycle, the logarithm of the period, and the parameter's `linearisation.coordinate` in units
+largest over the cycle, the logarithm of the period, and the parameter's `Parameter.coordinate` in units
 of a scale. So a branch has a length, and steps along it; at a Hopf point it has a length too, for
 there the moment goes through 0 as any other number does.
 """
@@ -22,7 +22,6 @@ from ..cycle.linearisation import (
     reduced_residuals,
 )
 from ..cycle.multipliers import nonzero_eigenvalues
-from ..cycle.neighbour import coordinate_of, with_coordinate
 from ..cycle.newton import MOST_ITERATIONS, Converged, relative_change
 from ..cycle.orbit import Orbit
 from ..cycle.orbit_mesh import OrbitMesh
@@ -52,12 +51,12 @@ class Scale:
     def of(cls, orbit: Orbit, name: str, least: float) -> "Scale":
         """The one at an orbit."""
         largest = float(np.abs(orbit.form.layout.at(orbit.points, "m3")).max())
-        return cls(name, float(np.hypot(largest, least)), abs(coordinate_of(orbit.form, name)), least)
+        return cls(name, float(np.hypot(largest, least)), abs(orbit.form.rod.coordinate(name)), least)
 
     def place(self, orbit: Orbit) -> Array:
         """(moment at the clamp, log of the period, coordinate), in these units, (3,)."""
         moment = moment_of(orbit) / self.moment
-        at = coordinate_of(orbit.form, self.name) / self.coordinate
+        at = orbit.form.rod.coordinate(self.name) / self.coordinate
         return np.array([moment, np.log(orbit.period), at])
 
     def moved(self, orbit: Orbit, change: Array) -> Array:
@@ -215,7 +214,7 @@ class Condition:
 def moved(orbit: Orbit, name: str, change: Array) -> Orbit:
     """An orbit after a change of its values and the parameter's coordinate, (N + 1,); raises Unsolvable."""
     try:
-        form = with_coordinate(orbit.form, name, coordinate_of(orbit.form, name) + float(change[-1]))
+        form = orbit.form.with_coordinate(name, orbit.form.rod.coordinate(name) + float(change[-1]))
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the branch leaves the rods: {error}") from error
     there = replace(orbit, form=form, values=orbit.values + change[:-1])

@@ -6,10 +6,9 @@ import numpy as np
 
 from ..cycle.cycle_errors import CycleErrors
 from ..cycle.measures import Measures
-from ..cycle.neighbour import value_of
 from ..cycle.refinement import MULTIPLIER_FACTOR
 from .arc import ArcPoint
-from .special_points import SpecialPoint
+from .special.point import SpecialPoint
 from .symmetry import Breaking
 
 
@@ -37,7 +36,7 @@ class BranchPoint:
         beyond = sizes - 1
         undecided = bool((np.abs(beyond) <= _margin(point)).any())
         return cls(
-            at=value_of(point.orbit.form, point.scale.name),
+            at=getattr(point.orbit.form.rod, point.scale.name),
             at_error=point.calibration.parameter_error(accuracy),
             measures=cycle.measures,
             errors=cycle.errors,

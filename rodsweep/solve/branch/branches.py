@@ -6,10 +6,8 @@ cycles without it is followed as well. Cycles that no such branch contains are n
 """
 
 from dataclasses import dataclass, field, replace
-from math import nan
 
 from ...determinant.parameter_path import Path
-from ...model.parameters import LINEAR_PARAMETERS
 from ...model.rod import Rod
 from ...watch import part
 from ..changes.along_path import Transitions, pair_crossings
@@ -20,7 +18,7 @@ from ..status import PointStatus
 from .beginning import hopf_point
 from .branch_curve import BranchCurve
 from .following import Course, follow_branch, follow_without_symmetry
-from .special_points import EndReason
+from .special.point import EndReason
 from .symmetry import Breaking, breakings_of
 from .work import shares_of_branches
 
@@ -72,17 +70,6 @@ class BranchRequest:
     special: int
 
 
-@dataclass(frozen=True, slots=True)
-class BranchRod:
-    """A rod but for the parameter that is followed: F in k3/L^2, k1, k2 in k3/L^2, gamma3, gamma1."""
-
-    F: float = nan
-    k1: float = nan
-    k2: float = nan
-    gamma3: float = nan
-    gamma1: float = 1.0
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BranchesOfRod:
     """The branches of a rod. crossings: its Hopf points within the range, by the parameter.
@@ -99,8 +86,11 @@ class BranchesOfRod:
     curves: tuple[BranchCurve, ...] = field(default_factory=tuple)
 
 
-def solve_branches(rod: BranchRod, request: BranchRequest) -> BranchesOfRod:
-    """All branches born at Hopf points of one rod; failures are a status, never an exception."""
+def solve_branches(rod: Rod, request: BranchRequest) -> BranchesOfRod:
+    """All branches born at Hopf points of rods along a parameter; failures are a status, never an exception.
+
+    rod: with any value of that parameter.
+    """
     try:
         return solved(
             lambda: _solve(rod, request),
@@ -113,22 +103,21 @@ def solve_branches(rod: BranchRod, request: BranchRequest) -> BranchesOfRod:
 def warm_up() -> None:
     """Loads what is compiled and created at first use, so that no point pays for it."""
     solve_branches(
-        BranchRod(k1=1e4, k2=1e4, gamma3=1e-4), BranchRequest("F", 0.0, 40.0, 1e-5, False, 100, 10)
+        Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), BranchRequest("F", 0.0, 40.0, 1e-5, False, 100, 10)
     )
 
 
-def _solve(rod: BranchRod, request: BranchRequest) -> BranchesOfRod:
+def _solve(rod: Rod, request: BranchRequest) -> BranchesOfRod:
     low, high, crushed = _range(rod, request)
     if not low < high:
         why = "F is not below k1 anywhere in the range"
         return BranchesOfRod(status=BranchStatus.ok, message=why, proved=True)
-    values = {name: getattr(rod, name) for name in LINEAR_PARAMETERS}
-    path = Path(Rod(**values | {request.along: low}), request.along)
+    path = Path(rod.changed(**{request.along: low}), request.along)
     found = pair_crossings(path, low, high, request.certify)
     hopfs, failures = [], []
     for crossing in found.crossings:
         try:
-            hopfs.append(hopf_point(path.rod, rod.gamma1, request.along, crossing))
+            hopfs.append(hopf_point(path, crossing))
         except FAILURES as error:
             failures.append(f"the Hopf point at {request.along} = {crossing.at:.12g}: {cause_of(error)}")
     ends = (path.variable(low), path.variable(high))
@@ -148,7 +137,7 @@ def _solve(rod: BranchRod, request: BranchRequest) -> BranchesOfRod:
     )
 
 
-def _range(rod: BranchRod, request: BranchRequest) -> tuple[float, float, int]:
+def _range(rod: Rod, request: BranchRequest) -> tuple[float, float, int]:
     """(lowest value, highest value, which of the two is where the rod is crushed, -1 for none)."""
     low, high = request.start, request.stop
     if request.along == "F" and high > (1 - SHORT_OF_CRUSHED) * rod.k1:

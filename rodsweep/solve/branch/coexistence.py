@@ -11,12 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ..changes.rows import DiagramRow, Motion, RowRequest, solve_row
+from ...model.rod import Rod
+from ..changes.rows import DiagramRow, Motion, RowRequest, crushed_row, solve_row
 from ..changes.thresholds import ThresholdStatus
 from ..status import PointStatus
 from .branch_curve import BranchCurve
-from .branches import BranchesOfRod, BranchRequest, BranchRod, BranchStatus, solve_branches
-from .special_points import EndReason, SpecialPoint
+from .branches import BranchesOfRod, BranchRequest, BranchStatus, solve_branches
+from .special.point import EndReason, SpecialPoint
 from .work import DIAGRAM_ACCURACY
 
 MOST_CYCLES = 500
@@ -73,15 +74,13 @@ class CoexistenceRow:
     seconds: float = 0.0
 
 
-def solve_coexistence(
-    fixed: dict[str, float], gamma1: float, request: RowRequest, special: int
-) -> CoexistenceRow:
+def solve_coexistence(rod: Rod, request: RowRequest, special: int) -> CoexistenceRow:
     """The row with its cycles; failures are a status, never an exception. special: the most points kept."""
-    row = solve_row(fixed, request)
-    branches = row_branches(fixed, gamma1, request, special)
+    row = solve_row(rod, request)
+    branches = row_branches(rod, request, special)
     status, message = _judged(row, branches, special)
     cycles = cycles_at(request.values, branches, request.certify)
-    forces = request.values if request.name == "F" else np.full(len(request.values), fixed["F"])
+    forces = request.values if request.name == "F" else np.full(len(request.values), rod.F)
     # Without a force nothing feeds a motion: the elastic energy of the rod falls until it is straight.
     cycles[forces == 0] = 0
     return CoexistenceRow(
@@ -94,7 +93,14 @@ def solve_coexistence(
     )
 
 
-def row_branches(fixed: dict[str, float], gamma1: float, request: RowRequest, special: int) -> BranchesOfRod:
+def crushed_coexistence(request: RowRequest) -> CoexistenceRow:
+    """The row on which every rod is crushed."""
+    row = crushed_row(request)
+    states = stable_states(row.motion, np.zeros(len(row.motion), np.int8))
+    return CoexistenceRow(row=row, stable_states=states, special=(), status=CoexistenceStatus.ok)
+
+
+def row_branches(rod: Rod, request: RowRequest, special: int) -> BranchesOfRod:
     """The branches of cycles from the Hopf points of a row; special: the most points kept."""
     asked = BranchRequest(
         along=request.name,
@@ -105,7 +111,7 @@ def row_branches(fixed: dict[str, float], gamma1: float, request: RowRequest, sp
         cycles=MOST_CYCLES,
         special=special,
     )
-    return solve_branches(BranchRod(**fixed, gamma1=gamma1), asked)
+    return solve_branches(rod, asked)
 
 
 def special_of(branches: BranchesOfRod) -> tuple[SpecialPoint, ...]:

@@ -7,35 +7,22 @@ from math import nan
 
 import numpy as np
 
+from ...model.parameters import PARAMETERS
 from ...watch import Whereabouts, report
 from ...wording import counted
-from ..cycle.linearisation import coordinate
-from ..cycle.neighbour import value_at, value_of
+from ..continuation.follower import zero_along
 from ..cycle.orbit_mesh import mesh_of
 from ..cycle.refinement import matrix_distance, newton_tolerance
 from ..point import Unsolvable
-from .arc import (
-    SHORTEST,
-    ArcPoint,
-    due,
-    next_point,
-    point_at,
-    tangent_at,
-    there_from,
-)
+from .arc import STEPS, ArcPoint, arc_between, next_point, point_at, tangent_at, there_from
 from .beginning import HopfBirth, beginning
 from .bordered import Condition, bordered
 from .branch_curve import BranchCurve
-from .special_points import (
-    EndReason,
-    Segment,
-    SpecialKind,
-    SpecialPoint,
-    arc_between,
-    located,
-    special_points,
-    stretch_at,
-)
+from .settling import due
+from .special.least_stretch import stretch_at
+from .special.locating import Segment, located
+from .special.point import EndReason, SpecialKind, SpecialPoint
+from .special.points import special_points
 from .symmetry import Breaking, beginning_without_symmetry, mirrored, symmetric_end
 from .trail import BranchEnd, Trail, end_at
 from .work import share_done
@@ -46,6 +33,8 @@ SMALL = 0.06
 WITHIN, WITHIN_PERIOD = 0.3, 1e-3
 """Distance of a Hopf point from where cycles shrink to nothing, in units of the last cycle's distance, and of
 its period, relative."""
+LANDING = 1e-6
+"""Share of a step to which the place of an end of the range is predicted; Newton's method then has it."""
 EXACT = 1e-15
 """Relative error of an end of the range."""
 CLOSE = 1e-6
@@ -118,9 +107,9 @@ def _place_on(curve: BranchCurve, here: ArcPoint, course: Course) -> Whereabouts
     """Where on a branch its last cycle is, and the share of the branch's work that is done there."""
     name = here.scale.name
     aim = course.ends[1 if here.ahead[-1] > 0 else 0]
-    there, end = value_at(name, here.at), value_at(name, aim)
+    there, end = PARAMETERS[name].value(here.at), PARAMETERS[name].value(aim)
     words = f"{name} = {there:.5g} on the way to {end:.5g}, {counted(len(curve.points), 'cycle')}"
-    return Whereabouts(words, share_done(coordinate(name, curve.special[0].at), here.at, aim))
+    return Whereabouts(words, share_done(PARAMETERS[name].coordinate(curve.special[0].at), here.at, aim))
 
 
 def special_hopf(hopf: HopfBirth) -> SpecialPoint:
@@ -181,7 +170,7 @@ def _next(trail: Trail, here: ArcPoint, course: Course) -> ArcPoint | BranchEnd:
         return BranchEnd(end_at(here, EndReason.no_cycle_found, message), complete=False)
     if edge is None:
         return last
-    at = value_of(last.orbit.form, last.scale.name)
+    at = getattr(last.orbit.form.rod, last.scale.name)
     return BranchEnd(replace(end_at(last, course.reasons[outside]), error=EXACT * abs(at)), complete=True)
 
 
@@ -219,7 +208,7 @@ def _arrived(curve: BranchCurve, here: ArcPoint, there: ArcPoint, course: Course
     """The Hopf point where cycles shrink to nothing between two; or the first of them, for a shorter step."""
     shorter = arc_between(here, there) / 2
     if here.cycle.measures.tip_y_max > SMALL:
-        if shorter < SHORTEST:
+        if shorter < STEPS.shortest:
             raise Unsolvable("the motion turns round within a step")
         return replace(here, length=shorter)
     # About a Hopf point parameter and period go with the square of the moment.
@@ -258,16 +247,13 @@ def _edge(here: ArcPoint, course: Course, which: int) -> Condition:
 
 def _on_the_edge(here: ArcPoint, there: ArcPoint, edge: Condition, course: Course) -> ArcPoint:
     """The cycle at an end of the range that lies between two; raises Unsolvable."""
-    from scipy.optimize import brentq  # a tenth of a second of every start
-
     scale, segment = here.scale, Segment(here, there)
 
     def beyond(length: float) -> float:
         return -edge.missed(segment.predicted(length))
 
-    if not beyond(0.0) * beyond(segment.length) <= 0:
-        raise Unsolvable("the end of the range is not between two cycles")
-    length = float(brentq(beyond, 0.0, segment.length, xtol=1e-6 * segment.length))
+    ends = beyond(0.0), beyond(segment.length)
+    length = zero_along(beyond, ends, segment.length, 0.0, LANDING)
     tolerance, distance = newton_tolerance(course.accuracy), matrix_distance(course.accuracy)
     found = edge.solved(segment.predicted(length), tolerance, distance)
     tangent = tangent_at(found.orbit, scale, here.ahead, bordered(found))

@@ -14,17 +14,17 @@ import numpy as np
 
 from ...arrays import Array
 from ..cycle.measures import CyclePath
-from ..cycle.neighbour import coordinate_of
 from ..cycle.newton import relative_change
 from ..cycle.orbit import Orbit, node_times
 from ..cycle.orbit_mesh import stages_for, wanted_mesh
 from ..cycle.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tolerance
 from ..cycle.symmetry import NONE
 from ..point import Unsolvable
-from .arc import SHORTEST, ArcPoint, first_point
-from .beginning import FIRST_STEP, MOMENT
+from .arc import STEPS, ArcPoint, arc_between
+from .beginning import MOMENT
 from .bordered import BorderedMatrix, Condition, Scale, moment_of, moved
-from .special_points import SpecialKind, SpecialPoint, arc_between
+from .settling import first_point
+from .special.point import SpecialKind, SpecialPoint
 
 SHARES = (0.03, 0.01, 0.1)
 """Relative change from the symmetric cycle to the first one without symmetry, tried one after the other."""
@@ -117,7 +117,7 @@ def _first_cycle(start: Orbit, scale: Scale, change: float, accuracy: float) -> 
     aim = max(accuracy, FIRST_ACCURACY)
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
     first = condition.on(mesh, near, newton_tolerance(accuracy), matrix_distance(accuracy))
-    return first_point(first, scale, border, abs(change) / scale.moment, accuracy, FIRST_STEP)
+    return first_point(first, scale, border, abs(change) / scale.moment, accuracy)
 
 
 def mirrored(here: ArcPoint, there: ArcPoint, known: Sequence[Breaking], accuracy: float) -> bool:
@@ -151,7 +151,7 @@ def symmetric_end(here: ArcPoint, there: ArcPoint, known: Sequence[Breaking], ac
     which = _nearest(here, known, accuracy) if _slight(here) else -1
     if which >= 0 or _share(here) <= SLIGHTEST:
         return which
-    if arc_between(here, there) / 2 < SHORTEST:
+    if arc_between(here, there) / 2 < STEPS.shortest:
         raise Unsolvable("the motion becomes its mirror image within a step")
     return None
 
@@ -169,7 +169,7 @@ def _nearest(here: ArcPoint, known: Sequence[Breaking], accuracy: float) -> int:
         symmetric = breaking.point.orbit
         if symmetric is None:
             continue
-        place = coordinate_of(symmetric.form, here.scale.name)
+        place = symmetric.form.rod.coordinate(here.scale.name)
         near = WITHIN * abs(here.at - place) + max(CLOSE_PLACE, accuracy) * abs(place)
         also = WITHIN * abs(here.orbit.period - symmetric.period)
         also += max(CLOSE_PERIOD, accuracy) * symmetric.period

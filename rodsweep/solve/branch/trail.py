@@ -5,12 +5,12 @@ from math import nan
 
 import numpy as np
 
-from ..cycle.neighbour import value_of
 from ..point import Unsolvable
-from .arc import ArcPoint, settled
+from .arc import ArcPoint
 from .bordered import Condition
 from .branch_curve import BranchCurve, BranchPoint
-from .special_points import EndReason, SpecialKind, SpecialPoint
+from .settling import settled
+from .special.point import EndReason, SpecialKind, SpecialPoint
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +23,7 @@ class BranchEnd:
 
 def end_at(point: ArcPoint, reason: EndReason, message: str = "") -> SpecialPoint:
     """The end of a branch at a cycle, whose errors may not be known yet."""
-    measures, at = point.cycle.measures, value_of(point.orbit.form, point.scale.name)
+    measures, at = point.cycle.measures, getattr(point.orbit.form.rod, point.scale.name)
     return SpecialPoint(
         kind=SpecialKind.end,
         at=at,

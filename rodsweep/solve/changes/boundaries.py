@@ -1,6 +1,6 @@
 """The boundaries of a phase diagram: the curves on which the changes of its rows lie.
 
-The curves are traced from the changes of all rows (`rodsweep.determinant.curves`).
+The curves are traced from the changes of all rows (`rodsweep.solve.changes.boundary_curves`).
 """
 
 import math
@@ -10,8 +10,8 @@ import numpy as np
 
 from ...arrays import Array
 from ...determinant.boundary import Boundary
-from ...determinant.curves import BoundaryCurve, trace
 from ...determinant.parameter_plane import Plane
+from .boundary_curves import BoundaryCurve, trace
 from .unstable_modes import Kind
 
 SAME_COORDINATE = 1e-12

@@ -67,34 +67,38 @@ class DiagramRow:
         return self.changes.message
 
 
-def solve_row(fixed: dict[str, float], request: RowRequest) -> DiagramRow:
-    """The row on which the parameters `fixed` do not vary; failures are a status, never an exception."""
+def solve_row(rod: Rod, request: RowRequest) -> DiagramRow:
+    """The row of rods that differ from one along an axis; failures are a status, never an exception."""
 
     def failed(cause: str) -> DiagramRow:
         return _uniform(ThresholdStatus.failed, request.values, Motion.undecided, cause)
 
     # ValueError: the model has no rod where a search along the row asks for one.
-    return solved(lambda: _searched(fixed, request), failed, also=(ValueError,))
+    return solved(lambda: _searched(rod, request), failed, also=(ValueError,))
 
 
-def _searched(fixed: dict[str, float], request: RowRequest) -> DiagramRow:
+def crushed_row(request: RowRequest) -> DiagramRow:
+    """The row on which every rod is crushed."""
+    return _uniform(ThresholdStatus.ok, request.values, Motion.crushed)
+
+
+def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
     """The row between its first and its last rod that is not crushed."""
     name, values = request.name, request.values
-    F = values if name == "F" else np.full(len(values), fixed["F"])
-    k1 = values if name == "k1" else np.full(len(values), fixed["k1"])
+    F = values if name == "F" else np.full(len(values), rod.F)
+    k1 = values if name == "k1" else np.full(len(values), rod.k1)
     alive = k1 * (1 - SHORT_OF_CRUSHED) > F
     crushed = k1 * (1 - MEETS_K1) <= F
     if not alive.any():
-        row = _uniform(ThresholdStatus.ok, values, Motion.crushed)
+        row = crushed_row(request)
         row.motion[~crushed] = Motion.undecided
         return row
     start, stop = float(values[alive][0]), float(values[alive][-1])
     if name == "F" and not alive.all():
-        stop = fixed["k1"] * (1 - SHORT_OF_CRUSHED)
+        stop = rod.k1 * (1 - SHORT_OF_CRUSHED)
     if name == "k1" and not alive.all():
-        start = fixed["F"] / (1 - SHORT_OF_CRUSHED) if fixed["F"] > 0 else start
-    rod = Rod(**fixed | {name: start})
-    found = transitions(Path(rod, name), start, stop, request.certify)
+        start = rod.F / (1 - SHORT_OF_CRUSHED) if rod.F > 0 else start
+    found = transitions(Path(rod.changed(**{name: start}), name), start, stop, request.certify)
     motion, unstable = classes(found, values)
     # What is nearly crushed lies beyond the search.
     motion[crushed], unstable[crushed] = Motion.crushed, -1

@@ -61,12 +61,12 @@ class Thresholds:
         return self.transitions.crossings
 
 
-def solve_thresholds(k1: float, k2: float, gamma3: float, request: ThresholdsRequest) -> Thresholds:
-    """All changes for one rod; failures are a status, never an exception."""
-    end = min(request.F_max, k1 * (1 - SHORT_OF_CRUSHED))
+def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
+    """All changes for one rod under any force; failures are a status, never an exception."""
+    end = min(request.F_max, rod.stretch_stiffness * (1 - SHORT_OF_CRUSHED))
 
     def search() -> Thresholds:
-        found = transitions(Path(Rod(0.0, k1, k2, gamma3), "F"), 0.0, end, request.certify)
+        found = transitions(Path(rod, "F"), 0.0, end, request.certify)
         return judged(found, end, request.accuracy, request.certify, request.crossings)
 
     return solved(search, lambda cause: nothing_found(ThresholdStatus.failed, end, cause))
@@ -94,10 +94,10 @@ def judged(found: Transitions, end: float, accuracy: float, certify: bool, most:
 
 def warm_up() -> None:
     """Loads what is compiled and created at first use, so that no point pays for it."""
-    solve_thresholds(1e4, 1e4, 1e-4, ThresholdsRequest(40.0, 1e-8, True, 4))
+    solve_thresholds(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), ThresholdsRequest(40.0, 1e-8, True, 4))
 
 
 def filament_hopf() -> float:
     """Fc, where the filament (k1 = k2 = inf, gamma3 = 0) starts to flutter (De Canio et al. 2017)."""
-    found = transitions(Path(Rod(0.0, math.inf, math.inf, 0.0), "F"), 0.0, 60.0)
+    found = transitions(Path(Rod(F=0.0, k1=math.inf, k2=math.inf, gamma3=0.0), "F"), 0.0, 60.0)
     return next(c.at for c in found.crossings if c.kind == Kind.hopf)

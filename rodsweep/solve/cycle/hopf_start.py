@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...determinant.newton import crossing_newton, eigenvalue_newton
-from ...determinant.parameter_path import Path, direction_of
+from ...determinant.parameter_path import Path
 from ...determinant.winding_number import count_right_of
 from ...discretization.mesh import mesh
 from ...discretization.stress_form import StressForm
@@ -133,7 +133,7 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
     """
     if not (w.real > 0 and w.imag > 0):
         raise Unsolvable("the leading mode is no growing pair")
-    slope = eigenvalue_newton(w, form.rod.coefficients, direction_of(form.rod, "F"))[1]
+    slope = eigenvalue_newton(w, form.rod.coefficients, form.rod.direction("F"))[1]
     rate = form.rod.F * slope.real
     if not w.real <= NEAREST * rate:
         raise Unsolvable("no Hopf point is near")
@@ -149,7 +149,7 @@ def small_orbit(form: StressForm, w: complex, amplitude: float) -> Orbit:
 
 def _normal_form(form: StressForm, w: complex) -> NormalForm:
     """Of an eigenvalue that is exact, which the mesh has only nearly."""
-    normal = accurate_normal_form(form.rod, form.gamma1, w, NORMAL_FORM_ACCURACY)
+    normal = accurate_normal_form(form.rod, w, NORMAL_FORM_ACCURACY)
     return replace(normal, w=w)
 
 

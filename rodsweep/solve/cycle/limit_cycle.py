@@ -40,7 +40,7 @@ from .straight_rod import StraightRod, straight_rod
 from .torus import torus_or
 from .transient import NEUTRAL, Transient, TransientOutcome
 
-__all__ = ["Cycle", "CyclePoint", "CycleRequest", "CycleStatus", "solve_cycle", "warm_up"]
+__all__ = ["Cycle", "CycleRequest", "CycleStatus", "solve_cycle", "warm_up"]
 
 
 EXPECTED_MODES = 3
@@ -60,17 +60,6 @@ UNTOLD = complex(nan, nan)
 """What is stored instead of one that is less."""
 FADING = 0.02
 """Cubic part of the growth rate, relative, below which a small motion decays as the linear one does."""
-
-
-@dataclass(frozen=True, slots=True)
-class CyclePoint:
-    """One rod, in any limit. Its F need not be below k1: what crushes the rod is an outcome."""
-
-    F: float
-    k1: float
-    k2: float
-    gamma3: float
-    gamma1: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,27 +125,23 @@ class Cycle:
 
 
 def solve_cycle(
-    point: CyclePoint, request: CycleRequest, start: Array | None = None, along: str | None = None
+    rod: Rod, request: CycleRequest, start: Array | None = None, along: str | None = None
 ) -> Cycle:
     """The cycle that the rod reaches from its leading mode, or that a neighbour's `Cycle.neighbour` leads to.
 
     start: flat, (any length,). along: the parameter by which neighbours differ. Failures are a status, never
     an exception.
     """
-    if not point.k1 > point.F:
-        crushed = f"F = {point.F:g} crushes a rod of k1 = {point.k1:g} at rest"
-        return Cycle(status=CycleStatus.left_the_model, message=crushed)
 
     def failed(cause: str) -> Cycle:
         forget_integrators()  # a PETSc object is not usable after an error inside it
         return Cycle(status=CycleStatus.failed, message=cause)
 
     def solve() -> Cycle:
-        rod = Rod(point.F, point.k1, point.k2, point.gamma3)
         neighbour = Neighbour.unpack(start) if start is not None else None
         stability = straight_rod(rod, neighbour.leading if neighbour else None)
-        cycle = _solve(point, request, stability, neighbour, along)
-        return _with_second_state(point, _by_the_spectrum(cycle, stability), stability)
+        cycle = _solve(rod, request, stability, neighbour, along)
+        return _with_second_state(rod, _by_the_spectrum(cycle, stability), stability)
 
     return solved(solve, failed)
 
@@ -166,7 +151,7 @@ def warm_up() -> None:
 
     Raises EnvironmentLacks where options of the prefix cycle_ lose the cycle of a rod whose cycle is known.
     """
-    rod = CyclePoint(40.0, 1e4, 1e2, 1e-2, 1.0)
+    rod = Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
     request = CycleRequest(1e-3, 0.1, 1, 4, 1, 4, 50)
     cycle = solve_cycle(rod, request, None, "F")
     if cycle.neighbour is not None:
@@ -183,17 +168,17 @@ def warm_up() -> None:
 
 
 def _solve(
-    point: CyclePoint,
+    rod: Rod,
     request: CycleRequest,
     stability: StraightRod,
     neighbour: Neighbour | None,
     along: str | None,
 ) -> Cycle:
-    rod, leading = Rod(point.F, point.k1, point.k2, point.gamma3), stability.w
+    leading = stability.w
     straight = Cycle(
         status=CycleStatus.straight, linear_growth_rate=leading.real, linear_frequency=abs(leading.imag)
     )
-    beam, form = _beam_and_form(rod, point.gamma1)
+    beam, form = _beam_and_form(rod)
     if request.start == "hopf":
         return _from_hopf(form, request, straight, stability)
     found = None
@@ -205,7 +190,7 @@ def _solve(
     if found is not None and found.verdict(request.accuracy)[0] == CycleStatus.cycle:
         cycle = _measured(replace(straight, status=CycleStatus.cycle), found, request)
         return _handed_on(cycle, found, neighbour, along, request.accuracy)
-    faded = _fades(rod, point.gamma1, leading, request.amplitude) if neighbour is None else ""
+    faded = _fades(rod, leading, request.amplitude) if neighbour is None else ""
     traced = request.transient > 0
     if faded and not traced:
         return replace(straight, message=faded)
@@ -266,10 +251,9 @@ def _by_the_spectrum(cycle: Cycle, stability: StraightRod) -> Cycle:
     return replace(cycle, status=CycleStatus.not_settled, message=stability.doubt)
 
 
-def _with_second_state(point: CyclePoint, cycle: Cycle, stability: StraightRod) -> Cycle:
+def _with_second_state(rod: Rod, cycle: Cycle, stability: StraightRod) -> Cycle:
     """The same, and whether the rod has another stable state."""
-    rod = Rod(point.F, point.k1, point.k2, point.gamma3)
-    state, F, why = second_state(rod, point.gamma1, cycle.status, stability.stable)
+    state, F, why = second_state(rod, cycle.status, stability.stable)
     message = "; ".join(filter(None, (cycle.message, why)))
     return replace(cycle, second_state=int(state), subcritical_F=F, message=message)
 
@@ -288,12 +272,12 @@ def _from_hopf(form: StressForm, request: CycleRequest, straight: Cycle, stabili
     return _measured(replace(straight, status=status, message=message), found, request)
 
 
-def _fades(rod: Rod, gamma1: float, w: complex, amplitude: float) -> str:
+def _fades(rod: Rod, w: complex, amplitude: float) -> str:
     """Why a small motion in the leading mode decays; empty where only the motion itself can tell."""
     if not (w.real < 0 < w.imag):
         return ""
     try:
-        normal = accurate_normal_form(rod, gamma1, w, FADING)
+        normal = accurate_normal_form(rod, w, FADING)
     except Unsolvable:
         return ""
     share = abs(normal.c.real) * amplitude**2 / -w.real
@@ -302,11 +286,11 @@ def _fades(rod: Rod, gamma1: float, w: complex, amplitude: float) -> str:
     )
 
 
-def _beam_and_form(rod: Rod, gamma1: float) -> tuple[Beam, StressForm]:
+def _beam_and_form(rod: Rod) -> tuple[Beam, StressForm]:
     """The rod as the time stepper sees it, and as the orbit does, on one mesh."""
     resolution = resolution_for(motion_wave(rod), MOTION_ACCURACY)
     grid = mesh(resolution.elements, resolution.order)
-    return Beam(near_rod(rod), gamma1, grid), StressForm(rod, gamma1, grid)
+    return Beam(near_rod(rod), grid), StressForm(rod, grid)
 
 
 def motion_wave(rod: Rod) -> float:
@@ -316,7 +300,9 @@ def motion_wave(rod: Rod) -> float:
 
 def near_rod(rod: Rod) -> Rod:
     """The rod itself, or one near the limit that it is: the time stepper takes no limits."""
-    return Rod(rod.F, min(rod.k1, STIFFEST), min(rod.k2, STIFFEST), max(rod.gamma3, LEAST_DRAG))
+    return replace(
+        rod, k1=min(rod.k1, STIFFEST), k2=min(rod.k2, STIFFEST), gamma3=max(rod.gamma3, LEAST_DRAG)
+    )
 
 
 def _from_motion(

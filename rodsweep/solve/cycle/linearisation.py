@@ -13,7 +13,6 @@ from ...discretization.nodal_rod import NodalChange
 from ...discretization.state_layout import COMPONENTS, stress_place
 from ...discretization.stress_form import StressForm
 from ...model.compilation import compiled_for_vectors
-from ...model.parameters import PARAMETERS
 from .condensation import (
     PANEL,
     Factors,
@@ -105,17 +104,12 @@ def release_workspace() -> None:
         _memory[0] = np.empty(0)
 
 
-def coordinate(name: str, value: float) -> float:
-    """In what a branch is followed: 1/value of a stiffness, for cycles are smooth up to inf, or the value."""
-    return 1 / value if PARAMETERS[name].by_compliance else value
-
-
 STILL = NodalChange(np.zeros(0), *np.zeros((3, 0, 0)))
 """No change of the rod: nothing of it is read."""
 
 
 def change_along(form: StressForm, name: str) -> Along:
-    """How a rod changes with a `coordinate`, the mass, (n,), among it."""
+    """How a rod changes with the coordinate of a parameter, the mass, (n,), among it."""
     change = form.change(name)
     return Along(change, form.mass_of(change))
 

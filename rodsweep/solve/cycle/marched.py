@@ -18,6 +18,7 @@ from ...discretization.beam import Beam
 from ...discretization.mesh import mesh
 from ...discretization.resolution import resolution_for
 from ...discretization.stress_form import StressForm
+from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ...watch import Whereabouts, report
 from ..motion.integrator import (
@@ -34,7 +35,7 @@ from ..point import solved
 from ..status import PointStatus
 from .cycle_errors import CycleErrors
 from .from_motion import stressed
-from .limit_cycle import Cycle, CyclePoint, CycleRequest, first_of, motion_wave, near_rod
+from .limit_cycle import Cycle, CycleRequest, first_of, motion_wave, near_rod
 from .measures import CyclePath, measures_of
 from .orbit import Orbit, node_times
 from .symmetry import NONE
@@ -108,25 +109,21 @@ class _Ended(Exception):
         self.status, self.why = status, why
 
 
-def solve_by_integration(point: CyclePoint, request: CycleRequest) -> Cycle:
+def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
     """The cycle that the rod reaches from its leading mode; failures are a status, never an exception."""
-    if not point.k1 > point.F:
-        crushed = f"F = {point.F:g} crushes a rod of k1 = {point.k1:g} at rest"
-        return Cycle(status=MarchedStatus.left_the_model, message=crushed)
 
     def failed(cause: str) -> Cycle:
         forget_integrators()  # a PETSc object is not usable after an error inside it
         return Cycle(status=MarchedStatus.failed, message=cause)
 
-    return solved(lambda: _Marching(point, request).cycle(), failed)
+    return solved(lambda: _Marching(rod, request).cycle(), failed)
 
 
 class _Marching:
     """The motion of one rod, on one mesh after the other."""
 
-    def __init__(self, point: CyclePoint, request: CycleRequest) -> None:
-        rod = Rod(point.F, point.k1, point.k2, point.gamma3)
-        self.request, self.gamma1, self.limit, self.rod = request, point.gamma1, rod, near_rod(rod)
+    def __init__(self, rod: Rod, request: CycleRequest) -> None:
+        self.request, self.limit, self.rod = request, rod, near_rod(rod)
         self.in_a_limit = self.rod != rod
         self.resolution = resolution_for(motion_wave(rod), request.accuracy)
         self.scheme = TimeScheme("arkimex", "5", tolerance=TOLERANCE * request.accuracy)
@@ -158,7 +155,7 @@ class _Marching:
         return self._measured(known, path, errors)
 
     def _beam(self) -> Beam:
-        return Beam(self.rod, self.gamma1, mesh(self.resolution.elements, self.resolution.order))
+        return Beam(self.rod, mesh(self.resolution.elements, self.resolution.order))
 
     def _refined(self, settled: _Settled) -> _Settled:
         """The same motion on a finer mesh with a smaller tolerance, from where it has settled."""
@@ -239,18 +236,15 @@ class _Marching:
         period = float(times[settled.turns] - times[0])
         spline = CubicSpline(run.times, run.states)
         states = spline(times[0] + period * node_times(INTERVALS * settled.turns, STAGES))
-        form = StressForm(self.rod, self.gamma1, self.beam.mesh)
+        form = StressForm(self.rod, self.beam.mesh)
         return CyclePath(Orbit.of(form, NONE, period, stressed(self.beam, form, states), STAGES))
 
     def _errors_of_the_limit(self, settled: _Settled, path: CyclePath, errors: CycleErrors) -> CycleErrors:
         """The errors with what the rod is off by that stands for a limit; raises _Ended."""
-        known, r = path.orbit.form.rod, self.limit
-        self.rod = Rod(
-            r.F,
-            known.k1 / FARTHER if known.k1 != r.k1 else r.k1,
-            known.k2 / FARTHER if known.k2 != r.k2 else r.k2,
-            known.gamma3 * FARTHER if known.gamma3 != r.gamma3 else r.gamma3,
-        )
+        known, limit = path.orbit.form.rod, self.limit
+        in_limits = [name for name in PARAMETERS if known.values[name] != limit.values[name]]
+        coordinates = {name: FARTHER * known.coordinate(name) for name in in_limits}
+        self.rod = limit.changed(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
         self.beam = self._beam()
         apart = _apart(path, self._path(self._settled(relaxed(self.beam, settled.z, self.mode.period))))
         more = _errors(apart, 0.0)

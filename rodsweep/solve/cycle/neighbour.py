@@ -17,9 +17,9 @@ from ...arrays import Array
 from ...discretization.stress_form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
+from ..continuation.follower import StepControl, Stepped, advance
 from ..point import Unsolvable
 from .calibration import LENGTH, Calibration
-from .linearisation import coordinate
 from .newton import Converged, at_orbit, newton, relative_change
 from .normalised import combined, normalised, normalised_tangent, polynomial_weights, reflected, values_of
 from .orbit import Orbit
@@ -35,11 +35,11 @@ from .symmetry import NONE, REFLECTION
 
 FARTHEST = 0.3
 """Relative distance of a cycle from its prediction beyond which it may be another one."""
-MOST_HALVINGS, MOST_STEPS = 6, 100
-"""Of a step along the axis, and steps in all."""
-AIMED_DISTANCE, SHORTER_STEP, LONGER_STEP = 0.15, 0.5, 3.0
-"""How far off a prediction should be for Newton's method to take two matrices; bounds of a step in units of
-the one before, whose error is taken to grow as its cube."""
+STEPS = StepControl(
+    first=0.5, longest=1.0, shortest=2.0**-6, aim=0.15, order=3, sharpest=inf, growth=3.0, most=100
+)
+"""Shares of the way to a cycle that is too far for one step; the aim is what Newton's method takes two
+matrices for. What is far off is told by `_near`."""
 TANGENT_DISTANCE = 1e-2
 """Relative distance from its orbit of a matrix whose tangent is good enough for a step of many."""
 ENOUGH = 0.9
@@ -51,7 +51,7 @@ MOST_BEHIND, SLOPELESS = 4, 3
 """Orbits before the last one that the prediction goes through, and how many of them it takes to be better
 without the slope at one of them."""
 UNKNOWN = complex(nan, nan)
-HEAD = 9
+HEAD = len(PARAMETERS) + 4
 """Numbers at the head of a packed neighbour: rod, symmetry, places, leading eigenvalue."""
 
 
@@ -86,7 +86,7 @@ class Followed:
 
     def at(self, form: StressForm, name: str) -> Orbit:
         """The prediction at another value of the parameter, for the rod `form`, whatever its mesh."""
-        step = coordinate_of(form, name) - coordinate_of(self.orbit.form, name)
+        step = form.rod.coordinate(name) - self.orbit.form.rod.coordinate(name)
         values = combined(self.values, self.data, self.orders, self.weights(step))
         if not values[-1] > 0:
             raise Unsolvable("the branch is predicted to end")
@@ -117,7 +117,7 @@ def followed_from(found: Converged, before: Followed | None, name: str) -> Follo
     if found.matrix.tangent is None:
         raise ValueError("the orbit was solved without its tangent")
     tangent = normalised_tangent(orbit, found.matrix.tangent)
-    step = coordinate_of(orbit.form, name) - coordinate_of(before.orbit.form, name) if before else 0.0
+    step = orbit.form.rod.coordinate(name) - before.orbit.form.rod.coordinate(name) if before else 0.0
     if before is None or step == 0:
         return Followed(orbit, np.zeros(1), np.ones(1), tangent[None])
     last = before.on(mesh_of(orbit))
@@ -131,26 +131,9 @@ def followed_from(found: Converged, before: Followed | None, name: str) -> Follo
     return Followed(orbit, np.array(places), np.array(orders), np.array(data))
 
 
-def coordinate_of(form: StressForm, name: str) -> float:
-    """Where a rod stands along a parameter."""
-    return coordinate(name, value_of(form, name))
-
-
-def value_of(form: StressForm, name: str) -> float:
-    """A parameter of a rod by its name."""
-    return float(form.gamma1 if name == "gamma1" else getattr(form.rod, name))
-
-
-def value_at(name: str, at: float) -> float:
-    """The value of a parameter by its coordinate."""
-    if PARAMETERS[name].by_compliance:
-        return 1 / at if at else inf
-    return at
-
-
 def relative_distance(one: StressForm, other: StressForm, name: str) -> float:
     """Of two rods along a parameter: of its coordinates in units of the larger."""
-    a, b = coordinate_of(one, name), coordinate_of(other, name)
+    a, b = one.rod.coordinate(name), other.rod.coordinate(name)
     return abs(a - b) / max(abs(a), abs(b)) if a != b else 0.0
 
 
@@ -184,7 +167,7 @@ class Neighbour:
         """All of it as one flat array, shape (length,)."""
         orbit, form = self.branch.orbit, self.branch.orbit.form
         rod = form.rod
-        head = [rod.F, rod.k1, rod.k2, rod.gamma3, form.gamma1, orbit.symmetric]
+        head = [*rod.values.values(), orbit.symmetric]
         head += [len(self.branch.places), self.leading.real, self.leading.imag]
         meshes = (*mesh_of(orbit).numbers, *self.next_mesh.numbers)
         known = self.calibration.pack()
@@ -194,11 +177,11 @@ class Neighbour:
     @classmethod
     def unpack(cls, flat: Array) -> "Neighbour":
         """The reverse of `pack`, from its array, shape (length,)."""
-        F, k1, k2, gamma3, gamma1, symmetric, count, real, imag = map(float, flat[:HEAD])
+        *numbers, symmetric, count, real, imag = map(float, flat[:HEAD])
         m = int(count)
         parts = np.split(flat.copy(), np.cumsum([HEAD, 4, 4, LENGTH, m, m]))
         here, there = (OrbitMesh(*map(int, part)) for part in parts[1:3])
-        form = StressForm(Rod(F, k1, k2, gamma3), gamma1, here.grid)
+        form = StressForm(Rod(**dict(zip(PARAMETERS, numbers, strict=True))), here.grid)
         # The values are one number fewer than each row of the data.
         values, data = np.split(parts[6], [len(parts[6]) // (1 + m)])
         orbit = Orbit(form, REFLECTION if symmetric else NONE, here.intervals, here.stages, values)
@@ -270,37 +253,25 @@ def _distance(predicted: Orbit, found: Converged) -> float:
 
 
 def in_steps(start: Followed, form: StressForm, name: str, tolerance: float) -> Converged:
-    """The orbit at the end of steps that Newton's method can follow."""
-    here, there = coordinate_of(start.orbit.form, name), coordinate_of(form, name)
-    share, step = 0.0, 0.5
-    followed = start
-    for _ in range(MOST_STEPS):
-        step = min(step, 1.0 - share)
-        if step < 2.0**-MOST_HALVINGS and share + step < 1.0:
-            raise Unsolvable("the branch of cycles cannot be followed: it ends or turns")
-        end = share + step >= 1.0
-        between = form if end else with_coordinate(form, name, here + (share + step) * (there - here))
+    """The orbit at the end of steps that Newton's method can follow; raises Unsolvable."""
+    here, there = start.orbit.form.rod.coordinate(name), form.rod.coordinate(name)
+    share, length, followed = 0.0, STEPS.first, start
+
+    def step(length: float) -> Stepped[Converged]:
+        at = share + length
+        between = form if at >= 1.0 else form.with_coordinate(name, here + at * (there - here))
+        predicted = followed.at(between, name)
+        found = _near(predicted, tolerance, name)
+        return Stepped(found, _distance(predicted, found), 1.0)
+
+    for _ in range(STEPS.most):
         try:
-            predicted = followed.at(between, name)
-            found = _near(predicted, tolerance, name)
-        except Unsolvable:
-            step /= 2
-            continue
-        if end:
-            return found
-        followed = followed_from(at_orbit(found, TANGENT_DISTANCE, name), followed, name)
-        share, step = share + step, step * _step_factor(_distance(predicted, found))
+            ahead, length = advance(step, min(length, 1.0 - share), STEPS)
+        except Unsolvable as why:
+            raise Unsolvable("the branch of cycles cannot be followed: it ends or turns") from why
+        share += length
+        if share >= 1.0:
+            return ahead.solution
+        followed = followed_from(at_orbit(ahead.solution, TANGENT_DISTANCE, name), followed, name)
+        length = STEPS.next_length(length, ahead, STEPS.order)
     raise Unsolvable("the branch of cycles cannot be followed in so many steps")
-
-
-def _step_factor(distance: float) -> float:
-    """By how much the next step is longer than one whose prediction was this far off."""
-    return float(np.clip((AIMED_DISTANCE / max(distance, 1e-300)) ** (1 / 3), SHORTER_STEP, LONGER_STEP))
-
-
-def with_coordinate(form: StressForm, name: str, at: float) -> StressForm:
-    """The rod with another value of a parameter, given by its coordinate."""
-    value = value_at(name, at)
-    if name == "gamma1":
-        return replace(form, gamma1=value)
-    return replace(form, rod=replace(form.rod, **{name: value}))

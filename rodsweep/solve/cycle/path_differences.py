@@ -26,5 +26,5 @@ def path_differences(rough: CyclePath, fine: CyclePath) -> Array:
 
 def rods_apart(one: Orbit, other: Orbit) -> float:
     """The largest relative difference of their parameters."""
-    a, b = (np.array([*orbit.form.rod.coefficients, orbit.form.gamma1]) for orbit in (one, other))
+    a, b = (np.array([*orbit.form.rod.coefficients, orbit.form.rod.axial_drag]) for orbit in (one, other))
     return float(np.abs((a - b) / np.where(b == 0, 1, b)).max())

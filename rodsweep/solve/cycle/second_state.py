@@ -23,9 +23,7 @@ class SecondState(IntEnum):
     cycle_possible = 2
 
 
-def second_state(
-    rod: Rod, gamma1: float, status: PointStatus, stable: bool | None
-) -> tuple[SecondState, float, str]:
+def second_state(rod: Rod, status: PointStatus, stable: bool | None) -> tuple[SecondState, float, str]:
     """(what is known, force of the subcritical Hopf point or NaN, a sentence) of a point that ended so.
 
     stable: whether the straight rod is; None where it is not known.
@@ -37,7 +35,7 @@ def second_state(
     if status != CycleStatus.straight:
         return SecondState.straight, nan, "the straight rod is stable here too"
     try:
-        beside = subcritical_hopf_beside(rod, gamma1)
+        beside = subcritical_hopf_beside(rod)
     except FAILURES:
         return SecondState.not_told, nan, ""
     if beside is None:

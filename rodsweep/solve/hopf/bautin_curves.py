@@ -6,9 +6,11 @@ turn back in any of them. In the plane of the other two the secant method finds 
 along the Hopf curve beside what the last two points predict.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum
-from functools import partial
+from itertools import pairwise
+from math import inf
 
 import numpy as np
 
@@ -17,15 +19,17 @@ from ...determinant.boundary import Boundary
 from ...determinant.parameter_plane import Plane, PlaneAxis
 from ...model.rod import Rod
 from ...watch import Whereabouts, report
+from ..continuation.follower import CurveStop, StepControl, Stepped, follow
 from ..point import FAILURES, Unsolvable
 from .generalised import FINEST, GeneralisedHopfPoint, HopfCurve
 
-FIRST, LONGEST, SHORTEST = 0.01, 0.1, 1e-4
-"""Steps, in units of the ranges."""
-GROWTH, OFF = 1.5, 0.2
-"""Of a step after one that succeeded; distance from the prediction, in units of the step, that is too far."""
+STEPS = StepControl(first=0.01, longest=0.1, shortest=1e-4, far=0.2, sharpest=inf, growth=1.5, most=2000)
+"""Lengths in units of the ranges; the distance from a prediction is in units of the step."""
 MOST_SECANTS, PROBE, SETTLED = 10, 1e-3, 1e-12
-MOST_POINTS = 2000
+ON_EDGE = 1e-12
+"""Distance from an end of a range that is none."""
+LEAST_LOOP = 5
+"""Points of a closed curve, at least."""
 SAME_POINT = 1e-6
 """Distance of two points, in units of the ranges, that are one."""
 
@@ -38,6 +42,15 @@ class BautinEnd(IntEnum):
     plane_edge = 2
     not_found = 3
     list_full = 4
+    closed = 5
+
+
+END_OTHERWISE = {
+    CurveStop.closed: BautinEnd.closed,
+    CurveStop.lost: BautinEnd.not_found,
+    CurveStop.full: BautinEnd.list_full,
+}
+"""Why a curve ends that reaches no end of a range."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,16 +81,17 @@ class _Place:
 
 @dataclass(frozen=True, slots=True)
 class BautinSpace:
-    """Three parameters in their ranges, the third with the values asked for; gamma1 in gamma2.
+    """Three parameters in their ranges, the third with the values asked for.
 
-    rod: for the parameters that do not vary; accuracy: of c, relative.
+    rod: for the parameters that do not vary; accuracy: of c, relative. side: 1 or -1, to which a curve goes
+    first along the third.
     """
 
     rod: Rod
     axes: tuple[PlaneAxis, PlaneAxis, PlaneAxis]
     asked: Array
-    gamma1: float
     accuracy: float
+    side: float = 1.0
 
     def scaled(self, values: Array, frequency: float) -> Array:
         """(x, y, z, log eta) of three values, (3,), and a frequency."""
@@ -88,9 +102,9 @@ class BautinSpace:
         """The point near a guess, (4,), with one of its three places held; raises Unsolvable."""
         free = [i for i in range(3) if i != held]
         values = {axis.name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)}
-        plane = Plane(replace(self.rod, **values), (self.axes[free[0]], self.axes[free[1]]))
+        plane = Plane(self.rod.changed(**values), (self.axes[free[0]], self.axes[free[1]]))
         boundary = Boundary(plane, 0.0)
-        hopf = HopfCurve(boundary, np.empty((0, 3)), self.gamma1, min(self.accuracy, FINEST))
+        hopf = HopfCurve(boundary, np.empty((0, 3)), min(self.accuracy, FINEST))
         start = guess[[*free, 3]]
         way = boundary.tangent(start)
         point = self._zero(hopf, start, way)
@@ -103,6 +117,49 @@ class BautinSpace:
         )
         return _Place(self.scaled(values_there, point.frequency), found)
 
+    def step(self, behind: Sequence[_Place], length: float) -> Stepped[_Place]:
+        """The point a step along the chord of the last two; raises Unsolvable."""
+        here, tangent = behind[-1].v, np.array([0.0, 0.0, self.side, 0.0])
+        if len(behind) > 1:
+            chord = here - behind[-2].v
+            tangent = chord / np.abs(chord[:3]).max()
+        try:
+            there, on_edge = self._within(here, length * tangent)
+        except ValueError as why:
+            raise Unsolvable(f"the step leaves the rods: {why}") from why
+        missed = float(np.abs(there.v[:3] - here[:3] - length * tangent[:3]).max()) / length
+        # The first step has no prediction, one to an edge is shorter.
+        return Stepped(there, 0.0 if on_edge or len(behind) == 1 else missed, 1.0)
+
+    def _within(self, here: Array, change: Array) -> tuple[_Place, bool]:
+        """(the point a change, (4,), ahead or where that leaves the ranges, whether it does).
+
+        Beyond the ranges there may be no rod. Raises Unsolvable.
+        """
+        ahead = (here + change)[:3]
+        beyond = np.where(ahead > 1, 1.0, np.where(ahead < 0, 0.0, np.nan))
+        shares = (beyond - here[:3]) / np.where(change[:3] == 0, 1.0, change[:3])
+        if np.isnan(shares).all():
+            return self.solved(here + change, int(np.argmax(np.abs(change[:3])))), False
+        which = int(np.nanargmin(shares))
+        guess = here + shares[which] * change
+        guess[which] = beyond[which]
+        return self.solved(guess, which), True
+
+    def margins(self, place: _Place) -> Array:
+        """Distances from the ends of the three ranges, less than 0 on them, (6,)."""
+        return np.ravel([place.v[:3], 1 - place.v[:3]], order="F") - ON_EDGE
+
+    def landed(self, behind: Sequence[_Place], outer: _Place, margin: int) -> _Place | None:
+        """The last point, for steps lead no further than to an edge."""
+        return outer
+
+    def closes(self, behind: Sequence[_Place], there: _Place) -> bool:
+        """Whether the first point lies between the last one and the next."""
+        first, last, step = behind[0].v, behind[-1].v, float(np.linalg.norm(there.v - behind[-1].v))
+        near = max(np.linalg.norm(first - last), np.linalg.norm(first - there.v)) < step
+        return len(behind) > LEAST_LOOP and bool(near)
+
     @staticmethod
     def _zero(hopf: HopfCurve, start: Array, way: Array) -> GeneralisedHopfPoint:
         """Where Re c vanishes along a Hopf curve near a start, (3,), in its direction; raises Unsolvable."""
@@ -114,7 +171,7 @@ class BautinSpace:
                 break
             slope = (here.share - last) / (s - before)
             step = -here.share / slope
-            if not abs(s + step) < LONGEST:
+            if not abs(s + step) < STEPS.longest:
                 break
             along = here.coefficients.landau_error / abs(slope)
             if abs(step) <= max(SETTLED, along):
@@ -126,10 +183,11 @@ class BautinSpace:
 def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:
     """The curve through a generalised Hopf point, both ways to where it ends."""
     here = _Place(space.scaled(start.values, start.frequency), start)
-    (back, first), (on, last) = (_followed(space, here, way) for way in (-1.0, 1.0))
-    return BautinCurve(
-        (*(place.point for place in back[::-1]), start, *(place.point for place in on)), (first, last)
-    )
+    back, first = _followed(replace(space, side=-1.0), here)
+    if first is BautinEnd.closed:
+        return BautinCurve(tuple(place.point for place in back), (first, first))
+    on, last = _followed(space, here)
+    return BautinCurve(tuple(place.point for place in [*back[:0:-1], *on]), (first, last))
 
 
 def on_curve(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoint:
@@ -149,49 +207,29 @@ def lies_on(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> 
     return any(float(np.abs(v - other).max()) < SAME_POINT for other in others)
 
 
-def _followed(space: BautinSpace, start: _Place, way: float) -> tuple[list[_Place], BautinEnd]:
-    """The points beyond the start with the third value rising or falling at first, and why they end."""
-    places: list[_Place] = []
-    here, step, tangent = start, FIRST, np.array([0.0, 0.0, way, 0.0])
-    if not 0 < start.v[2] + way * SHORTEST < 1:
-        return places, BautinEnd.range_end
-    while len(places) < MOST_POINTS:
-        report(partial(Whereabouts, f"curve of generalised Hopf points, {len(places)} points"))
-        predicted = here.v + step * tangent
+def _followed(space: BautinSpace, start: _Place) -> tuple[list[_Place], BautinEnd]:
+    """The points from the start to one side, those asked for among them, and why they end."""
+    if not 0 < start.v[2] + space.side * STEPS.shortest < 1:
+        return [start], BautinEnd.range_end
+    curve = follow(space, start, STEPS, _report)
+    places = curve.solutions[:1]
+    for here, there in pairwise(curve.solutions):
         try:
-            there, edge = _within(space, predicted, here)
-            missed = np.abs(there.v[:3] - predicted[:3]).max()
-            if places and edge is BautinEnd.none and missed > OFF * step:
-                raise Unsolvable("the curve bends")
+            places += [*_asked_between(space, here, there), there]
         except (*FAILURES, ValueError):
-            step /= 2
-            if step < SHORTEST:
-                return places, BautinEnd.not_found
-            continue
-        places += [*_asked_between(space, here, there), there]
-        if edge is not BautinEnd.none:
-            return places, edge
-        change = there.v - here.v
-        here, tangent = there, change / np.abs(change[:3]).max()
-        step = min(step * GROWTH, LONGEST)
-    return places, BautinEnd.list_full
+            return places, BautinEnd.not_found
+    if curve.end is CurveStop.margin:
+        return places, BautinEnd.range_end if curve.margin // 2 == 2 else BautinEnd.plane_edge
+    return places, END_OTHERWISE[curve.end]
 
 
-def _within(space: BautinSpace, predicted: Array, here: _Place) -> tuple[_Place, BautinEnd]:
-    """The point that is predicted, (4,), or where the curve leaves the ranges; raises Unsolvable."""
-    change = predicted - here.v
-    beyond = np.where(predicted[:3] > 1, 1.0, np.where(predicted[:3] < 0, 0.0, np.nan))
-    shares = (beyond - here.v[:3]) / np.where(change[:3] == 0, 1.0, change[:3])
-    if np.isnan(shares).all():
-        return space.solved(predicted, int(np.argmax(np.abs(change[:3])))), BautinEnd.none
-    which = int(np.nanargmin(shares))
-    guess = here.v + shares[which] * change
-    guess[which] = beyond[which]
-    return space.solved(guess, which), BautinEnd.range_end if which == 2 else BautinEnd.plane_edge
+def _report(places: Sequence[_Place]) -> None:
+    """Says how far a curve is."""
+    report(lambda: Whereabouts(f"curve of generalised Hopf points, {len(places)} points"))
 
 
 def _asked_between(space: BautinSpace, here: _Place, there: _Place) -> list[_Place]:
-    """The points at the values asked for between two of a curve; raises Unsolvable."""
+    """The points at the values asked for between two of a curve; raises Unsolvable or ValueError."""
     a, b = here.v[2], there.v[2]
     inner = [z for z in map(space.axes[2].scaled, space.asked) if min(a, b) < z < max(a, b)]
     found = []

@@ -5,7 +5,7 @@ them, so that neighbours along it share one search.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from ...determinant.parameter_path import Path
@@ -80,22 +80,12 @@ class Criticality:
         return self.transitions.crossings
 
 
-@dataclass(frozen=True, slots=True)
-class RodInFluid:
-    """A rod without a force: k1, k2 in k3/L^2, gamma3 in gamma2 L^2, gamma1 in gamma2."""
-
-    k1: float
-    k2: float
-    gamma3: float
-    gamma1: float = 1.0
-
-
-def solve_criticality(rod: RodInFluid, request: CriticalityRequest) -> Criticality:
-    """All Hopf points of one rod with their coefficients; failures are a status, never an exception."""
-    end = min(request.F_max, rod.k1 * (1 - SHORT_OF_CRUSHED))
+def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
+    """All Hopf points of one rod, whatever its force, with their coefficients; failures are a status."""
+    end = min(request.F_max, rod.stretch_stiffness * (1 - SHORT_OF_CRUSHED))
 
     def search() -> Criticality:
-        found = _hopf_points(rod.k1, rod.k2, rod.gamma3, end, request.certify)
+        found = _hopf_points(Path(replace(rod.linear, F=0.0), "F"), end, request.certify)
         coefficients = tuple(
             _coefficients(rod, hopf, request) for hopf in found.crossings[: request.crossings]
         )
@@ -109,19 +99,18 @@ def solve_criticality(rod: RodInFluid, request: CriticalityRequest) -> Criticali
 
 def warm_up() -> None:
     """Loads what is compiled and created at first use, so that no point pays for it."""
-    solve_criticality(RodInFluid(1e4, 1e4, 1e-4), CriticalityRequest(40.0, 1e-8, True, 4))
+    solve_criticality(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), CriticalityRequest(40.0, 1e-8, True, 4))
 
 
 @lru_cache(maxsize=SEARCHES_KEPT)
-def _hopf_points(k1: float, k2: float, gamma3: float, end: float, certify: bool) -> Transitions:
-    return pair_crossings(Path(Rod(0.0, k1, k2, gamma3), "F"), 0.0, end, certify)
+def _hopf_points(path: Path, end: float, certify: bool) -> Transitions:
+    return pair_crossings(path, 0.0, end, certify)
 
 
-def _coefficients(rod: RodInFluid, hopf: Crossing, request: CriticalityRequest) -> HopfCoefficients:
+def _coefficients(rod: Rod, hopf: Crossing, request: CriticalityRequest) -> HopfCoefficients:
     """The coefficients of one Hopf point, whose failure costs no other its own."""
-    at = Rod(hopf.at, rod.k1, rod.k2, rod.gamma3)
     try:
-        return hopf_coefficients(at, rod.gamma1, hopf, request.accuracy)
+        return hopf_coefficients(replace(rod, F=hopf.at), hopf, request.accuracy)
     except FAILURES as error:
         return HopfCoefficients(message=f"Hopf point at F = {hopf.at:.12g}: {cause_of(error)}")
 

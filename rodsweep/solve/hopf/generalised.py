@@ -13,10 +13,10 @@ import numpy as np
 
 from ...arrays import Array
 from ...determinant.boundary import Boundary, OnBoundary
-from ...determinant.curves import BoundaryCurve
-from ...determinant.parameter_path import determinant_along, direction_of
+from ...determinant.parameter_path import determinant_along
 from ...determinant.parameter_plane import Plane
 from ...watch import Whereabouts, report
+from ..changes.boundary_curves import BoundaryCurve
 from ..changes.unstable_modes import Crossing, Kind
 from ..point import FAILURES, Unsolvable
 from .hopf_coefficients import HopfCoefficients, hopf_coefficients
@@ -75,13 +75,13 @@ class _At:
         return self.coefficients.landau.real / abs(self.coefficients.landau)
 
 
-def curve_criticality(plane: Plane, curve: BoundaryCurve, gamma1: float, accuracy: float) -> CurveCriticality:
+def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> CurveCriticality:
     """The sign of Re c at every point of a Hopf curve, and the generalised Hopf points between them.
 
-    gamma1 in gamma2. accuracy: of c, relative; at least FINEST is asked for. Points where the normal form
+    accuracy: of c, relative; at least FINEST is asked for. Points where the normal form
     fails have none, and cost no other its own.
     """
-    hopf = HopfCurve(Boundary(plane, curve.sign), curve.scaled, gamma1, min(accuracy, FINEST))
+    hopf = HopfCurve(Boundary(plane, curve.sign), curve.scaled, min(accuracy, FINEST))
     signs = np.array([hopf.sign(i) for i in range(len(curve.scaled))])
     points, unlocated = [], 0
     decided = np.flatnonzero(signs != 0)  # a change may lie within the error of a point
@@ -99,7 +99,6 @@ class HopfCurve:
 
     boundary: Boundary
     scaled: Array
-    gamma1: float
     accuracy: float
 
     def sign(self, i: int) -> float:
@@ -121,12 +120,12 @@ class HopfCurve:
             raise Unsolvable("no Hopf point is found between two of a curve")
         x, y, h = map(float, there.v)
         rod, w = self.boundary.plane.at(x, y), complex(0.0, math.exp(h))
-        along = determinant_along(w, rod.coefficients, direction_of(rod, "F"))
+        along = determinant_along(w, rod.coefficients, rod.direction("F"))
         value = self.boundary.plane.determinant(w, x, y)
         # An error of the point is one of the force, the other parameters as they are.
         error = there.error * (abs(value.D_x) + abs(value.D_y)) / abs(along.D_p)
         hopf = Crossing(rod.F, Kind.hopf, w.imag, 0.0, error, frequency_error=there.error * w.imag)
-        return _At(there, hopf_coefficients(rod, self.gamma1, hopf, accuracy))
+        return _At(there, hopf_coefficients(rod, hopf, accuracy))
 
     def located(self, first: int, last: int) -> GeneralisedHopfPoint | None:
         """The point with Re c = 0 between two of opposite signs, or None where it is not found."""

@@ -5,7 +5,7 @@ threshold beside it: a start beyond them leaves the straight rod, mostly for a s
 branch turns at a fold.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
@@ -32,20 +32,22 @@ class SubcriticalHopf:
     unstable_y: float
 
 
-def subcritical_hopf_beside(rod: Rod, gamma1: float) -> SubcriticalHopf | None:
+def subcritical_hopf_beside(rod: Rod) -> SubcriticalHopf | None:
     """The nearest of the Hopf points above and below a rod's force, if it is subcritical, else the other one.
 
     Only the first on either side counts, and only where its unstable cycle is no larger than LARGEST_Y. The
     straight rod is stable. Raises Unsolvable where the Hopf points or a coefficient cannot be had.
     """
-    low, high = rod.F / FARTHEST_FORCE, min(rod.F * FARTHEST_FORCE, rod.k1 * (1 - SHORT_OF_CRUSHED))
+    low, high = (
+        rod.F / FARTHEST_FORCE,
+        min(rod.F * FARTHEST_FORCE, rod.stretch_stiffness * (1 - SHORT_OF_CRUSHED)),
+    )
     if not 0 < low < high:
         return None
     crossings = pair_crossings(Path(rod, "F"), low, high, certify=False).crossings
     nearest = [c for c in crossings if c.at > rod.F][:1] + [c for c in crossings if c.at <= rod.F][-1:]
     for hopf in sorted(nearest, key=lambda c: abs(c.at - rod.F)):
-        at = Rod(hopf.at, rod.k1, rod.k2, rod.gamma3)
-        found = hopf_coefficients(at, gamma1, hopf, ACCURACY)
+        found = hopf_coefficients(replace(rod, F=hopf.at), hopf, ACCURACY)
         y = abs(found.amplitude_coefficient) * abs(rod.F / hopf.at - 1) ** 0.5
         if found.criticality > 0 and y <= LARGEST_Y:
             return SubcriticalHopf(hopf.at, y)

@@ -75,7 +75,7 @@ class HopfCoefficients:
         return max(self.landau_error, self.growth_slope_error)
 
 
-def hopf_coefficients(rod: Rod, gamma1: float, hopf: Crossing, accuracy: float) -> HopfCoefficients:
+def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoefficients:
     """The coefficients of a Hopf point of a rod, c to a relative accuracy; raises Unsolvable.
 
     rod: at the force of the crossing. c may be worse where rounding leaves no more digits.
@@ -83,16 +83,20 @@ def hopf_coefficients(rod: Rod, gamma1: float, hopf: Crossing, accuracy: float) 
     w = complex(0.0, hopf.frequency)
     # The rule has a factor for what its errors are at worst; here the second mesh is there to tell.
     start = resolution_of(rod, w, min(accuracy / SAFETY, COARSEST))
-    fine, change, rounding = normal_form_on(start, rod, gamma1, w, COARSEST), math.inf, 0.0
+    fine, change, rounding = normal_form_on(start, rod, w, COARSEST), math.inf, 0.0
     for number in range(MOST_REFINED):
         here = Resolution(fine.form.mesh.elements, fine.form.mesh.order)
         more = of_odd_order(a_third_finer(here)) if number else replace(here, order=here.order + MORE_ORDERS)
-        coarse, fine = fine, normal_form_on(more, rod, gamma1, w, accuracy)
+        coarse, fine = fine, normal_form_on(more, rod, w, accuracy)
         change, rounding = abs(fine.c - coarse.c) / abs(fine.c), _rounding(fine)
         if change <= max(accuracy, rounding):
             break
     slope, bend = _slope(rod, w)
-    moved = SENSITIVITY * hopf.error * (bend / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.k1 - rod.F))
+    moved = (
+        SENSITIVITY
+        * hopf.error
+        * (bend / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.stretch_stiffness - rod.F))
+    )
     landau_error = max(change, rounding) + moved
     off = abs(fine.slope - slope) / abs(slope)
     slope_error = max(off, rounding) + hopf.error * bend / abs(slope)

@@ -117,12 +117,12 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
     return NormalForm(form=form, w=w, slope=complex(slope), c=complex(c), q=q, p=p, h20=h20, h11=h11)
 
 
-def accurate_normal_form(rod: Rod, gamma1: float, w: complex, accuracy: float) -> NormalForm:
+def accurate_normal_form(rod: Rod, w: complex, accuracy: float) -> NormalForm:
     """The normal form of the eigenvalue w, on a mesh that gives c to a relative accuracy.
 
     Raises Unsolvable where w is no eigenvalue to this accuracy, or no reasonable mesh is fine enough.
     """
-    return normal_form_on(resolution_of(rod, w, accuracy), rod, gamma1, w, accuracy)
+    return normal_form_on(resolution_of(rod, w, accuracy), rod, w, accuracy)
 
 
 def resolution_of(rod: Rod, w: complex, accuracy: float) -> Resolution:
@@ -136,9 +136,7 @@ def of_odd_order(resolution: Resolution) -> Resolution:
     return Resolution(resolution.elements, resolution.order | 1)
 
 
-def normal_form_on(
-    resolution: Resolution, rod: Rod, gamma1: float, w: complex, accuracy: float
-) -> NormalForm:
+def normal_form_on(resolution: Resolution, rod: Rod, w: complex, accuracy: float) -> NormalForm:
     """The normal form of the eigenvalue w on a mesh.
 
     Raises Unsolvable where w is no eigenvalue to a relative accuracy, or the mesh is too fine to be solved.
@@ -146,7 +144,7 @@ def normal_form_on(
     nodes = resolution.elements * resolution.order
     if nodes > MOST_NODES:
         raise Unsolvable(f"the normal form at F = {rod.F:g} needs {nodes} nodes, more than {MOST_NODES}")
-    normal = normal_form(mixed_form(rod, gamma1, resolution.elements, resolution.order), w)
+    normal = normal_form(mixed_form(rod, resolution.elements, resolution.order), w)
     if not abs(normal.w - w) <= max(accuracy, FOUND) * abs(w):
         raise Unsolvable(f"{w:.12g} is no eigenvalue at F = {rod.F:g}; the nearest is {normal.w:.12g}")
     return normal

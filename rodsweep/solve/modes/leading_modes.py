@@ -17,7 +17,7 @@ import numpy as np
 
 from ...determinant.value import newton_correction
 from ...discretization.quadrature import lobatto_points
-from ...discretization.resolution import resolution_for
+from ...discretization.resolution import Resolution, resolution_for
 from ...model.rod import Rod
 from ..point import solved
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
@@ -62,7 +62,7 @@ class Modes:
 def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
     """The leading `request.modes` modes of `rod`; failures are a status, never an exception."""
     spectrum = solve_spectrum(rod, SpectrumRequest(request.modes, request.accuracy, request.certify))
-    vectors = no_vectors(spectrum.resolution, request.modes, request.nodes)
+    vectors = no_vectors(Resolution(spectrum.elements, spectrum.order), request.modes, request.nodes)
     outcome = Modes(
         status=spectrum.status,
         spectrum=spectrum,

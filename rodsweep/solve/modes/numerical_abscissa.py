@@ -25,7 +25,7 @@ def numerical_abscissa(rod: Rod, pencil: Pencil) -> float:
     above: nan where none is above it, which only a rod without rotational drag and g < 0 can bring about.
     """
     A, B = pencil.dense(rod)
-    n, t, tip_mass = pencil.nodes, angle_weight(rod.gamma3), pencil.mass[-1]
+    n, t, tip_mass = pencil.nodes, angle_weight(rod.rotational_drag), pencil.mass[-1]
     pair, layer = hermitian_tip(rod)
     A[n - 1, 2 * n - 1] += pair / (t * tip_mass)
     A[2 * n - 1, n - 1] -= pair / (t * tip_mass)

@@ -111,8 +111,8 @@ class EigenSolver:
         coefficients = self.pencil.coefficients(rod)
         if not math.isfinite(coefficients.sum() + shift):
             raise FloatingPointError("the parameters overflow the matrix entries")
-        if rod.gamma3 != self.gamma3:
-            self.gamma3, self.inertia = rod.gamma3, self.pencil.inertia(rod)
+        if rod.rotational_drag != self.gamma3:
+            self.gamma3, self.inertia = rod.rotational_drag, self.pencil.inertia(rod)
             self.B.setValuesCSR(self.line, self.line[:-1], self.inertia)
             self.B.assemble()
         if self.dense:
@@ -160,8 +160,8 @@ def _as_filament(rod: Rod) -> tuple[Rod, float]:
     A partial beam (k2 = inf, gamma3 = 0) moves like the filament under the force F nu, slower by nu^2; close
     to being crushed its own matrices are too badly scaled.
     """
-    if rod.c2 == 0 and rod.gamma3 == 0 and rod.nu != 1:
-        return Rod(rod.F * rod.nu, math.inf, math.inf, 0.0), rod.nu
+    if rod.c2 == 0 and rod.rotational_drag == 0 and rod.nu != 1:
+        return Rod(F=rod.F * rod.nu, k1=math.inf, k2=math.inf, gamma3=0.0), rod.nu
     return rod, 1.0
 
 

@@ -57,26 +57,49 @@ class SpectrumRequest:
     """Number of Lobatto nodes on which (Y, Theta) are wanted; 0 for none."""
 
 
+EachRod = Any
+"""A number of one rod, or those of n rods that were solved together, shape (n,)."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spectrum:
-    """The leading transverse eigenvalues of one rod, in the order that `rodsweep.model` states.
+    """The leading transverse eigenvalues of one rod, or of n rods: then every array has a leading axis (n,).
 
-    eigenvalues: complex, shape (modes,), in 1/tau2; error_estimate: |D/D'|, shape (modes,): at least a tenth
-    of the error, and at most ten times it where that is no less than rounding of the force or of w makes it.
-    unstable_count: eigenvalues with Re w > 0, or -1 where it is not known; proved where that was asked for.
-    certified: the winding number proves that none right of the last given mode is missing.
-    vectors: (Y, Theta), complex, shape (2, modes, vector_nodes), scaled to Y(1) = 1; or None.
+    eigenvalues: complex, (modes,), in 1/tau2, in the order that `rodsweep.model` states; error_estimate:
+    |D/D'|, (modes,): at least a tenth of the error, and at most ten times it where that is no less than
+    rounding of the force or of w makes it. unstable_count: eigenvalues with Re w > 0, or -1 where it is not
+    known; proved where that was asked for. certified: the winding number proves that none right of the last
+    given mode is missing. elements, order: of the mesh, 0 where none was needed. seconds: of several rods the
+    even share of each. vectors: (Y, Theta), complex, (2, modes, vector_nodes), scaled to Y(1) = 1; or None.
     """
 
-    status: SpectrumStatus
+    status: EachRod
+    """A `SpectrumStatus`."""
     eigenvalues: Complex
     error_estimate: Array
-    unstable_count: int = -1
-    certified: bool = False
-    resolution: Resolution = Resolution(0, 0)
-    seconds: float = 0.0
+    unstable_count: EachRod = -1
+    certified: EachRod = False
+    elements: EachRod = 0
+    order: EachRod = 0
+    seconds: EachRod = 0.0
     vectors: Complex | None = None
-    message: str = ""
+    message: EachRod = ""
+
+    @property
+    def growth_rate(self) -> Array:
+        """Re w, (modes,)."""
+        return self.eigenvalues.real
+
+    @property
+    def frequency(self) -> Array:
+        """Im w, (modes,)."""
+        return self.eigenvalues.imag
+
+    def put(self, i: int, one: "Spectrum") -> None:
+        """Makes the spectrum of one rod that of the i-th of several; without its time and vectors."""
+        for field in ("status", "eigenvalues", "error_estimate", "unstable_count", "certified"):
+            getattr(self, field)[i] = getattr(one, field)
+        self.elements[i], self.order[i], self.message[i] = one.elements, one.order, one.message
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +129,7 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
 
 def warm_up() -> None:
     """Loads what is compiled and created at first use, so that no point pays for it."""
-    Search(Rod(30.0, 1e4, 1e4, 1e-4), SpectrumRequest(2, 1e-4, certify=True)).outcome()
+    Search(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), SpectrumRequest(2, 1e-4, certify=True)).outcome()
 
 
 class Search:
@@ -232,7 +255,8 @@ def _result(best: Judged, rod: Rod, request: SpectrumRequest) -> Spectrum:
         error_estimate=found.error[: request.modes],
         unstable_count=unstable if known else -1,
         certified=proved and not undecided,
-        resolution=best.found.resolution,
+        elements=best.found.resolution.elements,
+        order=best.found.resolution.order,
         vectors=vectors_on_nodes(rod, request, best.found.resolution, best.found.vectors),
         message=message,
     )

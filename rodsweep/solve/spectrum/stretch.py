@@ -12,10 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...determinant.parameter_path import direction_of
+from ...determinant.parameter_path import Path
 from ...determinant.winding_number import count_right_of
-from ...model.parameters import LINEAR_PARAMETERS
-from ...model.rod import Coefficients, Rod
+from ...model.rod import Rod, coefficients_of
 from ..point import FAILURES
 from .carried_count import best_gap, carry, judge_points, leading, line_in
 from .following import follow
@@ -31,70 +30,28 @@ FURTHER_MODES = 2
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """Rods that differ in the parameter `name` only: F, k1, k2, gamma3 by name, each of shape (n,)."""
+    """Rods on a path, at values of its parameter, shape (n,)."""
 
-    name: str
-    values: dict[str, Array]
+    path: Path
+    values: Array
 
     def __len__(self) -> int:
-        return len(self.values[self.name])
+        return len(self.values)
 
     def rod(self, i: int) -> Rod:
         """The i-th rod."""
-        return Rod(**{name: float(column[i]) for name, column in self.values.items()})
+        return self.path.rod.changed(**{self.path.name: float(self.values[i])})
+
+    @property
+    def coordinates(self) -> Array:
+        """The path variable of every rod, shape (n,)."""
+        return 1 / self.values if self.path.inverse else self.values
 
     @property
     def coefficients(self) -> Array:
         """(F, nu, c2, gamma3) of every rod, shape (n, 4), bit by bit as `Rod.coefficients`."""
-        F, k1, k2, gamma3 = (self.values[name] for name in LINEAR_PARAMETERS)
-        with np.errstate(invalid="ignore"):  # inf/inf where k1 = inf
-            nu = np.where(np.isinf(k1), 1.0, (k1 - F) / k1)
-        return np.stack([F, nu, 1 / k2, gamma3], axis=1)
-
-    @property
-    def path_variable(self) -> Array:
-        """F, 1/k1, 1/k2 or gamma3, as the name says, shape (n,)."""
-        varied = self.values[self.name]
-        return 1 / varied if self.name in ("k1", "k2") else varied.copy()
-
-
-@dataclass(frozen=True, slots=True)
-class Spectra:
-    """The spectra of n points, with the fields of `rodsweep.solve.spectrum.search.Spectrum` as arrays.
-
-    eigenvalues: complex, shape (n, modes), in 1/tau2; error_estimate: (n, modes), what Newton's method leaves
-    or rounding; all others (n,). elements, order: 0 where no mesh was needed; seconds: the even share of each
-    point in the time of all; message: of those points that have one.
-    """
-
-    eigenvalues: Complex
-    error_estimate: Array
-    unstable_count: NDArray[np.int64]
-    certified: NDArray[np.bool_]
-    elements: NDArray[np.int64]
-    order: NDArray[np.int64]
-    seconds: Array
-    status: NDArray[np.int64]
-    message: dict[int, str]
-
-    @property
-    def succeeded(self) -> NDArray[np.bool_]:
-        """Whether each point ended as it should, shape (n,)."""
-        return self.status == SpectrumStatus.ok
-
-    def told(self, i: int) -> str:
-        """The name of a point's status, and what the solver adds."""
-        status = next(status for status in SpectrumStatus if status == self.status[i])
-        return f"{status.name} {self.message.get(i, '')}".rstrip()
-
-    def put(self, i: int, spectrum: Spectrum) -> None:
-        """Makes a spectrum that of point i."""
-        self.eigenvalues[i], self.error_estimate[i] = spectrum.eigenvalues, spectrum.error_estimate
-        self.unstable_count[i], self.certified[i] = spectrum.unstable_count, spectrum.certified
-        self.elements[i], self.order[i] = spectrum.resolution.elements, spectrum.resolution.order
-        self.status[i] = spectrum.status
-        if not spectrum.status.succeeded:
-            self.message[i] = spectrum.message
+        columns = coefficients_of({**self.path.rod.values, self.path.name: self.values})
+        return np.stack(np.broadcast_arrays(*columns), axis=1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,12 +67,12 @@ class Reached:
     good: NDArray[np.bool_]
 
 
-def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectra:
+def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
     """The leading `request.modes` eigenvalues of every rod, all certified; failures are statuses."""
     began = time.perf_counter()
     n, modes = len(stretch), request.modes
     whole = np.zeros(n, np.int64)
-    spectra = Spectra(
+    spectra = Spectrum(
         eigenvalues=np.full((n, modes), np.nan + 0j),
         error_estimate=np.full((n, modes), np.nan),
         unstable_count=whole - 1,
@@ -124,7 +81,7 @@ def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectra:
         order=whole.copy(),
         seconds=np.zeros(n),
         status=whole + SpectrumStatus.ok,
-        message={},
+        message=np.full(n, "", object),
     )
     place, patience = 0, 1
     while place < n:
@@ -155,8 +112,9 @@ def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Reached
     order[0] = np.arange(len(first))
     track = Track(np.empty(shape, complex), np.empty(shape, complex), np.empty(shape), order)
     track.w[0] = first
-    coefficients, p = stretch.coefficients[start:], stretch.path_variable[start:]
-    direction = Coefficients(*map(float, direction_of(stretch.rod(start), stretch.name)))
+    path = stretch.path
+    coefficients, p = stretch.coefficients[start:], stretch.coordinates[start:]
+    direction = path.direction
     n = follow(track, coefficients, p, direction, modes)
     if n == 0:
         return None
@@ -202,6 +160,5 @@ def _first_point(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | No
 def warm_up() -> None:
     """Loads what is compiled and created at first use, so that no point pays for it."""
     warm_up_search()
-    forces = np.linspace(15.0, 45.0, 12)
-    values = {"F": forces, "k1": forces * 0 + 1e4, "k2": forces * 0 + 1e4, "gamma3": forces * 0 + 1e-4}
-    solve_stretch(Stretch("F", values), SpectrumRequest(2, 1e-4, certify=True))
+    path = Path(Rod(F=15.0, k1=1e4, k2=1e4, gamma3=1e-4), "F")
+    solve_stretch(Stretch(path, np.linspace(15.0, 45.0, 12)), SpectrumRequest(2, 1e-4, certify=True))

@@ -136,6 +136,7 @@ def _spectrum(rod: Rod, request: SpectrumRequest, mesh: Resolution, found: _Foun
         eigenvalues=w[:modes],
         error_estimate=error[:modes],
         unstable_count=unstable if known else -1,
-        resolution=mesh,
+        elements=mesh.elements,
+        order=mesh.order,
         vectors=vectors_on_nodes(rod, request, mesh, vectors),
     )

@@ -17,7 +17,8 @@ from ....config.arm_axes import MOVES
 from ....config.limit_cycle import LONGEST
 from ....errors import InputError
 from ....results.file.view import View
-from ...hopf_points import HopfPoint, StoredHopfPoints, lines_over
+from ....sweep.lines import lines_over
+from ...hopf_points import HopfPoint, StoredChanges
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, need, plain, scale
 from .hopf_marks import draw_laws, mark_hopf_points
 from .selection import CYCLE_WORDS, arms_told_apart, outcomes, told_apart
@@ -240,8 +241,8 @@ def branches_of(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[
     period = units.time * np.where(cycle, v["period"].ravel(), np.nan)
     power = units.power * np.where(cycle, v["injection_mean"].ravel(), np.nan)
     branches = []
-    stored = StoredHopfPoints(view, "F")
-    for line in lines_over(view, name):
+    stored = StoredChanges(view, "F")
+    for line in lines_over(view.point_columns, name):
         changes = stored.on(line) if name == "F" else []
         at, hopf = line.at, [change for change in changes if isinstance(change, HopfPoint)]
         branches.append(

@@ -7,7 +7,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from ....discretization.periodic import derivative, resampled
 from ....results.file.view import View
 from ...summary.errors import power_error
 from ...summary.ranges import rounded
@@ -56,6 +55,8 @@ def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
 
 def _budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
     """The three panels of a cycle."""
+    from ....discretization.periodic import derivative, resampled  # compiled code
+
     top, middle, bottom = column
     phase = np.linspace(0, 1, 401, dtype=np.float64)
     time = phase * cycle.period

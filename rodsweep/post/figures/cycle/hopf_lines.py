@@ -7,7 +7,8 @@ from matplotlib.figure import Figure
 
 from ....arrays import Array
 from ....results.file.view import View
-from ...hopf_points import HopfPoint, ParameterLine, StoredHopfPoints
+from ....sweep.lines import ParameterLine
+from ...hopf_points import HopfPoint, StoredChanges
 from ..style import is_logarithmic
 from .point_map import PointMap, in_its_scale
 
@@ -37,7 +38,7 @@ def hopf_lines(points: PointMap, view: View) -> list[Array]:
 def _hopf_points(points: PointMap, view: View) -> Iterator[Array]:
     """The Hopf points of every row of a map, each row's of shape (n,)."""
     name, other = points.names
-    stored = StoredHopfPoints(view, name)
+    stored = StoredChanges(view, name)
     for value, at in zip(points.y, points.at, strict=True):
         row = ParameterLine(name, points.shared | {other: float(value)}, points.x, at)
         yield np.array([change.position for change in stored.on(row) if isinstance(change, HopfPoint)])

@@ -19,7 +19,6 @@ from matplotlib.quiver import Quiver
 from matplotlib.ticker import FuncFormatter
 
 from ....arrays import Array
-from ....discretization.periodic import resampled
 from ....results.file.view import View
 from ..style import FIRST, SECOND
 from .selection import SHAPES, StoredCycle, chosen_cycles
@@ -134,6 +133,8 @@ def _phase_bar(figure: Figure, panels: list[Axes], colours: ListedColormap, step
 
 def tip_path(axes: Axes, cycle: StoredCycle) -> None:
     """The closed path of the tip."""
+    from ....discretization.periodic import resampled  # compiled code, which few figures need
+
     phase = np.linspace(0, 1, 401, dtype=np.float64)
     axes.plot(*(resampled(v, phase) for v in cycle.tip), color="0.6", lw=0.8, ls=(0, (4, 2)), zorder=1)
 
@@ -186,6 +187,8 @@ def region(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[fl
 
 def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
     """x and y of the tip against time, and also in the paper's tau1 where there is one."""
+    from ....discretization.periodic import resampled  # compiled code, which few figures need
+
     time = np.linspace(0, end, 801, dtype=np.float64)
     for axes, values, colour in zip((upper, lower), cycle.tip, (FIRST, SECOND), strict=True):
         axes.plot(time, resampled(values, time / cycle.period), color=colour, lw=1.4)

@@ -10,8 +10,8 @@ from matplotlib.ticker import NullLocator, SymmetricalLogLocator
 
 from ....arrays import Array, Complex
 from ....results.file.view import View
-from ...hopf_points import Bracket, HopfPoint, Located, lines_over
-from ...stability_changes import thresholds_on
+from ....sweep.lines import lines_over
+from ...hopf_points import Bracket, HopfPoint, Located, StoredChanges
 from ..arm_quantities import TOGETHER
 from ..eigenvalues import spread
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, fixed_text, heading, legend_below, scale
@@ -179,8 +179,8 @@ def mark_thresholds(axes: Axes, view: View, name: str) -> list[Located]:
             across = axes.get_xaxis_transform()
             axes.fill_between(x, 0, 1, where=unstable, transform=across, label="flutter", **SHADE)
         return []
-    (line,) = lines_over(view, name)
-    found = thresholds_on(line, view)
+    (line,) = lines_over(view.point_columns, name)
+    found = StoredChanges(view, name).on(line)
     thresholds = [threshold for threshold in found if isinstance(threshold, Located)]
     for threshold in thresholds:
         _, style = THRESHOLD_LOOKS[threshold.kind]

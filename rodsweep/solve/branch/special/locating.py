@@ -1,37 +1,28 @@
-"""Where a branch changes: folds, torus points, broken symmetry, doubled periods, the end of the model.
+"""Special points located on a branch: the zero of a test function, with a cycle solved at each place.
 
-Between two cycles of a branch a number changes its sign: at a fold how fast the parameter grows along the
-branch; at a torus point the modulus of a complex pair of multipliers less 1; where the symmetry breaks the
-multiplier of half a period and the reflection plus 1, and the same of a whole period where a cycle without
-symmetry doubles its period; where the model ends the least stretch h1. The zero is
-found by the secant method with a cycle solved at each place, on two fine meshes: what they differ by is the
-error.
+The zero is enclosed on the mesh of the branch and found by the secant method on two fine meshes: what they
+differ by is the error.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from enum import IntEnum
+from dataclasses import replace
 from math import ceil, nan
 
 import numpy as np
 
-from ...arrays import Array
-from ...discretization.periodic import maxima, samples_of
-from ..cycle.measures import CyclePath
-from ..cycle.neighbour import value_of
-from ..cycle.newton import Converged
-from ..cycle.orbit import Orbit
-from ..cycle.orbit_mesh import OrbitMesh, mesh_of, stages_for
-from ..point import Unsolvable
-from .arc import ArcPoint, tangent_at
-from .bordered import BorderedMatrix, bordered, moved
+from ....arrays import Array
+from ...continuation.follower import zero_along
+from ...cycle.measures import CyclePath
+from ...cycle.newton import Converged
+from ...cycle.orbit import Orbit
+from ...cycle.orbit_mesh import OrbitMesh, mesh_of, stages_for
+from ...point import Unsolvable
+from ..arc import ArcPoint, arc_between, tangent_at
+from ..bordered import BorderedMatrix, bordered, moved
+from .least_stretch import least_stretch
+from .point import SpecialKind, SpecialPoint
 
 REAL = 1e-7
 """Imaginary part of a multiplier, relative, below which it is real."""
-NEAR_ONE = 3e-3
-"""Distance of a multiplier from 1 within which rounding may put it on the other side; a fold has two."""
-MOST_HALVINGS = 7
-"""Of a step between two cycles in which more than one thing happens."""
 ACCURACY = 1e-9
 """Relative, to which the parameter at a special point is located, where the branch is no more accurate."""
 MESH_SHARE = 0.1
@@ -47,135 +38,15 @@ the square of the distance."""
 MATRIX_SHARE = 1e-2
 """Relative distance of a matrix from its cycle, in units of the step that led there, for a test function that
 tells the next step to two digits."""
-MOST_ENCLOSINGS, ROUGHLY = 30, 1e-3
-"""Steps by which a zero is enclosed, and the value that ends them in units of those at the ends."""
+ROUGHLY = 1e-3
+"""Where a zero is known roughly: value in units of those at the ends, bracket in units of the step."""
 MOST_PAIRS, MORE_ORDERS, MORE_INTERVALS, SAFETY = 4, 4, 1.3, 3.0
 ROUNDING = 1e-13
-PLACES = 8
-"""Places in a node's neighbourhood at which the least stretch is looked for."""
-SAFE_STRETCH = 0.2
-"""Least h1 at the nodes above which it is positive between them too."""
-
-
-Step = Callable[[ArcPoint, float], ArcPoint]
-"""The point at a length from another one; raises Unsolvable."""
-
-
-class SpecialKind(IntEnum):
-    """What happens at a special point of a branch."""
-
-    hopf = 1
-    fold = 2
-    torus = 3
-    symmetry_breaking = 4
-    left_the_model = 5
-    end = 6
-    period_doubling = 7
-
-
-class EndReason(IntEnum):
-    """Why a branch ends where it does; the first two are its ends, the others are not."""
-
-    range_end = 1
-    crushed = 2
-    no_cycle_found = 3
-    list_full = 4
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SpecialPoint:
-    """A special point: the parameter's value there, the cycle's period in tau2 and largest tip y in L.
-
-    error: absolute, of the parameter's value; period_error, size_error: relative, of the period and the
-    largest tip y at the special point itself. after: the place on its branch of the last cycle before it, -1
-    for none. reason: of an end. message: why no cycle was found, or why the error is large. orbit: of a point
-    that was located, the cycle.
-    """
-
-    kind: SpecialKind
-    at: float
-    period: float
-    tip_y_max: float
-    error: float
-    period_error: float = nan
-    size_error: float = nan
-    after: int = -1
-    reason: EndReason | None = None
-    message: str = ""
-    orbit: Orbit | None = field(default=None, repr=False, compare=False)
-    amplitude_coefficient: float = nan
-    """At a Hopf point how fast the amplitude grows from there."""
-    coefficient_error: float = nan
-    """Relative, of amplitude_coefficient."""
-
-
-def unstable_returns(point: ArcPoint) -> int:
-    """How many multipliers lie outside the circle."""
-    return int((np.abs(point.returns) > 1).sum())
-
-
-def changes_between(here: ArcPoint, there: ArcPoint) -> tuple[list[SpecialKind], bool]:
-    """(what happens between two cycles of a branch, whether that explains the multipliers that change)."""
-    found = []
-    if here.rises * there.rises < 0:
-        found.append(SpecialKind.fold)
-    if (_beyond_minus_one(here) - _beyond_minus_one(there)) % 2:
-        found.append(through_minus_one(here.orbit))
-    change = abs(unstable_returns(there) - unstable_returns(here))
-    slack = 1 if _near_one(here) or _near_one(there) else 0
-    if not found and change - slack > 1:
-        return [SpecialKind.torus], change == 2 and all(map(_has_pair, (here, there)))
-    return found, len(found) <= 1 and abs(change - len(found)) <= slack
 
 
 def through_minus_one(orbit: Orbit) -> SpecialKind:
     """What a multiplier of the map over what is solved means that passes -1."""
     return SpecialKind.symmetry_breaking if orbit.symmetric else SpecialKind.period_doubling
-
-
-def _beyond_minus_one(point: ArcPoint) -> int:
-    """Real multipliers below -1."""
-    h = point.returns
-    return int(((h.real < -1) & (np.abs(h.imag) <= REAL * np.abs(h))).sum())
-
-
-def _near_one(point: ArcPoint) -> bool:
-    return bool((np.abs(point.returns - 1) < NEAR_ONE).any())
-
-
-def _has_pair(point: ArcPoint) -> bool:
-    h = point.returns
-    return bool((np.abs(h.imag) > REAL * np.abs(h)).any())
-
-
-def special_points(
-    here: ArcPoint,
-    there: ArcPoint,
-    step: Step,
-    accuracy: float,
-    depth: int = 0,
-) -> tuple[list[SpecialPoint], bool]:
-    """(the special points between two cycles, whether they explain all), in their order along the branch.
-
-    accuracy: of the branch.
-    """
-    kinds, explained = changes_between(here, there)
-    if not explained and depth < MOST_HALVINGS:
-        length = arc_between(here, there)
-        try:
-            middle = step(here, length / 2)
-        except Unsolvable:
-            pass
-        else:
-            first, known = special_points(here, middle, step, accuracy, depth + 1)
-            second, also = special_points(middle, there, step, accuracy, depth + 1)
-            return first + second, known and also
-    return [located(kind, here, there, accuracy) for kind in kinds], explained
-
-
-def arc_between(here: ArcPoint, there: ArcPoint) -> float:
-    """The length from one cycle to another one, as steps have it."""
-    return float(here.ahead @ (here.scale.place(there.orbit) - here.scale.place(here.orbit)))
 
 
 class Segment:
@@ -284,7 +155,7 @@ def _point_at(kind: SpecialKind, found: Converged) -> SpecialPoint:
     path, name = CyclePath(found.orbit), bordered(found).scale.name
     return SpecialPoint(
         kind=kind,
-        at=value_of(found.orbit.form, name),
+        at=getattr(found.orbit.form.rod, name),
         period=found.orbit.period,
         tip_y_max=path.extrema["tip_y_max"],
         error=nan,
@@ -295,7 +166,7 @@ def _point_at(kind: SpecialKind, found: Converged) -> SpecialPoint:
 def _between(kind: SpecialKind, here: ArcPoint, there: ArcPoint, message: str) -> SpecialPoint:
     """A special point of which only is known between which cycles it lies."""
     name, measures, before = here.scale.name, there.cycle.measures, here.cycle.measures
-    at, other = (value_of(point.orbit.form, name) for point in (there, here))
+    at, other = (getattr(point.orbit.form.rod, name) for point in (there, here))
     return SpecialPoint(
         kind=kind,
         at=at,
@@ -318,21 +189,18 @@ def _enclosed(kind: SpecialKind, segment: Segment) -> tuple[float, float]:
     def value(length: float) -> float:
         return test_function(kind, segment, segment.at(length, rough))
 
-    a, b = 0.0, segment.length
-    f_b, f_a = value(b), value(a)
-    if not f_a * f_b < 0:
-        raise Unsolvable("its test function has no change of sign between two cycles")
-    least = ROUGHLY * min(abs(f_a), abs(f_b))
-    for _ in range(MOST_ENCLOSINGS):
-        middle = a + min(max(f_a / (f_a - f_b), 0.1), 0.9) * (b - a)
-        f, slope = value(middle), (f_b - f_a) / (b - a)
-        if f * f_a > 0:
-            a, f_a = middle, f
-        else:
-            b, f_b = middle, f
-        if abs(f) <= least:
-            return middle, slope
-    return a + f_a / (f_a - f_b) * (b - a), slope
+    values = {at: value(at) for at in (segment.length, 0.0)}
+
+    def kept(length: float) -> float:
+        values[length] = value(length)
+        return values[length]
+
+    ends = values[0.0], values[segment.length]
+    least = ROUGHLY * min(map(abs, ends))
+    at = zero_along(kept, ends, segment.length, least, ROUGHLY)
+    # The nearest other place tells the slope with this one.
+    other = min((x for x in values if x != at), key=lambda x: abs(x - at))
+    return at, (values[at] - values[other]) / (at - other)
 
 
 def _zero(kind: SpecialKind, segment: Segment, guess: float, slope: float) -> tuple[float, Converged, float]:
@@ -355,29 +223,3 @@ def _zero(kind: SpecialKind, segment: Segment, guess: float, slope: float) -> tu
         before = at, f
         at += step
     raise Unsolvable("the secant method does not settle")
-
-
-def stretch_at(point: ArcPoint) -> float:
-    """The least h1 of a cycle in space and time, or of its nodes where that is far from 0."""
-    rough = point.cycle.measures.least_stretch
-    return rough if rough > SAFE_STRETCH else least_stretch(point.cycle.path)
-
-
-def least_stretch(path: CyclePath) -> float:
-    """The least h1 of a cycle over the whole rod and the whole period."""
-    from scipy.optimize import minimize_scalar  # a tenth of a second of every start
-
-    grid, c = path.orbit.form.mesh, path.strain_coefficients[:, 0]
-
-    def least(u: Array) -> Array:
-        at = -np.ascontiguousarray(c @ grid.evaluation(u).T)
-        return -maxima(at, samples_of(at, 8 * len(c)))
-
-    places = np.linspace(0.0, 1.0, PLACES * len(grid.positions))
-    values = least(places)
-    best = int(np.argmin(values))
-    ends = places[max(best - 1, 0)], places[min(best + 1, len(places) - 1)]
-    found = minimize_scalar(
-        lambda u: float(least(np.array([u]))[0]), bounds=ends, method="bounded", options={"xatol": 1e-9}
-    )
-    return min(float(values[best]), float(found.fun))

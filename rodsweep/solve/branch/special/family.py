@@ -14,17 +14,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
-from ...determinant.parameter_plane import PlaneAxis
-from ..cycle.neighbour import coordinate_of, value_of
-from ..cycle.newton import Converged
-from ..cycle.orbit import Orbit
-from ..cycle.orbit_mesh import OrbitMesh, mesh_of, stages_for
-from ..point import Unsolvable
-from .arc import tangent_at
-from .beginning import LEAST_UNIT, MOMENT
-from .bordered import BorderedMatrix, Condition, Scale, bordered, moment_of, moved
-from .special_points import REAL, SpecialKind, SpecialPoint
+from ....arrays import Array
+from ....determinant.parameter_plane import PlaneAxis
+from ...cycle.newton import Converged
+from ...cycle.orbit import Orbit
+from ...cycle.orbit_mesh import OrbitMesh, mesh_of, stages_for
+from ...point import Unsolvable
+from ..arc import tangent_at
+from ..beginning import LEAST_UNIT, MOMENT
+from ..bordered import BorderedMatrix, Condition, Scale, bordered, moment_of, moved
+from .locating import REAL
+from .point import SpecialKind, SpecialPoint
 
 ACCURACY = 1e-7
 """Relative, of the line's parameter on a curve; that of the special points of rows is 1e-9."""
@@ -178,7 +178,7 @@ class CycleFamily:
         if abs(span) < LEAST_SPAN or here.test == before.test:
             return None
         one, other = before.orbit, here.orbit
-        change = coordinate_of(other.form, name) - coordinate_of(one.form, name)
+        change = other.form.rod.coordinate(name) - one.form.rod.coordinate(name)
         orbit = np.append(other.values - one.values, change) / span
         return Across(way, (here.test - before.test) / span, orbit, mesh_of(one), abs(span))
 
@@ -194,8 +194,8 @@ class CycleFamily:
             scale=scale,
             ahead=ahead / np.linalg.norm(ahead),
             place=place,
-            at=value_of(orbit.form, scale.name),
-            row=value_of(orbit.form, self.rows.name),
+            at=getattr(orbit.form.rod, scale.name),
+            row=getattr(orbit.form.rod, self.rows.name),
             rates=rates,
         )
 
@@ -241,7 +241,7 @@ def crossing_pair(matrix: BorderedMatrix) -> complex | None:
 def with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
     """The values of an orbit for the rod with other values of some parameters; raises Unsolvable."""
     try:
-        form = replace(orbit.form, rod=replace(orbit.form.rod, **changed))
+        form = replace(orbit.form, rod=orbit.form.rod.changed(**changed))
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the curve leaves the rods: {error}") from error
     if form.omega_unknown != orbit.form.omega_unknown:
@@ -249,7 +249,7 @@ def with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
     return replace(orbit, form=form)
 
 
-def first_point(special: SpecialPoint, line: str, rows: PlaneAxis, row: float) -> OnCurve:
+def first_on_curve(special: SpecialPoint, line: str, rows: PlaneAxis, row: float) -> OnCurve:
     """A special point that was located on a row as the first point of a curve; raises Unsolvable."""
     orbit = special.orbit
     if orbit is None:

@@ -11,12 +11,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...arrays import Array
-from ...determinant.parameter_plane import PlaneAxis
-from ..point import FAILURES, Unsolvable
-from .special_curves import VANISHING, CurveCourse, CurveEnd, CurvePoint, CycleCurve, HalfCurve
-from .special_family import OnCurve
-from .special_points import SpecialKind, SpecialPoint
+from ....arrays import Array
+from ....determinant.parameter_plane import PlaneAxis
+from ...point import FAILURES, Unsolvable
+from .curves import VANISHING, CurveCourse
+from .cycle_curves import CurveEnd, CurvePoint, CycleCurve, HalfCurve
+from .family import OnCurve
+from .point import SpecialKind, SpecialPoint
 
 Arrays = dict[str, Array]
 """What a unit of work gives, as it is stored."""
@@ -127,8 +128,8 @@ class SpecialBoundaries:
         """The result of a unit. located: the special points of a row of a number, solved anew."""
         place, behind = divmod(unit, 2)
         one = self.special[place]
-        course = CurveCourse(one.kind, self.line, self.rows)
-        return _traced(course, one, located(one.number), self.special, -1.0 if behind else 1.0).arrays()
+        course = CurveCourse(one.kind, self.line, self.rows, -1.0 if behind else 1.0)
+        return _traced(course, one, located(one.number), self.special).arrays()
 
     def row_of(self, unit: int) -> int:
         """The number of the row on which a unit starts."""
@@ -208,9 +209,8 @@ def _traced(
     one: RowSpecial,
     located: Iterable[SpecialPoint],
     special: Sequence[RowSpecial],
-    side: float,
 ) -> TracedHalf:
-    """The half of a curve from a special point of a row to one side; without a curve where none is found."""
+    """The half of a curve from a special point of a row; without a curve where none is found."""
     width = abs(course.line.stretch(one.at))
     same = [
         point
@@ -222,7 +222,7 @@ def _traced(
     if not same:
         return TracedHalf(None)
     try:
-        points, end = course.followed(same[0], one.row, side)
+        points, end = course.followed(same[0], one.row)
     except (*FAILURES, ValueError):  # an axis of ratios has no place for what is not positive
         return TracedHalf(None)
     distances = {i: _distance(course, points, other) for i, other in enumerate(special)}

@@ -1,0 +1,204 @@
+"""Curves of folds and torus points of cycles, from where they were located on rows to where they end."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ....arrays import Array
+from ....determinant.parameter_plane import PlaneAxis
+from ....watch import Whereabouts, report
+from ....wording import counted
+from ...continuation.follower import CurveStop, StepControl, Stepped, follow, zero_along
+from ...cycle.measures import CyclePath
+from ...cycle.newton import relative_change
+from ...cycle.orbit import Orbit
+from ...cycle.orbit_mesh import OrbitMesh, mesh_of
+from ...point import Unsolvable
+from ..bordered import BorderedMatrix
+from .cycle_curves import PREDICTED_BY, CurveEnd, polynomial_weights
+from .family import CycleFamily, OnCurve, crossing_pair, first_on_curve, with_parameters
+from .least_stretch import SAFE_AT_PLACES, least_stretch
+from .point import SpecialKind, SpecialPoint
+
+STEPS = StepControl(
+    first=0.01,
+    longest=0.1,
+    shortest=1e-4,
+    aim=3e-3,
+    far=0.1,
+    order=PREDICTED_BY,
+    sharpest=0.55,
+    growth=2.0,
+    most=400,
+)
+"""Lengths along a curve: the axis of the rows has length 1, a branch the length of `Scale.place`."""
+LEAST_LOOP = 5
+"""Points of a closed curve, at least."""
+LANDED, LAST_BRACKET = 1e-8, 1e-10
+"""Distance from an edge, scaled, that is none, and share of a step to which its place is sought."""
+SHORT_OF_CRUSHED = 1e-3
+"""How far below k1 a curve ends, relatively."""
+VANISHING = 0.01
+"""Largest tip y, in L, of cycles from which a curve is extrapolated to the Hopf point where they vanish."""
+ALMOST_REAL = 0.2
+"""Angle in radians from the real axis of multipliers that are about to meet on it."""
+ALONG_BRANCH = np.array([1.0, 0.0])
+
+
+EDGES, ROW_EDGES = 4, (2, 3)
+"""The margins of a curve begin with the distances from the edges of the plane, of which these are rows."""
+END_AT_MARGIN = (*EDGES * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_model, CurveEnd.hopf)
+"""Why a curve ends where a margin is 0."""
+
+
+@dataclass(frozen=True, slots=True)
+class CurveCourse:
+    """A kind of special points, over the line's parameter between two values and the rows' axis.
+
+    side: 1 or -1, to which the curve goes first along the rows' axis.
+    """
+
+    kind: SpecialKind
+    line: PlaneAxis
+    rows: PlaneAxis
+    side: float = 1.0
+
+    def followed(self, special: SpecialPoint, row: float) -> tuple[list[OnCurve], CurveEnd]:
+        """(the curve from a special point of a row on, why it ends); raises Unsolvable."""
+        curve = follow(self, first_on_curve(special, self.line.name, self.rows, row), STEPS, self._report)
+        if curve.end is CurveStop.margin:
+            return curve.solutions, END_AT_MARGIN[curve.margin]
+        if curve.end is CurveStop.closed:
+            return curve.solutions, CurveEnd.closed
+        lost = curve.end is CurveStop.lost
+        return curve.solutions, self._why_lost(curve.solutions[-1]) if lost else CurveEnd.not_followed
+
+    def _report(self, points: Sequence[OnCurve]) -> None:
+        """Says where the curve is."""
+        report(
+            lambda: Whereabouts(f"{self.rows.name} = {points[-1].row:.5g}, {counted(len(points), 'point')}")
+        )
+
+    def step(self, behind: Sequence[OnCurve], length: float) -> Stepped[OnCurve]:
+        """The point a step ahead; raises Unsolvable."""
+        last = behind[-1]
+        if len(behind) == 1:
+            start, place = last.orbit, last.place + self.side * length
+            across, slope, rates = ALONG_BRANCH, 0.0, None
+        else:
+            start, place = self._predicted(behind, self._alive(behind, length))
+            way = np.append(last.scale.place(start) - last.scale.place(last.orbit), place - last.place)
+            across, slope, rates = last.across(way), slope_of(*behind[-2:]), last.rates
+        there = self._family(last).point(start, place, across, slope, rates)
+        mesh = mesh_of(there.orbit)
+        predicted = start if mesh == mesh_of(start) else mesh.carry(start)
+        off = relative_change(predicted, there.orbit.values - predicted.values)
+        if len(behind) == 1:  # the cycle of another row was the prediction
+            return Stepped(there, min(off, STEPS.far), 1.0)
+        one, other = last.step_from(behind[-2]), there.step_from(last)
+        return Stepped(there, off, float(one @ other / np.linalg.norm(one) / np.linalg.norm(other)))
+
+    def _family(self, point: OnCurve) -> CycleFamily:
+        return CycleFamily.about(self.kind, self.rows, point)
+
+    def _predicted(self, points: Sequence[OnCurve], step: float) -> tuple[Orbit, float]:
+        """(orbit, place) a step beyond the last of some points; raises Unsolvable."""
+        known = points[-PREDICTED_BY:]
+        return self._mixed(known, polynomial_weights(lengths_of(known), step), mesh_of(known[-1].orbit))
+
+    def _alive(self, points: Sequence[OnCurve], step: float) -> float:
+        """A step, or the longest one whose prediction is a rod that is all but crushed."""
+        from scipy.optimize import brentq  # a tenth of a second of every start
+
+        known = points[-PREDICTED_BY:]
+        lengths = lengths_of(known)
+
+        def distance(longest: float) -> float:
+            weights, rod = polynomial_weights(lengths, longest), known[-1].orbit.form.rod
+            at, place = (float(np.dot(weights, [getattr(p, n) for p in known])) for n in ("at", "place"))
+            values = {"F": rod.F, "k1": rod.k1, self.line.name: at, self.rows.name: self.rows.value(place)}
+            return 1 - SHORT_OF_CRUSHED / 2 - values["F"] / values["k1"]
+
+        if distance(step) >= 0 or distance(0.0) <= 0:
+            return step
+        return float(brentq(distance, 0.0, step, rtol=1e-6))
+
+    def _mixed(
+        self, points: Sequence[OnCurve], weights: Sequence[float], mesh: OrbitMesh
+    ) -> tuple[Orbit, float]:
+        """(orbit, place) by weights of some points; raises Unsolvable."""
+        values = np.dot(weights, [mesh.carry(point.orbit).values for point in points])
+        at, place = (float(np.dot(weights, [getattr(p, n) for p in points])) for n in ("at", "place"))
+        changed = {self.line.name: at, self.rows.name: self.rows.value(place)}
+        return with_parameters(replace(mesh.carry(points[-1].orbit), values=values), changed), place
+
+    def margins(self, point: OnCurve) -> Array:
+        """Scaled distances from the edges and from crushing, h1, and the size of the cycle, (7,)."""
+        x, y, rod = self.line.scaled(point.at), point.place, point.orbit.form.rod
+        alive = 1 - SHORT_OF_CRUSHED - rod.F / rod.k1
+        stretch = least_stretch(CyclePath(point.orbit), SAFE_AT_PLACES)
+        return np.array([x, 1 - x, y, 1 - y, alive, stretch, point.tip_y_max - VANISHING])
+
+    def landed(self, behind: Sequence[OnCurve], outer: OnCurve, margin: int) -> OnCurve | None:
+        """The point between the last of some and the next at which a margin is 0; None if not found."""
+        inner = behind[-1]
+        if END_AT_MARGIN[margin] is CurveEnd.hopf:
+            return outer  # cycles vanish where no branch leads on: what lies beyond is extrapolated
+        ends = float(self.margins(inner)[margin]), float(self.margins(outer)[margin])
+        if ends[0] <= LANDED:
+            return None
+        try:
+            if margin in ROW_EDGES:
+                there = self.on_row(inner, outer, float(margin - ROW_EDGES[0]))
+                return self._family(outer).point(there.orbit, there.place, ALONG_BRANCH, rates=there.rates)
+            found: dict[float, OnCurve] = {1.0: outer}
+
+            def left(share: float) -> float:
+                found[share] = self.between(inner, outer, share)
+                return float(self.margins(found[share])[margin])
+
+            return found[zero_along(left, ends, 1.0, LAST_BRACKET, LAST_BRACKET)]
+        except Unsolvable:
+            return None
+
+    def closes(self, behind: Sequence[OnCurve], there: OnCurve) -> bool:
+        """Whether the first point lies between the last one and the next."""
+        first, last = behind[0], behind[-1]
+        step, back = there.step_from(last), there.step_from(first)
+        passed = float(back @ step) / float(step @ step)
+        near = float(np.linalg.norm(back)) <= float(np.linalg.norm(step))
+        return len(behind) > LEAST_LOOP and 0 <= passed <= 1 and near
+
+    def between(self, one: OnCurve, other: OnCurve, share: float) -> OnCurve:
+        """The point at a share of the way between two; raises Unsolvable."""
+        start, place = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
+        across = other.across(other.step_from(one))
+        return self._family(other).point(start, place, across, slope_of(one, other), other.rates)
+
+    def on_row(self, one: OnCurve, other: OnCurve, place: float) -> OnCurve:
+        """The point at a place of the rows' axis, scaled, between two, without error; raises Unsolvable."""
+        share = (place - one.place) / (other.place - one.place) if other.place != one.place else 0.0
+        start, _ = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
+        return self._family(other).nearest(start, place, ALONG_BRANCH)
+
+    def _why_lost(self, last: OnCurve) -> CurveEnd:
+        """Why a curve cannot be followed beyond a point."""
+        if self.kind == SpecialKind.torus:
+            pair = crossing_pair(BorderedMatrix(last.orbit, last.scale))
+            if pair is None or abs(pair.imag) < ALMOST_REAL * abs(pair):
+                return CurveEnd.resonance
+        return CurveEnd.not_followed
+
+
+def lengths_of(points: Sequence[OnCurve]) -> Array:
+    """Lengths from the last of some points to each, not positive, (points,)."""
+    steps = [float(np.linalg.norm(b.step_from(a))) for a, b in zip(points[:-1], points[1:], strict=True)]
+    lengths: Array = np.cumsum([0.0, *steps]) - sum(steps)
+    return lengths
+
+
+def slope_of(one: OnCurve, other: OnCurve) -> float:
+    """d(line's value)/d(place) between two points, 0 where they do not tell."""
+    apart = other.place - one.place
+    return (other.at - one.at) / apart if apart else 0.0

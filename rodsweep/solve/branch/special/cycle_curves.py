@@ -1,0 +1,131 @@
+"""A curve of folds or torus points of cycles as numbers: its points, why it ends, where its cycles vanish."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import IntEnum
+
+import numpy as np
+
+from ....arrays import Array
+from ....determinant.parameter_plane import Plane
+from ...hopf.generalised import GeneralisedHopfPoint
+from .family import OnCurve
+from .point import SpecialKind
+
+PREDICTED_BY = 4
+"""Points of a curve through which the prediction goes, at most."""
+SAFETY = 10.0
+"""Of the extrapolation: on a mesh the Hopf point moves along the curve, which no point's error tells."""
+AT_HOPF = 0.01
+"""Scaled distance of an extrapolated Hopf point from a generalised one that is located on a Hopf curve."""
+
+
+class CurveEnd(IntEnum):
+    """Where a curve of special points ends; none is within a curve."""
+
+    none = 0
+    edge = 1
+    crushed = 2
+    hopf = 3
+    left_the_model = 4
+    resonance = 5
+    closed = 6
+    not_followed = 7
+
+
+@dataclass(frozen=True, slots=True)
+class VanishingPoint:
+    """A Hopf point at which a curve ends: both parameters, the error of the line's, the period in tau2."""
+
+    at: float
+    row: float
+    error: float
+    period: float
+
+
+@dataclass(frozen=True, slots=True)
+class CurvePoint:
+    """The numbers of a point of a curve: both parameters, the place on the rows' axis, scaled, from 0 to 1.
+
+    error: absolute, of the line's parameter. period in tau2, tip_y_max in L.
+    """
+
+    at: float
+    row: float
+    place: float
+    error: float
+    period: float
+    tip_y_max: float
+
+    @classmethod
+    def of(cls, point: OnCurve) -> "CurvePoint":
+        """The numbers of a cycle on a curve."""
+        period = point.orbit.period
+        return cls(point.at, point.row, point.place, point.error, period, point.tip_y_max)
+
+
+@dataclass(frozen=True, slots=True)
+class HalfCurve:
+    """A curve from a special point of a row to one of its ends."""
+
+    points: tuple[CurvePoint, ...]
+    end: CurveEnd
+
+
+@dataclass(frozen=True, slots=True)
+class CycleCurve:
+    """A curve of folds or torus points: its points in order, and why it ends before and behind them.
+
+    vanishing: the Hopf points where the cycles vanish, if it ends at such.
+    """
+
+    kind: SpecialKind
+    points: tuple[CurvePoint, ...]
+    ends: tuple[CurveEnd, CurveEnd]
+    vanishing: tuple[VanishingPoint | None, VanishingPoint | None]
+
+    @classmethod
+    def joined(cls, kind: SpecialKind, ahead: HalfCurve, behind: HalfCurve | None) -> "CycleCurve":
+        """The curve of its two halves from one point. Of a closed curve the half ahead is all of it."""
+        before = behind or HalfCurve(ahead.points[:1], ahead.end)
+        points = (*before.points[:0:-1], *ahead.points)
+        vanishing = [
+            vanishing_point(side) if end is CurveEnd.hopf else None
+            for end, side in ((before.end, points[::-1]), (ahead.end, points))
+        ]
+        return cls(kind, points, (before.end, ahead.end), (vanishing[0], vanishing[1]))
+
+
+def ending_at(curve: CycleCurve, plane: Plane, known: Sequence[GeneralisedHopfPoint]) -> CycleCurve:
+    """A curve of folds with the Hopf points at its ends as they are located on Hopf curves."""
+
+    def located(end: VanishingPoint | None) -> VanishingPoint | None:
+        if end is None or curve.kind != SpecialKind.fold:
+            return end
+        for point in known:
+            pairs = zip(plane.axes, point.values, (end.at, end.row), strict=True)
+            if all(abs(axis.scaled(a) - axis.scaled(b)) <= AT_HOPF for axis, a, b in pairs):
+                return VanishingPoint(*point.values, point.errors[0], 2 * np.pi / point.frequency)
+        return end
+
+    first, last = map(located, curve.vanishing)
+    return replace(curve, vanishing=(first, last))
+
+
+def polynomial_weights(places: Array, at: float) -> list[float]:
+    """Of the values at some places, (n,), in the polynomial through them at another place."""
+    return [
+        float(np.prod([(at - other) / (own - other) for other in places if other != own])) for own in places
+    ]
+
+
+def vanishing_point(points: Sequence[CurvePoint]) -> VanishingPoint | None:
+    """Where the largest y is 0 behind the last point, by polynomials in its square."""
+    known = points[-PREDICTED_BY:]
+    if len(known) < PREDICTED_BY:
+        return None
+    squares = np.array([point.tip_y_max**2 for point in known])
+    table = np.array([[point.at, point.row, point.period] for point in known])
+    best, other = (np.dot(polynomial_weights(squares[i:], 0.0), table[i:]) for i in (0, 1))
+    error = SAFETY * (abs(best[0] - other[0]) + max(point.error for point in known))
+    return VanishingPoint(float(best[0]), float(best[1]), float(error), float(best[2]))

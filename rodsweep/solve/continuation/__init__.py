@@ -1,0 +1,1 @@
+"""One follower for all curves of solutions: steps, their lengths, where a curve ends."""

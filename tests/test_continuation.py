@@ -1,0 +1,168 @@
+"""The follower of curves, on curves that are known."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rodsweep.solve.continuation.follower import CurveStop, StepControl, Stepped, crossed, follow, zero_along
+from rodsweep.solve.point import Unsolvable
+
+STEPS = StepControl(first=0.01, longest=0.2, shortest=1e-6, turn=0.1, sharpest=0.3, growth=2.0, most=500)
+
+
+@dataclass(frozen=True)
+class Ellipse:
+    """x = a cos t, y = b sin t, followed anticlockwise; solutions are points, (2,); ends where x < least."""
+
+    a: float
+    b: float
+    least: float = -10.0
+    gap: tuple[float, float] = (9.0, 9.0)
+
+    def at(self, t):
+        return np.array([self.a * np.cos(t), self.b * np.sin(t)])
+
+    def angle(self, point):
+        return np.arctan2(point[1] / self.b, point[0] / self.a)
+
+    def tangent(self, point):
+        t = self.angle(point)
+        way = np.array([-self.a * np.sin(t), self.b * np.cos(t)])
+        return way / np.linalg.norm(way)
+
+    def step(self, behind, length):
+        """Newton's method for F = 0 with the length along the tangent held."""
+        last, tangent = behind[-1], self.tangent(behind[-1])
+        guess = point = last + length * tangent
+        for _ in range(30):
+            residual = (point[0] / self.a) ** 2 + (point[1] / self.b) ** 2 - 1
+            matrix = [[2 * point[0] / self.a**2, 2 * point[1] / self.b**2], tangent]
+            change = np.linalg.solve(matrix, [-residual, length - (point - last) @ tangent])
+            point = point + change
+            if np.abs(change).max() < 1e-14:
+                break
+        else:
+            raise Unsolvable("no point of the ellipse is near")
+        if self.gap[0] < self.angle(point) < self.gap[1]:
+            raise Unsolvable("the curve has a gap")
+        return Stepped(point, float(np.linalg.norm(point - guess)), float(self.tangent(point) @ tangent))
+
+    def margins(self, point):
+        return np.array([point[0] - self.least])
+
+    def landed(self, behind, outer, margin):
+        length = float((outer - behind[-1]) @ self.tangent(behind[-1]))
+        ends = self.margins(behind[-1])[0], self.margins(outer)[0]
+        at = zero_along(lambda s: self.margins(self.step(behind, s).solution)[0], ends, length, 1e-13, 1e-14)
+        return self.step(behind, at).solution
+
+    def closes(self, behind, there):
+        first, last = behind[0], behind[-1]
+        step = np.linalg.norm(there - last)
+        near = np.linalg.norm(there - first) < step and np.linalg.norm(last - first) < step
+        return len(behind) > 3 and bool(near)
+
+
+def followed(curve, control=STEPS, start=0.0):
+    return follow(curve, curve.at(start), control, lambda points: None)
+
+
+@given(st.floats(0.3, 3.0), st.floats(0.3, 3.0), st.floats(-3.0, 3.0))
+def test_a_closed_curve_is_followed_once_through_its_folds(a, b, start):
+    curve = Ellipse(a, b)
+    found = followed(curve, start=start)
+    assert found.end is CurveStop.closed
+    assert found.solutions[0] is found.solutions[-1]
+    angles = np.unwrap([curve.angle(point) for point in found.solutions])
+    assert angles[-1] - angles[0] == pytest.approx(2 * np.pi, abs=1e-9)
+    assert (np.diff(angles) > 0).all()
+
+
+@given(st.floats(0.3, 3.0), st.floats(-0.95, 0.95))
+def test_a_curve_ends_where_its_margin_is_zero(b, share):
+    found = followed(Ellipse(1.0, b, least=share), start=np.arccos(share) / 2)
+    assert (found.end, found.margin) == (CurveStop.margin, 0)
+    assert found.solutions[-1] == pytest.approx([share, b * np.sqrt(1 - share**2)], abs=1e-12)
+    assert (np.array(found.solutions[:-1])[:, 0] > share).all()
+
+
+def test_a_curve_that_is_lost_ends_at_its_last_solution_beside_the_gap():
+    found = followed(Ellipse(1.0, 1.0, gap=(1.0, 1.5)))
+    assert found.end is CurveStop.lost
+    assert Ellipse(1.0, 1.0).angle(found.solutions[-1]) == pytest.approx(1.0, abs=2e-6)
+
+
+def test_a_curve_has_no_more_solutions_than_are_kept():
+    found = followed(Ellipse(1.0, 1.0), StepControl(first=0.01, longest=0.01, shortest=1e-6, sharpest=0.3,
+                                                    growth=2.0, most=7))  # fmt: skip
+    assert (found.end, len(found.solutions)) == (CurveStop.full, 7)
+
+
+def test_steps_are_as_long_as_turns_and_predictions_allow():
+    """On a circle the turn is the length of arc; the prediction of a tangent is off by its square, halved."""
+    by_turn = [np.hypot(*np.diff(followed(Ellipse(1.0, 1.0)).solutions, axis=0)[i]) for i in range(10, 20)]
+    assert by_turn == pytest.approx([0.1] * 10, rel=1e-2)
+    control = StepControl(first=0.01, longest=1.0, shortest=1e-6, aim=5e-3, order=2, sharpest=1.0, growth=2.0,
+                          most=500)  # fmt: skip
+    by_distance = np.diff(followed(Ellipse(1.0, 1.0), control).solutions, axis=0)[10:20]
+    assert np.hypot(*by_distance.T) == pytest.approx([0.1] * 10, rel=1e-2)
+
+
+def test_a_turn_of_0_or_180_degrees_is_one_whatever_rounding_makes_of_its_cosine():
+    above = np.nextafter(1.0, 2.0)
+    straight, back = (Stepped(None, 0.0, cosine) for cosine in (above, -above))
+    assert STEPS.accepted(straight) is straight
+    assert STEPS.next_length(0.01, straight, 5) == 0.01 * STEPS.growth
+    with pytest.raises(Unsolvable, match="bends"):
+        STEPS.accepted(back)
+
+
+def test_every_step_is_reported_with_the_solutions_before_it():
+    heard = []
+    found = follow(
+        Ellipse(1.0, 1.0, least=0.0), np.array([1.0, 0.0]), STEPS, lambda points: heard.append(list(points))
+    )
+    assert found.end is CurveStop.margin
+    assert [len(points) for points in heard] == list(range(1, len(found.solutions)))
+    assert all(point is kept for point, kept in zip(heard[-1], found.solutions, strict=False))
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "which"),
+    [
+        ([1.0, 1.0], [0.5, 0.5], -1),
+        ([1.0, 1.0], [-1.0, -3.0], 1),
+        ([1.0, 0.1], [-1.0, -1e-3], 0),
+        ([0.0, 1.0], [-1.0, 1.0], 0),
+        ([-0.5, 1.0], [-0.3, 1.0], -1),
+        ([-0.5, 1.0], [-0.5, 1.0], -1),
+        ([-0.5, 1.0], [-0.6, 1.0], 0),
+    ],
+)
+def test_the_margin_that_is_passed_first_ends_a_curve(before, after, which):
+    """One that is negative at the start ends it only when it falls further."""
+    assert crossed(np.array(before), np.array(after)) == which
+
+
+def test_a_zero_along_a_step_needs_two_signs_and_no_value_at_the_ends():
+    asked = []
+
+    def cube(x):
+        asked.append(x)
+        return x**3 - 0.2
+
+    assert zero_along(cube, (-0.2, 0.8), 1.0, 1e-14, 1e-14) == pytest.approx(0.2 ** (1 / 3), abs=1e-13)
+    assert not {0.0, 1.0} & set(asked)
+    with pytest.raises(Unsolvable, match="change of sign"):
+        zero_along(cube, (0.1, 0.8), 1.0, 1e-14, 1e-14)
+
+
+@given(st.floats(-6.0, 3.0), st.floats(0.01, 0.99), st.floats(-12.0, -2.0))
+def test_a_zero_along_a_step_of_any_length_is_as_accurate_as_asked_for(decades, share, digits):
+    length, relative = 10.0**decades, 10.0**digits
+    ends = -(share**3), 1 - share**3
+    found = zero_along(lambda x: (x / length) ** 3 - share**3, ends, length, 0.0, relative)
+    assert abs(found - share * length) <= 2 * relative * length
