@@ -313,7 +313,7 @@ NEAR, FINER = 1e-3, 1e-8
 accuracy of the branch that stands for it."""
 
 
-@pytest.mark.parametrize(("k1", "stop"), [(150, 140), (175, 150)])
+@pytest.mark.parametrize(("k1", "stop"), [(150, 140), (175, 150), (1000, 40.5)])
 def test_the_curve_in_the_figure_is_the_branch(k1, stop):
     """Straight pieces between its few cycles miss it by up to a hundredth, next to a Hopf point most."""
     coarse, fine = (

@@ -1,5 +1,6 @@
 """Figures: which roots are followed, what is drawn, what cannot be; and the configs' own numbers."""
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,6 +12,8 @@ from matplotlib.text import Text
 from PIL import Image
 from test_show import HOPF, STABLE_AGAIN
 
+import rodsweep as rs
+from rodsweep.api.dataset import view_of
 from rodsweep.errors import InputError
 from rodsweep.post.figures import FIGURES, draw
 from rodsweep.post.figures.class_bars import CLASS_COLOURS
@@ -552,3 +555,40 @@ def test_folds_of_rows_are_marked_where_no_curve_goes_through_them():
         axes, SimpleNamespace(variables=bare, point_columns=view.point_columns), "F", "k1"
     )
     assert len(folds.get_xydata()) == 3
+
+
+def figure_of(task, **words):
+    """The figure of a sweep as it is written."""
+    figures = []
+    draw(view_of(rs.sweep(task, progress=False, **words), Path("d.h5")), Path("f.png"), keep=figures.append)
+    return figures[0]
+
+
+def test_a_diagram_far_from_crushing_has_neither_its_edge_nor_the_partial_beam():
+    """Both lay beyond its axes, and the legend told of the beam."""
+    rows = {"k1": [480.0, 1e4, 1e6], "k2": 1e5, "gamma3": 1e-5, "F": {"start": 0.0, "stop": 90.0, "num": 7}}
+    figure = figure_of("phase_diagram", **rows)
+    texts = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    assert not any("partial" in text or "k_1 =" in text for text in texts)
+    (axes,) = figure.axes
+    ends = (axes.get_xlim(), axes.get_ylim())
+    for line in axes.lines:
+        for (low, high), values in zip(ends, line.get_data(), strict=True):
+            assert np.all((low * (1 - 1e-9) <= values) & (values <= high * (1 + 1e-9)))
+
+
+ARM = {"length": "13 cm", "radius": "3.6 mm", "poisson": 0.24, "viscosity": "0.5 Pa s"}
+
+
+def test_normal_forms_of_an_arm_over_its_drags_are_drawn():
+    """Drags move gamma3 and gamma1 together, which are no map."""
+    figure = figure_of("criticality", arm=ARM | {"young": "12 kPa", "drag": ["least", "most"]}, F_max=60.0)
+    assert "predicted" in figure.axes[0].get_ylabel()
+    assert sum(line.get_marker() == "o" for line in figure.axes[0].lines) >= 2
+
+
+def test_a_bar_of_frequencies_that_are_all_0_does_not_reach_below():
+    load = {"young": ["12 kPa", "13 kPa"], "length": ["13 cm", "14 cm"], "pressure": "0.01 kPa"}
+    figure = figure_of("spectrum", arm=ARM | load)
+    (bar,) = (axes for axes in figure.axes if axes.get_ylabel() == "frequency (Hz)")
+    assert bar.get_ylim()[0] == 0

@@ -1,8 +1,8 @@
 """A figure of `rodsweep plot` whose texts and marks are read one by one and held against true ones.
 
 A `Drawing` remembers which texts, numbers and marks were compared; what is left over was compared with
-nothing. Places are compared in the panel, as fractions of its axes: what is stored must lie on its place, what
-a solver gives anew within the width of a line.
+nothing. Places are compared in the panel, as fractions of its axes: what is stored must lie on its place,
+what a solver gives anew within the width of a line.
 """
 
 import functools

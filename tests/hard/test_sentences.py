@@ -1,7 +1,7 @@
 """Every number on the page of `show` and in figures of random rods and arms, and in reports on arms.
 
-Each is held against the solvers; a number or a mark that nothing compares fails as well. The suite takes a sweep of each task, RODSWEEP_RODS as many
-as it says (`make survey`: 300).
+Each is held against the solvers; a number or a mark that nothing compares fails as well. The suite takes a
+sweep of each task, RODSWEEP_RODS as many as it says (`make survey`: 300).
 """
 
 import functools

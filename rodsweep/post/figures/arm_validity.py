@@ -26,7 +26,7 @@ def add_validity(figure: Figure, views: Sequence[View]) -> None:
     where = "" if number == count else f" at {number} of {count} points"
     note = "hatched: the model does not apply" if hatched else f"the model does not apply{where}"
     before = figure.get_suptitle()
-    figure.suptitle(f"{before}\n{note}".strip(), fontsize=9)
+    figure.suptitle(f"{before}\n{note}".strip())
 
 
 def _outside(view: View) -> np.ndarray:

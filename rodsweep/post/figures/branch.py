@@ -28,7 +28,7 @@ from ..branch_curves import (
 )
 from ..summary.branch import ends_of
 from . import style
-from .cycle.selection import told_apart
+from .cycle.selection import points_told_apart
 from .request import FigureRequest
 
 LINES = {1: ("-", "stable"), 0: ("--", "unstable"), -1: (":", "not known")}
@@ -92,7 +92,7 @@ def draw_branch(request: FigureRequest) -> str:
         marked["predicted"] = _beside_prediction(axes, curves, colours, along)
     there = {int(s) for curve in curves for s in curve.stable} | {1, 0}
     handles = [Line2D([], [], color="k", ls=LINES[s][0], label=LINES[s][1]) for s in sorted(there)[::-1]]
-    shared, own = _told_apart(view, drawn)
+    shared, own = points_told_apart(view, [rod + 1 for rod in drawn])
     handles += [
         Line2D([], [], color=c, lw=2, label=text) for c, text in zip(COLOURS, own, strict=False) if text
     ]
@@ -101,12 +101,6 @@ def draw_branch(request: FigureRequest) -> str:
     return request.write(
         figure, f"{counted(len(curves), 'branch')} of cycles over {along}{_left_out(view, drawn, beating)}"
     )
-
-
-def _told_apart(view: View, rods: list[int]) -> tuple[str, list[str]]:
-    """(the parameters that all rods share, what tells each from the others), as text."""
-    columns = view.point_columns
-    return told_apart([{name: float(columns[name][rod]) for name in columns} for rod in rods])
 
 
 def _left_out(view: View, drawn: list[int], beating: list[int]) -> str:

@@ -7,7 +7,7 @@ from matplotlib.lines import Line2D
 from ...arrays import Array
 from ...results.file.view import View
 from . import style
-from .cycle.selection import told_apart
+from .cycle.selection import points_told_apart
 
 NEAR = 0.1
 """|F/F_H - 1| up to which a prediction is drawn: beyond, cycles depart from the law."""
@@ -27,8 +27,7 @@ def draw_predictions(view: View) -> tuple[Figure, str]:
     drawn = there[: len(COLOURS)]
     figure = Figure(figsize=(5.6, 3.8), layout="constrained")
     axes = figure.subplots()
-    columns = view.point_columns
-    shared, own = told_apart([{name: float(columns[name][rod]) for name in columns} for rod in drawn])
+    shared, own = points_told_apart(view, [int(rod) + 1 for rod in drawn])
     for rod, colour in zip(drawn, COLOURS, strict=False):
         for kind, at, size in zip(kinds[rod], F[rod], a[rod], strict=True):
             if np.isfinite(kind) and np.isfinite(size):

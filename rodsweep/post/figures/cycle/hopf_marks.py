@@ -3,12 +3,11 @@
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from ....arrays import Array
 from ...hopf_points import HopfPoint
+from ...summary.ranges import rounded
 from ..style import SYMBOLS
 from .square_root import SquareRootLaw
 
@@ -19,6 +18,8 @@ HOPF_DIGITS = 6
 """To which a Hopf point is written in a legend."""
 DOTTED: dict[str, Any] = {"ls": ":", "lw": 1.1}
 SHARED_GREY, LAW_GREY = "0.3", "0.45"
+COEFFICIENT_DIGITS = 3
+"""To which a coefficient is written at most."""
 MOST_COEFFICIENTS = 3
 """Coefficients of square-root laws that one line of a legend can hold."""
 
@@ -75,8 +76,9 @@ def draw_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str = "") -> list
 
 def _coefficients(laws: Sequence[SquareRootLaw]) -> str:
     """Those of the laws that differ in what is written, or their range where they are many."""
-    a: Array = np.array([law.coefficient for law in laws])
-    texts = list(dict.fromkeys(f"{value:.3g}" for value in a))
+    ordered = sorted(laws, key=lambda law: law.coefficient)
+    each = {law: rounded(law.coefficient, law.error, COEFFICIENT_DIGITS) for law in laws}
+    texts = list(dict.fromkeys(each.values()))
     if len(texts) > MOST_COEFFICIENTS:
-        return f"{a.min():.3g} to {a.max():.3g}"
+        return f"{each[ordered[0]]} to {each[ordered[-1]]}"
     return ", ".join(texts)

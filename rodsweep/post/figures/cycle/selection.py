@@ -16,7 +16,7 @@ from ....results.file.view import View
 from ...summary.ranges import rounded
 from ..arm_quantities import at_point, given_quantities, quantity_text, replaced
 from ..style import heading, parameter_text
-from .units import PLAIN_UNITS, CycleUnits, units_of
+from .units import NEEDED, PLAIN_UNITS, CycleUnits, units_of
 
 MOST_CYCLES = 3
 """Cycles for which one figure has room, side by side."""
@@ -148,7 +148,7 @@ def _selection(view: View, points: Sequence[int], drawable: NDArray[np.bool_], w
     columns = view.point_columns
     parameters = [{name: float(columns[name][n - 1]) for name in columns} for n in numbers]
     units = units_of(view, numbers)
-    shared, own = arms_told_apart(view, numbers) if units[0].in_si else told_apart(parameters)
+    shared, own = points_told_apart(view, numbers)
     cycles = []
     for number, label, at, drawn_in in zip(numbers, own, parameters, units, strict=True):
         values = drawn_in.drawn(_values(view, number))
@@ -187,6 +187,14 @@ def told_apart(parameters: Sequence[dict[str, float]]) -> tuple[str, list[str]]:
     shared = {n: v for n, v in parameters[0].items() if all(other[n] == v for other in parameters)}
     own = [parameter_text({n: v for n, v in each.items() if n not in shared}) for each in parameters]
     return parameter_text(shared), own
+
+
+def points_told_apart(view: View, numbers: Sequence[int]) -> tuple[str, list[str]]:
+    """(what points numbered from 1 share, what tells each from the others): of arms their quantities."""
+    if all(name in view.quantities for name in NEEDED):
+        return arms_told_apart(view, numbers)
+    columns = view.point_columns
+    return told_apart([{name: float(columns[name][number - 1]) for name in columns} for number in numbers])
 
 
 def arms_told_apart(

@@ -17,6 +17,8 @@ NEAR = 0.1
 """|F - F**|/|F**| up to which a cycle is near enough to tell the coefficient."""
 DEPARTURE = 0.2
 """Relative difference from the law up to which an amplitude follows it."""
+SAFETY = 2.0
+"""Error of a coefficient in units of what one more cycle changes."""
 CERTAIN = 100
 """Errors of F** by which a point must lie away from it, so that its distance is known to a percent."""
 
@@ -33,6 +35,8 @@ class SquareRootLaw:
     """Whether the cycles lie at F > F**."""
     end: float
     """The last F whose amplitude still follows it."""
+    error: float
+    """Of a, in L: twice what a third cycle changes, or what the extrapolation changes where there is none."""
 
     def curve(self, points: int = 100) -> tuple[Array, Array]:
         """(F, amplitude) from the Hopf point to the end, each of shape (points,), close where it is steep."""
@@ -76,4 +80,14 @@ def _law(F: Array, amplitude: Array, point: HopfPoint, side: int) -> SquareRootL
         return None
     last = len(size) if follows.all() else int(np.argmin(follows))
     end = point.position + side * abs(point.position) * float(distance[last - 1])
-    return SquareRootLaw(point.position, sqrt(square), side > 0, end)
+    third = size[:3] ** 2 / distance[:3]
+    better = _at_zero(distance[:3], third) if len(third) > 2 and distance[2] <= NEAR else q[0]
+    error = SAFETY * abs(sqrt(max(better, 0.0)) - sqrt(square))
+    return SquareRootLaw(point.position, sqrt(square), side > 0, end, error)
+
+
+def _at_zero(x: Array, values: Array) -> float:
+    """The polynomial through values at three places x, both (3,), at 0."""
+    a, b, c = x
+    weights = [b * c / ((a - b) * (a - c)), a * c / ((b - a) * (b - c)), a * b / ((c - a) * (c - b))]
+    return float(np.dot(weights, values))
