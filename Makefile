@@ -72,11 +72,11 @@ test-peers: .venv/installed  ## install what the tests use where it is there: Sl
 	@$(APT_INSTALL)
 	apt_install slurm-wlm munge libpmix-dev auto-07p gfortran iproute2
 survey: .venv/installed  ## spectra along lines and limit cycles of RODS (300) random rods: errors, chains, two starts; VERDICTS (50) marched in time; further Hopf points and branches (some minutes)
-	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(RODS),300) $(BIN)/python -m pytest -n auto tests/test_criticality.py tests/test_branch.py tests/test_branch_auto.py tests/test_coexistence.py tests/test_torus.py tests/hard/test_minimal_periods.py tests/hard/test_cycle_errors.py tests/hard/test_branch_errors.py tests/hard/test_chain_errors.py tests/hard/test_followed_spectra.py tests/hard/test_random_rods.py tests/hard/test_sentences.py tests/test_figure_layout.py tests/test_start.py
+	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(RODS),300) $(BIN)/python -m pytest -n auto tests/solve/hopf/test_criticality.py tests/solve/branch/test_branch.py tests/solve/branch/test_branch_auto.py tests/solve/branch/test_coexistence.py tests/solve/cycle/test_torus.py tests/hard/test_minimal_periods.py tests/hard/test_cycle_errors.py tests/hard/test_branch_errors.py tests/hard/test_chain_errors.py tests/hard/test_followed_spectra.py tests/hard/test_random_rods.py tests/hard/test_sentences.py tests/post/test_figure_layout.py tests/cli/test_start.py
 	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_RODS=$(or $(VERDICTS),50) $(BIN)/python -m pytest -n auto tests/hard/test_time_marched_verdicts.py
 stress: .venv/installed  ## kill runs at random 120 times and more, interrupt Python 1300 times, damage files and configs CASES (10) times as often (half an hour)
-	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_KILLS=$${RODSWEEP_KILLS:-40} RODSWEEP_INTERRUPTS=$${RODSWEEP_INTERRUPTS:-100} $(BIN)/python -m pytest tests/test_stress.py tests/test_interrupts.py
-	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_CASES=$(or $(CASES),10) $(BIN)/python -m pytest -n auto tests/test_bad_files.py tests/test_bad_input.py tests/test_edited_files.py
+	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_KILLS=$${RODSWEEP_KILLS:-40} RODSWEEP_INTERRUPTS=$${RODSWEEP_INTERRUPTS:-100} $(BIN)/python -m pytest tests/results/test_stress.py tests/solve/test_interrupts.py
+	PATH="$(CURDIR)/$(BIN):$$PATH" RODSWEEP_CASES=$(or $(CASES),10) $(BIN)/python -m pytest -n auto tests/cli/test_bad_files.py tests/cli/test_bad_input.py tests/results/test_edited_files.py
 bench: .venv/installed  ## run the benchmarks, with the peers of benchmarks/: docs/performance.md and its figures; the numbers are in results/bench.h5
 	mkdir -p results
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/rodsweep bench -o results/bench.md

@@ -3,7 +3,7 @@
     python docs/notebook.py
 
 Cells run one after another in one namespace, as in a fresh kernel; what a cell prints and its last expression
-become its outputs. Needs no Jupyter. `tests/test_notebook.py` compares the stored outputs with these.
+become its outputs. Needs no Jupyter. `tests/api/test_notebook.py` compares the stored outputs with these.
 """
 
 import ast

@@ -17,7 +17,7 @@ from rodsweep.model.neglected import Validity
 from rodsweep.post.figures.sections import section
 from rodsweep.results.file.view import read_view
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 GLYCEROL = {"radius": "5 mm", "young": "100 kPa", "viscosity": "1.4 Pa s"}
 TALL = GLYCEROL | {"length": ["4 cm", "10 cm", "12 cm"]}
 """The first of which is shorter than ten radii."""

@@ -38,7 +38,7 @@ parameters:
 phase_diagram: {cycles: true}
 """
 FOLD_AT_150 = 85.6055767349
-"""The fold on the row k1 = 150, which AUTO-07p has to 2e-9 (tests/test_branch_auto.py)."""
+"""The fold on the row k1 = 150, which AUTO-07p has to 2e-9 (tests/solve/branch/test_branch_auto.py)."""
 
 
 def request(values, certify=True):

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.interpolate import BarycentricInterpolator
 from second_normal_form import coefficients
+from shown import shown
 from surveyed import survey_only
 from test_paper import run, stated
-from test_show import shown
 
 import rodsweep as rs
 from rodsweep.determinant.parameter_path import Path

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from rods import rod_of
-from test_show import shown
+from shown import shown
 
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.limit_cycle import SECOND_STATES

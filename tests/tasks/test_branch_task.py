@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from shown import shown
 from test_paper import run, stated
-from test_show import shown
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of

@@ -10,7 +10,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image
-from test_show import HOPF, STABLE_AGAIN
+from shown import HOPF, STABLE_AGAIN
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of

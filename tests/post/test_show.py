@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import ROOT
+from shown import HOPF, STABLE_AGAIN, shown
 
 from rodsweep.post.hopf_points import Bracket, HopfPoint, StoredChanges
 from rodsweep.post.summary.errors import errors_of, span_of
@@ -16,24 +17,7 @@ from rodsweep.solve.changes.thresholds import ThresholdStatus
 from rodsweep.sweep.lines import lines_over
 from rodsweep.tasks.job import make_job
 
-HOPF, STABLE_AGAIN = 49.7580049161915, 155.600159298791
-"""Of configs/fig2c.yaml, 40-digit roots of D."""
 ROD = "k1: 200, k2: 1.0e4, gamma3: 1.0e-4"
-
-
-_computed: dict[str, bytes] = {}
-"""The result file of each config that `shown` has run."""
-
-
-def shown(command, config, *options):
-    """What `show` says of the results of a config, computed once for all tests that ask for them."""
-    command.write("c.yaml", config)
-    path = command.directory / "c.h5"
-    if "points:" in config or config not in _computed:
-        assert command("run", "c.yaml").returncode == 0
-        _computed[config] = path.read_bytes()
-    path.write_bytes(_computed[config])
-    return command("show", "c.h5", *options).stdout
 
 
 def test_the_thresholds_of_the_demo_come_out_of_show(command):

@@ -130,7 +130,7 @@ def test_accuracy_asked_for_is_reached(accuracy):
 
 def hopf_points():
     """(rod, w) of those of the reference in whose modes less than five waves are."""
-    for row in json.loads((Path(__file__).parent / "reference" / "thresholds.json").read_text()):
+    for row in json.loads((Path(__file__).parents[2] / "reference" / "thresholds.json").read_text()):
         for event in row["events"]:
             if event["kind"].startswith("hopf"):
                 numbers = event["F"], row["k1"], row["k2"], row["gamma3"]
