@@ -10,7 +10,6 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...arrays import Array
-from ...errors import InputError
 from ...results.file.view import View
 from . import style
 from .cycle.maps import label_maps, map_panels
@@ -42,7 +41,7 @@ def draw_criticality(request: FigureRequest) -> str:
     view = request.only_view()
     style.need(view, np.isfinite(view.variables["criticality"]).any(), "Hopf point with a normal form")
     varied = varied_parameters(view)
-    if len(varied) == 1:
+    if len(varied) == 1 and np.isfinite(np.unique(view.point_columns[varied[0]])).sum() > 1:
         return request.write(_along(view, varied[0]), f"the normal forms of Hopf points along {varied[0]}")
     if not is_map(view):
         return request.write(*draw_predictions(view))
@@ -61,8 +60,6 @@ def _along(view: View, name: str) -> Figure:
     """a above Re c against one parameter, each Hopf point marked by its criticality."""
     x = view.point_columns[name]
     keep = np.isfinite(x)
-    if np.count_nonzero(keep) < 2:
-        raise InputError(f"{view.path} has fewer than two rods with a finite {name}, which make no figure")
     figure = Figure(figsize=(5.6, 5.4), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True)
     side, a, c = (
