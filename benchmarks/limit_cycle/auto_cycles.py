@@ -15,8 +15,8 @@ from rodsweep.arrays import Array, Complex
 from rodsweep.bench.limit_cycle.tracking import height_near, on_cycle
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.stress_form import StressForm
-from rodsweep.solve.cycle.orbit import Orbit
 from rodsweep.solve.motion.integrator import Ending, Trajectory
+from rodsweep.solve.orbit.orbit import Orbit
 
 from ..auto import AUTO, run_auto, table_lines
 

@@ -26,9 +26,9 @@ from rodsweep.bench.study import Measurement, Timed, failsafe, race, table
 from rodsweep.discretization.mesh import mesh
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
-from rodsweep.solve.cycle.linearisation import Linearisation
-from rodsweep.solve.cycle.newton import newton
-from rodsweep.solve.cycle.orbit import Orbit
+from rodsweep.solve.orbit.linearisation import Linearisation
+from rodsweep.solve.orbit.newton import newton
+from rodsweep.solve.orbit.orbit import Orbit
 
 from ..auto import AUTO
 from .auto_cycles import AutoSetting, Branch, continued

@@ -9,7 +9,7 @@ from rodsweep.discretization.plane import balance
 from rodsweep.discretization.state_layout import StateLayout
 from rodsweep.discretization.stress_form import StressForm
 from rodsweep.model.rod import Rod
-from rodsweep.solve.cycle.symmetry import NONE, REFLECTION, Symmetry
+from rodsweep.solve.orbit.symmetry import NONE, REFLECTION, Symmetry
 
 FORMS = {
     "Omega eliminated": StressForm(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=0.7), mesh(2, 4)),

@@ -21,9 +21,9 @@ from rodsweep.solve.branch.beginning import beginning, hopf_point
 from rodsweep.solve.branch.branch_curve import BranchPoint
 from rodsweep.solve.branch.settling import due, settled
 from rodsweep.solve.changes.along_path import pair_crossings
-from rodsweep.solve.cycle.measures import CyclePath
-from rodsweep.solve.cycle.newton import linearised, multipliers_of, newton
-from rodsweep.solve.cycle.orbit_mesh import mesh_of
+from rodsweep.solve.orbit.measures import CyclePath
+from rodsweep.solve.orbit.newton import linearised, multipliers_of, newton
+from rodsweep.solve.orbit.orbit_mesh import mesh_of
 from rodsweep.solve.point import Unsolvable
 
 RODS, BATCH = int(os.environ.get("RODSWEEP_RODS", "4")), 2

@@ -16,10 +16,10 @@ import rodsweep as rs
 from rodsweep.discretization.mesh import mesh
 from rodsweep.discretization.stress_form import StressForm
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
-from rodsweep.solve.cycle.measures import CyclePath
-from rodsweep.solve.cycle.newton import multipliers_of
 from rodsweep.solve.cycle.refinement import refined_cycle
 from rodsweep.solve.cycle.status import CycleStatus
+from rodsweep.solve.orbit.measures import CyclePath
+from rodsweep.solve.orbit.newton import multipliers_of
 from rodsweep.solve.point import Unsolvable
 
 from .cycles import Case, broken_promises, cycle_of, finer, random_case

@@ -14,7 +14,7 @@ from rodsweep.solve.branch.arc import next_point
 from rodsweep.solve.branch.beginning import beginning, hopf_point
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.cycle.measures import CyclePath
+from rodsweep.solve.orbit.measures import CyclePath
 
 from .displacement_form import Displaced, march_from
 

@@ -14,12 +14,12 @@ from ...arrays import Array
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.rod import Rod
 from ...solve.cycle.limit_cycle import Cycle, CycleStatus, solve_cycle
-from ...solve.cycle.linearisation import Linearisation
-from ...solve.cycle.measures import CyclePath
-from ...solve.cycle.newton import newton
-from ...solve.cycle.orbit import Orbit
-from ...solve.cycle.orbit_mesh import mesh_of
 from ...solve.cycle.refinement import refine
+from ...solve.orbit.linearisation import Linearisation
+from ...solve.orbit.measures import CyclePath
+from ...solve.orbit.newton import newton
+from ...solve.orbit.orbit import Orbit
+from ...solve.orbit.orbit_mesh import mesh_of
 from ..study import Contender, Entry, Measurement, grouped, middle, table, tournament
 from .tracking import EXACT, asked, orbit_of
 

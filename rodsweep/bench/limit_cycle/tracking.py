@@ -23,11 +23,11 @@ from ...discretization.mesh import mesh
 from ...model.rod import Rod
 from ...solve.cycle.limit_cycle import Cycle, CycleRequest, solve_cycle
 from ...solve.cycle.neighbour import Neighbour
-from ...solve.cycle.newton import newton
-from ...solve.cycle.orbit import Orbit
 from ...solve.cycle.transient import angle_weights
 from ...solve.motion.integrator import RunLimit, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
+from ...solve.orbit.newton import newton
+from ...solve.orbit.orbit import Orbit
 from ..study import Contender, Measurement, contest
 from .integrators import Leg
 

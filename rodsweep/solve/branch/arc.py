@@ -12,10 +12,10 @@ import numpy as np
 from ...arrays import Array, Complex
 from ..continuation.follower import StepControl, Stepped, advance
 from ..cycle.neighbour import carried
-from ..cycle.newton import Converged, multiplier_change, relative_change
-from ..cycle.orbit import Orbit
-from ..cycle.orbit_mesh import mesh_of
 from ..cycle.refinement import RefinedCycle, judged_by, matrix_distance, newton_tolerance
+from ..orbit.newton import Converged, multiplier_change, relative_change
+from ..orbit.orbit import Orbit
+from ..orbit.orbit_mesh import mesh_of
 from .bordered import BorderedMatrix, Condition, Scale, bordered, moment_of, moved
 from .errors import BranchCalibration, Place
 

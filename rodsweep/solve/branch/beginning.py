@@ -15,11 +15,11 @@ from ...discretization.stress_form import StressForm
 from ...model.rod import Rod
 from ..changes.unstable_modes import Crossing
 from ..cycle.hopf_start import NORMAL_FORM_ACCURACY, orbit_with
-from ..cycle.orbit import Orbit
-from ..cycle.orbit_mesh import stages_for, wanted_mesh
 from ..cycle.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tolerance
 from ..hopf.hopf_coefficients import HopfCoefficients, hopf_coefficients
 from ..hopf.normal_form import NormalForm, accurate_normal_form
+from ..orbit.orbit import Orbit
+from ..orbit.orbit_mesh import stages_for, wanted_mesh
 from ..point import Unsolvable
 from .arc import ArcPoint
 from .bordered import Condition, Scale, moment_of

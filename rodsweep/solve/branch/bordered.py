@@ -14,19 +14,19 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...watch import report
-from ..cycle.condensation import eliminate, substitute
-from ..cycle.linearisation import (
+from ..orbit.condensation import eliminate, substitute
+from ..orbit.linearisation import (
     NewtonWorkspace,
     change_along,
     jump_of,
     reduced_residuals,
 )
-from ..cycle.multipliers import nonzero_eigenvalues
-from ..cycle.newton import MOST_ITERATIONS, Converged, relative_change
-from ..cycle.orbit import Orbit
-from ..cycle.orbit_mesh import OrbitMesh
-from ..cycle.phase import phase, phase_change, phase_row
-from ..cycle.right_sides import right_sides
+from ..orbit.multipliers import nonzero_eigenvalues
+from ..orbit.newton import MOST_ITERATIONS, Converged, relative_change
+from ..orbit.orbit import Orbit
+from ..orbit.orbit_mesh import OrbitMesh
+from ..orbit.phase import phase, phase_change, phase_row
+from ..orbit.right_sides import right_sides
 from ..point import Unsolvable
 
 LONGEST_STEP = 0.5

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..cycle.cycle_errors import CycleErrors
-from ..cycle.measures import Measures
 from ..cycle.refinement import MULTIPLIER_FACTOR
+from ..orbit.measures import Measures
 from .arc import ArcPoint
 from .special.point import SpecialPoint
 from .symmetry import Breaking

@@ -12,7 +12,7 @@ from ...model.rod import Rod
 from ...watch import part
 from ..changes.along_path import Transitions, pair_crossings
 from ..changes.unstable_modes import Crossing
-from ..cycle.linearisation import release_workspace
+from ..orbit.linearisation import release_workspace
 from ..point import FAILURES, cause_of, solved
 from ..status import PointStatus
 from .beginning import hopf_point

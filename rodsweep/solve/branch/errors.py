@@ -24,12 +24,12 @@ from ..cycle.calibration import (
     calibration_of,
 )
 from ..cycle.cycle_errors import LEAST_CLAIM, ROUNDING, CycleErrors
-from ..cycle.measures import CyclePath
 from ..cycle.neighbour import carried
-from ..cycle.newton import Converged, multiplier_change, multipliers_of
-from ..cycle.orbit import Orbit
-from ..cycle.orbit_mesh import OrbitMesh, mesh_of
-from ..cycle.path_differences import APART, HEIGHT, OTHERS, PERIOD, path_differences
+from ..orbit.measures import CyclePath
+from ..orbit.newton import Converged, multiplier_change, multipliers_of
+from ..orbit.orbit import Orbit
+from ..orbit.orbit_mesh import OrbitMesh, mesh_of
+from ..orbit.path_differences import APART, HEIGHT, OTHERS, PERIOD, path_differences
 from .bordered import Condition, Scale, moved
 
 STEEP = 120.0

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ...arrays import Array
-from ..cycle.newton import Converged, multipliers_of
-from ..cycle.orbit_mesh import OrbitMesh, finer_mesh, mesh_of
 from ..cycle.refinement import judged_by, matrix_distance, newton_tolerance
+from ..orbit.newton import Converged, multipliers_of
+from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, mesh_of
 from ..point import Unsolvable
 from .arc import STEPS, ArcPoint, placed, tangent_at
 from .bordered import Condition, Scale, bordered

@@ -13,12 +13,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import Array
-from ..cycle.measures import CyclePath
-from ..cycle.newton import relative_change
-from ..cycle.orbit import Orbit, node_times
-from ..cycle.orbit_mesh import stages_for, wanted_mesh
 from ..cycle.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tolerance
-from ..cycle.symmetry import NONE
+from ..orbit.measures import CyclePath
+from ..orbit.newton import relative_change
+from ..orbit.orbit import Orbit, node_times
+from ..orbit.orbit_mesh import stages_for, wanted_mesh
+from ..orbit.symmetry import NONE
 from ..point import Unsolvable
 from .arc import STEPS, ArcPoint, arc_between
 from .beginning import MOMENT

@@ -15,11 +15,10 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...discretization.resolution import LARGEST_ORDER
-from .cycle_errors import LEAST_CLAIM, ROUNDING, CycleErrors, largest_error
-from .measures import CyclePath
-from .newton import Converged, at_orbit, multiplier_change, multipliers_of, newton
-from .orbit import Orbit
-from .orbit_mesh import (
+from ..orbit.measures import CyclePath
+from ..orbit.newton import Converged, at_orbit, multiplier_change, multipliers_of, newton
+from ..orbit.orbit import Orbit
+from ..orbit.orbit_mesh import (
     LEAST_INTERVALS,
     LEAST_ORDER,
     MOST_INTERVALS,
@@ -28,7 +27,8 @@ from .orbit_mesh import (
     mesh_of,
     tails_of,
 )
-from .path_differences import APART, HEIGHT, OTHERS, PERIOD, path_differences
+from ..orbit.path_differences import APART, HEIGHT, OTHERS, PERIOD, path_differences
+from .cycle_errors import LEAST_CLAIM, ROUNDING, CycleErrors, largest_error
 
 MORE_ORDERS, MORE_INTERVALS = 2, 1.4
 """What the finer meshes have more of."""

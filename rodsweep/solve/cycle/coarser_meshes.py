@@ -11,6 +11,10 @@ from dataclasses import replace
 import numpy as np
 
 from ...arrays import Array
+from ..orbit.newton import multiplier_change
+from ..orbit.orbit import Orbit
+from ..orbit.orbit_mesh import OrbitMesh, tails_of
+from ..orbit.path_differences import path_differences
 from .calibration import (
     LARGEST_FALL,
     LEAST_FALL,
@@ -20,10 +24,6 @@ from .calibration import (
     at_its_parameters,
     calibration_of,
 )
-from .newton import multiplier_change
-from .orbit import Orbit
-from .orbit_mesh import OrbitMesh, tails_of
-from .path_differences import path_differences
 
 ORDERS_LESS, TIMES_FEWER = 2, 1.4
 """Orders and intervals of the coarse mesh beside those of the fine one that it is made for."""

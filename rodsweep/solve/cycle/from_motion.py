@@ -7,8 +7,8 @@ from ...discretization.beam import Beam
 from ...discretization.plane import balance
 from ...discretization.stress_form import StressForm
 from ..motion.integrator import Trajectory
-from .orbit import Orbit, node_times
-from .symmetry import NONE, REFLECTION
+from ..orbit.orbit import Orbit, node_times
+from ..orbit.symmetry import NONE, REFLECTION
 
 STAGES, INTERVALS = 3, 20
 """Of the first orbit, over its period."""

@@ -17,14 +17,14 @@ from ...discretization.mesh import mesh
 from ...discretization.stress_form import StressForm
 from ...model.rod import Rod
 from ..hopf.normal_form import NormalForm, accurate_normal_form
+from ..orbit.newton import at_orbit, newton
+from ..orbit.orbit import Orbit, node_times
+from ..orbit.symmetry import REFLECTION
 from ..point import Unsolvable
 from ..spectrum.candidates import BEHIND
 from ..spectrum.followed_leader import followed_leader
 from ..spectrum.search import SpectrumRequest, solve_spectrum
 from .neighbour import followed_from, in_steps
-from .newton import at_orbit, newton
-from .orbit import Orbit, node_times
-from .symmetry import REFLECTION
 
 LEADING = SpectrumRequest(1, 1e-9, False)
 SCAN = 0.93

@@ -27,11 +27,11 @@ from ..backend.petsc import options
 from ..hopf.normal_form import accurate_normal_form
 from ..motion.integrator import forget_integrators
 from ..motion.time_scheme import CYCLE_PREFIX
+from ..orbit.measures import Measures
 from ..point import Unsolvable, solved
 from ..status import PointStatus
 from .cycle_errors import UNKNOWN_ERRORS, CycleErrors
 from .hopf_start import hopf_point_below, orbit_from_hopf, small_orbit
-from .measures import Measures
 from .neighbour import Neighbour, followed_cycle
 from .refinement import RefinedCycle, refined_cycle
 from .second_state import SecondState, second_state

@@ -31,14 +31,14 @@ from ..motion.integrator import (
 )
 from ..motion.leading_mode import LeadingMode, leading_mode
 from ..motion.time_scheme import TimeScheme
+from ..orbit.measures import CyclePath, measures_of
+from ..orbit.orbit import Orbit, node_times
+from ..orbit.symmetry import NONE
 from ..point import solved
 from ..status import PointStatus
 from .cycle_errors import CycleErrors
 from .from_motion import stressed
 from .limit_cycle import Cycle, CycleRequest, first_of, motion_wave, near_rod
-from .measures import CyclePath, measures_of
-from .orbit import Orbit, node_times
-from .symmetry import NONE
 from .transient import (
     LONGEST_ORBIT,
     STEPS_PER_CHUNK,

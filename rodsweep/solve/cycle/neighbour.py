@@ -18,12 +18,20 @@ from ...discretization.stress_form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ..continuation.follower import StepControl, Stepped, advance
+from ..orbit.newton import Converged, at_orbit, newton, relative_change
+from ..orbit.normalised import (
+    combined,
+    normalised,
+    normalised_tangent,
+    polynomial_weights,
+    reflected,
+    values_of,
+)
+from ..orbit.orbit import Orbit
+from ..orbit.orbit_mesh import OrbitMesh, mesh_of
+from ..orbit.symmetry import NONE, REFLECTION
 from ..point import Unsolvable
 from .calibration import LENGTH, Calibration
-from .newton import Converged, at_orbit, newton, relative_change
-from .normalised import combined, normalised, normalised_tangent, polynomial_weights, reflected, values_of
-from .orbit import Orbit
-from .orbit_mesh import OrbitMesh, mesh_of
 from .refinement import (
     RefinedCycle,
     calibrated_cycle,
@@ -31,7 +39,6 @@ from .refinement import (
     matrix_distance,
     newton_tolerance,
 )
-from .symmetry import NONE, REFLECTION
 
 FARTHEST = 0.3
 """Relative distance of a cycle from its prediction beyond which it may be another one."""

@@ -11,15 +11,15 @@ from math import inf, log
 import numpy as np
 
 from ...arrays import Complex
+from ..orbit.measures import CyclePath, Measures, measures_of
+from ..orbit.newton import QUADRATIC, Converged, at_orbit, linearised, multipliers_of, newton
+from ..orbit.orbit import Orbit
+from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
 from ..point import Unsolvable
 from .calibration import Calibration, calibrated
 from .coarser_meshes import CoarserMeshes
 from .cycle_errors import CycleErrors
-from .measures import CyclePath, Measures, measures_of
 from .minimal_period import PRESENT, common_divisor, shortened, undecided_divisor
-from .newton import QUADRATIC, Converged, at_orbit, linearised, multipliers_of, newton
-from .orbit import Orbit
-from .orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
 from .status import CycleStatus
 
 MATRIX_SHARE, LEAST_DISTANCE, LARGEST_DISTANCE = 3.0, 1e-7, 1e-5

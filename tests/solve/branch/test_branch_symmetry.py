@@ -29,7 +29,7 @@ from rodsweep.solve.branch.symmetry import (
     over_whole_period,
 )
 from rodsweep.solve.changes.along_path import pair_crossings
-from rodsweep.solve.cycle.right_sides import equations
+from rodsweep.solve.orbit.right_sides import equations
 from rodsweep.tasks.branch import record
 
 ROUGH, STOP = 1e-3, 20.5

@@ -11,11 +11,11 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.calibration import SAFETY
 from rodsweep.solve.cycle.coarser_meshes import CoarserMeshes
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
-from rodsweep.solve.cycle.measures import CyclePath
-from rodsweep.solve.cycle.newton import newton, relative_change
-from rodsweep.solve.cycle.orbit_mesh import OrbitMesh
-from rodsweep.solve.cycle.path_differences import APART, HEIGHT, PERIOD, path_differences
 from rodsweep.solve.cycle.refinement import refine
+from rodsweep.solve.orbit.measures import CyclePath
+from rodsweep.solve.orbit.newton import newton, relative_change
+from rodsweep.solve.orbit.orbit_mesh import OrbitMesh
+from rodsweep.solve.orbit.path_differences import APART, HEIGHT, PERIOD, path_differences
 from rodsweep.solve.point import Unsolvable
 
 ACCURACY = 1e-7

@@ -16,17 +16,17 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.cycle import transient
-from rodsweep.solve.cycle.condensation import powers
 from rodsweep.solve.cycle.cycle_errors import EXTREMA_SLACK
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle, warm_up
-from rodsweep.solve.cycle.measures import CyclePath, measures_of
 from rodsweep.solve.cycle.minimal_period import common_divisor, shortened, undecided_divisor
 from rodsweep.solve.cycle.neighbour import Neighbour
-from rodsweep.solve.cycle.newton import at_orbit, newton
-from rodsweep.solve.cycle.orbit import Orbit, interval_lengths, node_times
-from rodsweep.solve.cycle.orbit_mesh import legendre_analysis, tails_of
-from rodsweep.solve.cycle.symmetry import NONE, REFLECTION
 from rodsweep.solve.motion.integrator import forget_integrators
+from rodsweep.solve.orbit.condensation import powers
+from rodsweep.solve.orbit.measures import CyclePath, measures_of
+from rodsweep.solve.orbit.newton import at_orbit, newton
+from rodsweep.solve.orbit.orbit import Orbit, interval_lengths, node_times
+from rodsweep.solve.orbit.orbit_mesh import legendre_analysis, tails_of
+from rodsweep.solve.orbit.symmetry import NONE, REFLECTION
 
 SOFT = (1e4, 1e2, 1e-2, 1.0)
 """(k1, k2, gamma3, gamma1) of the paper's Fig. 5."""

@@ -8,8 +8,8 @@ import pytest
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.neighbour import MOST_BEHIND, Followed, Neighbour
-from rodsweep.solve.cycle.newton import newton, relative_change
-from rodsweep.solve.cycle.orbit_mesh import mesh_of
+from rodsweep.solve.orbit.newton import newton, relative_change
+from rodsweep.solve.orbit.orbit_mesh import mesh_of
 
 ROD = Rod(F=34.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
 HOPF = 27.4271941267593

@@ -10,10 +10,10 @@ from ....determinant.parameter_plane import PlaneAxis
 from ....watch import Whereabouts, report
 from ....wording import counted
 from ...continuation.follower import CurveStop, StepControl, Stepped, follow, zero_along
-from ...cycle.measures import CyclePath
-from ...cycle.newton import relative_change
-from ...cycle.orbit import Orbit
-from ...cycle.orbit_mesh import OrbitMesh, mesh_of
+from ...orbit.measures import CyclePath
+from ...orbit.newton import relative_change
+from ...orbit.orbit import Orbit
+from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...point import Unsolvable
 from ..bordered import BorderedMatrix
 from .cycle_curves import PREDICTED_BY, CurveEnd, polynomial_weights

@@ -16,9 +16,9 @@ import numpy as np
 
 from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
-from ...cycle.newton import Converged
-from ...cycle.orbit import Orbit
-from ...cycle.orbit_mesh import OrbitMesh, mesh_of, stages_for
+from ...orbit.newton import Converged
+from ...orbit.orbit import Orbit
+from ...orbit.orbit_mesh import OrbitMesh, mesh_of, stages_for
 from ...point import Unsolvable
 from ..arc import tangent_at
 from ..beginning import LEAST_UNIT, MOMENT

@@ -6,7 +6,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....discretization.periodic import maxima, samples_of
-from ...cycle.measures import CyclePath
+from ...orbit.measures import CyclePath
 from ..arc import ArcPoint
 
 PLACES = 8

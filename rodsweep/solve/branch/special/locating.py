@@ -11,10 +11,10 @@ import numpy as np
 
 from ....arrays import Array
 from ...continuation.follower import zero_along
-from ...cycle.measures import CyclePath
-from ...cycle.newton import Converged
-from ...cycle.orbit import Orbit
-from ...cycle.orbit_mesh import OrbitMesh, mesh_of, stages_for
+from ...orbit.measures import CyclePath
+from ...orbit.newton import Converged
+from ...orbit.orbit import Orbit
+from ...orbit.orbit_mesh import OrbitMesh, mesh_of, stages_for
 from ...point import Unsolvable
 from ..arc import ArcPoint, arc_between, tangent_at
 from ..bordered import BorderedMatrix, bordered, moved

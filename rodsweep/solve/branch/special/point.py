@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 from math import nan
 
-from ...cycle.orbit import Orbit
+from ...orbit.orbit import Orbit
 
 
 class SpecialKind(IntEnum):

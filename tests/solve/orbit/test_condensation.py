@@ -11,12 +11,12 @@ from rodsweep.discretization.stress_form import StressForm
 from rodsweep.model.parameters import NONLINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.bordered import BorderedMatrix, Scale
-from rodsweep.solve.cycle.condensation import PANEL, eliminate, invert, substitute
-from rodsweep.solve.cycle.linearisation import Linearisation, NewtonWorkspace, change_along
-from rodsweep.solve.cycle.orbit import Orbit
-from rodsweep.solve.cycle.phase import phase, phase_change
-from rodsweep.solve.cycle.right_sides import equations, residuals, right_sides
-from rodsweep.solve.cycle.symmetry import REFLECTION
+from rodsweep.solve.orbit.condensation import PANEL, eliminate, invert, substitute
+from rodsweep.solve.orbit.linearisation import Linearisation, NewtonWorkspace, change_along
+from rodsweep.solve.orbit.orbit import Orbit
+from rodsweep.solve.orbit.phase import phase, phase_change
+from rodsweep.solve.orbit.right_sides import equations, residuals, right_sides
+from rodsweep.solve.orbit.symmetry import REFLECTION
 
 INTERVALS, PERIOD, COLUMNS = 4, 0.02, 2
 RODS = {
