@@ -77,7 +77,7 @@ class BranchConfig(Config):
         sections = given if isinstance(given, dict) else {}
         options, parameters = sections.get("branch"), sections.get("parameters")
         along = options.get("along") if isinstance(options, dict) else None
-        if not isinstance(parameters, dict) or along not in DEFAULTS:
+        if not isinstance(parameters, dict) or not isinstance(along, str) or along not in DEFAULTS:
             return given
         return sections | {"parameters": {along: None, **parameters}}
 
