@@ -200,7 +200,7 @@ def test_config_changes_stability_where_its_head_comment_says(name):
 
 def _with_force(job, force):
     rod = job.points.rod(0)
-    return type(rod)(force, rod.k1, rod.k2, rod.gamma3)
+    return rod.changed(F=force)
 
 
 @pytest.mark.parametrize(
