@@ -271,7 +271,8 @@ def test_file_opens_in_xarray_with_named_coordinates_and_no_argument(command):
     command.write("c.yaml", SMALL)
     command("run", "c.yaml")
     with xarray.open_dataset(command.directory / "c.h5", engine="h5netcdf") as data:
-        assert dict(data.sizes) == {"F": 21, "k1": 3, "k2": 2, "gamma3": 2, "mode": 4}
+        sizes = {"F": 21, "k1": 3, "k2": 2, "gamma3": 2, "mode": 4}
+        assert dict(data.sizes) == sizes | {"change": len(data.change_F)}
         point = data.sel(F=30, k1=1e4, k2=1e4, gamma3=1e-4)
         assert float(point.growth_rate.sel(mode=1)) == pytest.approx(-54.2947994117, rel=1e-10)
         assert float(point.frequency.sel(mode=1)) == pytest.approx(145.671884063, rel=1e-10)

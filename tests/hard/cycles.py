@@ -63,16 +63,16 @@ def cycle_of(case) -> RefinedCycle | None:
     hopf = first_hopf(case.k1, case.k2, case.gamma3)
     if hopf is None or hopf * case.beyond >= case.k1:
         return None
-    rod = Rod(F=hopf * case.beyond, k1=case.k1, k2=case.k2, gamma3=case.gamma3)
-    start = orbit_from_hopf(StressForm(rod.changed(gamma1=case.gamma1), mesh(1, 16)), hopf_point_below(rod))
+    rod = Rod(F=hopf * case.beyond, k1=case.k1, k2=case.k2, gamma3=case.gamma3, gamma1=case.gamma1)
+    start = orbit_from_hopf(StressForm(rod, mesh(1, 16)), hopf_point_below(rod))
     return refined_cycle(start, case.accuracy)
 
 
 def chain_of(case, parameter, ratio, points):
     """The cycles of a chain in steps of a parameter, from the one of the case on, as far as it goes."""
     hopf = first_hopf(case.k1, case.k2, case.gamma3)
-    rod = Rod(F=hopf * case.beyond, k1=case.k1, k2=case.k2, gamma3=case.gamma3)
-    form = StressForm(rod.changed(gamma1=case.gamma1), mesh(1, 16))
+    rod = Rod(F=hopf * case.beyond, k1=case.k1, k2=case.k2, gamma3=case.gamma3, gamma1=case.gamma1)
+    form = StressForm(rod, mesh(1, 16))
     found = refined_cycle(orbit_from_hopf(form, hopf_point_below(rod)), case.accuracy, parameter)
     neighbour = Neighbour.of(found, None, parameter, case.accuracy)
     for _ in range(points):
