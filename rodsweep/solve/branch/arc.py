@@ -29,8 +29,8 @@ STEPS = StepControl(
     sharpest=0.45,
     growth=2.0,
 )
-"""Lengths in units of the scale: the moments at the clamp, the period or the parameter change by a few parts
-in a hundred."""
+"""Lengths in units of the scale: one of 0.1 changes the moment at the clamp, the period or the parameter by a
+tenth, at most."""
 
 
 @dataclass(frozen=True, eq=False)
