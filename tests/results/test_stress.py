@@ -24,6 +24,8 @@ from rodsweep.tasks.job import make_job
 INCOMPLETE = re.compile(r"\d (points?|rows?|rods?) (is|are) missing|curves through them are missing")
 """How `show` says that a run is not complete."""
 KILLS = int(os.environ.get("RODSWEEP_KILLS", "2"))
+AFRESH = KILLS > 2
+"""Whether each rank that is struck is started as users start it, and not forked from a loaded process."""
 HEADER = len(JOURNAL_HEAD) + 65
 """Bytes of a journal before its first point."""
 SPECTRA = """
@@ -126,7 +128,7 @@ def test_run_killed_at_random_ends_in_the_file_of_an_undisturbed_one(command, co
     struck, kept, told = 0, 0, []
     while struck < KILLS:
         ranks, fault, instant = random.randint(1, 4), random.choice(FAULTS), random_instant(points - kept)
-        process = command.started("run", "c.yaml", ranks=ranks, afresh=True)
+        process = command.started("run", "c.yaml", ranks=ranks, afresh=AFRESH)
         if is_struck := wait_for(instant, process, path, record):
             strike(process, command.directory, fault)
             struck += 1
@@ -156,11 +158,11 @@ def test_run_struck_within_points_and_curves_ends_in_the_file_of_an_undisturbed_
     command.write("c.yaml", config)
     path = command.directory / "c.h5"
     began = time.monotonic()
-    assert command.afresh("run", "c.yaml", "-o", "whole.h5").returncode == 0
+    assert command("run", "c.yaml", "-o", "whole.h5").returncode == 0
     whole, struck, told = time.monotonic() - began, 0, []
     while struck < KILLS // 2:
         ranks, fault = random.randint(1, 2), random.choice(FAULTS)
-        process = command.started("run", "c.yaml", ranks=ranks, afresh=True)
+        process = command.started("run", "c.yaml", ranks=ranks, afresh=AFRESH)
         with suppress(subprocess.TimeoutExpired):
             process.wait(random.uniform(0, whole))
         if process.poll() is None:

@@ -3,6 +3,7 @@
 RODSWEEP_INTERRUPTS says how often each task is interrupted; `make stress` does it more often.
 """
 
+import json
 import os
 import random
 import signal
@@ -43,85 +44,77 @@ def bits(task):
         return data
     return {name: data[name].values.tobytes() for name in data.data_vars if name != "seconds"}
 """
-ALONE = f"""
-import pickle, sys
+ALL_IN_ONE = f"""
+import json, random, signal, sys, threading, time
 {TASKS}
-sys.stdout.buffer.write(pickle.dumps({{task: bits(task) for task in TASKS}}))
-"""
-THREADS = f"""
-import pickle, random, sys, threading
-{TASKS}
-alone = pickle.load(sys.stdin.buffer)
-faults = []
-def work(seed):
-    try:
-        some = sorted(TASKS)[seed % 3 :: 3]  # so that each is solved by two threads
-        for task in random.Random(seed).sample(some, len(some)):
-            if bits(task) != alone[task]:
-                faults.append(task)
-    except BaseException as error:
-        faults.append(repr(error))
-threads = [threading.Thread(target=work, args=(seed,)) for seed in range(6)]
-for thread in threads:
-    thread.start()
-for thread in threads:
-    thread.join()
-print(faults)
-"""
-INTERRUPTED = f"""
-import pickle, random, signal, sys, threading, time
-{TASKS}
-alone = pickle.load(sys.stdin.buffer)
-chance, faults, came = random.Random(int(sys.argv[1])), [], 0
+alone = {{task: bits(task) for task in TASKS}}
+
+def beside_others():
+    faults = []
+    def work(seed):
+        try:
+            some = sorted(TASKS)[seed % 3 :: 3]  # so that each is solved by two threads
+            for task in random.Random(seed).sample(some, len(some)):
+                if bits(task) != alone[task]:
+                    faults.append(task)
+        except BaseException as error:
+            faults.append(repr(error))
+    threads = [threading.Thread(target=work, args=(seed,)) for seed in range(6)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    return faults
 
 def interrupt(delay):
     time.sleep(delay)
     signal.raise_signal(signal.SIGINT)
 
-for task in TASKS:
-    bits(task)
-    began = time.perf_counter()
-    bits(task)
-    seconds = time.perf_counter() - began
-    for _ in range(int(sys.argv[2])):
-        thread = threading.Thread(target=interrupt, args=(chance.random() * seconds,))
-        try:
-            thread.start()
-            bits(task)
+def interrupted(chance, times):
+    faults, came = [], 0
+    for task in TASKS:
+        began = time.perf_counter()
+        bits(task)
+        seconds = time.perf_counter() - began
+        for _ in range(times):
+            thread = threading.Thread(target=interrupt, args=(chance.random() * seconds,))
+            try:
+                thread.start()
+                bits(task)
+                thread.join()
+                time.sleep(0.001)
+            except KeyboardInterrupt:
+                came += 1
+            except Exception as error:
+                faults.append(repr(error))
             thread.join()
-            time.sleep(0.001)
-        except KeyboardInterrupt:
-            came += 1
-        except Exception as error:
-            faults.append(repr(error))
-        thread.join()
-        if bits(task) != alone[task]:
-            faults.append(task)
-print(came, faults)
+            if bits(task) != alone[task]:
+                faults.append(task)
+    return came, faults
+
+print(json.dumps([beside_others(), *interrupted(random.Random(int(sys.argv[1])), int(sys.argv[2]))]))
 """
-
-
-def run(code, *words, given=b""):
-    done = subprocess.run([sys.executable, "-c", code, *words], input=given, capture_output=True, check=False)
-    assert done.returncode == 0, done.stderr.decode()
-    return done.stdout
+"""One process: every task alone, then by six threads, then interrupted."""
 
 
 @pytest.fixture(scope="module")
-def alone():
-    """The bits of every task, each solved once in one thread, pickled."""
-    return run(ALONE)
-
-
-def test_six_threads_give_the_bits_of_one(alone):
-    assert run(THREADS, given=alone) == b"[]\n"
-
-
-def test_interrupts_at_random_instants_leave_the_same_bits(alone):
+def told():
+    """(seed, faults of the threads, interrupts that came, faults after interrupts)."""
     seed = random.randrange(10**9)
-    came, faults = run(INTERRUPTED, str(seed), str(INTERRUPTS), given=alone).split(maxsplit=1)
-    assert faults == b"[]\n", f"seed {seed}"
-    assert int(came) > 0
+    words = [sys.executable, "-c", ALL_IN_ONE, str(seed), str(INTERRUPTS)]
+    done = subprocess.run(words, capture_output=True, check=False)
+    assert done.returncode == 0, f"seed {seed}: {done.stderr.decode()}"
+    return seed, *json.loads(done.stdout.splitlines()[-1])
+
+
+def test_six_threads_give_the_bits_of_one(told):
+    assert told[1] == []
+
+
+def test_interrupts_at_random_instants_leave_the_same_bits(told):
+    seed, _, came, faults = told
+    assert faults == [], f"seed {seed}"
+    assert came > 0
 
 
 def test_a_handler_runs_at_a_safe_place_and_not_before():
