@@ -194,9 +194,12 @@ def test_the_file_suggests_its_figure(view, output, points, what):
 
 
 @pytest.mark.parametrize(
-    ("gamma1", "suffix"), [([1.0], "png"), ([1.0], "pdf"), ([1.0], "svg"), ([1.0, 0.5, 0.25], "png")]
+    ("gamma1", "suffix", "what"),
+    [
+        *(([1.0], *each) for each in zip(("png", "pdf", "svg"), ("cycle", "amplitude", "energy"), strict=True)),
+        *(([1.0, 0.5, 0.25], "png", what) for what in ("cycle", "amplitude", "energy")),
+    ],
 )
-@pytest.mark.parametrize("what", ["cycle", "amplitude", "energy"])
 def test_every_figure_is_drawn_in_every_format(tmp_path, what, suffix, gamma1):
     view = make_view((SWEEP[0] if what == "amplitude" else [50.0], *SWEEP[1:4], gamma1), 0 * np.ones(
         (4 if what == "amplitude" else 1) * len(gamma1)))  # fmt: skip

@@ -123,7 +123,7 @@ def test_a_bore_as_wide_as_the_arm_is_a_corner_of_the_map():
 
 def test_spectra_followed_along_the_load_are_those_of_single_arms(command):
     command.write("a.yaml", CONFIG)
-    assert command("run", "a.yaml").returncode == 0
+    command.solved("a.yaml")
     data = rs.open(command.directory / "a.h5").sel(length=0.11, young=1e5)
     assert (data.elements[1:] == 0).all()  # followed
     alone = rs.sweep(
@@ -136,7 +136,7 @@ def test_spectra_followed_along_the_load_are_those_of_single_arms(command):
 
 def test_neighbours_follow_each_other_along_the_load(command):
     command.write("a.yaml", CHAINS)
-    assert command("run", "a.yaml").returncode == 0
+    command.solved("a.yaml")
     data = rs.open(command.directory / "a.h5")
     assert (data.status.sel(length=0.04) == NOT_SLENDER).all()
     pressures = ["2.3 kPa", "2.4 kPa", "2.5 kPa"]
@@ -150,7 +150,7 @@ def test_neighbours_follow_each_other_along_the_load(command):
 @pytest.mark.parametrize("config", [CONFIG, CHAINS])
 def test_shards_a_stopped_run_ranks_and_python_give_the_same_file(command, config):
     command.write("a.yaml", config)
-    assert command("run", "a.yaml", "-o", "whole.h5").returncode == 0
+    command.solved("a.yaml", "whole.h5")
     for shard in (1, 2):
         assert command("run", "a.yaml", "-o", f"{shard}.h5", "--shard", f"{shard}/2").returncode == 0
     assert command("merge", "merged.h5", "1.h5", "2.h5").returncode == 0
@@ -174,7 +174,7 @@ def test_shards_a_stopped_run_ranks_and_python_give_the_same_file(command, confi
 def test_extension_gives_the_file_of_the_larger_grid(command, config, old, new, told):
     command.write("small.yaml", config)
     command.write("large.yaml", config.replace(old, new))
-    assert command("run", "small.yaml", "-o", "c.h5").returncode == 0
+    command.solved("small.yaml", "c.h5")
     refused = command("run", "large.yaml", "-o", "c.h5")
     assert refused.returncode == 2
     assert "--extend computes what it lacks" in refused.stderr
@@ -201,7 +201,7 @@ def test_extension_gives_the_file_of_the_larger_grid(command, config, old, new, 
 def test_what_is_no_extension_is_refused_in_a_sentence(command, old, new, sentence):
     command.write("small.yaml", CONFIG)
     command.write("large.yaml", CONFIG.replace(old, new))
-    assert command("run", "small.yaml", "-o", "c.h5").returncode == 0
+    command.solved("small.yaml", "c.h5")
     refused = command("run", "large.yaml", "-o", "c.h5", "--extend")
     assert refused.returncode == 2
     assert sentence in refused.stderr
@@ -210,7 +210,7 @@ def test_what_is_no_extension_is_refused_in_a_sentence(command, old, new, senten
 
 def test_axes_are_sealed(command):
     command.write("a.yaml", CONFIG)
-    assert command("run", "a.yaml").returncode == 0
+    command.solved("a.yaml")
     path = command.directory / "a.h5"
     data = rs.open(path)
     data.to_netcdf(command.directory / "copy.h5", engine="h5netcdf")
@@ -223,7 +223,7 @@ def test_axes_are_sealed(command):
 
 def test_python_gives_what_the_file_has(command):
     command.write("a.yaml", CONFIG)
-    assert command("run", "a.yaml").returncode == 0
+    command.solved("a.yaml")
     file = rs.open(command.directory / "a.h5")
     arm = {
         "length": ["4 cm", "10 cm", "11 cm"],
@@ -263,7 +263,7 @@ def test_a_parameter_beside_the_arm_is_an_axis_too():
 
 def test_a_list_of_a_grid_has_every_point_in_its_order(command):
     command.write("a.yaml", CONFIG)
-    assert command("run", "a.yaml").returncode == 0
+    command.solved("a.yaml")
     view = read_view(command.directory / "a.h5")
     listed = view.listed
     assert not view.is_grid
@@ -297,7 +297,7 @@ def test_a_length_between_the_ends_of_a_range_is_found_as_it_is_typed():
 
 def test_a_table_has_nothing_where_an_arm_has_no_rod(command):
     command.write("a.yaml", CONFIG)
-    assert command("run", "a.yaml").returncode == 0
+    command.solved("a.yaml")
     columns = ("--table", "points", "--columns", "length,k1,status,unstable_count")
     assert command("export", "a.h5", *columns).returncode == 0
     rows = [line.split(",") for line in (command.directory / "a.csv").read_text().splitlines()[1:]]

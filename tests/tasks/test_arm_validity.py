@@ -102,7 +102,7 @@ def test_check_tells_before_the_run_what_can_be_known(command):
     found = re.search(r"the model does not apply at (\d) of 6 points before anything moves: weight is", told)
     assert "not_slender at 2 of 8 points: the arm is shorter than 10 radii" in told
     assert "does not apply" not in command("check", command.write("b.yaml", MAP)).stdout
-    assert command("run", "a.yaml").returncode == 0
+    command.solved("a.yaml")
     data = rs.open(command.directory / "a.h5")
     outside = (data.model_applies == Validity.does_not_apply) & (data.status == 0)
     assert int(found[1]) == outside.sum()
@@ -117,7 +117,7 @@ def span(text, data):
 
 def test_show_begins_with_the_answer_in_the_units_that_were_typed(command):
     command.write("a.yaml", MAP)
-    assert command("run", "a.yaml").returncode == 0
+    command.solved("a.yaml")
     first, second, *_ = command("show", "a.h5").stdout.splitlines()[1:]
     data = rs.open(command.directory / "a.h5")
     rods = data.status == 0
@@ -139,7 +139,7 @@ def test_show_begins_with_the_answer_in_the_units_that_were_typed(command):
 
 def test_show_of_an_arm_in_water_says_nothing_without_reservation(command):
     command.write("w.yaml", MAP.replace("viscosity: 4 Pa s", "viscosity: 1 mPa s"))
-    assert command("run", "w.yaml").returncode == 0
+    command.solved("w.yaml")
     first, second, *_ = command("show", "w.h5").stdout.splitlines()[1:]
     assert first.startswith("the model does not apply at all 6 points: inertia of the arm is up to")
     assert second.startswith("if it applied: flutters from ")
@@ -163,7 +163,7 @@ def test_show_of_an_arm_in_water_says_nothing_without_reservation(command):
 def test_show_answers_of_every_task(command, task, arm, more, told):
     quantities = f"length: [10 cm, 10.5 cm], radius: 5 mm, young: 100 kPa, viscosity: 40 Pa s, {arm}"
     command.write("a.yaml", f"task: {task}\nparameters: {{arm: {{{quantities}}}}}\n{more}\n")
-    assert command("run", "a.yaml").returncode == 0
+    command.solved("a.yaml")
     lines = command("show", "a.h5").stdout.splitlines()[1:3]
     assert any(line.startswith("the model ") for line in lines)
     assert any(line.startswith(told) for line in lines)
@@ -173,13 +173,13 @@ def test_show_of_a_diagram_without_flutter_says_up_to_which_load(command):
     quantities = "length: 10 cm, radius: 5 mm, young: 100 kPa, viscosity: 40 Pa s, poisson: [0.4, 0.5]"
     loads = "pressure: {start: 0 kPa, stop: 1 kPa, num: 3}"
     command.write("a.yaml", f"task: phase_diagram\nparameters: {{arm: {{{quantities}, {loads}}}}}\n")
-    assert command("run", "a.yaml").returncode == 0
+    command.solved("a.yaml")
     assert "does not flutter up to 1 kPa\n" in command("show", "a.h5").stdout
 
 
 def test_lines_that_are_asked_for_over_an_arm_name_what_draws_them(command):
     command.write("a.yaml", MAP)
-    assert command("run", "a.yaml").returncode == 0
+    command.solved("a.yaml")
     refused = command("plot", "a.h5", "--what", "lines")
     assert refused.returncode == 2
     assert "--what lines is not for a grid over an arm's quantities; remove it, and --at" in refused.stderr
@@ -191,7 +191,7 @@ def test_a_rectangle_that_gives_way_first_in_the_other_plane_is_said_to(command,
     command.write("a.yaml", f"task: thresholds\nparameters: {{arm: {{{quantities}}}}}\n")
     said = "the arm flutters first in the other plane, at a lower load"
     assert command("check", "a.yaml").stdout.count(said) == told
-    assert command("run", "a.yaml").returncode == 0
+    command.solved("a.yaml")
     assert command("show", "a.h5").stdout.splitlines()[1].count(said) == told
 
 
@@ -214,7 +214,7 @@ def drawn(monkeypatch, path, output, **choice):
 
 def test_a_map_of_arms_has_typed_units_and_hatches(command, monkeypatch):
     command.write("a.yaml", MAP)
-    assert command("run", "a.yaml").returncode == 0
+    command.solved("a.yaml")
     figure = drawn(monkeypatch, command.directory / "a.h5", command.directory / "f.png")
     labels = {axes.get_xlabel() for axes in figure.axes} | {axes.get_ylabel() for axes in figure.axes}
     assert {"length (cm)", "Young's modulus (kPa)", "pressure at flutter (kPa)"} <= labels
@@ -228,7 +228,7 @@ def test_a_map_of_arms_has_typed_units_and_hatches(command, monkeypatch):
 
 def test_lines_over_one_quantity(command, monkeypatch):
     command.write("a.yaml", MAP.replace("[50 kPa, 100 kPa]", "50 kPa"))
-    assert command("run", "a.yaml").returncode == 0
+    command.solved("a.yaml")
     figure = drawn(monkeypatch, command.directory / "a.h5", command.directory / "f.png")
     data = rs.open(command.directory / "a.h5")
     x, y = figure.axes[0].lines[0].get_data()
@@ -241,7 +241,7 @@ def test_figures_over_F_are_hatched_where_the_model_does_not_apply(command, monk
     arm = "length: 10 cm, radius: 5 mm, young: 100 kPa, viscosity: 4 Pa s"
     load = "pressure: {start: 0 kPa, stop: 4 kPa, num: 21}"
     command.write("a.yaml", f"task: spectrum\nparameters: {{arm: {{{arm}, {load}}}}}\n")
-    assert command("run", "a.yaml").returncode == 0
+    command.solved("a.yaml")
     figure = drawn(monkeypatch, command.directory / "a.h5", command.directory / "f.png")
     data = rs.open(command.directory / "a.h5")
     outside = data.F.values[(data.model_applies == Validity.does_not_apply).values.ravel()]
@@ -255,7 +255,7 @@ def test_figures_over_F_are_hatched_where_the_model_does_not_apply(command, monk
 def test_roots_are_drawn_over_the_points_of_a_grid_with_what_varies(command, monkeypatch):
     arm = "length: [10 cm, 12 cm], radius: [4 mm, 5 mm], young: 100 kPa, viscosity: 4 Pa s, pressure: 1 kPa"
     command.write("a.yaml", f"task: spectrum\nparameters: {{arm: {{{arm}}}}}\n")
-    assert command("run", "a.yaml").returncode == 0
+    command.solved("a.yaml")
     figure = drawn(monkeypatch, command.directory / "a.h5", command.directory / "f.png", roots="smallest")
     (axes,) = (axes for axes in figure.axes if "radius" in axes.get_xlabel())
     assert axes.get_xlabel() == "length (mm)\nradius (mm)"

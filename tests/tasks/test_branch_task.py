@@ -195,7 +195,7 @@ def test_the_straight_rod_is_drawn_up_to_where_it_is_crushed(command, monkeypatc
     command.write(
         "c.yaml", CONFIG.format(k1=100, stop=200).replace("1.0e-4", "0.1").replace("1.0e-5", "1.0e-3")
     )
-    command("run", "c.yaml")
+    command.solved("c.yaml")
     drawn = []
     monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
     draw(read_view(command.directory / "c.h5"), command.directory / "c.png")
@@ -216,7 +216,7 @@ def test_branches_without_room_for_their_special_points_are_told_of_and_not_draw
     assert straight_ranges(view, 0, (0.0, 200.0))[0] == [(0.0, 200.0)]
     assert straight_ranges(view, 1, (0.0, 200.0)) == ([], [])
     command.write("d.yaml", CONFIG.format(k1=150, stop=200).replace("stop:", "special: 2, stop:"))
-    command("run", "d.yaml")
+    command.solved("d.yaml")
     assert "1 of 1 branch is not told" in " ".join(command("show", "d.h5").stdout.split())
     assert "holds no branch with cycles" in " ".join(command("plot", "d.h5").stderr.split())
 
