@@ -93,12 +93,21 @@ def _pixels(places: Array) -> NDArray[np.intp]:
 
 
 def _dense(curve: Array) -> Array:
-    """The part of a curve, (n, 2), that lies in the plane, at places less than a pixel apart."""
+    """The part of a curve, (n, 2), that lies in the plane, at places less than a pixel apart.
+
+    Each piece is cut at the edges of the plane first: what lies outside may be a thousand times as long.
+    """
     curve = curve[np.isfinite(curve).all(axis=1)]
-    pieces = [curve[:1]]
-    for start, end in zip(curve[:-1], curve[1:], strict=True):
-        count = int(np.abs(end - start).max() * PIXELS / STEP) + 1
-        pieces.append(start + (end - start) * np.linspace(0, 1, min(count, 100 * PIXELS) + 1)[1:, None])
-    places = np.concatenate(pieces)
     edge = 0.5 / PIXELS  # an end on the edge may lie outside by rounding
+    steps = np.diff(curve, axis=0)
+    with np.errstate(all="ignore"):  # along an axis a piece may not move, and is between its edges or is not
+        crossed = np.stack([(bound - curve[:-1]) / steps for bound in (-edge, 1 + edge)])
+    enters = np.maximum(crossed.min(axis=0).max(axis=1), 0)
+    leaves = np.minimum(crossed.max(axis=0).min(axis=1), 1)
+    pieces = [curve[:1]]
+    for i in np.flatnonzero(enters <= leaves):
+        share = leaves[i] - enters[i]
+        count = int(share * np.abs(steps[i]).max() * PIXELS / STEP) + 1
+        pieces.append(curve[i] + steps[i] * np.linspace(enters[i], leaves[i], count + 1)[:, None])
+    places = np.concatenate(pieces)
     return places[((places > -edge) & (places < 1 + edge)).all(axis=1)]
