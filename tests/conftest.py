@@ -114,7 +114,7 @@ class Command:
     """`rodsweep` in a directory of its own, alone or under mpiexec."""
 
     _solved: ClassVar[dict[tuple[str, str, bytes], bytes]] = {}
-    """The files that `solved` has made in this process, by name, text and lists of points of their configs."""
+    """The files that `solved` has made here, by name, text and lists of points of their configs."""
 
     def __init__(self, directory: Path, loaded: Callable[[], Isolated] | None = None):
         """`loaded`: gives the process from which runs without a launcher are forked, to save their start."""
@@ -158,8 +158,8 @@ class Command:
     def solved(self, config: str, output: str = "") -> Path:
         """The result file of a config here, as a run of its own without a launcher gives it; the path.
 
-        The runs of a config, by its text and lists of points, are one, whose file is copied: for tests that ask
-        what is done with a file, not how it came. What compares two runs calls each.
+        The runs of a config, by its text and lists of points, are one, whose file is copied: for tests that
+        ask what is done with a file, not how it came. What compares two runs calls each.
         """
         source, path = self.directory / config, self.directory / (output or f"{config.rpartition('.')[0]}.h5")
         assert not path.exists()

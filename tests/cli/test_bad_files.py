@@ -33,7 +33,7 @@ MORE = int(os.environ.get("RODSWEEP_CASES", "1"))
 FILES = PAGES = MORE
 """Damaged files of each config and state, and damaged journals of each: of every kind over all configs."""
 QUICK_TO_DRAW = ("spectrum", "list", "thresholds")
-"""Configs whose damaged files are drawn in every run of the tests: the figures of the others take most of it."""
+"""Configs whose damaged files are drawn in every run of the tests: other figures take most of it."""
 LONG = 30
 """Seconds of processor time: a run with limit cycles takes two."""
 

@@ -23,6 +23,8 @@ T = TypeVar("T")
 NODES = ("n1", "n2", "n3")
 COMING_UP = 60.0
 """Seconds in which the daemons have to come up, which takes one or two, and more on a busy machine."""
+PAUSE = 0.3
+"""Seconds between two questions: each is a process of its own, and jobs take seconds."""
 ENDED = {"COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL", "BOOT_FAIL", "OUT_OF_MEMORY"}
 
 CONFIGURATION = """\
@@ -123,7 +125,7 @@ def wait_for(condition: Callable[[], T], what: str) -> T:
     deadline = time.monotonic() + PATIENCE
     while not (value := condition()):
         assert time.monotonic() < deadline, f"waited {PATIENCE:g} s for {what}"
-        time.sleep(0.05)
+        time.sleep(PAUSE)
     return value
 
 

@@ -3,10 +3,11 @@
 import os
 import signal
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
-from conftest import BIN, ROOT, Command
+from conftest import BIN, RANK, ROOT, Command
 from contents import content, same
 from ranks import PATIENCE
 from slow_runs import FOR_EVER, slowly
@@ -70,7 +71,7 @@ def out_of_time(running, tmp_path_factory):
     Slurm looks twice a minute who is to be warned; two minutes before the end is 30 to 60 s from now.
     """
     running.directory = clone_in(tmp_path_factory.mktemp("out_of_time"))
-    words = ("--time=00:03:00", "--nodelist=n3", HALTED)
+    words = ("--time=00:03:00", "--nodelist=n3", halted(running))
     return running.directory, running.submit(*words, "jobs/one_node.sh", "c.yaml", "c.h5")
 
 
@@ -81,17 +82,33 @@ def slurm(running, out_of_time, tmp_path):
     return running
 
 
+@pytest.fixture
+def quick_slurm(running, out_of_time, tmp_path, loaded):
+    """The same, with ranks forked from a loaded process: for what depends on jobs, not on their start."""
+    running.directory = clone_in(tmp_path)
+    own = tmp_path / ".venv" / "bin"
+    own.unlink()
+    own.mkdir()
+    (own / "mpiexec").symlink_to(BIN / "mpiexec")
+    (own / "rodsweep").write_text(f'#!/bin/sh\nexec {sys.executable} -SE {RANK} {loaded.ranks} "$@"\n')
+    (own / "rodsweep").chmod(0o755)
+    return running
+
+
 def clone_in(directory: Path) -> Path:
     (directory / ".venv").mkdir()
     (directory / ".venv" / "bin").symlink_to(BIN)
     (directory / "jobs").symlink_to(ROOT / "jobs")
     (directory / "c.yaml").write_text(CONFIG)
-    (directory / "sitecustomize.py").write_text(SLOWLY)
+    (directory / "patch").mkdir()
+    (directory / "patch" / "sitecustomize.py").write_text(SLOWLY)
     return directory
 
 
-HALTED = f"--export=ALL,HALT=1,PYTHONPATH=.:{ROOT},OMP_NUM_THREADS=8"
-"""The option of sbatch with which a job waits until it is warned, cancelled or requeued."""
+def halted(slurm: Slurm, *more: str) -> str:
+    """The option of sbatch with which a job waits until it is warned, cancelled or requeued."""
+    path = f"PYTHONPATH={slurm.directory / 'patch'}:{ROOT}"
+    return ",".join(["--export=ALL", "HALT=1", path, *(more or ["OMP_NUM_THREADS=8"])])
 
 
 def until_some_are_done(result: Path) -> None:
@@ -117,7 +134,9 @@ def test_script_hands_the_warning_on_and_asks_for_a_requeue(tmp_path):
     variables |= {"PATH": f"{tmp_path}:{os.environ['PATH']}"}
     words = ["bash", str(ROOT / "jobs" / "one_node.sh"), "c.yaml"]
     warned = subprocess.Popen(
-        words, cwd="/", env=os.environ | variables | {"HALT": "1", "PYTHONPATH": f"{tmp_path}:{ROOT}"}
+        words,
+        cwd="/",
+        env=os.environ | variables | {"HALT": "1", "PYTHONPATH": f"{tmp_path / 'patch'}:{ROOT}"},
     )
     until_some_are_done(tmp_path / "results" / "c.h5")
     warned.send_signal(signal.SIGUSR1)
@@ -137,31 +156,31 @@ def test_job_gives_the_content_of_a_plain_run_and_submitted_again_has_nothing_to
     assert read_view(slurm.directory / "c.h5").attributes["ranks"] == 2
 
 
-def test_job_cancelled_in_the_middle_continues_when_submitted_again(slurm, expected):
-    job = slurm.submit(HALTED, "jobs/one_node.sh", "c.yaml", "c.h5")
-    until_some_are_done(slurm.directory / "c.h5")
-    slurm("scancel", job)
-    assert slurm.end(job).startswith("CANCELLED")
-    assert slurm.about(job, "Restarts") == "0"
-    again = slurm.submit("jobs/one_node.sh", "c.yaml", "c.h5")
-    assert slurm.end(again) == "COMPLETED 0:0", log(slurm)
-    assert " kept" in (slurm.directory / f"rodsweep-{again}.log").read_text()
-    assert same(content(slurm.directory / "c.h5"), expected)
+def test_job_cancelled_in_the_middle_continues_when_submitted_again(quick_slurm, expected):
+    job = quick_slurm.submit(halted(quick_slurm), "jobs/one_node.sh", "c.yaml", "c.h5")
+    until_some_are_done(quick_slurm.directory / "c.h5")
+    quick_slurm("scancel", job)
+    assert quick_slurm.end(job).startswith("CANCELLED")
+    assert quick_slurm.about(job, "Restarts") == "0"
+    again = quick_slurm.submit("jobs/one_node.sh", "c.yaml", "c.h5")
+    assert quick_slurm.end(again) == "COMPLETED 0:0", log(quick_slurm)
+    assert " kept" in (quick_slurm.directory / f"rodsweep-{again}.log").read_text()
+    assert same(content(quick_slurm.directory / "c.h5"), expected)
 
 
-def test_job_requeued_in_the_middle_finishes_by_itself(slurm, expected):
-    job = slurm.submit(HALTED, "jobs/one_node.sh", "c.yaml", "c.h5")
-    until_some_are_done(slurm.directory / "c.h5")
-    slurm("scontrol", "requeue", job)
-    assert slurm.end(job) == "COMPLETED 0:0", log(slurm)
-    assert slurm.about(job, "Restarts") == "1"
-    assert log(slurm).count("252 points to do") == 2  # the log of both times
-    assert log(slurm).count(" kept") == 1
-    assert same(content(slurm.directory / "c.h5"), expected)
+def test_job_requeued_in_the_middle_finishes_by_itself(quick_slurm, expected):
+    job = quick_slurm.submit(halted(quick_slurm), "jobs/one_node.sh", "c.yaml", "c.h5")
+    until_some_are_done(quick_slurm.directory / "c.h5")
+    quick_slurm("scontrol", "requeue", job)
+    assert quick_slurm.end(job) == "COMPLETED 0:0", log(quick_slurm)
+    assert quick_slurm.about(job, "Restarts") == "1"
+    assert log(quick_slurm).count("252 points to do") == 2  # the log of both times
+    assert log(quick_slurm).count(" kept") == 1
+    assert same(content(quick_slurm.directory / "c.h5"), expected)
 
 
 def test_job_on_many_nodes_is_warned_on_all_of_them(slurm, expected):
-    words = ("--nodes=2", "--nodelist=n1,n2", "--ntasks-per-node=1", HALTED)
+    words = ("--nodes=2", "--nodelist=n1,n2", "--ntasks-per-node=1", halted(slurm))
     job = slurm.submit(*words, "jobs/many_nodes.sh", "c.yaml", "c.h5")
     until_some_are_done(slurm.directory / "c.h5")
     slurm.warn(job)
@@ -175,54 +194,49 @@ def test_job_on_many_nodes_is_warned_on_all_of_them(slurm, expected):
         assert read_view(slurm.directory / "c.h5").attributes["hosts"].split() == ["n1", "n2"]
 
 
-def test_shards_of_an_array_are_merged_when_all_have_ended(slurm, expected):
-    array = slurm.submit("--array=1-3", HALTED, "jobs/shards.sh", "c.yaml", "c.h5")
-    last = slurm.submit(f"--dependency=afterok:{array}", "jobs/merge.sh", "c.yaml", "c.h5")
-    until_some_are_done(slurm.directory / "c-2-of-3.h5")
-    slurm.warn(f"{array}_2")
-    assert slurm.end(last) == "COMPLETED 0:0", log(slurm)
-    assert log(slurm).count(STOPPED) == 1
-    assert "252 points from 3 files, 0 missing" in log(slurm)
-    parts = [content(path)["status"] for path in slurm.directory.glob("c-*-of-3.h5")]
+def test_shards_of_an_array_are_merged_when_all_have_ended(quick_slurm, expected):
+    array = quick_slurm.submit("--array=1-3", halted(quick_slurm), "jobs/shards.sh", "c.yaml", "c.h5")
+    last = quick_slurm.submit(f"--dependency=afterok:{array}", "jobs/merge.sh", "c.yaml", "c.h5")
+    until_some_are_done(quick_slurm.directory / "c-2-of-3.h5")
+    quick_slurm.warn(f"{array}_2")
+    assert quick_slurm.end(last) == "COMPLETED 0:0", log(quick_slurm)
+    assert log(quick_slurm).count(STOPPED) == 1
+    assert "252 points from 3 files, 0 missing" in log(quick_slurm)
+    parts = [content(path)["status"] for path in quick_slurm.directory.glob("c-*-of-3.h5")]
     assert [(part != MISSING).sum() for part in parts] == [84, 84, 84]
-    assert same(content(slurm.directory / "c.h5"), expected)
+    assert same(content(quick_slurm.directory / "c.h5"), expected)
 
 
-def test_shard_with_a_failed_point_does_not_hold_up_the_merge(slurm):
+def test_shard_with_a_failed_point_does_not_hold_up_the_merge(quick_slurm):
     """The onset F* cannot be had to 1e-12, so one shard exits with 1, and so does the merge."""
     config = "task: spectrum\nparameters: {F: [10, 20.0080206921031], k1: 1e4, k2: 1e4, gamma3: 1e-4}\n"
-    (slurm.directory / "c.yaml").write_text(config + "accuracy: 1e-12\n")
-    array = slurm.submit("--array=1-2", "jobs/shards.sh", "c.yaml", "c.h5")
-    last = slurm.submit(f"--dependency=afterok:{array}", "jobs/merge.sh", "c.yaml", "c.h5")
-    assert slurm.end(last) == "FAILED 1:0", log(slurm)
-    assert "c.h5: 1 ok, 1 accuracy_not_reached" in log(slurm)
+    (quick_slurm.directory / "c.yaml").write_text(config + "accuracy: 1e-12\n")
+    array = quick_slurm.submit("--array=1-2", "jobs/shards.sh", "c.yaml", "c.h5")
+    last = quick_slurm.submit(f"--dependency=afterok:{array}", "jobs/merge.sh", "c.yaml", "c.h5")
+    assert quick_slurm.end(last) == "FAILED 1:0", log(quick_slurm)
+    assert "c.h5: 1 ok, 1 accuracy_not_reached" in log(quick_slurm)
 
 
-def test_job_that_may_not_be_requeued_says_so_and_exits_with_75(slurm):
-    job = slurm.submit("--no-requeue", HALTED, "jobs/one_node.sh", "c.yaml", "c.h5")
-    until_some_are_done(slurm.directory / "c.h5")
-    slurm.warn(job)
-    assert slurm.end(job) == "FAILED 75:0", log(slurm)
-    assert "may not be requeued: submit it again to continue" in log(slurm)
+def test_job_that_may_not_be_requeued_says_so_and_exits_with_75(quick_slurm):
+    job = quick_slurm.submit("--no-requeue", halted(quick_slurm), "jobs/one_node.sh", "c.yaml", "c.h5")
+    until_some_are_done(quick_slurm.directory / "c.h5")
+    quick_slurm.warn(job)
+    assert quick_slurm.end(job) == "FAILED 75:0", log(quick_slurm)
+    assert "may not be requeued: submit it again to continue" in log(quick_slurm)
 
 
-def test_job_with_a_bad_config_fails_and_is_not_repeated(slurm):
-    (slurm.directory / "c.yaml").write_text(CONFIG.replace("modes", "mods"))
-    job = slurm.submit("jobs/one_node.sh", "c.yaml", "c.h5")
-    assert slurm.end(job) == "FAILED 2:0", log(slurm)
-    assert slurm.about(job, "Restarts") == "0"
-    assert "did you mean modes?" in log(slurm)
+def test_job_with_a_bad_config_fails_and_is_not_repeated(quick_slurm):
+    (quick_slurm.directory / "c.yaml").write_text(CONFIG.replace("modes", "mods"))
+    job = quick_slurm.submit("jobs/one_node.sh", "c.yaml", "c.h5")
+    assert quick_slurm.end(job) == "FAILED 2:0", log(quick_slurm)
+    assert quick_slurm.about(job, "Restarts") == "0"
+    assert "did you mean modes?" in log(quick_slurm)
 
 
 def test_srun_starts_the_ranks_where_it_can(slurm, expected):
     if reason := slurm.refuses("srun", "--ntasks=1", "--mpi=pmix", "true"):
         pytest.skip(f"this Slurm cannot load PMIx (on Debian: apt install libpmix-dev): {reason}")
-    words = (
-        f"--export=ALL,LAUNCH=srun --mpi=pmix,HALT=1,PYTHONPATH=.:{ROOT}",
-        "jobs/one_node.sh",
-        "c.yaml",
-        "c.h5",
-    )
+    words = (halted(slurm, "LAUNCH=srun --mpi=pmix"), "jobs/one_node.sh", "c.yaml", "c.h5")
     stopped = slurm.submit("--no-requeue", *words)
     until_some_are_done(slurm.directory / "c.h5")
     slurm.warn(stopped)

@@ -154,7 +154,8 @@ CASES = {
 
 
 @pytest.mark.parametrize(
-    ("name", "words", "width"), at_widths([(name, words) for name in CASES for words in CASES[name][: None if RODS else 1]])
+    ("name", "words", "width"),
+    at_widths([(name, words) for name in CASES for words in CASES[name][: None if RODS else 1]]),
 )
 def test_nothing_is_cut_or_over_anything_else(name, words, width, tmp_path, monkeypatch):
     assert faults(drawn(solved(name), tmp_path, monkeypatch, width, **words)) == []

@@ -137,7 +137,7 @@ def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
     if kind is None or h5py.check_ref_dtype(kind) is not h5py.Reference:
         raise changed
     file = data.file.id
-    try:  # by handles: `data.file[place]` makes an object of each, which takes half of the time of opening a file
+    try:  # by handles: an object of each, `data.file[place]`, took half of the time of opening a file
         scales = [h5py.h5r.dereference(r, file) for places in attributes["DIMENSION_LIST"] for r in places]
         names = [h5py.h5i.get_name(scale) if scale else None for scale in scales]
     except (ValueError, RuntimeError, OSError, LookupError):

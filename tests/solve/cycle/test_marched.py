@@ -36,7 +36,7 @@ def pairs():
             solve_cycle(rod, request(1e-8)),
             solve_by_integration(rod, request(ACCURACY)),
         )
-        for rod in random_rods(max(RODS // 5, 8))
+        for rod in random_rods(max(RODS // 5, 5))
     ]
 
 
