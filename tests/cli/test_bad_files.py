@@ -258,7 +258,7 @@ def test_result_with_odd_numbers_is_shown_and_continued(results, tmp_path, name)
         path = changed(results, name, "whole", change, tmp_path / "a")
         seal(path)
         # No figure can show some of these numbers, and a run tells of statuses that it does not know.
-        lines = [(SHOW, {0}), *drawn(name, {0, 2}), (RUN, {0, 1}), (SHOW, {0})]
+        lines = [(SHOW, {0}), (plot_of(name), {0, 2}), (RUN, {0, 1}), (SHOW, {0})]
         complaints += tried(results, path, edit, lines)
     assert not complaints, report(complaints)
 
