@@ -142,9 +142,10 @@ def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
         names = [h5py.h5i.get_name(scale) if scale else None for scale in scales]
     except (ValueError, RuntimeError, OSError, LookupError):
         raise changed from None
-    if None in names:
+    told = [name.decode(errors="surrogateescape").removeprefix("/") for name in names if name]
+    if len(told) < len(names):
         raise changed
-    return [name.decode(errors="surrogateescape").removeprefix("/") for name in names]
+    return told
 
 
 def _blocks(data: h5py.Dataset) -> Iterator[Any]:
