@@ -4,8 +4,11 @@ A dozen random edits of a file of each task here; RODSWEEP_CASES=N asks for N ti
 """
 
 import os
+import shutil
 from random import Random
 
+import h5py
+import numpy as np
 import pytest
 from contents import content, same
 from faults.edits import copied, edited
@@ -125,3 +128,17 @@ def test_edited_file_is_refused_in_a_sentence_or_says_the_same(results, tmp_path
             complaints.append(f"seed {seed}, {what}: the refused file is changed")
     assert not complaints, f"{len(complaints)} complaints\n" + "\n".join(complaints[:20])
     assert refused > EDITS / 2
+
+
+def test_a_dimension_that_refers_to_nothing_is_refused(results, tmp_path):
+    path = tmp_path / "c.h5"
+    shutil.copy(results / "spectrum.h5", path)
+    with h5py.File(path, "r+") as file:
+        data, kind = file["status"], h5py.vlen_dtype(h5py.ref_dtype)
+        nowhere = np.empty(data.ndim, object)
+        for axis in range(data.ndim):
+            nowhere[axis] = np.array([h5py.Reference()], h5py.ref_dtype)
+        del data.attrs["DIMENSION_LIST"]
+        data.attrs.create("DIMENSION_LIST", nowhere, dtype=kind)
+    with pytest.raises(InputError, match="the dimensions of status are not as rodsweep wrote them"):
+        read_view(path)
