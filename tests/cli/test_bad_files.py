@@ -30,7 +30,7 @@ from faults.isolated import Isolated, Outcome
 from rodsweep.results.file.seal import seal
 
 MORE = int(os.environ.get("RODSWEEP_CASES", "1"))
-FILES = PAGES = MORE
+FILES = PAGES = 2 * MORE if MORE > 1 else 1
 """Damaged files of each config and state, and damaged journals of each: of every kind over all configs."""
 QUICK_TO_DRAW = ("spectrum", "list", "thresholds")
 """Configs whose damaged files are drawn in every run of the tests: other figures take most of it."""

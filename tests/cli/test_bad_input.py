@@ -20,7 +20,7 @@ from faults.points import GOOD, bad_lists
 CONFIGS = sorted((ROOT / "configs").glob("*.yaml"))
 MORE = int(os.environ.get("RODSWEEP_CASES", "1"))
 DRAWN = {
-    "wrong values": (configs.wrong_values, 3),
+    "wrong values": (configs.wrong_values, 6 if MORE > 1 else 3),
     "wrong overrides": (configs.wrong_overrides, 3),
     "odd keys": (configs.odd_keys, 3),
     "random trees": (configs.random_tree, 3),
