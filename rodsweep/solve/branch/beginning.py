@@ -24,6 +24,7 @@ from ..point import Unsolvable
 from .arc import ArcPoint
 from .bordered import Condition, Scale, moment_of
 from .settling import first_point
+from .special.point import SpecialKind, SpecialPoint
 
 AMPLITUDES = (0.02, 0.008, 0.003)
 """Largest tip y, in L, of the first cycle, tried one after the other."""
@@ -102,6 +103,21 @@ def hopf_point(path: Path, crossing: Crossing) -> HopfBirth:
         slope=complex(slope),
         normal=normal,
         coefficients=hopf_coefficients(at, crossing, NORMAL_FORM_ACCURACY),
+    )
+
+
+def special_hopf(hopf: HopfBirth) -> SpecialPoint:
+    """The Hopf point as a special point."""
+    return SpecialPoint(
+        kind=SpecialKind.hopf,
+        at=hopf.crossing.at,
+        period=hopf.period,
+        tip_y_max=0.0,
+        error=hopf.crossing.error,
+        period_error=hopf.period_error,
+        size_error=0.0,
+        amplitude_coefficient=hopf.amplitude_coefficient,
+        coefficient_error=hopf.coefficient_error,
     )
 
 

@@ -15,7 +15,7 @@ from ..cycle.refinement import matrix_distance, newton_tolerance
 from ..orbit.orbit_mesh import mesh_of
 from ..point import Unsolvable
 from .arc import STEPS, ArcPoint, arc_between, next_point, point_at, tangent_at, there_from
-from .beginning import HopfBirth, beginning
+from .beginning import HopfBirth, beginning, special_hopf
 from .bordered import Condition, bordered
 from .branch_curve import BranchCurve
 from .settling import due
@@ -110,21 +110,6 @@ def _place_on(curve: BranchCurve, here: ArcPoint, course: Course) -> Whereabouts
     there, end = PARAMETERS[name].value(here.at), PARAMETERS[name].value(aim)
     words = f"{name} = {there:.5g} on the way to {end:.5g}, {counted(len(curve.points), 'cycle')}"
     return Whereabouts(words, share_done(PARAMETERS[name].coordinate(curve.special[0].at), here.at, aim))
-
-
-def special_hopf(hopf: HopfBirth) -> SpecialPoint:
-    """The Hopf point as a special point."""
-    return SpecialPoint(
-        kind=SpecialKind.hopf,
-        at=hopf.crossing.at,
-        period=hopf.period,
-        tip_y_max=0.0,
-        error=hopf.crossing.error,
-        period_error=hopf.period_error,
-        size_error=0.0,
-        amplitude_coefficient=hopf.amplitude_coefficient,
-        coefficient_error=hopf.coefficient_error,
-    )
 
 
 def _end_beside(curve: BranchCurve, reason: EndReason, message: str = "") -> SpecialPoint:
