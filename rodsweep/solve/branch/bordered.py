@@ -14,7 +14,7 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...watch import report
-from ..orbit.condensation import eliminate, substitute
+from ..orbit.condensation import eliminate, reduce, substitute, to_end
 from ..orbit.linearisation import (
     NewtonWorkspace,
     change_along,
@@ -26,7 +26,7 @@ from ..orbit.newton import MOST_ITERATIONS, Converged, relative_change
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh
 from ..orbit.phase import phase, phase_change, phase_row
-from ..orbit.right_sides import right_sides
+from ..orbit.right_sides import right_sides, variation_sides
 from ..point import Unsolvable
 
 LONGEST_STEP = 0.5
@@ -110,6 +110,51 @@ class BorderedMatrix:
         right = np.append(np.zeros(len(self._right)), 1.0)
         change = self._solved(border, right, self._columns[:, :, 1], 0.0)
         return change / np.linalg.norm(self.scale.moved(self.orbit, change))
+
+    def tangent_near(self, orbit: Orbit, tangent: Array, border: Array) -> Array:
+        """A tangent, (N + 1,), of the branch through another orbit near by, corrected once.
+
+        What is corrected to 0 is linear in it; border . `Scale.moved` of it is 1.
+        """
+        p, change = orbit.semidiscrete, change_along(orbit.form, self.scale.name)
+        variation = replace(orbit, values=tangent[:-1])
+        columns, ends = self.varied(orbit, variation.points[None], tangent[None, -2:])
+        row = np.empty(len(orbit.start))
+        phase_row(orbit.start, p.rod, p.matrices, row)
+        shift = phase_change(orbit.start, change.change, p.rod, p.matrices)
+        right = np.empty(len(row) + 2)
+        right[:-2] = jump_of(variation.points, p) - ends[0]
+        right[-2] = shift * tangent[-1] - row @ variation.start
+        right[-1] = 1 - border @ self.scale.moved(orbit, tangent)
+        return tangent + self._solved(border, right, columns[:, :, 0], 1.0)
+
+    def varied(self, orbit: Orbit, variations: Array, rates: Array) -> tuple[Array, Array]:
+        """What the residuals of another orbit near by change by along variations of it, reduced.
+
+        variations: (m, 1 + K s, n); rates: of period and coordinate, (m, 2). Returns the changes, (K, s, m, n),
+        and what they make of the end where the start stays, (m, n).
+        """
+        K, s, n = orbit.states.shape
+        columns, ends = np.empty((K, s, len(variations), n)), np.zeros((len(variations), n))
+        along, factors, p = change_along(orbit.form, self.scale.name), self._workspace.factors, self.orbit.semidiscrete
+        variation_sides(orbit.points, orbit.duration, orbit.semidiscrete, along, variations, rates, columns)
+        for k in range(K):
+            reduce(factors.blocks[k], columns[k], p)
+            to_end(factors.blocks[k], columns[k], p, ends)
+        return columns, ends
+
+    def spread(self, starts: Array, columns: Array) -> Array:
+        """Changes of start and stages, (m, 1 + K s, n), from those of the start, (m, n), and reduced sides."""
+        out = np.empty_like(columns)
+        substitute(starts, columns, self.orbit.semidiscrete, self._workspace.factors, out)
+        K, s, m, n = out.shape
+        stages = out.transpose(2, 0, 1, 3).reshape(m, K * s, n)
+        return np.concatenate([starts[:, None], stages], axis=1)
+
+    @property
+    def propagator(self) -> Array:
+        """P, (n, n)."""
+        return self._workspace.propagator
 
     @cached_property
     def returns(self) -> Complex:

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...discretization.nodal_rod import NodalChange
-from ...discretization.plane import balance, balance_change, velocity_balance
+from ...discretization.plane import balance, balance_change, jacobian, velocity_balance
 from ...discretization.state_layout import stress_place, velocity_place
 from ...model.compilation import compiled_for_vectors
 from .condensation import Semidiscrete
@@ -93,6 +93,47 @@ def right_sides(
                 equations_change(x, sides[2], V[k, i], changes, along.change, p)
                 for r in range(n):
                     sides[2, r] = duration * length * sides[2, r] - along.mass[r] * slopes[r]
+
+
+@compiled_for_vectors
+def variation_sides(
+    points: Array,
+    duration: float,
+    p: Semidiscrete,
+    along: Along,
+    variations: Array,
+    rates: Array,
+    columns: Array,
+) -> None:
+    """The derivatives of the `residuals` along variations of an orbit into columns, (K, s, columns, n).
+
+    variations: of the start and the stages, (columns, 1 + K s, n); rates: of the period, and of the parameter
+    that `along` is of, (columns, 2).
+    """
+    K, s, count, n = columns.shape
+    V, G, changes = np.empty(p.rod.drag.shape), np.empty(p.rod.drag.shape), np.empty((3, *p.rod.drag.shape))
+    F, by_parameter, slopes, J = np.empty(n), np.zeros(n), np.empty(n), np.empty((n, n))
+    tip, moving = np.empty((V.shape[0], n)), np.any(rates[:, 1] != 0.0)
+    for k in range(K):
+        length = p.lengths[k]
+        for i in range(s):
+            x = points[1 + k * s + i]
+            equations(x, F, V, G, p)
+            jacobian(x, V, J, tip, p.rod, p.matrices)
+            if moving:
+                equations_change(x, by_parameter, V, changes, along.change, p)
+                _slopes(points[k * s : (k + 1) * s + 1], i, p.differentiation, slopes)
+                for r in range(n):
+                    by_parameter[r] = duration * length * by_parameter[r] - along.mass[r] * slopes[r]
+            for m in range(count):
+                v = variations[m, 1 + k * s + i]
+                _slopes(variations[m, k * s : (k + 1) * s + 1], i, p.differentiation, slopes)
+                for r in range(n):
+                    change = rates[m, 0] / p.parts * F[r]
+                    for q in range(n):
+                        change += duration * J[r, q] * v[q]
+                    change = length * change - p.mass[r] * slopes[r]
+                    columns[k, i, m, r] = change + rates[m, 1] * by_parameter[r]
 
 
 @compiled_for_vectors

@@ -9,16 +9,16 @@ from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
 from ....watch import Whereabouts, report
 from ....wording import counted
-from ...continuation.follower import CurveStop, StepControl, Stepped, follow, zero_along
-from ...orbit.measures import CyclePath
+from ...continuation.follower import Curve, CurveStop, StepControl, Stepped, follow, zero_along
 from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...point import Unsolvable
 from ..bordered import BorderedMatrix
 from .cycle_curves import PREDICTED_BY, CurveEnd, polynomial_weights
-from .family import CycleFamily, OnCurve, crossing_pair, first_on_curve, with_parameters
-from .least_stretch import SAFE_AT_PLACES, least_stretch
+from .augmented import crossing_pair
+from .family import CycleFamily, OnCurve, errors_between, first_on_curve, with_parameters
+from .least_stretch import stretch_of
 from .point import SpecialKind, SpecialPoint
 
 STEPS = StepControl(
@@ -67,12 +67,15 @@ class CurveCourse:
     def followed(self, special: SpecialPoint, row: float) -> tuple[list[OnCurve], CurveEnd]:
         """(the curve from a special point of a row on, why it ends); raises Unsolvable."""
         curve = follow(self, first_on_curve(special, self.line.name, self.rows, row), STEPS, self._report)
+        return errors_between(curve.solutions), self._why_ended(curve)
+
+    def _why_ended(self, curve: Curve[OnCurve]) -> CurveEnd:
+        """Why a curve ends."""
         if curve.end is CurveStop.margin:
-            return curve.solutions, END_AT_MARGIN[curve.margin]
+            return END_AT_MARGIN[curve.margin]
         if curve.end is CurveStop.closed:
-            return curve.solutions, CurveEnd.closed
-        lost = curve.end is CurveStop.lost
-        return curve.solutions, self._why_lost(curve.solutions[-1]) if lost else CurveEnd.not_followed
+            return CurveEnd.closed
+        return self._why_lost(curve.solutions[-1]) if curve.end is CurveStop.lost else CurveEnd.not_followed
 
     def _report(self, points: Sequence[OnCurve]) -> None:
         """Says where the curve is."""
@@ -90,7 +93,7 @@ class CurveCourse:
             start, place = self._predicted(behind, self._alive(behind, length))
             way = np.append(last.scale.place(start) - last.scale.place(last.orbit), place - last.place)
             across, slope, rates = last.across(way), slope_of(*behind[-2:]), last.rates
-        there = self._family(last).point(start, place, across, slope, rates)
+        there = self._family(last).point(start, place, across, slope, rates, last)
         mesh = mesh_of(there.orbit)
         predicted = start if mesh == mesh_of(start) else mesh.carry(start)
         off = relative_change(predicted, there.orbit.values - predicted.values)
@@ -137,7 +140,7 @@ class CurveCourse:
         """Scaled distances from the edges and from crushing, h1, and the size of the cycle, (7,)."""
         x, y, rod = self.line.scaled(point.at), point.place, point.orbit.form.rod
         alive = 1 - SHORT_OF_CRUSHED - rod.F / rod.k1
-        stretch = least_stretch(CyclePath(point.orbit), SAFE_AT_PLACES)
+        stretch = stretch_of(point.orbit)
         return np.array([x, 1 - x, y, 1 - y, alive, stretch, point.tip_y_max - VANISHING])
 
     def landed(self, behind: Sequence[OnCurve], outer: OnCurve, margin: int) -> OnCurve | None:

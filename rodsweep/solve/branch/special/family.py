@@ -8,6 +8,8 @@ a cycle solved by the bordered Newton method at each step, on two meshes whose d
 the function and the cycles change across the curve is known from the point before, and from mesh to mesh.
 """
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import ceil, nan
 from typing import NamedTuple
@@ -16,22 +18,19 @@ import numpy as np
 
 from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
-from ...orbit.newton import Converged
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import OrbitMesh, mesh_of, stages_for
+from ...orbit.orbit_mesh import OrbitMesh, lasting_tails, mesh_of, stages_for
 from ...point import Unsolvable
 from ..arc import tangent_at
 from ..beginning import LEAST_UNIT, MOMENT
-from ..bordered import BorderedMatrix, Condition, Scale, bordered, moment_of, moved
-from .locating import REAL
+from ..bordered import BorderedMatrix, Condition, Scale, moment_of, moved
+from .augmented import FoldFunction, NearbyCycles, TorusFunction
 from .point import SpecialKind, SpecialPoint
 
 ACCURACY = 1e-7
 """Relative, of the line's parameter on a curve; that of the special points of rows is 1e-9."""
 ORDER_SHARE, INTERVAL_SHARE = 0.6, 0.5
 """Of the mesh of a special point's 1e-9, with which a curve starts."""
-TOLERANCE = 1e-8
-"""Relative, of the distance of a cycle's matrix from it: the square of it is left."""
 SMALL = 0.05
 """Largest tip y, in L, of cycles whose folds are told from their Hopf point by a division by the moment."""
 FIRST_SECANT, FARTHEST, MOST_SECANTS = 1e-3, 0.1, 12
@@ -47,6 +46,8 @@ LEAST_SPAN = 1e-6
 """Least distance of two cycles that tell the rates across the curve: the test function is known to 1e-8."""
 SAFETY, ROUNDING = 3.0, 1e-12
 MORE_ORDERS, MORE_INTERVALS, MOST_FINER_MESHES = 2, 1.2, 5
+MOST_UNMEASURED = 3
+"""Points from one whose error is measured to the next."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +73,36 @@ class _Tried(NamedTuple):
     at: float
 
 
+@dataclass(frozen=True, eq=False)
+class CurveErrors:
+    """The error of a point of a curve, relative, of the line's value, which is the squared tails' times as large.
+
+    tails: of the orbit where it was measured, in space and in time, (2,); mesh: the orbit's; age: points since.
+    """
+
+    measured: float
+    tails: Array
+    mesh: OrbitMesh
+    age: int = 0
+
+    def at(self, point: "OnCurve") -> float:
+        """The absolute error of another point near by on this mesh."""
+        if not self.age and point.errors is self:
+            return self.measured * abs(point.at)
+        growth = float((lasting_tails(point.orbit) / self.tails).max()) ** 2
+        return max(growth, 1.0) * self.measured * abs(point.at)
+
+    def tells(self, point: "OnCurve") -> bool:
+        """Whether they tell that of the next point."""
+        recent = self.age < MOST_UNMEASURED - 1 and mesh_of(point.orbit) == self.mesh
+        return recent and self.at(point) <= ACCURACY * abs(point.at)
+
+    @property
+    def carried(self) -> "CurveErrors":
+        """The same, known at the next point."""
+        return replace(self, age=self.age + 1)
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class OnCurve:
     """A point of a curve: a cycle with its values of the line's and the rows' parameter.
@@ -87,6 +118,7 @@ class OnCurve:
     at: float
     row: float
     error: float = nan
+    errors: CurveErrors | None = None
     rates: Across | None = None
 
     @property
@@ -136,15 +168,16 @@ class CycleFamily:
         Raises Unsolvable.
         """
         length = float(self.border @ self.scale.place(start))
-        at, orbit, before = 0.0, start, None
+        at, before = 0.0, None
         if rates and rates.way @ across < ALIKE:
             rates = None
+        orbit = self.placed(start, place)
+        near = NearbyCycles(orbit, self.scale, self.border, self._function)
         for _ in range(MOST_SECANTS):
             condition = Condition(self.scale, self.border, length + at * float(across[0]))
-            there = self.placed(orbit, place + at * float(across[1]))
-            found = condition.solved(there, TOLERANCE, TOLERANCE)
-            test = self.test(found)
-            here = _Tried(found.orbit, test, at)
+            orbit = self.placed(orbit, place + at * float(across[1]))
+            orbit, test = near.solved(orbit, condition, abs(rates.test) if rates else math.inf)
+            here = _Tried(orbit, test, at)
             own = self._rates(across, before, here) if before else None
             rates, same = own or rates, same or own is not None
             step = -test / rates.test if rates else FIRST_SECANT
@@ -152,25 +185,18 @@ class CycleFamily:
                 raise Unsolvable("the secant method leaves the curve")
             enough = LINEAR / own.span if own else LINEAR_HERE if same else LINEAR_BEFORE
             if rates and abs(step) <= enough:
-                return self._point(found, place + at * float(across[1]), step, across, rates)
-            before, orbit = here, found.orbit
+                return self._point(orbit, near.matrix, place + at * float(across[1]), step, across, rates)
+            before = here
             if rates:
                 orbit = moved(orbit, self.scale.name, step * _on(rates, orbit))
             at += step
         raise Unsolvable("the secant method does not settle")
 
-    def test(self, found: Converged) -> float:
-        """What is zero at a special point of the kind, at a cycle that was just found; raises Unsolvable."""
-        orbit, matrix = found.orbit, bordered(found)
+    def _function(self, matrix: BorderedMatrix) -> "FoldFunction | TorusFunction":
+        """What is zero at special points of the kind."""
         if self.kind == SpecialKind.fold:
-            tangent = tangent_at(orbit, self.scale, self.border, matrix)
-            moved = self.scale.moved(orbit, tangent)
-            rises = float(moved[2] / (moved @ self.border))
-            return rises * self.scale.moment / moment_of(orbit) if self.small else rises
-        pair = crossing_pair(matrix)
-        if pair is None:
-            raise Unsolvable("the multipliers that cross the circle have become real")
-        return abs(pair) - 1
+            return FoldFunction(matrix, self.border, self.small)
+        return TorusFunction(matrix)
 
     def _rates(self, way: Array, before: _Tried, here: _Tried) -> Across | None:
         """The rates across the curve between two cycles on one mesh; None where they are too near."""
@@ -182,11 +208,13 @@ class CycleFamily:
         orbit = np.append(other.values - one.values, change) / span
         return Across(way, (here.test - before.test) / span, orbit, mesh_of(one), abs(span))
 
-    def _point(self, found: Converged, place: float, step: float, across: Array, rates: Across) -> OnCurve:
+    def _point(
+        self, orbit: Orbit, matrix: BorderedMatrix, place: float, step: float, across: Array, rates: Across
+    ) -> OnCurve:
         """The point of the curve a short step across from a cycle that was just found."""
-        tangent = tangent_at(found.orbit, self.scale, self.border, bordered(found))
+        tangent = tangent_at(matrix.orbit, self.scale, self.border, matrix)
         place += step * float(across[1])
-        orbit = self.placed(moved(found.orbit, self.scale.name, step * _on(rates, found.orbit)), place)
+        orbit = self.placed(moved(orbit, self.scale.name, step * _on(rates, orbit)), place)
         scale = Scale.of(orbit, self.scale.name, self.scale.least)
         ahead = scale.moved(orbit, tangent)
         return OnCurve(
@@ -200,13 +228,22 @@ class CycleFamily:
         )
 
     def point(
-        self, start: Orbit, place: float, across: Array, slope: float = 0.0, rates: Across | None = None
+        self,
+        start: Orbit,
+        place: float,
+        across: Array,
+        slope: float = 0.0,
+        rates: Across | None = None,
+        before: OnCurve | None = None,
     ) -> OnCurve:
         """The same with its error, on a finer mesh if need be; raises Unsolvable.
 
-        slope: d(line's value)/d(place) of the curve, so that what moves along it is no error.
+        slope: d(line's value)/d(place) of the curve, so that what moves along it is no error. before: the point
+        before, by whose errors this one's may be told.
         """
         last = self.nearest(start, place, across, rates)
+        if before and before.errors and before.errors.tells(last):
+            return replace(last, errors=before.errors.carried)
         for _ in range(MOST_FINER_MESHES):
             mesh = mesh_of(last.orbit)
             longer = ceil(MORE_INTERVALS * mesh.intervals)
@@ -217,9 +254,21 @@ class CycleFamily:
             off = abs(here.at - last.at - slope * (here.place - last.place))
             error = SAFETY * off + ROUNDING * abs(here.at)
             if error <= ACCURACY * abs(here.at):
-                return replace(last, error=error)
+                return replace(last, errors=CurveErrors(error / abs(last.at), lasting_tails(last.orbit), mesh))
             last = here
         raise Unsolvable("no mesh is fine enough")
+
+
+def errors_between(points: Sequence[OnCurve]) -> list[OnCurve]:
+    """Points of a curve in order, the errors of those that were not measured by the measured ones beside."""
+    known = [i for i, point in enumerate(points) if point.errors and not point.errors.age]
+    found = []
+    for i, point in enumerate(points):
+        beside = [j for j in known if j <= i][-1:] + [j for j in known if j >= i][:1]
+        errors = [points[j].errors for j in beside]
+        worst = max(error.at(point) for error in errors if error)
+        found.append(replace(point, error=worst))
+    return found
 
 
 def _on(rates: Across, orbit: Orbit) -> Array:
@@ -229,13 +278,6 @@ def _on(rates: Across, orbit: Orbit) -> Array:
         return rates.orbit
     there = replace(rates.mesh.carry(orbit), values=rates.orbit[:-1])
     return np.append(mesh.carry(there).values, rates.orbit[-1])
-
-
-def crossing_pair(matrix: BorderedMatrix) -> complex | None:
-    """Of complex multipliers, over half a period and the reflection, the one nearest to the circle."""
-    h = matrix.returns
-    pairs = h[np.abs(h.imag) > REAL * np.abs(h)]
-    return complex(pairs[np.argmin(np.abs(np.abs(pairs) - 1))]) if len(pairs) else None
 
 
 def with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
