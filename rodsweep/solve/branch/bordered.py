@@ -14,19 +14,20 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...watch import report
-from ..orbit.condensation import eliminate, reduce, substitute, to_end
+from ..orbit.condensation import eliminate, substitute
 from ..orbit.linearisation import (
     NewtonWorkspace,
     change_along,
     jump_of,
     reduced_residuals,
+    reduced_variations,
 )
 from ..orbit.multipliers import nonzero_eigenvalues
 from ..orbit.newton import MOST_ITERATIONS, Converged, relative_change
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh
 from ..orbit.phase import phase, phase_change, phase_row
-from ..orbit.right_sides import right_sides, variation_sides
+from ..orbit.right_sides import right_sides
 from ..point import Unsolvable
 
 LONGEST_STEP = 0.5
@@ -134,14 +135,12 @@ class BorderedMatrix:
         variations: (m, 1 + K s, n); rates: of period and coordinate, (m, 2). Returns the changes, (K, s, m, n),
         and what they make of the end where the start stays, (m, n).
         """
-        K, s, n = orbit.states.shape
-        columns, ends = np.empty((K, s, len(variations), n)), np.zeros((len(variations), n))
-        along, factors, p = change_along(orbit.form, self.scale.name), self._workspace.factors, self.orbit.semidiscrete
-        variation_sides(orbit.points, orbit.duration, orbit.semidiscrete, along, variations, rates, columns)
-        for k in range(K):
-            reduce(factors.blocks[k], columns[k], p)
-            to_end(factors.blocks[k], columns[k], p, ends)
-        return columns, ends
+        along, p = change_along(orbit.form, self.scale.name), orbit.semidiscrete
+        own, factors = self.orbit.semidiscrete, self._workspace.factors
+        changed: tuple[Array, Array] = reduced_variations(
+            orbit.points, orbit.duration, p, along, variations, rates, own, factors
+        )
+        return changed
 
     def spread(self, starts: Array, columns: Array) -> Array:
         """Changes of start and stages, (m, 1 + K s, n), from those of the start, (m, n), and reduced sides."""

@@ -50,10 +50,10 @@ class NearbyCycles:
         self.matrix, self.distance = BorderedMatrix(orbit, self.scale), 0.0
         self.function = self._function(self.matrix)
 
-    def solved(self, orbit: Orbit, condition: Condition, slope: float) -> tuple[Orbit, float]:
+    def solved(self, orbit: Orbit, condition: Condition, slope: float, enough: float) -> tuple[Orbit, float]:
         """(the cycle near an orbit, the value there of the function); raises Unsolvable.
 
-        slope: modulus of the function's about, across the curve, inf if unknown.
+        slope: modulus of the function's about, across the curve; enough: relative error that is small enough.
         """
         last = 0.0
         for _ in range(MOST_CORRECTIONS):
@@ -64,7 +64,7 @@ class NearbyCycles:
             value = self.function.value(orbit)
             off = max(change, abs(value - before) / slope)
             rate = off / last if last else min(1.0, CONTRACTION * self.distance)
-            if off * min(rate, 1.0) <= max(TOLERANCE, SHARE * abs(value) / slope):
+            if off * min(rate, 1.0) <= max(enough, SHARE * abs(value) / slope):
                 return orbit, value
             if last and rate > SLUGGISH:
                 if off <= STALLED:
@@ -93,16 +93,16 @@ class FoldFunction:
     def __init__(self, matrix: BorderedMatrix, border: Array, small: bool) -> None:
         self.matrix, self.border, self.small = matrix, border, small
         tangent = matrix.direction(border)
-        self.tangent = tangent / (matrix.scale.moved(matrix.orbit, tangent) @ border)
+        self.vectors = tangent / (matrix.scale.moved(matrix.orbit, tangent) @ border)
 
     def value(self, orbit: Orbit) -> float:
         """That of the tangent as it is."""
-        rises = float(self.tangent[-1] / self.matrix.scale.coordinate)
+        rises = float(self.vectors[-1] / self.matrix.scale.coordinate)
         return rises * self.matrix.scale.moment / moment_of(orbit) if self.small else rises
 
     def correct(self, orbit: Orbit) -> None:
         """One correction of the tangent at a cycle."""
-        self.tangent = self.matrix.tangent_near(orbit, self.tangent, self.border)
+        self.vectors = self.matrix.tangent_near(orbit, self.vectors, self.border)
 
 
 class TorusFunction:

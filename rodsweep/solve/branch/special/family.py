@@ -8,7 +8,6 @@ a cycle solved by the bordered Newton method at each step, on two meshes whose d
 the function and the cycles change across the curve is known from the point before, and from mesh to mesh.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import ceil, nan
@@ -24,7 +23,7 @@ from ...point import Unsolvable
 from ..arc import tangent_at
 from ..beginning import LEAST_UNIT, MOMENT
 from ..bordered import BorderedMatrix, Condition, Scale, moment_of, moved
-from .augmented import FoldFunction, NearbyCycles, TorusFunction
+from .augmented import SHARE, TOLERANCE, FoldFunction, NearbyCycles, TorusFunction
 from .point import SpecialKind, SpecialPoint
 
 ACCURACY = 1e-7
@@ -69,6 +68,7 @@ class _Tried(NamedTuple):
     """A cycle at a length across a curve, with the test function there."""
 
     orbit: Orbit
+    vectors: Array
     test: float
     at: float
 
@@ -176,8 +176,10 @@ class CycleFamily:
         for _ in range(MOST_SECANTS):
             condition = Condition(self.scale, self.border, length + at * float(across[0]))
             orbit = self.placed(orbit, place + at * float(across[1]))
-            orbit, test = near.solved(orbit, condition, abs(rates.test) if rates else math.inf)
-            here = _Tried(orbit, test, at)
+            slope, rough = (abs(rates.test), TOLERANCE) if rates else (1.0, SHARE * FIRST_SECANT)
+            orbit, test = near.solved(orbit, condition, slope, rough)
+            vectors = near.function.vectors
+            here = _Tried(orbit, vectors, test, at)
             own = self._rates(across, before, here) if before else None
             rates, same = own or rates, same or own is not None
             step = -test / rates.test if rates else FIRST_SECANT
@@ -186,6 +188,8 @@ class CycleFamily:
             enough = LINEAR / own.span if own else LINEAR_HERE if same else LINEAR_BEFORE
             if rates and abs(step) <= enough:
                 return self._point(orbit, near.matrix, place + at * float(across[1]), step, across, rates)
+            if before:
+                near.function.vectors = vectors + step / (at - before.at) * (vectors - before.vectors)
             before = here
             if rates:
                 orbit = moved(orbit, self.scale.name, step * _on(rates, orbit))
