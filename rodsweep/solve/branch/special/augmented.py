@@ -22,7 +22,7 @@ TOLERANCE = 1e-9
 """Relative, to which a cycle and its function are solved: the latter is known to some 1e-8."""
 SHARE = 0.01
 """The same in units of what the function says is left across the curve, where that is larger."""
-CONTRACTION = 30.0
+CONTRACTION = 10.0
 """Ratio of the second correction to the first, at most, in units of the distance from the matrix's cycle: 3
 on curves of large cycles, 10 on those of small ones."""
 SLUGGISH = 0.3

@@ -154,16 +154,23 @@ class CurveCourse:
         try:
             if margin in ROW_EDGES:
                 there = self.on_row(inner, outer, float(margin - ROW_EDGES[0]))
-                return self._family(outer).point(there.orbit, there.place, ALONG_BRANCH, rates=there.rates)
-            found: dict[float, OnCurve] = {1.0: outer}
-
-            def left(share: float) -> float:
-                found[share] = self.between(inner, outer, share)
-                return float(self.margins(found[share])[margin])
-
-            return found[zero_along(left, ends, 1.0, LAST_BRACKET, LAST_BRACKET)]
+            else:
+                there = self._where_zero(inner, outer, margin, ends)
         except Unsolvable:
             return None
+        return replace(there, errors=outer.errors and outer.errors.carried)
+
+    def _where_zero(
+        self, inner: OnCurve, outer: OnCurve, margin: int, ends: tuple[float, float]
+    ) -> OnCurve:
+        """The point between two at which a margin, whose values at these are given, is 0; raises Unsolvable."""
+        found: dict[float, OnCurve] = {1.0: outer}
+
+        def left(share: float) -> float:
+            found[share] = self.between(inner, outer, share)
+            return float(self.margins(found[share])[margin])
+
+        return found[zero_along(left, ends, 1.0, LAST_BRACKET, LAST_BRACKET)]
 
     def closes(self, behind: Sequence[OnCurve], there: OnCurve) -> bool:
         """Whether the first point lies between the last one and the next."""
@@ -174,16 +181,16 @@ class CurveCourse:
         return len(behind) > LEAST_LOOP and 0 <= passed <= 1 and near
 
     def between(self, one: OnCurve, other: OnCurve, share: float) -> OnCurve:
-        """The point at a share of the way between two; raises Unsolvable."""
+        """The point at a share of the way between two, without error; raises Unsolvable."""
         start, place = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
         across = other.across(other.step_from(one))
-        return self._family(other).point(start, place, across, slope_of(one, other), other.rates)
+        return self._family(other).nearest(start, place, across, other.rates)
 
     def on_row(self, one: OnCurve, other: OnCurve, place: float) -> OnCurve:
         """The point at a place of the rows' axis, scaled, between two, without error; raises Unsolvable."""
         share = (place - one.place) / (other.place - one.place) if other.place != one.place else 0.0
         start, _ = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
-        return self._family(other).nearest(start, place, ALONG_BRANCH)
+        return self._family(other).nearest(start, place, ALONG_BRANCH, other.rates)
 
     def _why_lost(self, last: OnCurve) -> CurveEnd:
         """Why a curve cannot be followed beyond a point."""

@@ -87,8 +87,6 @@ class CurveErrors:
 
     def at(self, point: "OnCurve") -> float:
         """The absolute error of another point near by on this mesh."""
-        if not self.age and point.errors is self:
-            return self.measured * abs(point.at)
         growth = float((lasting_tails(point.orbit) / self.tails).max()) ** 2
         return max(growth, 1.0) * self.measured * abs(point.at)
 
@@ -264,15 +262,19 @@ class CycleFamily:
 
 
 def errors_between(points: Sequence[OnCurve]) -> list[OnCurve]:
-    """Points of a curve in order, the errors of those that were not measured by the measured ones beside."""
-    known = [i for i, point in enumerate(points) if point.errors and not point.errors.age]
-    found = []
-    for i, point in enumerate(points):
-        beside = [j for j in known if j <= i][-1:] + [j for j in known if j >= i][:1]
-        errors = [points[j].errors for j in beside]
-        worst = max(error.at(point) for error in errors if error)
-        found.append(replace(point, error=worst))
-    return found
+    """Points of a curve in order, with the larger of the errors that those measured before and behind tell."""
+    found: list[OnCurve] = []
+    behind: CurveErrors | None = None
+    for point in reversed(points):
+        if point.errors is None:
+            raise ValueError("the point was located without error")
+        told = [point.errors]
+        if point.errors.age == 0:
+            behind = point.errors
+        elif behind and behind.mesh == mesh_of(point.orbit):
+            told.append(behind)
+        found.append(replace(point, error=max(errors.at(point) for errors in told)))
+    return found[::-1]
 
 
 def _on(rates: Across, orbit: Orbit) -> Array:
