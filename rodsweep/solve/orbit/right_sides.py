@@ -9,7 +9,7 @@ from ...discretization.nodal_rod import NodalChange
 from ...discretization.plane import balance, balance_change, jacobian, velocity_balance
 from ...discretization.state_layout import stress_place, velocity_place
 from ...model.compilation import compiled_for_vectors
-from .condensation import Semidiscrete
+from .condensation import Semidiscrete, add_products
 
 
 class Along(NamedTuple):
@@ -114,6 +114,8 @@ def variation_sides(
     V, G, changes = np.empty(p.rod.drag.shape), np.empty(p.rod.drag.shape), np.empty((3, *p.rod.drag.shape))
     F, by_parameter, slopes, J = np.empty(n), np.zeros(n), np.empty(n), np.empty((n, n))
     tip, moving = np.empty((V.shape[0], n)), np.any(rates[:, 1] != 0.0)
+    v = np.empty((count, n))
+    columns[:] = 0.0
     for k in range(K):
         length = p.lengths[k]
         for i in range(s):
@@ -125,15 +127,14 @@ def variation_sides(
                 _slopes(points[k * s : (k + 1) * s + 1], i, p.differentiation, slopes)
                 for r in range(n):
                     by_parameter[r] = duration * length * by_parameter[r] - along.mass[r] * slopes[r]
+            v[:] = variations[:, 1 + k * s + i]
+            add_products(J, v, columns[k, i], duration * length)
             for m in range(count):
-                v = variations[m, 1 + k * s + i]
                 _slopes(variations[m, k * s : (k + 1) * s + 1], i, p.differentiation, slopes)
+                by_period = rates[m, 0] * length / p.parts
                 for r in range(n):
-                    change = rates[m, 0] / p.parts * F[r]
-                    for q in range(n):
-                        change += duration * J[r, q] * v[q]
-                    change = length * change - p.mass[r] * slopes[r]
-                    columns[k, i, m, r] = change + rates[m, 1] * by_parameter[r]
+                    change = by_period * F[r] + rates[m, 1] * by_parameter[r]
+                    columns[k, i, m, r] += change - p.mass[r] * slopes[r]
 
 
 @compiled_for_vectors
