@@ -22,9 +22,10 @@ TOLERANCE = 1e-9
 """Relative, to which a cycle and its function are solved: the latter is known to some 1e-8."""
 SHARE = 0.01
 """The same in units of what the function says is left across the curve, where that is larger."""
-CONTRACTION = 10.0
-"""Ratio of the second correction to the first, at most, in units of the distance from the matrix's cycle: 3
-on curves of large cycles, 10 on those of small ones."""
+LEAST_CONTRACTION, CAREFUL = 10.0, 3.0
+"""Ratio of a correction to the one before in units of the distance from the matrix's cycle, which is 2 or 3 on
+curves of large cycles and 1e5 beside a Hopf point: the least that is believed, and by what factor one that was
+met at a cycle may be too small at the next."""
 SLUGGISH = 0.3
 """Ratio of a correction to the one before from which the matrix is made anew."""
 STALLED = 1e-8
@@ -43,6 +44,8 @@ class NearbyCycles:
         function: "Callable[[BorderedMatrix], FoldFunction | TorusFunction]",
     ) -> None:
         self.scale, self.border, self._function = scale, border, function
+        self.contraction, self.learns = np.inf, False
+        """Ratio of a correction to the one before in units of the matrix's distance, and whether it lasts."""
         self._eliminate(start)
 
     def _eliminate(self, orbit: Orbit) -> None:
@@ -59,11 +62,14 @@ class NearbyCycles:
         for _ in range(MOST_CORRECTIONS):
             report()
             orbit, change = self._corrected(orbit, condition)
+            distance = self.distance
             before = self.function.value(orbit)
             self.function.correct(orbit)
             value = self.function.value(orbit)
             off = max(change, abs(value - before) / slope)
-            rate = off / last if last else min(1.0, CONTRACTION * self.distance)
+            rate = off / last if last else min(1.0, self.contraction * distance)
+            if last and self.learns:
+                self.contraction = max(LEAST_CONTRACTION, CAREFUL * rate / distance)
             if off * min(rate, 1.0) <= max(enough, SHARE * abs(value) / slope):
                 return orbit, value
             if last and rate > SLUGGISH:

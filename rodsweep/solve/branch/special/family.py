@@ -8,6 +8,7 @@ a cycle solved by the bordered Newton method at each step, on two meshes whose d
 the function and the cycles change across the curve is known from the point before, and from mesh to mesh.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import ceil, nan
@@ -43,7 +44,8 @@ ALIKE = 0.9
 """Least cosine of the angle between two ways across for which the rates of one serve the other."""
 LEAST_SPAN = 1e-6
 """Least distance of two cycles that tell the rates across the curve: the test function is known to 1e-8."""
-SAFETY, ROUNDING = 3.0, 1e-12
+SAFETY, LOCATED = 3.0, 3e-9
+"""Of the difference of two meshes, and relative error of the line's value beside it."""
 MORE_ORDERS, MORE_INTERVALS, MOST_FINER_MESHES = 2, 1.2, 5
 MOST_UNMEASURED = 3
 """Points from one whose error is measured to the next."""
@@ -54,7 +56,8 @@ class Across:
     """How the cycles of a family change across its curve, by the length across.
 
     way: across, along the branch and along the rows, (2,). test: of what is zero on the curve. orbit: of
-    values and the line's coordinate, (N + 1,); mesh: theirs. span: length between the cycles that tell them.
+    values and the line's coordinate, (N + 1,); mesh: theirs. span: length between the cycles that tell them. contraction:
+    of corrections, as `NearbyCycles` has it.
     """
 
     way: Array
@@ -62,6 +65,7 @@ class Across:
     orbit: Array
     mesh: OrbitMesh
     span: float
+    contraction: float = math.inf
 
 
 class _Tried(NamedTuple):
@@ -171,6 +175,8 @@ class CycleFamily:
             rates = None
         orbit = self.placed(start, place)
         near = NearbyCycles(orbit, self.scale, self.border, self._function)
+        if not self.small:  # beside a Hopf point no correction tells how good the next one is
+            near.contraction, near.learns = rates.contraction if rates else math.inf, True
         for _ in range(MOST_SECANTS):
             condition = Condition(self.scale, self.border, length + at * float(across[0]))
             orbit = self.placed(orbit, place + at * float(across[1]))
@@ -185,7 +191,7 @@ class CycleFamily:
                 raise Unsolvable("the secant method leaves the curve")
             enough = LINEAR / own.span if own else LINEAR_HERE if same else LINEAR_BEFORE
             if rates and abs(step) <= enough:
-                return self._point(orbit, near.matrix, place + at * float(across[1]), step, across, rates)
+                return self._point(orbit, near.matrix, place + at * float(across[1]), step, across, replace(rates, contraction=near.contraction))
             if before:
                 near.function.vectors = vectors + step / (at - before.at) * (vectors - before.vectors)
             before = here
@@ -254,7 +260,7 @@ class CycleFamily:
                 break
             here = self.nearest(finer.carry(last.orbit), last.place, across, last.rates, same=True)
             off = abs(here.at - last.at - slope * (here.place - last.place))
-            error = SAFETY * off + ROUNDING * abs(here.at)
+            error = SAFETY * off + LOCATED * abs(here.at)
             if error <= ACCURACY * abs(here.at):
                 return replace(last, errors=CurveErrors(error / abs(last.at), lasting_tails(last.orbit), mesh))
             last = here
