@@ -97,58 +97,38 @@ class BorderedMatrix:
 
     def step(self, border: Array, length: float) -> Array:
         """Newton's step along which `border` . place, (3,), grows by a length, (N + 1,)."""
-        return self._solved(border, np.append(self._right, length), self._columns[:, :, 1], 1.0)
+        return self.solved(border, np.append(self._right, length), self._columns[:, :, 1], 1.0)
 
     def correction(self, orbit: Orbit, border: Array, length: float) -> Array:
         """The same at another orbit near by, whose parameter may be another one."""
         factors, p = self._workspace.factors, self.orbit.semidiscrete
         columns, ends = reduced_residuals(orbit.points, orbit.duration, orbit.semidiscrete, p, factors)
         right = np.append(self._jump(orbit, ends[0]), length)
-        return self._solved(border, right, columns[:, :, 0], 1.0)
+        return self.solved(border, right, columns[:, :, 0], 1.0)
 
     def direction(self, border: Array) -> Array:
         """The tangent of the branch, of unit length in `Scale.place`, on the side of a border, (N + 1,)."""
         right = np.append(np.zeros(len(self._right)), 1.0)
-        change = self._solved(border, right, self._columns[:, :, 1], 0.0)
+        change = self.solved(border, right, self._columns[:, :, 1], 0.0)
         return change / np.linalg.norm(self.scale.moved(self.orbit, change))
 
-    def tangent_near(self, orbit: Orbit, tangent: Array, border: Array) -> Array:
-        """A tangent, (N + 1,), of the branch through another orbit near by, corrected once.
+    def varied(self, orbit: Orbit, variations: Array) -> tuple[Array, Array]:
+        """The changes, (K, s, m, n), of another orbit's residuals along variations, (m, N + 1), reduced.
 
-        What is corrected to 0 is linear in it; border . `Scale.moved` of it is 1.
+        With what they make of its end where its start stays, (m, n).
         """
-        p, change = orbit.semidiscrete, change_along(orbit.form, self.scale.name)
-        variation = replace(orbit, values=tangent[:-1])
-        columns, ends = self.varied(orbit, variation.points[None], tangent[None, -2:])
-        row = np.empty(len(orbit.start))
-        phase_row(orbit.start, p.rod, p.matrices, row)
-        shift = phase_change(orbit.start, change.change, p.rod, p.matrices)
-        right = np.empty(len(row) + 2)
-        right[:-2] = jump_of(variation.points, p) - ends[0]
-        right[-2] = shift * tangent[-1] - row @ variation.start
-        right[-1] = 1 - border @ self.scale.moved(orbit, tangent)
-        return tangent + self._solved(border, right, columns[:, :, 0], 1.0)
-
-    def varied(self, orbit: Orbit, variations: Array, rates: Array) -> tuple[Array, Array]:
-        """What the residuals of another orbit near by change by along variations of it, reduced.
-
-        variations: (m, 1 + K s, n); rates: of period and coordinate, (m, 2). Returns the changes, (K, s, m, n),
-        and what they make of the end where the start stays, (m, n).
-        """
-        along, p = change_along(orbit.form, self.scale.name), orbit.semidiscrete
-        own, factors = self.orbit.semidiscrete, self._workspace.factors
+        along, rod, p = change_along(orbit.form, self.scale.name), orbit.semidiscrete, self.orbit.semidiscrete
         changed: tuple[Array, Array] = reduced_variations(
-            orbit.points, orbit.duration, p, along, variations, rates, own, factors
+            orbit.values, rod, along, variations, p, self._workspace.factors
         )
         return changed
 
     def spread(self, starts: Array, columns: Array) -> Array:
-        """Changes of start and stages, (m, 1 + K s, n), from those of the start, (m, n), and reduced sides."""
+        """The changes of states, (m, N + 1), from those of the start, (m, n), and reduced right sides."""
         out = np.empty_like(columns)
         substitute(starts, columns, self.orbit.semidiscrete, self._workspace.factors, out)
-        K, s, m, n = out.shape
-        stages = out.transpose(2, 0, 1, 3).reshape(m, K * s, n)
-        return np.concatenate([starts[:, None], stages], axis=1)
+        stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)
+        return np.hstack([starts, stages, np.zeros((len(starts), 2))])
 
     @property
     def propagator(self) -> Array:
@@ -182,7 +162,7 @@ class BorderedMatrix:
         jump = jump_of(orbit.points, p) - end
         return np.append(jump, -phase(orbit.start, p.rod, p.matrices))
 
-    def _solved(self, border: Array, right: Array, sides: Array, share: float) -> Array:
+    def solved(self, border: Array, right: Array, sides: Array, share: float) -> Array:
         """The change for right sides of the ends and a share of those of the stages, (K, s, n)."""
         n = len(self.orbit.start)
         matrix = self._matrix.copy()

@@ -210,22 +210,15 @@ def reduced_residuals(
 
 @compiled_for_vectors
 def reduced_variations(
-    points: Array,
-    duration: float,
-    rod: Semidiscrete,
-    along: Along,
-    variations: Array,
-    rates: Array,
-    p: Semidiscrete,
-    factors: Factors,
+    values: Array, rod: Semidiscrete, along: Along, variations: Array, p: Semidiscrete, factors: Factors
 ) -> tuple[Array, Array]:
-    """`variation_sides` of points for a rod, reduced by the matrix of another one, p, near by.
+    """`variation_sides` of an orbit's values for a rod, reduced by the matrix of another one, p, near by.
 
     Returns them, (K, s, m, n), and what they make of the last end where the start stays, (m, n).
     """
     K, s, n, m = factors.blocks.shape[0], factors.blocks.shape[1], len(p.mass), len(variations)
     columns, ends = np.empty((K, s, m, n)), np.zeros((m, n))
-    variation_sides(points, duration, rod, along, variations, rates, columns)
+    variation_sides(values, rod, along, variations, columns)
     for k in range(K):
         reduce(factors.blocks[k], columns[k], p)
         to_end(factors.blocks[k], columns[k], p, ends)

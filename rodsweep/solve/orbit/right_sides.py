@@ -96,45 +96,37 @@ def right_sides(
 
 
 @compiled_for_vectors
-def variation_sides(
-    points: Array,
-    duration: float,
-    p: Semidiscrete,
-    along: Along,
-    variations: Array,
-    rates: Array,
-    columns: Array,
-) -> None:
-    """The derivatives of the `residuals` along variations of an orbit into columns, (K, s, columns, n).
+def variation_sides(values: Array, p: Semidiscrete, along: Along, variations: Array, columns: Array) -> None:
+    """The derivatives of an orbit's `residuals` along variations into columns, (K, s, columns, n).
 
-    variations: of the start and the stages, (columns, 1 + K s, n); rates: of the period, and of the parameter
-    that `along` is of, (columns, 2).
+    values: the orbit's, (N,); variations: of these and of the parameter that `along` is of, (columns, N + 1).
     """
     K, s, count, n = columns.shape
-    V, G, changes = np.empty(p.rod.drag.shape), np.empty(p.rod.drag.shape), np.empty((3, *p.rod.drag.shape))
-    F, by_parameter, slopes, J = np.empty(n), np.zeros(n), np.empty(n), np.empty((n, n))
-    tip, moving = np.empty((V.shape[0], n)), np.any(rates[:, 1] != 0.0)
-    v = np.empty((count, n))
+    points, duration = values[:-1].reshape(1 + K * s, n), values[-1] / p.parts
+    changes = variations[:, :-2].copy().reshape(count, 1 + K * s, n)
+    V, G, out = np.empty(p.rod.drag.shape), np.empty(p.rod.drag.shape), np.empty((3, *p.rod.drag.shape))
+    F, slopes, by_parameter, J = np.empty(n), np.empty(n), np.zeros(n), np.empty((n, n))
+    tip, v, moving = np.empty((len(V), n)), np.empty((count, n)), np.any(variations[:, -1] != 0.0)
     columns[:] = 0.0
     for k in range(K):
-        length = p.lengths[k]
+        h = duration * p.lengths[k]
         for i in range(s):
             x = points[1 + k * s + i]
             equations(x, F, V, G, p)
             jacobian(x, V, J, tip, p.rod, p.matrices)
             if moving:
-                equations_change(x, by_parameter, V, changes, along.change, p)
+                equations_change(x, by_parameter, V, out, along.change, p)
                 _slopes(points[k * s : (k + 1) * s + 1], i, p.differentiation, slopes)
                 for r in range(n):
-                    by_parameter[r] = duration * length * by_parameter[r] - along.mass[r] * slopes[r]
-            v[:] = variations[:, 1 + k * s + i]
-            add_products(J, v, columns[k, i], duration * length)
+                    by_parameter[r] = h * by_parameter[r] - along.mass[r] * slopes[r]
+            v[:] = changes[:, 1 + k * s + i]
+            add_products(J, v, columns[k, i], h)
             for m in range(count):
-                _slopes(variations[m, k * s : (k + 1) * s + 1], i, p.differentiation, slopes)
-                by_period = rates[m, 0] * length / p.parts
+                _slopes(changes[m, k * s : (k + 1) * s + 1], i, p.differentiation, slopes)
+                by_period = variations[m, -2] * p.lengths[k] / p.parts
                 for r in range(n):
-                    change = by_period * F[r] + rates[m, 1] * by_parameter[r]
-                    columns[k, i, m, r] += change - p.mass[r] * slopes[r]
+                    rates = by_period * F[r] + variations[m, -1] * by_parameter[r]
+                    columns[k, i, m, r] += rates - p.mass[r] * slopes[r]
 
 
 @compiled_for_vectors

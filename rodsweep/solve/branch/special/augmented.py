@@ -6,26 +6,27 @@ by, a vector of the cycle before as the start, and its residual at the cycle its
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from ....arrays import Array
 from ....watch import report
+from ...orbit.linearisation import jump_of
 from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
+from ...orbit.phase import phase_change, phase_row
 from ...point import Unsolvable
 from ..bordered import LONGEST_STEP, BorderedMatrix, Condition, Scale, moment_of, moved
 from .locating import REAL
-
 
 TOLERANCE = 1e-9
 """Relative, to which a cycle and its function are solved: the latter is known to some 1e-8."""
 SHARE = 0.01
 """The same in units of what the function says is left across the curve, where that is larger."""
 LEAST_CONTRACTION, CAREFUL = 10.0, 3.0
-"""Ratio of a correction to the one before in units of the distance from the matrix's cycle, which is 2 or 3 on
-curves of large cycles and 1e5 beside a Hopf point: the least that is believed, and by what factor one that was
-met at a cycle may be too small at the next."""
+"""Ratio of a correction to the one before in units of the distance from the matrix's cycle, 2 or 3 for
+large cycles: the least that is believed, and by what factor one that was met may be too small at the next."""
 SLUGGISH = 0.3
 """Ratio of a correction to the one before from which the matrix is made anew."""
 STALLED = 1e-8
@@ -91,7 +92,7 @@ class NearbyCycles:
 
 
 class FoldFunction:
-    """dp/dl, the rise of the parameter along the branch, from its tangent: the border's equation is the length.
+    """dp/dl, the rise of the parameter along the branch, from its tangent; l is what the border measures.
 
     small: whether the moment is divided out, for at a Hopf point it is zero too.
     """
@@ -107,12 +108,23 @@ class FoldFunction:
         return rises * self.matrix.scale.moment / moment_of(orbit) if self.small else rises
 
     def correct(self, orbit: Orbit) -> None:
-        """One correction of the tangent at a cycle."""
-        self.vectors = self.matrix.tangent_near(orbit, self.vectors, self.border)
+        """One correction of the tangent at a cycle, where what is corrected to 0 is linear in it."""
+        matrix, tangent, p = self.matrix, self.vectors, orbit.semidiscrete
+        change = replace(orbit, values=tangent[:-1])
+        columns, ends = matrix.varied(orbit, tangent[None])
+        row = np.empty(len(orbit.start))
+        phase_row(orbit.start, p.rod, p.matrices, row)
+        along = orbit.form.change(matrix.scale.name)
+        shift = phase_change(orbit.start, along, p.rod, p.matrices)
+        right = np.empty(len(row) + 2)
+        right[:-2] = jump_of(change.points, p) - ends[0]
+        right[-2] = shift * tangent[-1] - row @ change.start
+        right[-1] = 1 - self.border @ matrix.scale.moved(orbit, tangent)
+        self.vectors = tangent + matrix.solved(self.border, right, columns[:, :, 0], 1.0)
 
 
 class TorusFunction:
-    """|mu| - 1 of the pair of multipliers nearest to the circle, over what is solved, from its eigenvector."""
+    """|mu| - 1 of the pair of multipliers nearest to the circle, from its eigenvector."""
 
     def __init__(self, matrix: BorderedMatrix) -> None:
         self.matrix = matrix
@@ -140,8 +152,9 @@ class TorusFunction:
 
     def correct(self, orbit: Orbit) -> None:
         """One correction of multiplier and eigenvector at a cycle."""
-        columns, ends = self.matrix.varied(orbit, self.vectors, np.zeros((2, 2)))
-        start, end = (self.vectors[0, i] + 1j * self.vectors[1, i] for i in (0, -1))
+        columns, ends = self.matrix.varied(orbit, self.vectors)
+        n = ends.shape[1]
+        start, end = (part[0] + 1j * part[1] for part in (self.vectors[:, :n], self.vectors[:, -2 - n : -2]))
         right = np.append(self.multiplier * (orbit.semidiscrete.symmetry @ start), 1 - self.border @ start)
         right[:-1] -= end + ends[0] + 1j * ends[1]
         change = np.linalg.solve(self.bordered, right)

@@ -15,10 +15,11 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...point import Unsolvable
 from ..bordered import BorderedMatrix
-from .cycle_curves import PREDICTED_BY, CurveEnd, polynomial_weights
 from .augmented import crossing_pair
-from .family import CycleFamily, OnCurve, errors_between, first_on_curve, with_parameters
+from .cycle_curves import PREDICTED_BY, CurveEnd, weights_at
+from .family import CycleFamily, first_on_curve
 from .least_stretch import stretch_of
+from .on_curve import OnCurve, errors_between, with_parameters
 from .point import SpecialKind, SpecialPoint
 
 STEPS = StepControl(
@@ -108,7 +109,7 @@ class CurveCourse:
     def _predicted(self, points: Sequence[OnCurve], step: float) -> tuple[Orbit, float]:
         """(orbit, place) a step beyond the last of some points; raises Unsolvable."""
         known = points[-PREDICTED_BY:]
-        return self._mixed(known, polynomial_weights(lengths_of(known), step), mesh_of(known[-1].orbit))
+        return self._mixed(known, weights_at(lengths_of(known), step), mesh_of(known[-1].orbit))
 
     def _alive(self, points: Sequence[OnCurve], step: float) -> float:
         """A step, or the longest one whose prediction is a rod that is all but crushed."""
@@ -118,7 +119,7 @@ class CurveCourse:
         lengths = lengths_of(known)
 
         def distance(longest: float) -> float:
-            weights, rod = polynomial_weights(lengths, longest), known[-1].orbit.form.rod
+            weights, rod = weights_at(lengths, longest), known[-1].orbit.form.rod
             at, place = (float(np.dot(weights, [getattr(p, n) for p in known])) for n in ("at", "place"))
             values = {"F": rod.F, "k1": rod.k1, self.line.name: at, self.rows.name: self.rows.value(place)}
             return 1 - SHORT_OF_CRUSHED / 2 - values["F"] / values["k1"]
@@ -128,7 +129,7 @@ class CurveCourse:
         return float(brentq(distance, 0.0, step, rtol=1e-6))
 
     def _mixed(
-        self, points: Sequence[OnCurve], weights: Sequence[float], mesh: OrbitMesh
+        self, points: Sequence[OnCurve], weights: Sequence[float] | Array, mesh: OrbitMesh
     ) -> tuple[Orbit, float]:
         """(orbit, place) by weights of some points; raises Unsolvable."""
         values = np.dot(weights, [mesh.carry(point.orbit).values for point in points])
@@ -160,10 +161,8 @@ class CurveCourse:
             return None
         return replace(there, errors=outer.errors and outer.errors.carried)
 
-    def _where_zero(
-        self, inner: OnCurve, outer: OnCurve, margin: int, ends: tuple[float, float]
-    ) -> OnCurve:
-        """The point between two at which a margin, whose values at these are given, is 0; raises Unsolvable."""
+    def _where_zero(self, inner: OnCurve, outer: OnCurve, margin: int, ends: tuple[float, float]) -> OnCurve:
+        """The point between two at which a margin is 0; ends: its values there. Raises Unsolvable."""
         found: dict[float, OnCurve] = {1.0: outer}
 
         def left(share: float) -> float:

@@ -4,14 +4,13 @@ The cycles near a special point are a family of two numbers: a length along the 
 `bordered` has it, and the place on the axis of the rows. In these two the special points are the zeros of one
 function on a smooth curve, also where both parameters turn back, at a cusp. It is followed by its length: a
 polynomial through the points before predicts cycle and place; the secant method across the curve corrects,
-a cycle solved by the bordered Newton method at each step, on two meshes whose difference is the error. How
-the function and the cycles change across the curve is known from the point before, and from mesh to mesh.
+every cycle and the function's vectors with the factors of one elimination (`augmented`). How the function and
+the cycles change across is known from the point before. What two meshes differ by is the error, at every
+third point or so.
 """
 
-import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import ceil, nan
+from math import ceil, inf
 from typing import NamedTuple
 
 import numpy as np
@@ -19,16 +18,15 @@ import numpy as np
 from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import OrbitMesh, lasting_tails, mesh_of, stages_for
+from ...orbit.orbit_mesh import lasting_tails, mesh_of, stages_for
 from ...point import Unsolvable
 from ..arc import tangent_at
 from ..beginning import LEAST_UNIT, MOMENT
 from ..bordered import BorderedMatrix, Condition, Scale, moment_of, moved
 from .augmented import SHARE, TOLERANCE, FoldFunction, NearbyCycles, TorusFunction
+from .on_curve import ACCURACY, Across, CurveErrors, OnCurve, with_parameters
 from .point import SpecialKind, SpecialPoint
 
-ACCURACY = 1e-7
-"""Relative, of the line's parameter on a curve; that of the special points of rows is 1e-9."""
 ORDER_SHARE, INTERVAL_SHARE = 0.6, 0.5
 """Of the mesh of a special point's 1e-9, with which a curve starts."""
 SMALL = 0.05
@@ -47,95 +45,15 @@ LEAST_SPAN = 1e-6
 SAFETY, LOCATED = 3.0, 3e-9
 """Of the difference of two meshes, and relative error of the line's value beside it."""
 MORE_ORDERS, MORE_INTERVALS, MOST_FINER_MESHES = 2, 1.2, 5
-MOST_UNMEASURED = 3
-"""Points from one whose error is measured to the next."""
-
-
-@dataclass(frozen=True, eq=False)
-class Across:
-    """How the cycles of a family change across its curve, by the length across.
-
-    way: across, along the branch and along the rows, (2,). test: of what is zero on the curve. orbit: of
-    values and the line's coordinate, (N + 1,); mesh: theirs. span: length between the cycles that tell them. contraction:
-    of corrections, as `NearbyCycles` has it.
-    """
-
-    way: Array
-    test: float
-    orbit: Array
-    mesh: OrbitMesh
-    span: float
-    contraction: float = math.inf
 
 
 class _Tried(NamedTuple):
-    """A cycle at a length across a curve, with the test function there."""
+    """A cycle at a length across a curve, with the vectors and the value of the function there."""
 
     orbit: Orbit
     vectors: Array
     test: float
     at: float
-
-
-@dataclass(frozen=True, eq=False)
-class CurveErrors:
-    """The error of a point of a curve, relative, of the line's value, which is the squared tails' times as large.
-
-    tails: of the orbit where it was measured, in space and in time, (2,); mesh: the orbit's; age: points since.
-    """
-
-    measured: float
-    tails: Array
-    mesh: OrbitMesh
-    age: int = 0
-
-    def at(self, point: "OnCurve") -> float:
-        """The absolute error of another point near by on this mesh."""
-        growth = float((lasting_tails(point.orbit) / self.tails).max()) ** 2
-        return max(growth, 1.0) * self.measured * abs(point.at)
-
-    def tells(self, point: "OnCurve") -> bool:
-        """Whether they tell that of the next point."""
-        recent = self.age < MOST_UNMEASURED - 1 and mesh_of(point.orbit) == self.mesh
-        return recent and self.at(point) <= ACCURACY * abs(point.at)
-
-    @property
-    def carried(self) -> "CurveErrors":
-        """The same, known at the next point."""
-        return replace(self, age=self.age + 1)
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class OnCurve:
-    """A point of a curve: a cycle with its values of the line's and the rows' parameter.
-
-    place: on the rows' axis, scaled. ahead: direction of its branch in `Scale.place`, (3,). error: absolute,
-    of the line's value on the curve. period in tau2, tip_y_max in L. rates: across the curve, where known.
-    """
-
-    orbit: Orbit
-    scale: Scale
-    ahead: Array
-    place: float
-    at: float
-    row: float
-    error: float = nan
-    errors: CurveErrors | None = None
-    rates: Across | None = None
-
-    @property
-    def tip_y_max(self) -> float:
-        return abs(float(self.orbit.form.tip(self.orbit.start)[1]))
-
-    def step_from(self, other: "OnCurve") -> Array:
-        """From another point to this one: in `Scale.place`, and along the rows, (4,)."""
-        moved = self.scale.place(self.orbit) - self.scale.place(other.orbit)
-        return np.append(moved, self.place - other.place)
-
-    def across(self, step: Array) -> Array:
-        """Square to a step, (4,), along the branch and along the rows, (2,)."""
-        way = np.array([float(self.ahead @ step[:3]), step[3]])
-        return np.array([-way[1], way[0]]) / np.linalg.norm(way)
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,6 +79,12 @@ class CycleFamily:
         """The values of an orbit for the rod at a place on the rows' axis; raises Unsolvable."""
         return with_parameters(orbit, {self.rows.name: self.rows.value(place)})
 
+    def function(self, matrix: BorderedMatrix) -> FoldFunction | TorusFunction:
+        """What is zero at special points of the kind, at the cycle of a matrix."""
+        if self.kind == SpecialKind.fold:
+            return FoldFunction(matrix, self.border, self.small)
+        return TorusFunction(matrix)
+
     def nearest(
         self, start: Orbit, place: float, across: Array, rates: Across | None = None, same: bool = False
     ) -> OnCurve:
@@ -169,71 +93,13 @@ class CycleFamily:
         rates: about those across the curve; same: whether they are of this very point, on another mesh.
         Raises Unsolvable.
         """
-        length = float(self.border @ self.scale.place(start))
-        at, before = 0.0, None
-        if rates and rates.way @ across < ALIKE:
-            rates = None
-        orbit = self.placed(start, place)
-        near = NearbyCycles(orbit, self.scale, self.border, self._function)
-        if not self.small:  # beside a Hopf point no correction tells how good the next one is
-            near.contraction, near.learns = rates.contraction if rates else math.inf, True
+        known = rates if rates and rates.way @ across >= ALIKE else None
+        search = _SecantAcross(self, start, place, across, known, same)
         for _ in range(MOST_SECANTS):
-            condition = Condition(self.scale, self.border, length + at * float(across[0]))
-            orbit = self.placed(orbit, place + at * float(across[1]))
-            slope, rough = (abs(rates.test), TOLERANCE) if rates else (1.0, SHARE * FIRST_SECANT)
-            orbit, test = near.solved(orbit, condition, slope, rough)
-            vectors = near.function.vectors
-            here = _Tried(orbit, vectors, test, at)
-            own = self._rates(across, before, here) if before else None
-            rates, same = own or rates, same or own is not None
-            step = -test / rates.test if rates else FIRST_SECANT
-            if not abs(step) <= FARTHEST:
-                raise Unsolvable("the secant method leaves the curve")
-            enough = LINEAR / own.span if own else LINEAR_HERE if same else LINEAR_BEFORE
-            if rates and abs(step) <= enough:
-                return self._point(orbit, near.matrix, place + at * float(across[1]), step, across, replace(rates, contraction=near.contraction))
-            if before:
-                near.function.vectors = vectors + step / (at - before.at) * (vectors - before.vectors)
-            before = here
-            if rates:
-                orbit = moved(orbit, self.scale.name, step * _on(rates, orbit))
-            at += step
+            found = search.next()
+            if found is not None:
+                return found
         raise Unsolvable("the secant method does not settle")
-
-    def _function(self, matrix: BorderedMatrix) -> "FoldFunction | TorusFunction":
-        """What is zero at special points of the kind."""
-        if self.kind == SpecialKind.fold:
-            return FoldFunction(matrix, self.border, self.small)
-        return TorusFunction(matrix)
-
-    def _rates(self, way: Array, before: _Tried, here: _Tried) -> Across | None:
-        """The rates across the curve between two cycles on one mesh; None where they are too near."""
-        name, span = self.scale.name, here.at - before.at
-        if abs(span) < LEAST_SPAN or here.test == before.test:
-            return None
-        one, other = before.orbit, here.orbit
-        change = other.form.rod.coordinate(name) - one.form.rod.coordinate(name)
-        orbit = np.append(other.values - one.values, change) / span
-        return Across(way, (here.test - before.test) / span, orbit, mesh_of(one), abs(span))
-
-    def _point(
-        self, orbit: Orbit, matrix: BorderedMatrix, place: float, step: float, across: Array, rates: Across
-    ) -> OnCurve:
-        """The point of the curve a short step across from a cycle that was just found."""
-        tangent = tangent_at(matrix.orbit, self.scale, self.border, matrix)
-        place += step * float(across[1])
-        orbit = self.placed(moved(orbit, self.scale.name, step * _on(rates, orbit)), place)
-        scale = Scale.of(orbit, self.scale.name, self.scale.least)
-        ahead = scale.moved(orbit, tangent)
-        return OnCurve(
-            orbit=orbit,
-            scale=scale,
-            ahead=ahead / np.linalg.norm(ahead),
-            place=place,
-            at=getattr(orbit.form.rod, scale.name),
-            row=getattr(orbit.form.rod, self.rows.name),
-            rates=rates,
-        )
 
     def point(
         self,
@@ -246,8 +112,8 @@ class CycleFamily:
     ) -> OnCurve:
         """The same with its error, on a finer mesh if need be; raises Unsolvable.
 
-        slope: d(line's value)/d(place) of the curve, so that what moves along it is no error. before: the point
-        before, by whose errors this one's may be told.
+        slope: d(line's value)/d(place) of the curve, so that what moves along it is no error. before: the
+        point before, whose errors may tell this one's.
         """
         last = self.nearest(start, place, across, rates)
         if before and before.errors and before.errors.tells(last):
@@ -262,45 +128,92 @@ class CycleFamily:
             off = abs(here.at - last.at - slope * (here.place - last.place))
             error = SAFETY * off + LOCATED * abs(here.at)
             if error <= ACCURACY * abs(here.at):
-                return replace(last, errors=CurveErrors(error / abs(last.at), lasting_tails(last.orbit), mesh))
+                return replace(
+                    last, errors=CurveErrors(error / abs(last.at), lasting_tails(last.orbit), mesh)
+                )
             last = here
         raise Unsolvable("no mesh is fine enough")
 
 
-def errors_between(points: Sequence[OnCurve]) -> list[OnCurve]:
-    """Points of a curve in order, with the larger of the errors that those measured before and behind tell."""
-    found: list[OnCurve] = []
-    behind: CurveErrors | None = None
-    for point in reversed(points):
-        if point.errors is None:
-            raise ValueError("the point was located without error")
-        told = [point.errors]
-        if point.errors.age == 0:
-            behind = point.errors
-        elif behind and behind.mesh == mesh_of(point.orbit):
-            told.append(behind)
-        found.append(replace(point, error=max(errors.at(point) for errors in told)))
-    return found[::-1]
+class _SecantAcross:
+    """The secant method across a curve: each next cycle is corrected with the factors of the first one."""
 
+    def __init__(
+        self, family: CycleFamily, start: Orbit, place: float, way: Array, rates: Across | None, same: bool
+    ) -> None:
+        self.family, self.place, self.way, self.rates = family, place, way, rates
+        self.orbit, self.at = family.placed(start, place), 0.0
+        self.before: _Tried | None = None
+        self.length = float(family.border @ family.scale.place(start))
+        self.trusted = LINEAR_HERE if same else LINEAR_BEFORE
+        """Longest step along a line by rates that are not of two cycles here."""
+        self.near = NearbyCycles(self.orbit, family.scale, family.border, family.function)
+        self.near.contraction, self.near.learns = inf, not family.small
+        if rates and self.near.learns:
+            self.near.contraction = rates.contraction
 
-def _on(rates: Across, orbit: Orbit) -> Array:
-    """How an orbit changes across its curve on its own mesh, (N + 1,)."""
-    mesh = mesh_of(orbit)
-    if mesh == rates.mesh:
-        return rates.orbit
-    there = replace(rates.mesh.carry(orbit), values=rates.orbit[:-1])
-    return np.append(mesh.carry(there).values, rates.orbit[-1])
+    def next(self) -> OnCurve | None:
+        """The point of the curve, if the next cycle tells it; raises Unsolvable."""
+        here = self._tried()
+        enough = self.trusted
+        if own := self._rates_since(here):
+            self.rates, self.trusted, enough = own, LINEAR_HERE, LINEAR / own.span
+        rates = self.rates
+        step = -here.test / rates.test if rates else FIRST_SECANT
+        if not abs(step) <= FARTHEST:
+            raise Unsolvable("the secant method leaves the curve")
+        if rates and abs(step) <= enough:
+            return self._point(step, replace(rates, contraction=self.near.contraction))
+        if self.before:  # as the cycle, its vectors go on along a line
+            change = (here.vectors - self.before.vectors) / (here.at - self.before.at)
+            self.near.function.vectors = here.vectors + step * change
+        if rates:
+            self.orbit = self._moved(step, rates)
+        self.before, self.at = here, self.at + step
+        return None
 
+    def _tried(self) -> _Tried:
+        """The cycle at the present length across; raises Unsolvable."""
+        family, rates = self.family, self.rates
+        length = self.length + self.at * float(self.way[0])
+        self.orbit = family.placed(self.orbit, self.place + self.at * float(self.way[1]))
+        slope, enough = (abs(rates.test), TOLERANCE) if rates else (1.0, SHARE * FIRST_SECANT)
+        condition = Condition(family.scale, family.border, length)
+        self.orbit, test = self.near.solved(self.orbit, condition, slope, enough)
+        return _Tried(self.orbit, self.near.function.vectors, test, self.at)
 
-def with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
-    """The values of an orbit for the rod with other values of some parameters; raises Unsolvable."""
-    try:
-        form = replace(orbit.form, rod=orbit.form.rod.changed(**changed))
-    except (ValueError, ZeroDivisionError) as error:
-        raise Unsolvable(f"the curve leaves the rods: {error}") from error
-    if form.omega_unknown != orbit.form.omega_unknown:
-        raise Unsolvable(f"gamma3 = {form.rod.gamma3:.3g} needs other unknowns")
-    return replace(orbit, form=form)
+    def _rates_since(self, here: _Tried) -> Across | None:
+        """The rates across between the last two cycles; None where they are too near, or there is one."""
+        before = self.before
+        if before is None or abs(here.at - before.at) < LEAST_SPAN or here.test == before.test:
+            return None
+        name, span = self.family.scale.name, here.at - before.at
+        one, other = before.orbit, here.orbit
+        change = other.form.rod.coordinate(name) - one.form.rod.coordinate(name)
+        orbit = np.append(other.values - one.values, change) / span
+        return Across(self.way, (here.test - before.test) / span, orbit, mesh_of(one), abs(span))
+
+    def _moved(self, step: float, rates: Across) -> Orbit:
+        """The last cycle moved a step across."""
+        return moved(self.orbit, self.family.scale.name, step * rates.on(self.orbit))
+
+    def _point(self, step: float, rates: Across) -> OnCurve:
+        """The point of the curve a short step across from the last cycle."""
+        family, matrix = self.family, self.near.matrix
+        tangent = tangent_at(matrix.orbit, family.scale, family.border, matrix)
+        place = self.place + (self.at + step) * float(self.way[1])
+        orbit = family.placed(self._moved(step, rates), place)
+        scale = Scale.of(orbit, family.scale.name, family.scale.least)
+        ahead = scale.moved(orbit, tangent)
+        return OnCurve(
+            orbit=orbit,
+            scale=scale,
+            ahead=ahead / np.linalg.norm(ahead),
+            place=place,
+            at=getattr(orbit.form.rod, scale.name),
+            row=getattr(orbit.form.rod, family.rows.name),
+            rates=rates,
+        )
 
 
 def first_on_curve(special: SpecialPoint, line: str, rows: PlaneAxis, row: float) -> OnCurve:
