@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     from ..solve.branch.coexistence import CoexistenceRow
     from ..solve.branch.special.boundaries import SpecialBoundaries
     from ..solve.branch.special.point import SpecialPoint
-    from ..solve.changes.boundaries import Boundaries
+    from ..solve.changes.boundary_curves import BoundaryCurve
+    from ..solve.continuation.boundaries import Boundaries
     from ..solve.hopf.generalised import CurveCriticality
     from .phase_diagram import PhaseDiagramTask
 
@@ -78,7 +79,7 @@ class DiagramCurves:
 
     def nothing(self) -> dict[str, np.ndarray]:
         """The result of a unit that finds no curve, arrays of no length along their first shape."""
-        from ..solve.branch.special.boundaries import TracedHalf
+        from ..solve.branch.special.cycle_curves import TracedHalf
 
         return TracedHalf(None).arrays()
 
@@ -133,7 +134,7 @@ class DiagramCurves:
         )
         return Plane(Rod(**not_crushed, gamma1=self.task.config.gamma1), (abscissa, ordinate))
 
-    def _boundaries(self, plane: "Plane", view: View, rows: np.ndarray) -> "Boundaries":
+    def _boundaries(self, plane: "Plane", view: View, rows: np.ndarray) -> "Boundaries[BoundaryCurve]":
         """The curves through the crossings of all finite rows, whose values are given, (rows,)."""
         from ..solve.changes.boundaries import curves_through, seed_of
 
@@ -159,7 +160,7 @@ class DiagramCurves:
             return special_of(row_branches(self.task.rod(number), self.task.row_request(), MOST_SPECIAL))
         return self.special[number]
 
-    def _criticality(self, plane: "Plane", found: "Boundaries") -> "list[CurveCriticality]":
+    def _criticality(self, plane: "Plane", found: "Boundaries[BoundaryCurve]") -> "list[CurveCriticality]":
         """On which side of each curve cycles are born, if it is one of Hopf points."""
         from ..solve.hopf.generalised import CurveCriticality, curve_criticality
 

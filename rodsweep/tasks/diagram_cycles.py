@@ -13,7 +13,9 @@ from ..results.layouts.variables import listed, recorded
 if TYPE_CHECKING:
     from ..determinant.parameter_plane import Plane
     from ..solve.branch.coexistence import CoexistenceRow
-    from ..solve.branch.special.boundaries import CycleCurves, RowSpecial
+    from ..solve.branch.special.boundaries import RowSpecial
+    from ..solve.branch.special.cycle_curves import CycleCurve
+    from ..solve.continuation.boundaries import Boundaries
     from ..solve.hopf.generalised import CurveCriticality
 
 
@@ -59,8 +61,8 @@ def unstored_specials(view: View, finite: np.ndarray) -> int:
 
 
 def with_hopf_ends(
-    found: "CycleCurves", plane: "Plane", told: "Sequence[CurveCriticality]", unstored: int
-) -> "CycleCurves":
+    found: "Boundaries[CycleCurve]", plane: "Plane", told: "Sequence[CurveCriticality]", unstored: int
+) -> "Boundaries[CycleCurve]":
     """The curves with the generalised Hopf points at their ends as they are located on Hopf curves."""
     from ..solve.branch.special.cycle_curves import ending_at
 
@@ -69,7 +71,7 @@ def with_hopf_ends(
     return replace(found, curves=curves, untraced=found.untraced + unstored)
 
 
-def cycle_curve_record(found: "CycleCurves", line: str, row: str) -> dict[str, Any]:
+def cycle_curve_record(found: "Boundaries[CycleCurve]", line: str, row: str) -> dict[str, Any]:
     """Curves of folds and torus points as the variables of the file, with the Hopf points where they end."""
     names = (line, row, "error", "period", "tip_y_max")
     points, numbers, kinds, ends = [], [], [], []

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from ..solve.changes.boundaries import Boundaries
     from ..solve.changes.boundary_curves import BoundaryCurve
+    from ..solve.continuation.boundaries import Boundaries
     from ..solve.hopf.bautin_curves import BautinCurve
     from ..solve.hopf.generalised import CurveCriticality
 
 
-def curve_record(found: "Boundaries", line: str, row: str) -> dict[str, Any]:
+def curve_record(found: "Boundaries[BoundaryCurve]", line: str, row: str) -> dict[str, Any]:
     """Curves and folds as the variables of the file."""
     curves = found.curves
     folds = [(number, curve.hopf, fold) for number, curve in enumerate(curves, 1) for fold in curve.folds]

@@ -12,8 +12,8 @@ from ranks import PATIENCE, pause_until, wait_for_end
 
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.results.run.checkpoints import UnitResults
-from rodsweep.solve.branch.special.boundaries import RowSpecial, SpecialBoundaries, TracedHalf
-from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, HalfCurve
+from rodsweep.solve.branch.special.boundaries import RowSpecial, SpecialBoundaries
+from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, HalfCurve, TracedHalf
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.sweep.handout import OVER, Report
 from rodsweep.sweep.pool import Pool

@@ -20,6 +20,7 @@ from ..orbit.linearisation import (
     change_along,
     jump_of,
     reduced_residuals,
+    reduced_variations,
 )
 from ..orbit.multipliers import nonzero_eigenvalues
 from ..orbit.newton import MOST_ITERATIONS, Converged, relative_change
@@ -96,20 +97,43 @@ class BorderedMatrix:
 
     def step(self, border: Array, length: float) -> Array:
         """Newton's step along which `border` . place, (3,), grows by a length, (N + 1,)."""
-        return self._solved(border, np.append(self._right, length), self._columns[:, :, 1], 1.0)
+        return self.solved(border, np.append(self._right, length), self._columns[:, :, 1], 1.0)
 
     def correction(self, orbit: Orbit, border: Array, length: float) -> Array:
         """The same at another orbit near by, whose parameter may be another one."""
         factors, p = self._workspace.factors, self.orbit.semidiscrete
         columns, ends = reduced_residuals(orbit.points, orbit.duration, orbit.semidiscrete, p, factors)
         right = np.append(self._jump(orbit, ends[0]), length)
-        return self._solved(border, right, columns[:, :, 0], 1.0)
+        return self.solved(border, right, columns[:, :, 0], 1.0)
 
     def direction(self, border: Array) -> Array:
         """The tangent of the branch, of unit length in `Scale.place`, on the side of a border, (N + 1,)."""
         right = np.append(np.zeros(len(self._right)), 1.0)
-        change = self._solved(border, right, self._columns[:, :, 1], 0.0)
+        change = self.solved(border, right, self._columns[:, :, 1], 0.0)
         return change / np.linalg.norm(self.scale.moved(self.orbit, change))
+
+    def varied(self, orbit: Orbit, variations: Array) -> tuple[Array, Array]:
+        """The changes, (K, s, m, n), of another orbit's residuals along variations, (m, N + 1), reduced.
+
+        With what they make of its end where its start stays, (m, n).
+        """
+        along, rod, p = change_along(orbit.form, self.scale.name), orbit.semidiscrete, self.orbit.semidiscrete
+        changed: tuple[Array, Array] = reduced_variations(
+            orbit.values, rod, along, variations, p, self._workspace.factors
+        )
+        return changed
+
+    def spread(self, starts: Array, columns: Array) -> Array:
+        """The changes of states, (m, N + 1), from those of the start, (m, n), and reduced right sides."""
+        out = np.empty_like(columns)
+        substitute(starts, columns, self.orbit.semidiscrete, self._workspace.factors, out)
+        stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)
+        return np.hstack([starts, stages, np.zeros((len(starts), 2))])
+
+    @property
+    def propagator(self) -> Array:
+        """P, (n, n)."""
+        return self._workspace.propagator
 
     @cached_property
     def returns(self) -> Complex:
@@ -138,7 +162,7 @@ class BorderedMatrix:
         jump = jump_of(orbit.points, p) - end
         return np.append(jump, -phase(orbit.start, p.rod, p.matrices))
 
-    def _solved(self, border: Array, right: Array, sides: Array, share: float) -> Array:
+    def solved(self, border: Array, right: Array, sides: Array, share: float) -> Array:
         """The change for right sides of the ends and a share of those of the stages, (K, s, n)."""
         n = len(self.orbit.start)
         matrix = self._matrix.copy()

@@ -4,6 +4,7 @@ The curves are traced from the changes of all rows (`rodsweep.solve.changes.boun
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from ...arrays import Array
 from ...determinant.boundary import Boundary
 from ...determinant.parameter_plane import Plane
+from ..continuation.boundaries import Boundaries, boundary_search
 from .boundary_curves import BoundaryCurve, trace
 from .unstable_modes import Kind
 
@@ -46,41 +48,40 @@ def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rat
 
 
 @dataclass(frozen=True, slots=True)
-class Boundaries:
-    """All curves of a diagram; how far the changes on rows lie from them, in units of the axis.
+class _ChangeBoundaries:
+    """The curves through the changes of all rows of a plane."""
 
-    untraced: changes on rows through which no curve could be followed.
-    """
+    plane: Plane
+    seeds: list[Seed]
 
-    curves: tuple[BoundaryCurve, ...]
-    agreement: float
-    untraced: int
+    def next_seed(self, left: Sequence[int]) -> int:
+        """The first."""
+        return left[0]
+
+    def lacking(self, seed: int) -> list[int]:
+        """None: a curve takes milliseconds."""
+        return []
+
+    def curve(self, seed: int) -> BoundaryCurve | None:
+        """The curve from a change."""
+        one = self.seeds[seed]
+        x, y = (a.scaled(v) for a, v in zip(self.plane.axes, one.values, strict=True))
+        return trace(one.sign, self.plane, (x, y), one.eigenvalue)
+
+    def distance(self, curve: BoundaryCurve, seed: int) -> float:
+        """How far along the first axis a change lies from a curve, at its place on the second axis."""
+        return _distance(self.plane, curve, self.seeds[seed])
+
+    def same(self, one: BoundaryCurve, other: BoundaryCurve) -> bool:
+        """Whether they share an end: beside a crushed rod a change may not be found on its own curve."""
+        ends = one.scaled[[0, -1], None] - other.scaled[None, [0, -1]]
+        return one.sign == other.sign and float(np.abs(ends).max(axis=-1).min()) < SAME_ENDS
 
 
-def curves_through(plane: Plane, seeds: list[Seed]) -> Boundaries:
+def curves_through(plane: Plane, seeds: list[Seed]) -> Boundaries[BoundaryCurve]:
     """The curves through all changes; each is followed once, and every change is then found on one."""
-    curves: list[BoundaryCurve] = []
-    worst, untraced = 0.0, 0
-    for seed in seeds:
-        distance = min((_distance(plane, curve, seed) for curve in curves), default=math.inf)
-        if distance > AGREE:
-            x, y = (a.scaled(v) for a, v in zip(plane.axes, seed.values, strict=True))
-            curve = trace(seed.sign, plane, (x, y), seed.eigenvalue)
-            if curve is not None:
-                distance = _distance(plane, curve, seed)
-                if not any(_same(curve, other) for other in curves):
-                    curves.append(curve)
-        if distance > AGREE:
-            untraced += 1
-        else:
-            worst = max(worst, distance)
-    return Boundaries(tuple(curves), worst, untraced)
-
-
-def _same(one: BoundaryCurve, other: BoundaryCurve) -> bool:
-    """Whether two curves share an end: beside a crushed rod a change may not be found on its own curve."""
-    ends = one.scaled[[0, -1], None] - other.scaled[None, [0, -1]]
-    return one.sign == other.sign and float(np.abs(ends).max(axis=-1).min()) < SAME_ENDS
+    problem = _ChangeBoundaries(plane, seeds)
+    return boundary_search(problem, range(len(seeds)), AGREE).boundaries
 
 
 def _distance(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:

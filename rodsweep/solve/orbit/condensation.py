@@ -248,10 +248,10 @@ def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
             for r in range(n):
                 columns[i, m, r] -= mass[r] * (d[i, 1] * t[m, r] + d[i, 2] * u[m, r])
         for a in range(2, i):
-            _add_products(B[i, a], columns[a], columns[i], -1.0)
+            add_products(B[i, a], columns[a], columns[i], -1.0)
     t[:] = columns[s - 1]
     columns[s - 1] = 0.0
-    _add_products(B[s - 1, s - 1], t, columns[s - 1], 1.0)
+    add_products(B[s - 1, s - 1], t, columns[s - 1], 1.0)
 
 
 @compiled_for_vectors
@@ -259,7 +259,7 @@ def to_end(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> None:
     """From changes of the start of one interval to its end, in place, (columns, n), for reduced columns."""
     scaled = ends * p.mass
     ends[:] = columns[-1]
-    _add_products(B[0, 1], scaled, ends, 1.0)
+    add_products(B[0, 1], scaled, ends, 1.0)
 
 
 @compiled_for_vectors
@@ -268,19 +268,19 @@ def _first_two(B: Array, y: Array, p: Semidiscrete, t: Array, u: Array) -> None:
     d, mass, (count, n) = p.differentiation, p.mass, t.shape
     side = np.empty((count, n))
     t[:], u[:] = 0.0, 0.0
-    _add_products(B[0, 0], y[0], t, 1.0)
+    add_products(B[0, 0], y[0], t, 1.0)
     for m in range(count):
         for r in range(n):
             side[m, r] = y[1, m, r] - d[1, 1] * mass[r] * t[m, r]
-    _add_products(B[1, 1], side, u, 1.0)
+    add_products(B[1, 1], side, u, 1.0)
     for m in range(count):
         for r in range(n):
             side[m, r] = d[0, 2] * mass[r] * u[m, r]
-    _add_products(B[0, 0], side, t, -1.0)
+    add_products(B[0, 0], side, t, -1.0)
 
 
 @compiled_for_vectors
-def _add_products(A: Array, x: Array, y: Array, factor: float) -> None:
+def add_products(A: Array, x: Array, y: Array, factor: float) -> None:
     """y += factor A x for each of the columns x, y, both of shape (columns, n); two columns at a time."""
     count, n = x.shape
     for m in range(0, count - 1, 2):
@@ -335,13 +335,13 @@ def _back_to(B: Array, a: int, columns: Array, scaled: Array, out: Array) -> Non
     out[a] = 0.0
     if a == s - 1:
         out[a] = columns[a]
-        _add_products(B[0, 1], scaled, out[a], 1.0)
+        add_products(B[0, 1], scaled, out[a], 1.0)
         return
     side = columns[a].copy()
-    _add_products(B[0, a], scaled, side, 1.0)
+    add_products(B[0, a], scaled, side, 1.0)
     for j in range(a + 1, s):
-        _add_products(B[a, j], out[j], side, -1.0)
-    _add_products(B[a, a], side, out[a], 1.0)
+        add_products(B[a, j], out[j], side, -1.0)
+    add_products(B[a, a], side, out[a], 1.0)
 
 
 @compiled_for_vectors

@@ -26,7 +26,7 @@ from .condensation import (
 from .multipliers import nonzero_eigenvalues
 from .orbit import Orbit
 from .phase import phase, phase_change, phase_row
-from .right_sides import Along, residuals, right_sides
+from .right_sides import Along, residuals, right_sides, variation_sides
 
 _memory: list[Array] = [np.empty(0)]
 _latest: list["NewtonWorkspace"] = []
@@ -202,6 +202,23 @@ def reduced_residuals(
     K, s, n = factors.blocks.shape[0], factors.blocks.shape[1], len(p.mass)
     columns, ends = np.empty((K, s, 1, n)), np.zeros((1, n))
     residuals(points, duration, rod, columns[:, :, 0])
+    for k in range(K):
+        reduce(factors.blocks[k], columns[k], p)
+        to_end(factors.blocks[k], columns[k], p, ends)
+    return columns, ends
+
+
+@compiled_for_vectors
+def reduced_variations(
+    values: Array, rod: Semidiscrete, along: Along, variations: Array, p: Semidiscrete, factors: Factors
+) -> tuple[Array, Array]:
+    """`variation_sides` of an orbit's values for a rod, reduced by the matrix of another one, p, near by.
+
+    Returns them, (K, s, m, n), and what they make of the last end where the start stays, (m, n).
+    """
+    K, s, n, m = factors.blocks.shape[0], factors.blocks.shape[1], len(p.mass), len(variations)
+    columns, ends = np.empty((K, s, m, n)), np.zeros((m, n))
+    variation_sides(values, rod, along, variations, columns)
     for k in range(K):
         reduce(factors.blocks[k], columns[k], p)
         to_end(factors.blocks[k], columns[k], p, ends)

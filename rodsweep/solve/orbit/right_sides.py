@@ -6,10 +6,10 @@ import numpy as np
 
 from ...arrays import Array
 from ...discretization.nodal_rod import NodalChange
-from ...discretization.plane import balance, balance_change, velocity_balance
+from ...discretization.plane import balance, balance_change, jacobian, velocity_balance
 from ...discretization.state_layout import stress_place, velocity_place
 from ...model.compilation import compiled_for_vectors
-from .condensation import Semidiscrete
+from .condensation import Semidiscrete, add_products
 
 
 class Along(NamedTuple):
@@ -93,6 +93,40 @@ def right_sides(
                 equations_change(x, sides[2], V[k, i], changes, along.change, p)
                 for r in range(n):
                     sides[2, r] = duration * length * sides[2, r] - along.mass[r] * slopes[r]
+
+
+@compiled_for_vectors
+def variation_sides(values: Array, p: Semidiscrete, along: Along, variations: Array, columns: Array) -> None:
+    """The derivatives of an orbit's `residuals` along variations into columns, (K, s, columns, n).
+
+    values: the orbit's, (N,); variations: of these and of the parameter that `along` is of, (columns, N + 1).
+    """
+    K, s, count, n = columns.shape
+    points, duration = values[:-1].reshape(1 + K * s, n), values[-1] / p.parts
+    changes = variations[:, :-2].copy().reshape(count, 1 + K * s, n)
+    V, G, out = np.empty(p.rod.drag.shape), np.empty(p.rod.drag.shape), np.empty((3, *p.rod.drag.shape))
+    F, slopes, by_parameter, J = np.empty(n), np.empty(n), np.zeros(n), np.empty((n, n))
+    tip, v, moving = np.empty((len(V), n)), np.empty((count, n)), np.any(variations[:, -1] != 0.0)
+    columns[:] = 0.0
+    for k in range(K):
+        h = duration * p.lengths[k]
+        for i in range(s):
+            x = points[1 + k * s + i]
+            equations(x, F, V, G, p)
+            jacobian(x, V, J, tip, p.rod, p.matrices)
+            if moving:
+                equations_change(x, by_parameter, V, out, along.change, p)
+                _slopes(points[k * s : (k + 1) * s + 1], i, p.differentiation, slopes)
+                for r in range(n):
+                    by_parameter[r] = h * by_parameter[r] - along.mass[r] * slopes[r]
+            v[:] = changes[:, 1 + k * s + i]
+            add_products(J, v, columns[k, i], h)
+            for m in range(count):
+                _slopes(changes[m, k * s : (k + 1) * s + 1], i, p.differentiation, slopes)
+                by_period = variations[m, -2] * p.lengths[k] / p.parts
+                for r in range(n):
+                    rates = by_period * F[r] + variations[m, -1] * by_parameter[r]
+                    columns[k, i, m, r] += rates - p.mass[r] * slopes[r]
 
 
 @compiled_for_vectors

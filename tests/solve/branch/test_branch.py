@@ -7,11 +7,16 @@ import pytest
 from surveyed import survey_only
 
 from rodsweep.determinant.parameter_path import Path
+from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch import bordered, branches, following
 from rodsweep.solve.branch.beginning import hopf_point
+from rodsweep.solve.branch.bordered import BorderedMatrix
 from rodsweep.solve.branch.branches import BranchRequest, BranchStatus, solve_branches
 from rodsweep.solve.branch.following import Course, follow_branch
+from rodsweep.solve.branch.special.augmented import crossing_pair
+from rodsweep.solve.branch.special.curves import CurveCourse
+from rodsweep.solve.branch.special.cycle_curves import CurveEnd
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
@@ -157,6 +162,16 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
         assert abs(cycle.multipliers[0].imag) > 0.5
         assert 1e-4 < side * (cycle.multiplier - 1) < 2e-3
         assert cycle.measures.tip_y_max == pytest.approx(torus.tip_y_max, rel=2e-3)
+    points, end = CurveCourse(
+        SpecialKind.torus, PlaneAxis("F", 150.0, 220.0), PlaneAxis("k2", 97.0, 103.0), -1.0
+    ).followed(torus, 100.0)
+    assert end is CurveEnd.edge
+    assert points[0].at == pytest.approx(torus.at, abs=points[0].error + torus.error)
+    for point in points:
+        assert point.error <= 1e-7 * point.at
+        # By the eigenvalues of a matrix of its own, where the curve has the eigenvector of one near by.
+        pair = crossing_pair(BorderedMatrix(point.orbit, point.scale))
+        assert abs(pair) == pytest.approx(1.0, abs=1e-7)
 
 
 def test_fold_along_the_stretch_stiffness_is_the_fold_along_the_force():

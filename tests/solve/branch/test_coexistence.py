@@ -16,8 +16,10 @@ from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
 from rodsweep.results.layouts.phase_diagram import CYCLE_CURVE_ENDS
 from rodsweep.solve.branch import coexistence
+from rodsweep.solve.branch.bordered import BorderedMatrix, Condition, Scale
 from rodsweep.solve.branch.branches import BranchStatus
 from rodsweep.solve.branch.coexistence import CoexistenceStatus, Stable, solve_coexistence
+from rodsweep.solve.branch.special.augmented import FoldFunction
 from rodsweep.solve.branch.special.curves import CurveCourse
 from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, CycleCurve, HalfCurve
 from rodsweep.solve.branch.special.point import SpecialKind
@@ -111,6 +113,22 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     assert curve.vanishing[1] is None
     heights = [point.tip_y_max for point in curve.points]
     assert heights == sorted(heights)
+
+
+def test_rise_along_a_branch_is_known_with_the_factors_of_a_cycle_near_by():
+    row = solve_coexistence(FIG_2C.changed(k1=149.9), request([60, 110]), 64)
+    (fold,) = [point for point in row.special if point.kind == SpecialKind.fold]
+    scale = Scale.of(fold.orbit, "F", 0.0)
+    own = BorderedMatrix(fold.orbit, scale)
+    ahead = scale.moved(fold.orbit, own.direction(np.array([1.0, 0.0, 0.0])))
+    border = ahead / np.linalg.norm(ahead)
+    truth = FoldFunction(own, border, small=False).value(fold.orbit)
+    other = Condition.at(scale, border, fold.orbit, 1e-4).solved(fold.orbit, 1e-10).orbit
+    function = FoldFunction(BorderedMatrix(other, scale), border, small=False)
+    before = abs(function.value(fold.orbit) - truth)
+    for _ in range(8):
+        function.correct(fold.orbit)
+    assert abs(function.value(fold.orbit) - truth) < 1e-2 * before
 
 
 @pytest.fixture(scope="module")

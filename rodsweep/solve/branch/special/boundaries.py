@@ -7,20 +7,16 @@ their results alone, not from who computed them, when, or what else was computed
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
-import numpy as np
-
-from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
+from ...continuation.boundaries import Boundaries, BoundarySearch, boundary_search
 from ...point import FAILURES, Unsolvable
 from .curves import VANISHING, CurveCourse
-from .cycle_curves import CurveEnd, CurvePoint, CycleCurve, HalfCurve
-from .family import OnCurve
+from .cycle_curves import Arrays, CurveEnd, CurvePoint, CycleCurve, HalfCurve, TracedHalf
+from .on_curve import OnCurve
 from .point import SpecialKind, SpecialPoint
 
-Arrays = dict[str, Array]
-"""What a unit of work gives, as it is stored."""
 CURVE_KINDS = (SpecialKind.fold, SpecialKind.torus)
 """Special points that are followed as curves."""
 AGREE = 1e-6
@@ -49,49 +45,6 @@ class RowSpecial:
 
 
 @dataclass(frozen=True, slots=True)
-class CycleCurves:
-    """All curves of a diagram; how far the special points of rows lie from them, in units of the line's axis.
-
-    untraced: special points through which no curve could be followed.
-    """
-
-    curves: tuple[CycleCurve, ...]
-    agreement: float
-    untraced: int
-
-
-@dataclass(frozen=True, slots=True)
-class TracedHalf:
-    """What came of following a half: None where no curve is found; how far special points lie from it.
-
-    distances: in units of the line's axis, by the special point's place in the list of all; those near only.
-    """
-
-    half: HalfCurve | None
-    distances: dict[int, float] = field(default_factory=dict)
-
-    def arrays(self) -> Arrays:
-        """The same as arrays."""
-        points = [] if self.half is None else [_numbers(point) for point in self.half.points]
-        return {
-            "points": np.array(points, dtype=float).reshape(-1, len(CurvePoint.__slots__)),
-            "end": np.array([0.0 if self.half is None else float(self.half.end)]),
-            "distances": np.array(list(self.distances.items()), dtype=float).reshape(-1, 2),
-        }
-
-    @classmethod
-    def of(cls, arrays: Arrays) -> "TracedHalf":
-        """The inverse of `arrays`."""
-        points = tuple(CurvePoint(*map(float, row)) for row in arrays["points"])
-        half = HalfCurve(points, CurveEnd(int(arrays["end"][0]))) if points else None
-        return cls(half, {int(place): float(distance) for place, distance in arrays["distances"]})
-
-
-def _numbers(point: CurvePoint) -> list[float]:
-    return [getattr(point, name) for name in CurvePoint.__slots__]
-
-
-@dataclass(frozen=True, slots=True)
 class SpecialBoundaries:
     """The curves through all folds and torus points of the rows, over a line's parameter and the rows'.
 
@@ -107,22 +60,25 @@ class SpecialBoundaries:
         """Units whose results the curves need next, then some that they may need; none once all are there."""
         needed: list[int] = []
         likely: list[int] = []
-        for kind in CURVE_KINDS:
-            search = _Search(self, kind, results)
-            search.run()
+        for curves, search in self._searches(results):
             needed += search.needed
-            likely += search.likely
+            likely += curves.likely(search)
         return needed + likely if needed else []
 
-    def curves(self, results: Mapping[int, Arrays]) -> CycleCurves:
+    def curves(self, results: Mapping[int, Arrays]) -> Boundaries[CycleCurve]:
         """All curves, once nothing is wanted any more."""
-        searches = [_Search(self, kind, results) for kind in CURVE_KINDS]
-        for search in searches:
-            search.run()
-        distances = [distance for search in searches for distance in search.distances.values()]
-        found = [distance for distance in distances if distance <= AGREE]
-        curves = tuple(curve for search in searches for curve in search.curves)
-        return CycleCurves(curves, max(found, default=0.0), len(distances) - len(found))
+        found = [search.boundaries for _, search in self._searches(results)]
+        curves = tuple(traced.curve for one in found for traced in one.curves)
+        return Boundaries(curves, max(one.agreement for one in found), sum(one.untraced for one in found))
+
+    def _searches(
+        self, results: Mapping[int, Arrays]
+    ) -> "Iterator[tuple[_CurvesOfKind, BoundarySearch[_TracedCurve]]]":
+        """The curves of each kind, as far as the results go."""
+        for kind in CURVE_KINDS:
+            curves = _CurvesOfKind(self.special, CurveCourse(kind, self.line, self.rows), results)
+            seeds = (i for i, one in enumerate(self.special) if one.kind == kind)
+            yield curves, boundary_search(curves, seeds, AGREE)
 
     def solve(self, unit: int, located: Callable[[int], Iterable[SpecialPoint]]) -> Arrays:
         """The result of a unit. located: the special points of a row of a number, solved anew."""
@@ -142,66 +98,73 @@ class SpecialBoundaries:
         return f"curve of {one.kind.name}s from {self.rows.name} = {one.row:.5g} {way}"
 
 
-class _Search:
-    """The curves of one kind, as far as the results go.
+@dataclass(frozen=True, slots=True)
+class _TracedCurve:
+    """A curve of its halves, and how far special points lie from it, by their places, those near only."""
 
-    The next curve starts from the special point in the middle of those that lie on none: its halves are then
-    of about equal length.
-    """
+    curve: CycleCurve
+    distances: Mapping[int, float]
 
-    def __init__(self, boundaries: SpecialBoundaries, kind: SpecialKind, results: Mapping[int, Arrays]):
-        self.special, self.results = boundaries.special, results
-        self.course = CurveCourse(kind, boundaries.line, boundaries.rows)
-        self.curves: list[CycleCurve] = []
-        self.distances = {i: math.inf for i, one in enumerate(self.special) if one.kind == kind}
-        """Of each special point from the nearest curve."""
-        self.needed: list[int] = []
-        """Units without which the search cannot go on."""
-        self.likely: list[int] = []
-        """Units from which other curves may start: of special points of the same row."""
 
-    def run(self) -> None:
-        """Goes on until all special points have been tried or a result is lacking."""
-        tried: set[int] = set()
-        while left := [i for i, distance in self.distances.items() if distance > AGREE and i not in tried]:
-            left.sort(key=lambda i: (self.special[i].row, self.special[i].at))
-            seed = left[len(left) // 2]
-            self.needed = list(self._lacking(seed))
-            if self.needed:
-                row = self.special[seed].row
-                beside = (i for i in left if i != seed and self.special[i].row == row)
-                self.likely = [unit for i in beside for unit in self._lacking(i)]
-                return
-            tried.add(seed)
-            self._take(seed)
+@dataclass(frozen=True, slots=True)
+class _CurvesOfKind:
+    """The curves of one kind, as far as the results of units go."""
 
-    def _lacking(self, place: int) -> Iterator[int]:
-        """The units of a special point whose results are needed and not there."""
-        ahead, behind = 2 * place, 2 * place + 1
+    special: Sequence[RowSpecial]
+    course: CurveCourse
+    results: Mapping[int, Arrays]
+
+    def next_seed(self, left: Sequence[int]) -> int:
+        """The special point in the middle: the halves of its curve are of about equal length."""
+        return sorted(left, key=self._place)[len(left) // 2]
+
+    def lacking(self, seed: int) -> list[int]:
+        """The halves from a special point that are needed and not there."""
+        ahead, behind = 2 * seed, 2 * seed + 1
         if ahead not in self.results:
-            yield from (unit for unit in (ahead, behind) if unit not in self.results)
-            return
+            return [unit for unit in (ahead, behind) if unit not in self.results]
         half = TracedHalf.of(self.results[ahead]).half
-        if half is not None and half.end is not CurveEnd.closed and behind not in self.results:
-            yield behind
+        on = half is not None and half.end is not CurveEnd.closed
+        return [behind] if on and behind not in self.results else []
 
-    def _take(self, place: int) -> None:
-        """Takes in the curve from a special point."""
-        ahead = TracedHalf.of(self.results[2 * place])
+    def likely(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
+        """Units from which other curves may start: of special points on the row of the next one."""
+        rows = {self.special[unit // 2].row for unit in search.needed}
+        beside = sorted((i for i in search.left if self.special[i].row in rows), key=self._place)
+        return [unit for i in beside for unit in self.lacking(i)]
+
+    def curve(self, seed: int) -> _TracedCurve | None:
+        """The curve from a special point, of its halves."""
+        ahead = TracedHalf.of(self.results[2 * seed])
         if ahead.half is None:
-            return
+            return None
         closed = ahead.half.end is CurveEnd.closed
-        behind = TracedHalf(None) if closed else TracedHalf.of(self.results[2 * place + 1])
+        behind = TracedHalf(None) if closed else TracedHalf.of(self.results[2 * seed + 1])
         if behind.half is None and not closed:
-            return
+            return None
         curve = CycleCurve.joined(self.course.kind, ahead.half, behind.half)
-        for i, known in self.distances.items():
-            near = min(part.distances.get(i, math.inf) for part in (ahead, behind))
-            if near > AGREE and _vanishes(self.course, curve, self.special[i]):
-                near = 0.0
-            self.distances[i] = min(known, near)
-        if not any(_same(self.course, curve, other) for other in self.curves):
-            self.curves.append(curve)
+        near = dict(ahead.distances)
+        for i, distance in behind.distances.items():
+            near[i] = min(distance, near.get(i, math.inf))
+        return _TracedCurve(curve, near)
+
+    def distance(self, curve: _TracedCurve, seed: int) -> float:
+        """How far a special point lies from a curve, in units of the line's axis; inf unless it is near."""
+        near = curve.distances.get(seed, math.inf)
+        return 0.0 if near > AGREE and _vanishes(self.course, curve.curve, self.special[seed]) else near
+
+    def same(self, one: _TracedCurve, other: _TracedCurve) -> bool:
+        """Whether two curves share both ends."""
+        pairs = zip(self._ends(one.curve), self._ends(other.curve), strict=True)
+        return all(abs(a - b) <= SAME_ENDS for p, q in pairs for a, b in zip(p, q, strict=True))
+
+    def _place(self, i: int) -> tuple[float, float]:
+        """By which special points are in order."""
+        return self.special[i].row, self.special[i].at
+
+    def _ends(self, curve: CycleCurve) -> list[tuple[float, float]]:
+        """Both ends of a curve, scaled, the lower first."""
+        return sorted((p.place, self.course.line.scaled(p.at)) for p in (curve.points[0], curve.points[-1]))
 
 
 def _traced(
@@ -269,15 +232,3 @@ def _vanishes(course: CurveCourse, curve: CycleCurve, one: RowSpecial) -> bool:
         if 0 <= share <= 1 and abs(chord - course.line.scaled(one.at)) <= ON_CHORD:
             return True
     return False
-
-
-def _same(course: CurveCourse, one: CycleCurve, other: CycleCurve) -> bool:
-    """Whether two curves share both ends."""
-    if one.kind != other.kind:
-        return False
-
-    def ends(curve: CycleCurve) -> list[tuple[float, float]]:
-        return sorted((p.place, course.line.scaled(p.at)) for p in (curve.points[0], curve.points[-1]))
-
-    pairs = zip(ends(one), ends(other), strict=True)
-    return all(abs(a - b) <= SAME_ENDS for p, q in pairs for a, b in zip(p, q, strict=True))

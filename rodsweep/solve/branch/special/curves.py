@@ -9,16 +9,17 @@ from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
 from ....watch import Whereabouts, report
 from ....wording import counted
-from ...continuation.follower import CurveStop, StepControl, Stepped, follow, zero_along
-from ...orbit.measures import CyclePath
+from ...continuation.follower import Curve, CurveStop, StepControl, Stepped, follow, zero_along
 from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...point import Unsolvable
 from ..bordered import BorderedMatrix
-from .cycle_curves import PREDICTED_BY, CurveEnd, polynomial_weights
-from .family import CycleFamily, OnCurve, crossing_pair, first_on_curve, with_parameters
-from .least_stretch import SAFE_AT_PLACES, least_stretch
+from .augmented import crossing_pair
+from .cycle_curves import PREDICTED_BY, CurveEnd, weights_at
+from .family import CycleFamily, first_on_curve
+from .least_stretch import stretch_of
+from .on_curve import OnCurve, errors_between, with_parameters
 from .point import SpecialKind, SpecialPoint
 
 STEPS = StepControl(
@@ -67,12 +68,15 @@ class CurveCourse:
     def followed(self, special: SpecialPoint, row: float) -> tuple[list[OnCurve], CurveEnd]:
         """(the curve from a special point of a row on, why it ends); raises Unsolvable."""
         curve = follow(self, first_on_curve(special, self.line.name, self.rows, row), STEPS, self._report)
+        return errors_between(curve.solutions), self._why_ended(curve)
+
+    def _why_ended(self, curve: Curve[OnCurve]) -> CurveEnd:
+        """Why a curve ends."""
         if curve.end is CurveStop.margin:
-            return curve.solutions, END_AT_MARGIN[curve.margin]
+            return END_AT_MARGIN[curve.margin]
         if curve.end is CurveStop.closed:
-            return curve.solutions, CurveEnd.closed
-        lost = curve.end is CurveStop.lost
-        return curve.solutions, self._why_lost(curve.solutions[-1]) if lost else CurveEnd.not_followed
+            return CurveEnd.closed
+        return self._why_lost(curve.solutions[-1]) if curve.end is CurveStop.lost else CurveEnd.not_followed
 
     def _report(self, points: Sequence[OnCurve]) -> None:
         """Says where the curve is."""
@@ -90,7 +94,7 @@ class CurveCourse:
             start, place = self._predicted(behind, self._alive(behind, length))
             way = np.append(last.scale.place(start) - last.scale.place(last.orbit), place - last.place)
             across, slope, rates = last.across(way), slope_of(*behind[-2:]), last.rates
-        there = self._family(last).point(start, place, across, slope, rates)
+        there = self._family(last).point(start, place, across, slope, rates, last)
         mesh = mesh_of(there.orbit)
         predicted = start if mesh == mesh_of(start) else mesh.carry(start)
         off = relative_change(predicted, there.orbit.values - predicted.values)
@@ -105,7 +109,7 @@ class CurveCourse:
     def _predicted(self, points: Sequence[OnCurve], step: float) -> tuple[Orbit, float]:
         """(orbit, place) a step beyond the last of some points; raises Unsolvable."""
         known = points[-PREDICTED_BY:]
-        return self._mixed(known, polynomial_weights(lengths_of(known), step), mesh_of(known[-1].orbit))
+        return self._mixed(known, weights_at(lengths_of(known), step), mesh_of(known[-1].orbit))
 
     def _alive(self, points: Sequence[OnCurve], step: float) -> float:
         """A step, or the longest one whose prediction is a rod that is all but crushed."""
@@ -115,7 +119,7 @@ class CurveCourse:
         lengths = lengths_of(known)
 
         def distance(longest: float) -> float:
-            weights, rod = polynomial_weights(lengths, longest), known[-1].orbit.form.rod
+            weights, rod = weights_at(lengths, longest), known[-1].orbit.form.rod
             at, place = (float(np.dot(weights, [getattr(p, n) for p in known])) for n in ("at", "place"))
             values = {"F": rod.F, "k1": rod.k1, self.line.name: at, self.rows.name: self.rows.value(place)}
             return 1 - SHORT_OF_CRUSHED / 2 - values["F"] / values["k1"]
@@ -125,7 +129,7 @@ class CurveCourse:
         return float(brentq(distance, 0.0, step, rtol=1e-6))
 
     def _mixed(
-        self, points: Sequence[OnCurve], weights: Sequence[float], mesh: OrbitMesh
+        self, points: Sequence[OnCurve], weights: Sequence[float] | Array, mesh: OrbitMesh
     ) -> tuple[Orbit, float]:
         """(orbit, place) by weights of some points; raises Unsolvable."""
         values = np.dot(weights, [mesh.carry(point.orbit).values for point in points])
@@ -137,7 +141,7 @@ class CurveCourse:
         """Scaled distances from the edges and from crushing, h1, and the size of the cycle, (7,)."""
         x, y, rod = self.line.scaled(point.at), point.place, point.orbit.form.rod
         alive = 1 - SHORT_OF_CRUSHED - rod.F / rod.k1
-        stretch = least_stretch(CyclePath(point.orbit), SAFE_AT_PLACES)
+        stretch = stretch_of(point.orbit)
         return np.array([x, 1 - x, y, 1 - y, alive, stretch, point.tip_y_max - VANISHING])
 
     def landed(self, behind: Sequence[OnCurve], outer: OnCurve, margin: int) -> OnCurve | None:
@@ -151,16 +155,21 @@ class CurveCourse:
         try:
             if margin in ROW_EDGES:
                 there = self.on_row(inner, outer, float(margin - ROW_EDGES[0]))
-                return self._family(outer).point(there.orbit, there.place, ALONG_BRANCH, rates=there.rates)
-            found: dict[float, OnCurve] = {1.0: outer}
-
-            def left(share: float) -> float:
-                found[share] = self.between(inner, outer, share)
-                return float(self.margins(found[share])[margin])
-
-            return found[zero_along(left, ends, 1.0, LAST_BRACKET, LAST_BRACKET)]
+            else:
+                there = self._where_zero(inner, outer, margin, ends)
         except Unsolvable:
             return None
+        return replace(there, errors=outer.errors and outer.errors.carried)
+
+    def _where_zero(self, inner: OnCurve, outer: OnCurve, margin: int, ends: tuple[float, float]) -> OnCurve:
+        """The point between two at which a margin is 0; ends: its values there. Raises Unsolvable."""
+        found: dict[float, OnCurve] = {1.0: outer}
+
+        def left(share: float) -> float:
+            found[share] = self.between(inner, outer, share)
+            return float(self.margins(found[share])[margin])
+
+        return found[zero_along(left, ends, 1.0, LAST_BRACKET, LAST_BRACKET)]
 
     def closes(self, behind: Sequence[OnCurve], there: OnCurve) -> bool:
         """Whether the first point lies between the last one and the next."""
@@ -171,16 +180,16 @@ class CurveCourse:
         return len(behind) > LEAST_LOOP and 0 <= passed <= 1 and near
 
     def between(self, one: OnCurve, other: OnCurve, share: float) -> OnCurve:
-        """The point at a share of the way between two; raises Unsolvable."""
+        """The point at a share of the way between two, without error; raises Unsolvable."""
         start, place = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
         across = other.across(other.step_from(one))
-        return self._family(other).point(start, place, across, slope_of(one, other), other.rates)
+        return self._family(other).nearest(start, place, across, other.rates)
 
     def on_row(self, one: OnCurve, other: OnCurve, place: float) -> OnCurve:
         """The point at a place of the rows' axis, scaled, between two, without error; raises Unsolvable."""
         share = (place - one.place) / (other.place - one.place) if other.place != one.place else 0.0
         start, _ = self._mixed((one, other), (1 - share, share), mesh_of(other.orbit))
-        return self._family(other).nearest(start, place, ALONG_BRANCH)
+        return self._family(other).nearest(start, place, ALONG_BRANCH, other.rates)
 
     def _why_lost(self, last: OnCurve) -> CurveEnd:
         """Why a curve cannot be followed beyond a point."""

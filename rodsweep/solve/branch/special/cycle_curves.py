@@ -1,7 +1,7 @@
 """A curve of folds or torus points of cycles as numbers: its points, why it ends, where its cycles vanish."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
 
 import numpy as np
@@ -9,7 +9,8 @@ import numpy as np
 from ....arrays import Array
 from ....determinant.parameter_plane import Plane
 from ...hopf.generalised import GeneralisedHopfPoint
-from .family import OnCurve
+from ...orbit.normalised import polynomial_weights
+from .on_curve import OnCurve
 from .point import SpecialKind
 
 PREDICTED_BY = 4
@@ -18,6 +19,8 @@ SAFETY = 10.0
 """Of the extrapolation: on a mesh the Hopf point moves along the curve, which no point's error tells."""
 AT_HOPF = 0.01
 """Scaled distance of an extrapolated Hopf point from a generalised one that is located on a Hopf curve."""
+Arrays = dict[str, Array]
+"""What a unit of work gives, as it is stored."""
 
 
 class CurveEnd(IntEnum):
@@ -73,6 +76,37 @@ class HalfCurve:
 
 
 @dataclass(frozen=True, slots=True)
+class TracedHalf:
+    """What came of following a half: None where no curve is found; how far special points lie from it.
+
+    distances: in units of the line's axis, by the special point's place in the list of all; those near only.
+    """
+
+    half: HalfCurve | None
+    distances: dict[int, float] = field(default_factory=dict)
+
+    def arrays(self) -> Arrays:
+        """The same as arrays."""
+        points = [] if self.half is None else [_numbers(point) for point in self.half.points]
+        return {
+            "points": np.array(points, dtype=float).reshape(-1, len(CurvePoint.__slots__)),
+            "end": np.array([0.0 if self.half is None else float(self.half.end)]),
+            "distances": np.array(list(self.distances.items()), dtype=float).reshape(-1, 2),
+        }
+
+    @classmethod
+    def of(cls, arrays: Arrays) -> "TracedHalf":
+        """The inverse of `arrays`."""
+        points = tuple(CurvePoint(*map(float, row)) for row in arrays["points"])
+        half = HalfCurve(points, CurveEnd(int(arrays["end"][0]))) if points else None
+        return cls(half, {int(place): float(distance) for place, distance in arrays["distances"]})
+
+
+def _numbers(point: CurvePoint) -> list[float]:
+    return [getattr(point, name) for name in CurvePoint.__slots__]
+
+
+@dataclass(frozen=True, slots=True)
 class CycleCurve:
     """A curve of folds or torus points: its points in order, and why it ends before and behind them.
 
@@ -112,11 +146,11 @@ def ending_at(curve: CycleCurve, plane: Plane, known: Sequence[GeneralisedHopfPo
     return replace(curve, vanishing=(first, last))
 
 
-def polynomial_weights(places: Array, at: float) -> list[float]:
-    """Of the values at some places, (n,), in the polynomial through them at another place."""
-    return [
-        float(np.prod([(at - other) / (own - other) for other in places if other != own])) for own in places
-    ]
+def weights_at(places: Array, at: float) -> Array:
+    """Of the values at some places, (n,), n > 1, in the polynomial through them at another place, (n,)."""
+    apart = places[:-1] - places[-1]
+    weights = polynomial_weights(apart, np.zeros(len(apart)), at - places[-1])
+    return np.append(weights, 1 - weights.sum())
 
 
 def vanishing_point(points: Sequence[CurvePoint]) -> VanishingPoint | None:
@@ -126,6 +160,6 @@ def vanishing_point(points: Sequence[CurvePoint]) -> VanishingPoint | None:
         return None
     squares = np.array([point.tip_y_max**2 for point in known])
     table = np.array([[point.at, point.row, point.period] for point in known])
-    best, other = (np.dot(polynomial_weights(squares[i:], 0.0), table[i:]) for i in (0, 1))
+    best, other = (np.dot(weights_at(squares[i:], 0.0), table[i:]) for i in (0, 1))
     error = SAFETY * (abs(best[0] - other[0]) + max(point.error for point in known))
     return VanishingPoint(float(best[0]), float(best[1]), float(error), float(best[2]))

@@ -4,34 +4,31 @@ The cycles near a special point are a family of two numbers: a length along the 
 `bordered` has it, and the place on the axis of the rows. In these two the special points are the zeros of one
 function on a smooth curve, also where both parameters turn back, at a cusp. It is followed by its length: a
 polynomial through the points before predicts cycle and place; the secant method across the curve corrects,
-a cycle solved by the bordered Newton method at each step, on two meshes whose difference is the error. How
-the function and the cycles change across the curve is known from the point before, and from mesh to mesh.
+every cycle and the function's vectors with the factors of one elimination (`augmented`). How the function and
+the cycles change across is known from the point before. What two meshes differ by is the error, at every
+third point or so.
 """
 
 from dataclasses import dataclass, replace
-from math import ceil, nan
+from math import ceil, inf
 from typing import NamedTuple
 
 import numpy as np
 
 from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
-from ...orbit.newton import Converged
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import OrbitMesh, mesh_of, stages_for
+from ...orbit.orbit_mesh import lasting_tails, mesh_of, stages_for
 from ...point import Unsolvable
 from ..arc import tangent_at
 from ..beginning import LEAST_UNIT, MOMENT
-from ..bordered import BorderedMatrix, Condition, Scale, bordered, moment_of, moved
-from .locating import REAL
+from ..bordered import BorderedMatrix, Condition, Scale, moment_of, moved
+from .augmented import SHARE, TOLERANCE, FoldFunction, NearbyCycles, TorusFunction
+from .on_curve import ACCURACY, Across, CurveErrors, OnCurve, with_parameters
 from .point import SpecialKind, SpecialPoint
 
-ACCURACY = 1e-7
-"""Relative, of the line's parameter on a curve; that of the special points of rows is 1e-9."""
 ORDER_SHARE, INTERVAL_SHARE = 0.6, 0.5
 """Of the mesh of a special point's 1e-9, with which a curve starts."""
-TOLERANCE = 1e-8
-"""Relative, of the distance of a cycle's matrix from it: the square of it is left."""
 SMALL = 0.05
 """Largest tip y, in L, of cycles whose folds are told from their Hopf point by a division by the moment."""
 FIRST_SECANT, FARTHEST, MOST_SECANTS = 1e-3, 0.1, 12
@@ -45,63 +42,18 @@ ALIKE = 0.9
 """Least cosine of the angle between two ways across for which the rates of one serve the other."""
 LEAST_SPAN = 1e-6
 """Least distance of two cycles that tell the rates across the curve: the test function is known to 1e-8."""
-SAFETY, ROUNDING = 3.0, 1e-12
+SAFETY, LOCATED = 3.0, 3e-9
+"""Of the difference of two meshes, and relative error of the line's value beside it."""
 MORE_ORDERS, MORE_INTERVALS, MOST_FINER_MESHES = 2, 1.2, 5
 
 
-@dataclass(frozen=True, eq=False)
-class Across:
-    """How the cycles of a family change across its curve, by the length across.
-
-    way: across, along the branch and along the rows, (2,). test: of what is zero on the curve. orbit: of
-    values and the line's coordinate, (N + 1,); mesh: theirs. span: length between the cycles that tell them.
-    """
-
-    way: Array
-    test: float
-    orbit: Array
-    mesh: OrbitMesh
-    span: float
-
-
 class _Tried(NamedTuple):
-    """A cycle at a length across a curve, with the test function there."""
+    """A cycle at a length across a curve, with the vectors and the value of the function there."""
 
     orbit: Orbit
+    vectors: Array
     test: float
     at: float
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class OnCurve:
-    """A point of a curve: a cycle with its values of the line's and the rows' parameter.
-
-    place: on the rows' axis, scaled. ahead: direction of its branch in `Scale.place`, (3,). error: absolute,
-    of the line's value on the curve. period in tau2, tip_y_max in L. rates: across the curve, where known.
-    """
-
-    orbit: Orbit
-    scale: Scale
-    ahead: Array
-    place: float
-    at: float
-    row: float
-    error: float = nan
-    rates: Across | None = None
-
-    @property
-    def tip_y_max(self) -> float:
-        return abs(float(self.orbit.form.tip(self.orbit.start)[1]))
-
-    def step_from(self, other: "OnCurve") -> Array:
-        """From another point to this one: in `Scale.place`, and along the rows, (4,)."""
-        moved = self.scale.place(self.orbit) - self.scale.place(other.orbit)
-        return np.append(moved, self.place - other.place)
-
-    def across(self, step: Array) -> Array:
-        """Square to a step, (4,), along the branch and along the rows, (2,)."""
-        way = np.array([float(self.ahead @ step[:3]), step[3]])
-        return np.array([-way[1], way[0]]) / np.linalg.norm(way)
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,6 +79,12 @@ class CycleFamily:
         """The values of an orbit for the rod at a place on the rows' axis; raises Unsolvable."""
         return with_parameters(orbit, {self.rows.name: self.rows.value(place)})
 
+    def function(self, matrix: BorderedMatrix) -> FoldFunction | TorusFunction:
+        """What is zero at special points of the kind, at the cycle of a matrix."""
+        if self.kind == SpecialKind.fold:
+            return FoldFunction(matrix, self.border, self.small)
+        return TorusFunction(matrix)
+
     def nearest(
         self, start: Orbit, place: float, across: Array, rates: Across | None = None, same: bool = False
     ) -> OnCurve:
@@ -135,78 +93,31 @@ class CycleFamily:
         rates: about those across the curve; same: whether they are of this very point, on another mesh.
         Raises Unsolvable.
         """
-        length = float(self.border @ self.scale.place(start))
-        at, orbit, before = 0.0, start, None
-        if rates and rates.way @ across < ALIKE:
-            rates = None
+        known = rates if rates and rates.way @ across >= ALIKE else None
+        search = _SecantAcross(self, start, place, across, known, same)
         for _ in range(MOST_SECANTS):
-            condition = Condition(self.scale, self.border, length + at * float(across[0]))
-            there = self.placed(orbit, place + at * float(across[1]))
-            found = condition.solved(there, TOLERANCE, TOLERANCE)
-            test = self.test(found)
-            here = _Tried(found.orbit, test, at)
-            own = self._rates(across, before, here) if before else None
-            rates, same = own or rates, same or own is not None
-            step = -test / rates.test if rates else FIRST_SECANT
-            if not abs(step) <= FARTHEST:
-                raise Unsolvable("the secant method leaves the curve")
-            enough = LINEAR / own.span if own else LINEAR_HERE if same else LINEAR_BEFORE
-            if rates and abs(step) <= enough:
-                return self._point(found, place + at * float(across[1]), step, across, rates)
-            before, orbit = here, found.orbit
-            if rates:
-                orbit = moved(orbit, self.scale.name, step * _on(rates, orbit))
-            at += step
+            found = search.next()
+            if found is not None:
+                return found
         raise Unsolvable("the secant method does not settle")
 
-    def test(self, found: Converged) -> float:
-        """What is zero at a special point of the kind, at a cycle that was just found; raises Unsolvable."""
-        orbit, matrix = found.orbit, bordered(found)
-        if self.kind == SpecialKind.fold:
-            tangent = tangent_at(orbit, self.scale, self.border, matrix)
-            moved = self.scale.moved(orbit, tangent)
-            rises = float(moved[2] / (moved @ self.border))
-            return rises * self.scale.moment / moment_of(orbit) if self.small else rises
-        pair = crossing_pair(matrix)
-        if pair is None:
-            raise Unsolvable("the multipliers that cross the circle have become real")
-        return abs(pair) - 1
-
-    def _rates(self, way: Array, before: _Tried, here: _Tried) -> Across | None:
-        """The rates across the curve between two cycles on one mesh; None where they are too near."""
-        name, span = self.scale.name, here.at - before.at
-        if abs(span) < LEAST_SPAN or here.test == before.test:
-            return None
-        one, other = before.orbit, here.orbit
-        change = other.form.rod.coordinate(name) - one.form.rod.coordinate(name)
-        orbit = np.append(other.values - one.values, change) / span
-        return Across(way, (here.test - before.test) / span, orbit, mesh_of(one), abs(span))
-
-    def _point(self, found: Converged, place: float, step: float, across: Array, rates: Across) -> OnCurve:
-        """The point of the curve a short step across from a cycle that was just found."""
-        tangent = tangent_at(found.orbit, self.scale, self.border, bordered(found))
-        place += step * float(across[1])
-        orbit = self.placed(moved(found.orbit, self.scale.name, step * _on(rates, found.orbit)), place)
-        scale = Scale.of(orbit, self.scale.name, self.scale.least)
-        ahead = scale.moved(orbit, tangent)
-        return OnCurve(
-            orbit=orbit,
-            scale=scale,
-            ahead=ahead / np.linalg.norm(ahead),
-            place=place,
-            at=getattr(orbit.form.rod, scale.name),
-            row=getattr(orbit.form.rod, self.rows.name),
-            rates=rates,
-        )
-
     def point(
-        self, start: Orbit, place: float, across: Array, slope: float = 0.0, rates: Across | None = None
+        self,
+        start: Orbit,
+        place: float,
+        across: Array,
+        slope: float = 0.0,
+        rates: Across | None = None,
+        before: OnCurve | None = None,
     ) -> OnCurve:
         """The same with its error, on a finer mesh if need be; raises Unsolvable.
 
-        slope: d(line's value)/d(place) of the curve, so that what moves along it is no error.
+        slope: d(line's value)/d(place) of the curve, so that what moves along it is no error. before: the
+        point before, whose errors may tell this one's.
         """
         last = self.nearest(start, place, across, rates)
+        if before and before.errors and before.errors.tells(last):
+            return replace(last, errors=before.errors.carried)
         for _ in range(MOST_FINER_MESHES):
             mesh = mesh_of(last.orbit)
             longer = ceil(MORE_INTERVALS * mesh.intervals)
@@ -215,38 +126,94 @@ class CycleFamily:
                 break
             here = self.nearest(finer.carry(last.orbit), last.place, across, last.rates, same=True)
             off = abs(here.at - last.at - slope * (here.place - last.place))
-            error = SAFETY * off + ROUNDING * abs(here.at)
+            error = SAFETY * off + LOCATED * abs(here.at)
             if error <= ACCURACY * abs(here.at):
-                return replace(last, error=error)
+                return replace(
+                    last, errors=CurveErrors(error / abs(last.at), lasting_tails(last.orbit), mesh)
+                )
             last = here
         raise Unsolvable("no mesh is fine enough")
 
 
-def _on(rates: Across, orbit: Orbit) -> Array:
-    """How an orbit changes across its curve on its own mesh, (N + 1,)."""
-    mesh = mesh_of(orbit)
-    if mesh == rates.mesh:
-        return rates.orbit
-    there = replace(rates.mesh.carry(orbit), values=rates.orbit[:-1])
-    return np.append(mesh.carry(there).values, rates.orbit[-1])
+class _SecantAcross:
+    """The secant method across a curve: each next cycle is corrected with the factors of the first one."""
 
+    def __init__(
+        self, family: CycleFamily, start: Orbit, place: float, way: Array, rates: Across | None, same: bool
+    ) -> None:
+        self.family, self.place, self.way, self.rates = family, place, way, rates
+        self.orbit, self.at = family.placed(start, place), 0.0
+        self.before: _Tried | None = None
+        self.length = float(family.border @ family.scale.place(start))
+        self.trusted = LINEAR_HERE if same else LINEAR_BEFORE
+        """Longest step along a line by rates that are not of two cycles here."""
+        self.near = NearbyCycles(self.orbit, family.scale, family.border, family.function)
+        self.near.contraction, self.near.learns = inf, not family.small
+        if rates and self.near.learns:
+            self.near.contraction = rates.contraction
 
-def crossing_pair(matrix: BorderedMatrix) -> complex | None:
-    """Of complex multipliers, over half a period and the reflection, the one nearest to the circle."""
-    h = matrix.returns
-    pairs = h[np.abs(h.imag) > REAL * np.abs(h)]
-    return complex(pairs[np.argmin(np.abs(np.abs(pairs) - 1))]) if len(pairs) else None
+    def next(self) -> OnCurve | None:
+        """The point of the curve, if the next cycle tells it; raises Unsolvable."""
+        here = self._tried()
+        enough = self.trusted
+        if own := self._rates_since(here):
+            self.rates, self.trusted, enough = own, LINEAR_HERE, LINEAR / own.span
+        rates = self.rates
+        step = -here.test / rates.test if rates else FIRST_SECANT
+        if not abs(step) <= FARTHEST:
+            raise Unsolvable("the secant method leaves the curve")
+        if rates and abs(step) <= enough:
+            return self._point(step, replace(rates, contraction=self.near.contraction))
+        if self.before:  # as the cycle, its vectors go on along a line
+            change = (here.vectors - self.before.vectors) / (here.at - self.before.at)
+            self.near.function.vectors = here.vectors + step * change
+        if rates:
+            self.orbit = self._moved(step, rates)
+        self.before, self.at = here, self.at + step
+        return None
 
+    def _tried(self) -> _Tried:
+        """The cycle at the present length across; raises Unsolvable."""
+        family, rates = self.family, self.rates
+        length = self.length + self.at * float(self.way[0])
+        self.orbit = family.placed(self.orbit, self.place + self.at * float(self.way[1]))
+        slope, enough = (abs(rates.test), TOLERANCE) if rates else (1.0, SHARE * FIRST_SECANT)
+        condition = Condition(family.scale, family.border, length)
+        self.orbit, test = self.near.solved(self.orbit, condition, slope, enough)
+        return _Tried(self.orbit, self.near.function.vectors, test, self.at)
 
-def with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
-    """The values of an orbit for the rod with other values of some parameters; raises Unsolvable."""
-    try:
-        form = replace(orbit.form, rod=orbit.form.rod.changed(**changed))
-    except (ValueError, ZeroDivisionError) as error:
-        raise Unsolvable(f"the curve leaves the rods: {error}") from error
-    if form.omega_unknown != orbit.form.omega_unknown:
-        raise Unsolvable(f"gamma3 = {form.rod.gamma3:.3g} needs other unknowns")
-    return replace(orbit, form=form)
+    def _rates_since(self, here: _Tried) -> Across | None:
+        """The rates across between the last two cycles; None where they are too near, or there is one."""
+        before = self.before
+        if before is None or abs(here.at - before.at) < LEAST_SPAN or here.test == before.test:
+            return None
+        name, span = self.family.scale.name, here.at - before.at
+        one, other = before.orbit, here.orbit
+        change = other.form.rod.coordinate(name) - one.form.rod.coordinate(name)
+        orbit = np.append(other.values - one.values, change) / span
+        return Across(self.way, (here.test - before.test) / span, orbit, mesh_of(one), abs(span))
+
+    def _moved(self, step: float, rates: Across) -> Orbit:
+        """The last cycle moved a step across."""
+        return moved(self.orbit, self.family.scale.name, step * rates.on(self.orbit))
+
+    def _point(self, step: float, rates: Across) -> OnCurve:
+        """The point of the curve a short step across from the last cycle."""
+        family, matrix = self.family, self.near.matrix
+        tangent = tangent_at(matrix.orbit, family.scale, family.border, matrix)
+        place = self.place + (self.at + step) * float(self.way[1])
+        orbit = family.placed(self._moved(step, rates), place)
+        scale = Scale.of(orbit, family.scale.name, family.scale.least)
+        ahead = scale.moved(orbit, tangent)
+        return OnCurve(
+            orbit=orbit,
+            scale=scale,
+            ahead=ahead / np.linalg.norm(ahead),
+            place=place,
+            at=getattr(orbit.form.rod, scale.name),
+            row=getattr(orbit.form.rod, family.rows.name),
+            rates=rates,
+        )
 
 
 def first_on_curve(special: SpecialPoint, line: str, rows: PlaneAxis, row: float) -> OnCurve:

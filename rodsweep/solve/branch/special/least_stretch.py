@@ -7,6 +7,7 @@ import numpy as np
 from ....arrays import Array
 from ....discretization.periodic import maxima, samples_of
 from ...orbit.measures import CyclePath
+from ...orbit.orbit import Orbit
 from ..arc import ArcPoint
 
 PLACES = 8
@@ -21,6 +22,14 @@ def stretch_at(point: ArcPoint) -> float:
     """The least h1 of a cycle in space and time, or of its nodes where that is far from 0."""
     rough = point.cycle.measures.least_stretch
     return rough if rough > SAFE_STRETCH else least_stretch(point.cycle.path, SAFE_AT_PLACES)
+
+
+def stretch_of(orbit: Orbit) -> float:
+    """The same of an orbit alone."""
+    rod, pull = orbit.form.nodal, orbit.form.layout.field(orbit.points, "n1")
+    nodes = pull.shape[-1]
+    rough = float((rod.rest[0, :nodes] + rod.compliance[0, :nodes] * pull).min())
+    return rough if rough > SAFE_STRETCH else least_stretch(CyclePath(orbit), SAFE_AT_PLACES)
 
 
 def least_stretch(path: CyclePath, enough: float = inf) -> float:

@@ -1,0 +1,91 @@
+"""What two rods of a path with their leading eigenvalues say about those between them."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+from ...arrays import Complex
+
+EXPLAINED = 0.25
+"""Share of a quantity that its cubic model may miss between two anchors."""
+
+
+@dataclass(frozen=True)
+class Anchor:
+    """A rod of the path with its leading eigenvalues w and their slopes dw/dp, shape (ANCHOR_MODES,).
+
+    time, lengthening: a time on which the rod relaxes, smooth along the path, and its slope. In its units w
+    is of order one; without shear and rotational drag it grows like nu^-2 where the rod is nearly crushed.
+    """
+
+    p: float
+    w: Complex
+    slope: Complex
+    time: float = 1.0
+    lengthening: float = 0.0
+
+    @cached_property
+    def oscillates(self) -> bool:
+        """Whether a pair leads."""
+        return bool(self.w[0].imag != 0)
+
+    def partner(self) -> tuple[float, float] | None:
+        """((w1 - w2)^2 time^2, its slope) of the two that lead, where both are real or both are a pair."""
+        if self.oscillates:
+            gap, slope = self._timed(2 * self.w[0].imag, 2 * self.slope[0].imag)
+            return -(gap**2), -2 * gap * slope
+        if self.w[1].imag != 0:
+            return None
+        gap, slope = self._timed((self.w[0] - self.w[1]).real, (self.slope[0] - self.slope[1]).real)
+        return gap**2, 2 * gap * slope
+
+    def rival(self) -> tuple[float, float] | None:
+        """(lead of the real part over the first eigenvalue of the other kind, times time, its slope)."""
+        for w, slope in zip(self.w[1:], self.slope[1:], strict=True):
+            if (w.imag != 0) != self.oscillates:
+                return self._timed((self.w[0] - w).real, (self.slope[0] - slope).real)
+        return None
+
+    def _timed(self, value: float, slope: float) -> tuple[float, float]:
+        """(value time, its slope): zeros and signs stay where they are."""
+        return float(value * self.time), float(slope * self.time + value * self.lengthening)
+
+
+def _lowest(a: float, b: float, slope_a: float, slope_b: float) -> tuple[float, float]:
+    """(least value on [0, 1] of the cubic with these values and slopes at its ends, where)."""
+    square, cube = 3 * (b - a) - 2 * slope_a - slope_b, slope_a + slope_b - 2 * (b - a)
+    lowest, at = min(a, b), 0.5
+    spread = square * square - 3 * cube * slope_a
+    if spread >= 0 and (square or cube):
+        # The root of slope_a + 2 square t + 3 cube t^2 at which the slope grows, without cancellation.
+        root = math.sqrt(spread)
+        t = -slope_a / (square + root) if square + root > 0 else (root - square) / (3 * cube) if cube else 0.5
+        value = a + t * (slope_a + t * (square + t * cube))
+        if 0 < t < 1 and value < lowest:
+            lowest, at = value, t
+    return lowest, at
+
+
+def unexplained(left: Anchor, right: Anchor) -> tuple[float, bool]:
+    """(where to put an anchor between two of equal character, whether two changes may hide between them).
+
+    The place is a share of the interval, 0 where slopes explain what lies between and no change fits in.
+    """
+    h = right.p - left.p
+    for a, b in ((left.partner(), right.partner()), (left.rival(), right.rival())):
+        if a is None and b is None:
+            continue
+        if a is None or b is None:
+            value, slope = a or b or (0.0, 0.0)
+            if abs(value) < 2 * abs(slope) * h:
+                return 0.5, False
+            continue
+        smallest = min(abs(a[0]), abs(b[0]))
+        missed = abs(b[0] - a[0] - h * (a[1] + b[1]) / 2)
+        sign = math.copysign(h, a[0])
+        lowest, share = _lowest(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
+        if a[0] * b[0] <= 0 or lowest < EXPLAINED * smallest:
+            return share, True
+        if missed > EXPLAINED * max(smallest, abs(b[0] - a[0])):
+            return 0.5, False
+    return 0.0, False
