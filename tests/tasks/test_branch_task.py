@@ -15,7 +15,7 @@ from rodsweep.api.dataset import view_of
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import both, curves_of, stability_of_pieces, straight_ranges, union
 from rodsweep.post.figures import draw
-from rodsweep.post.figures.branch import through_cycles
+from rodsweep.post.figures.smooth_branch import through_cycles
 from rodsweep.post.summary import branch as summary
 from rodsweep.post.summary.branch import coexistence
 from rodsweep.results.file.view import read_view

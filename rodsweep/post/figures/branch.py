@@ -10,10 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
-from numpy.typing import NDArray
-from scipy.interpolate import Akima1DInterpolator, CubicHermiteSpline
 
-from ...arrays import Array
 from ...model.parameters import CRUSHING
 from ...results.file.view import View
 from ...results.layouts.variables import MISSING
@@ -30,6 +27,7 @@ from ..summary.branch import ends_of
 from . import style
 from .cycle.selection import points_told_apart
 from .request import FigureRequest
+from .smooth_branch import through_cycles
 
 LINES = {1: ("-", "stable"), 0: ("--", "unstable"), -1: (":", "not known")}
 """Line and word of a piece of a curve, by its stability."""
@@ -44,17 +42,6 @@ MARKS = {
     "list_full": ("|", "last cycle stored"),
 }
 """Marker and words of a special point, by its kind or, of an end, the reason; other ends are not marked."""
-MIRRORED, IMAGE = 3, np.array([1.0, -1.0, 1.0])
-"""Cycles that are mirrored at a Hopf point, as many as a slope of Akima's cubic depends on; their image."""
-SHARES = np.array([0.5, 1.0, 1.0])
-"""Of the parameter, of y and of the logarithm of the period in the length along a branch, in units of their
-extents: next to a Hopf point the parameter goes with the square of y, and a length that is y is smoothest."""
-OF_SLOPE = 5
-"""Cycles through which the polynomial goes whose slope the curve has, so that few cycles suffice."""
-CORNER = 0.15
-"""Difference of that slope from Akima's, in units of the steeper chord, that only a corner makes."""
-BETWEEN = 12
-"""Places at which the curve between two cycles is drawn."""
 PREDICTED, PREDICTED_WORD = (0, (4, 1, 1, 1)), "by the normal form"
 """Line and word of the amplitude that it predicts next to every Hopf point."""
 COLOURS = (style.FIRST, style.SECOND, "#6A3D9A", "#2E7D32", "#8D6E63", "#00838F", "#C2185B", "#9E9D24")
@@ -127,47 +114,6 @@ def _shown(view: View, rod: int, curves: list[CurveOfCycles]) -> Range:
     if followed_parameter(view) == force:
         return low, min(high, columns[stiffness])
     return (max(low, columns[force]) if followed_parameter(view) == stiffness else low), high
-
-
-def through_cycles(curve: CurveOfCycles) -> tuple[Array, Array, Array, NDArray[np.integer]]:
-    """(at, y, period, stable) of a branch as it is drawn, (n,), the last (n - 1,): smooth through its cycles.
-
-    At a Hopf point a branch is its own mirror image, y to -y: beyond it the cycles are mirrored, so that the
-    curve has the square root there.
-    """
-    places = np.column_stack([curve.at, curve.y, np.log(curve.period)])
-    extent = np.ptp(places, axis=0) + (np.ptp(places, axis=0) == 0)
-    moves = (np.diff(places, axis=0) != 0).any(axis=1)  # the end of the range is a cycle too
-    own, stable = places[np.append(True, moves)], curve.stable[moves]
-    if len(own) <= MIRRORED:
-        return curve.at, curve.y, curve.period, curve.stable
-    before, behind = (some * IMAGE for some in (own[MIRRORED:0:-1], own[-2 : -MIRRORED - 2 : -1]))
-    first, last = (int(vertex[1] == 0) * MIRRORED for vertex in (own[0], own[-1]))
-    whole = np.concatenate([before[:first], own, behind[:last]])
-    s = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(whole / extent * SHARES, axis=0), axis=1)))
-    ends = s[first : first + len(own)]
-    finer = np.append(np.linspace(ends[:-1], ends[1:], BETWEEN, endpoint=False, axis=1).ravel(), ends[-1])
-    at, y, log_period = CubicHermiteSpline(s, whole, slopes_at_cycles(s, whole))(finer).T
-    return at, y, np.exp(log_period), np.repeat(stable, BETWEEN)
-
-
-def slopes_at_cycles(s: Array, places: Array) -> Array:
-    """The derivatives of places by s, both (n, columns): of the polynomial through OF_SLOPE cycles beside.
-
-    Akima's where the two differ much: beside a corner, where another maximum of y(t) becomes the largest, his
-    cubic makes no waves.
-    """
-    akima = Akima1DInterpolator(s, places)(s, 1)
-    count = min(OF_SLOPE, len(s))
-    smooth = np.empty_like(places)
-    for i, start in enumerate(np.clip(np.arange(len(s)) - count // 2, 0, len(s) - count)):
-        beside = s[start : start + count] - s[i]
-        size = np.abs(beside).max()
-        powers = np.vander(beside / size, increasing=True)
-        smooth[i] = np.linalg.solve(powers, places[start : start + count])[1] / size
-    chords = np.abs(np.diff(places, axis=0) / np.diff(s)[:, None])
-    steepest = np.maximum(np.vstack([chords[:1], chords]), np.vstack([chords, chords[-1:]]))
-    return np.where(np.abs(smooth - akima) <= CORNER * steepest, smooth, akima)
 
 
 def _draw(upper: Axes, lower: Axes, curve: CurveOfCycles, colour: str) -> None:
