@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from ..solve.changes.boundary_curves import BoundaryCurve
     from ..solve.continuation.boundaries import Boundaries
     from ..solve.hopf.generalised import CurveCriticality
+    from ..solve.orbit.matrix.workspace import NewtonWorkspace
     from .phase_diagram import PhaseDiagramTask
 
 MAX_KEPT_ROWS = 200
@@ -44,6 +45,8 @@ class DiagramCurves:
     """
 
     task: "PhaseDiagramTask"
+    workspace: "NewtonWorkspace"
+    """Memory of Newton's matrices of this process."""
     special: "dict[int, tuple[SpecialPoint, ...]]" = field(default_factory=dict)
     """Special points, with their cycles, of rows that this process has solved: by the row's number."""
 
@@ -75,7 +78,7 @@ class DiagramCurves:
 
     def solve(self, units: "SpecialBoundaries", unit: int) -> dict[str, np.ndarray]:
         """The result of a unit, arrays of the shapes that `TracedHalf` has."""
-        return units.solve(unit, self._special_points)
+        return units.solve(unit, self._special_points, self.workspace)
 
     def nothing(self) -> dict[str, np.ndarray]:
         """The result of a unit that finds no curve, arrays of no length along their first shape."""
@@ -157,7 +160,8 @@ class DiagramCurves:
         from ..solve.branch.coexistence import row_branches, special_of
 
         if number not in self.special:
-            return special_of(row_branches(self.task.rod(number), self.task.row_request(), MOST_SPECIAL))
+            request = self.task.row_request()
+            return special_of(row_branches(self.task.rod(number), request, MOST_SPECIAL, self.workspace))
         return self.special[number]
 
     def _criticality(self, plane: "Plane", found: "Boundaries[BoundaryCurve]") -> "list[CurveCriticality]":

@@ -131,13 +131,14 @@ class LimitCycleTask(Task):
         if self.config.limit_cycle.method == "integration":
             return self._integration()
         from ..solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle, warm_up
+        from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
         options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
         request = CycleRequest(accuracy=self.config.accuracy, **options)
-        along = self.config.along if self.chains else None
+        along, workspace = self.config.along if self.chains else None, NewtonWorkspace()
 
         def solve(index: int, start: State = None) -> "Cycle":
-            return solve_cycle(self.points.rod(index), request, start, along)
+            return solve_cycle(self.points.rod(index), request, start, along, workspace)
 
         def solve_from(index: int, start: State) -> "tuple[Cycle, State]":
             cycle = solve(index, start)

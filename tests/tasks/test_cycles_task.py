@@ -564,7 +564,7 @@ class CycleStatus(IntEnum):
     def succeeded(self):
         return self <= CycleStatus.straight
 
-def solve_cycle(point, request, start=None, along=None):
+def solve_cycle(point, request, start=None, along=None, workspace=None):
     import numpy as np
     F, k2 = point.F, point.k2
     if os.environ.get("DIE_AT") == f"{F:g} {k2:g}":

@@ -15,7 +15,8 @@ from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.rod import Rod
 from ...solve.cycle.limit_cycle import Cycle, CycleStatus, solve_cycle
 from ...solve.cycle.refinement import refine
-from ...solve.orbit.linearisation import Linearisation
+from ...solve.orbit.matrix.linearisation import Linearisation
+from ...solve.orbit.matrix.workspace import NewtonWorkspace
 from ...solve.orbit.measures import CyclePath
 from ...solve.orbit.newton import newton
 from ...solve.orbit.orbit import Orbit
@@ -61,14 +62,14 @@ class ExactCycle:
     @classmethod
     def near(cls, orbit: Orbit) -> "ExactCycle":
         """Of the same rod as the orbit."""
-        found = refine(orbit, REFERENCE_ACCURACY)
+        found = refine(orbit, REFERENCE_ACCURACY, NewtonWorkspace())
         return cls(found.orbit, found.measures.period, found.measures.tip_y_max)
 
     def at(self, F: float) -> "ExactCycle":
         """Of the rod at a force near by."""
         form = self.orbit.form
         near = replace(self.orbit, form=replace(form, rod=replace(form.rod, F=F)))
-        orbit = newton(near, EXACT).orbit
+        orbit = newton(near, EXACT, NewtonWorkspace()).orbit
         return ExactCycle(orbit, orbit.period, CyclePath(orbit).extrema["tip_y_max"])
 
     def errors_of(self, period: float, tip_y_max: float) -> dict[str, float]:
@@ -162,7 +163,7 @@ def judged_cycle(exact: ExactCycle, cycle: Cycle) -> dict[str, Any]:
     if cycle.neighbour is not None:
         orbit = orbit_of(cycle)
         mesh = mesh_of(orbit)
-        extra["multipliers"] = len(Linearisation(orbit).multipliers())
+        extra["multipliers"] = len(Linearisation(orbit, NewtonWorkspace()).multipliers())
         extra |= {"intervals": mesh.intervals, "stages": mesh.stages}
     return {"error": max(errors.values()), "extra": extra}
 

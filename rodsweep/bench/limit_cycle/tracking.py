@@ -26,6 +26,7 @@ from ...solve.cycle.neighbour import Neighbour
 from ...solve.cycle.transient import angle_weights
 from ...solve.motion.integrator import RunLimit, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
+from ...solve.orbit.matrix.workspace import NewtonWorkspace
 from ...solve.orbit.newton import newton
 from ...solve.orbit.orbit import Orbit
 from ..study import Contender, Measurement, contest
@@ -95,7 +96,7 @@ def on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
 def reference() -> Reference:
     """The cycle on the benchmark's mesh, by collocation in time."""
     near = orbit_of(cycle_at(CYCLE_FORCE)).on(mesh(1, CYCLE_ORDER), REFERENCE_INTERVALS, REFERENCE_STAGES)
-    orbit = newton(near, EXACT).orbit
+    orbit = newton(near, EXACT, NewtonWorkspace()).orbit
     return Reference(*on_cycle(orbit), orbit.period, float(abs(orbit.form.tip(orbit.start)[1])))
 
 

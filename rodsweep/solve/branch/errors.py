@@ -168,7 +168,7 @@ def measured_errors(
     multipliers = multipliers_of(found)[0]
     parts = np.empty((2, MULTIPLIER + 2))
     for part, target in zip(parts, finer, strict=True):
-        fine = condition.on(target, orbit, TOLERANCE * accuracy, DISTANCE)
+        fine = condition.on(target, found, TOLERANCE * accuracy, DISTANCE)
         part[:] = _difference(rough, multipliers, fine, place)
     # The finer mesh has an error in time itself.
     parts[1] /= 1 - ((mesh.intervals - 1) / (longer - 1)) ** (mesh.stages + 1)

@@ -12,6 +12,7 @@ from ...watch import Whereabouts, report
 from ...wording import counted
 from ..continuation.follower import zero_along
 from ..cycle.refinement import matrix_distance, newton_tolerance
+from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit_mesh import mesh_of
 from ..point import Unsolvable
 from .arc import STEPS, ArcPoint, arc_between, next_point, point_at, tangent_at, there_from
@@ -47,7 +48,7 @@ class Course:
     """What a branch is followed through: all Hopf points of the rod, the parameter's coordinates between
     which it lies with why it ends there, an accuracy, and how many cycles are kept.
 
-    breakings: known symmetry breakings of the rod.
+    breakings: known symmetry breakings of the rod. workspace: memory of all matrices on the way.
     """
 
     hopfs: Sequence[HopfBirth]
@@ -55,6 +56,7 @@ class Course:
     reasons: tuple[EndReason, EndReason]
     accuracy: float
     most: int
+    workspace: NewtonWorkspace
     breakings: Sequence[Breaking] = ()
 
 
@@ -63,7 +65,7 @@ def follow_branch(number: int, course: Course) -> BranchCurve:
     hopf = course.hopfs[number]
     curve = BranchCurve(hopf=number)
     curve.add(special_hopf(hopf))
-    return _followed(curve, course, lambda: beginning(hopf, course.accuracy))
+    return _followed(curve, course, lambda: beginning(hopf, course.accuracy, course.workspace))
 
 
 def follow_without_symmetry(which: int, name: str, course: Course) -> BranchCurve:
@@ -71,7 +73,11 @@ def follow_without_symmetry(which: int, name: str, course: Course) -> BranchCurv
     breaking = course.breakings[which]
     curve = BranchCurve(hopf=-1, breaking=breaking)
     curve.add(replace(breaking.point, message="", orbit=None))
-    return _followed(curve, course, lambda: beginning_without_symmetry(breaking, name, course.accuracy))
+
+    def first() -> ArcPoint:
+        return beginning_without_symmetry(breaking, name, course.accuracy, course.workspace)
+
+    return _followed(curve, course, first)
 
 
 def _followed(curve: BranchCurve, course: Course, first: Callable[[], ArcPoint]) -> BranchCurve:
@@ -240,6 +246,6 @@ def _on_the_edge(here: ArcPoint, there: ArcPoint, edge: Condition, course: Cours
     ends = beyond(0.0), beyond(segment.length)
     length = zero_along(beyond, ends, segment.length, 0.0, LANDING)
     tolerance, distance = newton_tolerance(course.accuracy), matrix_distance(course.accuracy)
-    found = edge.solved(segment.predicted(length), tolerance, distance)
+    found = edge.solved(segment.predicted(length), tolerance, here.workspace, distance)
     tangent = tangent_at(found.orbit, scale, here.ahead, bordered(found))
     return there_from(here, found, tangent, length, length, course.accuracy)

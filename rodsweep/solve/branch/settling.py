@@ -86,7 +86,7 @@ def refined(point: ArcPoint, accuracy: float, condition: Condition | None = None
 
 def on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: Condition, accuracy: float) -> ArcPoint:
     """The same cycle on another mesh, its errors not measured; raises Unsolvable."""
-    found = condition.on(mesh, point.orbit, newton_tolerance(accuracy), matrix_distance(accuracy))
+    found = condition.on(mesh, point.cycle.fine, newton_tolerance(accuracy), matrix_distance(accuracy))
     tangent = tangent_at(found.orbit, point.scale, point.ahead, bordered(found))
     known = point.place
     place = replace(

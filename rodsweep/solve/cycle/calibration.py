@@ -15,6 +15,7 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...discretization.resolution import LARGEST_ORDER
+from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.measures import CyclePath
 from ..orbit.newton import Converged, at_orbit, multiplier_change, multipliers_of, newton
 from ..orbit.orbit import Orbit
@@ -23,11 +24,10 @@ from ..orbit.orbit_mesh import (
     LEAST_ORDER,
     MOST_INTERVALS,
     OrbitMesh,
-    lasting_tails,
     mesh_of,
-    tails_of,
 )
 from ..orbit.path_differences import APART, HEIGHT, OTHERS, PERIOD, path_differences
+from ..orbit.tails import lasting_tails, tails_of
 from .cycle_errors import LEAST_CLAIM, ROUNDING, CycleErrors, largest_error
 
 MORE_ORDERS, MORE_INTERVALS = 2, 1.4
@@ -198,9 +198,11 @@ def _change(before: Array, after: Array) -> Array:
     return change
 
 
-def at_its_parameters(mesh: OrbitMesh, orbit: Orbit, tolerance: float) -> Converged:
+def at_its_parameters(
+    mesh: OrbitMesh, orbit: Orbit, tolerance: float, workspace: NewtonWorkspace
+) -> Converged:
     """The same cycle of the same rod on another mesh; raises Unsolvable."""
-    return newton(mesh.carry(orbit), tolerance)
+    return newton(mesh.carry(orbit), tolerance, workspace)
 
 
 def calibrated(found: Converged, accuracy: float, before: Calibration | None = None) -> Calibration:
@@ -212,7 +214,7 @@ def calibrated(found: Converged, accuracy: float, before: Calibration | None = N
     here, least = mesh_of(found.orbit), found.orbit.stages + 1
     seen, longer = Seen(found), ceil(MORE_INTERVALS * here.intervals)
     meshes = (replace(here, order=here.order + MORE_ORDERS), replace(here, intervals=longer))
-    others = (at_its_parameters(mesh, found.orbit, TOLERANCE * accuracy) for mesh in meshes)
+    others = (at_its_parameters(mesh, found.orbit, TOLERANCE * accuracy, found.workspace) for mesh in meshes)
     space, time = (seen.difference(Seen(other)) for other in others)
     # The finer mesh has an error in time itself.
     time = time / (1 - ((here.intervals - 1) / (longer - 1)) ** least)

@@ -11,10 +11,12 @@ from dataclasses import replace
 import numpy as np
 
 from ...arrays import Array
+from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import multiplier_change
 from ..orbit.orbit import Orbit
-from ..orbit.orbit_mesh import OrbitMesh, tails_of
+from ..orbit.orbit_mesh import OrbitMesh
 from ..orbit.path_differences import path_differences
+from ..orbit.tails import tails_of
 from .calibration import (
     LARGEST_FALL,
     LEAST_FALL,
@@ -36,11 +38,12 @@ SLOWEST_FALL = 1.2
 class CoarserMeshes:
     """The cycle on a coarse mesh, and on those that are finer in space or in time alone."""
 
-    def __init__(self, mesh: OrbitMesh, near: Orbit, accuracy: float) -> None:
+    def __init__(self, mesh: OrbitMesh, near: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
         """mesh: the fine one; near: an orbit near by, on any mesh. Raises Unsolvable."""
+        self._workspace = workspace
         order, intervals = mesh.order - ORDERS_LESS, round((mesh.intervals - 1) / TIMES_FEWER) + 1
         self.mesh, self._tolerance = replace(mesh, order=order, intervals=intervals), TOLERANCE * accuracy
-        self._both = Seen(at_its_parameters(self.mesh, near, self._tolerance))
+        self._both = Seen(at_its_parameters(self.mesh, near, self._tolerance, workspace))
         self._finer: dict[OrbitMesh, Seen] = {}
 
     def serve(self, mesh: OrbitMesh) -> bool:
@@ -67,7 +70,8 @@ class CoarserMeshes:
     def _on(self, **finer: int) -> Seen:
         mesh = replace(self.mesh, **finer)
         if mesh not in self._finer:
-            self._finer[mesh] = Seen(at_its_parameters(mesh, self._both.orbit, self._tolerance))
+            start = self._both.orbit
+            self._finer[mesh] = Seen(at_its_parameters(mesh, start, self._tolerance, self._workspace))
         return self._finer[mesh]
 
     def _errors(self, finer: Seen, factor: float) -> Array:

@@ -3,7 +3,7 @@
 The rod starts from its leading eigenmode, or from a neighbour's cycle. From the mode its motion is followed
 until it comes near a cycle (`transient`), just above a Hopf point the normal form predicts it (`hopf_start`);
 a neighbour predicts the cycle (`neighbour`). Newton's method then
-solves for the periodic orbit (`orbit`, `condensation`) on meshes of its own choice (`refinement`), and it is
+solves for the periodic orbit (`solve.orbit`) on meshes of its own choice (`refinement`), and it is
 measured (`measures`). It is called a cycle only if it is proved stable by its multipliers; that two peaks are
 close proves nothing near the Hopf point, where motions decay slowly.
 """
@@ -27,6 +27,7 @@ from ..backend.petsc import options
 from ..hopf.normal_form import accurate_normal_form
 from ..motion.integrator import forget_integrators
 from ..motion.time_scheme import CYCLE_PREFIX
+from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.measures import Measures
 from ..point import Unsolvable, solved
 from ..status import PointStatus
@@ -125,13 +126,18 @@ class Cycle:
 
 
 def solve_cycle(
-    rod: Rod, request: CycleRequest, start: Array | None = None, along: str | None = None
+    rod: Rod,
+    request: CycleRequest,
+    start: Array | None = None,
+    along: str | None = None,
+    workspace: NewtonWorkspace | None = None,
 ) -> Cycle:
     """The cycle that the rod reaches from its leading mode, or that a neighbour's `Cycle.neighbour` leads to.
 
-    start: flat, (any length,). along: the parameter by which neighbours differ. Failures are a status, never
-    an exception.
+    start: flat, (any length,). along: the parameter by which neighbours differ. workspace: memory of Newton's
+    matrices that rods share; without it the rod has its own. Failures are a status, never an exception.
     """
+    memory = workspace or NewtonWorkspace()
 
     def failed(cause: str) -> Cycle:
         forget_integrators()  # a PETSc object is not usable after an error inside it
@@ -140,7 +146,7 @@ def solve_cycle(
     def solve() -> Cycle:
         neighbour = Neighbour.unpack(start) if start is not None else None
         stability = straight_rod(rod, neighbour.leading if neighbour else None)
-        cycle = _solve(rod, request, stability, neighbour, along)
+        cycle = _solve(rod, request, stability, neighbour, along, memory)
         return _with_second_state(rod, _by_the_spectrum(cycle, stability), stability)
 
     return solved(solve, failed)
@@ -173,36 +179,43 @@ def _solve(
     stability: StraightRod,
     neighbour: Neighbour | None,
     along: str | None,
+    workspace: NewtonWorkspace,
 ) -> Cycle:
-    leading = stability.w
-    straight = Cycle(
-        status=CycleStatus.straight, linear_growth_rate=leading.real, linear_frequency=abs(leading.imag)
-    )
+    leading, straight = stability.w, _straight(stability.w)
     beam, form = _beam_and_form(rod)
     if request.start == "hopf":
-        return _from_hopf(form, request, straight, stability)
-    found = None
-    if neighbour is not None and along is not None:
-        with suppress(Unsolvable):
-            found = followed_cycle(neighbour, form, along, request.accuracy)
-    elif neighbour is None and not request.transient:
-        found = _small_cycle(form, leading, request, along)
+        return _from_hopf(form, request, straight, stability, workspace)
+    if neighbour is None:
+        found = _small_cycle(form, leading, request, along, workspace)
+    else:
+        found = _cycle_beside(neighbour, form, along, request, workspace)
     if found is not None and found.verdict(request.accuracy)[0] == CycleStatus.cycle:
         cycle = _measured(replace(straight, status=CycleStatus.cycle), found, request)
         return _handed_on(cycle, found, neighbour, along, request.accuracy)
     faded = _fades(rod, leading, request.amplitude) if neighbour is None else ""
-    traced = request.transient > 0
-    if faded and not traced:
+    if faded and not request.transient:
         return replace(straight, message=faded)
-    unstable = found if found is not None and found.stable is False else None
     transient = Transient(
-        beam, form, stability, request.accuracy, request.most_periods, along, traced=traced, unstable=unstable
+        beam,
+        form,
+        stability,
+        request.accuracy,
+        request.most_periods,
+        along,
+        workspace=workspace,
+        traced=request.transient > 0,
+        unstable=found if found is not None and found.stable is False else None,
     )
     end = _from_motion(transient, request, neighbour)
     cycle = _after_motion(straight, transient, end, faded, request)
     if faded or end.found is None:
         return cycle if faded or end.around is None else _with_multipliers(cycle, end.around)
     return _handed_on(_measured(cycle, end.found, request), end.found, None, along, request.accuracy)
+
+
+def _straight(w: complex) -> Cycle:
+    """The outcome of a rod that ends straight, with its leading eigenvalue."""
+    return Cycle(status=CycleStatus.straight, linear_growth_rate=w.real, linear_frequency=abs(w.imag))
 
 
 def _after_motion(
@@ -231,15 +244,32 @@ def _handed_on(
     return replace(cycle, neighbour=Neighbour.of(found, before, along, accuracy, leading).pack())
 
 
+def _cycle_beside(
+    neighbour: Neighbour,
+    form: StressForm,
+    along: str | None,
+    request: CycleRequest,
+    workspace: NewtonWorkspace,
+) -> RefinedCycle | None:
+    """The cycle that a neighbour predicts; None where there is none, or where it is not told along what."""
+    if along is None:
+        return None
+    with suppress(Unsolvable):
+        return followed_cycle(neighbour, form, along, request.accuracy, workspace)
+    return None
+
+
 def _small_cycle(
-    form: StressForm, w: complex, request: CycleRequest, along: str | None
+    form: StressForm, w: complex, request: CycleRequest, along: str | None, workspace: NewtonWorkspace
 ) -> RefinedCycle | None:
     """The stable cycle just above a Hopf point to which the start grows or decays; None where it is not one.
 
-    w: the leading eigenvalue of the straight rod.
+    w: the leading eigenvalue of the straight rod. None also where the path of the motion is asked for.
     """
+    if request.transient:
+        return None
     try:
-        found = refined_cycle(small_orbit(form, w, request.amplitude), request.accuracy, along)
+        found = refined_cycle(small_orbit(form, w, request.amplitude), request.accuracy, workspace, along)
     except Unsolvable:
         return None
     settled = found.verdict(request.accuracy)[0] == CycleStatus.cycle
@@ -260,14 +290,20 @@ def _with_second_state(rod: Rod, cycle: Cycle, stability: StraightRod) -> Cycle:
     return replace(cycle, second_state=int(state), subcritical_F=F, message=message)
 
 
-def _from_hopf(form: StressForm, request: CycleRequest, straight: Cycle, stability: StraightRod) -> Cycle:
+def _from_hopf(
+    form: StressForm,
+    request: CycleRequest,
+    straight: Cycle,
+    stability: StraightRod,
+    workspace: NewtonWorkspace,
+) -> Cycle:
     """The cycle on the branch from the Hopf point; straight: the outcome where there is none below."""
     try:
         hopf = hopf_point_below(form.rod)
         if hopf is None:
             status = CycleStatus.straight if stability.stable else CycleStatus.not_settled
             return replace(straight, status=status, message="no Hopf point at any smaller force")
-        found = refined_cycle(orbit_from_hopf(form, hopf), request.accuracy)
+        found = refined_cycle(orbit_from_hopf(form, hopf, workspace), request.accuracy, workspace)
     except Unsolvable as why:
         return replace(straight, status=CycleStatus.not_settled, message=str(why))
     status, message = found.verdict(request.accuracy)

@@ -18,6 +18,7 @@ from ...discretization.stress_form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ..continuation.follower import StepControl, Stepped, advance
+from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import Converged, at_orbit, newton, relative_change
 from ..orbit.normalised import (
     combined,
@@ -219,14 +220,16 @@ def _share_of_cost(found: RefinedCycle, before: "Neighbour | None", name: str) -
     return 0.0 if found.calibration.lasts(step) else WORTHWHILE
 
 
-def followed_cycle(neighbour: Neighbour, form: StressForm, name: str, accuracy: float) -> RefinedCycle:
+def followed_cycle(
+    neighbour: Neighbour, form: StressForm, name: str, accuracy: float, workspace: NewtonWorkspace
+) -> RefinedCycle:
     """The cycle of a rod that differs from the neighbour's in one parameter; raises Unsolvable.
 
-    form: the rod, on any mesh.
+    form: the rod, on any mesh; workspace: memory of the matrices.
     """
     if form.omega_unknown != neighbour.branch.orbit.form.omega_unknown:
         raise Unsolvable("the neighbour has other unknowns")
-    found = _converged(neighbour, form, name, accuracy)
+    found = _converged(neighbour, form, name, accuracy, workspace)
     known = neighbour.calibration.at(found.orbit, relative_distance(neighbour.branch.orbit.form, form, name))
     if known.holds:
         cycle = judged_by(known, found, accuracy)
@@ -235,20 +238,24 @@ def followed_cycle(neighbour: Neighbour, form: StressForm, name: str, accuracy: 
     return calibrated_cycle(found, known, accuracy, name)
 
 
-def _converged(neighbour: Neighbour, form: StressForm, name: str, accuracy: float) -> Converged:
+def _converged(
+    neighbour: Neighbour, form: StressForm, name: str, accuracy: float, workspace: NewtonWorkspace
+) -> Converged:
     """The cycle on the mesh that the neighbour says, with its tangent and its multipliers."""
     tolerance, aim = newton_tolerance(accuracy), neighbour.next_mesh
     try:
-        found = _near(neighbour.branch.on(aim).at(form, name), tolerance, name)
+        found = _near(neighbour.branch.on(aim).at(form, name), tolerance, workspace, name)
     except Unsolvable:
-        start = in_steps(neighbour.branch.on(aim.coarser), form, name, tolerance)
-        found = newton(aim.carry(start.orbit), tolerance, name)
+        start = in_steps(neighbour.branch.on(aim.coarser), form, name, tolerance, workspace)
+        found = newton(aim.carry(start.orbit), tolerance, workspace, name)
     return at_orbit(found, matrix_distance(accuracy), name)
 
 
-def _near(predicted: Orbit, tolerance: float, name: str | None = None) -> Converged:
+def _near(
+    predicted: Orbit, tolerance: float, workspace: NewtonWorkspace, name: str | None = None
+) -> Converged:
     """The orbit at a prediction; Unsolvable where it is not near."""
-    found = newton(predicted, tolerance, name)
+    found = newton(predicted, tolerance, workspace, name)
     if _distance(predicted, found) > FARTHEST:
         raise Unsolvable("the cycle is far from its prediction")
     return found
@@ -259,8 +266,13 @@ def _distance(predicted: Orbit, found: Converged) -> float:
     return relative_change(predicted, found.orbit.values - predicted.values)
 
 
-def in_steps(start: Followed, form: StressForm, name: str, tolerance: float) -> Converged:
-    """The orbit at the end of steps that Newton's method can follow; raises Unsolvable."""
+def in_steps(
+    start: Followed, form: StressForm, name: str, tolerance: float, workspace: NewtonWorkspace
+) -> Converged:
+    """The orbit at the end of steps that Newton's method can follow; raises Unsolvable.
+
+    workspace: memory of the matrices.
+    """
     here, there = start.orbit.form.rod.coordinate(name), form.rod.coordinate(name)
     share, length, followed = 0.0, STEPS.first, start
 
@@ -268,7 +280,7 @@ def in_steps(start: Followed, form: StressForm, name: str, tolerance: float) -> 
         at = share + length
         between = form if at >= 1.0 else form.with_coordinate(name, here + at * (there - here))
         predicted = followed.at(between, name)
-        found = _near(predicted, tolerance, name)
+        found = _near(predicted, tolerance, workspace, name)
         return Stepped(found, _distance(predicted, found), 1.0)
 
     for _ in range(STEPS.most):

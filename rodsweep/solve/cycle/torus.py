@@ -73,7 +73,8 @@ def _unstable_cycles(transient: Transient) -> Iterator[RefinedCycle]:
     try:
         hopf = hopf_point_below(transient.form.rod)
         if hopf is not None:
-            yield refined_cycle(orbit_from_hopf(transient.form, hopf), transient.accuracy)
+            start = orbit_from_hopf(transient.form, hopf, transient.workspace)
+            yield refined_cycle(start, transient.accuracy, transient.workspace)
     except (Unsolvable, ArithmeticError, np.linalg.LinAlgError):
         return
 

@@ -27,6 +27,7 @@ from ...watch import Whereabouts, report
 from ..motion.integrator import RELAXATION_SHARE, Ending, RunLimit, Trajectory, integrator, relaxed
 from ..motion.leading_mode import leading_mode
 from ..motion.time_scheme import TimeScheme
+from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import Unsolvable
 from .from_motion import orbit_from_motion
 from .refinement import RefinedCycle, refined_cycle
@@ -135,7 +136,8 @@ class Transient:
     beam: the rod as the time stepper sees it, form: the rod whose cycle is wanted; they differ in a limit
     only, which the time stepper comes near. straight: the stability of that rod when straight. along: the
     parameter along which the cycle's tangent is wanted. unstable: a cycle near by that is unstable.
-    traced: whether `trace` is to hold the tip's path; without it that is None.
+    traced: whether `trace` is to hold the tip's path; without it that is None. workspace: memory of Newton's
+    matrices.
     """
 
     def __init__(  # noqa: PLR0913 - one motion and what is asked of it
@@ -147,10 +149,11 @@ class Transient:
         most_periods: int,
         along: str | None = None,
         *,
+        workspace: NewtonWorkspace,
         traced: bool = False,
         unstable: RefinedCycle | None = None,
     ) -> None:
-        self.beam, self.form, self.along = beam, form, along
+        self.beam, self.form, self.along, self.workspace = beam, form, along, workspace
         self.accuracy, self.most_periods = accuracy, most_periods
         self.mode, self.row = leading_mode(beam), angle_weights(beam)
         self.straight, self.linear_rate = straight, straight.growth_rate(self.mode.w.real)
@@ -353,7 +356,7 @@ class Transient:
                 return None
         orbit = orbit_from_motion(self.beam, self.form, run, period, turns)
         try:
-            found = refined_cycle(orbit, self.accuracy, self.along)
+            found = refined_cycle(orbit, self.accuracy, self.workspace, self.along)
         except Unsolvable:
             return None
         if found.stable is False:

@@ -16,7 +16,7 @@ from ...arrays import Array
 from ...discretization.collocation import Collocation, radau
 from ...discretization.mesh import Mesh, transfer
 from ...discretization.stress_form import StressForm
-from .condensation import Semidiscrete
+from .semidiscrete import Semidiscrete
 from .symmetry import Symmetry
 
 

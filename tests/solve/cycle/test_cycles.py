@@ -21,12 +21,13 @@ from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cy
 from rodsweep.solve.cycle.minimal_period import common_divisor, shortened, undecided_divisor
 from rodsweep.solve.cycle.neighbour import Neighbour
 from rodsweep.solve.motion.integrator import forget_integrators
-from rodsweep.solve.orbit.condensation import powers
+from rodsweep.solve.orbit.compiled_measures import powers
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath, measures_of
 from rodsweep.solve.orbit.newton import at_orbit, newton
 from rodsweep.solve.orbit.orbit import Orbit, interval_lengths, node_times
-from rodsweep.solve.orbit.orbit_mesh import legendre_analysis, tails_of
 from rodsweep.solve.orbit.symmetry import NONE, REFLECTION
+from rodsweep.solve.orbit.tails import legendre_analysis, tails_of
 
 SOFT = (1e4, 1e2, 1e-2, 1.0)
 """(k1, k2, gamma3, gamma1) of the paper's Fig. 5."""
@@ -326,20 +327,20 @@ def repeated(half, times):
 
 
 def test_three_periods_are_recognised_and_cut_to_one():
-    half = newton(orbit_at_fifty().on(mesh(1, 16), 12, 4), 1e-10).orbit
+    half = newton(orbit_at_fifty().on(mesh(1, 16), 12, 4), 1e-10, NewtonWorkspace()).orbit
     thrice = replace(repeated(half, 3), symmetry=REFLECTION)
     thrice = replace(thrice, values=np.append(thrice.values[:-1], 3 * half.period))
     assert [common_divisor(CyclePath(orbit), 1e-3) for orbit in (half, thrice)] == [1, 3]
     assert [undecided_divisor(CyclePath(orbit), 1e-8) for orbit in (half, thrice)] == [1, 3]
     assert shortened(half) is half
-    once = at_orbit(newton(shortened(thrice), 1e-10), 0.0)
+    once = at_orbit(newton(shortened(thrice), 1e-10, NewtonWorkspace()), 0.0)
     assert once.orbit.period == pytest.approx(half.period, rel=1e-7)  # 34 intervals instead of 12
     assert np.abs(once.matrix.multipliers()[0]) == pytest.approx(1.0, abs=1e-8)
 
 
 @cache
 def orbit_on(elements, order):
-    return newton(orbit_at_fifty().on(mesh(elements, order), 12, 4), 1e-10).orbit
+    return newton(orbit_at_fifty().on(mesh(elements, order), 12, 4), 1e-10, NewtonWorkspace()).orbit
 
 
 @pytest.mark.parametrize("elements, order", [(1, 15), (2, 8)])

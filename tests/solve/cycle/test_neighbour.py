@@ -8,6 +8,7 @@ import pytest
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.neighbour import MOST_BEHIND, Followed, Neighbour
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.newton import newton, relative_change
 from rodsweep.solve.orbit.orbit_mesh import mesh_of
 
@@ -65,6 +66,6 @@ def test_next_to_a_hopf_point_cycles_are_predicted_though_they_go_as_a_root(chai
     form = last.orbit.form
     for F, most in ((STEP * form.rod.F, 3e-7), (1.05 * HOPF, 1e-4), (1.01 * HOPF, 1e-2)):
         predicted = last.at(replace(form, rod=replace(form.rod, F=F)), "F")
-        found = newton(predicted, 1e-10).orbit
+        found = newton(predicted, 1e-10, NewtonWorkspace()).orbit
         assert found.size < last.orbit.size
         assert relative_change(predicted, found.values - predicted.values) < most
