@@ -110,7 +110,7 @@ def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int,
                 outcome = solver.solve(done)
             yield done, outcome
         return
-    chains, solve_from = solver.chained
+    chains, solve_from = solver.chained.chains, solver.chained.solve_from
     for chain in range(chains.count):
         state = None
         for index in map(int, chains.indices(chain)):

@@ -171,7 +171,7 @@ class _Run:
         if self.solver.chained is None:
             units = self.shard.part(missing, self.job.points.count)
             return units, total(units)
-        lacks, (chains, _) = IndexSet(missing), self.solver.chained
+        lacks, chains = IndexSet(missing), self.solver.chained.chains
         units = self.shard.part(chains.todo(lacks), chains.count)
         each = (lacks[chains.indices(chain)].sum() for unit in units for chain in range(*unit))
         return units, int(sum(each))
@@ -202,8 +202,7 @@ class _Run:
         directory = journal_directory(self.output)
         try:
             with closing(Journal(directory, self.team.rank, plan.layout, plan.fingerprint)) as journal:
-                checkpoints = Checkpoints(directory, plan.fingerprint)
-                solve = self._solve_unit(IndexSet(missing), checkpoints)
+                solve = self._solve_unit(IndexSet(missing), directory)
                 loop = Loop(solve=solve, keep=keep, prepare=self.prepare, name=self._unit_name)
                 share = sweep(self.team, Handout(units, self.team.size), loop, shown, self.stop)
         except OSError as error:
@@ -216,14 +215,15 @@ class _Run:
         return Contribution(host=socket.gethostname(), failures=failures, share=share)
 
     def _solve_unit(
-        self, missing: IndexSet, checkpoints: Checkpoints
+        self, missing: IndexSet, directory: Path
     ) -> Callable[[int], Iterable[tuple[Indices, Any]]]:
         """How a unit is solved: a point, a chain or a stretch."""
         solver = self.solver
         if solver.stretched:
             return StretchSolver(*solver.stretched, missing)
         if solver.chained:
-            return ChainSolver(*solver.chained, missing, checkpoints, self.stop)
+            kept = Checkpoints(directory, self.plan.fingerprint, solver.chained.state_of)
+            return ChainSolver(solver.chained, missing, kept, self.stop)
         return lambda index: ((index, solver.solve(index)),)
 
     def _where(self, index: int) -> str:
@@ -233,7 +233,7 @@ class _Run:
     def _unit_name(self, unit: int) -> str:
         """Which point or chain a unit is."""
         if self.solver.chained:
-            return f"chain {unit + 1} of {self.solver.chained[0].count}"
+            return f"chain {unit + 1} of {self.solver.chained.chains.count}"
         return f"point {unit + 1} of {self.job.points.count}"
 
     def _finish_file(self, joint: JointDue) -> bool:

@@ -85,8 +85,9 @@ def same_rods(points: Points) -> NDArray[np.int64] | None:
 def shared(solver: Solver, points: Points, layout: Layout) -> Solver:
     """The solver that remembers outcomes, so that a rod of several points is solved once on a rank.
 
-    Points that start one from the other are the same if what they start from is, to the last bit. Spectra
-    along stretches take less than a millisecond a point, and are left as they are.
+    Points that start one from the other are the same if they start from the same state, that of an outcome
+    which is remembered. Spectra along stretches take less than a millisecond a point: they are left as they
+    are.
     """
     rods = None if solver.stretched else same_rods(points)
     if rods is None:
@@ -95,8 +96,8 @@ def shared(solver: Solver, points: Points, layout: Layout) -> Solver:
 
     def solve_from(index: int, state: State) -> tuple[Any, State]:
         assert solver.chained is not None
-        step, start = solver.chained[1], None if state is None else state.tobytes()
-        (outcome, following), again = memory.of((int(rods[index]), start), lambda: step(index, state))
+        step = solver.chained.solve_from
+        (outcome, following), again = memory.of((int(rods[index]), state), lambda: step(index, state))
         return Again(outcome) if again else outcome, following
 
     def record(index: int, outcome: Any) -> dict[str, Any]:
@@ -108,7 +109,7 @@ def shared(solver: Solver, points: Points, layout: Layout) -> Solver:
         outcome, again = memory.of(int(rods[index]), lambda: solver.solve(index))
         return Again(outcome) if again else outcome
 
-    chained = (solver.chained[0], solve_from) if solver.chained else None
+    chained = solver.chained and replace(solver.chained, solve_from=solve_from)
     return replace(solver, solve=alone, record=record, chained=chained)
 
 
@@ -151,7 +152,7 @@ class _Around:
             statuses=(*inner.statuses, *NoRod),
             solve=self._solve,
             record=self._record,
-            chained=(inner.chained[0], self._solve_from) if inner.chained else None,
+            chained=inner.chained and replace(inner.chained, solve_from=self._solve_from),
             stretched=(inner.stretched[0], self._together) if inner.stretched else None,
         )
 
@@ -166,7 +167,8 @@ class _Around:
         assert self.inner.chained is not None
         if not self.points.has_rod(index):
             return self._uncovered(index), None
-        return self.inner.chained[1](index, state)
+        outcome, following = self.inner.chained.solve_from(index, state)
+        return outcome, following
 
     def _record(self, index: int, outcome: Any) -> dict[str, Any]:
         if not isinstance(outcome, Uncovered):

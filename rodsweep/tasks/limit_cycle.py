@@ -21,7 +21,7 @@ from ..results.layouts.limit_cycle import (
 )
 from ..results.layouts.variables import Filled, Variable, recorded
 from ..solve.backend.availability import require_solvers
-from ..sweep.chains import Chains, State
+from ..sweep.chains import ChainedWork, Chains
 from ..sweep.estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, MARCHED_CYCLE_SECONDS, Estimate
 from ..sweep.grid import refuse_outside
 from ..wording import counted
@@ -130,17 +130,17 @@ class LimitCycleTask(Task):
     def solver(self) -> Solver:
         if self.config.limit_cycle.method == "integration":
             return self._integration()
-        from ..solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle, warm_up
+        from ..solve.cycle.limit_cycle import CycleRequest, CycleStatus, Neighbour, solve_cycle, warm_up
         from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
         options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
         request = CycleRequest(accuracy=self.config.accuracy, **options)
         along, workspace = self.config.along if self.chains else None, NewtonWorkspace()
 
-        def solve(index: int, start: State = None) -> "Cycle":
+        def solve(index: int, start: "Neighbour | None" = None) -> "Cycle":
             return solve_cycle(self.points.rod(index), request, start, along, workspace)
 
-        def solve_from(index: int, start: State) -> "tuple[Cycle, State]":
+        def solve_from(index: int, start: "Neighbour | None") -> "tuple[Cycle, Neighbour | None]":
             cycle = solve(index, start)
             return cycle, cycle.neighbour if cycle.status == CycleStatus.cycle else None
 
@@ -150,7 +150,7 @@ class LimitCycleTask(Task):
             warm_up=warm_up,
             solve=solve,
             record=lambda index, cycle: self.record(self.points.values(index), cycle),
-            chained=(chains, solve_from) if chains else None,
+            chained=ChainedWork(chains, solve_from, Neighbour.from_arrays) if chains else None,
         )
 
     def _integration(self) -> Solver:

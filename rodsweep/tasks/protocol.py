@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..results.file.view import View
 from ..results.layouts.variables import Filled
 from ..solve.status import PointStatus
-from ..sweep.chains import Chains, ChainStep
+from ..sweep.chains import ChainedWork, Chains
 from ..sweep.estimate import Estimate
 from ..sweep.grid import Points
 from ..sweep.stretches import Stretches, Together
@@ -68,7 +68,7 @@ class Solver:
     """An index and its outcome as the variables of the file."""
     together: AllPoints | None = None
     """What only all points together give, where there is such."""
-    chained: tuple[Chains, ChainStep] | None = None
+    chained: ChainedWork | None = None
     """Where points start one from the other: how they are solved, instead of by `solve`."""
     stretched: tuple[Stretches, Callable[[NDArray[np.int64]], Together]] | None = None
     """Where neighbours are solved together: how, from their flat indices, instead of by `solve`."""

@@ -69,7 +69,7 @@ class _Guard:
             inner,
             solve=self._solve,
             record=lambda index, outcome: outcome.values,
-            chained=(inner.chained[0], self._solve_from) if inner.chained else None,
+            chained=inner.chained and replace(inner.chained, solve_from=self._solve_from),
             stretched=(inner.stretched[0], self._together) if inner.stretched else None,
         )
 
@@ -78,7 +78,7 @@ class _Guard:
 
     def _solve_from(self, index: int, state: State) -> tuple[Outcome, State]:
         assert self.inner.chained is not None
-        step = self.inner.chained[1]
+        step = self.inner.chained.solve_from
         return self._outcome(index, lambda: step(index, state))
 
     def _outcome(self, index: int, solve: Callable[[], tuple[Any, State]]) -> tuple[Outcome, State]:

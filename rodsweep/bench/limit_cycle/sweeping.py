@@ -10,10 +10,10 @@ from functools import partial
 from math import nan
 from typing import Any
 
-from ...arrays import Array
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.rod import Rod
 from ...solve.cycle.limit_cycle import Cycle, CycleStatus, solve_cycle
+from ...solve.cycle.neighbour import Neighbour
 from ...solve.cycle.refinement import refine
 from ...solve.orbit.matrix.linearisation import Linearisation
 from ...solve.orbit.matrix.workspace import NewtonWorkspace
@@ -82,24 +82,29 @@ class ExactCycle:
 
 @dataclass(frozen=True, eq=False)
 class SweptRod:
-    """A rod, its exact cycle, and for each axis what the point before the stretch to it hands on."""
+    """A rod, its exact cycle, and for each axis the neighbour from which the stretch to it starts.
+
+    workspace: memory of Newton's matrices, as all points of a sweep share it.
+    """
 
     point: Rod
     exact: ExactCycle
-    neighbours: dict[str, Array | None]
+    neighbours: dict[str, Neighbour | None]
+    workspace: NewtonWorkspace
 
 
 def swept(point: Rod, accuracy: float) -> SweptRod:
     """The rod with its neighbours, which are points of a sweep downwards, with others before them."""
-    neighbours: dict[str, Array | None] = {}
+    neighbours: dict[str, Neighbour | None] = {}
+    workspace = NewtonWorkspace()
     for axis in SWEPT:
-        before: Array | None = None
+        before: Neighbour | None = None
         for k in range(BEFORE, 0, -1):
             there = beyond(point, axis, k + STRETCH - 1)
-            before = settled(solve_cycle(there, asked(accuracy), before, axis)).neighbour
+            before = settled(solve_cycle(there, asked(accuracy), before, axis, workspace)).neighbour
         neighbours[axis] = before
     here = solve_cycle(point, asked(accuracy), along=SWEPT[0])
-    return SweptRod(point, ExactCycle.near(orbit_of(here)), neighbours)
+    return SweptRod(point, ExactCycle.near(orbit_of(here)), neighbours, workspace)
 
 
 def beyond(point: Rod, axis: str, steps: int) -> Rod:
@@ -111,14 +116,15 @@ def from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
     """The last of a stretch of points of a sweep over an axis."""
     start = rod.neighbours[axis]
     for k in range(STRETCH - 1, -1, -1):
-        cycle = settled(solve_cycle(beyond(rod.point, axis, k), asked(accuracy), start, axis))
+        there = beyond(rod.point, axis, k)
+        cycle = settled(solve_cycle(there, asked(accuracy), start, axis, rod.workspace))
         start = cycle.neighbour
     return cycle
 
 
 def from_cold(start: str, accuracy: float, rod: SweptRod) -> Cycle:
     """The point without a neighbour."""
-    return settled(solve_cycle(rod.point, replace(asked(accuracy), start=start)))
+    return settled(solve_cycle(rod.point, replace(asked(accuracy), start=start), workspace=rod.workspace))
 
 
 def settled(cycle: Cycle) -> Cycle:

@@ -22,7 +22,6 @@ from ...discretization.beam import Beam
 from ...discretization.mesh import mesh
 from ...model.rod import Rod
 from ...solve.cycle.limit_cycle import Cycle, CycleRequest, solve_cycle
-from ...solve.cycle.neighbour import Neighbour
 from ...solve.cycle.transient import angle_weights
 from ...solve.motion.integrator import RunLimit, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
@@ -83,7 +82,7 @@ def orbit_of(cycle: Cycle) -> Orbit:
     """The orbit on the mesh that was chosen for it; raises ArithmeticError where there is none."""
     if cycle.neighbour is None:
         raise ArithmeticError(f"no cycle: {cycle.status.name} {cycle.message}")
-    return Neighbour.unpack(cycle.neighbour).branch.orbit
+    return cycle.neighbour.branch.orbit
 
 
 def on_cycle(orbit: Orbit) -> tuple[Beam, Array]:

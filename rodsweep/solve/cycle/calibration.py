@@ -86,17 +86,18 @@ class Calibration:
     reach: float
     growth: Array = field(default_factory=lambda: np.ones(2))
 
-    def pack(self) -> Array:
-        """All of it as a flat array, (LENGTH,)."""
-        parts = (self.mesh.numbers, self.space, self.time, self.fall, self.power, self.tails, [self.reach])
-        return np.concatenate(parts)
+    def arrays(self) -> dict[str, Array]:
+        """All of it but the growth, which each orbit has anew: errors (5,), tails (3,), reach and mesh."""
+        errors = {name: getattr(self, name) for name in ("space", "time", "fall", "power", "tails")}
+        numbers = {"reach": np.array(self.reach), "calibrated_mesh": np.array(self.mesh.numbers)}
+        return errors | numbers
 
     @classmethod
-    def unpack(cls, flat: Array) -> "Calibration":
-        """The reverse of `pack`, from its array, (LENGTH,)."""
-        mesh = OrbitMesh(*map(int, flat[:4]))
-        space, time, fall, power = flat[4 : 4 + 4 * PARTS].reshape(4, PARTS)
-        return cls(mesh, space, time, fall, power, flat[4 + 4 * PARTS : -1], float(flat[-1]))
+    def from_arrays(cls, arrays: dict[str, Array]) -> "Calibration":
+        """The reverse of `arrays`, of the shapes given there."""
+        mesh = OrbitMesh(*map(int, arrays["calibrated_mesh"]))
+        errors = {name: arrays[name] for name in ("space", "time", "fall", "power", "tails")}
+        return cls(mesh=mesh, reach=float(arrays["reach"]), **errors)
 
     def at(self, orbit: Orbit, change: float) -> "Calibration":
         """The same for an orbit of the next point, after a relative change of the parameter."""
@@ -156,10 +157,6 @@ class Calibration:
             for i in np.flatnonzero(enough.any(axis=1))
         ]
         return min(meshes, key=lambda mesh: mesh.cost, default=here.finer)
-
-
-LENGTH = 4 * PARTS + 8
-"""Of a packed calibration."""
 
 
 def _stated(space: Array, time: Array, accuracy: float) -> Array:

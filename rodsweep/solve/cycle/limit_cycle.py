@@ -41,7 +41,7 @@ from .straight_rod import StraightRod, straight_rod
 from .torus import torus_or
 from .transient import NEUTRAL, Transient, TransientOutcome
 
-__all__ = ["Cycle", "CycleRequest", "CycleStatus", "solve_cycle", "warm_up"]
+__all__ = ["Cycle", "CycleRequest", "CycleStatus", "Neighbour", "solve_cycle", "warm_up"]
 
 
 EXPECTED_MODES = 3
@@ -122,19 +122,19 @@ class Cycle:
     energy: Array | None = None
     shape: Array | None = None
     transient: Array | None = None
-    neighbour: Array | None = None
+    neighbour: Neighbour | None = None
 
 
 def solve_cycle(
     rod: Rod,
     request: CycleRequest,
-    start: Array | None = None,
+    start: Neighbour | None = None,
     along: str | None = None,
     workspace: NewtonWorkspace | None = None,
 ) -> Cycle:
     """The cycle that the rod reaches from its leading mode, or that a neighbour's `Cycle.neighbour` leads to.
 
-    start: flat, (any length,). along: the parameter by which neighbours differ. workspace: memory of Newton's
+    start: the neighbour. along: the parameter by which neighbours differ. workspace: memory of Newton's
     matrices that rods share; without it the rod has its own. Failures are a status, never an exception.
     """
     memory = workspace or NewtonWorkspace()
@@ -144,9 +144,8 @@ def solve_cycle(
         return Cycle(status=CycleStatus.failed, message=cause)
 
     def solve() -> Cycle:
-        neighbour = Neighbour.unpack(start) if start is not None else None
-        stability = straight_rod(rod, neighbour.leading if neighbour else None)
-        cycle = _solve(rod, request, stability, neighbour, along, memory)
+        stability = straight_rod(rod, start.leading if start else None)
+        cycle = _solve(rod, request, stability, start, along, memory)
         return _with_second_state(rod, _by_the_spectrum(cycle, stability), stability)
 
     return solved(solve, failed)
@@ -241,7 +240,7 @@ def _handed_on(
     if along is None:
         return cycle
     leading = complex(cycle.linear_growth_rate, cycle.linear_frequency)
-    return replace(cycle, neighbour=Neighbour.of(found, before, along, accuracy, leading).pack())
+    return replace(cycle, neighbour=Neighbour.of(found, before, along, accuracy, leading))
 
 
 def _cycle_beside(

@@ -32,7 +32,7 @@ from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.symmetry import NONE, REFLECTION
 from ..point import Unsolvable
-from .calibration import LENGTH, Calibration
+from .calibration import Calibration
 from .refinement import (
     RefinedCycle,
     calibrated_cycle,
@@ -59,8 +59,7 @@ MOST_BEHIND, SLOPELESS = 4, 3
 """Orbits before the last one that the prediction goes through, and how many of them it takes to be better
 without the slope at one of them."""
 UNKNOWN = complex(nan, nan)
-HEAD = len(PARAMETERS) + 4
-"""Numbers at the head of a packed neighbour: rod, symmetry, places, leading eigenvalue."""
+Arrays = dict[str, Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,30 +170,31 @@ class Neighbour:
         branch = followed_from(found.fine, before.branch if before else None, name)
         return cls(branch, *_next_mesh(found, before, name, accuracy), leading)
 
-    def pack(self) -> Array:
-        """All of it as one flat array, shape (length,)."""
-        orbit, form = self.branch.orbit, self.branch.orbit.form
-        rod = form.rod
-        head = [*rod.values.values(), orbit.symmetric]
-        head += [len(self.branch.places), self.leading.real, self.leading.imag]
-        meshes = (*mesh_of(orbit).numbers, *self.next_mesh.numbers)
-        known = self.calibration.pack()
-        branch = (self.branch.places, self.branch.orders, orbit.values, self.branch.data.ravel())
-        return np.concatenate([head, meshes, known, *branch])
+    def arrays(self) -> Arrays:
+        """All of it as named arrays: orbit (N,), data (m, N + 1), places and orders (m,), and numbers."""
+        branch, orbit = self.branch, self.branch.orbit
+        return {
+            "rod": np.array(list(orbit.form.rod.values.values())),
+            "symmetric": np.array(orbit.symmetric),
+            "mesh": np.array(mesh_of(orbit).numbers),
+            "orbit": orbit.values,
+            "places": branch.places,
+            "orders": branch.orders,
+            "data": branch.data,
+            "next_mesh": np.array(self.next_mesh.numbers),
+            "leading": np.array(self.leading),
+        } | self.calibration.arrays()
 
     @classmethod
-    def unpack(cls, flat: Array) -> "Neighbour":
-        """The reverse of `pack`, from its array, shape (length,)."""
-        *numbers, symmetric, count, real, imag = map(float, flat[:HEAD])
-        m = int(count)
-        parts = np.split(flat.copy(), np.cumsum([HEAD, 4, 4, LENGTH, m, m]))
-        here, there = (OrbitMesh(*map(int, part)) for part in parts[1:3])
-        form = StressForm(Rod(**dict(zip(PARAMETERS, numbers, strict=True))), here.grid)
-        # The values are one number fewer than each row of the data.
-        values, data = np.split(parts[6], [len(parts[6]) // (1 + m)])
-        orbit = Orbit(form, REFLECTION if symmetric else NONE, here.intervals, here.stages, values)
-        branch = Followed(orbit, parts[4], parts[5], data.reshape(m, -1))
-        return cls(branch, there, Calibration.unpack(parts[3]), complex(real, imag))
+    def from_arrays(cls, arrays: Arrays) -> "Neighbour":
+        """The reverse of `arrays`, of the shapes given there."""
+        here, there = (OrbitMesh(*map(int, arrays[name])) for name in ("mesh", "next_mesh"))
+        rod = Rod(**dict(zip(PARAMETERS, map(float, arrays["rod"]), strict=True)))
+        symmetry = REFLECTION if arrays["symmetric"] else NONE
+        form = StressForm(rod, here.grid)
+        orbit = Orbit(form, symmetry, here.intervals, here.stages, arrays["orbit"])
+        branch = Followed(orbit, *(arrays[name] for name in ("places", "orders", "data")))
+        return cls(branch, there, Calibration.from_arrays(arrays), complex(arrays["leading"]))
 
 
 def _next_mesh(

@@ -104,7 +104,7 @@ class Orbit:
         here, there = (self.intervals, self.stages), (intervals, stages)
         if there != here:
             points = between_intervals(here, there) @ points
-        if grid is not self.form.mesh:
+        if grid != self.form.mesh:
             points = self.form.layout.carried(points, transfer(self.form.mesh, grid))
         return replace(
             self,

@@ -19,7 +19,6 @@ from rodsweep.solve.cycle import transient
 from rodsweep.solve.cycle.cycle_errors import EXTREMA_SLACK
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle, warm_up
 from rodsweep.solve.cycle.minimal_period import common_divisor, shortened, undecided_divisor
-from rodsweep.solve.cycle.neighbour import Neighbour
 from rodsweep.solve.motion.integrator import forget_integrators
 from rodsweep.solve.orbit.compiled_measures import powers
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -181,8 +180,7 @@ def test_below_the_hopf_point_a_neighbours_cycle_decays():
 
 def test_what_a_neighbour_hands_on_is_its_cycle():
     c = reference()
-    handed = Neighbour.unpack(c.neighbour)
-    assert np.array_equal(handed.pack(), c.neighbour, equal_nan=True)
+    handed = c.neighbour
     assert handed.branch.orbit.period == c.measures.period
     assert handed.branch.orbit.form.tip(handed.branch.orbit.start)[1] == pytest.approx(c.measures.tip_y_max)
     again = solve_cycle(rod_of(50.0, *SOFT), REQUEST, c.neighbour, "F")
@@ -312,7 +310,7 @@ def test_period_is_the_minimal_one(rod, period, accuracy, amplitude):
 
 
 def orbit_at_fifty():
-    return Neighbour.unpack(reference().neighbour).branch.orbit
+    return reference().neighbour.branch.orbit
 
 
 def repeated(half, times):
