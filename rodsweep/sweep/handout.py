@@ -205,7 +205,7 @@ class FirstRankClaims:
         comm, MPI = self.team.comm, self.team.MPI
         with self.serving:
             while comm.Iprobe(source=MPI.ANY_SOURCE, tag=STOP_TAG, status=self.status):
-                self.stop.name = comm.recv(source=self.status.Get_source(), tag=STOP_TAG)
+                self.stop.take(comm.recv(source=self.status.Get_source(), tag=STOP_TAG))
             self._heed_stop()
             self._hear_places()
             while comm.Iprobe(source=MPI.ANY_SOURCE, tag=REQUEST_TAG, status=self.status):
@@ -231,7 +231,7 @@ class FirstRankClaims:
                 self.ahead.add(rank)
             return
         if report.stop:  # which may come before the message that says so
-            self.stop.name = report.stop
+            self.stop.take(report.stop)
             self._heed_stop()
         self.places.pop(rank, None)
         self.handout.settle(rank, report)
@@ -274,7 +274,8 @@ class OtherRankClaims:
     def between_points(self) -> None:
         """Passes a request to stop on to the first rank, or learns of it from there."""
         if not self.told and self.comm.Iprobe(source=0, tag=STOP_TAG):
-            self.stop.name, self.told = self.comm.recv(source=0, tag=STOP_TAG), True
+            self.stop.take(self.comm.recv(source=0, tag=STOP_TAG))
+            self.told = True
         if not self.told and self.stop:
             self.comm.send(self.stop.name, dest=0, tag=STOP_TAG)
             self.told = True

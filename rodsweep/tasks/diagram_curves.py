@@ -37,7 +37,7 @@ MAX_KEPT_ROWS = 200
 others are located anew, which gives the same and takes some seconds."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False)
 class DiagramCurves:
     """Boundaries, their criticality, generalised Hopf points and curves of cycles of a task's diagram.
 

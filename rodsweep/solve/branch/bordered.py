@@ -18,10 +18,11 @@ from ..orbit.matrix.elimination import eliminate
 from ..orbit.matrix.linearisation import (
     change_along,
     jump_of,
+    over_period,
     reduced_residuals,
     reduced_variations,
+    returns_of,
 )
-from ..orbit.matrix.multipliers import nonzero_eigenvalues
 from ..orbit.matrix.phase import phase, phase_change, phase_row
 from ..orbit.matrix.right_sides import right_sides
 from ..orbit.matrix.substitution import substitute
@@ -139,14 +140,11 @@ class BorderedMatrix:
     @cached_property
     def returns(self) -> Complex:
         """The multipliers of the map over what is solved, half a period and the reflection, (rank,)."""
-        return nonzero_eigenvalues(
-            self.orbit.symmetry.returned(self._memory.propagator, self.orbit.form.layout)
-        )
+        return returns_of(self.propagator, self.orbit)
 
     def multipliers(self) -> Complex:
         """All Floquet multipliers but rounding, (rank,), by descending modulus, the trivial one too."""
-        values = self.returns**self.orbit.symmetry.parts
-        return values[np.argsort(-np.abs(values), kind="stable")]
+        return over_period(self.returns, self.orbit)
 
     def other_way(self) -> Array:
         """The change at a fixed parameter that the matrix all but ignores, (N + 1,), of any length and sign.

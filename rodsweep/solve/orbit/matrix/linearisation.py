@@ -45,13 +45,17 @@ class Linearisation:
 
     def multipliers(self) -> Complex:
         """All Floquet multipliers but rounding, (rank,), by descending modulus, the trivial one too."""
-        return multipliers_by(self._memory.propagator, self.orbit)
+        return over_period(returns_of(self._memory.propagator, self.orbit), self.orbit)
 
 
-def multipliers_by(propagator: Array, orbit: Orbit) -> Complex:
-    """All Floquet multipliers but rounding, (rank,), by descending modulus, of an orbit with P, (n, n)."""
-    values = nonzero_eigenvalues(orbit.symmetry.returned(propagator, orbit.form.layout))
-    values = values**orbit.symmetry.parts
+def returns_of(propagator: Array, orbit: Orbit) -> Complex:
+    """The multipliers of the map over what is solved, S^-1 P, but rounding, (rank,); P: (n, n)."""
+    return nonzero_eigenvalues(orbit.symmetry.returned(propagator, orbit.form.layout))
+
+
+def over_period(returns: Complex, orbit: Orbit) -> Complex:
+    """Floquet multipliers by descending modulus from those of the map over what is solved, both (rank,)."""
+    values: Complex = returns**orbit.symmetry.parts
     return values[np.argsort(-np.abs(values), kind="stable")]
 
 
