@@ -13,8 +13,8 @@ from typing import Any
 from ...arrays import Array
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.rod import Rod
+from ...solve.cycle.accuracy.refinement import refine
 from ...solve.cycle.limit_cycle import Cycle, CycleStatus, solve_cycle
-from ...solve.cycle.refinement import refine
 from ...solve.orbit.linearisation import Linearisation
 from ...solve.orbit.measures import CyclePath
 from ...solve.orbit.newton import newton

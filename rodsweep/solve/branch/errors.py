@@ -14,7 +14,7 @@ from math import ceil
 import numpy as np
 
 from ...arrays import Array, Complex
-from ..cycle.calibration import (
+from ..cycle.accuracy.calibration import (
     DISTANCE,
     MORE_INTERVALS,
     MORE_ORDERS,
@@ -23,7 +23,7 @@ from ..cycle.calibration import (
     Calibration,
     calibration_of,
 )
-from ..cycle.cycle_errors import LEAST_CLAIM, ROUNDING, CycleErrors
+from ..cycle.accuracy.cycle_errors import LEAST_CLAIM, ROUNDING, CycleErrors
 from ..cycle.neighbour import carried
 from ..orbit.measures import CyclePath
 from ..orbit.newton import Converged, multiplier_change, multipliers_of

@@ -30,15 +30,15 @@ from ..motion.time_scheme import CYCLE_PREFIX
 from ..orbit.measures import Measures
 from ..point import Unsolvable, solved
 from ..status import PointStatus
-from .cycle_errors import UNKNOWN_ERRORS, CycleErrors
+from .accuracy.cycle_errors import UNKNOWN_ERRORS, CycleErrors
+from .accuracy.refinement import RefinedCycle, refined_cycle
 from .hopf_start import hopf_point_below, orbit_from_hopf, small_orbit
 from .neighbour import Neighbour, followed_cycle
-from .refinement import RefinedCycle, refined_cycle
 from .second_state import SecondState, second_state
 from .status import CycleStatus
 from .straight_rod import StraightRod, straight_rod
-from .torus import torus_or
-from .transient import NEUTRAL, Transient, TransientOutcome
+from .transient.torus import torus_or
+from .transient.transient import NEUTRAL, Transient, TransientOutcome
 
 __all__ = ["Cycle", "CycleRequest", "CycleStatus", "solve_cycle", "warm_up"]
 

@@ -36,10 +36,10 @@ from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import NONE
 from ..point import solved
 from ..status import PointStatus
-from .cycle_errors import CycleErrors
-from .from_motion import stressed
+from .accuracy.cycle_errors import CycleErrors
 from .limit_cycle import Cycle, CycleRequest, first_of, motion_wave, near_rod
-from .transient import (
+from .transient.from_motion import stressed
+from .transient.transient import (
     LONGEST_ORBIT,
     STEPS_PER_CHUNK,
     STRAIGHT_SIZE,

@@ -31,8 +31,8 @@ from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.symmetry import NONE, REFLECTION
 from ..point import Unsolvable
-from .calibration import LENGTH, Calibration
-from .refinement import (
+from .accuracy.calibration import LENGTH, Calibration
+from .accuracy.refinement import (
     RefinedCycle,
     calibrated_cycle,
     judged_by,

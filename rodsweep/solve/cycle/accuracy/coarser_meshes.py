@@ -10,11 +10,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...arrays import Array
-from ..orbit.newton import multiplier_change
-from ..orbit.orbit import Orbit
-from ..orbit.orbit_mesh import OrbitMesh, tails_of
-from ..orbit.path_differences import path_differences
+from ....arrays import Array
+from ...orbit.newton import multiplier_change
+from ...orbit.orbit import Orbit
+from ...orbit.orbit_mesh import OrbitMesh, tails_of
+from ...orbit.path_differences import path_differences
 from .calibration import (
     LARGEST_FALL,
     LEAST_FALL,

@@ -10,17 +10,17 @@ from math import inf, log
 
 import numpy as np
 
-from ...arrays import Complex
-from ..orbit.measures import CyclePath, Measures, measures_of
-from ..orbit.newton import QUADRATIC, Converged, at_orbit, linearised, multipliers_of, newton
-from ..orbit.orbit import Orbit
-from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
-from ..point import Unsolvable
+from ....arrays import Complex
+from ...orbit.measures import CyclePath, Measures, measures_of
+from ...orbit.newton import QUADRATIC, Converged, at_orbit, linearised, multipliers_of, newton
+from ...orbit.orbit import Orbit
+from ...orbit.orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
+from ...point import Unsolvable
+from ..status import CycleStatus
 from .calibration import Calibration, calibrated
 from .coarser_meshes import CoarserMeshes
 from .cycle_errors import CycleErrors
 from .minimal_period import PRESENT, common_divisor, shortened, undecided_divisor
-from .status import CycleStatus
 
 MATRIX_SHARE, LEAST_DISTANCE, LARGEST_DISTANCE = 3.0, 1e-7, 1e-5
 """Relative distance of Newton's matrix from the orbit that leaves the multipliers right, in units of the

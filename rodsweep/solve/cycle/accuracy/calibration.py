@@ -13,12 +13,12 @@ from math import ceil, inf
 
 import numpy as np
 
-from ...arrays import Array, Complex
-from ...discretization.resolution import LARGEST_ORDER
-from ..orbit.measures import CyclePath
-from ..orbit.newton import Converged, at_orbit, multiplier_change, multipliers_of, newton
-from ..orbit.orbit import Orbit
-from ..orbit.orbit_mesh import (
+from ....arrays import Array, Complex
+from ....discretization.resolution import LARGEST_ORDER
+from ...orbit.measures import CyclePath
+from ...orbit.newton import Converged, at_orbit, multiplier_change, multipliers_of, newton
+from ...orbit.orbit import Orbit
+from ...orbit.orbit_mesh import (
     LEAST_INTERVALS,
     LEAST_ORDER,
     MOST_INTERVALS,
@@ -27,7 +27,7 @@ from ..orbit.orbit_mesh import (
     mesh_of,
     tails_of,
 )
-from ..orbit.path_differences import APART, HEIGHT, OTHERS, PERIOD, path_differences
+from ...orbit.path_differences import APART, HEIGHT, OTHERS, PERIOD, path_differences
 from .cycle_errors import LEAST_CLAIM, ROUNDING, CycleErrors, largest_error
 
 MORE_ORDERS, MORE_INTERVALS = 2, 1.4

@@ -20,18 +20,18 @@ from operator import mul
 
 import numpy as np
 
-from ...arrays import Array
-from ...discretization.beam import Beam
-from ...discretization.stress_form import StressForm
-from ...watch import Whereabouts, report
-from ..motion.integrator import RELAXATION_SHARE, Ending, RunLimit, Trajectory, integrator, relaxed
-from ..motion.leading_mode import leading_mode
-from ..motion.time_scheme import TimeScheme
-from ..point import Unsolvable
+from ....arrays import Array
+from ....discretization.beam import Beam
+from ....discretization.stress_form import StressForm
+from ....watch import Whereabouts, report
+from ...motion.integrator import RELAXATION_SHARE, Ending, RunLimit, Trajectory, integrator, relaxed
+from ...motion.leading_mode import leading_mode
+from ...motion.time_scheme import TimeScheme
+from ...point import Unsolvable
+from ..accuracy.refinement import RefinedCycle, refined_cycle
+from ..status import CycleStatus
+from ..straight_rod import StraightRod, straight_rod
 from .from_motion import orbit_from_motion
-from .refinement import RefinedCycle, refined_cycle
-from .status import CycleStatus
-from .straight_rod import StraightRod, straight_rod
 from .trace import TipTrace
 
 TRANSIENT = TimeScheme("arkimex", "4", tolerance=1e-5)
