@@ -23,7 +23,7 @@ from ...discretization.mesh import mesh
 from ...model.rod import Rod
 from ...solve.cycle.limit_cycle import Cycle, CycleRequest, solve_cycle
 from ...solve.cycle.neighbour import Neighbour
-from ...solve.cycle.transient.transient import angle_weights
+from ...solve.cycle.transient.returns import angle_weights
 from ...solve.motion.integrator import RunLimit, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
 from ...solve.orbit.newton import newton

@@ -15,11 +15,11 @@ from rodsweep.errors import EnvironmentLacks
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
-from rodsweep.solve.cycle import transient
 from rodsweep.solve.cycle.accuracy.cycle_errors import EXTREMA_SLACK
 from rodsweep.solve.cycle.accuracy.minimal_period import common_divisor, shortened, undecided_divisor
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle, warm_up
 from rodsweep.solve.cycle.neighbour import Neighbour
+from rodsweep.solve.cycle.transient import transient
 from rodsweep.solve.motion.integrator import forget_integrators
 from rodsweep.solve.orbit.condensation import powers
 from rodsweep.solve.orbit.measures import CyclePath, measures_of
