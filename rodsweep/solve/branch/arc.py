@@ -12,7 +12,7 @@ import numpy as np
 from ...arrays import Array, Complex
 from ..continuation.follower import StepControl, Stepped, advance
 from ..cycle.accuracy.refinement import RefinedCycle, judged_by, matrix_distance, newton_tolerance
-from ..cycle.neighbour import carried
+from ..cycle.along_parameter import carried
 from ..orbit.newton import Converged, multiplier_change, relative_change
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import mesh_of

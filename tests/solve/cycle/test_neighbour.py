@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from rodsweep.model.rod import Rod
+from rodsweep.solve.cycle.along_parameter import MOST_BEHIND, Followed
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.cycle.neighbour import MOST_BEHIND, Followed, Neighbour
+from rodsweep.solve.cycle.neighbour import Neighbour
 from rodsweep.solve.orbit.newton import newton, relative_change
 from rodsweep.solve.orbit.orbit_mesh import mesh_of
 

@@ -1,7 +1,7 @@
 """The cycle to an accuracy that is asked for, on meshes of its own choice.
 
 The tails of an orbit near by say which mesh reaches the accuracy (`orbit_mesh`). Where its errors, which are
-measured (`calibration`), are too large after all, they say which one does at least cost.
+measured (`finer_meshes`), are too large after all, they say which one does at least cost.
 """
 
 from contextlib import suppress
@@ -17,9 +17,10 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
 from ...point import Unsolvable
 from ..status import CycleStatus
-from .calibration import Calibration, calibrated
+from .calibration import Calibration
 from .coarser_meshes import CoarserMeshes
 from .cycle_errors import CycleErrors
+from .finer_meshes import calibrated
 from .minimal_period import PRESENT, common_divisor, shortened, undecided_divisor
 
 MATRIX_SHARE, LEAST_DISTANCE, LARGEST_DISTANCE = 3.0, 1e-7, 1e-5
