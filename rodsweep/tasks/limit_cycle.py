@@ -156,7 +156,8 @@ class LimitCycleTask(Task):
     def _integration(self) -> Solver:
         """How points are solved by time integration alone."""
         from ..solve.cycle.limit_cycle import CycleRequest, warm_up
-        from ..solve.cycle.marched import MarchedStatus, solve_by_integration
+        from ..solve.cycle.marched import solve_by_integration
+        from ..solve.cycle.status import MarchedStatus
 
         options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
         request = CycleRequest(accuracy=self.config.accuracy, **options)

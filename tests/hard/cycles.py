@@ -11,9 +11,9 @@ from rodsweep.discretization.mesh import mesh
 from rodsweep.discretization.stress_form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
+from rodsweep.solve.cycle.accuracy.refinement import RefinedCycle, refined_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.neighbour import Neighbour, followed_cycle
-from rodsweep.solve.cycle.refinement import RefinedCycle, refined_cycle
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import at_orbit, multipliers_of, newton

@@ -15,8 +15,8 @@ from rods import rod_of
 import rodsweep as rs
 from rodsweep.discretization.mesh import mesh
 from rodsweep.discretization.stress_form import StressForm
+from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
-from rodsweep.solve.cycle.refinement import refined_cycle
 from rodsweep.solve.cycle.status import CycleStatus
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath

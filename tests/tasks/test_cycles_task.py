@@ -21,7 +21,7 @@ from rodsweep.results.file.view import read_view
 from rodsweep.results.run import checkpoints
 from rodsweep.results.run.checkpoints import CHECKPOINTS, Checkpoints
 from rodsweep.results.run.journal import Journal, drop_files
-from rodsweep.solve.cycle.cycle_errors import CycleErrors
+from rodsweep.solve.cycle.accuracy.cycle_errors import CycleErrors
 from rodsweep.sweep.chains import ChainedWork, Chains, ChainSolver
 from rodsweep.sweep.ranges import IndexSet
 from rodsweep.sweep.stop import StopRequest

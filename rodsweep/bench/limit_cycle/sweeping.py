@@ -12,9 +12,9 @@ from typing import Any
 
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.rod import Rod
+from ...solve.cycle.accuracy.refinement import refine
 from ...solve.cycle.limit_cycle import Cycle, CycleStatus, solve_cycle
 from ...solve.cycle.neighbour import Neighbour
-from ...solve.cycle.refinement import refine
 from ...solve.orbit.matrix.linearisation import Linearisation
 from ...solve.orbit.matrix.workspace import NewtonWorkspace
 from ...solve.orbit.measures import CyclePath

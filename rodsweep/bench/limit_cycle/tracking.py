@@ -22,7 +22,7 @@ from ...discretization.beam import Beam
 from ...discretization.mesh import mesh
 from ...model.rod import Rod
 from ...solve.cycle.limit_cycle import Cycle, CycleRequest, solve_cycle
-from ...solve.cycle.transient import angle_weights
+from ...solve.cycle.transient.returns import angle_weights
 from ...solve.motion.integrator import RunLimit, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
 from ...solve.orbit.matrix.workspace import NewtonWorkspace

@@ -11,8 +11,8 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ..continuation.follower import StepControl, Stepped, advance
-from ..cycle.neighbour import carried
-from ..cycle.refinement import RefinedCycle, judged_by, matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import RefinedCycle, judged_by, matrix_distance, newton_tolerance
+from ..cycle.along_parameter import carried
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import Converged, multiplier_change, relative_change
 from ..orbit.orbit import Orbit

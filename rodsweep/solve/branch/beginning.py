@@ -14,8 +14,8 @@ from ...determinant.parameter_path import Path
 from ...discretization.stress_form import StressForm
 from ...model.rod import Rod
 from ..changes.unstable_modes import Crossing
+from ..cycle.accuracy.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tolerance
 from ..cycle.hopf_start import NORMAL_FORM_ACCURACY, orbit_with
-from ..cycle.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tolerance
 from ..hopf.hopf_coefficients import HopfCoefficients, hopf_coefficients
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..cycle.cycle_errors import CycleErrors
-from ..cycle.refinement import MULTIPLIER_FACTOR
+from ..cycle.accuracy.cycle_errors import CycleErrors
+from ..cycle.accuracy.refinement import MULTIPLIER_FACTOR
 from ..orbit.measures import Measures
 from .arc import ArcPoint
 from .special.point import SpecialPoint

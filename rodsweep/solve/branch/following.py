@@ -11,7 +11,7 @@ from ...model.parameters import PARAMETERS
 from ...watch import Whereabouts, report
 from ...wording import counted
 from ..continuation.follower import zero_along
-from ..cycle.refinement import matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit_mesh import mesh_of
 from ..point import Unsolvable

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ...arrays import Array
-from ..cycle.refinement import judged_by, matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import judged_by, matrix_distance, newton_tolerance
 from ..orbit.newton import Converged, multipliers_of
 from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, mesh_of
 from ..point import Unsolvable

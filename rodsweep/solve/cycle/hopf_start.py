@@ -25,7 +25,7 @@ from ..point import Unsolvable
 from ..spectrum.candidates import BEHIND
 from ..spectrum.followed_leader import followed_leader
 from ..spectrum.search import SpectrumRequest, solve_spectrum
-from .neighbour import followed_from, in_steps
+from .along_parameter import followed_from, in_steps
 
 LEADING = SpectrumRequest(1, 1e-9, False)
 SCAN = 0.93

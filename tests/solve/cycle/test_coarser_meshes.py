@@ -8,10 +8,10 @@ import pytest
 from rodsweep.discretization.mesh import mesh
 from rodsweep.discretization.stress_form import StressForm
 from rodsweep.model.rod import Rod
-from rodsweep.solve.cycle.calibration import SAFETY
-from rodsweep.solve.cycle.coarser_meshes import CoarserMeshes
+from rodsweep.solve.cycle.accuracy.calibration import SAFETY
+from rodsweep.solve.cycle.accuracy.coarser_meshes import CoarserMeshes
+from rodsweep.solve.cycle.accuracy.refinement import refine
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
-from rodsweep.solve.cycle.refinement import refine
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import newton, relative_change

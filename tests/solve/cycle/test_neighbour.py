@@ -7,8 +7,9 @@ import pytest
 
 from rodsweep.model.rod import Rod
 from rodsweep.results.run.checkpoints import Checkpoints
+from rodsweep.solve.cycle.along_parameter import MOST_BEHIND, Followed
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.cycle.neighbour import MOST_BEHIND, Followed, Neighbour
+from rodsweep.solve.cycle.neighbour import Neighbour
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.newton import newton, relative_change
 

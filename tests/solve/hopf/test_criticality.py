@@ -20,8 +20,8 @@ from rodsweep.discretization.stress_form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.along_path import pair_crossings, transitions
+from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import orbit_of
-from rodsweep.solve.cycle.refinement import refined_cycle
 from rodsweep.solve.hopf import criticality
 from rodsweep.solve.hopf.criticality import (
     CriticalityRequest,

@@ -1,7 +1,7 @@
 """The cycle to an accuracy that is asked for, on meshes of its own choice.
 
 The tails of an orbit near by say which mesh reaches the accuracy (`orbit_mesh`). Where its errors, which are
-measured (`calibration`), are too large after all, they say which one does at least cost.
+measured (`finer_meshes`), are too large after all, they say which one does at least cost.
 """
 
 from contextlib import suppress
@@ -10,18 +10,19 @@ from math import inf, log
 
 import numpy as np
 
-from ...arrays import Complex
-from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.measures import CyclePath, Measures, measures_of
-from ..orbit.newton import QUADRATIC, Converged, at_orbit, linearised, multipliers_of, newton
-from ..orbit.orbit import Orbit
-from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
-from ..point import Unsolvable
-from .calibration import Calibration, calibrated
+from ....arrays import Complex
+from ...orbit.matrix.workspace import NewtonWorkspace
+from ...orbit.measures import CyclePath, Measures, measures_of
+from ...orbit.newton import QUADRATIC, Converged, at_orbit, linearised, multipliers_of, newton
+from ...orbit.orbit import Orbit
+from ...orbit.orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
+from ...point import Unsolvable
+from ..status import CycleStatus
+from .calibration import Calibration
 from .coarser_meshes import CoarserMeshes
 from .cycle_errors import CycleErrors
+from .finer_meshes import calibrated
 from .minimal_period import PRESENT, common_divisor, shortened, undecided_divisor
-from .status import CycleStatus
 
 MATRIX_SHARE, LEAST_DISTANCE, LARGEST_DISTANCE = 3.0, 1e-7, 1e-5
 """Relative distance of Newton's matrix from the orbit that leaves the multipliers right, in units of the
@@ -129,8 +130,7 @@ def refine(
     """The cycle near an orbit that is no more than near one, as accurate as asked for or as the limits allow.
 
     Raises Unsolvable where there is none. workspace: memory of the matrices; parameter: along which they have
-    tangents. A cycle without it stands alone, and finer meshes measure its errors only where coarser ones do
-    not.
+    tangents. A cycle without it stands alone: finer meshes measure its errors where coarser ones do not.
 
     Next to a Hopf point a coarse mesh has no cycle at all, for its own Hopf point is beyond: finer ones are
     tried then.

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
-from ..point import Unsolvable
-from .hopf_start import hopf_point_below, orbit_from_hopf
-from .refinement import RefinedCycle, refined_cycle
-from .status import CycleStatus
+from ....arrays import Array
+from ...point import Unsolvable
+from ..accuracy.refinement import RefinedCycle, refined_cycle
+from ..hopf_start import hopf_point_below, orbit_from_hopf
+from ..status import CycleStatus
 from .transient import Transient, TransientOutcome
 
 HARMONICS = 6
