@@ -11,7 +11,8 @@ from pydantic import Field, model_validator
 
 from ..arrays import Array
 from ..errors import InputError
-from ..model.arm import CRUSHED_FROM, LOADS, SIGNED, UNITS, NotSlender, NoWall, SlenderArm
+from ..model.arm import CRUSHED_FROM, NotSlender, NoWall, SlenderArm
+from ..model.arm_quantities import ARM_UNITS, LOADS, QUANTITIES, RELATIVE, SCALE_OF, UNITS
 from ..model.parameters import NONLINEAR_PARAMETERS
 from .arm_axes import (
     AXIS_OF,
@@ -20,11 +21,8 @@ from .arm_axes import (
     NO_FLUTTER,
     NO_WALL,
     NOT_SLENDER,
-    RELATIVE,
-    SCALE_OF,
     SECTION,
     SLENDER,
-    UNIT_NAMES,
 )
 from .quantities import Drags, Quantities, drags_written, with_shares
 from .values import Axis, Strict, Values
@@ -53,7 +51,7 @@ class ArmGrid:
     """The points of a grid over an arm's quantities.
 
     axes: values of each quantity or parameter that has several, in SI, the last the fastest. All else at
-    every point, shape (points,): the parameters, the units of UNIT_NAMES, and whether a rod covers it.
+    every point, shape (points,): the parameters, the units of ARM_UNITS, and whether a rod covers it.
     """
 
     axes: dict[str, Array]
@@ -140,7 +138,7 @@ class ArmSection(Strict):
             low = float(axis.array()[0])
             if name in RELATIVE and low < 0:
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} is below 0")
-            if name in UNITS and name not in SIGNED and not low > 0:
+            if name in UNITS and not (QUANTITIES[name].signed or low > 0):
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} {UNITS[name][0]} is not above 0")
         if self.is_grid:
             self._made(self._firsts, place=0)
@@ -207,7 +205,7 @@ class ArmSection(Strict):
         of_arms = {
             name: _along(0, [arm.parameter(name) if arm else np.nan for arm in arms]) for name in names
         }
-        units = {name: _along(0, [_units_of(arm)[name] for arm in arms]) for name in UNIT_NAMES}
+        units = {name: _along(0, [_units_of(arm)[name] for arm in arms]) for name in ARM_UNITS}
         if self.load:
             scale = _along(0, [self._force_of(arm, flutter) if arm else np.nan for arm in arms])
             of_arms["F"] = np.where(np.isinf(scale), np.nan, scale) * _along(1, loads)
@@ -292,9 +290,7 @@ class ArmSection(Strict):
 
 def _units_of(arm: SlenderArm | None) -> dict[str, float]:
     """The units that an arm makes; nan for none."""
-    if arm is None:
-        return dict.fromkeys(UNIT_NAMES, np.nan)
-    return dict(zip(UNIT_NAMES, (arm.tau2, arm.force_scale, arm.pressure_scale), strict=True))
+    return {name: np.nan if arm is None else getattr(arm, name) for name in ARM_UNITS}
 
 
 def _along(dimension: int, values: Any) -> Array:

@@ -17,7 +17,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...arrays import Array
-from ...config.arm_axes import CRUSHED, NO_FLUTTER, NO_WALL, NOT_SLENDER, UNIT_NAMES
+from ...config.arm_axes import CRUSHED, NO_FLUTTER, NO_WALL, NOT_SLENDER
+from ...model.arm_quantities import ARM_UNITS
 from ...model.drag import DRAGS
 from ...model.neglected import Validity
 from ...results.file.view import View
@@ -213,7 +214,7 @@ def _fixed(view: View, drawn: list[str]) -> str:
     """The quantities that are not along an axis of the figure, with their values."""
     told = []
     for name, values in view.quantities.items():
-        if name in drawn or name in UNIT_NAMES:
+        if name in drawn or name in ARM_UNITS:
             continue
         if np.size(values) > 1 and name not in view.over:  # as the load that one relative to flutter is
             continue

@@ -9,12 +9,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ...config.arm_axes import RELATIVE, UNIT_NAMES
+from ...model.arm_quantities import ALL_QUANTITIES, ARM_UNITS, RELATIVE, SCALE_OF, UNITS
 from ...model.drag import DRAGS
 from ...model.units import compact, written_in
 from ...results.file.view import View
 from ...results.layouts import LAYOUTS
-from ...results.layouts.arm import FORCES, HERTZ, QUANTITY_UNITS, twins_of
+from ...results.layouts.arm import HERTZ, twins_of
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ..hopf_points import Located
 from ..tables.rows import quantities_at_points
@@ -73,7 +73,7 @@ def _largest(values: np.ndarray) -> float:
 def given_columns(view: View) -> dict[str, np.ndarray]:
     """The quantities of an arm that differ among the points of a file, at every point, each (points,)."""
     columns = quantities_at_points(view)
-    given = {name: column for name, column in columns.items() if name not in UNIT_NAMES}
+    given = {name: column for name, column in columns.items() if name not in ARM_UNITS}
     return {name: column for name, column in given.items() if len(np.unique(column[~np.isnan(column)])) > 1}
 
 
@@ -89,27 +89,18 @@ def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray
     if name == "drag":
         names = [DRAGS[int(place)] for place in np.unique(values)]
         return "" if len(names) == len(np.unique(column)) else f"drag {' and '.join(names)}".replace("_", " ")
-    ends = [
-        float(f"{end:.{DIGITS}g}") for end in _in_typed(view, name, np.array([values.min(), values.max()]))
-    ]
+    unit, si = _unit(view, name), ALL_QUANTITIES[name].unit
+    factor = written_in(1.0, unit, si) if unit else 1.0
+    ends = [float(f"{factor * end:.{DIGITS}g}") for end in (values.min(), values.max())]
     extent = " to ".join(f"{end:.{DIGITS + 1}g}" for end in sorted(set(ends)))
     if name in RELATIVE:
         return f"{extent} of flutter"
-    return f"{word(name)} {extent} {_unit(view, name)}".rstrip()
-
-
-def _in_typed(view: View, name: str, values: np.ndarray) -> np.ndarray:
-    """Values of a quantity in its own unit."""
-    return (
-        values
-        if QUANTITY_UNITS[name] == "1"
-        else values * written_in(1.0, _unit(view, name), QUANTITY_UNITS[name])
-    )
+    return f"{word(name)} {extent} {unit}".rstrip()
 
 
 def _unit(view: View, name: str) -> str:
     """The unit of a quantity as it is told; empty of a ratio."""
-    si = QUANTITY_UNITS[name]
+    si = ALL_QUANTITIES[name].unit
     return "" if si == "1" else view.typed.get(name, own_unit(view, si, 1.0)[1])
 
 
@@ -176,10 +167,15 @@ def errors_in_si(v: Mapping[str, np.ndarray], own: str, twin: str) -> np.ndarray
     return np.asarray(np.abs(scale) * errors_of(v, own))
 
 
+def load_of(view: View) -> str:
+    """What a follower force is told in."""
+    return "force" if "force" in view.quantities else "pressure"
+
+
 def loads_at(view: View, F: np.ndarray, points: np.ndarray) -> str:
     """Follower forces F, (n,), at points of a file with an arm, (n,) indices, as its load in its own unit."""
-    unit, (scale,), _ = FORCES["force" if "force" in view.quantities else "pressure"]
-    return in_own_unit(view, F * _at(view.quantities[scale], points), unit)
+    load = load_of(view)
+    return in_own_unit(view, F * _at(view.quantities[SCALE_OF[load]], points), UNITS[load][0])
 
 
 def crossings_of_arm(view: View) -> list[str]:
