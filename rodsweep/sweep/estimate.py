@@ -8,7 +8,7 @@ import numpy as np
 from ..arrays import Array
 from ..discretization.resolution import MOST_UNKNOWNS, expected_wave_number, resolution_for
 from ..model.dispersion import most_amplified_wave
-from .grid import Points
+from .points import Points
 from .stretches import Stretches
 
 SAMPLE = 200

@@ -15,7 +15,7 @@ from ..results.layouts.arm import VALIDITY
 from ..results.layouts.variables import SECONDS, STATUS, Layout
 from ..solve.status import PointStatus
 from ..sweep.chains import State
-from ..sweep.grid import Points
+from ..sweep.points import Points
 from ..sweep.stretches import Together
 from .protocol import Solver
 

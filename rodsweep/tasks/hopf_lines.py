@@ -15,7 +15,7 @@ from ..model.parameters import LINEAR_PARAMETERS
 from ..model.rod import Rod
 from ..results.layouts.limit_cycle import HOPF_ALONG, HOPF_POINTS
 from ..results.layouts.variables import Filled
-from ..sweep.grid import Points
+from ..sweep.points import Points
 
 if TYPE_CHECKING:
     from ..solve.changes.along_path import Transitions

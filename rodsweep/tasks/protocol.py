@@ -13,7 +13,7 @@ from ..results.layouts.variables import Filled
 from ..solve.status import PointStatus
 from ..sweep.chains import Chains, ChainStep
 from ..sweep.estimate import Estimate
-from ..sweep.grid import Points
+from ..sweep.points import Points
 from ..sweep.stretches import Stretches, Together
 
 Arrays = dict[str, np.ndarray]

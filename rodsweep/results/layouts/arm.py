@@ -23,7 +23,7 @@ from ...model.arm_quantities import ALL_QUANTITIES, LOADS, RELATIVE, SCALE_OF, U
 from ...model.drag import DRAGS
 from ...model.neglected import Validity
 from ...model.parameters import PARAMETERS
-from ...sweep.grid import Points
+from ...sweep.points import Points
 from .variables import ANGULAR, DIMENSIONS, Filled, Layout, Variable, real, word
 
 SUFFIX, OF_HERTZ = "_si", "_hz"
