@@ -27,7 +27,7 @@ UNCOVERED = {NotSlender: NOT_SLENDER, NoWall: NO_WALL}
 NO_LOAD = {"pressure": 0.0}
 
 
-class Uncovered(ValueError):
+class UncoveredArm(ValueError):
     """The refusal of an arm that no rod covers; `status` is that of its points."""
 
     def __init__(self, error: NotSlender | NoWall):
@@ -192,7 +192,7 @@ class ArmSection(Strict):
     def made(self, values: Mapping[str, float], loaded: bool = False) -> SlenderArm:
         """An arm of values by quantity, with its load or without; ValueError where it cannot be.
 
-        Uncovered where no rod covers it. A load that is relative to flutter is left out.
+        UncoveredArm where no rod covers it. A load that is relative to flutter is left out.
         """
         section = {name: value for name, value in values.items() if name in SECTION}
         load = {self.load_axis: values[self.load_axis]} if loaded and self.load_axis in LOADS else NO_LOAD
@@ -200,6 +200,6 @@ class ArmSection(Strict):
         try:
             return SlenderArm(**section, **load, drag=drag)
         except (NotSlender, NoWall) as error:
-            raise Uncovered(error) from None
+            raise UncoveredArm(error) from None
         except InputError as error:
             raise ValueError(f"parameters.arm.{error}") from None

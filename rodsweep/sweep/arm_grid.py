@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..config.arm import ArmSection, Uncovered
+from ..config.arm import ArmSection, UncoveredArm
 from ..config.arm_axes import CRUSHED, NO_FLUTTER, SLENDER
 from ..model.arm import CRUSHED_FROM, SlenderArm
 from ..model.arm_quantities import ARM_UNITS, RELATIVE, SCALE_OF
@@ -61,7 +61,7 @@ def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[Sl
     """(the arm of a section without load, or None where no rod covers it; its status)."""
     try:
         return section.made(values), SLENDER
-    except Uncovered as error:
+    except UncoveredArm as error:
         return None, error.status
 
 

@@ -69,28 +69,3 @@ def with_hopf_ends(
     known = [point for curve in told for point in curve.points]
     curves = tuple(ending_at(curve, plane, known) for curve in found.curves)
     return replace(found, curves=curves, untraced=found.untraced + unstored)
-
-
-def cycle_curve_record(found: "Boundaries[CycleCurve]", line: str, row: str) -> dict[str, Any]:
-    """Curves of folds and torus points as the variables of the file, with the Hopf points where they end."""
-    names = (line, row, "error", "period", "tip_y_max")
-    points, numbers, kinds, ends = [], [], [], []
-    for number, curve in enumerate(found.curves, 1):
-        own = [(p.at, p.row, p.error, p.period, p.tip_y_max) for p in curve.points]
-        first, last = ([(p.at, p.row, p.error, p.period, 0.0)] if p else [] for p in curve.vanishing)
-        own = [*first, *own, *last]
-        points += own
-        numbers += [number] * len(own)
-        kinds += [int(curve.kind)] * len(own)
-        why = np.zeros(len(own), dtype=int)
-        why[0], why[-1] = curve.ends  # of a single point the last says it
-        ends += why.tolist()
-    table = np.array(points, dtype=float).reshape(-1, len(names))
-    values: dict[str, Any] = {f"cycle_curve_{name}": table[:, i] for i, name in enumerate(names)}
-    return values | {
-        "cycle_curve_number": numbers,
-        "cycle_curve_kind": kinds,
-        "cycle_curve_end": ends,
-        "cycle_curve_agreement": found.agreement,
-        "cycle_curves_untraced": found.untraced,
-    }

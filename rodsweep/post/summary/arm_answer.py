@@ -14,7 +14,8 @@ from ...results.file.view import View
 from ...results.layouts.arm import EFFECTS, VALIDITY
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, some_of
-from .arm import arms_of_drags, drag_lines, errors_in_si, load_of, own_unit, region_of_arms
+from .arm import errors_in_si, load_of, own_unit, region_of_arms
+from .drag_range import arms_of_drags, drag_lines
 from .ranges import rounded
 
 DIGITS = 3
