@@ -16,7 +16,8 @@ from PIL import Image
 from rodsweep.discretization.periodic import derivative, resampled
 from rodsweep.errors import EnvironmentLacks, InputError
 from rodsweep.post.figures import draw
-from rodsweep.post.figures.cycle.amplitude import branches_of, draw_amplitude
+from rodsweep.post.figures.cycle.amplitude import draw_amplitude
+from rodsweep.post.figures.cycle.amplitude_branches import branches_of
 from rodsweep.post.figures.cycle.animation import first_frame
 from rodsweep.post.figures.cycle.energy import draw_energy
 from rodsweep.post.figures.cycle.portrait import ARROW, draw_portrait, drawn_shapes

@@ -1,4 +1,4 @@
-"""What `rodsweep show` says of the curves of a phase diagram: their folds, ends and generalised Hopf points."""
+"""What `rodsweep show` says of the curves of a diagram: their folds, ends and generalised Hopf points."""
 
 import numpy as np
 
