@@ -130,7 +130,7 @@ class DiagramCurves:
         from ..solve.changes.boundaries import curves_through, seed_of
 
         names = ("crossing_at", "crossing_kind", "crossing_frequency", "crossing_growth_rate")
-        at, kind, frequency, rate = (view.variables[n].reshape(len(rows), -1) for n in names)
+        at, kind, frequency, rate = map(view.by_point, names)
         seeds = [
             seed_of(
                 (float(at[i, j]), float(rows[i])), int(kind[i, j]), float(frequency[i, j]), float(rate[i, j])

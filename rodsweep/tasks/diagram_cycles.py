@@ -34,11 +34,8 @@ def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecial]":
     from ..solve.branch.special.boundaries import CURVE_KINDS, RowSpecial
     from ..solve.branch.special.point import SpecialKind
 
-    kinds = view.variables["cycle_special_kind"].reshape(len(rows), -1)
-    at, period, height = (
-        view.variables[f"cycle_special_{name}"].reshape(len(rows), -1)
-        for name in (line, "period", "tip_y_max")
-    )
+    names = (f"cycle_special_{name}" for name in ("kind", line, "period", "tip_y_max"))
+    kinds, at, period, height = map(view.by_point, names)
     return [
         RowSpecial(
             number=int(i),
@@ -55,7 +52,7 @@ def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecial]":
 
 def unstored_specials(view: View, finite: np.ndarray) -> int:
     """Special points that the full lists of finite rows lack; no curve starts from them. finite: (rows,)."""
-    stored = np.count_nonzero(view.variables["cycle_special_kind"].reshape(len(finite), -1), axis=1)
+    stored = np.count_nonzero(view.by_point("cycle_special_kind"), axis=1)
     lacking = view.variables["cycle_special_count"].ravel() - stored
     return int(lacking[finite].clip(min=0).sum())
 

@@ -106,6 +106,17 @@ class View:
         n = len(shape)
         return values.reshape(-1, *values.shape[n:]) if values.shape[:n] == shape else values
 
+    def by_point(self, name: str) -> np.ndarray:
+        """A variable with all points along its first dimension, (points, ...)."""
+        values = self.variables[name]
+        return values.reshape(-1, *values.shape[self.variables["status"].ndim :])
+
+    def of_point(self, index: int) -> dict[str, np.ndarray]:
+        """The variables of the point at a flat index, each in its shape there."""
+        shape = self.variables["status"].shape
+        names = (name for name, values in self.variables.items() if values.shape[: len(shape)] == shape)
+        return {name: self.by_point(name)[index] for name in names}
+
     @property
     def point_columns(self) -> dict[str, np.ndarray]:
         """Every parameter at every point, shape (points,); in a grid the last axis is the fastest."""

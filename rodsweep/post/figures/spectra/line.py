@@ -80,9 +80,7 @@ def roots_to_follow(views: Sequence[View], asked: str | None) -> str:
 
 def _followed(view: View, roots: str) -> Complex:
     """The roots that are shown of every point of a line, (points, 2), or of all that are stored."""
-    modes = len(view.variables["mode"])
-    growth = view.variables["growth_rate"].reshape(-1, modes)
-    return followed_roots(growth, view.variables["frequency"].reshape(-1, modes), roots)
+    return followed_roots(view.by_point("growth_rate"), view.by_point("frequency"), roots)
 
 
 def _scatter_all(axes: Axes, x: Array, w: Complex, label: str) -> None:
