@@ -201,7 +201,7 @@ def thresholds_of_arm(view: View, kind: str, found: Sequence[tuple[Located, np.n
     points = np.concatenate([points for _, points in found])
     each = [len(points) for _, points in found]
     load = loads_at(view, np.repeat([place.position for place, _ in found], each), points)
-    frequency = np.repeat([getattr(place, "frequency", np.nan) for place, _ in found], each)
+    frequency = np.repeat([place.frequency for place, _ in found], each)
     rate = ""
     if np.isfinite(frequency).any():
         rate = f", where it begins to beat at {_in_hertz(view, frequency, points)}"

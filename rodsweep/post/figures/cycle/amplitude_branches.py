@@ -9,7 +9,7 @@ from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import View
 from ....sweep.lines import lines_over
-from ...hopf_points import HopfPoint, StoredChanges
+from ...hopf_points import Located, StoredChanges
 from .selection import CYCLE_WORDS, outcomes
 from .square_root import SquareRootLaw, square_root_laws
 from .units import PLAIN_UNITS, CycleUnits
@@ -32,7 +32,7 @@ class AmplitudeBranch:
     period: Array
     power: Array
     words: NDArray[np.str_]
-    hopf: list[HopfPoint]
+    hopf: list[Located]
     units: CycleUnits
     first: int
     """The number of its first point in the file, from 1."""
@@ -78,7 +78,7 @@ def branches_of(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[
     stored = StoredChanges(view, "F")
     for line in lines_over(view.point_columns, name):
         changes = stored.on(line) if name == "F" else []
-        at, hopf = line.at, [change for change in changes if isinstance(change, HopfPoint)]
+        at, hopf = line.at, [change for change in changes if isinstance(change, Located) and change.is_hopf]
         branches.append(
             AmplitudeBranch(
                 view=view,
