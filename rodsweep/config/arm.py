@@ -11,7 +11,7 @@ from ..arrays import Array
 from ..errors import InputError
 from ..model.arm import NotSlender, NoWall, SlenderArm
 from ..model.arm_quantities import ARM_UNITS, LOADS, QUANTITIES, RELATIVE, SCALE_OF, UNITS
-from ..model.parameters import NONLINEAR_PARAMETERS
+from ..model.parameters import NONLINEAR_PARAMETERS, all_but
 from .arm_axes import AXIS_OF, LOAD_AXES, NO_WALL, NOT_SLENDER, SECTION
 from .quantities import Drags, Quantities, drags_written, with_shares
 from .values import Axis, Strict, Values
@@ -146,7 +146,7 @@ class ArmSection(Strict):
         ValueError for what is no slender arm, and where the least load crushes it.
         """
         arm = self.made(self.firsts, loaded=True)
-        axes = {name: Axis(values=(arm.parameter(name),)) for name in NONLINEAR_PARAMETERS if name != "F"}
+        axes = {name: Axis(values=(arm.parameter(name),)) for name in all_but("F", NONLINEAR_PARAMETERS)}
         for name in ("k2", "gamma3"):
             different = {getattr(self.made(each), name) for each in self.sections()}
             axes[name] = Axis(values=tuple(sorted(different)))

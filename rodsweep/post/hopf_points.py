@@ -11,7 +11,7 @@ from math import inf, nan
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model.parameters import LINEAR_PARAMETERS
+from ..model.parameters import all_but
 from ..results.file.view import View
 from ..results.layouts.limit_cycle import HOPF_ALONG
 from ..results.layouts.thresholds import CROSSING_KINDS
@@ -29,7 +29,7 @@ class Located:
     """A change at a place along a parameter, with an estimate of its error, in its unit.
 
     kind: `hopf` where a pair crosses the imaginary axis and the rod is unstable above, `restabilization`
-    where it is stable above; `onset` where two real eigenvalues become a pair: above, a stable rod oscillates.
+    where it is stable above; `onset` where two real eigenvalues become a pair and the rod stays stable.
     """
 
     position: float
@@ -74,7 +74,7 @@ class StoredChanges:
         v, points = view.variables, view.variables["status"].size
         growth = "linear_growth_rate" if "linear_growth_rate" in v else "growth_rate"
         self.growth = v[growth].reshape(points, -1)[:, 0]
-        self.others = [other for other in LINEAR_PARAMETERS if other != name]
+        self.others = all_but(name)
         self.by_rod: dict[tuple[float, ...], list[Located]] = {}
         if "hopf_along" in v:  # which a user may have dropped from a Dataset
             self._read(v, name, "hopf", v["hopf_along"] == HOPF_ALONG.index(name))

@@ -10,7 +10,7 @@ from ..config.arm import ArmSection, UncoveredArm
 from ..config.arm_axes import CRUSHED, NO_FLUTTER, SLENDER
 from ..model.arm import CRUSHED_FROM, SlenderArm
 from ..model.arm_quantities import ARM_UNITS, RELATIVE, SCALE_OF
-from ..model.parameters import NONLINEAR_PARAMETERS
+from ..model.parameters import NONLINEAR_PARAMETERS, all_but
 from .points import Points
 
 FlutterOf = Callable[[SlenderArm], float]
@@ -31,8 +31,7 @@ def grid_of_arms(
     shape = (len(arms), len(loads), next(iter(crossed.values())).size if crossed else 1)
     table = {
         name: _along(0, [arm.parameter(name) if arm else np.nan for arm in arms])
-        for name in NONLINEAR_PARAMETERS
-        if name != "F"
+        for name in all_but("F", NONLINEAR_PARAMETERS)
     }
     units = {name: _along(0, [getattr(arm, name) if arm else np.nan for arm in arms]) for name in ARM_UNITS}
     covered = np.broadcast_to(_along(0, statuses), shape).copy()

@@ -30,7 +30,7 @@ from .parts import count_of, rod_parts
 from .protocol import InOrder, Part, Solver, Task, alone
 
 if TYPE_CHECKING:
-    from ..solve.cycle.limit_cycle import Cycle
+    from ..solve.cycle.limit_cycle import Cycle, CycleRequest
 
 OF_THE_SWEEP = ("method", "along", "direction", "time")
 """Options that say by which method, how points follow each other and what the file adds; a cycle is asked for
@@ -130,10 +130,9 @@ class LimitCycleTask(Task):
     def solver(self) -> Solver:
         if self.config.limit_cycle.method == "integration":
             return self._integration()
-        from ..solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle, warm_up
+        from ..solve.cycle.limit_cycle import CycleStatus, solve_cycle, warm_up
 
-        options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
-        request = CycleRequest(accuracy=self.config.accuracy, **options)
+        request = self._request()
         along = self.config.along if self.chains else None
 
         def solve(index: int, start: State = None) -> "Cycle":
@@ -152,13 +151,19 @@ class LimitCycleTask(Task):
             chained=(chains, solve_from) if chains else None,
         )
 
-    def _integration(self) -> Solver:
-        """How points are solved by time integration alone."""
-        from ..solve.cycle.limit_cycle import CycleRequest, warm_up
-        from ..solve.cycle.marched import MarchedStatus, solve_by_integration
+    def _request(self) -> "CycleRequest":
+        """What is asked of every cycle."""
+        from ..solve.cycle.limit_cycle import CycleRequest
 
         options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
-        request = CycleRequest(accuracy=self.config.accuracy, **options)
+        return CycleRequest(accuracy=self.config.accuracy, **options)
+
+    def _integration(self) -> Solver:
+        """How points are solved by time integration alone."""
+        from ..solve.cycle.limit_cycle import warm_up
+        from ..solve.cycle.marched import MarchedStatus, solve_by_integration
+
+        request = self._request()
         return Solver(
             statuses=tuple(MarchedStatus),
             warm_up=warm_up,
