@@ -30,7 +30,7 @@ from .parts import count_of, rod_parts
 from .protocol import InOrder, Part, Solver, Task, alone
 
 if TYPE_CHECKING:
-    from ..solve.cycle.limit_cycle import Cycle
+    from ..solve.cycle.limit_cycle import Cycle, CycleRequest
 
 OF_THE_SWEEP = ("method", "along", "direction", "time")
 """Options that say by which method, how points follow each other and what the file adds; a cycle is asked for
@@ -130,11 +130,10 @@ class LimitCycleTask(Task):
     def solver(self) -> Solver:
         if self.config.limit_cycle.method == "integration":
             return self._integration()
-        from ..solve.cycle.limit_cycle import CycleRequest, CycleStatus, Neighbour, solve_cycle, warm_up
+        from ..solve.cycle.limit_cycle import CycleStatus, Neighbour, solve_cycle, warm_up
         from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
-        options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
-        request = CycleRequest(accuracy=self.config.accuracy, **options)
+        request = self._request()
         along, workspace = self.config.along if self.chains else None, NewtonWorkspace()
 
         def solve(index: int, start: "Neighbour | None" = None) -> "Cycle":
@@ -153,14 +152,20 @@ class LimitCycleTask(Task):
             chained=ChainedWork(chains, solve_from, Neighbour.from_arrays) if chains else None,
         )
 
+    def _request(self) -> "CycleRequest":
+        """What is asked of every cycle."""
+        from ..solve.cycle.limit_cycle import CycleRequest
+
+        options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
+        return CycleRequest(accuracy=self.config.accuracy, **options)
+
     def _integration(self) -> Solver:
         """How points are solved by time integration alone."""
-        from ..solve.cycle.limit_cycle import CycleRequest, warm_up
+        from ..solve.cycle.limit_cycle import warm_up
         from ..solve.cycle.marched import solve_by_integration
         from ..solve.cycle.status import MarchedStatus
 
-        options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
-        request = CycleRequest(accuracy=self.config.accuracy, **options)
+        request = self._request()
         return Solver(
             statuses=tuple(MarchedStatus),
             warm_up=warm_up,
