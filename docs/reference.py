@@ -21,8 +21,9 @@ from rodsweep.config.json_schema import meanings_of
 from rodsweep.config.phase_diagram import PhaseDiagramConfig
 from rodsweep.config.refusals import what_is_allowed
 from rodsweep.config.tasks import CONFIGS
+from rodsweep.model.arm_quantities import ALL_QUANTITIES
 from rodsweep.model.parameters import PARAMETERS
-from rodsweep.results.layouts.arm import MEANINGS, QUANTITY_UNITS, VALIDITY
+from rodsweep.results.layouts.arm import VALIDITY
 from rodsweep.results.layouts.phase_diagram import (
     CLASSES,
     CYCLE_CURVE_ENDS,
@@ -333,7 +334,7 @@ def validity() -> str:
 
 def quantities() -> str:
     """What the coordinates of an arm are."""
-    rows = [[f"`{name}`", QUANTITY_UNITS[name], meaning] for name, meaning in MEANINGS.items()]
+    rows = [[f"`{name}`", each.unit, each.meaning] for name, each in ALL_QUANTITIES.items()]
     return table(("coordinate", "unit", "meaning"), rows)
 
 

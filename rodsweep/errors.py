@@ -4,6 +4,8 @@ A parameter point that fails is neither: it keeps a status (`rodsweep.solve.stat
 goes on. Any other exception is a bug.
 """
 
+from typing import Self
+
 BUG_STATUS = 70
 """Exit status of a bug: EX_SOFTWARE of sysexits.h, "internal software error"."""
 
@@ -13,6 +15,11 @@ class Refusal(Exception):
 
     collective = False
     exit_status = BUG_STATUS
+
+    def on_all_ranks(self) -> Self:
+        """The same, of which every rank has a copy to raise at the same place."""
+        self.collective = True
+        return self
 
 
 class InputError(Refusal):

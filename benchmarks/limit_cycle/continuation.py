@@ -26,7 +26,8 @@ from rodsweep.bench.study import Measurement, Timed, failsafe, race, table
 from rodsweep.discretization.mesh import mesh
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
-from rodsweep.solve.orbit.linearisation import Linearisation
+from rodsweep.solve.orbit.matrix.linearisation import Linearisation
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.newton import newton
 from rodsweep.solve.orbit.orbit import Orbit
 
@@ -103,7 +104,7 @@ def first_cycles(point: Rod, settings: Sequence[AutoSetting]) -> dict[int, Orbit
     near = orbit_of(solve_cycle(point, asked(SETTLED_WITHIN), along="F"))
     orders = {setting.order for setting in settings}
     moved = {order: near.on(mesh(1, order), REFERENCE_INTERVALS, REFERENCE_STAGES) for order in orders}
-    return {order: newton(orbit, EXACT).orbit for order, orbit in moved.items()}
+    return {order: newton(orbit, EXACT, NewtonWorkspace()).orbit for order, orbit in moved.items()}
 
 
 def each(few: Timed, many: Timed) -> float:
@@ -120,7 +121,7 @@ def judged(exact: ExactCycle, m: Measurement, outcome: Any) -> Measurement:
         multipliers = outcome.multipliers
     else:
         errors = exact.errors_of(outcome.measures.period, outcome.measures.tip_y_max)
-        multipliers = Linearisation(orbit_of(outcome)).multipliers()
+        multipliers = Linearisation(orbit_of(outcome), NewtonWorkspace()).multipliers()
     large = float(np.count_nonzero(np.abs(multipliers) > LARGE))
     return replace(m, error=max(errors.values()), extra=errors | {"large": large})
 

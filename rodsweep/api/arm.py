@@ -9,6 +9,7 @@ from ..config.arguments import in_sentences
 from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.arm import SlenderArm
+from ..model.arm_quantities import LOADS, SECTION_SIDES
 from ..model.units import Given
 from .answer import Answer
 from .asking import job_from, known_load, tree_of
@@ -20,8 +21,7 @@ if TYPE_CHECKING:
     from ..verdict.flutter import FlutterRange
 
 EXAMPLE = 'rs.Arm(length="10 cm", radius="5 mm", young="100 kPa", viscosity="1.4 Pa s", pressure="2 kPa")'
-ROUND, RECTANGULAR = ("radius", "inner_radius"), ("width", "height")
-EXCLUSIVE = ((("pressure",), ("force",)), (ROUND, RECTANGULAR))
+EXCLUSIVE = (tuple((load,) for load in LOADS), SECTION_SIDES)
 """Quantities of which one set takes the place of the other."""
 
 

@@ -6,13 +6,13 @@ from typing import Any, TypeVar
 
 from ..config.arguments import unknown
 from ..config.arm import ArmSection
-from ..config.arm_axes import RELATIVE
 from ..config.reading import validated, yaml_of
 from ..config.refusals import nearest
 from ..config.schema import Config
 from ..config.tasks import CONFIGS
 from ..errors import InputError
-from ..model.arm import LOADS, SlenderArm
+from ..model.arm import SlenderArm
+from ..model.arm_quantities import LOADS, RELATIVE
 from ..model.drag import DRAGS
 from ..solve.exclusive import signals_held
 from ..tasks.job import Job, job_of, memory

@@ -13,13 +13,13 @@ from ..config.arguments import in_sentences
 from ..config.arm_axes import ALONG
 from ..config.values import short
 from ..errors import InputError
+from ..model.arm_quantities import ALL_QUANTITIES
 from ..results.file.content import SEAL, attribute_digests, variable_digest
 from ..results.file.creation import Plan
 from ..results.file.recent import journalled_points, put_in, unfolded
 from ..results.file.validation import FORMAT, PROGRAM, Header, cleaned, open_whole, reading, reason_of
 from ..results.file.view import View
 from ..results.layouts import beside_points, layout_of
-from ..results.layouts.arm import MEANINGS
 from ..results.layouts.variables import DIMENSIONS, MISSING, TYPED, Filled, Layout, Variable
 from ..results.run.journal import journal_directory
 from ..solve.exclusive import one_at_a_time
@@ -75,7 +75,9 @@ def _selectable(data: xr.Dataset) -> xr.Dataset:
 def _ordered(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dataset:
     """The Dataset with its variables in the order in which they are declared; HDF5 has the alphabet's."""
     declared = (*layout.variables, *beside_points(config, "point" not in data.dims))
-    places = {name: place for place, name in enumerate([*DIMENSIONS, *MEANINGS, *(v.name for v in declared)])}
+    places = {
+        name: place for place, name in enumerate([*DIMENSIONS, *ALL_QUANTITIES, *(v.name for v in declared)])
+    }
     names = sorted(data.variables, key=lambda name: places.get(str(name), len(places)))
     variables = {name: data.variables[name] for name in names}
     coords = {name: variables.pop(name) for name in names if name in data.coords}

@@ -68,7 +68,7 @@ def solve_here(
 def _solved(job: Job, solver: Solver, plan: Plan, shown: Display) -> tuple[dict[str, np.ndarray], list[str]]:
     """(the variables of the layout, each of the points' shape and its own; what points alone had to say)."""
     count, layout = job.points.count, plan.layout
-    flat = {v.name: np.full((count, *layout.inner(v)), v.fill, v.dtype) for v in layout.variables}
+    flat = {name: np.repeat(fill[None], count, axis=0) for name, fill in layout.empty_point.items()}
     messages = [""] * count
     if solver.stretched is not None:
         stretches, solve_together = solver.stretched
@@ -110,7 +110,7 @@ def _outcomes(count: int, solver: Solver, shown: Display) -> Iterator[tuple[int,
                 outcome = solver.solve(done)
             yield done, outcome
         return
-    chains, solve_from = solver.chained
+    chains, solve_from = solver.chained.chains, solver.chained.solve_from
     for chain in range(chains.count):
         state = None
         for index in map(int, chains.indices(chain)):

@@ -5,7 +5,7 @@ from typing import Any
 
 import click
 
-from ..model.arm import QUANTITIES, UNITS
+from ..model.arm_quantities import QUANTITIES, UNITS
 
 REMARKS = {
     "radius": "; or give --width and --height",
@@ -14,7 +14,6 @@ REMARKS = {
     "density_difference": ", for its weight",
 }
 """What `--help` says of a quantity beside its meaning."""
-REQUIRED = ("length", "young", "viscosity")
 
 
 def arm_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -23,6 +22,6 @@ def arm_options(command: Callable[..., Any]) -> Callable[..., Any]:
         meaning = QUANTITIES[name].meaning
         told = f"{meaning[0].upper()}{meaning[1:]}{REMARKS.get(name, '')}."
         option = "--" + name.replace("_", "-")
-        add = click.option(option, name, metavar="QUANTITY", required=name in REQUIRED, help=told)
+        add = click.option(option, name, metavar="QUANTITY", required=QUANTITIES[name].needed, help=told)
         command = add(command)
     return command

@@ -3,7 +3,7 @@
 from rich.console import Console
 
 from ..errors import InputError
-from ..model.arm import UNITS
+from ..model.arm_quantities import UNITS
 
 STYLES = {"headline": "bold", "warning": "yellow"}
 """How lines of a report look."""

@@ -13,7 +13,7 @@ from ..model.neglected import wall_effect
 from ..post.summary.arm_answer import plane_lines, validity_sentence
 from ..post.summary.ranges import span
 from ..sweep.estimate import SAMPLE
-from ..sweep.grid import Points
+from ..sweep.points import Points
 from ..tasks.arm_points import NoRod, same_rods
 from ..tasks.arm_validity import ArmValidity
 from ..tasks.job import Job

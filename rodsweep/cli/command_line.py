@@ -1,6 +1,5 @@
 """What the command `rodsweep` takes: each of its commands with options, and what does the work."""
 
-import os
 import sys
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,7 @@ from ..config.values import printable
 from ..errors import InputError
 from .arm_options import arm_options
 from .file_names import beside, followed, result_file
+from .launchers import rank_variables
 
 FILE = click.Path(path_type=Path)
 overrides_option = click.option(
@@ -247,14 +247,3 @@ def arm(poisson: float, **quantities: str | None) -> None:
     from .arm_report import describe_arm
 
     describe_arm(quantities, poisson)
-
-
-def rank_variables() -> list[str]:
-    """The rank of this process as each launcher tells it; nothing where there is none."""
-    names = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID")
-    return [os.environ[name] for name in names if name in os.environ]
-
-
-def speaks() -> bool:
-    """Whether this process is the one that talks, before MPI has been started."""
-    return next(iter(rank_variables()), "0") == "0"

@@ -12,7 +12,7 @@ from ..results.run.checkpoints import UnitResults
 from ..results.run.journal import journal_directory
 from ..solve.backend.kept import forget_all
 from ..sweep.handout import Handout
-from ..sweep.listener import RankListener
+from ..sweep.listener import NoClaims, RankListener
 from ..sweep.loop import Indices, Loop, Share, sweep
 from ..sweep.pool import Pool
 from ..sweep.progress import Silent, Teller
@@ -20,7 +20,7 @@ from ..sweep.stop import StopRequest
 from ..sweep.team import Team
 from ..tasks.protocol import AllPoints, Arrays
 from ..tasks.unforeseen import PASSING, UnitNote
-from ..watch import Stopped, Whereabouts, heard_by
+from ..watch import Stopped, heard_by
 
 NOUN = "halves of curves"
 """What units are called; a curve is followed from one of its points in two halves."""
@@ -104,14 +104,6 @@ class JointWork:
         """The variables of the file, on the first rank; None where a stop came before all was done."""
         if units is not None and units.wanted(self.results):
             return None
-        with suppress(Stopped), heard_by(RankListener(_Alone(), self.stop)):
+        with suppress(Stopped), heard_by(RankListener(NoClaims(), self.stop)):
             return self.together.variables(read_view(self.output), units, self.results)
         return None
-
-
-class _Alone:
-    """The first rank while the others wait for it to end."""
-
-    def between_points(self) -> None: ...
-
-    def tell_place(self, place: Whereabouts) -> None: ...

@@ -20,7 +20,7 @@ from ..tasks import TASKS
 from ..tasks.protocol import Solver
 from ..tasks.spectrum import SpectrumTask
 from . import main
-from .command_line import speaks
+from .launchers import speaks
 
 OUTCOMES = 4096
 """That the points take in turn: more than any compression looks back."""

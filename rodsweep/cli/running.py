@@ -1,30 +1,19 @@
 """`rodsweep run`, read aloud: read the config, open the file, solve what is missing, fold it in."""
 
-import socket
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import closing
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import click
-import numpy as np
 
-from ..errors import EnvironmentLacks
 from ..results.file import provenance
 from ..results.file.store import Store
 from ..results.file.view import read_view
-from ..results.run.checkpoints import Checkpoints
-from ..results.run.journal import Journal, journal_directory, kept_sentence
 from ..solve.backend.availability import require_directory, require_solvers
-from ..sweep.chains import ChainSolver
-from ..sweep.handout import Handout
-from ..sweep.loop import Indices, Loop, Share, sweep
-from ..sweep.progress import Silent, Teller
-from ..sweep.ranges import IndexRange, IndexSet, total
+from ..sweep.loop import Share
+from ..sweep.ranges import IndexRange, total
 from ..sweep.stop import StopRequest
-from ..sweep.stretches import StretchSolver, Together
 from ..sweep.team import Team
 from ..tasks.job import Job, make_job
 from ..tasks.planning import plan_of
@@ -32,8 +21,9 @@ from ..tasks.unforeseen import Log, guarded
 from ..wording import counted
 from .beforehand import planned_beforehand
 from .closing import RunEnd
-from .contribution import FAILURES_TOLD, Contribution, failures_of, history_of, of_the_last_run
+from .contribution import FAILURES_TOLD, Contribution, history_of, of_the_last_run
 from .joint import JointDue, JointWork
+from .point_work import PointWork
 from .run_options import RunOptions
 
 CONTINUE = 75
@@ -67,6 +57,17 @@ class _Run:
         self.kernels = provenance.united_kernels(team.gather(blas()) or [])
         self.plan = plan_of(job, self.solver, self.shard, self.kernels)
         self.prepare = cache(self.solver.warm_up)
+        self.work = PointWork(
+            team=team,
+            job=job,
+            solver=self.solver,
+            plan=self.plan,
+            shard=self.shard,
+            output=output,
+            stop=stop,
+            quiet=options.quiet,
+            where=self._where,
+        )
         together = self.solver.together
         self.joint = together and JointWork(
             team, together, output, self.plan.fingerprint, self._note_unit, stop
@@ -81,7 +82,7 @@ class _Run:
                 return self.team.on_first(lambda: self._stopped_beforehand(max(names)))
             self.plan = plan
         missing = self.team.on_first(self._open)
-        units, count = self._units(missing)
+        units, count = self.work.units(missing)
         if self.team.first:
             points, shard = self.job.points.count, f"; shard {self.shard}" if self.shard.of > 1 else ""
             kept = f", {points - total(missing)} kept" if points > total(missing) else ""
@@ -91,7 +92,7 @@ class _Run:
         contributions: list[Contribution] = []
         if count:
             self.team.on_first(self._note_kernels)
-            contributions = self.team.gather(self._solve(units, missing, count)) or []
+            contributions = self.team.gather(self.work.solve(units, missing, count, self.prepare)) or []
         joint = self.team.on_first(lambda: self._fold(count, contributions))
         shares: list[Share] = []
         if self.joint and joint.units is not None:
@@ -162,20 +163,6 @@ class _Run:
             self._say(f"{self.output}: {note}", amiss=True)
         self.store.notes.clear()
 
-    def _units(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
-        """(the units of this shard that miss a point, the points that they miss)."""
-        if self.solver.stretched is not None:
-            stretches = self.solver.stretched[0]
-            units = self.shard.part(stretches.todo(missing), stretches.count)
-            return units, stretches.missing_in(units, missing)
-        if self.solver.chained is None:
-            units = self.shard.part(missing, self.job.points.count)
-            return units, total(units)
-        lacks, (chains, _) = IndexSet(missing), self.solver.chained
-        units = self.shard.part(chains.todo(lacks), chains.count)
-        each = (lacks[chains.indices(chain)].sum() for unit in units for chain in range(*unit))
-        return units, int(sum(each))
-
     def _note_kernels(self) -> None:
         """Keeps in the file which BLAS kernels compute its points, and says so where there are several."""
         before = self.store.attributes()
@@ -185,56 +172,9 @@ class _Run:
         if sentence := provenance.kernels_sentence(kernels):
             click.echo(f"{self.output}: {sentence}")
 
-    def _solve(self, units: list[IndexRange], missing: list[IndexRange], count: int) -> Contribution:
-        """Solves this rank's share of the units, into its journal."""
-        failures: list[str] = []
-        solver, plan = self.solver, self.plan
-
-        def keep(index: Indices, result: Any) -> None:
-            if isinstance(result, Together):
-                journal.append_all(np.asarray(index), result.values)
-            else:
-                journal.append(int(index), solver.record(int(index), result))
-            if len(failures) < FAILURES_TOLD:
-                failures.extend(failures_of(index, result, self._where))
-
-        shown = Teller(count, self.job.name) if self.team.first and not self.options.quiet else Silent()
-        directory = journal_directory(self.output)
-        try:
-            with closing(Journal(directory, self.team.rank, plan.layout, plan.fingerprint)) as journal:
-                checkpoints = Checkpoints(directory, plan.fingerprint)
-                solve = self._solve_unit(IndexSet(missing), checkpoints)
-                loop = Loop(solve=solve, keep=keep, prepare=self.prepare, name=self._unit_name)
-                share = sweep(self.team, Handout(units, self.team.size), loop, shown, self.stop)
-        except OSError as error:
-            raise EnvironmentLacks(
-                f"cannot write beside {self.output}: {error.strerror or error}"
-                f"{kept_sentence(directory, plan.fingerprint)}: make room and run again"
-            ) from error
-        finally:
-            shown.close()
-        return Contribution(host=socket.gethostname(), failures=failures, share=share)
-
-    def _solve_unit(
-        self, missing: IndexSet, checkpoints: Checkpoints
-    ) -> Callable[[int], Iterable[tuple[Indices, Any]]]:
-        """How a unit is solved: a point, a chain or a stretch."""
-        solver = self.solver
-        if solver.stretched:
-            return StretchSolver(*solver.stretched, missing)
-        if solver.chained:
-            return ChainSolver(*solver.chained, missing, checkpoints, self.stop)
-        return lambda index: ((index, solver.solve(index)),)
-
     def _where(self, index: int) -> str:
         values = self.job.points.values(index)
         return ", ".join(f"{name}={value!r}" for name, value in values.items())
-
-    def _unit_name(self, unit: int) -> str:
-        """Which point or chain a unit is."""
-        if self.solver.chained:
-            return f"chain {unit + 1} of {self.solver.chained[0].count}"
-        return f"point {unit + 1} of {self.job.points.count}"
 
     def _finish_file(self, joint: JointDue) -> bool:
         """Puts what all points together give into the file; whether that is still missing."""
@@ -277,7 +217,7 @@ class _Run:
         self._tell_notes()
         counts = self.store.status_counts()
         self.store.close()
-        left = self._units(missing)[1]
+        left = self.work.units(missing)[1]
         part = f"shard {self.shard} of {self.output}" if missing else f"{self.output}"
         ending = RunEnd(
             ranks=self.team.size,

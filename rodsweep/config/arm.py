@@ -1,65 +1,38 @@
-"""The section `parameters.arm` of a config: an arm in SI units, and the points that its axes make."""
+"""The section `parameters.arm` of a config: an arm in SI units, and the axes of a grid of parameters."""
 
-from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping
 from itertools import product
 from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from ..arrays import Array
 from ..errors import InputError
-from ..model.arm import CRUSHED_FROM, LOADS, SIGNED, UNITS, NotSlender, NoWall, SlenderArm
-from ..model.parameters import NONLINEAR_PARAMETERS
-from .arm_axes import (
-    AXIS_OF,
-    CRUSHED,
-    LOAD_AXES,
-    NO_FLUTTER,
-    NO_WALL,
-    NOT_SLENDER,
-    RELATIVE,
-    SCALE_OF,
-    SECTION,
-    SLENDER,
-    UNIT_NAMES,
-)
+from ..model.arm import NotSlender, NoWall, SlenderArm
+from ..model.arm_quantities import ARM_UNITS, LOADS, QUANTITIES, RELATIVE, SCALE_OF, UNITS
+from ..model.parameters import NONLINEAR_PARAMETERS, all_but
+from .arm_axes import AXIS_OF, LOAD_AXES, NO_WALL, NOT_SLENDER, SECTION
 from .quantities import Drags, Quantities, drags_written, with_shares
 from .values import Axis, Strict, Values
-
-UNCOVERED = {NotSlender: NOT_SLENDER, NoWall: NO_WALL}
-"""What refusals of an arm mean for a point."""
 
 Allowed = Field(description="a quantity with its unit, a list or a range of quantities; SI without unit")
 ShareAllowed = Field(description="a number from 0 on, a list or a range")
 DragAllowed = Field(description="range, the name of a drag, or a list of names")
-FlutterOf = Callable[[SlenderArm], float]
-"""From an arm to the F at which it flutters first with the likeliest drag, inf where it does not."""
 RatioAllowed = Field(description="a number above -1 and up to 0.5, a list or a range")
 
 
-class _Uncovered(ValueError):
-    """What is said of an arm that no rod covers; `status` is that of its points."""
+UNCOVERED = {NotSlender: NOT_SLENDER, NoWall: NO_WALL}
+"""What refusals of an arm mean for a point."""
+NO_LOAD = {"pressure": 0.0}
+
+
+class UncoveredArm(ValueError):
+    """The refusal of an arm that no rod covers; `status` is that of its points."""
 
     def __init__(self, error: NotSlender | NoWall):
         super().__init__(f"parameters.arm.{error}")
         self.status = UNCOVERED[type(error)]
-
-
-@dataclass(frozen=True, slots=True)
-class ArmGrid:
-    """The points of a grid over an arm's quantities.
-
-    axes: values of each quantity or parameter that has several, in SI, the last the fastest. All else at
-    every point, shape (points,): the parameters, the units of UNIT_NAMES, and whether a rod covers it.
-    """
-
-    axes: dict[str, Array]
-    parameters: dict[str, Array]
-    units: dict[str, Array]
-    covered: NDArray[np.int8]
 
 
 class ArmSection(Strict):
@@ -140,10 +113,10 @@ class ArmSection(Strict):
             low = float(axis.array()[0])
             if name in RELATIVE and low < 0:
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} is below 0")
-            if name in UNITS and name not in SIGNED and not low > 0:
+            if name in UNITS and not (QUANTITIES[name].signed or low > 0):
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} {UNITS[name][0]} is not above 0")
         if self.is_grid:
-            self._made(self._firsts, place=0)
+            self.made(self.firsts, loaded=True)
 
     def refuse_misuse(self, forced: bool, beside: Collection[str]) -> None:
         """ValueError unless there is one load where the task needs one, and no axis that changes nothing.
@@ -172,10 +145,10 @@ class ArmSection(Strict):
 
         ValueError for what is no slender arm, and where the least load crushes it.
         """
-        arm = self._made(self._firsts, place=0)
-        axes = {name: Axis(values=(arm.parameter(name),)) for name in NONLINEAR_PARAMETERS if name != "F"}
+        arm = self.made(self.firsts, loaded=True)
+        axes = {name: Axis(values=(arm.parameter(name),)) for name in all_but("F", NONLINEAR_PARAMETERS)}
         for name in ("k2", "gamma3"):
-            different = {getattr(self._made(each), name) for each in self._sections()}
+            different = {getattr(self.made(each), name) for each in self.sections()}
             axes[name] = Axis(values=tuple(sorted(different)))
         if self.load:
             axes = {"F": self.given[self.load].scaled(1.0 / getattr(arm, SCALE_OF[self.load]))} | axes
@@ -186,69 +159,24 @@ class ArmSection(Strict):
         values = {name: axis.array() for name, axis in self.given.items()}
         if self.poisson is not None:  # k2 falls as it rises
             values["poisson"] = values["poisson"][::-1]
-        units = {name: np.array([value]) for name, value in _units_of(self._made(self._firsts)).items()}
+        first = self.made(self.firsts)
+        units = {name: np.array([getattr(first, name)]) for name in ARM_UNITS}
         if len(values.get("drag", ())) > 1:
-            arms = {place: self._made(self._firsts | {"drag": place}) for place in values["drag"].tolist()}
+            arms = {place: self.made(self.firsts | {"drag": place}) for place in values["drag"].tolist()}
             values["drag"] = np.array(sorted(arms, key=lambda place: arms[place].gamma3))
             units["tau2"] = np.array([arms[place].tau2 for place in values["drag"].tolist()])
         return {name: array[0] if len(array) == 1 else array for name, array in (values | units).items()}
-
-    def own_grid(self, beside: Mapping[str, Array], flutter: FlutterOf) -> ArmGrid:
-        """The grid over the arm's quantities, and over those parameters of `beside` that have several values.
-
-        beside: values of parameters that replace the arm's, (n,); flutter: what a load may be relative to.
-        ValueError where no rod covers any point.
-        """
-        arms, statuses = zip(*self._arms(), strict=True)
-        loads = self.given[self.load_axis].array() if self.load_axis else np.zeros(1)
-        crossed = dict(zip(beside, np.meshgrid(*beside.values(), indexing="ij"), strict=True))
-        shape = (len(arms), len(loads), next(iter(crossed.values())).size if crossed else 1)
-        names = [name for name in NONLINEAR_PARAMETERS if name != "F"]
-        of_arms = {
-            name: _along(0, [arm.parameter(name) if arm else np.nan for arm in arms]) for name in names
-        }
-        units = {name: _along(0, [_units_of(arm)[name] for arm in arms]) for name in UNIT_NAMES}
-        if self.load:
-            scale = _along(0, [self._force_of(arm, flutter) if arm else np.nan for arm in arms])
-            of_arms["F"] = np.where(np.isinf(scale), np.nan, scale) * _along(1, loads)
-        of_arms |= {name: _along(2, column.ravel()) for name, column in crossed.items()}
-        table = {name: np.broadcast_to(column, shape) for name, column in of_arms.items()}
-        covered = np.broadcast_to(_along(0, statuses), shape).copy()
-        if self.load_axis in RELATIVE:
-            units[str(self.load)] = of_arms["F"] * units[SCALE_OF[str(self.load)]]
-            covered[(covered == SLENDER) & np.isinf(scale)] = NO_FLUTTER
-        if "F" in table:
-            covered[(covered == SLENDER) & (table["F"] >= CRUSHED_FROM * table["k1"])] = CRUSHED
-        if (covered != SLENDER).all():
-            self._refuse_all(beside, bool((covered == NO_FLUTTER).any()))
-        axes = {name: self.given[name].array() for name in self.several}
-        return ArmGrid(
-            axes | {name: column for name, column in beside.items() if len(column) > 1},
-            {name: table[name].ravel() for name in NONLINEAR_PARAMETERS if name in table},
-            {name: np.broadcast_to(column, shape).ravel() for name, column in units.items()},
-            covered.astype(np.int8).ravel(),
-        )
 
     def count(self, beside: int) -> int:
         """Points of a grid, where `beside` the arm so many combinations of parameters are given."""
         return int(np.prod([float(axis.size) for axis in self.given.values()])) * beside
 
-    def _refuse_all(self, beside: Mapping[str, Array], no_flutter: bool) -> None:
-        """ValueError, with what is wrong at the first point; no_flutter: whether some arm has none."""
-        self._made(self._firsts, place=0)
-        if no_flutter:
-            raise ValueError(
-                f"parameters.arm.{self.load} is relative to flutter, which no arm has with the likeliest drag"
-            )
-        k1 = float(beside["k1"][0])
-        raise ValueError(f"parameters.k1 is {k1:.15g} and every F is above; the rod is crushed where F >= k1")
-
     @property
-    def _firsts(self) -> dict[str, float]:
+    def firsts(self) -> dict[str, float]:
         """The first value of every quantity."""
         return {name: float(axis.array()[0]) for name, axis in self.given.items()}
 
-    def _sections(self) -> Iterator[dict[str, float]]:
+    def sections(self) -> Iterator[dict[str, float]]:
         """The quantities of all sections, in row-major order."""
         names = [name for name in SECTION if name in self.given]
         for values in product(*(self.given[name].array() for name in names)):
@@ -259,44 +187,19 @@ class ArmSection(Strict):
         axes = {name: axis.array() for name, axis in self.given.items() if name in SECTION}
         places = np.unravel_index(number, [len(column) for column in axes.values()])
         values = {name: float(axes[name][place]) for name, place in zip(axes, places, strict=True)}
-        return self._made(values)
+        return self.made(values)
 
-    def _arms(self) -> Iterator[tuple[SlenderArm | None, int]]:
-        """The arms of all sections without load, None where no rod covers one, each with its status."""
-        for values in self._sections():
-            try:
-                yield self._made(values), SLENDER
-            except _Uncovered as error:
-                yield None, error.status
+    def made(self, values: Mapping[str, float], loaded: bool = False) -> SlenderArm:
+        """An arm of values by quantity, with its load or without; ValueError where it cannot be.
 
-    def _made(self, values: Mapping[str, float], place: int | None = None) -> SlenderArm:
-        """An arm with the load at a place of its axis, or without; ValueError where it cannot be."""
+        UncoveredArm where no rod covers it. A load that is relative to flutter is left out.
+        """
         section = {name: value for name, value in values.items() if name in SECTION}
-        load: dict[str, float] = {"pressure": 0.0}
-        if place is not None and self.load_axis in LOADS:
-            load = {self.load_axis: float(self.given[self.load_axis].array()[place])}
+        load = {self.load_axis: values[self.load_axis]} if loaded and self.load_axis in LOADS else NO_LOAD
         (drag,) = drags_written([section.pop("drag", 0.0)])
         try:
             return SlenderArm(**section, **load, drag=drag)
         except (NotSlender, NoWall) as error:
-            raise _Uncovered(error) from None
+            raise UncoveredArm(error) from None
         except InputError as error:
             raise ValueError(f"parameters.arm.{error}") from None
-
-    def _force_of(self, arm: SlenderArm, flutter: FlutterOf) -> float:
-        """F of a load of 1 on an arm, in SI or of flutter."""
-        if self.load_axis in RELATIVE:
-            return flutter(arm)
-        return 1.0 / getattr(arm, SCALE_OF[str(self.load)])
-
-
-def _units_of(arm: SlenderArm | None) -> dict[str, float]:
-    """The units that an arm makes; nan for none."""
-    if arm is None:
-        return dict.fromkeys(UNIT_NAMES, np.nan)
-    return dict(zip(UNIT_NAMES, (arm.tau2, arm.force_scale, arm.pressure_scale), strict=True))
-
-
-def _along(dimension: int, values: Any) -> Array:
-    """Values, (n,), along one of three dimensions."""
-    return np.asarray(values).reshape([-1 if i == dimension else 1 for i in range(3)])

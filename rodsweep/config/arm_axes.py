@@ -8,11 +8,9 @@ value. A phase diagram needs parameters: there, the drags are an axis of gamma3.
 
 from collections.abc import Mapping
 
-from ..model.arm import LOADS
+from ..model.arm_quantities import LOADS, RELATIVE
 from ..model.parameters import NONLINEAR_PARAMETERS
 
-RELATIVE = {f"{load}_over_flutter": load for load in LOADS}
-"""Loads in units of that at which the arm flutters first, with the likeliest drag."""
 LOAD_AXES = (*LOADS, *RELATIVE)
 """What may say the load; an arm has one of them or none."""
 AXIS_OF = dict.fromkeys(LOADS, "F") | {"poisson": "k2"}
@@ -26,18 +24,12 @@ FLUID = ("viscosity", "fluid_density", "density_difference")
 applies."""
 SECTION = ("length", "young", "radius", "inner_radius", "width", "height", "poisson", *FLUID, "drag")
 """What makes an arm beside its load."""
-SIGNED_IN_SECTION = ("density_difference",)
-"""What of it may be negative."""
 SLENDER, NOT_SLENDER, CRUSHED, NO_WALL, NO_FLUTTER = 0, 100, 101, 102, 103
 """Whether a rod covers a point: it does; the arm is too short for the drag of slender bodies; F reaches k1;
 the bore is as wide as the arm; the load is relative to a flutter that there is not. All but the first are
 statuses, which no task's own statuses reach."""
 MOST_POINTS = 1_000_000
 """Points of a grid over an arm's quantities, whose parameters are all in memory."""
-SCALE_OF = {"pressure": "pressure_scale", "force": "force_scale"}
-"""The unit of a load, which makes F = 1."""
-UNIT_NAMES = ("tau2", "force_scale", "pressure_scale")
-"""Units of time, force and pressure that an arm makes."""
 
 
 def names_over(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, PARAMETERS
+from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, PARAMETERS, all_but
 from .axes import DEFAULTS, NonlinearParameters
 from .schema import Config
 from .values import Number, Strict
@@ -45,11 +45,6 @@ class BranchOptions(Strict):
         return self
 
 
-def others_than(along: str) -> tuple[str, ...]:
-    """The parameters that make a point where one is followed."""
-    return tuple(name for name in NONLINEAR_PARAMETERS if name != along)
-
-
 class BranchConfig(Config):
     """Cycles followed through folds, stable or not, from every Hopf point of a rod to where they end."""
 
@@ -64,11 +59,11 @@ class BranchConfig(Config):
 
     @property
     def names(self) -> tuple[str, ...]:
-        return others_than(self.branch.along)
+        return all_but(self.branch.along, NONLINEAR_PARAMETERS)
 
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
-        return others_than(options.get("along", "F"))
+        return all_but(options.get("along", "F"), NONLINEAR_PARAMETERS)
 
     @model_validator(mode="before")
     @classmethod

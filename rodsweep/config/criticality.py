@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from ..model.parameters import NONLINEAR_PARAMETERS
+from ..model.parameters import NONLINEAR_PARAMETERS, all_but
 from .axes import NonlinearParameters
 from .schema import Config, Crossings
 from .values import Number, Strict
@@ -33,13 +33,9 @@ class CriticalityConfig(Config):
     amplitude coefficient and the frequency slope follow from them; the file holds estimates of all."""
     criticality: CriticalityOptions = CriticalityOptions()
 
-    @property
-    def names(self) -> tuple[str, ...]:
-        return tuple(name for name in NONLINEAR_PARAMETERS if name != "F")
-
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
-        return tuple(name for name in NONLINEAR_PARAMETERS if name != "F")
+        return all_but("F", NONLINEAR_PARAMETERS)
 
     @model_validator(mode="after")
     def _finds_the_force_itself(self) -> "CriticalityConfig":

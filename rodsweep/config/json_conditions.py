@@ -8,15 +8,15 @@ from copy import deepcopy
 from itertools import combinations
 from typing import Any
 
-from ..model.arm import LOADS
+from ..model.arm_quantities import LOADS, QUANTITIES, RELATIVE
 from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS
-from .arm_axes import LOAD_AXES, RELATIVE, SECTION, SIGNED_IN_SECTION
+from .arm_axes import LOAD_AXES, SECTION
 
 Schema = dict[str, Any]
 QUANTITY_TEXT = r"^\s*{sign}(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[A-Za-z\u00b5\u03bc{percent}]"
 """A number and the beginning of a unit."""
 BOUNDS_OF_ARM: dict[str, Schema] = {
-    **{name: {"exclusiveMinimum": 0} for name in SECTION if name not in ("poisson", *SIGNED_IN_SECTION)},
+    **{name: {"exclusiveMinimum": 0} for name in SECTION if not QUANTITIES[name].signed},
     "poisson": {"exclusiveMinimum": -1, "maximum": 0.5},
     **{name: {"minimum": 0} for name in RELATIVE},
 }

@@ -55,10 +55,6 @@ class LimitCycleConfig(Config):
     limit_cycle: LimitCycleOptions = LimitCycleOptions()
 
     @property
-    def names(self) -> tuple[str, ...]:
-        return NONLINEAR_PARAMETERS
-
-    @property
     def along(self) -> str:
         """The parameter along which neighbours follow each other: the first of those with most points."""
         sizes, given = self.parameters.alone, self.limit_cycle.along

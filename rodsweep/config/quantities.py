@@ -6,10 +6,9 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
 from ..errors import InputError
-from ..model.arm import UNITS
+from ..model.arm_quantities import RELATIVE, UNITS
 from ..model.drag import DRAGS
 from ..model.units import in_si, share_of_flutter, split, written_in
-from .arm_axes import RELATIVE
 from .values import AXIS_SCHEMA, Axis, as_axis, as_number, short
 
 RANGE = "range"

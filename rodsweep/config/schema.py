@@ -4,7 +4,6 @@ Ranges that are physics (F < k1, positive stiffness) are not checked here but wh
 form only.
 """
 
-from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar
 
@@ -19,7 +18,7 @@ Nodes = Annotated[int, Field(ge=3, le=513)]
 Crossings = Annotated[int, Field(ge=1, le=1000)]
 
 
-class Config(Strict, ABC):
+class Config(Strict):
     """What the config of every task has."""
 
     title: Annotated[Text, Field(max_length=200)] = ""
@@ -38,9 +37,9 @@ class Config(Strict, ABC):
     """Whether a single rod makes nothing of the task."""
 
     @property
-    @abstractmethod
     def names(self) -> tuple[str, ...]:
         """The parameters that make a point of the sweep."""
+        return self.taken_of_a_rod({})
 
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
@@ -84,17 +83,13 @@ class Config(Strict, ABC):
             raise ValueError(f"parameters.{name} is given but the task {self.task} {why}")
 
 
-class LinearConfig(Config, ABC):
+class LinearConfig(Config):
     """What the configs of the linear problem share."""
 
     parameters: LinearParameters
 
     beyond: ClassVar[tuple[str, ...]] = ()
     """Parameters that only the nonlinear rod has and yet the task can use."""
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        return LINEAR_PARAMETERS
 
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:

@@ -28,10 +28,6 @@ class ThresholdsConfig(LinearConfig):
     task: Literal["thresholds"]
     thresholds: ThresholdsOptions = ThresholdsOptions()
 
-    @property
-    def names(self) -> tuple[str, ...]:
-        return all_but("F")
-
     @classmethod
     def taken_of_a_rod(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
         return all_but("F")

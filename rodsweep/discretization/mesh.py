@@ -4,9 +4,9 @@ Fields are continuous in P_p with Lobatto nodes and lumped mass. theta(u) = int 
 h2).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -30,13 +30,20 @@ class NodeMatrices(NamedTuple):
     weights: Array
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Mesh:
-    """`elements` equal elements of order `order` on [0, 1], and the matrices on all their nodes."""
+    """`elements` equal elements of order `order` on [0, 1], and the matrices on all their nodes.
+
+    These follow from elements and order, by which meshes are equal, also that of another process.
+    """
 
     elements: int
     order: int
-    matrices: NodeMatrices
+    matrices: NodeMatrices = field(compare=False, repr=False)
+
+    def __reduce__(self) -> tuple[Any, tuple[int, int]]:
+        """Pickled, also in a message to another rank, as the two numbers."""
+        return mesh, (self.elements, self.order)
 
     @property
     def nodes(self) -> int:

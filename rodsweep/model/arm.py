@@ -8,53 +8,18 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from math import inf, isnan
 from numbers import Real
-from typing import Any, NamedTuple
+from types import SimpleNamespace
+from typing import Any
 
 from ..errors import InputError
+from .arm_quantities import LOADS, QUANTITIES, UNITS, number_in_si, told
 from .drag import DRAGS, LEAST_SLENDERNESS, Drag, range_of_drag
 from .parameters import PARAMETERS
 from .section import Circle, Rectangle, Section, Tube
-from .units import Given, in_si, share_of_flutter, unit_of, written_in
+from .units import Given, share_of_flutter, unit_of, written_in
 
-LOADS = ("pressure", "force")
-"""What may push the tip; an arm has one of them or none."""
-
-
-class Quantity(NamedTuple):
-    """A quantity of an arm: its SI unit, what it is, and how it may be written where it has a unit."""
-
-    unit: str
-    meaning: str
-    example: str = ""
-
-
-QUANTITIES = {
-    "length": Quantity("m", "length of the arm", "10 cm"),
-    "radius": Quantity("m", "radius of the arm's circular section", "5 mm"),
-    "inner_radius": Quantity("m", "radius of the bore of the arm, closed at its tip", "3 mm"),
-    "width": Quantity("m", "width of the arm's section, across the plane of motion", "10 mm"),
-    "height": Quantity("m", "height of the arm's section, in the plane of motion", "8 mm"),
-    "young": Quantity("Pa", "Young's modulus of the arm", "100 kPa"),
-    "viscosity": Quantity("Pa*s", "viscosity of the fluid", "1.4 Pa s"),
-    "pressure": Quantity("Pa", "pressure on the tip's cross section", "2 kPa"),
-    "force": Quantity("N", "follower force at the tip", "0.16 N"),
-    "fluid_density": Quantity("kg/m^3", "density of the fluid", "1260 kg/m^3"),
-    "density_difference": Quantity("kg/m^3", "density of the arm less that of the fluid", "-160 kg/m^3"),
-    "poisson": Quantity("1", "Poisson's ratio of the arm"),
-    "drag": Quantity("1", "which member of the range of drags"),
-    **{
-        f"{load}_over_flutter": Quantity(
-            "1", f"{load} over that of the first flutter, with the likeliest drag"
-        )
-        for load in LOADS
-    },
-}
-"""All quantities: configs, files, figures and the command take them from here."""
-UNITS = {name: (each.unit, each.example) for name, each in QUANTITIES.items() if each.example}
-"""SI unit of each quantity that has one, and how it may be written."""
 CRUSHED_FROM = 1 - 1e-14
 """Part of k1 from which on F is as large: what conversion of units leaves between them."""
-SIGNED = (*LOADS, "density_difference")
 
 
 class NotSlender(InputError):
@@ -63,23 +28,6 @@ class NotSlender(InputError):
 
 class NoWall(InputError):
     """The refusal of an arm whose bore is as wide as itself."""
-
-
-@dataclass(frozen=True, slots=True)
-class InSI:
-    """What is given of an arm, in SI units; what is not given is nan."""
-
-    length: float
-    radius: float
-    inner_radius: float
-    width: float
-    height: float
-    young: float
-    viscosity: float
-    pressure: float
-    force: float
-    fluid_density: float
-    density_difference: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,26 +54,28 @@ class SlenderArm:
     fluid_density: Given = "1000 kg/m^3"
     density_difference: Given | None = None
     drag: str = DRAGS[0]
-    si: InSI = field(init=False, repr=False, compare=False)
+    si: SimpleNamespace = field(init=False, repr=False, compare=False)
+    """Each quantity of UNITS as a number in SI; nan where it is not given."""
 
     def __post_init__(self) -> None:
         """Reads the units, and refuses what is no slender arm."""
-        object.__setattr__(self, "si", InSI(**{name: self._read(name) for name in UNITS}))
+        object.__setattr__(
+            self, "si", SimpleNamespace(**{name: number_in_si(name, getattr(self, name)) for name in UNITS})
+        )
         ratio: Any = self.poisson
         is_number = isinstance(ratio, Real) and not isinstance(ratio, bool)
         if not is_number or not -1 < ratio <= 0.5:
             try:
-                told = repr(ratio) if isinstance(ratio, str) else str(ratio)
+                text = repr(ratio) if isinstance(ratio, str) else str(ratio)
             except ValueError:  # an integer of thousands of digits
-                told = "an integer too large to be shown"
-            raise InputError(f"poisson = {told:.60} is not a number above -1 and up to 0.5")
+                text = "an integer too large to be shown"
+            raise InputError(f"poisson = {text:.60} is not a number above -1 and up to 0.5")
         if self.drag not in DRAGS:
             raise InputError(f"drag = {self.drag!r:.60} is not known; choose one of {', '.join(DRAGS)}")
         self._refuse_other_sets()
         if self.si.density_difference <= -self.si.fluid_density:
-            least = -self.si.fluid_density
-            given = self._told("density_difference")
-            raise InputError(f"{given} leaves the arm no mass; it must be above {least:.4g} kg/m^3")
+            given, least = self._told("density_difference"), f"{-self.si.fluid_density:.4g} kg/m^3"
+            raise InputError(f"{given} leaves the arm no mass; it must be above {least}")
         try:
             slenderness = self.si.length / self.section.drag_radius
             fine = all(0 < number < inf for number in (self.k1, self.k2, self.force_scale))
@@ -157,9 +107,9 @@ class SlenderArm:
 
     def _refuse_other_sets(self) -> None:
         """InputError unless length, material, fluid and one section are given, and at most one load."""
-        for name in ("length", "young", "viscosity"):
-            if getattr(self, name) is None:
-                raise InputError(f"{name} is missing; write it as in '{UNITS[name][1]}'")
+        for name, quantity in QUANTITIES.items():
+            if quantity.needed and getattr(self, name) is None:
+                raise InputError(f"{name} is missing; write it as in '{quantity.example}'")
         sides = (self.width, self.height)
         if (self.radius is None) == (sides == (None, None)) or (self.radius is None and None in sides):
             raise InputError("radius: give either a radius, or width and height")
@@ -173,28 +123,13 @@ class SlenderArm:
                 "pressure on the tip's cross section, or its resultant"
             )
 
-    def _read(self, name: str) -> float:
-        """A quantity in SI; nan where it is not given, or relative to the threshold of flutter."""
-        given = getattr(self, name)
-        if given is None or (name in LOADS and share_of_flutter(given) is not None):
-            return float("nan")
-        value = in_si(name, given, *UNITS[name])
-        if name not in SIGNED and not value > 0:
-            raise InputError(f"{self._told(name)} is not above 0")
-        return value
-
     def parameter(self, name: str) -> float:
         """A parameter of the arm as a rod; the default of what no arm determines."""
-        value: float = getattr(self, name, PARAMETERS[name].neutral)
-        return value
+        return float(getattr(self, name, PARAMETERS[name].neutral))
 
     def _told(self, name: str) -> str:
         """A quantity as it was given, for a sentence."""
-        given = getattr(self, name)
-        if isinstance(given, str):
-            return f"{name} = '{given}'"
-        value = in_si(name, given, *UNITS[name])
-        return f"{name} = {value:.6g} {UNITS[name][0]}"
+        return told(name, getattr(self, name))
 
     @property
     def section(self) -> Section:
@@ -310,8 +245,3 @@ class SlenderArm:
     def tau2(self) -> float:
         """The longest time scale gamma2 L^4/k3, in s (Sec. VI)."""
         return self.tau2_with(self.own_drag)
-
-    @property
-    def tau1(self) -> float:
-        """The shortest time scale, dimensional gamma3/k2, in s (Sec. VI)."""
-        return self.tau2 * self.gamma3 / self.k2

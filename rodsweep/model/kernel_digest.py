@@ -63,6 +63,7 @@ def digest(kernel: Kernel, parts: Parts) -> str:
 def type_text(numba_type: Any) -> str:
     """The type of an argument with the names of its fields, which numba's own name of the type leaves out.
 
+    Compiled code refers to the class of a NamedTuple by its module, so that the text names the module too.
     TypeError: the type belongs to a function, whose code this cannot tell.
     """
     if isinstance(numba_type, types.Callable):
@@ -71,7 +72,8 @@ def type_text(numba_type: Any) -> str:
     if hasattr(numba_type, "dtype") and numba_type.dtype is not numba_type:
         inner = (*inner, numba_type.dtype)
     fields = getattr(numba_type, "fields", "")
-    return f"{type(numba_type).__name__} {numba_type} {fields} ({', '.join(map(type_text, inner))})"
+    own = _name_of(numba_type.instance_class) if isinstance(numba_type, types.BaseNamedTuple) else ""
+    return f"{type(numba_type).__name__} {own} {numba_type} {fields} ({', '.join(map(type_text, inner))})"
 
 
 def _described(function: FunctionType, options: str) -> Part:

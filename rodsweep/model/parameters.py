@@ -147,6 +147,6 @@ CRUSHING = ("F", "k1")
 """The parameters that crush the rod where the first reaches the second."""
 
 
-def all_but(varied: str) -> tuple[str, ...]:
-    """The parameters of the linear problem that stay where one varies."""
-    return tuple(name for name in LINEAR_PARAMETERS if name != varied)
+def all_but(varied: str, names: tuple[str, ...] = LINEAR_PARAMETERS) -> tuple[str, ...]:
+    """The parameters, by default those of the linear problem, that stay where one varies."""
+    return tuple(name for name in names if name != varied)

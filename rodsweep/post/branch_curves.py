@@ -88,7 +88,7 @@ def followed_parameter(view: View) -> str:
 
 def branches_not_told(view: View, rod: int) -> int:
     """How many branches of a rod have special points for which the list has no room."""
-    v = _of_rod(view, rod)
+    v = view.of_point(rod)
     return max(int(v["branch_count"]), 0) - _told(v)
 
 
@@ -102,7 +102,7 @@ def _told(v: dict[str, Array]) -> int:
 
 def curves_of(view: View, rod: int) -> list[CurveOfCycles]:
     """The branches of a rod, by its place among all points, whose special points are all in the list."""
-    along, v = followed_parameter(view), _of_rod(view, rod)
+    along, v = followed_parameter(view), view.of_point(rod)
     curves = []
     for number in range(1, _told(v) + 1):
         cycles = np.flatnonzero(v["branch"] == number)
@@ -124,17 +124,6 @@ def curves_of(view: View, rod: int) -> list[CurveOfCycles]:
         stable, specials = stability_of_pieces(counts), _specials(v, special)
         curves.append(CurveOfCycles(at, y, period, stable, is_cycle, specials))
     return curves
-
-
-def _of_rod(view: View, rod: int) -> dict[str, Array]:
-    """The variables of one rod."""
-    shape = view.variables["status"].shape
-    values = {}
-    for name in view.variables:
-        data = view.variables[name]
-        if data.shape[: len(shape)] == shape:
-            values[name] = data.reshape(-1, *data.shape[len(shape) :])[rod]
-    return values
 
 
 def stability_of_pieces(counts: list[int | None]) -> NDArray[np.integer]:
@@ -172,7 +161,7 @@ def _specials(v: dict[str, Array], places: Iterable[int]) -> tuple[SpecialOfBran
 
 def straight_ranges(view: View, rod: int, ends: Range) -> tuple[list[Range], list[Range]]:
     """(where the straight rod is stable, where it is not) between the ends of a range, if all is told."""
-    v = _of_rod(view, rod)
+    v = view.of_point(rod)
     if branches_not_told(view, rod):
         return [], []
     hopf = v["special_kind"] == HOPF

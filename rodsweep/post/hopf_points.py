@@ -11,7 +11,7 @@ from math import inf, nan
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model.parameters import LINEAR_PARAMETERS
+from ..model.parameters import all_but
 from ..results.file.view import View
 from ..results.layouts.limit_cycle import HOPF_ALONG
 from ..results.layouts.thresholds import CROSSING_KINDS
@@ -19,49 +19,33 @@ from ..sweep.lines import ParameterLine
 
 SAME_PLACE = 1e-9
 """Relative distance below which a point of a file lies on a Hopf point: the growth rate there is rounding."""
-STABILITY_CHANGES = {("hopf", 2): True, ("restabilization", 0): False}
-"""Whether the straight rod is unstable beyond a Hopf point, by its kind and the number of modes that grow
-there; at all others further modes join those that grow, or leave them."""
+STABILITY_CHANGES = {("hopf", 2), ("restabilization", 0)}
+"""Kinds of Hopf points at which the straight rod changes its stability, with the number of modes that grow
+beyond; at all others further modes join those that grow, or leave them."""
 
 
 @dataclass(frozen=True, slots=True)
 class Located:
-    """A place along a parameter with an estimate of its error, in its unit."""
+    """A change at a place along a parameter, with an estimate of its error, in its unit.
+
+    kind: `hopf` where a pair crosses the imaginary axis and the rod is unstable above, `restabilization`
+    where it is stable above; `onset` where two real eigenvalues become a pair and the rod stays stable.
+    """
 
     position: float
     error: float
+    kind: str
+    frequency: float = nan
+    """Of the modes that cross, in 1/tau2; nan where it is not known, and of an onset."""
 
     @property
-    def kind(self) -> str:
-        """What is there."""
-        raise NotImplementedError
+    def is_hopf(self) -> bool:
+        """Whether the straight rod changes its stability there."""
+        return self.kind != "onset"
 
     def agrees(self, other: "Located") -> bool:
         """Whether the two may be one: of a kind, and within their errors."""
         return self.kind == other.kind and abs(self.position - other.position) <= self.error + other.error
-
-
-@dataclass(frozen=True, slots=True)
-class OscillationOnset(Located):
-    """Where the two leading real eigenvalues become a pair: above it the rod oscillates, and decays yet."""
-
-    @property
-    def kind(self) -> str:
-        return "onset"
-
-
-@dataclass(frozen=True, slots=True)
-class HopfPoint(Located):
-    """A place where a pair crosses the imaginary axis, and the straight rod changes its stability."""
-
-    destabilises: bool
-    """Whether the rod is unstable above it; below it otherwise, and above it stable again."""
-    frequency: float = nan
-    """Of the modes that cross, in 1/tau2; nan where it is not known."""
-
-    @property
-    def kind(self) -> str:
-        return kind_of_change(self.destabilises)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,16 +54,8 @@ class Bracket:
 
     low: float
     high: float
-    destabilises: bool
-
-    @property
-    def kind(self) -> str:
-        return kind_of_change(self.destabilises)
-
-
-def kind_of_change(destabilises: bool) -> str:
-    """What a change of stability is called."""
-    return "hopf" if destabilises else "restabilization"
+    kind: str
+    """`hopf` or `restabilization`."""
 
 
 def place_of(change: Located | Bracket) -> float:
@@ -98,8 +74,8 @@ class StoredChanges:
         v, points = view.variables, view.variables["status"].size
         growth = "linear_growth_rate" if "linear_growth_rate" in v else "growth_rate"
         self.growth = v[growth].reshape(points, -1)[:, 0]
-        self.others = [other for other in LINEAR_PARAMETERS if other != name]
-        self.by_rod: dict[tuple[float, ...], list[HopfPoint | OscillationOnset]] = {}
+        self.others = all_but(name)
+        self.by_rod: dict[tuple[float, ...], list[Located]] = {}
         if "hopf_along" in v:  # which a user may have dropped from a Dataset
             self._read(v, name, "hopf", v["hopf_along"] == HOPF_ALONG.index(name))
         if "change_kind" in v and name == "F":
@@ -114,11 +90,10 @@ class StoredChanges:
         after = v["hopf_unstable_after"] if prefix == "hopf" else None
         for i in np.flatnonzero(along):
             place, word = float(at[i]), CROSSING_KINDS[int(kind[i])]
-            errors = float(error[i]) * (abs(place) or 1.0)
             if word == "onset":
-                point: HopfPoint | OscillationOnset = OscillationOnset(place, errors)
-            elif after is None or STABILITY_CHANGES.get((word, int(after[i]))) is not None:
-                point = HopfPoint(place, errors, word == "hopf", float(frequency[i]))
+                point = Located(place, float(error[i]) * (abs(place) or 1.0), word)
+            elif after is None or (word, int(after[i])) in STABILITY_CHANGES:
+                point = Located(place, float(error[i]) * (abs(place) or 1.0), word, float(frequency[i]))
             else:
                 continue
             self.by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)
@@ -127,7 +102,7 @@ class StoredChanges:
         """The changes on a line and at smaller values, as far as these were searched."""
         return sorted({*self.on(line), *self._stored(line, -inf)}, key=place_of)
 
-    def _stored(self, line: ParameterLine, low: float) -> list[HopfPoint | OscillationOnset]:
+    def _stored(self, line: ParameterLine, low: float) -> list[Located]:
         """The stored changes from a value up to the last of a line."""
         rod = tuple(line.parameters[other] for other in self.others)
         high = line.x.max(initial=-inf)
@@ -143,14 +118,14 @@ class StoredChanges:
             return []
         stored = self._stored(line, line.x.min())
         found: list[Located | Bracket] = [*stored]
-        changes = [point for point in stored if isinstance(point, HopfPoint)]
+        changes = [point for point in stored if point.is_hopf]
         known = np.flatnonzero(np.isfinite(self.growth[line.at]))
         ordered = known[np.argsort(line.x[known], kind="stable")]
         x, grows = line.x[ordered], self.growth[line.at[ordered]] > 0
         for i in np.flatnonzero(grows[1:] != grows[:-1]):
             low, high = float(x[i]), float(x[i + 1])
             if sum(_within(point, low, high) for point in changes) % 2 == 0:
-                found.append(Bracket(low, high, bool(grows[i + 1])))
+                found.append(Bracket(low, high, "hopf" if grows[i + 1] else "restabilization"))
         return sorted(found, key=place_of)
 
 

@@ -17,9 +17,7 @@ def bounds_stability(view: View, line: str, row: str) -> dict[int, bool]:
     numbers = np.unique(v["curve_number"][v["curve_kind"] == 1]).astype(int).tolist()
     found = dict.fromkeys(numbers, False)
     rows = view.point_columns[row]
-    kinds, after, at = (
-        v[name].reshape(len(rows), -1) for name in ("crossing_kind", "unstable_after", "crossing_at")
-    )
+    kinds, after, at = map(view.by_point, ("crossing_kind", "unstable_after", "crossing_at"))
     paths = {
         number: (
             v[f"curve_{line}"][v["curve_number"] == number],

@@ -16,10 +16,20 @@ from ..arrays import Array
 from .ranges import IndexRange, IndexSet, joined
 from .stop import StopRequest
 
-State = Array | None
-"""What a point starts from where its neighbour has something to offer; None otherwise."""
-ChainStep = Callable[[int, State], tuple[Any, State]]
-"""From an index and what the point starts from to its outcome and what its neighbour starts from."""
+Arrays = dict[str, Array]
+
+
+class ChainState(Protocol):
+    """What a point has for the next one of its chain to start from."""
+
+    def arrays(self) -> Arrays:
+        """All of it as named arrays, of any shapes, for a checkpoint."""
+
+
+State = ChainState | None
+"""What a point starts from; None where its neighbour has nothing for it."""
+ChainStep = Callable[[int, Any], tuple[Any, Any]]
+"""From an index and the State from which the point starts to its outcome and the State for the next point."""
 
 
 class ChainStates(Protocol):
@@ -64,11 +74,19 @@ class Chains:
 
 
 @dataclass(frozen=True, slots=True)
-class ChainSolver:
-    """Solves the chains of a run, of which only the `missing` points are to be kept."""
+class ChainedWork:
+    """How the points of chains are solved. state_of: the inverse of `ChainState.arrays`."""
 
     chains: Chains
     solve_from: ChainStep
+    state_of: Callable[[Arrays], ChainState]
+
+
+@dataclass(frozen=True, slots=True)
+class ChainSolver:
+    """Solves the chains of a run, of which only the `missing` points are to be kept."""
+
+    work: ChainedWork
     missing: IndexSet
     checkpoints: ChainStates
     stop: StopRequest
@@ -79,12 +97,12 @@ class ChainSolver:
         The state is kept after the point, so a kill in between costs one point that is solved again;
         if the state came first, a kill could lose the point for good.
         """
-        order = list(map(int, self.chains.indices(chain)))
+        order = list(map(int, self.work.chains.indices(chain)))
         first, state = self._resume(chain, order)
         for index in order[first:]:
             if self.stop:
                 return
-            outcome, state = self.solve_from(index, state)
+            outcome, state = self.work.solve_from(index, state)
             if self.missing[index]:
                 yield index, outcome
             if index != order[-1]:

@@ -4,11 +4,12 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..discretization.resolution import MOST_UNKNOWNS, expected_wave_number, resolution_for
 from ..model.dispersion import most_amplified_wave
-from .grid import Points
+from .points import Points
 from .stretches import Stretches
 
 SAMPLE = 200
@@ -73,8 +74,7 @@ def estimate_branches(points: Points, along: str, reach: tuple[float, float], ac
 
     points: the rods, without that parameter. accuracy: that of the cycles, relative.
     """
-    indices = np.unique(np.linspace(0, points.count - 1, min(SAMPLE, points.count)).astype(np.int64))
-    indices = indices[[points.has_rod(int(index)) for index in indices]]
+    indices = _sample(points)
     values: dict[str, Array | float] = points.values_of(indices) | {along: reach[along in HARDER_IF_LARGER]}
     F = np.clip(values["F"], 0.0, values["k1"])  # nothing that is pulled beats
     per_force = BRANCH_SECONDS * (accuracy / 1e-7) ** BRANCH_ACCURACY
@@ -104,9 +104,8 @@ def estimate_two_meshes(points: Points, modes: int, accuracy: float) -> Estimate
 
 def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool) -> Estimate:
     """The cost of a sweep from points spread evenly over it."""
-    indices = np.unique(np.linspace(0, points.count - 1, min(SAMPLE, points.count)).astype(np.int64))
     sizes = []
-    for index in filter(points.has_rod, indices):
+    for index in _sample(points):
         _, wave = most_amplified_wave(points.rod(int(index)))
         sizes.append(resolution_for(expected_wave_number(modes, wave), accuracy).unknowns)
     if not sizes:  # no rod covers any point of the sample
@@ -117,3 +116,9 @@ def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool)
     memory = BASE_MEMORY + int(n.max()) * MEMORY_PER_UNKNOWN
     too_large = int((np.array(sizes) > MOST_UNKNOWNS).sum())
     return Estimate(float(each.mean()) * 1e-3 * points.count, memory, (min(sizes), max(sizes)), too_large)
+
+
+def _sample(points: Points) -> NDArray[np.int64]:
+    """The flat indices, (n,), of points spread evenly over a sweep that have a rod."""
+    indices = np.unique(np.linspace(0, points.count - 1, min(SAMPLE, points.count)).astype(np.int64))
+    return indices[[points.has_rod(int(index)) for index in indices]]

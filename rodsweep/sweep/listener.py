@@ -21,6 +21,20 @@ class Claims(Protocol):
     def tell_place(self, place: Whereabouts) -> None: ...
 
 
+class NoClaims:
+    """The claims of a rank that solves while no other does; `shown` takes the place of a long solve."""
+
+    def __init__(self, shown: Callable[[Whereabouts], object] | None = None):
+        self.shown = shown
+
+    def between_points(self) -> None: ...
+
+    def tell_place(self, place: Whereabouts) -> None:
+        """Shows where this rank is in a long point, where that is wanted."""
+        if self.shown:
+            self.shown(place)
+
+
 class RankListener:
     """Hears the solves of a rank; one for each unit."""
 

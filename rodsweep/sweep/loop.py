@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..watch import Stopped, heard_by
-from .handout import GIVE_BACK_AFTER, OVER, FirstRankClaims, Handout, OtherRankClaims, Report, chunk_seconds
+from .claims import FirstRankClaims, OtherRankClaims
+from .handout import GIVE_BACK_AFTER, OVER, Handout, Report, chunk_seconds
 from .listener import RankListener
 from .ranges import IndexRange
 from .stop import StopRequest

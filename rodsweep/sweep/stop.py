@@ -50,6 +50,10 @@ class StopRequest:
         for number in STOP_SIGNALS:
             signal.signal(number, signal.SIG_IGN)
 
+    def take(self, name: str) -> None:
+        """Takes over a request that another rank has had, by the name of its signal."""
+        self.name = name
+
     def _note(self, number: int, _: FrameType | None) -> None:
         if number == signal.SIGINT and self.speaks and not self.name:
             with suppress(OSError):

@@ -39,6 +39,10 @@ class Together:
         return {name: column[places] for name, column in self.values.items()}
 
 
+SolveTogether = Callable[[NDArray[np.int64]], Together]
+"""From the flat indices of neighbours, (n,), to what came of them."""
+
+
 @dataclass(frozen=True, slots=True)
 class Stretches:
     """The points of a grid of some shape as stretches along one of its axes."""
@@ -112,7 +116,7 @@ class StretchSolver:
     """Solves the stretches of a run, of which only the `missing` points are to be kept."""
 
     stretches: Stretches
-    solve_together: Callable[[NDArray[np.int64]], Together]
+    solve_together: SolveTogether
     missing: IndexSet
 
     def __call__(self, stretch: int) -> Iterator[tuple[NDArray[np.int64], Any]]:

@@ -48,8 +48,7 @@ class Team:
         self.meet()
         value, refusal = self.comm.bcast(outcome)
         if refusal is not None:
-            refusal.collective = True
-            raise refusal
+            raise refusal.on_all_ranks()
         return value
 
     def meet(self) -> None:
@@ -68,8 +67,7 @@ class Team:
             refusal = error
         refusals = [r for r in self.comm.allgather(refusal) if r is not None]
         if refusals:
-            refusals[0].collective = True
-            raise refusals[0]
+            raise refusals[0].on_all_ranks()
 
     def gather(self, value: T) -> list[T] | None:
         """The values of all ranks on the first rank, None elsewhere."""

@@ -2,7 +2,7 @@
 
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from ..results.layouts.arm import VALIDITY
 from ..results.layouts.variables import SECONDS, STATUS, Layout
 from ..solve.status import PointStatus
 from ..sweep.chains import State
-from ..sweep.grid import Points
+from ..sweep.points import Points
 from ..sweep.stretches import Together
 from .protocol import Solver
 
@@ -85,31 +85,25 @@ def same_rods(points: Points) -> NDArray[np.int64] | None:
 def shared(solver: Solver, points: Points, layout: Layout) -> Solver:
     """The solver that remembers outcomes, so that a rod of several points is solved once on a rank.
 
-    Points that start one from the other are the same if what they start from is, to the last bit. Spectra
-    along stretches take less than a millisecond a point, and are left as they are.
+    Points that start one from the other are the same if they start from the same state, that of an outcome
+    which is remembered. Spectra along stretches take less than a millisecond a point: they are left as they
+    are.
     """
     rods = None if solver.stretched else same_rods(points)
     if rods is None:
         return solver
     memory = _Outcomes(max(1, int(REMEMBERED // max(layout.bytes_per_point, SMALLEST_OUTCOME))))
 
-    def solve_from(index: int, state: State) -> tuple[Any, State]:
-        assert solver.chained is not None
-        step, start = solver.chained[1], None if state is None else state.tobytes()
-        (outcome, following), again = memory.of((int(rods[index]), start), lambda: step(index, state))
-        return Again(outcome) if again else outcome, following
+    def once(index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
+        (outcome, state), again = memory.of((int(rods[index]), start), solve)
+        return Again(outcome) if again else outcome, state
 
     def record(index: int, outcome: Any) -> dict[str, Any]:
         if isinstance(outcome, Again):
             return solver.record(index, outcome.outcome) | {SECONDS.name: 0.0}
         return solver.record(index, outcome)
 
-    def alone(index: int) -> Any:
-        outcome, again = memory.of(int(rods[index]), lambda: solver.solve(index))
-        return Again(outcome) if again else outcome
-
-    chained = (solver.chained[0], solve_from) if solver.chained else None
-    return replace(solver, solve=alone, record=record, chained=chained)
+    return solver.within(once, record=record)
 
 
 @dataclass(slots=True)
@@ -134,59 +128,44 @@ def around(solver: Solver, points: Points, layout: Layout) -> Solver:
     """The solver that leaves out points that no rod covers, whose variables have their fill."""
     if points.covered is None or not points.covered.any():
         return solver
-    return _Around(solver, points, layout).solver()
+    return _Around(solver, points.covered, layout).solver()
 
 
 @dataclass(frozen=True, slots=True)
 class _Around:
+    """A solver of points, of which those without a rod have a status in `covered`, (points,)."""
+
     inner: Solver
-    points: Points
+    covered: NDArray[np.int8]
     layout: Layout
 
     def solver(self) -> Solver:
         """The solver around the inner one."""
-        inner = self.inner
-        return replace(
-            inner,
-            statuses=(*inner.statuses, *NoRod),
-            solve=self._solve,
-            record=self._record,
-            chained=(inner.chained[0], self._solve_from) if inner.chained else None,
-            stretched=(inner.stretched[0], self._together) if inner.stretched else None,
-        )
+        statuses = (*self.inner.statuses, *NoRod)
+        return self.inner.within(self._solve, self._together, record=self._record, statuses=statuses)
 
-    def _uncovered(self, index: int) -> Uncovered:
-        assert self.points.covered is not None
-        return Uncovered(next(status for status in NoRod if status == self.points.covered[index]))
-
-    def _solve(self, index: int) -> Any:
-        return self.inner.solve(index) if self.points.has_rod(index) else self._uncovered(index)
-
-    def _solve_from(self, index: int, state: State) -> tuple[Any, State]:
-        assert self.inner.chained is not None
-        if not self.points.has_rod(index):
-            return self._uncovered(index), None
-        return self.inner.chained[1](index, state)
+    def _solve(self, index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
+        if self.covered[index] == SLENDER:
+            return solve()
+        return Uncovered(next(status for status in NoRod if status == self.covered[index])), None
 
     def _record(self, index: int, outcome: Any) -> dict[str, Any]:
         if not isinstance(outcome, Uncovered):
             return self.inner.record(index, outcome)
-        return self._filled() | {STATUS.name: int(outcome.status), MODEL_APPLIES: Validity.does_not_apply}
+        return self._empty | {STATUS.name: int(outcome.status)}
 
-    def _filled(self) -> dict[str, Any]:
-        """Every variable of a point without numbers."""
-        variables = self.layout.variables
-        values = {v.name: np.full(self.layout.inner(v), v.fill, v.dtype) for v in variables}
-        return values | {SECONDS.name: 0.0}
+    @property
+    def _empty(self) -> dict[str, Any]:
+        """Every variable of a point without a rod but its status."""
+        return self.layout.empty_point | {SECONDS.name: 0.0, MODEL_APPLIES: Validity.does_not_apply}
 
     def _together(self, indices: NDArray[np.int64]) -> Together:
         """What comes of the points of a stretch, of which only those with a rod are solved."""
-        assert self.inner.stretched is not None and self.points.covered is not None
-        covered = self.points.covered[indices]
+        assert self.inner.stretched is not None
+        covered = self.covered[indices]
         places = np.flatnonzero(covered == SLENDER)
-        values = {name: np.stack([value] * len(indices)) for name, value in self._filled().items()}
+        values = {name: np.stack([value] * len(indices)) for name, value in self._empty.items()}
         values[STATUS.name][...] = covered
-        values[MODEL_APPLIES][...] = Validity.does_not_apply
         found = self.inner.stretched[1](indices[places]) if len(places) else None
         for name, column in found.values.items() if found else ():
             values[name][places] = column

@@ -21,7 +21,7 @@ from ..model.arm import SlenderArm
 from ..model.neglected import HALF_LENGTH, effects_of, least_drag, worst_validity
 from ..results.layouts.arm import EFFECTS
 from ..results.layouts.thresholds import CROSSING_KINDS
-from ..sweep.grid import Points
+from ..sweep.points import Points
 
 Record = Mapping[str, Any]
 ARMS_KEPT = 64

@@ -57,13 +57,14 @@ class BranchTask(NonlinearTask):
 
     def solver(self) -> Solver:
         from ..solve.branch.branches import BranchRequest, BranchStatus, solve_branches, warm_up
+        from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
-        options = self.config.branch
+        options, workspace = self.config.branch, NewtonWorkspace()
         request = BranchRequest(**options.model_dump(), accuracy=self.config.accuracy)
         return Solver(
             statuses=tuple(BranchStatus),
             warm_up=warm_up,
-            solve=lambda index: solve_branches(self.points.rod(index), request),
+            solve=lambda index: solve_branches(self.points.rod(index), request, workspace),
             record=lambda index, result: record(result, options.along, options.cycles, options.special),
         )
 

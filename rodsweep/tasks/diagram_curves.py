@@ -10,16 +10,10 @@ from ..config.values import Axis
 from ..model.parameters import CRUSHING
 from ..model.rod import Rod
 from ..results.file.view import View
-from ..results.layouts.phase_diagram import (
-    MOST_SPECIAL,
-    bautin_curve_variables,
-    criticality_variables,
-    curve_variables,
-    cycle_curve_variables,
-)
+from ..results.layouts.phase_diagram import MOST_SPECIAL
 from ..results.layouts.variables import Filled
-from .diagram_cycles import cycle_curve_record, row_specials, unstored_specials, with_hopf_ends
-from .diagram_records import bautin_curve_record, criticality_record, curve_record
+from .diagram_cycles import row_specials, unstored_specials, with_hopf_ends
+from .diagram_records import bautin_curve_record, criticality_record, curve_record, cycle_curve_record
 
 if TYPE_CHECKING:
     from ..determinant.parameter_plane import Plane
@@ -29,6 +23,7 @@ if TYPE_CHECKING:
     from ..solve.changes.boundary_curves import BoundaryCurve
     from ..solve.continuation.boundaries import Boundaries
     from ..solve.hopf.generalised import CurveCriticality
+    from ..solve.orbit.matrix.workspace import NewtonWorkspace
     from .phase_diagram import PhaseDiagramTask
 
 MAX_KEPT_ROWS = 200
@@ -36,7 +31,7 @@ MAX_KEPT_ROWS = 200
 others are located anew, which gives the same and takes some seconds."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False)
 class DiagramCurves:
     """Boundaries, their criticality, generalised Hopf points and curves of cycles of a task's diagram.
 
@@ -44,6 +39,8 @@ class DiagramCurves:
     """
 
     task: "PhaseDiagramTask"
+    workspace: "NewtonWorkspace"
+    """Memory of Newton's matrices of this process."""
     special: "dict[int, tuple[SpecialPoint, ...]]" = field(default_factory=dict)
     """Special points, with their cycles, of rows that this process has solved: by the row's number."""
 
@@ -75,7 +72,7 @@ class DiagramCurves:
 
     def solve(self, units: "SpecialBoundaries", unit: int) -> dict[str, np.ndarray]:
         """The result of a unit, arrays of the shapes that `TracedHalf` has."""
-        return units.solve(unit, self._special_points)
+        return units.solve(unit, self._special_points, self.workspace)
 
     def nothing(self) -> dict[str, np.ndarray]:
         """The result of a unit that finds no curve, arrays of no length along their first shape."""
@@ -90,27 +87,24 @@ class DiagramCurves:
         plane = self.plane
         if plane is None:
             return []
-        line, row = self.task.config.plane
-        found = self._boundaries(plane, view, self.task.points.by_name[row])
-        variables = curve_variables(line, row) | criticality_variables(line, row)
-        values, options = curve_record(found, line, row), self.task.config.phase_diagram
-        if (line, row) == CRUSHING:  # the fold of the Hopf curve in the partial beam limit (Sec. VIII)
+        (line, row), options = self.task.config.plane, self.task.config.phase_diagram
+        names = (line, row)
+        found, limit = self._boundaries(plane, view, self.task.points.by_name[row]), {}
+        if names == CRUSHING:  # the fold of the Hopf curve in the partial beam limit (Sec. VIII)
             from ..solve.changes.thresholds import filament_hopf
 
             Fc = filament_hopf()
-            values |= {"filament_F_hopf": Fc, "partial_beam_k1": 4 * Fc, "partial_beam_F": 2 * Fc}
+            limit = {"filament_F_hopf": Fc, "partial_beam_k1": 4 * Fc, "partial_beam_F": 2 * Fc}
+        variables = curve_record(found, names, **limit)
         told = self._criticality(plane, found) if options.criticality or options.cycles else []
         if options.criticality:
-            gamma1 = {"curve_gamma1": self.task.config.gamma1}
-            values |= criticality_record(told, self.task.config.plane) | gamma1
+            variables += criticality_record(told, names, self.task.config.gamma1)
         if options.third is not None:
-            variables |= bautin_curve_variables(line, row, options.third[0])
-            values |= self._bautin_curves(plane, told, *options.third)
+            variables += self._bautin_curves(plane, told, *options.third)
         if units is not None:
-            variables |= cycle_curve_variables(line, row)
             curves = with_hopf_ends(units.curves(results), plane, told, unstored_specials(view, self._finite))
-            values |= cycle_curve_record(curves, line, row)
-        return [(variables[name], np.asarray(value)) for name, value in values.items()]
+            variables += cycle_curve_record(curves, names)
+        return variables
 
     @property
     def _finite(self) -> np.ndarray:
@@ -139,7 +133,7 @@ class DiagramCurves:
         from ..solve.changes.boundaries import curves_through, seed_of
 
         names = ("crossing_at", "crossing_kind", "crossing_frequency", "crossing_growth_rate")
-        at, kind, frequency, rate = (view.variables[n].reshape(len(rows), -1) for n in names)
+        at, kind, frequency, rate = map(view.by_point, names)
         seeds = [
             seed_of(
                 (float(at[i, j]), float(rows[i])), int(kind[i, j]), float(frequency[i, j]), float(rate[i, j])
@@ -157,7 +151,8 @@ class DiagramCurves:
         from ..solve.branch.coexistence import row_branches, special_of
 
         if number not in self.special:
-            return special_of(row_branches(self.task.rod(number), self.task.row_request(), MOST_SPECIAL))
+            request = self.task.row_request()
+            return special_of(row_branches(self.task.rod(number), request, MOST_SPECIAL, self.workspace))
         return self.special[number]
 
     def _criticality(self, plane: "Plane", found: "Boundaries[BoundaryCurve]") -> "list[CurveCriticality]":
@@ -174,12 +169,12 @@ class DiagramCurves:
 
     def _bautin_curves(
         self, plane: "Plane", told: Sequence["CurveCriticality"], name: str, axis: Axis
-    ) -> dict[str, Any]:
+    ) -> list[Filled]:
         """The curves of generalised Hopf points over the third parameter, as variables of the file."""
         from ..determinant.parameter_plane import PlaneAxis
         from ..solve.hopf.bautin_curves import BautinCurve, BautinSpace, bautin_curve, lies_on, on_curve
 
-        options = self.task.config
+        options, (line, row) = self.task.config, self.task.config.plane
         asked, here = axis.array(), float(options.parameters.axes[name].array()[0])
         third = PlaneAxis(name, float(asked[0]), float(asked[-1]), axis.logarithmic)
         space = BautinSpace(plane.rod, (*plane.axes, third), np.append(asked, here), options.accuracy)
@@ -187,4 +182,4 @@ class DiagramCurves:
         for point in (on_curve(found, here) for curve in told for found in curve.points):
             if not any(lies_on(space, point, curve) for curve in curves):
                 curves.append(bautin_curve(space, point))
-        return bautin_curve_record(curves, (*options.plane, name))
+        return bautin_curve_record(curves, (line, row), name)

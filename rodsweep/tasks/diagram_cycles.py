@@ -34,11 +34,8 @@ def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecial]":
     from ..solve.branch.special.boundaries import CURVE_KINDS, RowSpecial
     from ..solve.branch.special.point import SpecialKind
 
-    kinds = view.variables["cycle_special_kind"].reshape(len(rows), -1)
-    at, period, height = (
-        view.variables[f"cycle_special_{name}"].reshape(len(rows), -1)
-        for name in (line, "period", "tip_y_max")
-    )
+    names = (f"cycle_special_{name}" for name in ("kind", line, "period", "tip_y_max"))
+    kinds, at, period, height = map(view.by_point, names)
     return [
         RowSpecial(
             number=int(i),
@@ -55,7 +52,7 @@ def row_specials(view: View, line: str, rows: np.ndarray) -> "list[RowSpecial]":
 
 def unstored_specials(view: View, finite: np.ndarray) -> int:
     """Special points that the full lists of finite rows lack; no curve starts from them. finite: (rows,)."""
-    stored = np.count_nonzero(view.variables["cycle_special_kind"].reshape(len(finite), -1), axis=1)
+    stored = np.count_nonzero(view.by_point("cycle_special_kind"), axis=1)
     lacking = view.variables["cycle_special_count"].ravel() - stored
     return int(lacking[finite].clip(min=0).sum())
 
@@ -69,28 +66,3 @@ def with_hopf_ends(
     known = [point for curve in told for point in curve.points]
     curves = tuple(ending_at(curve, plane, known) for curve in found.curves)
     return replace(found, curves=curves, untraced=found.untraced + unstored)
-
-
-def cycle_curve_record(found: "Boundaries[CycleCurve]", line: str, row: str) -> dict[str, Any]:
-    """Curves of folds and torus points as the variables of the file, with the Hopf points where they end."""
-    names = (line, row, "error", "period", "tip_y_max")
-    points, numbers, kinds, ends = [], [], [], []
-    for number, curve in enumerate(found.curves, 1):
-        own = [(p.at, p.row, p.error, p.period, p.tip_y_max) for p in curve.points]
-        first, last = ([(p.at, p.row, p.error, p.period, 0.0)] if p else [] for p in curve.vanishing)
-        own = [*first, *own, *last]
-        points += own
-        numbers += [number] * len(own)
-        kinds += [int(curve.kind)] * len(own)
-        why = np.zeros(len(own), dtype=int)
-        why[0], why[-1] = curve.ends  # of a single point the last says it
-        ends += why.tolist()
-    table = np.array(points, dtype=float).reshape(-1, len(names))
-    values: dict[str, Any] = {f"cycle_curve_{name}": table[:, i] for i, name in enumerate(names)}
-    return values | {
-        "cycle_curve_number": numbers,
-        "cycle_curve_kind": kinds,
-        "cycle_curve_end": ends,
-        "cycle_curve_agreement": found.agreement,
-        "cycle_curves_untraced": found.untraced,
-    }

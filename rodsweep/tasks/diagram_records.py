@@ -1,83 +1,109 @@
-"""Curves of a phase diagram as variables of its file: boundaries, criticality, generalised Hopf points."""
+"""Curves of a phase diagram as the variables of its file, which `results.layouts.phase_diagram` declares.
 
-from collections.abc import Callable, Sequence
+plane: the parameter along a row, and the one across the rows.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..results.layouts.phase_diagram import (
+    bautin_curve_variables,
+    criticality_variables,
+    curve_variables,
+    cycle_curve_variables,
+)
+from ..results.layouts.variables import Filled, Variable, listed, recorded
+
 if TYPE_CHECKING:
+    from ..solve.branch.special.cycle_curves import CycleCurve
     from ..solve.changes.boundary_curves import BoundaryCurve
     from ..solve.continuation.boundaries import Boundaries
     from ..solve.hopf.bautin_curves import BautinCurve
     from ..solve.hopf.generalised import CurveCriticality
 
 
-def curve_record(found: "Boundaries[BoundaryCurve]", line: str, row: str) -> dict[str, Any]:
-    """Curves and folds as the variables of the file."""
-    curves = found.curves
-    folds = [(number, curve.hopf, fold) for number, curve in enumerate(curves, 1) for fold in curve.folds]
-    points = np.concatenate([curve.values for curve in curves]) if curves else np.empty((0, 2))
-
-    def along(of: Callable[["BoundaryCurve"], Any]) -> list[np.ndarray]:
-        return [np.broadcast_to(of(curve), len(curve.values)) for curve in curves] or [np.empty(0)]
-
-    values: dict[str, Any] = {
-        "curve_number": np.repeat(np.arange(1, len(curves) + 1), [len(c.values) for c in curves]),
-        "curve_kind": np.concatenate(along(lambda c: c.hopf)),
-        "curve_frequency": np.concatenate(along(lambda c: c.frequency)),
-        "curve_growth_rate": np.concatenate(along(lambda c: c.growth_rate)),
-        "fold_curve": [number for number, _, _ in folds],
-        "fold_kind": [hopf for _, hopf, _ in folds],
-        "fold_of": [fold.axis for _, _, fold in folds],
-        "fold_frequency": [fold.frequency for _, _, fold in folds],
-        "fold_growth_rate": [fold.growth_rate for _, _, fold in folds],
-        "curve_agreement": found.agreement,
-        "curves_untraced": found.untraced,
-    }
-    for place, name in enumerate((line, row)):
-        values[f"curve_{name}"] = points[:, place]
-        values[f"fold_{name}"] = [fold.values[place] for _, _, fold in folds]
-        values[f"fold_{name}_error"] = [fold.errors[place] for _, _, fold in folds]
-    return values
+def curve_record(found: "Boundaries[BoundaryCurve]", plane: tuple[str, str], **more: Any) -> list[Filled]:
+    """Curves and their folds; more: the variables of a limit."""
+    points, folds = [], []
+    for number, curve in enumerate(found.curves, 1):
+        each = np.broadcast_arrays(curve.frequency, curve.growth_rate, curve.values[:, 0], curve.values[:, 1])
+        for numbers in zip(*each, strict=True):
+            named = dict(zip(("frequency", "growth_rate", *plane), numbers, strict=True))
+            points.append((SimpleNamespace(number=number, kind=curve.hopf, **named),))
+        folds += [_located(fold, plane, curve=number, kind=curve.hopf, of=fold.axis) for fold in curve.folds]
+    declared = curve_variables(*plane)
+    values = _columns(declared, "curve_point", "curve_", points) | _columns(declared, "fold", "fold_", folds)
+    values |= {"curve_agreement": found.agreement, "curves_untraced": found.untraced}
+    return _filled(declared, values | more)
 
 
-def criticality_record(told: Sequence["CurveCriticality"], along: tuple[str, ...]) -> dict[str, Any]:
-    """What was found along each curve, in their order, as the variables of the file."""
-    starts = np.cumsum([0, *(len(curve.criticality) for curve in told)])
-    found = [
-        (number, int(starts[number - 1]), point)
-        for number, curve in enumerate(told, 1)
-        for point in curve.points
-    ]
-    values: dict[str, Any] = {
+def criticality_record(
+    told: Sequence["CurveCriticality"], plane: tuple[str, str], gamma1: float
+) -> list[Filled]:
+    """What was found along each curve, in their order, of rods of this gamma1."""
+    rows, start = [], 0
+    for number, curve in enumerate(told, 1):
+        for point in curve.points:
+            rows.append(_located(point, plane, curve=number, curve_point=start + point.after + 1))
+        start += len(curve.criticality)
+    declared = criticality_variables(*plane)
+    values = _columns(declared, "bautin", "bautin_", rows) | {
         "curve_criticality": np.concatenate([np.empty(0), *(curve.criticality for curve in told)]),
-        "bautin_curve": [number for number, _, _ in found],
-        "bautin_curve_point": [start + point.after + 1 for _, start, point in found],
-        "bautin_frequency": [point.frequency for _, _, point in found],
-        "bautin_growth_slope_real": [point.growth_slope.real for _, _, point in found],
-        "bautin_growth_slope_imag": [point.growth_slope.imag for _, _, point in found],
-        "bautin_landau_imag": [point.landau_imag for _, _, point in found],
         "bautin_unlocated": sum(curve.unlocated for curve in told),
+        "curve_gamma1": gamma1,
     }
-    for place, name in enumerate(along):
-        values[f"bautin_{name}"] = [point.values[place] for _, _, point in found]
-        values[f"bautin_{name}_error"] = [point.errors[place] for _, _, point in found]
-    return values
+    return _filled(declared, values)
 
 
-def bautin_curve_record(curves: Sequence["BautinCurve"], names: tuple[str, ...]) -> dict[str, Any]:
-    """Curves of generalised Hopf points as the variables of the file."""
-    points = [(number, point) for number, curve in enumerate(curves, 1) for point in curve.points]
-    ends = [np.zeros(len(curve.points), dtype=int) for curve in curves]
-    for end, curve in zip(ends, curves, strict=True):
-        end[[0, -1]] = curve.ends
-    values: dict[str, Any] = {
-        "bautin_along_curve": [number for number, _ in points],
-        "bautin_along_frequency": [point.frequency for _, point in points],
-        "bautin_along_landau_imag": [point.landau_imag for _, point in points],
-        "bautin_along_end": np.concatenate([np.empty(0, dtype=int), *ends]),
-    }
-    for place, name in enumerate(names):
-        values[f"bautin_along_{name}"] = [point.values[place] for _, point in points]
-        values[f"bautin_along_{name}_error"] = [point.errors[place] for _, point in points]
-    return values
+def bautin_curve_record(curves: Sequence["BautinCurve"], plane: tuple[str, str], third: str) -> list[Filled]:
+    """Curves of generalised Hopf points over a third parameter."""
+    rows = [
+        _located(point, (*plane, third), curve=number, end=end)
+        for number, curve in enumerate(curves, 1)
+        for point, end in zip(curve.points, _ends(curve.ends, len(curve.points)), strict=True)
+    ]
+    declared = bautin_curve_variables(*plane, third)
+    return _filled(declared, _columns(declared, "bautin_step", "bautin_along_", rows))
+
+
+def cycle_curve_record(found: "Boundaries[CycleCurve]", plane: tuple[str, str]) -> list[Filled]:
+    """Curves of folds and torus points, with the Hopf points where they end."""
+    rows: list[tuple[Any, ...]] = []
+    for number, curve in enumerate(found.curves, 1):
+        first, last = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.vanishing)
+        own: list[tuple[dict[str, float], Any]] = [*first, *(({}, point) for point in curve.points), *last]
+        for (beside, point), end in zip(own, _ends(curve.ends, len(own)), strict=True):
+            named = dict(zip(plane, (point.at, point.row), strict=True)) | beside
+            rows.append((SimpleNamespace(number=number, kind=int(curve.kind), end=end, **named), point))
+    declared = cycle_curve_variables(*plane)
+    values = _columns(declared, "cycle_curve_point", "cycle_curve_", rows)
+    values |= {"cycle_curve_agreement": found.agreement, "cycle_curves_untraced": found.untraced}
+    return _filled(declared, values)
+
+
+def _located(point: Any, names: Sequence[str], **beside: Any) -> tuple[Any, ...]:
+    """A point with its values and errors by parameter, and what else is stored beside it."""
+    errors = {f"{name}_error": error for name, error in zip(names, point.errors, strict=True)}
+    return SimpleNamespace(**dict(zip(names, point.values, strict=True)), **errors, **beside), point
+
+
+def _columns(
+    declared: Mapping[str, Variable], dimension: str, prefix: str, rows: Iterable[tuple[Any, ...]]
+) -> dict[str, Any]:
+    """The variables of a prefix along a dimension, as lists; each row has the outcomes of one item."""
+    along = [v for v in declared.values() if v.extra == (dimension,) and v.name.startswith(prefix)]
+    return listed(along, [recorded(along, *row, prefix=prefix) for row in rows])
+
+
+def _filled(declared: Mapping[str, Variable], values: Mapping[str, Any]) -> list[Filled]:
+    return [(declared[name], np.asarray(value)) for name, value in values.items()]
+
+
+def _ends(ends: Sequence[int], count: int) -> list[int]:
+    """Why a curve ends at each of its points, 0 between its ends; of a single point the last says it."""
+    why = [0] * count
+    why[0], why[-1] = ends
+    return why

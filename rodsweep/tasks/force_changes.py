@@ -19,8 +19,8 @@ from ..model.rod import Rod
 from ..results.layouts.spectrum import FORCE_CHANGES
 from ..results.layouts.thresholds import CROSSING_KINDS
 from ..results.layouts.variables import Filled
-from ..sweep.grid import Points
 from ..sweep.lines import lines_over
+from ..sweep.points import Points
 
 POINTS_AT_ONCE = 1 << 13
 """Points whose eigenvalues are read together; memory does not grow with the file beyond that."""

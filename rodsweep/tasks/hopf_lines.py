@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..model.parameters import LINEAR_PARAMETERS
+from ..model.parameters import LINEAR_PARAMETERS, all_but
 from ..model.rod import Rod
 from ..results.layouts.limit_cycle import HOPF_ALONG, HOPF_POINTS
 from ..results.layouts.variables import Filled
-from ..sweep.grid import Points
+from ..sweep.points import Points
 
 if TYPE_CHECKING:
     from ..solve.changes.along_path import Transitions
@@ -64,7 +64,7 @@ def _lines_over(points: Points, name: str) -> Iterator[HopfLine]:
     Below the first force the rod may have begun to beat, and that is told too.
     """
     columns = {n: points.of_rods[n] for n in LINEAR_PARAMETERS}
-    others = [n for n in LINEAR_PARAMETERS if n != name]
+    others = all_but(name)
     if points.is_grid:
         rods = np.array(list(product(*(np.unique(columns[n]) for n in others))))
         ends = [_ends(columns[name])] * len(rods)

@@ -14,7 +14,8 @@ from ..errors import InputError
 from ..results.layouts import LAYOUTS, layout_of
 from ..results.layouts.arm import at_points, in_si, quantities_of
 from ..results.layouts.variables import Filled, Layout
-from ..sweep.grid import Points, grid_size, points_of
+from ..sweep.grid import grid_size, points_of
+from ..sweep.points import Points
 from ..sweep.stretches import Together
 from . import TASKS
 from .arm_points import around, shared

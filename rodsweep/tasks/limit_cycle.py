@@ -21,7 +21,7 @@ from ..results.layouts.limit_cycle import (
 )
 from ..results.layouts.variables import Filled, Variable, recorded
 from ..solve.backend.availability import require_solvers
-from ..sweep.chains import Chains, State
+from ..sweep.chains import ChainedWork, Chains
 from ..sweep.estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, MARCHED_CYCLE_SECONDS, Estimate
 from ..sweep.grid import refuse_outside
 from ..wording import counted
@@ -30,7 +30,7 @@ from .parts import count_of, rod_parts
 from .protocol import InOrder, Part, Solver, Task, alone
 
 if TYPE_CHECKING:
-    from ..solve.cycle.limit_cycle import Cycle
+    from ..solve.cycle.limit_cycle import Cycle, CycleRequest
 
 OF_THE_SWEEP = ("method", "along", "direction", "time")
 """Options that say by which method, how points follow each other and what the file adds; a cycle is asked for
@@ -130,16 +130,16 @@ class LimitCycleTask(Task):
     def solver(self) -> Solver:
         if self.config.limit_cycle.method == "integration":
             return self._integration()
-        from ..solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle, warm_up
+        from ..solve.cycle.limit_cycle import CycleStatus, Neighbour, solve_cycle, warm_up
+        from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
-        options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
-        request = CycleRequest(accuracy=self.config.accuracy, **options)
-        along = self.config.along if self.chains else None
+        request = self._request()
+        along, workspace = self.config.along if self.chains else None, NewtonWorkspace()
 
-        def solve(index: int, start: State = None) -> "Cycle":
-            return solve_cycle(self.points.rod(index), request, start, along)
+        def solve(index: int, start: "Neighbour | None" = None) -> "Cycle":
+            return solve_cycle(self.points.rod(index), request, start, along, workspace)
 
-        def solve_from(index: int, start: State) -> "tuple[Cycle, State]":
+        def solve_from(index: int, start: "Neighbour | None") -> "tuple[Cycle, Neighbour | None]":
             cycle = solve(index, start)
             return cycle, cycle.neighbour if cycle.status == CycleStatus.cycle else None
 
@@ -149,16 +149,23 @@ class LimitCycleTask(Task):
             warm_up=warm_up,
             solve=solve,
             record=lambda index, cycle: self.record(self.points.values(index), cycle),
-            chained=(chains, solve_from) if chains else None,
+            chained=ChainedWork(chains, solve_from, Neighbour.from_arrays) if chains else None,
         )
+
+    def _request(self) -> "CycleRequest":
+        """What is asked of every cycle."""
+        from ..solve.cycle.limit_cycle import CycleRequest
+
+        options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
+        return CycleRequest(accuracy=self.config.accuracy, **options)
 
     def _integration(self) -> Solver:
         """How points are solved by time integration alone."""
-        from ..solve.cycle.limit_cycle import CycleRequest, warm_up
-        from ..solve.cycle.marched import MarchedStatus, solve_by_integration
+        from ..solve.cycle.limit_cycle import warm_up
+        from ..solve.cycle.marched import solve_by_integration
+        from ..solve.cycle.status import MarchedStatus
 
-        options = self.config.limit_cycle.model_dump(exclude=set(OF_THE_SWEEP))
-        request = CycleRequest(accuracy=self.config.accuracy, **options)
+        request = self._request()
         return Solver(
             statuses=tuple(MarchedStatus),
             warm_up=warm_up,

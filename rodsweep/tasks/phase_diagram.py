@@ -88,6 +88,7 @@ class PhaseDiagramTask(ProvedTask):
     def solver(self) -> Solver:
         from ..solve.changes.rows import solve_row
         from ..solve.changes.thresholds import ThresholdStatus, warm_up
+        from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
         options, request = self.config.phase_diagram, self.row_request()
         if options.cycles:
@@ -97,7 +98,7 @@ class PhaseDiagramTask(ProvedTask):
             warm_up=warm_up,
             solve=lambda index: solve_row(self.rod(index), request),
             record=lambda index, result: record(result, self.config.plane[0], options.crossings),
-            together=DiagramCurves(self) if options.curves else None,
+            together=DiagramCurves(self, NewtonWorkspace()) if options.curves else None,
         )
 
     def rod(self, index: int) -> Rod:
@@ -116,13 +117,20 @@ class PhaseDiagramTask(ProvedTask):
     def _with_cycles(self, request: "RowRequest") -> Solver:
         """How rows with their cycles are solved."""
         from ..solve.branch.branches import warm_up
-        from ..solve.branch.coexistence import CoexistenceStatus, solve_coexistence
+        from ..solve.branch.coexistence import CoexistenceRow, CoexistenceStatus, solve_coexistence
+        from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
-        curves = DiagramCurves(self)
+        workspace = NewtonWorkspace()
+        curves = DiagramCurves(self, workspace)
+
+        def solve(index: int) -> CoexistenceRow:
+            row = solve_coexistence(self.rod(index), request, MOST_SPECIAL, workspace)
+            return curves.keep(index, row)
+
         return Solver(
             statuses=tuple(CoexistenceStatus),
             warm_up=warm_up,
-            solve=lambda index: curves.keep(index, solve_coexistence(self.rod(index), request, MOST_SPECIAL)),
+            solve=solve,
             record=lambda index, result: (
                 record(result.row, request.name, request.crossings) | cycles_record(result, request.name)
             ),

@@ -8,7 +8,7 @@ from ..config.schema import Config
 from ..results.file import provenance
 from ..results.file.creation import Plan
 from ..results.layouts import layout_of
-from ..sweep.grid import Points
+from ..sweep.points import Points
 from ..sweep.shards import Shard
 from . import TASKS
 from .job import Job

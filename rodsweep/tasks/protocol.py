@@ -2,24 +2,26 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..results.file.view import View
 from ..results.layouts.variables import Filled
 from ..solve.status import PointStatus
-from ..sweep.chains import Chains, ChainStep
+from ..sweep.chains import ChainedWork, Chains, State
 from ..sweep.estimate import Estimate
-from ..sweep.grid import Points
-from ..sweep.stretches import Stretches, Together
+from ..sweep.points import Points
+from ..sweep.stretches import SolveTogether, Stretches
 
 Arrays = dict[str, np.ndarray]
 """The result of a unit of work."""
 InOrder = Callable[[Sequence[Any], Callable[[Any], Any]], list[Any]]
 """From items and a function to its values in their order: how work is shared among ranks."""
+Around = Callable[[int, State, Callable[[], tuple[Any, State]]], tuple[Any, State]]
+"""From an index, what its solve starts from and the solve to (outcome, state for the neighbour): what is done
+around the solve of a point."""
 Part = tuple[str, bool, str]
 """(what, whether it is modelled, why): a row of what `check` prints."""
 
@@ -68,10 +70,26 @@ class Solver:
     """An index and its outcome as the variables of the file."""
     together: AllPoints | None = None
     """What only all points together give, where there is such."""
-    chained: tuple[Chains, ChainStep] | None = None
+    chained: ChainedWork | None = None
     """Where points start one from the other: how they are solved, instead of by `solve`."""
-    stretched: tuple[Stretches, Callable[[NDArray[np.int64]], Together]] | None = None
+    stretched: tuple[Stretches, SolveTogether] | None = None
     """Where neighbours are solved together: how, from their flat indices, instead of by `solve`."""
+
+    def within(self, around: Around, together: SolveTogether | None = None, **changed: Any) -> "Solver":
+        """The solver with something `around` the solve of every point, and `together` for stretches."""
+        chained, stretched = self.chained, self.stretched
+        if chained is not None:
+            step = chained.solve_from
+            chained = replace(
+                chained, solve_from=lambda index, state: around(index, state, lambda: step(index, state))
+            )
+        if stretched is not None and together is not None:
+            stretched = stretched[0], together
+
+        def solve(index: int) -> Any:
+            return around(index, None, lambda: (self.solve(index), None))[0]
+
+        return replace(self, solve=solve, chained=chained, stretched=stretched, **changed)
 
 
 def alone(items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:

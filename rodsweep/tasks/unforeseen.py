@@ -9,7 +9,7 @@ import socket
 import time
 import traceback
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -64,24 +64,11 @@ class _Guard:
 
     def solver(self) -> Solver:
         """The guarded solver."""
-        inner = self.inner
-        return replace(
-            inner,
-            solve=self._solve,
-            record=lambda index, outcome: outcome.values,
-            chained=(inner.chained[0], self._solve_from) if inner.chained else None,
-            stretched=(inner.stretched[0], self._together) if inner.stretched else None,
-        )
+        return self.inner.within(self._outcome, self._together, record=lambda index, outcome: outcome.values)
 
-    def _solve(self, index: int) -> Outcome:
-        return self._outcome(index, lambda: (self.inner.solve(index), None))[0]
-
-    def _solve_from(self, index: int, state: State) -> tuple[Outcome, State]:
-        assert self.inner.chained is not None
-        step = self.inner.chained[1]
-        return self._outcome(index, lambda: step(index, state))
-
-    def _outcome(self, index: int, solve: Callable[[], tuple[Any, State]]) -> tuple[Outcome, State]:
+    def _outcome(
+        self, index: int, start: State, solve: Callable[[], tuple[Any, State]]
+    ) -> tuple[Outcome, State]:
         """(outcome, state for the neighbour) of a point whose solver, or whose record, may raise."""
         began = time.perf_counter()
         try:
@@ -97,11 +84,8 @@ class _Guard:
     def _failed(self, error: Exception, seconds: float) -> Outcome:
         """The outcome of a point whose solver raised: the fill of every variable."""
         status = next(status for status in self.inner.statuses if status.name == FAILED)
-        values: dict[str, Any] = {
-            v.name: np.full(self.layout.inner(v), v.fill, v.dtype) for v in self.layout.variables
-        }
-        values |= {SECONDS.name: seconds, STATUS.name: int(status)}
-        return Outcome(status, described(error), values)
+        values = {SECONDS.name: seconds, STATUS.name: int(status)}
+        return Outcome(status, described(error), self.layout.empty_point | values)
 
     def _together(self, indices: NDArray[np.int64]) -> Together:
         assert self.inner.stretched is not None
@@ -116,7 +100,8 @@ class _Guard:
 
     def _one_by_one(self, indices: NDArray[np.int64]) -> Together:
         """The points of a stretch, each solved alone."""
-        outcomes = [self._solve(index) for index in indices.tolist()]
+        solve = self.solver().solve
+        outcomes = [solve(index) for index in indices.tolist()]
         names = [variable.name for variable in self.layout.variables]
         return Together(
             values={name: np.stack([outcome.values[name] for outcome in outcomes]) for name in names},

@@ -2,7 +2,8 @@
 
 from math import floor, log10
 
-from ..model.arm import UNITS, SlenderArm
+from ..model.arm import SlenderArm
+from ..model.arm_quantities import UNITS
 from ..model.units import compact, split, unit_of, written_in
 from .flutter import Span
 

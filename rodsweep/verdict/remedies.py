@@ -3,7 +3,8 @@
 from collections.abc import Iterable
 from math import isnan
 
-from ..model.arm import UNITS, SlenderArm
+from ..model.arm import SlenderArm
+from ..model.arm_quantities import UNITS
 from ..model.neglected import Effect, Validity
 from ..model.units import unit_of, written_in
 from .load import Load

@@ -2,11 +2,13 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import floor, log10, nan
+from itertools import chain
+from math import floor, isnan, log10, nan
 
 import numpy as np
 
 from ..model.arm import SlenderArm
+from ..model.arm_quantities import LOADS, SECTION_SIDES
 from ..model.neglected import Effect, Validity, compression, effects_of, fastest_rate, worst_validity
 from ..solve.changes.unstable_modes import Kind
 from ..solve.exclusive import solving
@@ -96,11 +98,9 @@ def thickness_factor(arm: SlenderArm) -> float:
 
 def _scaled(arm: SlenderArm, factor: float) -> SlenderArm:
     """The arm without load with a section so many times as large."""
-    sides = ("radius", "inner_radius", "width", "height")
-    section = {name: factor * getattr(arm.si, name) for name in sides if getattr(arm, name) is not None}
-    kept = ("length", "young", "viscosity", "fluid_density", "density_difference")
-    same = {name: getattr(arm.si, name) for name in kept if getattr(arm, name) is not None}
-    return SlenderArm(**section, **same, poisson=arm.poisson)
+    given = {name: value for name, value in vars(arm.si).items() if not isnan(value) and name not in LOADS}
+    section = {name: factor * given[name] for name in chain(*SECTION_SIDES) if name in given}
+    return SlenderArm(**(given | section), poisson=arm.poisson)
 
 
 def rounded_down(value: float) -> float:

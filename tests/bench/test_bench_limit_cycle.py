@@ -40,6 +40,7 @@ from rodsweep.bench.peers import NO_PEERS, Peers
 from rodsweep.bench.study import Contender, Measurement, Timed
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.motion.integrator import integrator
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 
 COLD = ["cold, leading mode", "cold, Hopf point"]
 
@@ -128,7 +129,7 @@ def test_points_of_a_sweep_are_as_accurate_as_they_say():
 
 
 def test_a_point_without_a_cycle_is_shown_as_failed():
-    rod = SweptRod(replace(RODS[2], F=25.0), exact(), {"F": None})
+    rod = SweptRod(replace(RODS[2], F=25.0), exact(), {"F": None}, NewtonWorkspace())
     with pytest.raises(ArithmeticError, match="no cycle: straight"):
         from_neighbour("F", ACCURACY, rod)
     failed = Measurement("rod", "sweep over F", "", 1.0, np.inf, failure="failed (ArithmeticError)")

@@ -11,9 +11,10 @@ from rodsweep.discretization.mesh import mesh
 from rodsweep.discretization.stress_form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
+from rodsweep.solve.cycle.accuracy.refinement import RefinedCycle, refined_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.neighbour import Neighbour, followed_cycle
-from rodsweep.solve.cycle.refinement import RefinedCycle, refined_cycle
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import at_orbit, multipliers_of, newton
 from rodsweep.solve.orbit.orbit_mesh import mesh_of
@@ -64,8 +65,8 @@ def cycle_of(case) -> RefinedCycle | None:
     if hopf is None or hopf * case.beyond >= case.k1:
         return None
     rod = Rod(F=hopf * case.beyond, k1=case.k1, k2=case.k2, gamma3=case.gamma3, gamma1=case.gamma1)
-    start = orbit_from_hopf(StressForm(rod, mesh(1, 16)), hopf_point_below(rod))
-    return refined_cycle(start, case.accuracy)
+    start = orbit_from_hopf(StressForm(rod, mesh(1, 16)), hopf_point_below(rod), NewtonWorkspace())
+    return refined_cycle(start, case.accuracy, NewtonWorkspace())
 
 
 def chain_of(case, parameter, ratio, points):
@@ -73,12 +74,14 @@ def chain_of(case, parameter, ratio, points):
     hopf = first_hopf(case.k1, case.k2, case.gamma3)
     rod = Rod(F=hopf * case.beyond, k1=case.k1, k2=case.k2, gamma3=case.gamma3, gamma1=case.gamma1)
     form = StressForm(rod, mesh(1, 16))
-    found = refined_cycle(orbit_from_hopf(form, hopf_point_below(rod)), case.accuracy, parameter)
+    memory = NewtonWorkspace()
+    start = orbit_from_hopf(form, hopf_point_below(rod), memory)
+    found = refined_cycle(start, case.accuracy, memory, parameter)
     neighbour = Neighbour.of(found, None, parameter, case.accuracy)
     for _ in range(points):
         rod = replace(rod, **{parameter: ratio * getattr(rod, parameter)})
         try:
-            found = followed_cycle(neighbour, replace(form, rod=rod), parameter, case.accuracy)
+            found = followed_cycle(neighbour, replace(form, rod=rod), parameter, case.accuracy, memory)
         except Unsolvable:
             return
         yield found
@@ -90,7 +93,7 @@ def finer(orbit):
     here = mesh_of(orbit)
     grid = mesh(here.elements, here.order + ceil(FINER_ORDER / here.elements))
     intervals = max(LEAST_INTERVALS, ceil(FINER_SHARE * here.intervals))
-    return at_orbit(newton(orbit.on(grid, intervals, FINER_STAGES), 1e-13), 0.0)
+    return at_orbit(newton(orbit.on(grid, intervals, FINER_STAGES), 1e-13, NewtonWorkspace()), 0.0)
 
 
 def broken_promises(found, accuracy):

@@ -21,6 +21,7 @@ from rodsweep.solve.branch.beginning import beginning, hopf_point
 from rodsweep.solve.branch.branch_curve import BranchPoint
 from rodsweep.solve.branch.settling import due, settled
 from rodsweep.solve.changes.along_path import pair_crossings
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import linearised, multipliers_of, newton
 from rodsweep.solve.orbit.orbit_mesh import mesh_of
@@ -80,7 +81,7 @@ def cycles_of(case: Case) -> Iterator[ArcPoint]:
     if not crossings:
         return
     here = last = beginning(
-        hopf_point(Path(rod.changed(gamma1=case.gamma1), "F"), crossings[0]), case.accuracy
+        hopf_point(Path(rod.changed(gamma1=case.gamma1), "F"), crossings[0]), case.accuracy, NewtonWorkspace()
     )
     yield last
     waiting: list[ArcPoint] = []
@@ -106,7 +107,7 @@ def broken_promises(case: Case) -> list[str]:
         stored, mesh = BranchPoint.of(point, case.accuracy), mesh_of(point.orbit)
         longer = ceil(1.7 * mesh.intervals) + 1
         fine = replace(mesh, order=mesh.order + 6, intervals=longer, stages=min(mesh.stages + 1, 6))
-        exact = linearised(newton(fine.carry(point.orbit), 1e-11).orbit)
+        exact = linearised(newton(fine.carry(point.orbit), 1e-11, NewtonWorkspace()))
         extrema, slope = CyclePath(exact.orbit).extrema, point.calibration.slope
         y, multipliers = extrema["tip_y_max"], multipliers_of(exact)[0]
         others = max(abs(getattr(stored.measures, name) - value) for name, value in extrema.items())

@@ -15,9 +15,10 @@ from rods import rod_of
 import rodsweep as rs
 from rodsweep.discretization.mesh import mesh
 from rodsweep.discretization.stress_form import StressForm
+from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
-from rodsweep.solve.cycle.refinement import refined_cycle
 from rodsweep.solve.cycle.status import CycleStatus
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import multipliers_of
 from rodsweep.solve.point import Unsolvable
@@ -100,7 +101,9 @@ def test_the_angle_of_a_cycle_that_a_motion_led_to_is_within_its_error():
 def test_meshes_that_agree_by_luck_are_not_believed(point, accuracy, parameter):
     *rod, gamma1 = point
     form = StressForm(rod_of(*rod, gamma1=gamma1), mesh(1, 16))
-    found = refined_cycle(orbit_from_hopf(form, hopf_point_below(form.rod)), accuracy, parameter)
+    memory = NewtonWorkspace()
+    start = orbit_from_hopf(form, hopf_point_below(form.rod), memory)
+    found = refined_cycle(start, accuracy, memory, parameter)
     assert broken_promises(found, accuracy) == []
 
 

@@ -14,6 +14,7 @@ from rodsweep.solve.branch.arc import next_point
 from rodsweep.solve.branch.beginning import beginning, hopf_point
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 
 from .displacement_form import Displaced, march_from
@@ -32,7 +33,7 @@ def unstable():
     """An unstable cycle on the branch from the restabilization."""
     rod = rod_of(0.0, *STIFFNESS)
     crossing = pair_crossings(Path(rod, "F"), 100.0, 199.0).crossings[-1]
-    here = beginning(hopf_point(Path(rod, "F"), crossing), ACCURACY)
+    here = beginning(hopf_point(Path(rod, "F"), crossing), ACCURACY, NewtonWorkspace())
     while here.cycle.measures.tip_y_max < LEAST_Y:
         here = next_point(here, ACCURACY)
     return here

@@ -161,6 +161,16 @@ def test_a_change_compiles_the_kernel_and_its_callers_only(made, old, new, compi
     assert made(inner) == (VALUES, set()), "versions share the directory"
 
 
+def test_a_class_that_moved_to_another_module_compiles_its_kernels_anew(made):
+    """What was compiled refers to the class by its module, which may be gone."""
+    pair = "class Pair(NamedTuple):\n    a: float\n    b: float\n"
+    outer = OUTER.replace("import Pair, alone", "import NamedTuple, alone").replace(
+        "@compiled", f"{pair}\n@compiled", 1
+    )
+    made()
+    assert made(INNER.replace(pair, ""), outer) == (VALUES, {"difference"})
+
+
 def test_what_was_compiled_of_an_outdated_value_is_not_kept(made, monkeypatch):
     """A constant that a running process changed: numba has the first value in some kernels, not in others."""
     made()

@@ -1,7 +1,7 @@
 """Figures: which roots are followed, what is drawn, what cannot be; and the configs' own numbers."""
 
+from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ from rodsweep.post.figures.spectra.line import broken, followed_roots, mark_thre
 from rodsweep.post.figures.style import INVERSE_DRAG, LABELS, number, scale
 from rodsweep.post.figures.threshold_lines import _alike
 from rodsweep.post.summary import SUMMARIES
-from rodsweep.results.file.view import read_view
+from rodsweep.results.file.view import View, read_view
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.tasks import TASKS
 from rodsweep.tasks.job import make_job
@@ -138,8 +138,7 @@ def test_a_stretch_of_a_row_without_a_computed_point_is_undecided():
         "status": np.zeros(1),
         "k1": np.array([200.0]),
     } | {name: np.array(values) for name, values in changes.items()}
-    k1 = {"k1": variables["k1"]}
-    view = SimpleNamespace(variables=variables, axes=k1, point_columns=k1)
+    view = View(Path("f.h5"), {"task": "phase_diagram"}, variables, ("k1",), {0: "ok"}, 0)
     edges = np.array([0.0, 50.0, 199.0, 200.0, 220.0])
     assert class_along_row(view, "stable_states", "F", "k1", 0, edges).tolist() == [1, 2, 4, 5]
 
@@ -540,6 +539,8 @@ def test_folds_of_rows_are_marked_where_no_curve_goes_through_them():
     """Of three folds on rows two lie on the curve, one of them between its points."""
     variables = {
         "F": np.linspace(0, 100, 11),
+        "k1": np.array([100.0, 150.0, 200.0]),
+        "status": np.zeros(3),
         "cycle_special_kind": np.array([[2, 0], [2, 1], [2, 0]]),
         "cycle_special_F": np.array([[50.0, np.nan], [70.0, 60.0], [55.0, np.nan]]),
         "cycle_curve_number": np.array([1, 1]),
@@ -547,14 +548,12 @@ def test_folds_of_rows_are_marked_where_no_curve_goes_through_them():
         "cycle_curve_F": np.array([50.0, 60.0]),
         "cycle_curve_k1": np.array([100.0, 300.0]),
     }
-    view = SimpleNamespace(variables=variables, point_columns={"k1": np.array([100.0, 150.0, 200.0])})
+    view = View(Path("f.h5"), {"task": "phase_diagram"}, variables, ("k1",), {0: "ok"}, 0)
     axes = Figure().subplots()
     (folds,) = mark_cycles_on_rows(axes, view, "F", "k1")
     assert folds.get_xydata().tolist() == [[70.0, 150.0]]
     bare = {name: values for name, values in variables.items() if not name.startswith("cycle_curve")}
-    (folds,) = mark_cycles_on_rows(
-        axes, SimpleNamespace(variables=bare, point_columns=view.point_columns), "F", "k1"
-    )
+    (folds,) = mark_cycles_on_rows(axes, replace(view, variables=bare), "F", "k1")
     assert len(folds.get_xydata()) == 3
 
 

@@ -8,7 +8,7 @@ from known_cycles import UNSTABLE, hopf_variables, make_view, store
 
 from rodsweep.post.figures.cycle.amplitude import draw_amplitude
 from rodsweep.post.figures.cycle.square_root import square_root_laws
-from rodsweep.post.hopf_points import Bracket, HopfPoint, StoredChanges
+from rodsweep.post.hopf_points import Bracket, Located, StoredChanges
 from rodsweep.post.summary.stability import stability_lines
 from rodsweep.sweep.lines import lines_over
 from rodsweep.tasks.job import make_job
@@ -90,13 +90,13 @@ def test_a_window_of_flutter_has_a_hopf_point_at_each_end():
     view.variables.update(hopf_variables("F", rods, kinds=["hopf", "hopf", "restabilization"]))
     view.variables["hopf_unstable_after"][1] = 4
     view.variables["linear_growth_rate"] = np.array([-1.0, 1, 1, -1]).reshape(-1, 1, 1, 1, 1)
-    assert [(p.position, p.destabilises) for p in changes_on(view)] == [(27.0, True), (71.0, False)]
+    assert [(p.position, p.kind) for p in changes_on(view)] == [(27.0, "hopf"), (71.0, "restabilization")]
 
 
 def test_a_change_that_no_search_has_located_lies_between_two_points():
     view = swept((100,), constant)
     view.variables.update(hopf_variables("F", []))
-    assert changes_on(view) == [Bracket(27.0, 28.0, True)]
+    assert changes_on(view) == [Bracket(27.0, 28.0, "hopf")]
     (line,), _ = stability_lines(view, "F", StoredChanges(view, "F").on)
     assert line == "F** (straight rod starts to beat): between 27 and 28"
 
@@ -118,7 +118,7 @@ def test_hopf_points_beyond_the_points_of_a_line_are_not_its_own():
     assert changes_on(view) == []
 
 
-THRESHOLD = HopfPoint(20.0, 1e-6, True)
+THRESHOLD = Located(20.0, 1e-6, "hopf")
 
 
 def test_the_law_has_the_coefficient_to_which_the_cycles_tend_and_ends_where_they_leave_it():
@@ -135,7 +135,7 @@ def test_the_law_has_the_coefficient_to_which_the_cycles_tend_and_ends_where_the
 def test_cycles_that_shrink_towards_a_restabilization_have_a_law_below_it():
     F = np.array([18.0, 19, 19.5, 21])
     amplitude = np.r_[0.4 * np.sqrt((20 - F[:3]) / 20), 0]
-    (law,) = square_root_laws(F, amplitude, [HopfPoint(20.0, 1e-6, False)])
+    (law,) = square_root_laws(F, amplitude, [Located(20.0, 1e-6, "restabilization")])
     assert (law.coefficient, law.above, law.end) == (pytest.approx(0.4), False, 18)
 
 

@@ -8,7 +8,7 @@ import pytest
 from conftest import ROOT
 from shown import HOPF, STABLE_AGAIN, shown
 
-from rodsweep.post.hopf_points import Bracket, HopfPoint, StoredChanges
+from rodsweep.post.hopf_points import Bracket, Located, StoredChanges
 from rodsweep.post.summary.errors import errors_of, span_of
 from rodsweep.post.summary.ranges import to_error
 from rodsweep.post.summary.stability import stability_lines
@@ -40,8 +40,12 @@ def test_thresholds_between_grid_points_do_not_depend_on_the_grid(command, step,
     shown(command, config)
     view = read_view(command.directory / "c.h5")
     (line,) = lines_over(view.point_columns, "F")
-    found = [change for change in StoredChanges(view, "F").on(line) if isinstance(change, HopfPoint)]
-    assert [point.destabilises for point in found] == [True, False]
+    found = [
+        change
+        for change in StoredChanges(view, "F").on(line)
+        if isinstance(change, Located) and change.is_hopf
+    ]
+    assert [point.kind for point in found] == ["hopf", "restabilization"]
     for point, exact in zip(found, (HOPF, STABLE_AGAIN), strict=True):
         assert abs(point.position - exact) <= point.error + 1e-12
         assert point.error < 1e-12
@@ -75,7 +79,7 @@ def test_an_unfinished_file_says_between_which_forces_stability_changes(command)
         assert "change_F" not in view.variables
     view.variables["growth_rate"][:] = np.array([-1.0, -1, 1, 1]).reshape(-1, 1, 1, 1, 1)
     (line,) = lines_over(view.point_columns, "F")
-    assert StoredChanges(view, "F").on(line) == [Bracket(45, 60, True)]
+    assert StoredChanges(view, "F").on(line) == [Bracket(45, 60, "hopf")]
     assert command("merge", "all.h5", "1.h5", "2.h5").returncode == 0
     assert "beat): 49.758004916" in command("show", "all.h5").stdout
 
@@ -88,7 +92,7 @@ def test_a_change_that_is_not_understood_is_a_bracket(command):
     located = make_job(command.directory / "c.yaml", ()).task.afterwards(view.variables)
     view = replace(view, variables=dict(view.variables) | {v.name: values for v, values in located})
     (line,) = lines_over(view.point_columns, "F")
-    assert StoredChanges(view, "F").on(line) == [Bracket(40, 60, True)]
+    assert StoredChanges(view, "F").on(line) == [Bracket(40, 60, "hopf")]
     (told,), _ = stability_lines(view, "F", StoredChanges(view, "F").on)
     assert told == "F** (straight rod starts to beat): between 40 and 60"
 

@@ -26,6 +26,7 @@ def diagram():
         "crossing_kind": np.array([[hopf, again]] * 3).reshape(1, 3, 1, 2),
         "crossing_at": np.stack([100 + 40 * K2, 300 + 10 * K2], axis=-1).reshape(1, 3, 1, 2),
         "unstable_after": np.array([[2, 0]] * 3).reshape(1, 3, 1, 2),
+        "status": np.zeros((1, 3, 1)),
         "F": np.array([50.0]),
         "k2": K2,
         "gamma3": np.array([1e-4]),

@@ -20,7 +20,7 @@ from rodsweep.results.layouts import layout_of
 from rodsweep.results.run import journal as pages_of
 from rodsweep.results.run import lock
 from rodsweep.results.run.journal import Journal, journal_directory, read_journals
-from rodsweep.sweep.grid import Points
+from rodsweep.sweep.points import Points
 
 CONFIG = canonical(
     validated(

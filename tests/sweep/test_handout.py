@@ -9,19 +9,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rodsweep.sweep.handout import (
+from rodsweep.sweep.claims import (
     ANSWER_TAG,
-    CHUNK_SECONDS,
-    OVER,
     PLACE_TAG,
     REQUEST_TAG,
     STOP_TAG,
     FirstRankClaims,
-    Handout,
     OtherRankClaims,
-    Report,
-    chunk_seconds,
 )
+from rodsweep.sweep.handout import CHUNK_SECONDS, OVER, Handout, Report, chunk_seconds
 from rodsweep.sweep.stop import StopRequest
 from rodsweep.watch import Whereabouts
 

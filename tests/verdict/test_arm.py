@@ -51,7 +51,6 @@ def test_silicone_arm_by_hand():
     assert rod.bending_stiffness == pytest.approx(4.9087385e-5, rel=1e-7)
     assert rod.tau2 == pytest.approx(5.516960 * 1e-4 / 4.9087385e-5, rel=1e-6)
     assert rod.gamma3 == pytest.approx(2.199115e-4 / (5.516960 * 0.01), rel=1e-6)
-    assert rod.tau1 == pytest.approx(2.199115e-4 / (1e5 / 3 * 0.9 * math.pi * 25e-6), rel=1e-6)
 
 
 def test_drag_by_hand():

@@ -10,12 +10,13 @@ from functools import partial
 from math import nan
 from typing import Any
 
-from ...arrays import Array
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.rod import Rod
+from ...solve.cycle.accuracy.refinement import refine
 from ...solve.cycle.limit_cycle import Cycle, CycleStatus, solve_cycle
-from ...solve.cycle.refinement import refine
-from ...solve.orbit.linearisation import Linearisation
+from ...solve.cycle.neighbour import Neighbour
+from ...solve.orbit.matrix.linearisation import Linearisation
+from ...solve.orbit.matrix.workspace import NewtonWorkspace
 from ...solve.orbit.measures import CyclePath
 from ...solve.orbit.newton import newton
 from ...solve.orbit.orbit import Orbit
@@ -61,14 +62,14 @@ class ExactCycle:
     @classmethod
     def near(cls, orbit: Orbit) -> "ExactCycle":
         """Of the same rod as the orbit."""
-        found = refine(orbit, REFERENCE_ACCURACY)
+        found = refine(orbit, REFERENCE_ACCURACY, NewtonWorkspace())
         return cls(found.orbit, found.measures.period, found.measures.tip_y_max)
 
     def at(self, F: float) -> "ExactCycle":
         """Of the rod at a force near by."""
         form = self.orbit.form
         near = replace(self.orbit, form=replace(form, rod=replace(form.rod, F=F)))
-        orbit = newton(near, EXACT).orbit
+        orbit = newton(near, EXACT, NewtonWorkspace()).orbit
         return ExactCycle(orbit, orbit.period, CyclePath(orbit).extrema["tip_y_max"])
 
     def errors_of(self, period: float, tip_y_max: float) -> dict[str, float]:
@@ -81,24 +82,29 @@ class ExactCycle:
 
 @dataclass(frozen=True, eq=False)
 class SweptRod:
-    """A rod, its exact cycle, and for each axis what the point before the stretch to it hands on."""
+    """A rod, its exact cycle, and for each axis the neighbour from which the stretch to it starts.
+
+    workspace: memory of Newton's matrices, as all points of a sweep share it.
+    """
 
     point: Rod
     exact: ExactCycle
-    neighbours: dict[str, Array | None]
+    neighbours: dict[str, Neighbour | None]
+    workspace: NewtonWorkspace
 
 
 def swept(point: Rod, accuracy: float) -> SweptRod:
     """The rod with its neighbours, which are points of a sweep downwards, with others before them."""
-    neighbours: dict[str, Array | None] = {}
+    neighbours: dict[str, Neighbour | None] = {}
+    workspace = NewtonWorkspace()
     for axis in SWEPT:
-        before: Array | None = None
+        before: Neighbour | None = None
         for k in range(BEFORE, 0, -1):
             there = beyond(point, axis, k + STRETCH - 1)
-            before = settled(solve_cycle(there, asked(accuracy), before, axis)).neighbour
+            before = settled(solve_cycle(there, asked(accuracy), before, axis, workspace)).neighbour
         neighbours[axis] = before
     here = solve_cycle(point, asked(accuracy), along=SWEPT[0])
-    return SweptRod(point, ExactCycle.near(orbit_of(here)), neighbours)
+    return SweptRod(point, ExactCycle.near(orbit_of(here)), neighbours, workspace)
 
 
 def beyond(point: Rod, axis: str, steps: int) -> Rod:
@@ -110,14 +116,15 @@ def from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
     """The last of a stretch of points of a sweep over an axis."""
     start = rod.neighbours[axis]
     for k in range(STRETCH - 1, -1, -1):
-        cycle = settled(solve_cycle(beyond(rod.point, axis, k), asked(accuracy), start, axis))
+        there = beyond(rod.point, axis, k)
+        cycle = settled(solve_cycle(there, asked(accuracy), start, axis, rod.workspace))
         start = cycle.neighbour
     return cycle
 
 
 def from_cold(start: str, accuracy: float, rod: SweptRod) -> Cycle:
     """The point without a neighbour."""
-    return settled(solve_cycle(rod.point, replace(asked(accuracy), start=start)))
+    return settled(solve_cycle(rod.point, replace(asked(accuracy), start=start), workspace=rod.workspace))
 
 
 def settled(cycle: Cycle) -> Cycle:
@@ -162,7 +169,7 @@ def judged_cycle(exact: ExactCycle, cycle: Cycle) -> dict[str, Any]:
     if cycle.neighbour is not None:
         orbit = orbit_of(cycle)
         mesh = mesh_of(orbit)
-        extra["multipliers"] = len(Linearisation(orbit).multipliers())
+        extra["multipliers"] = len(Linearisation(orbit, NewtonWorkspace()).multipliers())
         extra |= {"intervals": mesh.intervals, "stages": mesh.stages}
     return {"error": max(errors.values()), "extra": extra}
 

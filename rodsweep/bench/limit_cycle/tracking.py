@@ -22,10 +22,10 @@ from ...discretization.beam import Beam
 from ...discretization.mesh import mesh
 from ...model.rod import Rod
 from ...solve.cycle.limit_cycle import Cycle, CycleRequest, solve_cycle
-from ...solve.cycle.neighbour import Neighbour
-from ...solve.cycle.transient import angle_weights
+from ...solve.cycle.transient.returns import angle_weights
 from ...solve.motion.integrator import RunLimit, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
+from ...solve.orbit.matrix.workspace import NewtonWorkspace
 from ...solve.orbit.newton import newton
 from ...solve.orbit.orbit import Orbit
 from ..study import Contender, Measurement, contest
@@ -82,7 +82,7 @@ def orbit_of(cycle: Cycle) -> Orbit:
     """The orbit on the mesh that was chosen for it; raises ArithmeticError where there is none."""
     if cycle.neighbour is None:
         raise ArithmeticError(f"no cycle: {cycle.status.name} {cycle.message}")
-    return Neighbour.unpack(cycle.neighbour).branch.orbit
+    return cycle.neighbour.branch.orbit
 
 
 def on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
@@ -95,7 +95,7 @@ def on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
 def reference() -> Reference:
     """The cycle on the benchmark's mesh, by collocation in time."""
     near = orbit_of(cycle_at(CYCLE_FORCE)).on(mesh(1, CYCLE_ORDER), REFERENCE_INTERVALS, REFERENCE_STAGES)
-    orbit = newton(near, EXACT).orbit
+    orbit = newton(near, EXACT, NewtonWorkspace()).orbit
     return Reference(*on_cycle(orbit), orbit.period, float(abs(orbit.form.tip(orbit.start)[1])))
 
 

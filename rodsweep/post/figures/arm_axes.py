@@ -12,23 +12,21 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, MaxNLocator
 
+from ...model.arm_quantities import SCALE_OF, UNITS
 from ...results.file.view import View
 from .style import CRITICAL_FORCE, LABELS
 
 SCALABLE = ("linear", "log")
 """Scales whose opposite matplotlib draws at the right places."""
 MOST_TICKS = 5
-LOAD_SCALES = {
-    "pressure": ("pressure_scale", "Pa", "pressure on the tip"),
-    "force": ("force_scale", "N", "force at the tip"),
-}
-"""What a follower force is told in: what F = 1 is, its unit, and a name."""
+LOAD_WORDS = {"pressure": "pressure on the tip", "force": "force at the tip"}
+"""What a follower force is told in."""
 
 
 def add_si_scales(figure: Figure, views: Sequence[View]) -> None:
     """Adds them to every axis of a follower force; none where the files have no arm, or several."""
-    load = LOAD_SCALES["force" if all("force" in view.quantities for view in views) else "pressure"]
-    given = [view.quantities.get(load[0]) for view in views]
+    load = "force" if all("force" in view.quantities for view in views) else "pressure"
+    given = [view.quantities.get(SCALE_OF[load]) for view in views]
     units = {float(unit) for values in given if values is not None for unit in np.ravel(values)}
     if len(units) != 1 or any(values is None for values in given):
         return
@@ -54,9 +52,9 @@ def _outermost(axes: Axes, which: str) -> Axes:
     return max(row, key=lambda other: other.get_subplotspec().colspan.start)
 
 
-def _add(axes: Axes, which: str, unit: float, load: tuple[str, str, str]) -> None:
+def _add(axes: Axes, which: str, unit: float, load: str) -> None:
     """A scale opposite to an axis, whose numbers are the axis' times `unit`."""
-    _, symbol, word = load
+    symbol, word = UNITS[load][0], LOAD_WORDS[load]
     largest = unit * max(map(abs, getattr(axes, f"get_{which}lim")()))
     power = 3 * int(np.floor(np.log10(largest) / 3)) if largest > 0 else 0
     power = int(np.clip(power, min(EngFormatter.ENG_PREFIXES), max(EngFormatter.ENG_PREFIXES)))

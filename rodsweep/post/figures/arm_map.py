@@ -4,8 +4,8 @@ The points of the file are the centres of cells. Where the model does not apply,
 cell is hatched.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,12 +17,14 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...arrays import Array
-from ...config.arm_axes import CRUSHED, NO_FLUTTER, NO_WALL, NOT_SLENDER, UNIT_NAMES
+from ...config.arm_axes import CRUSHED, NO_FLUTTER, NO_WALL, NOT_SLENDER
+from ...model.arm_quantities import ARM_UNITS
 from ...model.drag import DRAGS
 from ...model.neglected import Validity
 from ...results.file.view import View
 from ..summary.arm import word
 from . import style
+from .arm_panels import PANELS, Panel
 from .arm_quantities import in_typed, quantity_text
 from .cycle.point_map import cell_edges
 from .request import FigureRequest
@@ -43,24 +45,6 @@ BAND = 0.25
 """Opacity of the band between the least and the largest number over the drags."""
 WITHOUT: dict[str, Any] = {"fc": "#E8EDF2"}
 HATCHING = "0.35"
-
-
-@dataclass(frozen=True, slots=True)
-class Panel:
-    """A number at every point in some unit.
-
-    lines: what is drawn of it over one axis, by what the legend says, where that is more than the values.
-    turns: what the legend says of the line of a map where the number is 0; empty where it has none.
-    """
-
-    label: str
-    values: Array
-    lines: Mapping[str, Array] = field(default_factory=dict)
-    turns: str = ""
-    of_lines: str = ""
-    """The label where several lines are drawn, if it is another one."""
-    without: str = "nothing computed"
-    """What the legend says of arms that have no number."""
 
 
 def draw_arm_map(request: FigureRequest) -> str:
@@ -213,52 +197,10 @@ def _fixed(view: View, drawn: list[str]) -> str:
     """The quantities that are not along an axis of the figure, with their values."""
     told = []
     for name, values in view.quantities.items():
-        if name in drawn or name in UNIT_NAMES:
+        if name in drawn or name in ARM_UNITS:
             continue
         if np.size(values) > 1 and name not in view.over:  # as the load that one relative to flutter is
             continue
         more = f" (of {len(values)} values)" if np.size(values) > 1 else ""
         told.append(quantity_text(view, name, float(np.min(values))) + more)
     return ", ".join(told)
-
-
-def _of_thresholds(view: View) -> list[Panel]:
-    load, si, typed = ("force", "N", "force") if "force" in view.quantities else ("pressure", "Pa", "young")
-    lines = {}
-    for event in ("hopf", "onset", "restabilization"):
-        lines[EVENTS[event]], unit = in_typed(view, typed, view.variables[f"{load}_{event}"], si)
-    flutter = lines[EVENTS["hopf"]]
-    return [
-        Panel(
-            f"{load} at flutter ({unit})", flutter, lines, of_lines=f"{load} ({unit})", without="no flutter"
-        ),
-        Panel("frequency at flutter (Hz)", view.variables["frequency_hopf_hz"], without="no flutter"),
-    ]
-
-
-EVENTS = {"hopf": "flutter", "onset": "onset of oscillations", "restabilization": "return"}
-"""What thresholds are called."""
-
-
-def _of_modes(view: View) -> list[Panel]:
-    return [
-        Panel("growth rate (1/s)", view.variables["growth_rate_si"][..., 0], turns="growth rate 0"),
-        Panel("frequency (Hz)", np.abs(view.variables["frequency_hz"][..., 0])),
-    ]
-
-
-def _of_cycles(view: View) -> list[Panel]:
-    amplitude, unit = in_typed(view, "length", view.variables["tip_y_max_si"])
-    return [
-        Panel("frequency (Hz)", view.variables["frequency_hz"], without="no cycle"),
-        Panel(f"largest deflection of the tip ({unit})", amplitude, without="no cycle"),
-    ]
-
-
-PANELS: dict[str, Callable[[View], list[Panel]]] = {
-    "thresholds": _of_thresholds,
-    "spectrum": _of_modes,
-    "modes": _of_modes,
-    "limit_cycle": _of_cycles,
-}
-"""What is drawn of each task; other tasks are drawn as lists of points."""

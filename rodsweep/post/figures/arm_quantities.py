@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array
-from ...config.arm_axes import ALONG, RELATIVE, UNIT_NAMES
+from ...config.arm_axes import ALONG
 from ...model.arm import SlenderArm
+from ...model.arm_quantities import ALL_QUANTITIES, ARM_UNITS, RELATIVE
 from ...model.drag import DRAGS
 from ...model.units import written_in
 from ...results.file.view import View
-from ...results.layouts.arm import QUANTITY_UNITS
 from ..summary.arm import word
 
 TOGETHER = "\N{NO-BREAK SPACE}"
@@ -23,7 +23,7 @@ SAME_NUMBER = 1e-9
 
 def in_typed(view: View, name: str, values: Array, si: str = "") -> tuple[Array, str]:
     """(values of a quantity, of any shape, in the unit in which it was typed, that unit)."""
-    si = si or QUANTITY_UNITS[name]
+    si = si or ALL_QUANTITIES[name].unit
     unit = view.typed.get(name, si)
     return (values, "") if si == "1" else (values * written_in(1.0, unit, si), unit)
 
@@ -39,7 +39,7 @@ def quantity_text(view: View, name: str, value: float) -> str:
 
 def given_quantities(view: View) -> list[str]:
     """The quantities that make the arm of a file; its units of time, force and pressure follow from them."""
-    return [name for name in view.quantities if name not in (*UNIT_NAMES, *RELATIVE)]
+    return [name for name in view.quantities if name not in (*ARM_UNITS, *RELATIVE)]
 
 
 def at_point(view: View, name: str, number: int) -> float:

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -83,11 +82,7 @@ def draw_class_bars(view: View) -> Figure:
 
 def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str]]:
     """(F from, F to, class) of a rod from F = 0, where all modes are real, to the end of the search."""
-    crossings = view.variables["crossing_F"].shape[-1]
-    kinds, F, after = (
-        view.variables[name].reshape(-1, crossings)[rod]
-        for name in ("crossing_kind", "crossing_F", "unstable_after")
-    )
+    kinds, F, after = (view.by_point(name)[rod] for name in ("crossing_kind", "crossing_F", "unstable_after"))
     end = float(view.variables["F_end"].ravel()[rod])
     found = int(view.variables["crossing_count"].ravel()[rod])
     start, word = 0.0, "monotone"
@@ -107,8 +102,7 @@ def classes_behind_crossings(view: View, row: str) -> tuple[Array, Array, NDArra
     They are known however close two crossings are. Rows at infinity are left out.
     """
     numbers = {word: number for number, word in CLASSES}
-    kinds, after = (_by_row(view, name) for name in ("crossing_kind", "unstable_after"))
-    at = _by_row(view, "crossing_at")
+    kinds, after, at = map(view.by_point, ("crossing_kind", "unstable_after", "crossing_at"))
     values = view.point_columns[row]
     found: list[tuple[float, float, int]] = []
     for place in np.flatnonzero(np.isfinite(values)):
@@ -119,12 +113,6 @@ def classes_behind_crossings(view: View, row: str) -> tuple[Array, Array, NDArra
             found.append((float(middle), float(values[place]), numbers[word]))
     x, y, classes = np.array(found, dtype=float).reshape(-1, 3).T
     return x, y, classes.astype(np.intp)
-
-
-def _by_row(view: View, name: str) -> NDArray[Any]:
-    """A variable along `crossing`, (rods or rows, crossings)."""
-    values = view.variables[name]
-    return values.reshape(-1, values.shape[-1])
 
 
 def _class_behind(kind: int, unstable: int) -> str:
@@ -149,9 +137,7 @@ def _bar(axes: Axes, view: View, rod: int, upright: bool) -> set[str]:
 
 def _mark(axes: Axes, view: View, upright: bool) -> list[Line2D]:
     """Marks the thresholds; returns what the legend says of them, with the numbers of a single rod."""
-    crossings = view.variables["crossing_F"].shape[-1]
-    names = ("crossing_kind", "crossing_F", "unstable_after")
-    kinds, F, after = (view.variables[name].reshape(-1, crossings) for name in names)
+    kinds, F, after = map(view.by_point, ("crossing_kind", "crossing_F", "unstable_after"))
     hopf = kinds == CROSSING_KINDS.index("hopf")
     chosen = {kind: kinds == CROSSING_KINDS.index(kind) for kind in MARKS if kind != LATER}
     chosen |= {"hopf": hopf & (after <= 2), LATER: hopf & (after > 2)}

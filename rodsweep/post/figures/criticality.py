@@ -50,21 +50,13 @@ def draw_criticality(request: FigureRequest) -> str:
     return request.write(_map(view, points, request.look.narrow), shown, MAP_ASPECT)
 
 
-def _by_point(view: View, name: str) -> Array:
-    """A variable along `crossing`, shape (points, crossings)."""
-    values = view.variables[name]
-    return values.reshape(-1, values.shape[-1])
-
-
 def _along(view: View, name: str) -> Figure:
     """a above Re c against one parameter, each Hopf point marked by its criticality."""
     x = view.point_columns[name]
     keep = np.isfinite(x)
     figure = Figure(figsize=(5.6, 5.4), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True)
-    side, a, c = (
-        _by_point(view, key)[keep] for key in ("criticality", "amplitude_coefficient", "landau_real")
-    )
+    side, a, c = (view.by_point(key)[keep] for key in ("criticality", "amplitude_coefficient", "landau_real"))
     style.need(view, np.isfinite(c).any(), f"Hopf point with a finite {name}")
     lower.set_yscale("symlog", linthresh=10.0 ** floor(log10(float(np.nanquantile(np.abs(c), FEW)))))
     for axes, values in ((upper, a), (lower, c)):
@@ -95,8 +87,8 @@ def _map(view: View, points: PointMap, narrow: bool) -> Figure:
 
     narrow: whether the two maps have no room beside each other.
     """
-    side = _by_point(view, "criticality")[points.at]
-    a = np.abs(_by_point(view, "amplitude_coefficient")[:, 0][points.at])
+    side = view.by_point("criticality")[points.at]
+    a = np.abs(view.by_point("amplitude_coefficient")[:, 0][points.at])
     style.need(view, np.isfinite(a).any(), "first Hopf point with a normal form")
     figure, panels = map_panels(2, narrow)
     edges = cell_edges(points.x), cell_edges(points.y)

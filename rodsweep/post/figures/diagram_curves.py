@@ -129,9 +129,9 @@ def draw_cycle_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2
 
 def mark_cycles_on_rows(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
     """Marks special points of cycles on rows through which no curve goes; what the legend says of them."""
-    v, handles = view.variables, []
+    handles: list[Line2D] = []
     values = view.point_columns[row]
-    kinds, at = (v[f"cycle_special_{name}"].reshape(len(values), -1) for name in ("kind", line))
+    kinds, at = (view.by_point(f"cycle_special_{name}") for name in ("kind", line))
     for kind, (word, marker) in CYCLE_MARKS.items():
         rows, places = np.nonzero(kinds == SPECIAL_KINDS.index(kind))
         there = ~_on_curves(view, SPECIAL_KINDS.index(kind), line, row, at[rows, places], values[rows])

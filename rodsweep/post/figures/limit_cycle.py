@@ -4,7 +4,8 @@ import numpy as np
 
 from ...errors import InputError
 from ...results.file.view import View
-from .cycle.amplitude import BRANCH_LOOKS, abscissa, draw_amplitude
+from .cycle.amplitude import BRANCH_LOOKS, draw_amplitude
+from .cycle.amplitude_branches import abscissa
 from .cycle.animation import FILMS, write_animation
 from .cycle.energy import draw_energy
 from .cycle.maps import draw_maps

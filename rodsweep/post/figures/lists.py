@@ -6,14 +6,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
+from ...model.arm_quantities import ALL_QUANTITIES, ARM_UNITS
 from ...model.units import compact
 from ...results.file.view import View
-from ...results.layouts.arm import QUANTITY_UNITS
 
 BESIDE_POINTS = ("mode", "u", "crossing")
 """Coordinates of other dimensions, which may be as long as the list."""
-MADE = ("tau2", "force_scale", "pressure_scale")
-"""Units that follow from the quantities of an arm."""
 FEW_POINTS = 12
 """Points of a list whose places along an axis are all labelled."""
 
@@ -71,8 +69,8 @@ def _varied_quantities(view: View) -> list[tuple[str, list[str]]]:
     """(name with unit, value at each point) of an arm's quantities with several values, the slowest first."""
     told = []
     for name, values in view.quantities.items():
-        if name not in MADE and np.ndim(values) and len(np.unique(values)) > 1:
-            unit = QUANTITY_UNITS[name].replace("1", "")
+        if name not in ARM_UNITS and np.ndim(values) and len(np.unique(values)) > 1:
+            unit = ALL_QUANTITIES[name].unit.replace("1", "")
             factor, unit = compact(float(np.abs(values).max()), unit) if unit else (1.0, "")
             heading = f"{name} ({unit})" if unit else f"{name}'s ratio"
             told.append((heading, [f"{factor * value:.4g}" for value in values]))

@@ -50,8 +50,7 @@ def draw_modes(request: FigureRequest) -> str:
 
 def _parts(view: View, points: np.ndarray) -> list[Line2D]:
     """What the legend says of solid and dotted lines; points: of the drawn ones, shape (n,)."""
-    modes = view.variables["frequency"].shape[-1]
-    oscillates = view.variables["frequency"].reshape(-1, modes)[points, 0].any()
+    oscillates = view.by_point("frequency")[points, 0].any()
     looks = (("real part", "-"), ("imaginary part", ":"))[: 1 + bool(oscillates)]
     return [Line2D([], [], color="0.3", lw=1.5, ls=style, label=word) for word, style in looks]
 
@@ -82,7 +81,6 @@ def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], .
 def _where(view: View, point: int) -> tuple[str, str]:
     """The parameters of a point, and its leading eigenvalue."""
     at = {name: values[point] for name, values in view.point_columns.items()}
-    modes = view.variables["growth_rate"].shape[-1]
-    w = [float(view.variables[name].reshape(-1, modes)[point, 0]) for name in ("growth_rate", "frequency")]
+    w = [float(view.by_point(name)[point, 0]) for name in ("growth_rate", "frequency")]
     imaginary = rf" + {number(w[1])}\,\mathrm{{i}}" if w[1] else ""
     return parameter_text(at, digits=4), rf"$\omega_1\tau_2 = {number(w[0])}{imaginary}$"

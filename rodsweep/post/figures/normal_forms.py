@@ -21,7 +21,7 @@ POINTS_OF_PREDICTION = 60
 
 def draw_predictions(view: View) -> tuple[Figure, str]:
     """The amplitude predicted beside every Hopf point over F, of the first rods; what that shows."""
-    kinds, F, a = (_by_rod(view, name) for name in ("criticality", "crossing_F", "amplitude_coefficient"))
+    kinds, F, a = map(view.by_point, ("criticality", "crossing_F", "amplitude_coefficient"))
     there = np.flatnonzero((np.isfinite(kinds) & np.isfinite(a)).any(axis=1))
     style.need(view, there.size, "Hopf point with a normal form")
     drawn = there[: len(COLOURS)]
@@ -49,12 +49,6 @@ def draw_predictions(view: View) -> tuple[Figure, str]:
         f", of the first {len(drawn)} of {there.size} rods that have some" if len(drawn) < there.size else ""
     )
     return figure, f"the cycles that normal forms predict within {NEAR:.0%} of every Hopf point{left_out}"
-
-
-def _by_rod(view: View, name: str) -> Array:
-    """A variable along `crossing`, (rods, crossings)."""
-    values = view.variables[name]
-    return values.reshape(-1, values.shape[-1])
 
 
 def _law(at: float, a: float) -> tuple[Array, Array]:

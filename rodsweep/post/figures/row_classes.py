@@ -31,7 +31,7 @@ def class_along_row(
     two changes of the row; where none lies between them it is undecided.
     """
     x = view.variables[line]
-    classes = view.variables[variable].reshape(-1, len(x))[place]
+    classes = view.by_point(variable)[place]
     changes = _changes(view, variable, line, place)
     if variable == "class":
         behind, rows, found = classes_behind_crossings(view, row)

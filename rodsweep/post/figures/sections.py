@@ -8,11 +8,11 @@ import numpy as np
 from ...config.arm_axes import ALONG
 from ...config.refusals import nearest
 from ...errors import InputError
+from ...model.arm_quantities import ALL_QUANTITIES
 from ...model.drag import DRAGS
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.units import in_si
 from ...results.file.view import View
-from ...results.layouts.arm import QUANTITY_UNITS
 from .lists import BESIDE_POINTS
 
 SAME_VALUE = 1e-6
@@ -40,8 +40,8 @@ def _number(name: str, value: float | str) -> float:
     except ValueError:
         if name == "drag":
             raise InputError(f"--at drag={value} is none of {', '.join(DRAGS)}") from None
-        if name in QUANTITY_UNITS:
-            return in_si(f"--at {name}", value, QUANTITY_UNITS[name], "12 cm")
+        if name in ALL_QUANTITIES:
+            return in_si(f"--at {name}", value, ALL_QUANTITIES[name].unit, "12 cm")
         raise InputError(f"--at {name}={value} is no parameter with a number, as k1=150 is") from None
 
 

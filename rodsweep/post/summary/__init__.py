@@ -10,11 +10,11 @@ from rich.text import Text
 
 from ...config.arm_axes import NOT_SLENDER
 from ...config.values import printable
+from ...model.arm_quantities import ALL_QUANTITIES
 from ...model.units import written_in
 from ...results.file.provenance import RANK_SHARES, kernels_of
 from ...results.file.view import View
 from ...results.layouts import lacks_curves
-from ...results.layouts.arm import QUANTITY_UNITS
 from ...results.layouts.variables import DIMENSIONS, MISSING
 from ...wording import counted, duration, is_or_are, plural
 from .arm import arm_lines
@@ -165,7 +165,7 @@ def _table(headings: Iterable[str], rows: Iterable[tuple[str, ...]]) -> Table:
 def _axes(view: View) -> Iterable[tuple[str, ...]]:
     """(name, different values, from, to, unit) of an arm's quantities, as typed, and of every parameter."""
     for name, values in view.quantities.items():
-        si = QUANTITY_UNITS[name]
+        si = ALL_QUANTITIES[name].unit
         unit = view.typed.get(name, si)
         yield name, *_extent(np.vectorize(lambda x, to=unit, of=si: written_in(x, to, of))(values)), unit
     for name, values in view.axes.items():

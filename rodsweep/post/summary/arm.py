@@ -9,12 +9,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ...config.arm_axes import RELATIVE, UNIT_NAMES
+from ...model.arm_quantities import ALL_QUANTITIES, ARM_UNITS, RELATIVE, SCALE_OF, UNITS
 from ...model.drag import DRAGS
 from ...model.units import compact, written_in
 from ...results.file.view import View
 from ...results.layouts import LAYOUTS
-from ...results.layouts.arm import FORCES, HERTZ, QUANTITY_UNITS, twins_of
+from ...results.layouts.arm import HERTZ, twins_of
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ..hopf_points import Located
 from ..tables.rows import quantities_at_points
@@ -73,7 +73,7 @@ def _largest(values: np.ndarray) -> float:
 def given_columns(view: View) -> dict[str, np.ndarray]:
     """The quantities of an arm that differ among the points of a file, at every point, each (points,)."""
     columns = quantities_at_points(view)
-    given = {name: column for name, column in columns.items() if name not in UNIT_NAMES}
+    given = {name: column for name, column in columns.items() if name not in ARM_UNITS}
     return {name: column for name, column in given.items() if len(np.unique(column[~np.isnan(column)])) > 1}
 
 
@@ -89,27 +89,18 @@ def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray
     if name == "drag":
         names = [DRAGS[int(place)] for place in np.unique(values)]
         return "" if len(names) == len(np.unique(column)) else f"drag {' and '.join(names)}".replace("_", " ")
-    ends = [
-        float(f"{end:.{DIGITS}g}") for end in _in_typed(view, name, np.array([values.min(), values.max()]))
-    ]
+    unit, si = _unit(view, name), ALL_QUANTITIES[name].unit
+    factor = written_in(1.0, unit, si) if unit else 1.0
+    ends = [float(f"{factor * end:.{DIGITS}g}") for end in (values.min(), values.max())]
     extent = " to ".join(f"{end:.{DIGITS + 1}g}" for end in sorted(set(ends)))
     if name in RELATIVE:
         return f"{extent} of flutter"
-    return f"{word(name)} {extent} {_unit(view, name)}".rstrip()
-
-
-def _in_typed(view: View, name: str, values: np.ndarray) -> np.ndarray:
-    """Values of a quantity in its own unit."""
-    return (
-        values
-        if QUANTITY_UNITS[name] == "1"
-        else values * written_in(1.0, _unit(view, name), QUANTITY_UNITS[name])
-    )
+    return f"{word(name)} {extent} {unit}".rstrip()
 
 
 def _unit(view: View, name: str) -> str:
     """The unit of a quantity as it is told; empty of a ratio."""
-    si = QUANTITY_UNITS[name]
+    si = ALL_QUANTITIES[name].unit
     return "" if si == "1" else view.typed.get(name, own_unit(view, si, 1.0)[1])
 
 
@@ -176,10 +167,15 @@ def errors_in_si(v: Mapping[str, np.ndarray], own: str, twin: str) -> np.ndarray
     return np.asarray(np.abs(scale) * errors_of(v, own))
 
 
+def load_of(view: View) -> str:
+    """What a follower force is told in."""
+    return "force" if "force" in view.quantities else "pressure"
+
+
 def loads_at(view: View, F: np.ndarray, points: np.ndarray) -> str:
     """Follower forces F, (n,), at points of a file with an arm, (n,) indices, as its load in its own unit."""
-    unit, (scale,), _ = FORCES["force" if "force" in view.quantities else "pressure"]
-    return in_own_unit(view, F * _at(view.quantities[scale], points), unit)
+    load = load_of(view)
+    return in_own_unit(view, F * _at(view.quantities[SCALE_OF[load]], points), UNITS[load][0])
 
 
 def crossings_of_arm(view: View) -> list[str]:
@@ -205,50 +201,11 @@ def thresholds_of_arm(view: View, kind: str, found: Sequence[tuple[Located, np.n
     points = np.concatenate([points for _, points in found])
     each = [len(points) for _, points in found]
     load = loads_at(view, np.repeat([place.position for place, _ in found], each), points)
-    frequency = np.repeat([getattr(place, "frequency", np.nan) for place, _ in found], each)
+    frequency = np.repeat([place.frequency for place, _ in found], each)
     rate = ""
     if np.isfinite(frequency).any():
         rate = f", where it begins to beat at {_in_hertz(view, frequency, points)}"
     return [OF_THRESHOLDS[kind].format(load=load, rate=rate)]
-
-
-def drag_lines(view: View, numbers: Mapping[str, np.ndarray]) -> list[str]:
-    """How far numbers at the points of a file, each (points,), by name, differ over the drags of an arm."""
-    arms = arms_of_drags(view)
-    if arms is None:
-        return []
-    drags, several = len(np.unique(given_columns(view)["drag"])), len(np.unique(arms)) > 1
-    told = []
-    for name, values in numbers.items():
-        spread = _largest_spread(values, arms)
-        if np.isfinite(spread):
-            told.append(f"{name} by {'up to ' * several}{_factor(spread)}")
-    return [f"over {drags} drags of its range one arm varies: {', '.join(told)}"] if told else []
-
-
-def arms_of_drags(view: View) -> np.ndarray | None:
-    """A number for each point, (points,), equal where only the drag differs; None where it does not."""
-    columns = given_columns(view)
-    if columns.pop("drag", None) is None:
-        return None
-    count = view.variables["status"].size
-    table = np.stack([np.zeros(count), *(np.nan_to_num(column) for column in columns.values())], axis=-1)
-    return np.unique(table, axis=0, return_inverse=True)[1].ravel()
-
-
-def _largest_spread(values: np.ndarray, arms: np.ndarray) -> float:
-    """Largest over least value of an arm, the most of all arms; nan where no arm has two values."""
-    spreads = [np.nan]
-    for arm in np.unique(arms):
-        there = values[(arms == arm) & np.isfinite(values)]
-        if len(there) > 1 and there.min() > 0:
-            spreads.append(float(there.max() / there.min()))
-    return float(np.nanmax(spreads)) if len(spreads) > 1 else np.nan
-
-
-def _factor(spread: float) -> str:
-    """A ratio in percent, or as a factor."""
-    return f"{100 * (spread - 1):.2g} %" if spread < 2 else f"a factor of {spread:.3g}"
 
 
 def _in_hertz(view: View, frequency: np.ndarray, points: np.ndarray) -> str:

@@ -8,12 +8,14 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from ...config.arm_axes import NOT_SLENDER
+from ...model.arm_quantities import SCALE_OF
 from ...model.neglected import Validity
 from ...results.file.view import View
-from ...results.layouts.arm import EFFECTS, FORCES, VALIDITY
+from ...results.layouts.arm import EFFECTS, VALIDITY
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, some_of
-from .arm import arms_of_drags, drag_lines, errors_in_si, own_unit, region_of_arms
+from .arm import errors_in_si, load_of, own_unit, region_of_arms
+from .drag_range import arms_of_drags, drag_lines
 from .ranges import rounded
 
 DIGITS = 3
@@ -192,16 +194,11 @@ def _of_diagram(view: View, rods: np.ndarray) -> list[str]:
     if "F" in view.parameters:  # the rows cross another parameter
         return []
     first, v = _first_hopf(view, rods), view.variables
-    _, (scale,), _ = FORCES[load_of(view)]
+    scale = SCALE_OF[load_of(view)]
     loads = _at(v["crossing_at"][rods], first) * np.broadcast_to(v[scale], rods.shape)[rods]
     last = np.minimum(v["F"][-1], view.point_columns["k1"].reshape(rods.shape)[rods])
     ends = last * np.broadcast_to(v[scale], rods.shape)[rods]
     return _flutter(view, loads, ends, _at(v["crossing_frequency_hz"][rods], first))
-
-
-def load_of(view: View) -> str:
-    """What a follower force is told in."""
-    return "force" if "force" in view.quantities else "pressure"
 
 
 def _first_hopf(view: View, rods: np.ndarray) -> np.ndarray:

@@ -108,18 +108,15 @@ def _words(v: dict[str, np.ndarray], i: int) -> str:
 
 def _subcritical_lines(view: View) -> Iterator[str]:
     """The rods with subcritical Hopf points, some by name: those before the others where the first one is."""
-    v = view.variables
-    extent = v["criticality"].shape[-1]
-    side = v["criticality"].reshape(-1, extent)
+    side = view.by_point("criticality")
     rods = np.flatnonzero((side == 1).any(axis=-1))
     rods = rods[np.argsort(side[rods, 0] != 1, kind="stable")]
     columns = view.point_columns
     for rod in rods[:NAMED_RODS]:
         name = ", ".join(f"{key} = {column[rod]:.6g}" for key, column in columns.items())
         places = np.flatnonzero(side[rod] == 1)
-        forces = v["crossing_F"].reshape(-1, extent)[rod][places]
-        names = ("amplitude_coefficient", "amplitude_coefficient_error", "crossing_error")
-        a, relative, absolute = (v[name].reshape(-1, extent)[rod][places] for name in names)
+        names = ("crossing_F", "amplitude_coefficient", "amplitude_coefficient_error", "crossing_error")
+        forces, a, relative, absolute = (view.by_point(name)[rod][places] for name in names)
         each = ", ".join(
             f"F = {rounded(F, dF)} (Hopf point {i + 1}, a = {rounded(x, abs(x) * dx)} L)"
             for F, dF, i, x, dx in zip(forces, absolute, places, a, relative, strict=True)

@@ -5,11 +5,12 @@ import numpy as np
 from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.branch import SPECIAL_KINDS
-from ...results.layouts.phase_diagram import BAUTIN_ENDS, CLASSES, CYCLE_CURVE_ENDS, STABLE_STATES
+from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, some_of
 from .arm import loads_at
-from .ranges import error_text, span, to_error
+from .diagram_curves import agreement_lines, criticality_lines, curve_lines
+from .ranges import span
 from .thresholds import cost_lines, search_lines
 from .told import Told
 
@@ -22,16 +23,6 @@ CHANGES_OF_CYCLES = {
     "left_the_model": "cycles leave the model (h1 = 0)",
 }
 """What is told of the special points of rows, by their kind."""
-CURVE_END_WORDS = {
-    "none": "goes on",
-    "edge": "edge of the diagram",
-    "crushed": "F close to k1",
-    "hopf": "Hopf point, where the cycles vanish",
-    "left_the_model": "h1 = 0",
-    "resonance": "resonance",
-    "closed": "closed curve",
-    "not_followed": "no further point found",
-}
 SHARP = 1e-8
 """Resolution of a boundary, in units of the parameter, for which the uniform grid is counted."""
 
@@ -47,15 +38,10 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> Told:
     trust = search_lines(view, done, "row")
     details = [*count_lines(v["class"][done]), *cost_lines(view, done), saving_line(view, done, line)]
     if "curve_number" in v:
-        answer += fold_lines(view, line, row)
+        answer += curve_lines(view, line, row)
         trust += agreement_lines(view, line)
     if "curve_criticality" in v:
-        answer += bautin_lines(view, line, row)
         details += criticality_lines(view)
-    if "bautin_along_curve" in v:
-        answer += bautin_curve_lines(view)
-    if "cycle_curve_number" in v:
-        answer += cycle_curve_lines(view, line, row)
     return Told(answer, trust, details, crossings_of_arms(view, done))
 
 
@@ -100,25 +86,6 @@ def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
                 f"{words}: on {some_of(rows.sum(), done.sum(), 'row')}, {line} = {span(where)}, "
                 f"{row} = {span(of_row[rows])}"
             )
-    return lines
-
-
-def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
-    """The curves of folds and torus points of cycles, and where they end."""
-    v, lines = view.variables, []
-    for number in np.unique(v["cycle_curve_number"]):
-        on = np.flatnonzero(v["cycle_curve_number"] == number)
-        kind = SPECIAL_KINDS[int(v["cycle_curve_kind"][on[0]])]
-        ends = " to ".join(
-            f"{row} = {v[f'cycle_curve_{row}'][i]:.9g}, {line} = "
-            f"{to_error(v[f'cycle_curve_{line}'][i], v['cycle_curve_error'][i])} "
-            f"({CURVE_END_WORDS[tuple(CYCLE_CURVE_ENDS)[int(v['cycle_curve_end'][i])]]})"
-            for i in on[[0, -1]]
-        )
-        what = "folds" if kind == "fold" else "torus points"
-        error = error_text(float(v["cycle_curve_error"][on].max()))
-        points = counted(len(on), "point")
-        lines.append(f"curve of {what}: from {ends}; {points}, largest error of {line} {error}")
     return lines
 
 
@@ -172,101 +139,4 @@ def crossings_of_arms(view: View, done: np.ndarray) -> list[str]:
             forces = v["crossing_at"][there]
             rows = some_of(there.any(axis=-1).sum(), done.sum(), "row")
             lines.append(f"{word}: on {rows}, at {loads_at(view, forces, np.zeros(len(forces), int))}")
-    return lines
-
-
-def agreement_lines(view: View, line: str) -> list[str]:
-    """How the curves agree with the rows."""
-    v = view.variables
-    hopf = len(np.unique(v["curve_number"][v["curve_kind"] == 1]))
-    double = len(np.unique(v["curve_number"])) - hopf
-    within = error_text(float(v["curve_agreement"]))
-    lines = [
-        f"curves: {hopf} of Hopf points, {double} of double eigenvalues; crossings on rows lie within "
-        f"{within} of them, over {line}; {_on_none(int(v['curves_untraced']))}"
-    ]
-    if "cycle_curve_number" in v and (len(v["cycle_curve_number"]) or v["cycle_curves_untraced"]):
-        curves, within = (
-            len(np.unique(v["cycle_curve_number"])),
-            error_text(float(v["cycle_curve_agreement"])),
-        )
-        lines.append(
-            f"curves of cycles: {curves}; folds and torus points of rows lie within {within} of "
-            f"them, over {line}; {_on_none(int(v['cycle_curves_untraced']))}"
-        )
-    return lines
-
-
-def _on_none(count: int) -> str:
-    """How many points of rows lie on no curve."""
-    return f"{count} lies on none" if count == 1 else f"{count} lie on none"
-
-
-def fold_lines(view: View, line: str, row: str) -> list[str]:
-    """Where curves turn back, and where that of the partial beam does."""
-    v, lines = view.variables, []
-    for i, (kind, of) in enumerate(zip(v["fold_kind"], v["fold_of"], strict=True)):
-        what = "Hopf points" if kind else "double eigenvalues"
-        where = _place(view, "fold", i, (row, line))
-        lines.append(f"fold of the curve of {what}, where {(line, row)[int(of)]} is extremal: {where}")
-    if "partial_beam_k1" in v:
-        lines.append(
-            f"partial beam limit: the Hopf curve folds at k1 = 4 Fc = {float(v['partial_beam_k1']):.13g}, "
-            f"F = 2 Fc = {float(v['partial_beam_F']):.13g}"
-        )
-    return lines
-
-
-def _place(view: View, what: str, i: int, names: tuple[str, str]) -> str:
-    """The i-th fold or generalised Hopf point with its errors."""
-    v = view.variables
-    return ", ".join(
-        f"{name} = {to_error(v[f'{what}_{name}'][i], v[f'{what}_{name}_error'][i])}" for name in names
-    )
-
-
-def criticality_lines(view: View) -> list[str]:
-    """On which side of the Hopf curves cycles are born."""
-    v = view.variables
-    side = v["curve_criticality"][v["curve_kind"] == 1]
-    kinds = {
-        "supercritical": side < 0,
-        "subcritical": side > 0,
-        "undecided": side == 0,
-        "without a normal form": np.isnan(side),
-    }
-    told = [f"{int(there.sum())} {word}" for word, there in kinds.items() if there.any()]
-    points = counted(len(side), "point")
-    return [
-        f"criticality, gamma1 = {float(v['curve_gamma1']):g}: of {points} of the Hopf curves "
-        f"{', '.join(told) or 'none'}"
-    ]
-
-
-def bautin_lines(view: View, line: str, row: str) -> list[str]:
-    """The generalised Hopf points, where the side on which cycles are born changes."""
-    v = view.variables
-    lines = [
-        f"generalised Hopf point (Re c = 0) on curve {int(v['bautin_curve'][i])}: "
-        + _place(view, "bautin", i, (row, line))
-        for i in range(len(v["bautin_curve"]))
-    ]
-    if unlocated := int(v["bautin_unlocated"]):
-        changes = counted(unlocated, "change")
-        lines.append(f"{changes} of criticality seen whose place could not be found")
-    return lines
-
-
-def bautin_curve_lines(view: View) -> list[str]:
-    """Where the curves of generalised Hopf points over a third parameter lead, and why they end."""
-    v, lines = view.variables, []
-    names = [name for name in LINEAR_PARAMETERS if f"bautin_along_{name}" in v]
-    for number in np.unique(v["bautin_along_curve"]):
-        on = v["bautin_along_curve"] == number
-        where = ", ".join(f"{name} = {span(v[f'bautin_along_{name}'][on])}" for name in names)
-        ends = [BAUTIN_ENDS[int(end)] for end in v["bautin_along_end"][on][[0, -1]]]
-        lines.append(
-            f"curve {int(number)} of generalised Hopf points: {counted(int(on.sum()), 'point')}, {where}; "
-            f"ends: {ends[0]} and {ends[1]}"
-        )
     return lines

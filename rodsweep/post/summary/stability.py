@@ -7,7 +7,7 @@ import numpy as np
 from ...results.file.view import View
 from ...sweep.lines import ParameterLine, lines_over
 from ...wording import counted, some_of
-from ..hopf_points import Bracket, HopfPoint, Located
+from ..hopf_points import Bracket, Located
 from .arm import thresholds_of_arm
 from .ranges import error_text, stated_error
 
@@ -67,7 +67,7 @@ def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: st
     error = f" (+- {error_text(max(stated))})" if stated else ""
     some = f", on {some_of(len(found), len(names), 'line')} over {along}" if len(found) < len(names) else ""
     if len(located) == len(points) and all(point.agrees(located[0]) for point in located):
-        frequency = located[0].frequency if isinstance(located[0], HopfPoint) else np.nan
+        frequency = located[0].frequency
         beats = f", frequency {frequency:.6g} rad/tau2" if np.isfinite(frequency) else ""
         return _text(located[0]) + error + some + beats
     if len(found) <= FEW_LINES:

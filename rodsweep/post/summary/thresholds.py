@@ -47,7 +47,7 @@ def event_line(view: View, done: np.ndarray, event: str) -> str:
 
 def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
     """The absolute errors of crossings, one of each point, (points,), from the list of crossings."""
-    table, errors = (view.variables[name].reshape(len(F), -1) for name in (at, "crossing_error"))
+    table, errors = map(view.by_point, (at, "crossing_error"))
     return np.where(table == F[:, None], errors, 0.0).max(axis=1)
 
 

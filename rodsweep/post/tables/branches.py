@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...model.arm_quantities import LOADS
 from ...results.file.view import View
-from ...results.layouts.arm import FORCES
 from .columns import Column
 from .rows import Rows
 
@@ -54,7 +54,7 @@ def _special_of(name: str, along: str) -> str:
     """The name that a variable of cycles has at special points."""
     if name == f"branch_{along}":
         return "special_at"
-    if along == "F" and name in {f"branch_{load}" for load in FORCES}:
+    if along == "F" and name in {f"branch_{load}" for load in LOADS}:
         return "special_at_si"
     return f"special_{name}"
 

@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...config.arm_axes import ALONG
+from ...model.arm_quantities import ALL_QUANTITIES
 from ...model.drag import DRAGS
 from ...results.file.view import View
-from ...results.layouts.arm import MEANINGS, QUANTITY_UNITS, any_unit_of, converted, twin_of
+from ...results.layouts.arm import any_unit_of, converted, twin_of
 from ...results.layouts.variables import DIMENSIONS, MISSING, STATUS, Variable
 from .columns import Column, absent_in, column_of, coordinate, tells_of_items
 
@@ -87,9 +88,9 @@ def si_columns(
         # At a crossing along a row of forces lies a force.
         is_force = declared.name == "crossing_at" and "F" not in view.parameters
         variable = replace(declared, name="crossing_F") if is_force else declared
-        unit, factors, divisors = any_unit_of(variable, "force" in view.quantities)
-        known = {*factors, *divisors} <= at.keys()
-        if unit and known and twin_of(variable.name, unit) not in view.variables:
+        si = any_unit_of(variable, "force" in view.quantities)
+        known = {*si.factors, *si.divisors} <= at.keys()
+        if si.unit and known and twin_of(variable.name, si.unit) not in view.variables:
             twin, values = converted(variable, column.values, at)
             yield replace(column_of(twin, values), absent=column.absent)
 
@@ -103,7 +104,7 @@ def line_columns(view: View, rows: Rows) -> Iterator[Column]:
 
 def quantity_column(name: str, values: NDArray) -> Column:
     """The column of a quantity of an arm, whose values have the shape (rows,)."""
-    column = coordinate(name, QUANTITY_UNITS[name], MEANINGS[name], values)
+    column = coordinate(name, *ALL_QUANTITIES[name][:2], values)
     return replace(column, words=dict(enumerate(DRAGS))) if name == "drag" else column
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...sweep.chains import Chains
-from ...sweep.grid import Points
+from ...sweep.points import Points
 from ...sweep.stretches import Stretches
 from ..layouts.variables import DIMENSIONS, MISSING, TYPED, Filled, Layout, Variable
 from .identity import fingerprint_of

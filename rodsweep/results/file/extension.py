@@ -17,7 +17,7 @@ from ...arrays import Array
 from ...config.axes import words
 from ...config.reading import config_of
 from ...errors import InputError
-from ...sweep.grid import Points
+from ...sweep.points import Points
 from ...sweep.stretches import LONGEST, along_the_longest
 from ..layouts import INCREASES
 from ..layouts.variables import Increase, Layout

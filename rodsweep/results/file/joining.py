@@ -17,7 +17,7 @@ from ...config.reading import canonical, config_of, text_of
 from ...config.schema import Config
 from ...config.values import Axis
 from ...errors import InputError
-from ...sweep.grid import Points
+from ...sweep.points import Points
 from ..layouts.variables import MISSING, SECONDS
 from .content import SEAL
 from .creation import Plan

@@ -13,7 +13,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from ...sweep.grid import Points
+from ...sweep.points import Points
 from ...sweep.ranges import IndexRange, joined
 from ..layouts.variables import MISSING, Layout
 

@@ -33,14 +33,12 @@ from ..run.journal import (
 from .creation import Plan, add_variables, create_file
 from .exchange import Exchange, disk_refusals, identity
 from .extension import extension_of
-from .identity import change_between
 from .points import missing_ranges, parameters_of, statuses, write_points
 from .provenance import merged_history
 from .recent import SNAPSHOT
-from .validation import Header, NotWhole, is_ours, read_header, reading
+from .refusals import header_in_the_way, refuse_other, require_room
+from .validation import Header, is_ours, reading
 
-SPACE_FACTOR, SPACE_FIXED = 3, 300_000
-"""Room that a run needs: the file, the journals and the copy in units of the file, and bytes besides."""
 BEFORE = "before-*.h5"
 """Files beside the journals as they were before an extension that is not complete yet."""
 
@@ -84,7 +82,7 @@ class Store:
             elif extend:
                 self._extend(header)
             else:
-                self._refuse(header)
+                refuse_other(header, self.plan, self.journals)
         self._set_aside(other_journals(self.journals, self.plan.fingerprint), "journals of other points")
         drop_files(self.journals, JOURNALS)  # what is left has no points
 
@@ -92,7 +90,7 @@ class Store:
         """Makes the file of the plan, with the points of its journals unless all is to be computed anew."""
         if self.path.exists() and not is_ours(self.path):
             raise InputError(f"{self.path} is no result file, so --fresh leaves it alone")
-        self._need_room()
+        require_room(self.path, self.plan)
         own = journals_of(self.journals, self.plan.fingerprint)
         if fresh:
             drop_files(self.journals, CHECKPOINTS)
@@ -108,7 +106,7 @@ class Store:
         """Exchanges the file of a smaller config for that of the plan, with all points that stay."""
         points = parameters_of(self.path, header.layout)
         extension = extension_of(header, points, self.plan)
-        self._need_room()
+        require_room(self.path, self.plan)
         blocks = read_journals(self.journals, header.layout, header.fingerprint, header.points)
         self._fold_blocks(blocks, header.layout, header.fingerprint, {})
         done = header.points - total(self.missing())
@@ -147,17 +145,6 @@ class Store:
             return {}
         return names | {"config_resolved": json.dumps(self.plan.config)}
 
-    def _need_room(self) -> None:
-        """EnvironmentLacks unless the file, its journals and the copy that replaces it have room."""
-        size = SPACE_FACTOR * self.plan.points.count * (self.plan.layout.bytes_per_point + 12)
-        size += SPACE_FIXED
-        free = shutil.disk_usage(self.path.parent).free
-        if free < size:
-            raise EnvironmentLacks(
-                f"{self.path} needs {size / 1e6:.3g} MB on its disk while it is computed, and "
-                f"{free / 1e6:.3g} MB are free"
-            )
-
     def attributes(self) -> dict[str, Any]:
         """What the file says of itself."""
         with reading(self.path), h5py.File(self.path, "r") as file:
@@ -195,7 +182,7 @@ class Store:
         try:
             header = self._header()
             if header.fingerprint != self.plan.fingerprint:
-                self._refuse(header)
+                refuse_other(header, self.plan, self.journals)
         except InputError as error:
             raise EnvironmentLacks(f"another file was put in its place meanwhile: {error}") from None
 
@@ -242,33 +229,7 @@ class Store:
 
     def _header(self) -> Header:
         """The header of the existing file; InputError unless it is a whole result."""
-        if not self.path.is_file():
-            raise InputError(f"{self.path} is not a file; choose another with -o")
         left = identity(self.path)
-        try:
-            header = read_header(self.path)
-        except NotWhole as error:
-            raise InputError(f"{error}; it is left as it is: {self._ways_out()}") from None
+        header = header_in_the_way(self.path, self.plan, self.journals)
         self.exchange.left = left
         return header
-
-    def _ways_out(self) -> str:
-        """What may be done about a file that stands in the way of this run."""
-        if journals_of(self.journals, self.plan.fingerprint):
-            return f"move it away, and the same command takes the points that wait in {self.journals}"
-        return "choose another file with -o, or replace it with --fresh"
-
-    def _refuse(self, header: Header) -> None:
-        """Refuses a file that was made for something else."""
-        change = change_between(header.config, self.plan.config)
-        raise InputError(
-            f"{self.path} was made from another config ({change}); {self._ways_out()}{self._hint(header)}"
-        )
-
-    def _hint(self, header: Header) -> str:
-        """What else may be done about a file of another config, where its config is contained in ours."""
-        try:
-            extension_of(header, parameters_of(self.path, header.layout), self.plan)
-        except InputError:
-            return ""
-        return "; --extend computes what it lacks"

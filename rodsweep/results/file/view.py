@@ -8,8 +8,8 @@ from typing import Any
 import h5py
 import numpy as np
 
+from ...model.arm_quantities import ALL_QUANTITIES
 from ...model.parameters import NONLINEAR_PARAMETERS
-from ..layouts.arm import QUANTITY_UNITS
 from ..layouts.variables import TYPED
 from .content import is_users
 from .recent import journalled_points, put_in, unfolded
@@ -85,7 +85,7 @@ class View:
 
         Each is of shape () or along a parameter, along `point`, or of a grid over them along their own.
         """
-        return {name: self.variables[name] for name in QUANTITY_UNITS if name in self.variables}
+        return {name: self.variables[name] for name in ALL_QUANTITIES if name in self.variables}
 
     @property
     def listed(self) -> "View":
@@ -105,6 +105,17 @@ class View:
             return np.broadcast_to(values.reshape(along), shape).ravel()
         n = len(shape)
         return values.reshape(-1, *values.shape[n:]) if values.shape[:n] == shape else values
+
+    def by_point(self, name: str) -> np.ndarray:
+        """A variable with all points along its first dimension, (points, ...)."""
+        values = self.variables[name]
+        return values.reshape(-1, *values.shape[self.variables["status"].ndim :])
+
+    def of_point(self, index: int) -> dict[str, np.ndarray]:
+        """The variables of the point at a flat index, each in its shape there."""
+        shape = self.variables["status"].shape
+        names = (name for name, values in self.variables.items() if values.shape[: len(shape)] == shape)
+        return {name: self.by_point(name)[index] for name in names}
 
     @property
     def point_columns(self) -> dict[str, np.ndarray]:
@@ -130,7 +141,7 @@ def _view(path: Path) -> View:
         flags = dict(zip((int(v) for v in status.attrs["flag_values"]), words, strict=True))
         recent = journalled_points(header, status[...].ravel())
         variables = Variables(path, file, recent)
-        typed = {name: str(file[name].attrs[TYPED]) for name in QUANTITY_UNITS if is_typed(file, name)}
+        typed = {name: str(file[name].attrs[TYPED]) for name in ALL_QUANTITIES if is_typed(file, name)}
     layout = header.layout
     return View(path, header.attributes, variables, layout.parameters, flags, len(recent), layout.over, typed)
 

@@ -7,7 +7,8 @@ force_scale and pressure_scale that they make, are coordinates: numbers, or alon
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import Any
+from math import prod
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,32 +19,48 @@ from ...config.arm_axes import ALONG, names_over
 from ...config.axes import Axes
 from ...config.quantities import typed_unit
 from ...config.tasks import makes_diagram
-from ...model.arm import QUANTITIES, UNITS
+from ...model.arm_quantities import ALL_QUANTITIES, LOADS, RELATIVE, SCALE_OF, UNITS
 from ...model.drag import DRAGS
 from ...model.neglected import Validity
 from ...model.parameters import PARAMETERS
-from ...sweep.grid import Points
+from ...sweep.points import Points
 from .variables import ANGULAR, DIMENSIONS, Filled, Layout, Variable, real, word
 
 SUFFIX, OF_HERTZ = "_si", "_hz"
 HERTZ = "Hz"
 """Cycles per second: what is counted on the bench. A radian a second is told nowhere."""
+
+
+class UnitOfArm(NamedTuple):
+    """An SI unit of results: one dimensionless unit is the product of `factors` over that of `divisors`.
+
+    Of a frequency, which is angular without dimension, in turns: in Hz.
+    """
+
+    unit: str = ""
+    factors: tuple[str, ...] = ()
+    divisors: tuple[str, ...] = ()
+
+    def scale(self, quantities: Mapping[str, Any]) -> NDArray[Any]:
+        """The dimensionless unit in this one, from quantities of shape () or (n,): of shape () or (n,)."""
+        up, down = (prod(quantities[name] for name in names) for names in (self.factors, self.divisors))
+        return np.asarray(up / (2 * np.pi * down if self.unit == HERTZ else down))
+
+
+NO_UNIT = UnitOfArm()
+"""Of what has no SI unit."""
 OF_TIME_AND_LENGTH = {
-    "tau2": ("s", ("tau2",), ()),
-    "1/tau2": ("1/s", (), ("tau2",)),
-    ANGULAR: (HERTZ, (), ("tau2",)),
-    "L": ("m", ("length",), ()),
-    "k3/L": ("J", ("force_scale", "length"), ()),
-    "k3/(L tau2)": ("W", ("force_scale", "length"), ("tau2",)),
+    "tau2": UnitOfArm("s", ("tau2",)),
+    "1/tau2": UnitOfArm("1/s", (), ("tau2",)),
+    ANGULAR: UnitOfArm(HERTZ, (), ("tau2",)),
+    "L": UnitOfArm("m", ("length",)),
+    "k3/L": UnitOfArm("J", ("force_scale", "length")),
+    "k3/(L tau2)": UnitOfArm("W", ("force_scale", "length"), ("tau2",)),
 }
-"""Dimensionless units in SI: the unit, and which quantities one is a product of, and divided by; a
-frequency in Hz by a turn of 2 pi too."""
-FORCES = {
-    "pressure": ("Pa", ("pressure_scale",), ()),
-    "force": ("N", ("force_scale",), ()),
-}
+"""Dimensionless units in SI."""
+FORCES = {load: UnitOfArm(UNITS[load][0], (SCALE_OF[load],)) for load in LOADS}
 """What a follower force is told in: as the load of the arm is given, a pressure where none is."""
-LOAD_OF_UNIT = {unit: load for load, (unit, *_) in FORCES.items()}
+LOAD_OF_UNIT = {each.unit: load for load, each in FORCES.items()}
 FREQUENCIES_OF_EVENTS = {
     f"{event}_frequency": f"frequency_{event}_hz" for event in ("hopf", "restabilization")
 }
@@ -52,16 +69,6 @@ OF_BRANCHES = ("special_at", "special_error")
 """Forces along the branches of an arm, which are followed in nothing else."""
 WITHIN = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))
 """Dimensions beside the points of what is told in SI units too; longer tables are not stored twice."""
-UNITS_OF_ARMS = {
-    "tau2": ("s", "unit of time, gamma2 L^4/k3"),
-    "force_scale": ("N", "unit of force, k3/L^2"),
-    "pressure_scale": ("Pa", "pressure on the tip's cross section that makes F = 1, k3/(L^2 A)"),
-}
-"""Units that an arm makes, beside its quantities."""
-_DESCRIBED = {name: (each.unit, each.meaning) for name, each in QUANTITIES.items()} | UNITS_OF_ARMS
-QUANTITY_UNITS = {name: unit for name, (unit, _) in _DESCRIBED.items()}
-MEANINGS = {name: meaning for name, (_, meaning) in _DESCRIBED.items()}
-"""SI unit of each quantity, and what it is."""
 
 EFFECTS = ("inertia_of_the_arm", "inertia_of_the_fluid", "compression", "weight", "Reynolds_number")
 """What the model leaves out, as `rodsweep.model.neglected` names it but for the blanks."""
@@ -94,8 +101,8 @@ def with_si(layout: Layout, config: Mapping[str, Any]) -> Layout:
 
 def twins_of(layout: Layout, config: Mapping[str, Any]) -> dict[str, Variable]:
     """What is stored in SI units too of a rod's layout, by the name of its variable there, for a config."""
-    as_force = any(name in config["parameters"]["arm"] for name in ("force", "force_over_flutter"))
-    units = ((variable, _unit_of(variable, as_force)[0]) for variable in layout.variables)
+    as_force = any(RELATIVE.get(name, name) == "force" for name in config["parameters"]["arm"])
+    units = ((variable, _unit_of(variable, as_force).unit) for variable in layout.variables)
     return {
         v.name: real(twin_of(v.name, unit), unit, _meaning(v, unit), *v.extra) for v, unit in units if unit
     }
@@ -119,20 +126,20 @@ def _meaning(variable: Variable, unit: str) -> str:
     return f"{words}; in cycles per second"
 
 
-def _unit_of(variable: Variable, as_force: bool) -> tuple[str, tuple[str, ...], tuple[str, ...]]:
-    """The SI unit of a variable, what to multiply and to divide by; an empty unit where it is told once."""
-    return any_unit_of(variable, as_force) if variable.extra in WITHIN else ("", (), ())
+def _unit_of(variable: Variable, as_force: bool) -> UnitOfArm:
+    """The SI unit of a variable; NO_UNIT where it is told once."""
+    return any_unit_of(variable, as_force) if variable.extra in WITHIN else NO_UNIT
 
 
-def any_unit_of(variable: Variable, as_force: bool) -> tuple[str, tuple[str, ...], tuple[str, ...]]:
-    """The same of variables that the file tells once too; an empty unit where there is no SI unit."""
+def any_unit_of(variable: Variable, as_force: bool) -> UnitOfArm:
+    """The same of variables that the file tells once too; NO_UNIT where there is no SI unit."""
     if variable.dtype != "<f8":
-        return "", (), ()
+        return NO_UNIT
     if variable.units == PARAMETERS["F"].unit and (
         "F" in variable.name.split("_") or variable.name in OF_BRANCHES
     ):
         return FORCES["force" if as_force else "pressure"]
-    return OF_TIME_AND_LENGTH.get(variable.units, ("", (), ()))
+    return OF_TIME_AND_LENGTH.get(variable.units, NO_UNIT)
 
 
 def converted(variable: Variable, values: Array, quantities: Mapping[str, Array]) -> tuple[Variable, Array]:
@@ -140,10 +147,9 @@ def converted(variable: Variable, values: Array, quantities: Mapping[str, Array]
 
     quantities: those of the arm, each of shape () or (n,).
     """
-    unit, factors, divisors = any_unit_of(variable, "force" in quantities)
-    up, down = (np.prod([quantities[name] for name in names], axis=0) for names in (factors, divisors))
-    scale = up / (2 * np.pi * down if unit == HERTZ else down)
-    return real(twin_of(variable.name, unit), unit, _meaning(variable, unit)), values * scale
+    si = any_unit_of(variable, "force" in quantities)
+    told = real(twin_of(variable.name, si.unit), si.unit, _meaning(variable, si.unit))
+    return told, values * si.scale(quantities)
 
 
 def over_of(config: Mapping[str, Any]) -> tuple[str, ...]:
@@ -186,7 +192,7 @@ def quantities_of(parameters: Axes, points: Points) -> tuple[Filled, ...]:
 
 def _filled(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]) -> Filled:
     """A quantity or a parameter with its values along dimensions."""
-    units, meaning = DIMENSIONS[name] if name in PARAMETERS else (QUANTITY_UNITS[name], MEANINGS[name])
+    units, meaning = DIMENSIONS[name] if name in PARAMETERS else ALL_QUANTITIES[name][:2]
     variable = real(name, units, meaning, *dimensions)
     if name in UNITS and getattr(arm, name) is not None:
         variable = replace(variable, typed=typed_unit(name, getattr(arm, name)))
@@ -218,25 +224,13 @@ def in_si(
     index: of the point, or (n,), with the variables (n, ...) then; quantities: those of the arm, each of
     shape () or (points,).
     """
-    values = {}
+    found = {}
     for variable in layout.variables:
-        unit, factors, divisors = _unit_of(variable, "force" in quantities)
-        if unit:
-            value = np.asarray(record[variable.name])
-            up, down = (_product(quantities, names, index) for names in (factors, divisors))
-            scale = up / (2 * np.pi * down if unit == HERTZ else down)
-            values[twin_of(variable.name, unit)] = value * scale.reshape(
-                scale.shape + (1,) * (value.ndim - scale.ndim)
-            )
-    return values
-
-
-def _product(
-    quantities: Mapping[str, NDArray[Any]], names: Iterable[str], index: int | NDArray[np.int64]
-) -> NDArray[Any]:
-    """The product of quantities at a point, shape (), or at several, (n,), or () where they share it."""
-    product = np.array(1.0)
-    for name in names:
-        values = np.asarray(quantities[name])
-        product = product * np.asarray(values[index] if values.ndim else values)
-    return product
+        si = _unit_of(variable, "force" in quantities)
+        if si.unit:
+            used = {name: quantities[name] for name in (*si.factors, *si.divisors)}
+            here = {name: array[index] if np.ndim(array) else array for name, array in used.items()}
+            value, scale = np.asarray(record[variable.name]), si.scale(here)
+            shape = scale.shape + (1,) * (value.ndim - scale.ndim)
+            found[twin_of(variable.name, si.unit)] = value * scale.reshape(shape)
+    return found

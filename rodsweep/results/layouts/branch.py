@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS
+from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, all_but
 from .variables import ANEW, SECONDS, STATUS, Increase, Layout, Variable, real, truth, whole, word
 
 ALONG, SPECIAL = "branch_point", "special"
@@ -124,5 +124,5 @@ def layout(config: dict[str, Any]) -> Layout:
         SECONDS,
         STATUS,
     )
-    parameters = tuple(name for name in NONLINEAR_PARAMETERS if name != along)
+    parameters = all_but(along, NONLINEAR_PARAMETERS)
     return Layout(variables, {ALONG: options["cycles"], SPECIAL: options["special"]}, parameters)

@@ -3,7 +3,7 @@
 from math import nan
 from typing import Any
 
-from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS
+from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, all_but
 from .thresholds import CROSSINGS, search_variables
 from .variables import ANEW, ANGULAR, Layout, Variable, real, whole
 
@@ -71,5 +71,5 @@ def layout(config: dict[str, Any]) -> Layout:
         whole("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
     )
     variables = (*search[:after], *NORMAL_FORM, *ends, *search[after:])
-    parameters = tuple(name for name in NONLINEAR_PARAMETERS if name != "F")
+    parameters = all_but("F", NONLINEAR_PARAMETERS)
     return Layout(variables, {ALONG: config["criticality"]["crossings"]}, parameters)

@@ -191,6 +191,11 @@ class Layout:
         """Size of all variables at one point, also where that is more than a record can hold."""
         return sum(np.dtype(v.dtype).itemsize * prod(self.inner(v)) for v in self.variables)
 
+    @property
+    def empty_point(self) -> dict[str, NDArray[Any]]:
+        """Every variable of a point without numbers, each in its shape at one point."""
+        return {v.name: np.full(self.inner(v), v.fill, v.dtype) for v in self.variables}
+
     def inner(self, variable: Variable) -> tuple[int, ...]:
         """Shape of a variable at one point."""
         return tuple(self.extents[d] for d in variable.extra)

@@ -7,20 +7,29 @@ another run's, counts as none: the chain then starts again, the unit is solved a
 import io
 import os
 import zlib
+from collections.abc import Callable
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, Protocol
 
 import numpy as np
 
-from ...arrays import Array
 from .journal import drop_files
 
 CHECKPOINTS, UNIT_RESULTS = "chain-*", "unit-*"
 """All checkpoints, or results of units, of a directory, also those that a kill left half written."""
-CHECKPOINT_HEAD, RESULT_HEAD = b"rodsweep checkpoint 4\n", b"rodsweep unit 1\n"
+CHECKPOINT_HEAD, RESULT_HEAD = b"rodsweep checkpoint 5\n", b"rodsweep unit 1\n"
 """The number grows when a state, a unit or its result means something else: older ones then are none."""
 CHECKSUM_BYTES = 4
 Arrays = dict[str, np.ndarray]
+STATE = "state_"
+"""Prefix of the names of a state's arrays."""
+
+
+class HasArrays(Protocol):
+    """A state of a chain."""
+
+    def arrays(self) -> Arrays:
+        """All of it as named arrays, of any shapes."""
 
 
 class KeptArrays:
@@ -64,17 +73,24 @@ class Checkpoints(KeptArrays):
 
     pattern = CHECKPOINTS
 
-    def __init__(self, directory: Path, fingerprint: str):
+    def __init__(self, directory: Path, fingerprint: str, state_of: Callable[[Arrays], HasArrays]):
+        """state_of: a state from the arrays, of any shapes, that its `arrays` gave."""
         super().__init__(directory, fingerprint, CHECKPOINT_HEAD)
+        self._state_of = state_of
 
-    def write(self, chain: int, index: int, state: Array | None) -> None:
-        """Keeps what the neighbour of point `index` starts from, an array of any shape or None."""
-        self.put(chain, {"index": np.array(index)} | ({} if state is None else {"state": state}))
+    def write(self, chain: int, index: int, state: HasArrays | None) -> None:
+        """Keeps the state from which the neighbour of point `index` starts, or that there is none."""
+        parts = state.arrays() if state is not None else {}
+        self.put(chain, {"index": np.array(index)} | {STATE + name: part for name, part in parts.items()})
 
-    def read(self, chain: int) -> tuple[int, Array | None] | None:
+    def read(self, chain: int) -> tuple[int, HasArrays | None] | None:
         """(index, state) as written last, None where there is no whole checkpoint of this run."""
         arrays = self.get(chain)
-        return None if arrays is None else (int(arrays["index"]), arrays.get("state"))
+        if arrays is None:
+            return None
+        index = int(arrays.pop("index"))
+        parts = {name.removeprefix(STATE): part for name, part in arrays.items()}
+        return index, self._state_of(parts) if parts else None
 
     def remove(self, chain: int) -> None:
         """Forgets a chain that is done."""

@@ -1,7 +1,7 @@
 """Products of small dense matrices in compiled code, by the BLAS that SciPy brings.
 
 At 50 unknowns its dgemm is four times as fast as loops, and ten times as fast as its own factorisation and
-substitution; `solve.orbit.condensation` is therefore made of products.
+substitution; `solve.orbit.matrix.elimination` is therefore made of products.
 """
 
 from typing import Any

@@ -11,8 +11,9 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ..continuation.follower import StepControl, Stepped, advance
-from ..cycle.neighbour import carried
-from ..cycle.refinement import RefinedCycle, judged_by, matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import RefinedCycle, judged_by, matrix_distance, newton_tolerance
+from ..cycle.along_parameter import carried
+from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import Converged, multiplier_change, relative_change
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import mesh_of
@@ -74,6 +75,11 @@ class ArcPoint:
         return self.cycle.orbit
 
     @property
+    def workspace(self) -> NewtonWorkspace:
+        """The solver's, in which the cycle's matrix was made."""
+        return self.cycle.fine.workspace
+
+    @property
     def at(self) -> float:
         """The parameter's coordinate."""
         return self.orbit.form.rod.coordinate(self.scale.name)
@@ -129,9 +135,8 @@ def placed(found: Converged, scale: Scale, tangent: Array) -> Place:
     return Place(own, tangent / unit, ahead / unit, 0.0, 0.0)
 
 
-def tangent_at(orbit: Orbit, scale: Scale, side: Array, matrix: BorderedMatrix | None = None) -> Array:
-    """The tangent of the branch at an orbit on a side, (3,), by the matrix made last or another, (N + 1,)."""
-    matrix = matrix or BorderedMatrix(orbit, scale)
+def tangent_at(orbit: Orbit, scale: Scale, side: Array, matrix: BorderedMatrix) -> Array:
+    """The tangent of the branch at an orbit on a side, (3,), by its matrix, (N + 1,)."""
     tangent = matrix.direction(side)
     return tangent if scale.moved(orbit, tangent) @ side > 0 else -tangent
 
@@ -153,7 +158,8 @@ def _stepped(here: ArcPoint, accuracy: float, length: float) -> Stepped[ArcPoint
     Raises Unsolvable.
     """
     condition, predicted = here.condition(length), here.predicted(length)
-    found = condition.solved(predicted, newton_tolerance(accuracy), matrix_distance(accuracy))
+    tolerance, distance = newton_tolerance(accuracy), matrix_distance(accuracy)
+    found = condition.solved(predicted, tolerance, here.workspace, distance)
     off = relative_change(predicted, found.orbit.values - predicted.values)
     if here.before is None and off <= STEPS.far:
         off = STEPS.aim  # a tangent alone does not tell how good a cubic would be

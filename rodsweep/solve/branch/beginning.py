@@ -14,10 +14,11 @@ from ...determinant.parameter_path import Path
 from ...discretization.stress_form import StressForm
 from ...model.rod import Rod
 from ..changes.unstable_modes import Crossing
+from ..cycle.accuracy.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tolerance
 from ..cycle.hopf_start import NORMAL_FORM_ACCURACY, orbit_with
-from ..cycle.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tolerance
 from ..hopf.hopf_coefficients import HopfCoefficients, hopf_coefficients
 from ..hopf.normal_form import NormalForm, accurate_normal_form
+from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import stages_for, wanted_mesh
 from ..point import Unsolvable
@@ -121,30 +122,34 @@ def special_hopf(hopf: HopfBirth) -> SpecialPoint:
     )
 
 
-def beginning(hopf: HopfBirth, accuracy: float) -> ArcPoint:
-    """The first cycle of the branch from a Hopf point; raises Unsolvable."""
+def beginning(hopf: HopfBirth, accuracy: float, workspace: NewtonWorkspace) -> ArcPoint:
+    """The first cycle of the branch from a Hopf point; raises Unsolvable.
+
+    workspace: memory of the branch's matrices.
+    """
     a = abs(hopf.amplitude_coefficient)
     for amplitude in AMPLITUDES:
         try:
-            return _cycle_of(hopf, min(amplitude, SHARE * a), accuracy)
+            return _cycle_of(hopf, min(amplitude, SHARE * a), accuracy, workspace)
         except Unsolvable as error:
             why = error
     raise Unsolvable(f"no cycle is found beside the Hopf point: {why}") from why
 
 
-def _cycle_of(hopf: HopfBirth, amplitude: float, accuracy: float) -> ArcPoint:
+def _cycle_of(hopf: HopfBirth, amplitude: float, accuracy: float, workspace: NewtonWorkspace) -> ArcPoint:
     """The cycle of an amplitude that the normal form predicts, to an accuracy."""
     start = predicted_cycle(hopf, amplitude)
     scale = Scale.of(start, hopf.name, abs(moment_of(start)) * LEAST_UNIT / amplitude)
     border = np.sign(moment_of(start)) * MOMENT
     condition = Condition.at(scale, border, start)
-    near = condition.solved(start, NEAR).orbit
+    rough = condition.solved(start, NEAR, workspace)
+    near = rough.orbit
     y = float(near.form.tip(near.start)[1])
     if not 0.5 < y / amplitude < 2.0:
         raise Unsolvable("Newton's method left the cycle that the normal form predicts")
     aim = max(accuracy, FIRST_ACCURACY)
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
-    first = condition.on(mesh, near, newton_tolerance(accuracy), matrix_distance(accuracy))
+    first = condition.on(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
     born = abs(moment_of(first.orbit)) / scale.moment
     return first_point(first, scale, border, born, accuracy)
 

@@ -14,20 +14,22 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...watch import report
-from ..orbit.condensation import eliminate, substitute
-from ..orbit.linearisation import (
-    NewtonWorkspace,
+from ..orbit.matrix.elimination import eliminate
+from ..orbit.matrix.linearisation import (
     change_along,
     jump_of,
+    over_period,
     reduced_residuals,
     reduced_variations,
+    returns_of,
 )
-from ..orbit.multipliers import nonzero_eigenvalues
+from ..orbit.matrix.phase import phase, phase_change, phase_row
+from ..orbit.matrix.right_sides import right_sides
+from ..orbit.matrix.substitution import substitute
+from ..orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
 from ..orbit.newton import MOST_ITERATIONS, Converged, relative_change
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh
-from ..orbit.phase import phase, phase_change, phase_row
-from ..orbit.right_sides import right_sides
 from ..point import Unsolvable
 
 LONGEST_STEP = 0.5
@@ -75,20 +77,20 @@ class BorderedMatrix:
     """Newton's matrix at an orbit, with a parameter as a further unknown and one row still to be given.
 
     Steps are arrays like `Orbit.values`, (N,), with the parameter's coordinate behind them. They raise
-    RuntimeError once another matrix was made, for all share one memory; the multipliers stay.
+    RuntimeError once another matrix was made in the same workspace; the multipliers stay.
     """
 
-    def __init__(self, orbit: Orbit, scale: Scale) -> None:
-        self.orbit, self.scale = orbit, scale
+    def __init__(self, orbit: Orbit, scale: Scale, workspace: NewtonWorkspace) -> None:
+        self.orbit, self.scale, self.workspace = orbit, scale, workspace
         self.tangent: Array | None = None  # by which parameter is for the branch to say
         p, (K, s, n) = orbit.semidiscrete, orbit.states.shape
         along, V = change_along(orbit.form, scale.name), np.empty((K, s, 3, len(p.matrices.weights)))
-        self._columns, self._workspace = np.empty((K, s, 3, n)), NewtonWorkspace(K, s, n)
+        self._columns, self._memory = np.empty((K, s, 3, n)), MatrixMemory(workspace, K, s, n)
         right_sides(orbit.points, orbit.duration, p, along, V, self._columns)
-        ends = eliminate(orbit.points, V, orbit.duration, p, self._workspace.factors, self._columns)
+        ends = eliminate(orbit.points, V, orbit.duration, p, self._memory.factors, self._columns)
         shift = phase_change(orbit.start, along.change, p.rod, p.matrices)
         self._matrix = np.zeros((n + 2, n + 2))
-        self._matrix[:n, :n] = self._workspace.propagator - p.symmetry
+        self._matrix[:n, :n] = self._memory.propagator - p.symmetry
         self._matrix[:n, n], self._matrix[:n, n + 1] = ends[0], ends[2]
         row = np.empty(n)
         phase_row(orbit.start, p.rod, p.matrices, row)
@@ -101,7 +103,7 @@ class BorderedMatrix:
 
     def correction(self, orbit: Orbit, border: Array, length: float) -> Array:
         """The same at another orbit near by, whose parameter may be another one."""
-        factors, p = self._workspace.factors, self.orbit.semidiscrete
+        factors, p = self._memory.factors, self.orbit.semidiscrete
         columns, ends = reduced_residuals(orbit.points, orbit.duration, orbit.semidiscrete, p, factors)
         right = np.append(self._jump(orbit, ends[0]), length)
         return self.solved(border, right, columns[:, :, 0], 1.0)
@@ -119,33 +121,30 @@ class BorderedMatrix:
         """
         along, rod, p = change_along(orbit.form, self.scale.name), orbit.semidiscrete, self.orbit.semidiscrete
         changed: tuple[Array, Array] = reduced_variations(
-            orbit.values, rod, along, variations, p, self._workspace.factors
+            orbit.values, rod, along, variations, p, self._memory.factors
         )
         return changed
 
     def spread(self, starts: Array, columns: Array) -> Array:
         """The changes of states, (m, N + 1), from those of the start, (m, n), and reduced right sides."""
         out = np.empty_like(columns)
-        substitute(starts, columns, self.orbit.semidiscrete, self._workspace.factors, out)
+        substitute(starts, columns, self.orbit.semidiscrete, self._memory.factors, out)
         stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)
         return np.hstack([starts, stages, np.zeros((len(starts), 2))])
 
     @property
     def propagator(self) -> Array:
         """P, (n, n)."""
-        return self._workspace.propagator
+        return self._memory.propagator
 
     @cached_property
     def returns(self) -> Complex:
         """The multipliers of the map over what is solved, half a period and the reflection, (rank,)."""
-        return nonzero_eigenvalues(
-            self.orbit.symmetry.returned(self._workspace.propagator, self.orbit.form.layout)
-        )
+        return returns_of(self.propagator, self.orbit)
 
     def multipliers(self) -> Complex:
         """All Floquet multipliers but rounding, (rank,), by descending modulus, the trivial one too."""
-        values = self.returns**self.orbit.symmetry.parts
-        return values[np.argsort(-np.abs(values), kind="stable")]
+        return over_period(self.returns, self.orbit)
 
     def other_way(self) -> Array:
         """The change at a fixed parameter that the matrix all but ignores, (N + 1,), of any length and sign.
@@ -176,7 +175,7 @@ class BorderedMatrix:
         stages = found[n] * self._columns[:, :, 0] + share * sides + found[n + 1] * self._columns[:, :, 2]
         stages = np.ascontiguousarray(stages[:, :, None])
         out = np.empty_like(stages)
-        factors, start = self._workspace.factors, found[None, :n].copy()
+        factors, start = self._memory.factors, found[None, :n].copy()
         substitute(start, stages, self.orbit.semidiscrete, factors, out)
         return np.concatenate([found[:n], out.ravel(), found[n:]])
 
@@ -205,13 +204,15 @@ class Condition:
         """By how much an orbit's is less."""
         return self.value - float(self.border @ self.scale.place(orbit))
 
-    def solved(self, orbit: Orbit, tolerance: float, distance: float = np.inf) -> Converged:
+    def solved(
+        self, orbit: Orbit, tolerance: float, workspace: NewtonWorkspace, distance: float = np.inf
+    ) -> Converged:
         """The cycle near an orbit; raises Unsolvable.
 
-        tolerance: relative error that is left of the orbit. distance: the largest relative distance of its
-        matrix from it, which is an error of its multipliers and of its tangent.
+        tolerance: relative error that is left of the orbit. workspace: memory of the matrices. distance: the
+        largest relative distance of its matrix from it, an error of its multipliers and of its tangent.
         """
-        matrix, off, last = BorderedMatrix(orbit, self.scale), 0.0, np.inf
+        matrix, off, last = BorderedMatrix(orbit, self.scale, workspace), 0.0, np.inf
         step = matrix.step(self.border, self.missed(orbit))
         for _ in range(MOST_ITERATIONS):
             report()
@@ -224,15 +225,15 @@ class Condition:
             if (settled or change <= tolerance) and off <= distance:
                 return Converged(orbit, matrix, off)
             if settled or change <= tolerance or (off > change and rate > SLUGGISH):
-                matrix, off = BorderedMatrix(orbit, self.scale), 0.0
+                matrix, off = BorderedMatrix(orbit, self.scale, workspace), 0.0
                 step, last = matrix.step(self.border, self.missed(orbit)), np.inf
             else:
                 step, last = matrix.correction(orbit, self.border, self.missed(orbit)), change
         raise Unsolvable(f"Newton's method on the branch is at {change:.0e}")
 
-    def on(self, mesh: OrbitMesh, orbit: Orbit, tolerance: float, distance: float = np.inf) -> Converged:
-        """The same cycle on another mesh; raises Unsolvable. tolerance and distance: as in `solved`."""
-        return self.solved(mesh.carry(orbit), tolerance, distance)
+    def on(self, mesh: OrbitMesh, found: Converged, tolerance: float, distance: float = np.inf) -> Converged:
+        """A cycle that was found, on another mesh; raises Unsolvable. tolerance, distance: as in `solved`."""
+        return self.solved(mesh.carry(found.orbit), tolerance, found.workspace, distance)
 
 
 def moved(orbit: Orbit, name: str, change: Array) -> Orbit:

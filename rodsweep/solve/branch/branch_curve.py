@@ -1,11 +1,12 @@
 """A branch of cycles as it is stored: its cycles and its special points."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..cycle.cycle_errors import CycleErrors
-from ..cycle.refinement import MULTIPLIER_FACTOR
+from ..cycle.accuracy.cycle_errors import CycleErrors
+from ..cycle.accuracy.refinement import MULTIPLIER_FACTOR
 from ..orbit.measures import Measures
 from .arc import ArcPoint
 from .special.point import SpecialPoint
@@ -56,13 +57,28 @@ def _margin(point: ArcPoint) -> float:
     return relative + MULTIPLIER_FACTOR * cycle.trivial_error
 
 
+@dataclass(frozen=True, slots=True)
+class BranchEnd:
+    """The special point at which a branch ends, and whether it is followed to an end that is one.
+
+    arrives, meets and full: as in `BranchCurve`.
+    """
+
+    special: SpecialPoint
+    complete: bool
+    arrives: int = -1
+    meets: Breaking | None = None
+    full: bool = False
+
+
 @dataclass(kw_only=True, slots=True)
 class BranchCurve:
     """A branch: its cycles and its special points, both in order, from the Hopf point of a number, or -1.
 
     arrives: the number of the Hopf point at which it ends, -1 for none. breaking: the symmetry breaking where
     a branch without symmetry is born; meets: that at which it ends. complete: whether it was followed to
-    an end that is one. explained: whether the special points explain all multipliers that cross the circle.
+    an end that is one. full: whether it ends because no more cycles are kept. explained: whether the special
+    points explain all multipliers that cross the circle.
     """
 
     hopf: int
@@ -79,7 +95,23 @@ class BranchCurve:
         """A special point behind the last cycle."""
         self.special.append(replace(special, after=len(self.points) - 1))
 
-    def end(self, special: SpecialPoint, complete: bool) -> None:
-        """The special point at which it ends."""
-        self.add(special)
-        self.complete = complete
+    def add_found(self, between: Sequence[SpecialPoint], explained: bool) -> None:
+        """Special points behind the last cycle, and whether they explain the multipliers of the next one."""
+        for special in between:
+            self.add(special)
+        self.explained &= explained
+
+    def judge(self, points: Sequence[BranchPoint]) -> None:
+        """Puts cycles with their errors in the place of as many at the end."""
+        self.points[-len(points) :] = points
+
+    def cut(self, count: int) -> None:
+        """Drops so many cycles at the end, and the special points behind them."""
+        del self.points[-count:]
+        self.special[:] = [point for point in self.special if point.after < len(self.points)]
+
+    def end(self, end: BranchEnd) -> None:
+        """How it ends."""
+        self.add(end.special)
+        self.complete, self.full = end.complete, end.full
+        self.arrives, self.meets = end.arrives, end.meets

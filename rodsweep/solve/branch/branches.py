@@ -12,7 +12,7 @@ from ...model.rod import Rod
 from ...watch import part
 from ..changes.along_path import Transitions, pair_crossings
 from ..changes.unstable_modes import Crossing
-from ..orbit.linearisation import release_workspace
+from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point import FAILURES, cause_of, solved
 from ..status import PointStatus
 from .beginning import hopf_point
@@ -86,18 +86,22 @@ class BranchesOfRod:
     curves: tuple[BranchCurve, ...] = field(default_factory=tuple)
 
 
-def solve_branches(rod: Rod, request: BranchRequest) -> BranchesOfRod:
+def solve_branches(
+    rod: Rod, request: BranchRequest, workspace: NewtonWorkspace | None = None
+) -> BranchesOfRod:
     """All branches born at Hopf points of rods along a parameter; failures are a status, never an exception.
 
-    rod: with any value of that parameter.
+    rod: with any value of that parameter. workspace: memory of Newton's matrices that rods share; without it
+    the rod has its own.
     """
+    memory = workspace or NewtonWorkspace()
     try:
         return solved(
-            lambda: _solve(rod, request),
+            lambda: _solve(rod, request, memory),
             lambda cause: BranchesOfRod(status=BranchStatus.failed, message=cause),
         )
     finally:
-        release_workspace()
+        memory.release()
 
 
 def warm_up() -> None:
@@ -107,7 +111,7 @@ def warm_up() -> None:
     )
 
 
-def _solve(rod: Rod, request: BranchRequest) -> BranchesOfRod:
+def _solve(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> BranchesOfRod:
     low, high, crushed = _range(rod, request)
     if not low < high:
         why = "F is not below k1 anywhere in the range"
@@ -124,7 +128,7 @@ def _solve(rod: Rod, request: BranchRequest) -> BranchesOfRod:
     reasons = [EndReason.crushed if side == crushed else EndReason.range_end for side in (0, 1)]
     if path.inverse:
         ends, reasons = ends[::-1], reasons[::-1]
-    course = Course(hopfs, ends, (reasons[0], reasons[1]), request.accuracy, request.cycles)
+    course = Course(hopfs, ends, (reasons[0], reasons[1]), request.accuracy, request.cycles, workspace)
     curves = _followed(course, request.along)
     status, message = _judged(found, curves, failures, request)
     return BranchesOfRod(

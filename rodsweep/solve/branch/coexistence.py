@@ -14,6 +14,7 @@ from ...arrays import Array
 from ...model.rod import Rod
 from ..changes.rows import DiagramRow, Motion, RowRequest, solve_row
 from ..changes.thresholds import ThresholdStatus
+from ..orbit.matrix.workspace import NewtonWorkspace
 from ..status import PointStatus
 from .branch_curve import BranchCurve
 from .branches import BranchesOfRod, BranchRequest, BranchStatus, solve_branches
@@ -74,10 +75,15 @@ class CoexistenceRow:
     seconds: float = 0.0
 
 
-def solve_coexistence(rod: Rod, request: RowRequest, special: int) -> CoexistenceRow:
-    """The row with its cycles; failures are a status, never an exception. special: the most points kept."""
+def solve_coexistence(
+    rod: Rod, request: RowRequest, special: int, workspace: NewtonWorkspace | None = None
+) -> CoexistenceRow:
+    """The row with its cycles; failures are a status, never an exception.
+
+    special: the most points kept. workspace: as in `solve_branches`.
+    """
     row = solve_row(rod, request)
-    branches = row_branches(rod, request, special)
+    branches = row_branches(rod, request, special, workspace)
     status, message = _judged(row, branches, special)
     cycles = cycles_at(request.values, branches, request.certify)
     forces = request.values if request.name == "F" else np.full(len(request.values), rod.F)
@@ -93,8 +99,10 @@ def solve_coexistence(rod: Rod, request: RowRequest, special: int) -> Coexistenc
     )
 
 
-def row_branches(rod: Rod, request: RowRequest, special: int) -> BranchesOfRod:
-    """The branches of cycles from the Hopf points of a row; special: the most points kept."""
+def row_branches(
+    rod: Rod, request: RowRequest, special: int, workspace: NewtonWorkspace | None = None
+) -> BranchesOfRod:
+    """The branches of cycles from the Hopf points of a row; other arguments as in `solve_coexistence`."""
     asked = BranchRequest(
         along=request.name,
         start=float(request.values[0]),
@@ -104,7 +112,7 @@ def row_branches(rod: Rod, request: RowRequest, special: int) -> BranchesOfRod:
         cycles=MOST_CYCLES,
         special=special,
     )
-    return solve_branches(rod, asked)
+    return solve_branches(rod, asked, workspace)
 
 
 def special_of(branches: BranchesOfRod) -> tuple[SpecialPoint, ...]:

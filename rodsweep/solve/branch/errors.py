@@ -9,22 +9,14 @@ beside a fold, where all other numbers change fast with the parameter.
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import ceil
 
 import numpy as np
 
 from ...arrays import Array, Complex
-from ..cycle.calibration import (
-    DISTANCE,
-    MORE_INTERVALS,
-    MORE_ORDERS,
-    MULTIPLIER,
-    SAFETY,
-    Calibration,
-    calibration_of,
-)
-from ..cycle.cycle_errors import LEAST_CLAIM, ROUNDING, CycleErrors
-from ..cycle.neighbour import carried
+from ..cycle.accuracy.calibration import MULTIPLIER, SAFETY, Calibration, calibration_of
+from ..cycle.accuracy.cycle_errors import LEAST_CLAIM, ROUNDING, CycleErrors
+from ..cycle.accuracy.finer_meshes import DISTANCE, finer_meshes
+from ..cycle.along_parameter import carried
 from ..orbit.measures import CyclePath
 from ..orbit.newton import Converged, multiplier_change, multipliers_of
 from ..orbit.orbit import Orbit
@@ -161,17 +153,15 @@ def measured_errors(
 ) -> BranchCalibration:
     """The errors of the mesh of a cycle; raises Unsolvable. before: those of a cycle near by."""
     mesh, orbit = mesh_of(found.orbit), found.orbit
-    longer = ceil(MORE_INTERVALS * mesh.intervals)
-    finer = (replace(mesh, order=mesh.order + MORE_ORDERS), replace(mesh, intervals=longer))
+    finer, share = finer_meshes(mesh)
     condition = Condition.at(place.scale, place.ahead, orbit)
     rough = CyclePath(orbit)
     multipliers = multipliers_of(found)[0]
     parts = np.empty((2, MULTIPLIER + 2))
     for part, target in zip(parts, finer, strict=True):
-        fine = condition.on(target, orbit, TOLERANCE * accuracy, DISTANCE)
+        fine = condition.on(target, found, TOLERANCE * accuracy, DISTANCE)
         part[:] = _difference(rough, multipliers, fine, place)
-    # The finer mesh has an error in time itself.
-    parts[1] /= 1 - ((mesh.intervals - 1) / (longer - 1)) ** (mesh.stages + 1)
+    parts[1] /= share
     known = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, before)
     return BranchCalibration(known, parts[:, -1], slope_at(rough, place))
 

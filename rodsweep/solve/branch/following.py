@@ -11,20 +11,21 @@ from ...model.parameters import PARAMETERS
 from ...watch import Whereabouts, report
 from ...wording import counted
 from ..continuation.follower import zero_along
-from ..cycle.refinement import matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import matrix_distance, newton_tolerance
+from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit_mesh import mesh_of
 from ..point import Unsolvable
 from .arc import STEPS, ArcPoint, arc_between, next_point, point_at, tangent_at, there_from
 from .beginning import HopfBirth, beginning, special_hopf
 from .bordered import Condition, bordered
-from .branch_curve import BranchCurve
+from .branch_curve import BranchCurve, BranchEnd
 from .settling import due
 from .special.least_stretch import stretch_at
 from .special.locating import Segment, located
 from .special.point import EndReason, SpecialKind, SpecialPoint
 from .special.points import special_points
 from .symmetry import Breaking, beginning_without_symmetry, mirrored, symmetric_end
-from .trail import BranchEnd, Trail, end_at
+from .trail import Trail, end_at
 from .work import share_done
 
 PARAMETER = np.array([0.0, 0.0, 1.0])
@@ -47,7 +48,7 @@ class Course:
     """What a branch is followed through: all Hopf points of the rod, the parameter's coordinates between
     which it lies with why it ends there, an accuracy, and how many cycles are kept.
 
-    breakings: known symmetry breakings of the rod.
+    breakings: known symmetry breakings of the rod. workspace: memory of all matrices on the way.
     """
 
     hopfs: Sequence[HopfBirth]
@@ -55,6 +56,7 @@ class Course:
     reasons: tuple[EndReason, EndReason]
     accuracy: float
     most: int
+    workspace: NewtonWorkspace
     breakings: Sequence[Breaking] = ()
 
 
@@ -63,7 +65,7 @@ def follow_branch(number: int, course: Course) -> BranchCurve:
     hopf = course.hopfs[number]
     curve = BranchCurve(hopf=number)
     curve.add(special_hopf(hopf))
-    return _followed(curve, course, lambda: beginning(hopf, course.accuracy))
+    return _followed(curve, course, lambda: beginning(hopf, course.accuracy, course.workspace))
 
 
 def follow_without_symmetry(which: int, name: str, course: Course) -> BranchCurve:
@@ -71,23 +73,26 @@ def follow_without_symmetry(which: int, name: str, course: Course) -> BranchCurv
     breaking = course.breakings[which]
     curve = BranchCurve(hopf=-1, breaking=breaking)
     curve.add(replace(breaking.point, message="", orbit=None))
-    return _followed(curve, course, lambda: beginning_without_symmetry(breaking, name, course.accuracy))
+
+    def first() -> ArcPoint:
+        return beginning_without_symmetry(breaking, name, course.accuracy, course.workspace)
+
+    return _followed(curve, course, first)
 
 
 def _followed(curve: BranchCurve, course: Course, first: Callable[[], ArcPoint]) -> BranchCurve:
     """A branch that begins at a special point, and what gives its first cycle or raises Unsolvable."""
     if course.most < 1:
-        curve.full = True
-        curve.end(_end_beside(curve, EndReason.list_full), False)
+        curve.end(BranchEnd(_end_beside(curve, EndReason.list_full), complete=False, full=True))
         return curve
     try:
         here = first()
     except Unsolvable as why:
-        curve.end(_end_beside(curve, EndReason.no_cycle_found, str(why)), False)
+        curve.end(BranchEnd(_end_beside(curve, EndReason.no_cycle_found, str(why)), complete=False))
         return curve
     outside = _beyond(here, course)
     if outside >= 0:
-        curve.end(_end_beside(curve, course.reasons[outside]), True)
+        curve.end(BranchEnd(_end_beside(curve, course.reasons[outside]), complete=True))
         return curve
     return followed_from(curve, here, course)
 
@@ -135,12 +140,11 @@ def _next(trail: Trail, here: ArcPoint, course: Course) -> ArcPoint | BranchEnd:
     """The next cycle, which the branch gets with what lies before it, or how the branch ends."""
     curve = trail.curve
     if len(curve.points) >= course.most:
-        curve.full = True
-        return BranchEnd(end_at(here, EndReason.list_full), complete=False)
+        return BranchEnd(end_at(here, EndReason.list_full), complete=False, full=True)
     try:
         there = next_point(here, course.accuracy)
         if _back(here, there, course):
-            return (_arrived if here.orbit.symmetric else _symmetric_again)(curve, here, there, course)
+            return (_arrived if here.orbit.symmetric else _symmetric_again)(here, there, course)
         outside = _beyond(there, course)
         edge = _edge(here, course, outside) if outside >= 0 else None
         if edge is not None:
@@ -165,10 +169,7 @@ def _add_special_points(curve: BranchCurve, here: ArcPoint, there: ArcPoint, cou
     def step(point: ArcPoint, length: float) -> ArcPoint:
         return point_at(point, length, course.accuracy)
 
-    between, explained = special_points(here, there, step, course.accuracy)
-    curve.explained &= explained
-    for special in between:
-        curve.add(special)
+    curve.add_found(*special_points(here, there, step, course.accuracy))
 
 
 def _back(here: ArcPoint, there: ArcPoint, course: Course) -> bool:
@@ -189,7 +190,7 @@ def turned_round(here: ArcPoint, there: ArcPoint) -> bool:
     return float(one @ other) < 0
 
 
-def _arrived(curve: BranchCurve, here: ArcPoint, there: ArcPoint, course: Course) -> ArcPoint | BranchEnd:
+def _arrived(here: ArcPoint, there: ArcPoint, course: Course) -> ArcPoint | BranchEnd:
     """The Hopf point where cycles shrink to nothing between two; or the first of them, for a shorter step."""
     shorter = arc_between(here, there) / 2
     if here.cycle.measures.tip_y_max > SMALL:
@@ -204,23 +205,20 @@ def _arrived(curve: BranchCurve, here: ArcPoint, there: ArcPoint, course: Course
         near = WITHIN * abs(here.at - hopf.coordinate) + max(CLOSE, course.accuracy) * abs(hopf.coordinate)
         also = WITHIN * abs(here.orbit.period - hopf.period) + WITHIN_PERIOD * hopf.period
         if abs(at - hopf.coordinate) <= near and abs(period - hopf.period) <= also:
-            curve.arrives = number
-            return BranchEnd(special_hopf(hopf), complete=True)
+            return BranchEnd(special_hopf(hopf), complete=True, arrives=number)
     why = "cycles shrink to nothing where no Hopf point is known"
     return BranchEnd(end_at(here, EndReason.no_cycle_found, why), complete=False)
 
 
-def _symmetric_again(
-    curve: BranchCurve, here: ArcPoint, there: ArcPoint, course: Course
-) -> ArcPoint | BranchEnd:
+def _symmetric_again(here: ArcPoint, there: ArcPoint, course: Course) -> ArcPoint | BranchEnd:
     """The symmetry breaking where a branch ends between two; or the first of them, for a shorter step."""
     which = symmetric_end(here, there, course.breakings, course.accuracy)
     if which is None:
         return replace(here, length=arc_between(here, there) / 2)
     if which >= 0:
         breaking = course.breakings[which]
-        curve.meets = breaking
-        return BranchEnd(replace(breaking.point, message="", orbit=None), complete=True)
+        special = replace(breaking.point, message="", orbit=None)
+        return BranchEnd(special, complete=True, meets=breaking)
     why = "the cycles become symmetric at one that lies on no branch that was followed"
     return BranchEnd(end_at(here, EndReason.no_cycle_found, why), complete=False)
 
@@ -240,6 +238,6 @@ def _on_the_edge(here: ArcPoint, there: ArcPoint, edge: Condition, course: Cours
     ends = beyond(0.0), beyond(segment.length)
     length = zero_along(beyond, ends, segment.length, 0.0, LANDING)
     tolerance, distance = newton_tolerance(course.accuracy), matrix_distance(course.accuracy)
-    found = edge.solved(segment.predicted(length), tolerance, distance)
+    found = edge.solved(segment.predicted(length), tolerance, here.workspace, distance)
     tangent = tangent_at(found.orbit, scale, here.ahead, bordered(found))
     return there_from(here, found, tangent, length, length, course.accuracy)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ...arrays import Array
-from ..cycle.refinement import judged_by, matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import judged_by, matrix_distance, newton_tolerance
 from ..orbit.newton import Converged, multipliers_of
 from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, mesh_of
 from ..point import Unsolvable
@@ -86,7 +86,7 @@ def refined(point: ArcPoint, accuracy: float, condition: Condition | None = None
 
 def on_mesh(point: ArcPoint, mesh: OrbitMesh, condition: Condition, accuracy: float) -> ArcPoint:
     """The same cycle on another mesh, its errors not measured; raises Unsolvable."""
-    found = condition.on(mesh, point.orbit, newton_tolerance(accuracy), matrix_distance(accuracy))
+    found = condition.on(mesh, point.cycle.fine, newton_tolerance(accuracy), matrix_distance(accuracy))
     tangent = tangent_at(found.orbit, point.scale, point.ahead, bordered(found))
     known = point.place
     place = replace(

@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import Array
-from ..cycle.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tolerance
+from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.measures import CyclePath
 from ..orbit.newton import relative_change
 from ..orbit.orbit import Orbit, node_times
@@ -81,42 +82,48 @@ def _moments(states: Array, orbit: Orbit) -> Array:
     return orbit.form.layout.field(states, "m3")
 
 
-def beginning_without_symmetry(breaking: Breaking, name: str, accuracy: float) -> ArcPoint:
+def beginning_without_symmetry(
+    breaking: Breaking, name: str, accuracy: float, workspace: NewtonWorkspace
+) -> ArcPoint:
     """The first cycle of the branch from a symmetry breaking along a parameter; raises Unsolvable.
 
-    Of the two that are mirror images it is the one whose tip goes further to y > 0.
+    workspace: memory of the branch's matrices. Of the two cycles that are mirror images it is the
+    one whose tip goes further to y > 0.
     """
     if breaking.point.orbit is None:
         raise Unsolvable("the cycle at which the symmetry breaks is not known")
     whole = over_whole_period(breaking.point.orbit)
     scale = Scale.of(whole, name, 0.0)
-    way = BorderedMatrix(whole, scale).other_way()
+    matrix = BorderedMatrix(whole, scale, workspace)
+    way = matrix.other_way()
     way = way / relative_change(whole, way[:-1])
     for share in SHARES:
         try:
             ways = [moved(whole, name, sign * share * way) for sign in (1, -1)]
             start = max(ways, key=lambda orbit: CyclePath(orbit).extrema["tip_y_max"])
-            return _first_cycle(start, scale, moment_of(start) - moment_of(whole), accuracy)
+            return _first_cycle(start, matrix, moment_of(start) - moment_of(whole), accuracy)
         except Unsolvable as error:
             why = error
     raise Unsolvable(f"no cycle is found beside the symmetry breaking: {why}") from why
 
 
-def _first_cycle(start: Orbit, scale: Scale, change: float, accuracy: float) -> ArcPoint:
+def _first_cycle(start: Orbit, whole: BorderedMatrix, change: float, accuracy: float) -> ArcPoint:
     """The cycle near a prediction, with the branch on the side of its moment; raises Unsolvable.
 
-    change: of the moment since the symmetric cycle.
+    whole: the matrix of the symmetric cycle; change: of the moment since.
     """
+    scale = whole.scale
     border = np.sign(change) * MOMENT
     condition = Condition.at(scale, border, start)
-    near = condition.solved(start, NEAR).orbit
+    rough = condition.solved(start, NEAR, whole.workspace)
+    near = rough.orbit
     expected = asymmetry(start)
     found = float(asymmetry(near) @ expected) / float(expected @ expected)
     if not SAME_MOTION[0] < found < SAME_MOTION[1]:
         raise Unsolvable("Newton's method fell back to symmetric cycles")
     aim = max(accuracy, FIRST_ACCURACY)
     mesh = wanted_mesh(near, aim, stages_for(accuracy))
-    first = condition.on(mesh, near, newton_tolerance(accuracy), matrix_distance(accuracy))
+    first = condition.on(mesh, rough, newton_tolerance(accuracy), matrix_distance(accuracy))
     return first_point(first, scale, border, abs(change) / scale.moment, accuracy)
 
 

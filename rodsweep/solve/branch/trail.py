@@ -1,6 +1,6 @@
 """The cycles of a branch as they are found: errors are measured at some, the others wait for these."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import nan
 
 import numpy as np
@@ -8,17 +8,9 @@ import numpy as np
 from ..point import Unsolvable
 from .arc import ArcPoint
 from .bordered import Condition
-from .branch_curve import BranchCurve, BranchPoint
+from .branch_curve import BranchCurve, BranchEnd, BranchPoint
 from .settling import settled
 from .special.point import EndReason, SpecialKind, SpecialPoint
-
-
-@dataclass(frozen=True, slots=True)
-class BranchEnd:
-    """The special point at which a branch ends, and whether it is followed to an end that is one."""
-
-    special: SpecialPoint
-    complete: bool
 
 
 def end_at(point: ArcPoint, reason: EndReason, message: str = "") -> SpecialPoint:
@@ -56,7 +48,7 @@ class Trail:
         """
         if self._waiting:
             points = settled(self._measured, self._waiting, self.accuracy, condition)
-            self.curve.points[-len(points) :] = [BranchPoint.of(point, self.accuracy) for point in points]
+            self.curve.judge([BranchPoint.of(point, self.accuracy) for point in points])
             self._measured, self._waiting = points[-1], []
         return self._measured
 
@@ -66,14 +58,14 @@ class Trail:
         try:
             self.settle()
         except Unsolvable as why:
-            del curve.points[-len(self._waiting) :]
-            curve.special[:] = [point for point in curve.special if point.after < len(curve.points)]
+            curve.cut(len(self._waiting))
             message = f"the errors of the cycles beyond cannot be measured: {why}"
-            end = BranchEnd(end_at(self._measured, EndReason.no_cycle_found, message), complete=False)
+            special = end_at(self._measured, EndReason.no_cycle_found, message)
+            end = replace(end, special=special, complete=False)
         special, last = end.special, curve.points[-1]
         if np.isnan(special.error):
             special = replace(special, error=last.at_error * abs(special.at))
         if np.isnan(special.period_error):  # the end is the last cycle
             errors = last.errors
             special = replace(special, period_error=errors.period_error, size_error=errors.amplitude_error)
-        curve.end(special, end.complete)
+        curve.end(replace(end, special=special))

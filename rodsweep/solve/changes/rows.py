@@ -5,7 +5,7 @@ solving there: the solves go where the class changes, and a boundary is as sharp
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 
 import numpy as np
@@ -86,8 +86,7 @@ def _searched(rod: Rod, request: RowRequest) -> DiagramRow:
     crushed = k1 * (1 - MEETS_K1) <= F
     if not alive.any():
         row = _uniform(ThresholdStatus.ok, values, Motion.crushed)
-        row.motion[~crushed] = Motion.undecided
-        return row
+        return replace(row, motion=np.where(crushed, Motion.crushed, Motion.undecided).astype(np.int8))
     start, stop = float(values[alive][0]), float(values[alive][-1])
     if name == "F" and not alive.all():
         stop = rod.k1 * (1 - SHORT_OF_CRUSHED)

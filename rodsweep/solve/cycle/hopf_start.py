@@ -17,6 +17,7 @@ from ...discretization.mesh import mesh
 from ...discretization.stress_form import StressForm
 from ...model.rod import Rod
 from ..hopf.normal_form import NormalForm, accurate_normal_form
+from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import at_orbit, newton
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import REFLECTION
@@ -24,7 +25,7 @@ from ..point import Unsolvable
 from ..spectrum.candidates import BEHIND
 from ..spectrum.followed_leader import followed_leader
 from ..spectrum.search import SpectrumRequest, solve_spectrum
-from .neighbour import followed_from, in_steps
+from .along_parameter import followed_from, in_steps
 
 LEADING = SpectrumRequest(1, 1e-9, False)
 SCAN = 0.93
@@ -103,10 +104,11 @@ def _crossing(rod: Rod, low: tuple[float, complex], high: tuple[float, complex])
     raise Unsolvable(f"what grows from F = {a:g} on does not oscillate there")
 
 
-def orbit_from_hopf(form: StressForm, hopf: Onset) -> Orbit:
+def orbit_from_hopf(form: StressForm, hopf: Onset, workspace: NewtonWorkspace) -> Orbit:
     """The orbit of a rod on the branch from a Hopf point below its force, on a coarse mesh.
 
-    Raises Unsolvable where there is none: the branch goes to smaller forces, or cannot be followed.
+    workspace: memory of Newton's matrices. Raises Unsolvable where there is none: the branch goes to smaller
+    forces, or cannot be followed.
     """
     rod = form.rod
     at = replace(rod, F=hopf.F)
@@ -119,7 +121,7 @@ def orbit_from_hopf(form: StressForm, hopf: Onset) -> Orbit:
     coarse = replace(form, mesh=mesh(1, order))
     for part in STARTS:
         try:
-            return _followed_from(normal, min(rod.F, hopf.F * (1 + part)), coarse)
+            return _followed_from(normal, min(rod.F, hopf.F * (1 + part)), coarse, workspace)
         except Unsolvable as error:
             why = error
     raise why
@@ -153,16 +155,16 @@ def _normal_form(form: StressForm, w: complex) -> NormalForm:
     return replace(normal, w=w)
 
 
-def _followed_from(normal: NormalForm, F: float, form: StressForm) -> Orbit:
+def _followed_from(normal: NormalForm, F: float, form: StressForm, workspace: NewtonWorkspace) -> Orbit:
     """The orbit of a rod by way of the one that the normal form predicts at a force; raises Unsolvable."""
     start = orbit_of(normal, replace(form, rod=replace(form.rod, F=F)))
-    found = at_orbit(newton(start, TOLERANCE, "F"), TOLERANCE, "F")
+    found = at_orbit(newton(start, TOLERANCE, workspace, "F"), TOLERANCE, "F")
     squared = normal.cycle(F)[0]
     if not 0.3 < found.orbit.form.tip(found.orbit.start)[1] ** 2 / squared < 3.0:
         raise Unsolvable(f"no cycle near the one that the Hopf point at F = {normal.F:g} predicts")
     if form.rod.F == F:
         return found.orbit
-    return in_steps(followed_from(found, None, "F"), form, "F", TOLERANCE).orbit
+    return in_steps(followed_from(found, None, "F"), form, "F", TOLERANCE, workspace).orbit
 
 
 def orbit_of(normal: NormalForm, form: StressForm) -> Orbit:

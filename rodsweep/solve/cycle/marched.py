@@ -16,37 +16,31 @@ from scipy.interpolate import CubicSpline
 from ...arrays import Array
 from ...discretization.beam import Beam
 from ...discretization.mesh import mesh
-from ...discretization.resolution import resolution_for
 from ...discretization.stress_form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ...watch import Whereabouts, report
-from ..motion.integrator import (
-    Ending,
-    RunLimit,
-    Trajectory,
-    forget_integrators,
-    integrator,
-    relaxed,
-)
-from ..motion.leading_mode import LeadingMode, leading_mode
+from ..motion.integrator import Ending, RunLimit, Trajectory, forget_integrators, integrator, relaxed
+from ..motion.leading_mode import leading_mode
 from ..motion.time_scheme import TimeScheme
 from ..orbit.measures import CyclePath, measures_of
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import NONE
 from ..point import solved
-from ..status import PointStatus
-from .cycle_errors import CycleErrors
-from .from_motion import stressed
-from .limit_cycle import Cycle, CycleRequest, first_of, motion_wave, near_rod
-from .transient import (
+from .accuracy.cycle_errors import CycleErrors
+from .cycle import Cycle, CycleRequest, measured
+from .status import MarchedStatus
+from .transient.from_motion import stressed
+from .transient.returns import (
     LONGEST_ORBIT,
-    STEPS_PER_CHUNK,
     STRAIGHT_SIZE,
     angle_weights,
     repetition,
     section_crossings,
+    trouble,
+    until_returns,
 )
+from .transient.stepped_rod import motion_resolution, near_rod
 
 TOLERANCE = 0.01
 """Local tolerance of the integrator in units of the accuracy: errors of cycles are up to ten times it."""
@@ -67,29 +61,6 @@ FARTHER = 2.0
 from its cycle as that differs from the limit's, for cycles change in proportion."""
 STAGES, INTERVALS = 3, 48
 """Of the orbit that is measured: times at which the motion is interpolated, for each return of the tip."""
-
-
-class MarchedStatus(PointStatus):
-    """Outcome of a point of the task limit_cycle with `method: integration`."""
-
-    cycle = (
-        0,
-        "the rod beats: its motion repeats, and its period and largest y are as accurate as asked for; no "
-        "Floquet multipliers are computed",
-        True,
-    )
-    straight = 1, "the motion has decayed to rounding: nothing beats from this start", True
-    not_settled = (
-        2,
-        "the motion does not repeat within the periods allowed, or not to the accuracy asked for, as its "
-        "errors say; raise the periods allowed, ask for a lower accuracy, or use `method: collocation`",
-    )
-    left_the_model = (
-        3,
-        "the rod was crushed somewhere (h1 <= 0), where the model ends; start from a smaller amplitude, or "
-        "lower F or raise k1",
-    )
-    failed = 4, "the integration failed and nothing is stored; the message says why"
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,11 +95,10 @@ class _Marching:
 
     def __init__(self, rod: Rod, request: CycleRequest) -> None:
         self.request, self.limit, self.rod = request, rod, near_rod(rod)
-        self.in_a_limit = self.rod != rod
-        self.resolution = resolution_for(motion_wave(rod), request.accuracy)
+        self.resolution = motion_resolution(rod, request.accuracy)
         self.scheme = TimeScheme("arkimex", "5", tolerance=TOLERANCE * request.accuracy)
         self.beam = self._beam()
-        self.mode: LeadingMode = leading_mode(self.beam)
+        self.mode = leading_mode(self.beam)
         self.waited = 0
 
     def cycle(self) -> Cycle:
@@ -145,10 +115,10 @@ class _Marching:
             for _ in range(MOST_PAIRS):
                 settled = self._refined(settled)
                 before, path = path, self._path(settled)
-                errors = _errors(_apart(before, path), SETTLED * self.request.accuracy)
+                errors = _errors(before, path, SETTLED * self.request.accuracy)
                 if errors.largest <= self.request.accuracy:
                     break
-            if self.in_a_limit:
+            if self.rod != self.limit:
                 errors = self._errors_of_the_limit(settled, path, errors)
         except _Ended as end:
             return replace(known, status=end.status, message=end.why, periods=self.waited)
@@ -174,7 +144,7 @@ class _Marching:
         last, rate, most = nan, 0.0, self.request.most_periods
         while self.waited < most:
             report(lambda: Whereabouts(f"{self.waited} of at most {most} returns of the tip"))
-            run = self._run(z, 3 * CHUNK * self.mode.period, step, _returns(row, z, CHUNK))
+            run = self._run(z, 3 * CHUNK * self.mode.period, step, until_returns(row, z, CHUNK))
             z, step = run.states[-1], float(run.times[-1] - run.times[-2])
             states = self._crossings(run)[1]
             past.extend(self.beam.layout.field(states, "m3"))
@@ -198,13 +168,10 @@ class _Marching:
     def _run(self, z: Array, duration: float, step: float, limit: RunLimit) -> Trajectory:
         """A run that comes to its end; raises _Ended where it does not."""
         run = integrator(self.beam.mesh, self.scheme).run(self.beam, z, duration, step, limit)
-        if run.ending in (Ending.reached, Ending.stopped):
-            return run
-        if run.ending == Ending.left_the_model:
-            least = self.beam.least_stretch(run.states[-1])
-            raise _Ended(MarchedStatus.left_the_model, f"h1 = {least:.3g} somewhere, {self.waited} returns")
-        why = run.message or ("too many steps" if run.ending == Ending.too_many_steps else "no step succeeds")
-        raise _Ended(MarchedStatus.failed, why)
+        if why := trouble(self.beam, run, self.waited):
+            left = run.ending == Ending.left_the_model
+            raise _Ended(MarchedStatus.left_the_model if left else MarchedStatus.failed, why)
+        return run
 
     def _crossings(self, run: Trajectory) -> tuple[Array, Array]:
         """Times, (k,), and states, (k, unknowns), at which theta of the tip rises through 0 on a run.
@@ -228,7 +195,7 @@ class _Marching:
     def _path(self, settled: _Settled) -> CyclePath:
         """One period of the settled motion; raises _Ended."""
         returns = settled.turns + 2
-        limit = _returns(angle_weights(self.beam), settled.z, returns)
+        limit = until_returns(angle_weights(self.beam), settled.z, returns)
         run = self._run(settled.z, 3 * returns * self.mode.period, settled.step, limit)
         times = self._crossings(run)[0]
         if len(times) <= settled.turns:
@@ -246,8 +213,7 @@ class _Marching:
         coordinates = {name: FARTHER * known.coordinate(name) for name in in_limits}
         self.rod = limit.changed(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
         self.beam = self._beam()
-        apart = _apart(path, self._path(self._settled(relaxed(self.beam, settled.z, self.mode.period))))
-        more = _errors(apart, 0.0)
+        more = _errors(path, self._path(self._settled(relaxed(self.beam, settled.z, self.mode.period))), 0.0)
         return CycleErrors(
             errors.period_error + more.period_error,
             errors.amplitude_error + more.amplitude_error,
@@ -257,52 +223,22 @@ class _Marching:
 
     def _measured(self, known: Cycle, path: CyclePath, errors: CycleErrors) -> Cycle:
         """The cycle with its numbers."""
-        request, enough = self.request, errors.largest <= self.request.accuracy
-        measures = measures_of(path)
-        amplitudes = first_of(measures.harmonic_amplitude, request.harmonics, 0.0)
-        return replace(
+        enough = errors.largest <= self.request.accuracy
+        cycle = replace(
             known,
             status=MarchedStatus.cycle if enough else MarchedStatus.not_settled,
             message="" if enough else f"its errors are up to {errors.largest:.1e}",
             periods=self.waited,
-            elements=self.resolution.elements,
-            order=self.resolution.order,
-            measures=replace(measures, harmonic_amplitude=amplitudes),
-            errors=errors,
-            tip=path.tip(request.samples) if request.samples else None,
-            energy=path.energy(request.samples) if request.samples else None,
-            shape=path.shapes(request.shapes, request.nodes) if request.shapes and request.nodes else None,
         )
+        return measured(cycle, self.request, path, measures_of(path), errors)
 
 
-def _apart(one: CyclePath, other: CyclePath) -> Array:
-    """What two cycles differ by, relative: period, largest y, worst extremum in units of it, (3,)."""
+def _errors(one: CyclePath, other: CyclePath, share: float) -> CycleErrors:
+    """Errors by what two integrations differ by, and a further share of each."""
     a, b = one.extrema, other.extrema
-    worst = max(abs(a[name] - b[name]) for name in a)
     size = abs(b["tip_y_max"])
-    return np.array(
-        [
-            abs(one.orbit.period / other.orbit.period - 1),
-            abs(a["tip_y_max"] - b["tip_y_max"]) / size,
-            worst / size,
-        ]
-    )
-
-
-def _errors(apart: Array, more: float) -> CycleErrors:
-    """Errors by what two integrations differ by, (3,), and a further share of each."""
-    period, height, others = (float(error) for error in SAFETY * apart + more)
-    return CycleErrors(period, height, others, nan)
-
-
-def _returns(row: Array, z: Array, wanted: int) -> RunLimit:
-    """Ends a run from z after so many returns of the tip: theta, row . z, rises through 0."""
-    count, last = 0, float(row @ z)
-
-    def enough(state: Array) -> bool:
-        nonlocal count, last
-        here = float(row @ state)
-        count, last = count + int(last < 0 <= here), here
-        return count >= wanted
-
-    return RunLimit(enough, STEPS_PER_CHUNK)
+    period = abs(one.orbit.period / other.orbit.period - 1)
+    height = abs(a["tip_y_max"] - b["tip_y_max"]) / size
+    worst = max(abs(a[name] - b[name]) for name in a) / size
+    period, height, worst = (float(SAFETY * apart + share) for apart in (period, height, worst))
+    return CycleErrors(period, height, worst, nan)

@@ -7,8 +7,7 @@ errors. All of it follows from the neighbour alone, so that a chain of points ha
 often it was interrupted.
 """
 
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass
 from math import inf, nan
 
 import numpy as np
@@ -17,131 +16,29 @@ from ...arrays import Array
 from ...discretization.stress_form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
-from ..continuation.follower import StepControl, Stepped, advance
-from ..orbit.newton import Converged, at_orbit, newton, relative_change
-from ..orbit.normalised import (
-    combined,
-    normalised,
-    normalised_tangent,
-    polynomial_weights,
-    reflected,
-    values_of,
-)
+from ..orbit.matrix.workspace import NewtonWorkspace
+from ..orbit.newton import Converged, at_orbit, newton
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.symmetry import NONE, REFLECTION
 from ..point import Unsolvable
-from .calibration import LENGTH, Calibration
-from .refinement import (
+from .accuracy.calibration import Calibration
+from .accuracy.refinement import (
     RefinedCycle,
     calibrated_cycle,
     judged_by,
     matrix_distance,
     newton_tolerance,
 )
+from .along_parameter import Followed, followed_from, in_steps, near_prediction, relative_distance
 
-FARTHEST = 0.3
-"""Relative distance of a cycle from its prediction beyond which it may be another one."""
-STEPS = StepControl(
-    first=0.5, longest=1.0, shortest=2.0**-6, aim=0.15, order=3, sharpest=inf, growth=3.0, most=100
-)
-"""Shares of the way to a cycle that is too far for one step; the aim is what Newton's method takes two
-matrices for. What is far off is told by `_near`."""
-TANGENT_DISTANCE = 1e-2
-"""Relative distance from its orbit of a matrix whose tangent is good enough for a step of many."""
 ENOUGH = 0.9
 """Share of the accuracy that a cycle's error may have for its neighbour to take over the mesh."""
 WORTHWHILE, WELL_WORTHWHILE = 0.8, 0.5
 """Share of its cost that another mesh may have to be taken instead: where nothing else is lost, and where a
 calibration is, which costs as much as three cycles."""
-MOST_BEHIND, SLOPELESS = 4, 3
-"""Orbits before the last one that the prediction goes through, and how many of them it takes to be better
-without the slope at one of them."""
 UNKNOWN = complex(nan, nan)
-HEAD = len(PARAMETERS) + 4
-"""Numbers at the head of a packed neighbour: rod, symmetry, places, leading eigenvalue."""
-
-
-@dataclass(frozen=True, eq=False)
-class Followed:
-    """An orbit, and what a polynomial through it has at places on the branch, to predict others.
-
-    places: differences of the coordinate of a parameter from the orbit's, (m,); the first is the orbit's own.
-    orders: 0 where the polynomial has the value of an orbit, 1 where its slope, (m,); data: these, of
-    `normalised` values, (m, N + 1).
-    """
-
-    orbit: Orbit
-    places: Array
-    orders: Array
-    data: Array
-
-    @property
-    def tangent(self) -> Array:
-        """The slope of the normalised values here, (N + 1,)."""
-        return self.data[0]
-
-    @cached_property
-    def values(self) -> Array:
-        """The orbit's normalised values, (N + 1,)."""
-        return normalised(self.orbit)
-
-    def weights(self, step: float) -> Array:
-        """Of slopes, and of values less those here, in what is added at a distance on the branch, (m,)."""
-        weights: Array = polynomial_weights(self.places, self.orders, step)
-        return weights
-
-    def at(self, form: StressForm, name: str) -> Orbit:
-        """The prediction at another value of the parameter, for the rod `form`, whatever its mesh."""
-        step = form.rod.coordinate(name) - self.orbit.form.rod.coordinate(name)
-        values = combined(self.values, self.data, self.orders, self.weights(step))
-        if not values[-1] > 0:
-            raise Unsolvable("the branch is predicted to end")
-        here = replace(form, mesh=self.orbit.form.mesh)
-        return replace(self.orbit, form=here, values=values_of(values, reflected(self.orbit)))
-
-    def on(self, target: OrbitMesh) -> "Followed":
-        """The same on another mesh."""
-        if target == mesh_of(self.orbit):
-            return self
-        data = [np.append(carried(self.orbit, row[:-1], target), row[-1]) for row in self.data]
-        return replace(self, orbit=target.carry(self.orbit), data=np.array(data))
-
-
-def carried(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
-    """A change of an orbit, (N,), as one of the orbit on another mesh: to carry is linear."""
-    return target.carry(replace(orbit, values=change)).values
-
-
-def followed_from(found: Converged, before: Followed | None, name: str) -> Followed:
-    """An orbit that was solved with its tangent; before: the one before it on the branch.
-
-    A tangent is as wrong as its orbit was predicted, a value far less: where SLOPELESS values are known,
-    errors grow the less without another slope. From mesh to mesh states differ by far more than period and
-    largest y, their slopes do so less.
-    """
-    orbit = found.orbit
-    if found.matrix.tangent is None:
-        raise ValueError("the orbit was solved without its tangent")
-    tangent = normalised_tangent(orbit, found.matrix.tangent)
-    step = orbit.form.rod.coordinate(name) - before.orbit.form.rod.coordinate(name) if before else 0.0
-    if before is None or step == 0:
-        return Followed(orbit, np.zeros(1), np.ones(1), tangent[None])
-    last = before.on(mesh_of(orbit))
-    if last is not before:
-        return Followed(orbit, np.array([0.0, -step]), np.ones(2), np.array([tangent, last.tangent]))
-    older = np.flatnonzero(before.orders == 0)[: MOST_BEHIND - 1]
-    places, data = [0.0, -step, *(before.places[older] - step)], [tangent, before.values, *before.data[older]]
-    orders = [1.0] + [0.0] * (1 + len(older))
-    if 1 + len(older) < SLOPELESS:
-        places, orders, data = [*places, -step], [*orders, 1.0], [*data, before.tangent]
-    return Followed(orbit, np.array(places), np.array(orders), np.array(data))
-
-
-def relative_distance(one: StressForm, other: StressForm, name: str) -> float:
-    """Of two rods along a parameter: of its coordinates in units of the larger."""
-    a, b = one.rod.coordinate(name), other.rod.coordinate(name)
-    return abs(a - b) / max(abs(a), abs(b)) if a != b else 0.0
+Arrays = dict[str, Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,30 +67,31 @@ class Neighbour:
         branch = followed_from(found.fine, before.branch if before else None, name)
         return cls(branch, *_next_mesh(found, before, name, accuracy), leading)
 
-    def pack(self) -> Array:
-        """All of it as one flat array, shape (length,)."""
-        orbit, form = self.branch.orbit, self.branch.orbit.form
-        rod = form.rod
-        head = [*rod.values.values(), orbit.symmetric]
-        head += [len(self.branch.places), self.leading.real, self.leading.imag]
-        meshes = (*mesh_of(orbit).numbers, *self.next_mesh.numbers)
-        known = self.calibration.pack()
-        branch = (self.branch.places, self.branch.orders, orbit.values, self.branch.data.ravel())
-        return np.concatenate([head, meshes, known, *branch])
+    def arrays(self) -> Arrays:
+        """All of it as named arrays: orbit (N,), data (m, N + 1), places and orders (m,), and numbers."""
+        branch, orbit = self.branch, self.branch.orbit
+        return {
+            "rod": np.array(list(orbit.form.rod.values.values())),
+            "symmetric": np.array(orbit.symmetric),
+            "mesh": np.array(mesh_of(orbit).numbers),
+            "orbit": orbit.values,
+            "places": branch.places,
+            "orders": branch.orders,
+            "data": branch.data,
+            "next_mesh": np.array(self.next_mesh.numbers),
+            "leading": np.array(self.leading),
+        } | self.calibration.arrays()
 
     @classmethod
-    def unpack(cls, flat: Array) -> "Neighbour":
-        """The reverse of `pack`, from its array, shape (length,)."""
-        *numbers, symmetric, count, real, imag = map(float, flat[:HEAD])
-        m = int(count)
-        parts = np.split(flat.copy(), np.cumsum([HEAD, 4, 4, LENGTH, m, m]))
-        here, there = (OrbitMesh(*map(int, part)) for part in parts[1:3])
-        form = StressForm(Rod(**dict(zip(PARAMETERS, numbers, strict=True))), here.grid)
-        # The values are one number fewer than each row of the data.
-        values, data = np.split(parts[6], [len(parts[6]) // (1 + m)])
-        orbit = Orbit(form, REFLECTION if symmetric else NONE, here.intervals, here.stages, values)
-        branch = Followed(orbit, parts[4], parts[5], data.reshape(m, -1))
-        return cls(branch, there, Calibration.unpack(parts[3]), complex(real, imag))
+    def from_arrays(cls, arrays: Arrays) -> "Neighbour":
+        """The reverse of `arrays`, of the shapes given there."""
+        here, there = (OrbitMesh(*map(int, arrays[name])) for name in ("mesh", "next_mesh"))
+        rod = Rod(**dict(zip(PARAMETERS, map(float, arrays["rod"]), strict=True)))
+        symmetry = REFLECTION if arrays["symmetric"] else NONE
+        form = StressForm(rod, here.grid)
+        orbit = Orbit(form, symmetry, here.intervals, here.stages, arrays["orbit"])
+        branch = Followed(orbit, *(arrays[name] for name in ("places", "orders", "data")))
+        return cls(branch, there, Calibration.from_arrays(arrays), complex(arrays["leading"]))
 
 
 def _next_mesh(
@@ -219,14 +117,16 @@ def _share_of_cost(found: RefinedCycle, before: "Neighbour | None", name: str) -
     return 0.0 if found.calibration.lasts(step) else WORTHWHILE
 
 
-def followed_cycle(neighbour: Neighbour, form: StressForm, name: str, accuracy: float) -> RefinedCycle:
+def followed_cycle(
+    neighbour: Neighbour, form: StressForm, name: str, accuracy: float, workspace: NewtonWorkspace
+) -> RefinedCycle:
     """The cycle of a rod that differs from the neighbour's in one parameter; raises Unsolvable.
 
-    form: the rod, on any mesh.
+    form: the rod, on any mesh; workspace: memory of the matrices.
     """
     if form.omega_unknown != neighbour.branch.orbit.form.omega_unknown:
         raise Unsolvable("the neighbour has other unknowns")
-    found = _converged(neighbour, form, name, accuracy)
+    found = _converged(neighbour, form, name, accuracy, workspace)
     known = neighbour.calibration.at(found.orbit, relative_distance(neighbour.branch.orbit.form, form, name))
     if known.holds:
         cycle = judged_by(known, found, accuracy)
@@ -235,50 +135,14 @@ def followed_cycle(neighbour: Neighbour, form: StressForm, name: str, accuracy: 
     return calibrated_cycle(found, known, accuracy, name)
 
 
-def _converged(neighbour: Neighbour, form: StressForm, name: str, accuracy: float) -> Converged:
+def _converged(
+    neighbour: Neighbour, form: StressForm, name: str, accuracy: float, workspace: NewtonWorkspace
+) -> Converged:
     """The cycle on the mesh that the neighbour says, with its tangent and its multipliers."""
     tolerance, aim = newton_tolerance(accuracy), neighbour.next_mesh
     try:
-        found = _near(neighbour.branch.on(aim).at(form, name), tolerance, name)
+        found = near_prediction(neighbour.branch.on(aim).at(form, name), tolerance, workspace, name)
     except Unsolvable:
-        start = in_steps(neighbour.branch.on(aim.coarser), form, name, tolerance)
-        found = newton(aim.carry(start.orbit), tolerance, name)
+        start = in_steps(neighbour.branch.on(aim.coarser), form, name, tolerance, workspace)
+        found = newton(aim.carry(start.orbit), tolerance, workspace, name)
     return at_orbit(found, matrix_distance(accuracy), name)
-
-
-def _near(predicted: Orbit, tolerance: float, name: str | None = None) -> Converged:
-    """The orbit at a prediction; Unsolvable where it is not near."""
-    found = newton(predicted, tolerance, name)
-    if _distance(predicted, found) > FARTHEST:
-        raise Unsolvable("the cycle is far from its prediction")
-    return found
-
-
-def _distance(predicted: Orbit, found: Converged) -> float:
-    """Of an orbit from its prediction, relative."""
-    return relative_change(predicted, found.orbit.values - predicted.values)
-
-
-def in_steps(start: Followed, form: StressForm, name: str, tolerance: float) -> Converged:
-    """The orbit at the end of steps that Newton's method can follow; raises Unsolvable."""
-    here, there = start.orbit.form.rod.coordinate(name), form.rod.coordinate(name)
-    share, length, followed = 0.0, STEPS.first, start
-
-    def step(length: float) -> Stepped[Converged]:
-        at = share + length
-        between = form if at >= 1.0 else form.with_coordinate(name, here + at * (there - here))
-        predicted = followed.at(between, name)
-        found = _near(predicted, tolerance, name)
-        return Stepped(found, _distance(predicted, found), 1.0)
-
-    for _ in range(STEPS.most):
-        try:
-            ahead, length = advance(step, min(length, 1.0 - share), STEPS)
-        except Unsolvable as why:
-            raise Unsolvable("the branch of cycles cannot be followed: it ends or turns") from why
-        share += length
-        if share >= 1.0:
-            return ahead.solution
-        followed = followed_from(at_orbit(ahead.solution, TANGENT_DISTANCE, name), followed, name)
-        length = STEPS.next_length(length, ahead, STEPS.order)
-    raise Unsolvable("the branch of cycles cannot be followed in so many steps")

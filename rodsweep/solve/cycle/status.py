@@ -37,3 +37,26 @@ class CycleStatus(PointStatus):
         "multipliers are those of the cycle, and nothing else of it is stored",
         True,
     )
+
+
+class MarchedStatus(PointStatus):
+    """Outcome of a point of the task limit_cycle with `method: integration`."""
+
+    cycle = (
+        0,
+        "the rod beats: its motion repeats, and its period and largest y are as accurate as asked for; no "
+        "Floquet multipliers are computed",
+        True,
+    )
+    straight = 1, "the motion has decayed to rounding: nothing beats from this start", True
+    not_settled = (
+        2,
+        "the motion does not repeat within the periods allowed, or not to the accuracy asked for, as its "
+        "errors say; raise the periods allowed, ask for a lower accuracy, or use `method: collocation`",
+    )
+    left_the_model = (
+        3,
+        "the rod was crushed somewhere (h1 <= 0), where the model ends; start from a smaller amplitude, or "
+        "lower F or raise k1",
+    )
+    failed = 4, "the integration failed and nothing is stored; the message says why"

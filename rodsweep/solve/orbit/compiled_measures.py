@@ -6,10 +6,11 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...discretization.periodic import hermite_columns, maxima, minima, sampled_columns
+from ...discretization.plane import balance
 from ...discretization.state_layout import stress_place
 from ...discretization.tip_motion import TipMatrices, tip_motion
 from ...model.compilation import compiled_for_vectors
-from .condensation import Semidiscrete, powers, strain_rates
+from .semidiscrete import Semidiscrete
 
 REFLECTION = np.array([1.0, -1.0, -1.0])
 """Signs of (x, y, theta) and (h1, h2, Pi) half a period later where the orbit is symmetric."""
@@ -101,3 +102,31 @@ def means(stages: Array, weights: Array, p: Semidiscrete) -> Means:
             pull = flat[i, stress_place(0, j, nodes)]
             stretch = min(stretch, p.rod.rest[0, j] + p.rod.compliance[0, j] * pull)
     return Means(mean[0], np.sqrt(square[0]), mean[1], np.sqrt(square[1]), stretch)
+
+
+@compiled_for_vectors
+def strain_rates(states: Array, out: Array, p: Semidiscrete) -> None:
+    """dE/dt at all nodes but the tip, where it vanishes, of states (m, n) into out, (3, m, nodes + 1)."""
+    size = len(p.matrices.weights)
+    V, G = np.empty((3, size)), np.empty((3, size))
+    for k in range(len(states)):
+        balance(states[k], V, G, p.rod, p.matrices)
+        for a in range(3):
+            for i in range(size - 1):
+                out[a, k, i] = G[a, i] / p.matrices.weights[i]
+            out[a, k, size - 1] = 0.0
+
+
+@compiled_for_vectors
+def powers(states: Array, out: Array, p: Semidiscrete) -> None:
+    """Power of the follower force, by the reaction, and power lost, of states (m, n) into out, (2, m)."""
+    size = len(p.matrices.weights)
+    V, G, c = np.empty((3, size)), np.empty((3, size)), p.rod
+    for k in range(len(states)):
+        balance(states[k], V, G, c, p.matrices)
+        gained, lost = 0.0, 0.0
+        for a in range(len(V)):
+            gained -= c.tip_stress[a] * G[a, size - 1]
+            for i in range(size):
+                lost += p.matrices.weights[i] * c.drag[a, i] * V[a, i] ** 2
+        out[0, k], out[1, k] = gained, lost

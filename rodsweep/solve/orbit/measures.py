@@ -21,8 +21,7 @@ from ...discretization.periodic import (
 )
 from ...discretization.quadrature import lobatto_points
 from ...discretization.tip_motion import tip_matrices
-from .compiled_measures import REFLECTION, harmonic_sizes, means, tip_path
-from .condensation import powers
+from .compiled_measures import REFLECTION, harmonic_sizes, means, powers, tip_path
 from .orbit import Orbit
 
 

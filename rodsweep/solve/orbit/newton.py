@@ -8,7 +8,8 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...watch import report
 from ..point import Unsolvable
-from .linearisation import Linearisation, largest_change
+from .matrix.linearisation import Linearisation, largest_change
+from .matrix.workspace import NewtonWorkspace
 from .orbit import Orbit
 
 SLUGGISH = 0.1
@@ -24,10 +25,11 @@ QUADRATIC = 1e5
 class HasMultipliers(Protocol):
     """Newton's matrix, as far as it tells the stability of its orbit.
 
-    tangent: the derivative of the orbit by a parameter, if there is one.
+    tangent: the derivative of the orbit by a parameter, if there is one. workspace: memory of its factors.
     """
 
     tangent: Array | None
+    workspace: NewtonWorkspace
 
     def multipliers(self) -> Complex:
         """All Floquet multipliers but rounding, (rank,), by descending modulus, the trivial one too."""
@@ -41,14 +43,21 @@ class Converged:
     matrix: HasMultipliers
     distance: float
 
+    @property
+    def workspace(self) -> NewtonWorkspace:
+        """The solver's, in which its matrix was made."""
+        return self.matrix.workspace
 
-def newton(orbit: Orbit, tolerance: float, parameter: str | None = None) -> Converged:
+
+def newton(
+    orbit: Orbit, tolerance: float, workspace: NewtonWorkspace, parameter: str | None = None
+) -> Converged:
     """The orbit near this one; raises Unsolvable.
 
-    tolerance: relative, of states and period. parameter: along which the matrix has the tangent. The matrix
-    is kept while the steps shrink fast.
+    tolerance: relative, of states and period. workspace: memory of the matrices. parameter: along which the
+    matrix has the tangent. The matrix is kept while the steps shrink fast.
     """
-    matrix, distance, last = Linearisation(orbit, parameter), 0.0, np.inf
+    matrix, distance, last = Linearisation(orbit, workspace, parameter), 0.0, np.inf
     step = matrix.step
     for iteration in range(1, MOST_ITERATIONS + 1):
         report()
@@ -66,7 +75,7 @@ def newton(orbit: Orbit, tolerance: float, parameter: str | None = None) -> Conv
         if left <= tolerance:
             return Converged(orbit, matrix, distance)
         if change > SLUGGISH * min(last, 1.0):
-            matrix, distance = Linearisation(orbit, parameter), 0.0
+            matrix, distance = Linearisation(orbit, workspace, parameter), 0.0
             step = matrix.step
         else:
             step = matrix.correction(orbit)
@@ -78,12 +87,13 @@ def at_orbit(found: Converged, distance: float, parameter: str | None = None) ->
     """The same with a matrix made at most at this distance from the orbit."""
     if found.distance <= distance:
         return found
-    return linearised(found.orbit, parameter)
+    return linearised(found, parameter)
 
 
-def linearised(orbit: Orbit, parameter: str | None = None) -> Converged:
+def linearised(found: Converged, parameter: str | None = None) -> Converged:
     """An orbit that was found, after one more step, with the matrix at itself."""
-    matrix = Linearisation(orbit, parameter)
+    orbit = found.orbit
+    matrix = Linearisation(orbit, found.workspace, parameter)
     return Converged(orbit.moved(matrix.step), matrix, relative_change(orbit, matrix.step))
 
 

@@ -16,7 +16,7 @@ from ...arrays import Array
 from ...discretization.collocation import Collocation, radau
 from ...discretization.mesh import Mesh, transfer
 from ...discretization.stress_form import StressForm
-from .condensation import Semidiscrete
+from .semidiscrete import Semidiscrete
 from .symmetry import Symmetry
 
 
@@ -104,7 +104,7 @@ class Orbit:
         here, there = (self.intervals, self.stages), (intervals, stages)
         if there != here:
             points = between_intervals(here, there) @ points
-        if grid is not self.form.mesh:
+        if grid != self.form.mesh:
             points = self.form.layout.carried(points, transfer(self.form.mesh, grid))
         return replace(
             self,

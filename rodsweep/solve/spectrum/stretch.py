@@ -7,6 +7,7 @@ points. The outcome depends on the points of the stretch alone.
 
 import time
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,18 +75,7 @@ def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
     """The leading `request.modes` eigenvalues of every rod, all certified; failures are statuses."""
     began = time.perf_counter()
     n, modes = len(stretch), request.modes
-    whole = np.zeros(n, np.int64)
-    spectra = Spectrum(
-        eigenvalues=np.full((n, modes), np.nan + 0j),
-        error_estimate=np.full((n, modes), np.nan),
-        unstable_count=whole - 1,
-        certified=np.zeros(n, np.bool_),
-        elements=whole.copy(),
-        order=whole.copy(),
-        seconds=np.zeros(n),
-        status=whole + SpectrumStatus.ok,
-        message=np.full(n, "", object),
-    )
+    columns = _unsolved(n, modes)
     place, patience = 0, 1
     while place < n:
         found = _followed(stretch, place, request)
@@ -94,14 +84,30 @@ def solve_stretch(stretch: Stretch, request: SpectrumRequest) -> Spectrum:
         patience = 1 if found else 2 * patience
         if found:
             here = slice(place, end)
-            spectra.eigenvalues[here], spectra.error_estimate[here] = found.w, found.error
-            spectra.unstable_count[here], spectra.certified[here] = found.unstable, True
+            columns["eigenvalues"][here], columns["error_estimate"][here] = found.w, found.error
+            columns["unstable_count"][here], columns["certified"][here] = found.unstable, True
         for i in range(place, end):
             if not (found and found.good[i - place]):
-                spectra.put(i, solve_spectrum(stretch.rod(i), request))
+                alone = solve_spectrum(stretch.rod(i), request)
+                for name, column in columns.items():
+                    column[i] = getattr(alone, name)
         place = end
-    spectra.seconds[:] = (time.perf_counter() - began) / n
-    return spectra
+    return Spectrum(seconds=np.full(n, (time.perf_counter() - began) / n), **columns)
+
+
+def _unsolved(n: int, modes: int) -> dict[str, Any]:
+    """Fields of a `Spectrum` of n rods, each to be filled."""
+    whole = np.zeros(n, np.int64)
+    return {
+        "eigenvalues": np.full((n, modes), np.nan + 0j),
+        "error_estimate": np.full((n, modes), np.nan),
+        "unstable_count": whole - 1,
+        "certified": np.zeros(n, np.bool_),
+        "elements": whole.copy(),
+        "order": whole.copy(),
+        "status": whole + SpectrumStatus.ok,
+        "message": np.full(n, "", object),
+    }
 
 
 def _followed(stretch: Stretch, start: int, request: SpectrumRequest) -> Reached | None:

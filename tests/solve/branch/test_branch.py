@@ -20,6 +20,7 @@ from rodsweep.solve.branch.special.cycle_curves import CurveEnd
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.solve.changes.along_path import pair_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point import Unsolvable
 from rodsweep.watch import heard_by
 
@@ -47,7 +48,9 @@ def first_branch(rod, stop, accuracy=1e-7):
     straight = Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3)
     crossing = pair_crossings(Path(straight, "F"), 0.0, stop).crossings[0]
     hopf = hopf_point(Path(rod, "F"), crossing)
-    return follow_branch(0, Course([hopf], (0.0, stop), (EndReason.range_end,) * 2, accuracy, 500))
+    return follow_branch(
+        0, Course([hopf], (0.0, stop), (EndReason.range_end,) * 2, accuracy, 500, NewtonWorkspace())
+    )
 
 
 def slopes(curve):
@@ -163,14 +166,14 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
         assert 1e-4 < side * (cycle.multiplier - 1) < 2e-3
         assert cycle.measures.tip_y_max == pytest.approx(torus.tip_y_max, rel=2e-3)
     points, end = CurveCourse(
-        SpecialKind.torus, PlaneAxis("F", 150.0, 220.0), PlaneAxis("k2", 97.0, 103.0), -1.0
+        SpecialKind.torus, PlaneAxis("F", 150.0, 220.0), PlaneAxis("k2", 97.0, 103.0), NewtonWorkspace(), -1.0
     ).followed(torus, 100.0)
     assert end is CurveEnd.edge
     assert points[0].at == pytest.approx(torus.at, abs=points[0].error + torus.error)
     for point in points:
         assert point.error <= 1e-7 * point.at
         # By the eigenvalues of a matrix of its own, where the curve has the eigenvector of one near by.
-        pair = crossing_pair(BorderedMatrix(point.orbit, point.scale))
+        pair = crossing_pair(BorderedMatrix(point.orbit, point.scale, NewtonWorkspace()))
         assert abs(pair) == pytest.approx(1.0, abs=1e-7)
 
 

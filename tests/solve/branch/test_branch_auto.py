@@ -22,8 +22,9 @@ from rodsweep.solve.branch.settling import due, refined
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.solve.branch.special.points import special_points
 from rodsweep.solve.changes.along_path import pair_crossings
+from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
-from rodsweep.solve.cycle.refinement import refined_cycle
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.newton import newton
 
 CONSTANTS = """NDIM={unknowns}, IPS=2, IRS=0, ILP=1, ISP=2, ISW=1, MXBF=0, JAC=1, IID=2
@@ -49,8 +50,9 @@ def branch_of_auto(program, rod, setting, place):
     """Lines of fort.7 as (kind, F), and the multipliers of the last cycle; by order, intervals, ..."""
     order, intervals, step, most = setting
     form = StressForm(rod, mesh(1, 16))
-    near = refined_cycle(orbit_from_hopf(form, hopf_point_below(rod)), 1e-6).orbit
-    first = newton(near.on(mesh(1, order), 40, 5), 1e-10).orbit
+    memory = NewtonWorkspace()
+    near = refined_cycle(orbit_from_hopf(form, hopf_point_below(rod), memory), 1e-6, memory).orbit
+    first = newton(near.on(mesh(1, order), 40, 5), 1e-10, memory).orbit
     (place / "rod").write_bytes(rod_file(first.form))
     (place / "start").write_bytes(start_file(first, 4 * intervals))
     unknowns = first.form.unknowns
@@ -67,14 +69,14 @@ def branch_of_this(rod, kind, F):
     """The special point of a kind on the branch from the first Hopf point, and the cycle at F beyond it."""
     straight = Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3)
     crossing = pair_crossings(Path(straight, "F"), 0.0, rod.F).crossings[0]
-    here, special = beginning(hopf_point(Path(straight, "F"), crossing), ACCURACY), None
+    here, special = beginning(hopf_point(Path(straight, "F"), crossing), ACCURACY, NewtonWorkspace()), None
     while True:
         there = next_point(here, ACCURACY)
         for point in special_points(here, there, None, ACCURACY)[0]:
             if point.kind == kind:
                 special = point
         if special is not None and (there.at - F) * (here.at - F) <= 0:
-            course = Course([], (F, inf), (EndReason.range_end,) * 2, ACCURACY, 500)
+            course = Course([], (F, inf), (EndReason.range_end,) * 2, ACCURACY, 500, NewtonWorkspace())
             edge = _edge(here, course, 0)
             return special, refined(_on_the_edge(here, there, edge, course), ACCURACY, edge)
         here = refined(there, ACCURACY) if due(there) else there

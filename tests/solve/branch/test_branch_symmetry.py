@@ -29,7 +29,8 @@ from rodsweep.solve.branch.symmetry import (
     over_whole_period,
 )
 from rodsweep.solve.changes.along_path import pair_crossings
-from rodsweep.solve.orbit.right_sides import equations
+from rodsweep.solve.orbit.matrix.right_sides import equations
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.tasks.branch import record
 
 ROUGH, STOP = 1e-3, 20.5
@@ -44,7 +45,7 @@ def course():
     hopf = hopf_point(path, pair_crossings(path, 0.0, 5.0).crossings[0])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(locating, "ACCURACY", 1e-5)
-        yield Course([hopf], (0.0, STOP), (EndReason.range_end,) * 2, ROUGH, 500)
+        yield Course([hopf], (0.0, STOP), (EndReason.range_end,) * 2, ROUGH, 500, NewtonWorkspace())
 
 
 @pytest.fixture(scope="module")
@@ -102,7 +103,7 @@ def test_asymmetry_grows_with_the_square_root_of_the_distance(symmetric, asymmet
 
 def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(known):
     """SciPy's LSODA, over a period, from a cycle on the unstable part."""
-    here = beginning_without_symmetry(known.breakings[0], "F", ROUGH)
+    here = beginning_without_symmetry(known.breakings[0], "F", ROUGH, known.workspace)
     orbit = next_point(here, ROUGH).orbit
     p, nodes = orbit.semidiscrete, orbit.form.mesh.nodes
     V, G, F = np.empty((3, nodes + 1)), np.empty((3, nodes + 1)), np.empty(orbit.form.unknowns)
@@ -128,7 +129,7 @@ def turned_back(here):
 
 
 def test_followed_back_the_branch_ends_where_it_was_born(known):
-    here = beginning_without_symmetry(known.breakings[0], "F", ROUGH)
+    here = beginning_without_symmetry(known.breakings[0], "F", ROUGH, known.workspace)
     for _ in range(2):
         here = next_point(here, ROUGH)
     curve = followed_from(BranchCurve(hopf=-1), turned_back(refined(here, ROUGH)), known)
@@ -147,7 +148,7 @@ def test_a_symmetric_orbit_over_its_whole_period_is_the_same_motion(known):
 
 
 def test_a_known_breaking_that_lies_elsewhere_is_not_taken_for_the_end(known):
-    here = beginning_without_symmetry(known.breakings[0], "F", ROUGH)
+    here = beginning_without_symmetry(known.breakings[0], "F", ROUGH, known.workspace)
     curve = followed_from(BranchCurve(hopf=-1), turned_back(here), replace(known, breakings=[]))
     assert not curve.complete
     assert curve.special[-1].reason == EndReason.no_cycle_found

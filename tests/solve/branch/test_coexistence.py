@@ -24,6 +24,7 @@ from rodsweep.solve.branch.special.curves import CurveCourse
 from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, CycleCurve, HalfCurve
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.changes.rows import RowRequest
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.tasks.job import make_job
 
 FOLD, RESTABILIZATION = 199.160114343, 155.600159298791
@@ -71,8 +72,8 @@ def test_a_cycle_on_the_last_value_of_a_row_counts():
 def test_what_a_branch_that_stopped_leaves_open_is_undecided(monkeypatch):
     real = coexistence.solve_branches
 
-    def stopped(rod, asked):
-        return replace(real(rod, asked), status=BranchStatus.stopped, message="no further cycle")
+    def stopped(rod, asked, workspace):
+        return replace(real(rod, asked, workspace), status=BranchStatus.stopped, message="no further cycle")
 
     monkeypatch.setattr(coexistence, "solve_branches", stopped)
     row = solve_coexistence(FIG_2C, request([0, 40, 60, 70]), 64)
@@ -99,7 +100,7 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     plane = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 149.5, 150.0)
     halves = []
     for side in (1.0, -1.0):
-        points, end = CurveCourse(SpecialKind.fold, *plane, side).followed(fold, 149.9)
+        points, end = CurveCourse(SpecialKind.fold, *plane, NewtonWorkspace(), side).followed(fold, 149.9)
         halves.append(HalfCurve(tuple(map(CurvePoint.of, points)), end))
     curve = CycleCurve.joined(SpecialKind.fold, *halves)
     assert curve.ends == (CurveEnd.hopf, CurveEnd.edge)
@@ -119,12 +120,12 @@ def test_rise_along_a_branch_is_known_with_the_factors_of_a_cycle_near_by():
     row = solve_coexistence(FIG_2C.changed(k1=149.9), request([60, 110]), 64)
     (fold,) = [point for point in row.special if point.kind == SpecialKind.fold]
     scale = Scale.of(fold.orbit, "F", 0.0)
-    own = BorderedMatrix(fold.orbit, scale)
+    own = BorderedMatrix(fold.orbit, scale, NewtonWorkspace())
     ahead = scale.moved(fold.orbit, own.direction(np.array([1.0, 0.0, 0.0])))
     border = ahead / np.linalg.norm(ahead)
     truth = FoldFunction(own, border, small=False).value(fold.orbit)
-    other = Condition.at(scale, border, fold.orbit, 1e-4).solved(fold.orbit, 1e-10).orbit
-    function = FoldFunction(BorderedMatrix(other, scale), border, small=False)
+    other = Condition.at(scale, border, fold.orbit, 1e-4).solved(fold.orbit, 1e-10, NewtonWorkspace()).orbit
+    function = FoldFunction(BorderedMatrix(other, scale, NewtonWorkspace()), border, small=False)
     before = abs(function.value(fold.orbit) - truth)
     for _ in range(8):
         function.correct(fold.orbit)

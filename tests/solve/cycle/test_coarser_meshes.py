@@ -8,10 +8,11 @@ import pytest
 from rodsweep.discretization.mesh import mesh
 from rodsweep.discretization.stress_form import StressForm
 from rodsweep.model.rod import Rod
-from rodsweep.solve.cycle.calibration import SAFETY
-from rodsweep.solve.cycle.coarser_meshes import CoarserMeshes
+from rodsweep.solve.cycle.accuracy.calibration import SAFETY
+from rodsweep.solve.cycle.accuracy.coarser_meshes import CoarserMeshes
+from rodsweep.solve.cycle.accuracy.refinement import refine
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
-from rodsweep.solve.cycle.refinement import refine
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import newton, relative_change
 from rodsweep.solve.orbit.orbit_mesh import OrbitMesh
@@ -20,6 +21,7 @@ from rodsweep.solve.point import Unsolvable
 
 ACCURACY = 1e-7
 FINE = OrbitMesh(1, 19, 16, 4)
+MEMORY = NewtonWorkspace()
 RODS = {
     "soft": (Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), 1.0),
     "half the axial drag": (Rod(F=30.0, k1=1e4, k2=1e2, gamma3=1e-2), 0.5),
@@ -31,7 +33,7 @@ RODS = {
 def near(request):
     """An orbit near the rod's cycle."""
     rod, gamma1 = request.param
-    return orbit_from_hopf(StressForm(rod.changed(gamma1=gamma1), mesh(1, 16)), hopf_point_below(rod))
+    return orbit_from_hopf(StressForm(rod.changed(gamma1=gamma1), mesh(1, 16)), hopf_point_below(rod), MEMORY)
 
 
 def off(orbit, exact):
@@ -39,26 +41,26 @@ def off(orbit, exact):
 
 
 def test_it_is_nearer_to_the_orbit_than_two_meshes_in_between_are(near):
-    coarser = CoarserMeshes(FINE, near, 1e-6 * ACCURACY)
+    coarser = CoarserMeshes(FINE, near, 1e-6 * ACCURACY, MEMORY)
     orbit, _ = coarser.predicted(FINE)
-    exact = newton(orbit, 1e-13).orbit
+    exact = newton(orbit, 1e-13, MEMORY).orbit
     between = [replace(coarser.mesh, order=FINE.order), replace(coarser.mesh, intervals=FINE.intervals)]
-    errors = [off(FINE.carry(newton(m.carry(exact), 1e-13).orbit), exact) for m in between]
+    errors = [off(FINE.carry(newton(m.carry(exact), 1e-13, MEMORY).orbit), exact) for m in between]
     assert off(orbit, exact) < 0.1 * min(errors)
 
 
 def test_finer_meshes_differ_by_no_more_than_is_stated(near):
-    orbit, known = CoarserMeshes(FINE, near, ACCURACY).predicted(FINE)
-    found = newton(orbit, 1e-12).orbit
+    orbit, known = CoarserMeshes(FINE, near, ACCURACY, MEMORY).predicted(FINE)
+    found = newton(orbit, 1e-12, MEMORY).orbit
     for field, parts in (("order", known.space), ("intervals", known.time)):
         finer = replace(FINE, **{field: 2 * getattr(FINE, field)})
-        true = path_differences(CyclePath(found), CyclePath(newton(finer.carry(found), 1e-12).orbit))
+        true = path_differences(CyclePath(found), CyclePath(newton(finer.carry(found), 1e-12, MEMORY).orbit))
         for which in (PERIOD, HEIGHT, APART):
             assert true[which] <= SAFETY * parts[which] + 1e-12
 
 
 def test_coarser_meshes_serve_those_that_are_a_little_finer(near):
-    coarser = CoarserMeshes(FINE, near, ACCURACY)
+    coarser = CoarserMeshes(FINE, near, ACCURACY, MEMORY)
     assert coarser.serve(FINE) and coarser.serve(replace(FINE, order=FINE.order + 2, intervals=20))
     for other in ({"order": FINE.order + 3}, {"intervals": 30}, {"elements": 2}, {"stages": 5}):
         assert not coarser.serve(replace(FINE, **other))
@@ -75,13 +77,13 @@ def test_what_coarser_meshes_do_not_predict_is_measured_by_finer_ones(near, why,
         raise Unsolvable(why)
 
     monkeypatch.setattr(CoarserMeshes, "predicted", spoilt)
-    alone, first = refine(near, ACCURACY), refine(near, ACCURACY, "F")
+    alone, first = refine(near, ACCURACY, MEMORY), refine(near, ACCURACY, MEMORY, "F")
     assert np.array_equal(alone.orbit.values, first.orbit.values)
     assert alone.errors == first.errors
 
 
 def test_a_cycle_alone_and_one_that_starts_a_chain_are_the_same(near):
-    alone, first = refine(near, ACCURACY), refine(near, ACCURACY, "F")
+    alone, first = refine(near, ACCURACY, MEMORY), refine(near, ACCURACY, MEMORY, "F")
     assert alone.orbit.period == pytest.approx(first.orbit.period, rel=2 * ACCURACY)
     assert alone.fine.matrix.tangent is None and first.fine.matrix.tangent is not None
     apart = alone.errors.multiplier_error + first.errors.multiplier_error

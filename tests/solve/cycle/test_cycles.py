@@ -15,18 +15,18 @@ from rodsweep.errors import EnvironmentLacks
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
-from rodsweep.solve.cycle import transient
-from rodsweep.solve.cycle.cycle_errors import EXTREMA_SLACK
+from rodsweep.solve.cycle.accuracy.cycle_errors import EXTREMA_SLACK
+from rodsweep.solve.cycle.accuracy.minimal_period import common_divisor, shortened, undecided_divisor
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle, warm_up
-from rodsweep.solve.cycle.minimal_period import common_divisor, shortened, undecided_divisor
-from rodsweep.solve.cycle.neighbour import Neighbour
+from rodsweep.solve.cycle.transient import transient
 from rodsweep.solve.motion.integrator import forget_integrators
-from rodsweep.solve.orbit.condensation import powers
+from rodsweep.solve.orbit.compiled_measures import powers
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath, measures_of
 from rodsweep.solve.orbit.newton import at_orbit, newton
 from rodsweep.solve.orbit.orbit import Orbit, interval_lengths, node_times
-from rodsweep.solve.orbit.orbit_mesh import legendre_analysis, tails_of
 from rodsweep.solve.orbit.symmetry import NONE, REFLECTION
+from rodsweep.solve.orbit.tails import legendre_analysis, tails_of
 
 SOFT = (1e4, 1e2, 1e-2, 1.0)
 """(k1, k2, gamma3, gamma1) of the paper's Fig. 5."""
@@ -180,8 +180,7 @@ def test_below_the_hopf_point_a_neighbours_cycle_decays():
 
 def test_what_a_neighbour_hands_on_is_its_cycle():
     c = reference()
-    handed = Neighbour.unpack(c.neighbour)
-    assert np.array_equal(handed.pack(), c.neighbour, equal_nan=True)
+    handed = c.neighbour
     assert handed.branch.orbit.period == c.measures.period
     assert handed.branch.orbit.form.tip(handed.branch.orbit.start)[1] == pytest.approx(c.measures.tip_y_max)
     again = solve_cycle(rod_of(50.0, *SOFT), REQUEST, c.neighbour, "F")
@@ -311,7 +310,7 @@ def test_period_is_the_minimal_one(rod, period, accuracy, amplitude):
 
 
 def orbit_at_fifty():
-    return Neighbour.unpack(reference().neighbour).branch.orbit
+    return reference().neighbour.branch.orbit
 
 
 def repeated(half, times):
@@ -326,20 +325,20 @@ def repeated(half, times):
 
 
 def test_three_periods_are_recognised_and_cut_to_one():
-    half = newton(orbit_at_fifty().on(mesh(1, 16), 12, 4), 1e-10).orbit
+    half = newton(orbit_at_fifty().on(mesh(1, 16), 12, 4), 1e-10, NewtonWorkspace()).orbit
     thrice = replace(repeated(half, 3), symmetry=REFLECTION)
     thrice = replace(thrice, values=np.append(thrice.values[:-1], 3 * half.period))
     assert [common_divisor(CyclePath(orbit), 1e-3) for orbit in (half, thrice)] == [1, 3]
     assert [undecided_divisor(CyclePath(orbit), 1e-8) for orbit in (half, thrice)] == [1, 3]
     assert shortened(half) is half
-    once = at_orbit(newton(shortened(thrice), 1e-10), 0.0)
+    once = at_orbit(newton(shortened(thrice), 1e-10, NewtonWorkspace()), 0.0)
     assert once.orbit.period == pytest.approx(half.period, rel=1e-7)  # 34 intervals instead of 12
     assert np.abs(once.matrix.multipliers()[0]) == pytest.approx(1.0, abs=1e-8)
 
 
 @cache
 def orbit_on(elements, order):
-    return newton(orbit_at_fifty().on(mesh(elements, order), 12, 4), 1e-10).orbit
+    return newton(orbit_at_fifty().on(mesh(elements, order), 12, 4), 1e-10, NewtonWorkspace()).orbit
 
 
 @pytest.mark.parametrize("elements, order", [(1, 15), (2, 8)])
@@ -414,7 +413,7 @@ def test_harmonics_in_common_are_a_shorter_period_for_all_that_is_known(sizes, e
 
 
 def test_a_period_in_doubt_is_not_called_a_cycle(monkeypatch):
-    monkeypatch.setattr("rodsweep.solve.cycle.refinement.undecided_divisor", lambda *given: 2)
+    monkeypatch.setattr("rodsweep.solve.cycle.accuracy.refinement.undecided_divisor", lambda *given: 2)
     c = solve_cycle(rod_of(50.0, *SOFT), CycleRequest(1e-4, 0.1, 3, 0, 0, 0, 300))
     assert c.status == CycleStatus.not_settled
     assert "2 times shorter cannot be excluded" in c.message

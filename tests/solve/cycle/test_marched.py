@@ -10,7 +10,8 @@ from surveyed import RODS
 
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.cycle.marched import MarchedStatus, solve_by_integration
+from rodsweep.solve.cycle.marched import solve_by_integration
+from rodsweep.solve.cycle.status import MarchedStatus
 
 ACCURACY = 1e-5
 MOST_NOT_SETTLED = 0.15

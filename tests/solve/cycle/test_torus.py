@@ -10,10 +10,10 @@ from surveyed import survey_only
 
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.mesh import mesh
-from rodsweep.solve.cycle import transient
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.cycle.torus import PREDICTED, modulation_of
-from rodsweep.solve.cycle.transient import angle_weights
+from rodsweep.solve.cycle.transient import transient
+from rodsweep.solve.cycle.transient.returns import angle_weights
+from rodsweep.solve.cycle.transient.torus import PREDICTED, modulation_of
 from rodsweep.solve.motion.leading_mode import leading_mode
 from rodsweep.solve.point import Unsolvable
 

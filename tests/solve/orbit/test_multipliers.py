@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rodsweep.solve.orbit.multipliers import NEGLIGIBLE, compressed, nonzero_eigenvalues
+from rodsweep.solve.orbit.matrix.multipliers import NEGLIGIBLE, compressed, nonzero_eigenvalues
 
 
 def by_modulus(values):

@@ -6,13 +6,13 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from ...hopf_points import HopfPoint
+from ...hopf_points import Located
 from ...summary.ranges import rounded
 from ..style import SYMBOLS
 from .square_root import SquareRootLaw
 
 HOPF_SYMBOL = rf"{SYMBOLS['F']}_{{**}}"
-HOPF_WORDS = {True: f"${HOPF_SYMBOL}$", False: "restabilization"}
+HOPF_WORDS = {"hopf": f"${HOPF_SYMBOL}$", "restabilization": "restabilization"}
 """What the legend calls a Hopf point above which the rod is unstable, and one above which it is stable."""
 HOPF_DIGITS = 6
 """To which a Hopf point is written in a legend."""
@@ -24,15 +24,15 @@ MOST_COEFFICIENTS = 3
 """Coefficients of square-root laws that one line of a legend can hold."""
 
 
-def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[HopfPoint, str]]) -> list[Line2D]:
+def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[Located, str]]) -> list[Line2D]:
     """A vertical dotted line at each Hopf point in its branch's colour; returns what the legend says.
 
     One that several branches share is drawn once, in grey; where a kind has one position the legend names it.
     """
     handles = []
     for kind, word in HOPF_WORDS.items():
-        own = [mark for mark in marks if mark[0].destabilises == kind]
-        places: list[tuple[HopfPoint, set[str]]] = []
+        own = [mark for mark in marks if mark[0].kind == kind]
+        places: list[tuple[Located, set[str]]] = []
         for point, colour in own:
             same = next((colours for other, colours in places if other.agrees(point)), None)
             if same is None:
@@ -44,7 +44,7 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[HopfPoint, st
             for axes in panels:
                 axes.axvline(point.position, color=colour, zorder=0.5, **DOTTED)
         if len(places) == 1:
-            equals = f"{word} = " if kind else rf"{word} at $\tilde F$ = "
+            equals = f"{word} = " if kind == "hopf" else rf"{word} at $\tilde F$ = "
             handles.append(
                 Line2D(
                     [], [], color=colour, label=f"{equals}{places[0][0].position:.{HOPF_DIGITS}g}", **DOTTED

@@ -174,12 +174,8 @@ def _refuse_bad_points(view: View, points: Sequence[int]) -> None:
 
 def _values(view: View, number: int) -> dict[str, Array]:
     """The variables at one point, each in its shape there."""
-    shape = view.variables["status"].shape
-    return {
-        name: data.reshape(-1, *data.shape[len(shape) :])[number - 1]
-        for name, data in view.variables.items()
-        if data.shape[: len(shape)] == shape and name not in (*view.parameters, "point")
-    }
+    of_point = view.of_point(number - 1).items()
+    return {name: values for name, values in of_point if name not in (*view.parameters, "point")}
 
 
 def told_apart(parameters: Sequence[dict[str, float]]) -> tuple[str, list[str]]:

@@ -11,7 +11,7 @@ from math import sqrt
 import numpy as np
 
 from ....arrays import Array
-from ...hopf_points import HopfPoint
+from ...hopf_points import Located
 
 NEAR = 0.1
 """|F - F**|/|F**| up to which a cycle is near enough to tell the coefficient."""
@@ -45,7 +45,7 @@ class SquareRootLaw:
         return F, self.coefficient * np.sqrt(np.abs(F - self.hopf) / abs(self.hopf))
 
 
-def square_root_laws(F: Array, amplitude: Array, points: Sequence[HopfPoint]) -> list[SquareRootLaw]:
+def square_root_laws(F: Array, amplitude: Array, points: Sequence[Located]) -> list[SquareRootLaw]:
     """The laws that the amplitudes follow, at most one for each side of a Hopf point.
 
     F and amplitude have the shape (n,), in any order; amplitude is NaN or 0 where there is no cycle.
@@ -54,7 +54,7 @@ def square_root_laws(F: Array, amplitude: Array, points: Sequence[HopfPoint]) ->
     return [law for law in laws if law]
 
 
-def _law(F: Array, amplitude: Array, point: HopfPoint, side: int) -> SquareRootLaw | None:
+def _law(F: Array, amplitude: Array, point: Located, side: int) -> SquareRootLaw | None:
     """The law above (side 1) or below (-1) the Hopf point; None where the amplitudes follow none.
 
     Towards the Hopf point amplitude^2/distance is linear in the distance: its value there is extrapolated

@@ -11,7 +11,7 @@ from matplotlib.ticker import NullLocator, SymmetricalLogLocator
 from ....arrays import Array, Complex
 from ....results.file.view import View
 from ....sweep.lines import lines_over
-from ...hopf_points import Bracket, HopfPoint, Located, StoredChanges
+from ...hopf_points import Bracket, Located, StoredChanges
 from ..arm_quantities import TOGETHER
 from ..eigenvalues import spread
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, fixed_text, heading, legend_below, scale
@@ -80,9 +80,7 @@ def roots_to_follow(views: Sequence[View], asked: str | None) -> str:
 
 def _followed(view: View, roots: str) -> Complex:
     """The roots that are shown of every point of a line, (points, 2), or of all that are stored."""
-    modes = len(view.variables["mode"])
-    growth = view.variables["growth_rate"].reshape(-1, modes)
-    return followed_roots(growth, view.variables["frequency"].reshape(-1, modes), roots)
+    return followed_roots(view.by_point("growth_rate"), view.by_point("frequency"), roots)
 
 
 def _scatter_all(axes: Axes, x: Array, w: Complex, label: str) -> None:
@@ -161,11 +159,11 @@ def threshold_text(threshold: Located) -> str:
     return f"{word} ={TOGETHER}{threshold.position:#.{THRESHOLD_DIGITS}g}"
 
 
-def edge_of_flutter(change: HopfPoint | Bracket) -> float:
+def edge_of_flutter(change: Located | Bracket) -> float:
     """The force to which the rod is known to be unstable beside a change of its stability."""
-    if isinstance(change, HopfPoint):
+    if isinstance(change, Located):
         return change.position
-    return change.high if change.destabilises else change.low
+    return change.high if change.kind == "hopf" else change.low
 
 
 def mark_thresholds(axes: Axes, view: View, name: str) -> list[Located]:
@@ -185,9 +183,10 @@ def mark_thresholds(axes: Axes, view: View, name: str) -> list[Located]:
     for threshold in thresholds:
         _, style = THRESHOLD_LOOKS[threshold.kind]
         axes.axvline(threshold.position, ls=style, label=threshold_text(threshold), **THRESHOLD_LINE)
-    changes = [change for change in found if isinstance(change, HopfPoint | Bracket)]
-    starts = [edge_of_flutter(change) for change in changes if change.destabilises]
-    ends = [edge_of_flutter(change) for change in changes if not change.destabilises]
+    starts, ends = (
+        [edge_of_flutter(change) for change in found if change.kind == kind]
+        for kind in ("hopf", "restabilization")
+    )
     if ends and (not starts or ends[0] < starts[0]):
         starts.insert(0, float(x[0]))
     if len(starts) > len(ends):

@@ -5,17 +5,18 @@ the cycle's linearised equations with a border. Here that system is solved with 
 by, a vector of the cycle before as the start, and its residual at the cycle itself: no further elimination.
 """
 
-from collections.abc import Callable
 from dataclasses import replace
+from typing import Protocol
 
 import numpy as np
 
 from ....arrays import Array
 from ....watch import report
-from ...orbit.linearisation import jump_of
+from ...orbit.matrix.linearisation import jump_of
+from ...orbit.matrix.phase import phase_change, phase_row
+from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
-from ...orbit.phase import phase_change, phase_row
 from ...point import Unsolvable
 from ..bordered import LONGEST_STEP, BorderedMatrix, Condition, Scale, moment_of, moved
 from .locating import REAL
@@ -34,25 +35,44 @@ STALLED = 1e-8
 MOST_CORRECTIONS = 30
 
 
+class FamilyOfCycles(Protocol):
+    """Cycles of two numbers about a curve, as far as what is zero on it must know them.
+
+    border: direction of the branch in the scale, (3,); small: whether cycles are nearly as small as at a Hopf
+    point; workspace: memory of the matrices.
+    """
+
+    @property
+    def scale(self) -> Scale: ...
+    @property
+    def border(self) -> Array: ...
+    @property
+    def small(self) -> bool: ...
+    @property
+    def workspace(self) -> NewtonWorkspace: ...
+
+    def function(self, matrix: BorderedMatrix) -> "FoldFunction | TorusFunction":
+        """What is zero on the curve, at the cycle of a matrix."""
+
+
 class NearbyCycles:
     """Cycles of a family near one whose matrix is eliminated, with what is zero on the curve."""
 
-    def __init__(
-        self,
-        start: Orbit,
-        scale: Scale,
-        border: Array,
-        function: "Callable[[BorderedMatrix], FoldFunction | TorusFunction]",
-    ) -> None:
-        self.scale, self.border, self._function = scale, border, function
-        self.contraction, self.learns = np.inf, False
-        """Ratio of a correction to the one before in units of the matrix's distance, and whether it lasts."""
+    def __init__(self, family: FamilyOfCycles, start: Orbit, contraction: float) -> None:
+        """contraction: of corrections in the family before, or inf; it is learnt but for small cycles."""
+        self.scale, self.border, self._family = family.scale, family.border, family
+        self.contraction = contraction
+        """Ratio of a correction to the one before in units of the matrix's distance."""
         self._eliminate(start)
 
     def _eliminate(self, orbit: Orbit) -> None:
         """Makes the matrix at an orbit, from which the cycles are at a relative distance."""
-        self.matrix, self.distance = BorderedMatrix(orbit, self.scale), 0.0
-        self.function = self._function(self.matrix)
+        self.matrix, self.distance = BorderedMatrix(orbit, self.scale, self._family.workspace), 0.0
+        self.function = self._family.function(self.matrix)
+
+    def predict(self, vectors: Array) -> None:
+        """Takes vectors of the function, (count, N + 1) or (N + 1,), from which the next cycle's start."""
+        self.function.start_from(vectors)
 
     def solved(self, orbit: Orbit, condition: Condition, slope: float, enough: float) -> tuple[Orbit, float]:
         """(the cycle near an orbit, the value there of the function); raises Unsolvable.
@@ -69,7 +89,7 @@ class NearbyCycles:
             value = self.function.value(orbit)
             off = max(change, abs(value - before) / slope)
             rate = off / last if last else min(1.0, self.contraction * distance)
-            if last and self.learns:
+            if last and not self._family.small:
                 self.contraction = max(LEAST_CONTRACTION, CAREFUL * rate / distance)
             if off * min(rate, 1.0) <= max(enough, SHARE * abs(value) / slope):
                 return orbit, value
@@ -106,6 +126,10 @@ class FoldFunction:
         """That of the tangent as it is."""
         rises = float(self.vectors[-1] / self.matrix.scale.coordinate)
         return rises * self.matrix.scale.moment / moment_of(orbit) if self.small else rises
+
+    def start_from(self, tangent: Array) -> None:
+        """Takes the tangent, (N + 1,), that is corrected next."""
+        self.vectors = tangent
 
     def correct(self, orbit: Orbit) -> None:
         """One correction of the tangent at a cycle, where what is corrected to 0 is linear in it."""
@@ -149,6 +173,10 @@ class TorusFunction:
     def value(self, orbit: Orbit) -> float:
         """That of the multiplier as it is."""
         return abs(self.multiplier) - 1
+
+    def start_from(self, parts: Array) -> None:
+        """Takes the eigenvector, its real and imaginary part, (2, N + 1), that is corrected next."""
+        self.vectors = parts
 
     def correct(self, orbit: Orbit) -> None:
         """One correction of multiplier and eigenvector at a cycle."""

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.boundaries import Boundaries, BoundarySearch, boundary_search
+from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point import FAILURES, Unsolvable
 from .curves import VANISHING, CurveCourse
 from .cycle_curves import Arrays, CurveEnd, CurvePoint, CycleCurve, HalfCurve, TracedHalf
@@ -76,15 +77,20 @@ class SpecialBoundaries:
     ) -> "Iterator[tuple[_CurvesOfKind, BoundarySearch[_TracedCurve]]]":
         """The curves of each kind, as far as the results go."""
         for kind in CURVE_KINDS:
-            curves = _CurvesOfKind(self.special, CurveCourse(kind, self.line, self.rows), results)
+            curves = _CurvesOfKind(kind, self.line, self.rows, self.special, results)
             seeds = (i for i, one in enumerate(self.special) if one.kind == kind)
             yield curves, boundary_search(curves, seeds, AGREE)
 
-    def solve(self, unit: int, located: Callable[[int], Iterable[SpecialPoint]]) -> Arrays:
-        """The result of a unit. located: the special points of a row of a number, solved anew."""
+    def solve(
+        self, unit: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
+    ) -> Arrays:
+        """The result of a unit, arrays of the shapes that `TracedHalf` has.
+
+        located: the special points of a row of a number, solved anew; workspace: memory of Newton's matrices.
+        """
         place, behind = divmod(unit, 2)
         one = self.special[place]
-        course = CurveCourse(one.kind, self.line, self.rows, -1.0 if behind else 1.0)
+        course = CurveCourse(one.kind, self.line, self.rows, workspace, -1.0 if behind else 1.0)
         return _traced(course, one, located(one.number), self.special).arrays()
 
     def row_of(self, unit: int) -> int:
@@ -110,8 +116,10 @@ class _TracedCurve:
 class _CurvesOfKind:
     """The curves of one kind, as far as the results of units go."""
 
+    kind: SpecialKind
+    line: PlaneAxis
+    rows: PlaneAxis
     special: Sequence[RowSpecial]
-    course: CurveCourse
     results: Mapping[int, Arrays]
 
     def next_seed(self, left: Sequence[int]) -> int:
@@ -142,7 +150,7 @@ class _CurvesOfKind:
         behind = TracedHalf(None) if closed else TracedHalf.of(self.results[2 * seed + 1])
         if behind.half is None and not closed:
             return None
-        curve = CycleCurve.joined(self.course.kind, ahead.half, behind.half)
+        curve = CycleCurve.joined(self.kind, ahead.half, behind.half)
         near = dict(ahead.distances)
         for i, distance in behind.distances.items():
             near[i] = min(distance, near.get(i, math.inf))
@@ -151,7 +159,7 @@ class _CurvesOfKind:
     def distance(self, curve: _TracedCurve, seed: int) -> float:
         """How far a special point lies from a curve, in units of the line's axis; inf unless it is near."""
         near = curve.distances.get(seed, math.inf)
-        return 0.0 if near > AGREE and _vanishes(self.course, curve.curve, self.special[seed]) else near
+        return 0.0 if near > AGREE and self._vanishes(curve.curve, self.special[seed]) else near
 
     def same(self, one: _TracedCurve, other: _TracedCurve) -> bool:
         """Whether two curves share both ends."""
@@ -164,7 +172,21 @@ class _CurvesOfKind:
 
     def _ends(self, curve: CycleCurve) -> list[tuple[float, float]]:
         """Both ends of a curve, scaled, the lower first."""
-        return sorted((p.place, self.course.line.scaled(p.at)) for p in (curve.points[0], curve.points[-1]))
+        return sorted((p.place, self.line.scaled(p.at)) for p in (curve.points[0], curve.points[-1]))
+
+    def _vanishes(self, curve: CycleCurve, one: RowSpecial) -> bool:
+        """Whether a special point lies on the last part of a curve, where cycles vanish at a Hopf point."""
+        if one.tip_y_max >= VANISHING:
+            return False
+        for end, last in zip(curve.vanishing, (curve.points[0], curve.points[-1]), strict=True):
+            if end is None:
+                continue
+            x, y = self.line.scaled(end.at), self.rows.scaled(end.row)
+            share = (self.rows.scaled(one.row) - y) / (last.place - y)
+            chord = x + share * (self.line.scaled(last.at) - x)
+            if 0 <= share <= 1 and abs(chord - self.line.scaled(one.at)) <= ON_CHORD:
+                return True
+        return False
 
 
 def _traced(
@@ -217,18 +239,3 @@ def _near(course: CurveCourse, a: OnCurve, b: OnCurve, one: RowSpecial) -> bool:
     periods = sorted(p.orbit.period for p in (a, b))
     on_line = ends[0] - NEAR <= x <= ends[1] + NEAR
     return on_line and periods[0] / (1 + SAME_CYCLE) <= one.period <= periods[1] * (1 + SAME_CYCLE)
-
-
-def _vanishes(course: CurveCourse, curve: CycleCurve, one: RowSpecial) -> bool:
-    """Whether a special point lies on the last part of a curve, where cycles vanish at a Hopf point."""
-    if one.tip_y_max >= VANISHING:
-        return False
-    for end, last in zip(curve.vanishing, (curve.points[0], curve.points[-1]), strict=True):
-        if end is None:
-            continue
-        x, y = course.line.scaled(end.at), course.rows.scaled(end.row)
-        share = (course.rows.scaled(one.row) - y) / (last.place - y)
-        chord = x + share * (course.line.scaled(last.at) - x)
-        if 0 <= share <= 1 and abs(chord - course.line.scaled(one.at)) <= ON_CHORD:
-            return True
-    return False

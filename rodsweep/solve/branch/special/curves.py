@@ -10,6 +10,7 @@ from ....determinant.parameter_plane import PlaneAxis
 from ....watch import Whereabouts, report
 from ....wording import counted
 from ...continuation.follower import Curve, CurveStop, StepControl, Stepped, follow, zero_along
+from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
@@ -57,17 +58,19 @@ END_AT_MARGIN = (*EDGES * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_
 class CurveCourse:
     """A kind of special points, over the line's parameter between two values and the rows' axis.
 
-    side: 1 or -1, to which the curve goes first along the rows' axis.
+    side: 1 or -1, to which the curve goes first along the rows' axis. workspace: memory of all matrices.
     """
 
     kind: SpecialKind
     line: PlaneAxis
     rows: PlaneAxis
+    workspace: NewtonWorkspace
     side: float = 1.0
 
     def followed(self, special: SpecialPoint, row: float) -> tuple[list[OnCurve], CurveEnd]:
         """(the curve from a special point of a row on, why it ends); raises Unsolvable."""
-        curve = follow(self, first_on_curve(special, self.line.name, self.rows, row), STEPS, self._report)
+        first = first_on_curve(special, self.line.name, self.rows, row, self.workspace)
+        curve = follow(self, first, STEPS, self._report)
         return errors_between(curve.solutions), self._why_ended(curve)
 
     def _why_ended(self, curve: Curve[OnCurve]) -> CurveEnd:
@@ -104,7 +107,7 @@ class CurveCourse:
         return Stepped(there, off, float(one @ other / np.linalg.norm(one) / np.linalg.norm(other)))
 
     def _family(self, point: OnCurve) -> CycleFamily:
-        return CycleFamily.about(self.kind, self.rows, point)
+        return CycleFamily.about(self.kind, self.rows, point, self.workspace)
 
     def _predicted(self, points: Sequence[OnCurve], step: float) -> tuple[Orbit, float]:
         """(orbit, place) a step beyond the last of some points; raises Unsolvable."""
@@ -194,7 +197,7 @@ class CurveCourse:
     def _why_lost(self, last: OnCurve) -> CurveEnd:
         """Why a curve cannot be followed beyond a point."""
         if self.kind == SpecialKind.torus:
-            pair = crossing_pair(BorderedMatrix(last.orbit, last.scale))
+            pair = crossing_pair(BorderedMatrix(last.orbit, last.scale, self.workspace))
             if pair is None or abs(pair.imag) < ALMOST_REAL * abs(pair):
                 return CurveEnd.resonance
         return CurveEnd.not_followed

@@ -17,8 +17,10 @@ import numpy as np
 
 from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
+from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import lasting_tails, mesh_of, stages_for
+from ...orbit.orbit_mesh import mesh_of, stages_for
+from ...orbit.tails import lasting_tails
 from ...point import Unsolvable
 from ..arc import tangent_at
 from ..beginning import LEAST_UNIT, MOMENT
@@ -61,6 +63,7 @@ class CycleFamily:
     """The cycles about a point of a curve of a kind: border, (3,), is the direction of its branch in a scale.
 
     small: whether cycles are so small that Hopf points count as folds unless these are divided out.
+    workspace: memory of the matrices.
     """
 
     kind: SpecialKind
@@ -68,12 +71,15 @@ class CycleFamily:
     scale: Scale
     border: Array
     small: bool
+    workspace: NewtonWorkspace
 
     @classmethod
-    def about(cls, kind: SpecialKind, rows: PlaneAxis, point: OnCurve) -> "CycleFamily":
+    def about(
+        cls, kind: SpecialKind, rows: PlaneAxis, point: OnCurve, workspace: NewtonWorkspace
+    ) -> "CycleFamily":
         """The cycles about a point."""
         small = kind == SpecialKind.fold and point.tip_y_max < SMALL
-        return cls(kind, rows, point.scale, point.ahead, small)
+        return cls(kind, rows, point.scale, point.ahead, small, workspace)
 
     def placed(self, orbit: Orbit, place: float) -> Orbit:
         """The values of an orbit for the rod at a place on the rows' axis; raises Unsolvable."""
@@ -147,10 +153,8 @@ class _SecantAcross:
         self.length = float(family.border @ family.scale.place(start))
         self.trusted = LINEAR_HERE if same else LINEAR_BEFORE
         """Longest step along a line by rates that are not of two cycles here."""
-        self.near = NearbyCycles(self.orbit, family.scale, family.border, family.function)
-        self.near.contraction, self.near.learns = inf, not family.small
-        if rates and self.near.learns:
-            self.near.contraction = rates.contraction
+        contraction = rates.contraction if rates and not family.small else inf
+        self.near = NearbyCycles(family, self.orbit, contraction)
 
     def next(self) -> OnCurve | None:
         """The point of the curve, if the next cycle tells it; raises Unsolvable."""
@@ -166,7 +170,7 @@ class _SecantAcross:
             return self._point(step, replace(rates, contraction=self.near.contraction))
         if self.before:  # as the cycle, its vectors go on along a line
             change = (here.vectors - self.before.vectors) / (here.at - self.before.at)
-            self.near.function.vectors = here.vectors + step * change
+            self.near.predict(here.vectors + step * change)
         if rates:
             self.orbit = self._moved(step, rates)
         self.before, self.at = here, self.at + step
@@ -216,7 +220,9 @@ class _SecantAcross:
         )
 
 
-def first_on_curve(special: SpecialPoint, line: str, rows: PlaneAxis, row: float) -> OnCurve:
+def first_on_curve(
+    special: SpecialPoint, line: str, rows: PlaneAxis, row: float, workspace: NewtonWorkspace
+) -> OnCurve:
     """A special point that was located on a row as the first point of a curve; raises Unsolvable."""
     orbit = special.orbit
     if orbit is None:
@@ -230,9 +236,11 @@ def first_on_curve(special: SpecialPoint, line: str, rows: PlaneAxis, row: float
     )
     orbit = rough.carry(orbit)
     scale = Scale.of(orbit, line, abs(moment_of(orbit)) * LEAST_UNIT / special.tip_y_max)
-    ahead = scale.moved(orbit, tangent_at(orbit, scale, MOMENT, BorderedMatrix(orbit, scale)))
+    matrix = BorderedMatrix(orbit, scale, workspace)
+    ahead = scale.moved(orbit, tangent_at(orbit, scale, MOMENT, matrix))
     place = rows.scaled(row)
     start = OnCurve(
         orbit=orbit, scale=scale, ahead=ahead / np.linalg.norm(ahead), place=place, at=special.at, row=row
     )
-    return CycleFamily.about(special.kind, rows, start).point(orbit, place, np.array([1.0, 0.0]))
+    family = CycleFamily.about(special.kind, rows, start, workspace)
+    return family.point(orbit, place, np.array([1.0, 0.0]))

@@ -74,7 +74,7 @@ class Segment:
         else:
             last, orbit, tangent = self._known
             start = moved(orbit, name, (length - last) * tangent)
-        found = self.here.condition(length).solved(start, TOLERANCE, distance)
+        found = self.here.condition(length).solved(start, TOLERANCE, self.here.workspace, distance)
         tangent = tangent_at(found.orbit, scale, self.here.ahead, bordered(found))
         rate = float(scale.moved(found.orbit, tangent) @ self.here.ahead)
         self._known = length, found.orbit, tangent / rate
@@ -93,7 +93,7 @@ def test_function(kind: SpecialKind, segment: Segment, found: Converged) -> floa
         return segment.rises()
     if kind == SpecialKind.left_the_model:
         return least_stretch(CyclePath(found.orbit))
-    h = BorderedMatrix(found.orbit, segment.here.scale).returns
+    h = BorderedMatrix(found.orbit, segment.here.scale, found.workspace).returns
     real = np.abs(h.imag) <= REAL * np.abs(h)
     if kind == through_minus_one(found.orbit):
         # Its sign is that of det(h + 1): it tells the one that crosses from others that are nearer elsewhere.

@@ -8,7 +8,8 @@ import numpy as np
 
 from ....arrays import Array
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import OrbitMesh, lasting_tails, mesh_of
+from ...orbit.orbit_mesh import OrbitMesh, mesh_of
+from ...orbit.tails import lasting_tails
 from ...point import Unsolvable
 from ..bordered import Scale
 

@@ -1,40 +1,28 @@
-"""The errors of a mesh, calibrated by finer ones, for a cycle and those that follow on the same mesh.
+"""The errors of a mesh, which finer meshes measured, for a cycle and those that follow on the same mesh.
 
-Two meshes of which one is coarser tell the fine one's error only by what it should be in units of the coarse
-one's, which must be pessimistic. Two finer meshes, one in space and one in time, measure it. How fast both
-parts fall, hence which mesh costs least, the decay of the orbit's coefficients tells, and better two meshes
-that were measured. Where many cycles follow on one mesh, its errors are measured at the first of them; at
-the others both parts are larger by as much as the orbit's tails make them.
+How fast both parts fall, hence which mesh costs least, the decay of the orbit's coefficients tells, and
+better two meshes that were measured. Where many cycles follow on one mesh, its errors are measured at the
+first of them; at the others both parts are larger by as much as the orbit's tails make them.
 """
 
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from math import ceil, inf
 
 import numpy as np
 
-from ...arrays import Array, Complex
-from ...discretization.resolution import LARGEST_ORDER
-from ..orbit.measures import CyclePath
-from ..orbit.newton import Converged, at_orbit, multiplier_change, multipliers_of, newton
-from ..orbit.orbit import Orbit
-from ..orbit.orbit_mesh import (
+from ....arrays import Array
+from ....discretization.resolution import LARGEST_ORDER
+from ...orbit.orbit import Orbit
+from ...orbit.orbit_mesh import (
     LEAST_INTERVALS,
     LEAST_ORDER,
     MOST_INTERVALS,
     OrbitMesh,
-    lasting_tails,
-    mesh_of,
-    tails_of,
 )
-from ..orbit.path_differences import APART, HEIGHT, OTHERS, PERIOD, path_differences
+from ...orbit.path_differences import APART, HEIGHT, OTHERS, PERIOD
+from ...orbit.tails import lasting_tails, tails_of
 from .cycle_errors import LEAST_CLAIM, ROUNDING, CycleErrors, largest_error
 
-MORE_ORDERS, MORE_INTERVALS = 2, 1.4
-"""What the finer meshes have more of."""
-TOLERANCE, DISTANCE = 0.1, 1e-3
-"""What Newton's method leaves on the other meshes, in units of the accuracy, and how far from the orbit the
-matrix may be that their multipliers are of."""
 SAFETY = 3.0
 HEIGHT_SHARE, PERIOD_SHARE, OTHERS_SHARE, SHARE_IN_TIME = 0.16, 0.16, 1.6, 0.004
 """Shares of the distance between the tip's paths that count at least as an error: a number may agree by luck,
@@ -86,17 +74,18 @@ class Calibration:
     reach: float
     growth: Array = field(default_factory=lambda: np.ones(2))
 
-    def pack(self) -> Array:
-        """All of it as a flat array, (LENGTH,)."""
-        parts = (self.mesh.numbers, self.space, self.time, self.fall, self.power, self.tails, [self.reach])
-        return np.concatenate(parts)
+    def arrays(self) -> dict[str, Array]:
+        """All of it but the growth, which each orbit has anew: errors (5,), tails (3,), reach and mesh."""
+        errors = {name: getattr(self, name) for name in ("space", "time", "fall", "power", "tails")}
+        numbers = {"reach": np.array(self.reach), "calibrated_mesh": np.array(self.mesh.numbers)}
+        return errors | numbers
 
     @classmethod
-    def unpack(cls, flat: Array) -> "Calibration":
-        """The reverse of `pack`, from its array, (LENGTH,)."""
-        mesh = OrbitMesh(*map(int, flat[:4]))
-        space, time, fall, power = flat[4 : 4 + 4 * PARTS].reshape(4, PARTS)
-        return cls(mesh, space, time, fall, power, flat[4 + 4 * PARTS : -1], float(flat[-1]))
+    def from_arrays(cls, arrays: dict[str, Array]) -> "Calibration":
+        """The reverse of `arrays`, of the shapes given there."""
+        mesh = OrbitMesh(*map(int, arrays["calibrated_mesh"]))
+        errors = {name: arrays[name] for name in ("space", "time", "fall", "power", "tails")}
+        return cls(mesh=mesh, reach=float(arrays["reach"]), **errors)
 
     def at(self, orbit: Orbit, change: float) -> "Calibration":
         """The same for an orbit of the next point, after a relative change of the parameter."""
@@ -122,6 +111,11 @@ class Calibration:
     def lasts(self, change: float) -> bool:
         """Whether it may tell the errors after a further relative change of the parameter."""
         return self.reach + change <= FARTHEST
+
+    def least(self, orbit: Orbit) -> tuple[Array, Array]:
+        """The least of both parts, (5,) each, at an orbit for which this mesh is measured again."""
+        in_space, in_time = KEPT * np.minimum(_change(self.tails, _tails(orbit)), 1.0)
+        return in_space * self.space, in_time * self.time
 
     def errors(self, accuracy: float) -> CycleErrors:
         """Errors of the orbit.
@@ -156,10 +150,6 @@ class Calibration:
             for i in np.flatnonzero(enough.any(axis=1))
         ]
         return min(meshes, key=lambda mesh: mesh.cost, default=here.finer)
-
-
-LENGTH = 4 * PARTS + 8
-"""Of a packed calibration."""
 
 
 def _stated(space: Array, time: Array, accuracy: float) -> Array:
@@ -198,36 +188,13 @@ def _change(before: Array, after: Array) -> Array:
     return change
 
 
-def at_its_parameters(mesh: OrbitMesh, orbit: Orbit, tolerance: float) -> Converged:
-    """The same cycle of the same rod on another mesh; raises Unsolvable."""
-    return newton(mesh.carry(orbit), tolerance)
-
-
-def calibrated(found: Converged, accuracy: float, before: Calibration | None = None) -> Calibration:
-    """The calibration of the mesh of an orbit; raises Unsolvable.
-
-    before: of an orbit near by, on this mesh or another, which tells how fast errors fall; without it the
-    orbit does.
-    """
-    here, least = mesh_of(found.orbit), found.orbit.stages + 1
-    seen, longer = Seen(found), ceil(MORE_INTERVALS * here.intervals)
-    meshes = (replace(here, order=here.order + MORE_ORDERS), replace(here, intervals=longer))
-    others = (at_its_parameters(mesh, found.orbit, TOLERANCE * accuracy) for mesh in meshes)
-    space, time = (seen.difference(Seen(other)) for other in others)
-    # The finer mesh has an error in time itself.
-    time = time / (1 - ((here.intervals - 1) / (longer - 1)) ** least)
-    if before is not None and before.mesh == here:
-        in_space, in_time = KEPT * np.minimum(_change(before.tails, _tails(found.orbit)), 1.0)
-        space, time = np.maximum(space, in_space * before.space), np.maximum(time, in_time * before.time)
-    return calibration_of(here, space, time, found.orbit, before)
-
-
 def calibration_of(
     here: OrbitMesh, space: Array, time: Array, orbit: Orbit, before: Calibration | None
 ) -> Calibration:
     """The calibration of a mesh with both parts of its error, (5,) each, and how fast they fall.
 
-    orbit: on it, or near by. before: as in `calibrated`.
+    orbit: on it, or near by. before: of an orbit near by, on this mesh or another, which tells how fast
+    errors fall; without it the orbit does.
     """
     tails = _tails(orbit)
     if before is None:
@@ -241,23 +208,6 @@ def calibration_of(
     if there.intervals != here.intervals:
         power = _power(before.time, time, there, here)
     return Calibration(here, space, time, fall, power, tails, 0.0)
-
-
-class Seen:
-    """What of a cycle that was solved is compared with that on another mesh."""
-
-    def __init__(self, found: Converged) -> None:
-        self._found, self.orbit, self.path = found, found.orbit, CyclePath(found.orbit)
-
-    @cached_property
-    def multipliers(self) -> Complex:
-        """All but the trivial one, (rank - 1,), by descending modulus."""
-        return multipliers_of(at_orbit(self._found, DISTANCE))[0]
-
-    def difference(self, fine: "Seen") -> Array:
-        """By what the one on a finer mesh differs, as `Calibration.space` says, (5,)."""
-        change = multiplier_change(self.multipliers, fine.multipliers)
-        return np.append(path_differences(self.path, fine.path), change)
 
 
 def _fall(before: Array, after: Array, orders: int) -> Array:

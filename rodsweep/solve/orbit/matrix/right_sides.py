@@ -4,12 +4,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
-from ...discretization.nodal_rod import NodalChange
-from ...discretization.plane import balance, balance_change, jacobian, velocity_balance
-from ...discretization.state_layout import stress_place, velocity_place
-from ...model.compilation import compiled_for_vectors
-from .condensation import Semidiscrete, add_products
+from ....arrays import Array
+from ....discretization.nodal_rod import NodalChange
+from ....discretization.plane import balance, balance_change, jacobian, velocity_balance
+from ....discretization.state_layout import stress_place, velocity_place
+from ....model.compilation import compiled_for_vectors
+from ..semidiscrete import Semidiscrete
+from .substitution import add_products
 
 
 class Along(NamedTuple):

@@ -1,107 +1,62 @@
 """Newton's matrix at an orbit: its step, the tangents of the branch, and all Floquet multipliers.
 
-One elimination of the intervals (`condensation`) leaves a system for the state at t = 0 and the period, with
+One elimination of the intervals (`elimination`) leaves a system for the state at t = 0 and the period, with
 the phase condition as its last row.
 """
 
-from math import prod
-
 import numpy as np
 
-from ...arrays import Array, Complex
-from ...discretization.nodal_rod import NodalChange
-from ...discretization.state_layout import COMPONENTS, stress_place
-from ...discretization.stress_form import StressForm
-from ...model.compilation import compiled_for_vectors
-from .condensation import (
-    PANEL,
-    Factors,
-    Semidiscrete,
-    eliminate,
-    invert,
-    reduce,
-    substitute,
-    to_end,
-)
+from ....arrays import Array, Complex
+from ....discretization.nodal_rod import NodalChange
+from ....discretization.state_layout import COMPONENTS, stress_place
+from ....discretization.stress_form import StressForm
+from ....model.compilation import compiled_for_vectors
+from ..orbit import Orbit
+from ..semidiscrete import Semidiscrete
+from .elimination import eliminate
+from .inversion import PANEL, invert
 from .multipliers import nonzero_eigenvalues
-from .orbit import Orbit
 from .phase import phase, phase_change, phase_row
 from .right_sides import Along, residuals, right_sides, variation_sides
-
-_memory: list[Array] = [np.empty(0)]
-_latest: list["NewtonWorkspace"] = []
-
-
-class NewtonWorkspace:
-    """The factors of one Newton matrix, in memory that the next workspace takes over.
-
-    New pages take as long as half an elimination, so all matrices share one buffer.
-    """
-
-    def __init__(self, intervals: int, stages: int, unknowns: int) -> None:
-        for former in _latest:  # it may live on for its multipliers, and would keep a buffer that is outgrown
-            former._blocks = None
-        shape = (intervals, stages, stages, unknowns, unknowns)
-        if len(_memory[0]) < prod(shape):
-            _memory[0] = np.empty(0)
-            _memory[0] = np.empty(prod(shape))
-        self._blocks: Array | None = _memory[0][: prod(shape)].reshape(shape)
-        self.propagator, self._inverse = np.zeros((unknowns,) * 2), np.zeros((unknowns + 1,) * 2)
-        """P, (n, n), which stays."""
-        _latest[:] = [self]
-
-    @property
-    def factors(self) -> Factors:
-        """The factors; raises RuntimeError once another workspace was made."""
-        if self._blocks is None:
-            raise RuntimeError("the factors of this matrix are overwritten: a matrix was made after it")
-        return Factors(self._blocks, self.propagator, self._inverse)
+from .substitution import reduce, substitute, to_end
+from .workspace import Factors, MatrixMemory, NewtonWorkspace
 
 
 class Linearisation:
-    """Newton's matrix at an orbit; it corrects others until the next one is made.
+    """Newton's matrix at an orbit; it corrects others until its workspace is used by another matrix.
 
     step: Newton's step there; tangent: the derivative of the orbit by the parameter, where one is given. Both
     are arrays like `Orbit.values`.
     """
 
-    def __init__(self, orbit: Orbit, parameter: str | None = None) -> None:
-        self.orbit = orbit
-        self._workspace = NewtonWorkspace(orbit.intervals, orbit.stages, orbit.form.unknowns)
-        p, factors = orbit.semidiscrete, self._workspace.factors
+    def __init__(self, orbit: Orbit, workspace: NewtonWorkspace, parameter: str | None = None) -> None:
+        self.orbit, self.workspace = orbit, workspace
+        self._memory = MatrixMemory(workspace, orbit.intervals, orbit.stages, orbit.form.unknowns)
+        p, factors = orbit.semidiscrete, self._memory.factors
         along = Along(STILL, p.mass) if parameter is None else change_along(orbit.form, parameter)
         count = 2 if parameter is None else 3
         steps, self._by_period = linearise(orbit.values, count, along, p, factors)
         self.step, self.tangent = steps[0], None if parameter is None else steps[1]
 
     def correction(self, orbit: Orbit) -> Array:
-        """Newton's step at another orbit near by, (N,); raises RuntimeError once another matrix was made."""
-        step: Array = correct(orbit.values, self._by_period, orbit.semidiscrete, self._workspace.factors)
+        """Newton's step at another orbit near by, (N,); raises RuntimeError once the factors are lost."""
+        step: Array = correct(orbit.values, self._by_period, orbit.semidiscrete, self._memory.factors)
         return step
 
     def multipliers(self) -> Complex:
         """All Floquet multipliers but rounding, (rank,), by descending modulus, the trivial one too."""
-        return multipliers_by(self._workspace.propagator, self.orbit)
+        return over_period(returns_of(self._memory.propagator, self.orbit), self.orbit)
 
 
-def multipliers_by(propagator: Array, orbit: Orbit) -> Complex:
-    """All Floquet multipliers but rounding, (rank,), by descending modulus, of an orbit with P, (n, n)."""
-    values = nonzero_eigenvalues(orbit.symmetry.returned(propagator, orbit.form.layout))
-    values = values**orbit.symmetry.parts
+def returns_of(propagator: Array, orbit: Orbit) -> Complex:
+    """The multipliers of the map over what is solved, S^-1 P, but rounding, (rank,); P: (n, n)."""
+    return nonzero_eigenvalues(orbit.symmetry.returned(propagator, orbit.form.layout))
+
+
+def over_period(returns: Complex, orbit: Orbit) -> Complex:
+    """Floquet multipliers by descending modulus from those of the map over what is solved, both (rank,)."""
+    values: Complex = returns**orbit.symmetry.parts
     return values[np.argsort(-np.abs(values), kind="stable")]
-
-
-KEPT_NUMBERS = 2**23
-"""Numbers of the shared buffer, 64 MB, that stay when a rod is done: most rods need less."""
-
-
-def release_workspace() -> None:
-    """Gives the memory of large meshes back; the matrix made last loses its factors."""
-    for last in _latest:
-        last._blocks = None
-    _latest.clear()
-    if len(_memory[0]) > KEPT_NUMBERS:
-        _memory[0] = np.empty(0)
 
 
 STILL = NodalChange(np.zeros(0), *np.zeros((3, 0, 0)))

@@ -11,10 +11,10 @@ from math import gcd
 
 import numpy as np
 
-from ...arrays import Array
-from ...model.compilation import compiled
-from ..orbit.measures import CyclePath
-from ..orbit.orbit import Orbit, node_times
+from ....arrays import Array
+from ....model.compilation import compiled
+from ...orbit.measures import CyclePath
+from ...orbit.orbit import Orbit, node_times
 
 PRESENT = 1e-3
 """Share of the largest harmonic from which another one is taken for present before errors are known."""

@@ -10,20 +10,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...arrays import Array
-from ..orbit.newton import multiplier_change
-from ..orbit.orbit import Orbit
-from ..orbit.orbit_mesh import OrbitMesh, tails_of
-from ..orbit.path_differences import path_differences
-from .calibration import (
-    LARGEST_FALL,
-    LEAST_FALL,
-    TOLERANCE,
-    Calibration,
-    Seen,
-    at_its_parameters,
-    calibration_of,
-)
+from ....arrays import Array
+from ...orbit.matrix.workspace import NewtonWorkspace
+from ...orbit.newton import multiplier_change, newton
+from ...orbit.orbit import Orbit
+from ...orbit.orbit_mesh import OrbitMesh
+from ...orbit.path_differences import path_differences
+from ...orbit.tails import tails_of
+from .calibration import LARGEST_FALL, LEAST_FALL, Calibration, calibration_of
+from .finer_meshes import TOLERANCE, ComparedCycle
 
 ORDERS_LESS, TIMES_FEWER = 2, 1.4
 """Orders and intervals of the coarse mesh beside those of the fine one that it is made for."""
@@ -36,12 +31,13 @@ SLOWEST_FALL = 1.2
 class CoarserMeshes:
     """The cycle on a coarse mesh, and on those that are finer in space or in time alone."""
 
-    def __init__(self, mesh: OrbitMesh, near: Orbit, accuracy: float) -> None:
+    def __init__(self, mesh: OrbitMesh, near: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
         """mesh: the fine one; near: an orbit near by, on any mesh. Raises Unsolvable."""
         order, intervals = mesh.order - ORDERS_LESS, round((mesh.intervals - 1) / TIMES_FEWER) + 1
         self.mesh, self._tolerance = replace(mesh, order=order, intervals=intervals), TOLERANCE * accuracy
-        self._both = Seen(at_its_parameters(self.mesh, near, self._tolerance))
-        self._finer: dict[OrbitMesh, Seen] = {}
+        self._workspace = workspace
+        self._both = self._solved(self.mesh, near)
+        self._finer: dict[OrbitMesh, ComparedCycle] = {}
 
     def serve(self, mesh: OrbitMesh) -> bool:
         """Whether they predict the cycle on a fine mesh."""
@@ -64,13 +60,16 @@ class CoarserMeshes:
         in_time = np.append(self._errors(time, by_intervals), apart)
         return orbit, calibration_of(mesh, in_space, in_time, orbit, None)
 
-    def _on(self, **finer: int) -> Seen:
+    def _on(self, **finer: int) -> ComparedCycle:
         mesh = replace(self.mesh, **finer)
         if mesh not in self._finer:
-            self._finer[mesh] = Seen(at_its_parameters(mesh, self._both.orbit, self._tolerance))
+            self._finer[mesh] = self._solved(mesh, self._both.orbit)
         return self._finer[mesh]
 
-    def _errors(self, finer: Seen, factor: float) -> Array:
+    def _solved(self, mesh: OrbitMesh, near: Orbit) -> ComparedCycle:
+        return ComparedCycle(newton(mesh.carry(near), self._tolerance, self._workspace))
+
+    def _errors(self, finer: ComparedCycle, factor: float) -> Array:
         """One part of the errors on a mesh where it is smaller than on the coarse one by a factor, (4,)."""
         errors: Array = path_differences(self._both.path, finer.path) / (factor - 1)
         return errors

@@ -5,7 +5,7 @@ from math import nan
 
 import numpy as np
 
-from ...arrays import Array
+from ....arrays import Array
 
 ROUNDING = 2e-14
 """Relative error that is left of period and extrema however fine the mesh."""

@@ -1,7 +1,7 @@
 """The cycle to an accuracy that is asked for, on meshes of its own choice.
 
 The tails of an orbit near by say which mesh reaches the accuracy (`orbit_mesh`). Where its errors, which are
-measured (`calibration`), are too large after all, they say which one does at least cost.
+measured (`finer_meshes`), are too large after all, they say which one does at least cost.
 """
 
 from contextlib import suppress
@@ -10,17 +10,19 @@ from math import inf, log
 
 import numpy as np
 
-from ...arrays import Complex
-from ..orbit.measures import CyclePath, Measures, measures_of
-from ..orbit.newton import QUADRATIC, Converged, at_orbit, linearised, multipliers_of, newton
-from ..orbit.orbit import Orbit
-from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
-from ..point import Unsolvable
-from .calibration import Calibration, calibrated
+from ....arrays import Complex
+from ...orbit.matrix.workspace import NewtonWorkspace
+from ...orbit.measures import CyclePath, Measures, measures_of
+from ...orbit.newton import QUADRATIC, Converged, at_orbit, linearised, multipliers_of, newton
+from ...orbit.orbit import Orbit
+from ...orbit.orbit_mesh import OrbitMesh, finer_mesh, stages_for, wanted_mesh
+from ...point import Unsolvable
+from ..status import CycleStatus
+from .calibration import Calibration
 from .coarser_meshes import CoarserMeshes
 from .cycle_errors import CycleErrors
+from .finer_meshes import calibrated
 from .minimal_period import PRESENT, common_divisor, shortened, undecided_divisor
-from .status import CycleStatus
 
 MATRIX_SHARE, LEAST_DISTANCE, LARGEST_DISTANCE = 3.0, 1e-7, 1e-5
 """Relative distance of Newton's matrix from the orbit that leaves the multipliers right, in units of the
@@ -122,11 +124,13 @@ def _by_exponent(multipliers: Complex) -> float:
     return modulus * abs(log(modulus)) if modulus else 0.0
 
 
-def refine(orbit: Orbit, accuracy: float, parameter: str | None = None) -> RefinedCycle:
+def refine(
+    orbit: Orbit, accuracy: float, workspace: NewtonWorkspace, parameter: str | None = None
+) -> RefinedCycle:
     """The cycle near an orbit that is no more than near one, as accurate as asked for or as the limits allow.
 
-    Raises Unsolvable where there is none. parameter: along which the matrices have tangents; a cycle without
-    it stands alone, and finer meshes measure its errors only where coarser ones do not.
+    Raises Unsolvable where there is none. workspace: memory of the matrices; parameter: along which they have
+    tangents. A cycle without it stands alone: finer meshes measure its errors where coarser ones do not.
 
     Next to a Hopf point a coarse mesh has no cycle at all, for its own Hopf point is beyond: finer ones are
     tried then.
@@ -134,14 +138,15 @@ def refine(orbit: Orbit, accuracy: float, parameter: str | None = None) -> Refin
     aim, start = max(accuracy, FIRST_ACCURACY), orbit
     while True:
         try:
-            near = same_motion(newton(start, NEAR), orbit.size).orbit
+            rough = same_motion(newton(start, NEAR, workspace), orbit.size)
+            near = rough.orbit
             stages = stages_for(accuracy)
             if parameter is None:
                 first = wanted_mesh(near, FIRST_SHARE * aim, stages)
                 first = replace(first, intervals=max(first.intervals, LEAST_PREDICTED))
                 with suppress(Unsolvable):
-                    return _predicted_cycle(first, near, accuracy)
-            found = _on(wanted_mesh(near, aim, stages), near, aim, parameter)
+                    return _predicted_cycle(first, near, accuracy, workspace)
+            found = _on(wanted_mesh(near, aim, stages), rough, aim, parameter)
             return calibrated_cycle(found, None, accuracy, parameter)
         except Unsolvable:
             if aim <= LEAST_ACCURACY or not orbit.symmetric:  # those born at Hopf points are
@@ -150,13 +155,15 @@ def refine(orbit: Orbit, accuracy: float, parameter: str | None = None) -> Refin
             start = wanted_mesh(orbit, aim, orbit.stages).carry(orbit)
 
 
-def _predicted_cycle(mesh: OrbitMesh, near: Orbit, accuracy: float) -> RefinedCycle:
+def _predicted_cycle(
+    mesh: OrbitMesh, near: Orbit, accuracy: float, workspace: NewtonWorkspace
+) -> RefinedCycle:
     """A cycle that stands alone, on the first mesh or a finer one, as coarser meshes predict it.
 
     The best is returned where limits do not allow the accuracy. Raises Unsolvable where a coarser mesh has no
     such cycle, where their errors do not fall as they should, or where they do not predict it.
     """
-    coarser, last = CoarserMeshes(mesh, near, accuracy), inf
+    coarser, last = CoarserMeshes(mesh, near, accuracy, workspace), inf
     orbit, known = best = coarser.predicted(mesh)
     for _ in range(MOST_ROUNDS):
         error = known.errors(accuracy).largest
@@ -170,10 +177,10 @@ def _predicted_cycle(mesh: OrbitMesh, near: Orbit, accuracy: float) -> RefinedCy
         if not mesh.allowed:
             break
         if not coarser.serve(mesh):
-            coarser = CoarserMeshes(mesh, orbit, accuracy)
+            coarser = CoarserMeshes(mesh, orbit, accuracy, workspace)
         orbit, known = coarser.predicted(mesh)
     orbit, known = best
-    found = same_motion(newton(orbit, newton_tolerance(accuracy)), near.size)
+    found = same_motion(newton(orbit, newton_tolerance(accuracy), workspace), near.size)
     if found.distance > max(PREDICTED_WITHIN * accuracy, LEAST_WITHIN):
         raise Unsolvable("coarser meshes do not predict the cycle")
     return judged_by(known, at_orbit(found, min(accuracy, LARGEST_DISTANCE)), accuracy)
@@ -197,17 +204,17 @@ def calibrated_cycle(
         finer, last = finer_mesh(before.mesh, before.planned(accuracy)), LUCK * cycle.errors.largest
         if not finer.allowed:
             break
-        found = _on(finer, found.orbit, accuracy, parameter)
+        found = _on(finer, found, accuracy, parameter)
     if best is None:
         raise Unsolvable("no mesh was fine enough")
     return best
 
 
-def _on(mesh: OrbitMesh, orbit: Orbit, accuracy: float, parameter: str | None) -> Converged:
-    """The orbit on another mesh, with the matrix at itself, whose multipliers are right to rounding."""
+def _on(mesh: OrbitMesh, found: Converged, accuracy: float, parameter: str | None) -> Converged:
+    """An orbit on another mesh, with the matrix at itself, whose multipliers are right to rounding."""
     last = (newton_tolerance(accuracy) / QUADRATIC) ** 0.5  # the matrix at the orbit makes one step more
-    found = newton(mesh.carry(orbit), last)
-    return linearised(same_motion(found, orbit.size).orbit, parameter)
+    there = newton(mesh.carry(found.orbit), last, found.workspace)
+    return linearised(same_motion(there, found.orbit.size), parameter)
 
 
 def same_motion(found: Converged, size: float) -> Converged:
@@ -217,16 +224,19 @@ def same_motion(found: Converged, size: float) -> Converged:
     return found
 
 
-def refined_cycle(orbit: Orbit, accuracy: float, parameter: str | None = None) -> RefinedCycle:
+def refined_cycle(
+    orbit: Orbit, accuracy: float, workspace: NewtonWorkspace, parameter: str | None = None
+) -> RefinedCycle:
     """The cycle near an orbit, over its minimal period; raises Unsolvable where there is none.
 
-    Where its multipliers do not tell whether it is stable, those for a hundredth of the accuracy may.
+    workspace and parameter: as in `refine`. Where its multipliers do not tell whether it is stable, those
+    for a hundredth of the accuracy may.
     """
-    found = refine(shortened(orbit), accuracy, parameter)
+    found = refine(shortened(orbit), accuracy, workspace, parameter)
     if common_divisor(found.path, PRESENT) > 1:
-        found = refine(shortened(found.orbit), accuracy, parameter)
+        found = refine(shortened(found.orbit), accuracy, workspace, parameter)
     if found.stable is None:
-        found = refine(found.orbit, max(accuracy / 100, LEAST_ACCURACY), parameter)
+        found = refine(found.orbit, max(accuracy / 100, LEAST_ACCURACY), workspace, parameter)
     return found
 
 

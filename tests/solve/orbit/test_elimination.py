@@ -1,4 +1,4 @@
-"""Newton's matrix of an orbit, condensed interval by interval, beside dense systems of all stages at once."""
+"""Newton's matrix of an orbit, eliminated by intervals, beside dense systems of all stages at once."""
 
 from dataclasses import replace
 
@@ -10,12 +10,14 @@ from rodsweep.discretization.plane import jacobian
 from rodsweep.discretization.stress_form import StressForm
 from rodsweep.model.parameters import NONLINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch.bordered import BorderedMatrix, Scale
-from rodsweep.solve.orbit.condensation import PANEL, eliminate, invert, substitute
-from rodsweep.solve.orbit.linearisation import Linearisation, NewtonWorkspace, change_along
+from rodsweep.solve.orbit.matrix.elimination import eliminate
+from rodsweep.solve.orbit.matrix.inversion import PANEL, invert
+from rodsweep.solve.orbit.matrix.linearisation import change_along
+from rodsweep.solve.orbit.matrix.phase import phase, phase_change
+from rodsweep.solve.orbit.matrix.right_sides import equations, residuals, right_sides
+from rodsweep.solve.orbit.matrix.substitution import substitute
+from rodsweep.solve.orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
 from rodsweep.solve.orbit.orbit import Orbit
-from rodsweep.solve.orbit.phase import phase, phase_change
-from rodsweep.solve.orbit.right_sides import equations, residuals, right_sides
 from rodsweep.solve.orbit.symmetry import REFLECTION
 
 INTERVALS, PERIOD, COLUMNS = 4, 0.02, 2
@@ -60,7 +62,7 @@ def dense_matrix(orbit, k):
 def test_elimination_is_the_solution_of_the_dense_systems(rod, stages):
     orbit = orbit_with(rod, stages)
     p, n = orbit.semidiscrete, orbit.form.unknowns
-    factors = NewtonWorkspace(INTERVALS, stages, n).factors
+    factors = MatrixMemory(NewtonWorkspace(), INTERVALS, stages, n).factors
     random = np.random.default_rng(0)
     columns = random.normal(size=(INTERVALS, stages, COLUMNS, n)) * (p.mass + 1e-3)
     start = random.normal(size=(COLUMNS, n))
@@ -118,27 +120,3 @@ def test_derivative_by_a_parameter_is_the_limit_of_differences(rod, name):
     assert np.abs(right.ravel() - limit[:-1]).max() < 1e-6 * np.abs(right).max() + rounding
     assert abs(shift - limit[-1]) < 1e-6 * abs(shift) + rounding
     assert np.abs(right).max() > 0
-
-
-def matrix_of_a_cycle(orbit):
-    """Newton's matrix with its multipliers and what corrects another orbit."""
-    matrix = Linearisation(orbit)
-    return matrix, lambda: matrix.correction(orbit)
-
-
-def matrix_of_a_branch(orbit):
-    """The same with the force as a further unknown."""
-    matrix = BorderedMatrix(orbit, Scale.of(orbit, "F", 1.0))
-    return matrix, lambda: matrix.correction(orbit, np.array([1.0, 0.0, 0.0]), 0.0)
-
-
-@pytest.mark.parametrize("made", [matrix_of_a_cycle, matrix_of_a_branch])
-@pytest.mark.parametrize("other", [matrix_of_a_cycle, matrix_of_a_branch])
-def test_a_matrix_whose_memory_another_one_took_raises_and_keeps_its_multipliers(made, other):
-    matrix, correct = made(orbit_with(RODS["soft"], 3))
-    multipliers = matrix.multipliers()
-    assert np.isfinite(correct()).all()
-    other(orbit_with(RODS["soft"], 4))
-    with pytest.raises(RuntimeError, match="a matrix was made after it"):
-        correct()
-    assert (matrix.multipliers() == multipliers).all()

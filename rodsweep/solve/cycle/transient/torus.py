@@ -14,11 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
-from ..point import Unsolvable
-from .hopf_start import hopf_point_below, orbit_from_hopf
-from .refinement import RefinedCycle, refined_cycle
-from .status import CycleStatus
+from ....arrays import Array
+from ...point import Unsolvable
+from ..accuracy.refinement import RefinedCycle, refined_cycle
+from ..hopf_start import hopf_point_below, orbit_from_hopf
+from ..status import CycleStatus
 from .transient import Transient, TransientOutcome
 
 HARMONICS = 6
@@ -73,7 +73,8 @@ def _unstable_cycles(transient: Transient) -> Iterator[RefinedCycle]:
     try:
         hopf = hopf_point_below(transient.form.rod)
         if hopf is not None:
-            yield refined_cycle(orbit_from_hopf(transient.form, hopf), transient.accuracy)
+            start = orbit_from_hopf(transient.form, hopf, transient.workspace)
+            yield refined_cycle(start, transient.accuracy, transient.workspace)
     except (Unsolvable, ArithmeticError, np.linalg.LinAlgError):
         return
 

@@ -1,0 +1,142 @@
+"""The elimination of Newton's matrix of an orbit, interval by interval, compiled.
+
+On each of the intervals, from the state x_0 at its start, the stages x_1 ... x_s satisfy
+
+    sum_j d_ij M x_j = h F(x_i),        j = 0 ... s,
+
+with the method's differentiation matrix d (s is at least 3), the diagonal mass matrix M (0 where an unknown
+has no time derivative) and the balance F. The blocks of Newton's matrix off its diagonal are d_ij M: diagonal
+matrices. So the first stage is eliminated at the price of an inverse X, the second at that of an inverse Y
+and three products, for all that both leave of the other blocks is a combination of Z = M X, W = M Y, Z W, W Z
+and Z W Z. The others are eliminated by products of blocks, and the interval becomes a map of its start to its
+end. The maps' product P is the derivative of the flow over all intervals. A block's pivots are its own; the
+blocks on the diagonal, d_ii M - h F', are regular while h is short against what grows.
+"""
+
+import numpy as np
+
+from ....arrays import Array
+from ....discretization.plane import jacobian
+from ....model.compilation import compiled_for_vectors
+from ...backend.products import square_product
+from ..semidiscrete import Semidiscrete
+from .inversion import PANEL, invert
+from .substitution import reduce, to_end
+from .workspace import Factors
+
+ROWS = 8
+"""Rows of several blocks that stay in the fastest memory together."""
+
+
+@compiled_for_vectors
+def eliminate(
+    points: Array, V: Array, duration: float, p: Semidiscrete, factors: Factors, columns: Array
+) -> Array:
+    """Newton's matrix at the points, (1 + K s, n), into the factors; raises nothing.
+
+    V: of the stages, (K, s, 3, nodes + 1). columns: right sides, (K, s, columns, n), which become `reduced`.
+    Returns what they make of the last end where the start stays, (columns, n).
+    """
+    K, s, n = columns.shape[0], columns.shape[1], columns.shape[3]
+    tip, right, parts = np.empty((3, n)), np.empty((s, n, n)), np.empty((5, n, n))
+    so_far, ends = np.diag(p.mass), np.zeros(columns.shape[2:])
+    for k in range(K):
+        B, h = factors.blocks[k], duration * p.lengths[k]
+        for i in range(s):
+            jacobian(points[1 + k * s + i], V[k, i], B[i, i], tip, p.rod, p.matrices)
+            for r in range(n):
+                for q in range(n):
+                    B[i, i, r, q] *= -h
+                B[i, i, r, r] += p.differentiation[i, i + 1] * p.mass[r]
+        _eliminate_interval(B, right, parts, p)
+        square_product(B[s - 1, s - 1], right[s - 1], B[0, 1], 1.0, 0.0)
+        for a in range(2, s - 1):
+            B[0, a] = right[a]
+        reduce(B, columns[k], p)
+        to_end(B, columns[k], p, ends)
+        square_product(B[0, 1], so_far, factors.propagator, 1.0, 0.0)
+        for r in range(n):
+            for q in range(n):
+                so_far[r, q] = p.mass[r] * factors.propagator[r, q]
+    return ends
+
+
+@compiled_for_vectors
+def _eliminate_interval(B: Array, right: Array, parts: Array, p: Semidiscrete) -> None:
+    """The blocks of one interval, (s, s, n, n), of which the diagonal is given; right side for x_0 = M^-1.
+
+    parts: work array, (5, n, n).
+    """
+    s, n = B.shape[0], B.shape[2]
+    pivots, rows = np.empty(n, np.int64), np.empty((n, PANEL))
+    end, d, mass, Z = np.empty((n, n)), p.differentiation, p.mass, parts[0]
+    invert(B[0, 0], pivots, rows)
+    factor = d[1, 1] * d[0, 2]
+    for r in range(n):
+        for q in range(n):
+            Z[r, q] = mass[r] * B[0, 0, r, q]
+            B[1, 1, r, q] -= factor * Z[r, q] * mass[q]
+    invert(B[1, 1], pivots, rows)
+    _eliminate_two(B, right, parts, p)
+    for a in range(2, s):
+        invert(B[a, a], pivots, rows)
+        for i in range(a + 1, s):
+            square_product(B[i, a], B[a, a], end, 1.0, 0.0)
+            B[i, a] = end
+            for j in range(a + 1, s):
+                square_product(end, B[a, j], B[i, j], -1.0, 1.0)
+            square_product(end, right[a], right[i], -1.0, 1.0)
+
+
+@compiled_for_vectors
+def _eliminate_two(B: Array, right: Array, parts: Array, p: Semidiscrete) -> None:
+    """The first two stages out of one interval's others: their blocks, and their right side for x_0 = M^-1.
+
+    parts: (5, n, n), of which the first is M X; the others are made.
+    """
+    s, n = B.shape[0], B.shape[2]
+    d, mass, minus = p.differentiation, p.mass, -np.ones(n)
+    Z, W, ZW = parts[0], parts[1], parts[2]
+    for r in range(n):
+        for q in range(n):
+            W[r, q] = mass[r] * B[1, 1, r, q]
+    square_product(Z, W, ZW, 1.0, 0.0)
+    square_product(W, Z, parts[3], 1.0, 0.0)
+    square_product(ZW, Z, parts[4], 1.0, 0.0)
+    for i in range(2, s):
+        right[i] = 0.0
+        for j in range(2, s):
+            if i != j:
+                B[i, j] = 0.0
+    for first in range(0, n, ROWS):
+        last = min(n, first + ROWS)
+        for i in range(2, s):
+            _subtract_parts(right[i], parts, (i, 0), (first, last), d, minus)
+            for j in range(2, s):
+                _subtract_parts(B[i, j], parts, (i, j + 1), (first, last), d, mass)
+    for i in range(2, s):
+        for r in range(n):
+            right[i, r, r] -= d[i, 0]
+            for j in range(2, s):
+                B[i, j, r, r] += d[i, j + 1] * mass[r] if i != j else 0.0
+
+
+@compiled_for_vectors
+def _subtract_parts(
+    out: Array, parts: Array, place: tuple[int, int], rows: tuple[int, int], d: Array, scale: Array
+) -> None:
+    """What the first two stages leave in the equations of another one out of rows of a block, (n, n).
+
+    parts: Z, W, Z W, W Z and Z W Z, (5, n, n); place: the stage, and the column of d, (s, s + 1), that the
+    block is of; rows: from one to another; scale: of the block's columns, (n,).
+    """
+    i, c = place
+    first, second = d[0, c], d[1, c]
+    z, w = d[i, 1] * first, d[i, 2] * second
+    zw, wz = -d[i, 1] * d[0, 2] * second, -d[i, 2] * d[1, 1] * first
+    zwz = d[i, 1] * d[0, 2] * d[1, 1] * first
+    for r in range(rows[0], rows[1]):
+        Z, W, ZW, WZ, ZWZ = parts[0, r], parts[1, r], parts[2, r], parts[3, r], parts[4, r]
+        for q in range(len(scale)):
+            left = z * Z[q] + w * W[q] + zw * ZW[q] + wz * WZ[q] + zwz * ZWZ[q]
+            out[r, q] -= left * scale[q]

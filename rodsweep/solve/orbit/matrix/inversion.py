@@ -1,0 +1,71 @@
+"""The inverse of a small dense matrix in place, compiled: most of its work is products of panels."""
+
+from typing import Any
+
+import numpy as np
+
+from ....arrays import Array
+from ....model.compilation import compiled_for_vectors
+from ...backend.products import product
+
+PANEL = 12
+"""Columns that `invert` treats one by one before it updates the others by a product."""
+LEAST_PIVOT = 0.1
+"""Pivots smaller than this share of the largest in their column are exchanged for it."""
+
+
+@compiled_for_vectors
+def invert(A: Array, pivots: Any, rows: Array) -> None:
+    """A^-1 in place, by Gauss and Jordan with partial pivoting, PANEL columns at a time.
+
+    A: (n, n); work arrays: pivots (n,) of integers, rows (n, PANEL). A row of A is read as a column of its
+    transpose, whose inverse is the transpose of the inverse.
+    """
+    n = len(A)
+    ones, extents = np.ones(2), np.empty(6, np.int32)
+    for first in range(0, n, PANEL):
+        last = min(n, first + PANEL)
+        _sweep_panel(A, first, last, pivots)
+        for j in range(n):
+            if j < first or j >= last:
+                for i in range(last - first):
+                    rows[j, i] = A[j, first + i]
+                    A[j, first + i] = 0.0
+        extents[:] = first, n, last - first, PANEL, n, n
+        panel, row = A.ctypes.data + 8 * n * first, 8 * n * last
+        product(rows.ctypes.data, panel, A.ctypes.data, extents, ones)
+        extents[0] = n - last
+        product(rows.ctypes.data + 8 * PANEL * last, panel, A.ctypes.data + row, extents, ones)
+    for k in range(n - 1, -1, -1):
+        if pivots[k] != k:
+            p = pivots[k]
+            for i in range(n):
+                A[k, i], A[p, i] = A[p, i], A[k, i]
+
+
+@compiled_for_vectors
+def _sweep_panel(A: Array, first: int, last: int, pivots: Any) -> None:
+    """The steps of Gauss and Jordan for the columns from first to last, within these."""
+    n = len(A)
+    for k in range(first, last):
+        row, largest, p = A[k], 0.0, k
+        for i in range(k, n):
+            largest = max(largest, abs(row[i]))
+        if abs(row[k]) < LEAST_PIVOT * largest:
+            for i in range(k, n):
+                if abs(row[i]) == largest:
+                    p = i
+        pivots[k] = p
+        if p != k:
+            for j in range(n):
+                A[j, k], A[j, p] = A[j, p], A[j, k]
+        inverse = 1.0 / row[k]
+        for i in range(n):
+            row[i] *= -inverse
+        for j in range(first, last):
+            if j != k:
+                factor = A[j, k]
+                for i in range(n):
+                    A[j, i] += factor * row[i]
+                A[j, k] = factor * inverse
+        row[k] = inverse

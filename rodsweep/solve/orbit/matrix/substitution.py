@@ -1,0 +1,122 @@
+"""Solutions with an eliminated matrix (`elimination`) for several right sides at once, compiled.
+
+The first two stages of an interval are known by their inverses alone; the others by blocks.
+"""
+
+import numpy as np
+
+from ....arrays import Array
+from ....model.compilation import compiled_for_vectors
+from ..semidiscrete import Semidiscrete
+from .workspace import Factors
+
+
+@compiled_for_vectors
+def reduce(B: Array, columns: Array, p: Semidiscrete) -> None:
+    """Right sides of one interval, (s, columns, n), in place: those of the first two stages stay.
+
+    The others are what elimination leaves, but the last ones what all make of its end where its start stays.
+    """
+    s, count, n = columns.shape
+    d, mass = p.differentiation, p.mass
+    t, u = np.empty((count, n)), np.empty((count, n))
+    _first_two(B, columns, p, t, u)
+    for i in range(2, s):
+        for m in range(count):
+            for r in range(n):
+                columns[i, m, r] -= mass[r] * (d[i, 1] * t[m, r] + d[i, 2] * u[m, r])
+        for a in range(2, i):
+            add_products(B[i, a], columns[a], columns[i], -1.0)
+    t[:] = columns[s - 1]
+    columns[s - 1] = 0.0
+    add_products(B[s - 1, s - 1], t, columns[s - 1], 1.0)
+
+
+@compiled_for_vectors
+def to_end(B: Array, columns: Array, p: Semidiscrete, ends: Array) -> None:
+    """From changes of the start of one interval to its end, in place, (columns, n), for reduced columns."""
+    scaled = ends * p.mass
+    ends[:] = columns[-1]
+    add_products(B[0, 1], scaled, ends, 1.0)
+
+
+@compiled_for_vectors
+def _first_two(B: Array, y: Array, p: Semidiscrete, t: Array, u: Array) -> None:
+    """The first two stages, t and u, (columns, n), for right sides y, (s, columns, n), where others are 0."""
+    d, mass, (count, n) = p.differentiation, p.mass, t.shape
+    side = np.empty((count, n))
+    t[:], u[:] = 0.0, 0.0
+    add_products(B[0, 0], y[0], t, 1.0)
+    for m in range(count):
+        for r in range(n):
+            side[m, r] = y[1, m, r] - d[1, 1] * mass[r] * t[m, r]
+    add_products(B[1, 1], side, u, 1.0)
+    for m in range(count):
+        for r in range(n):
+            side[m, r] = d[0, 2] * mass[r] * u[m, r]
+    add_products(B[0, 0], side, t, -1.0)
+
+
+@compiled_for_vectors
+def add_products(A: Array, x: Array, y: Array, factor: float) -> None:
+    """y += factor A x for each of the columns x, y, both of shape (columns, n); two columns at a time."""
+    count, n = x.shape
+    for m in range(0, count - 1, 2):
+        for i in range(n):
+            first, second = 0.0, 0.0
+            for j in range(n):
+                first += A[i, j] * x[m, j]
+                second += A[i, j] * x[m + 1, j]
+            y[m, i] += factor * first
+            y[m + 1, i] += factor * second
+    if count % 2:
+        for i in range(n):
+            total = 0.0
+            for j in range(n):
+                total += A[i, j] * x[count - 1, j]
+            y[count - 1, i] += factor * total
+
+
+@compiled_for_vectors
+def substitute(start: Array, columns: Array, p: Semidiscrete, factors: Factors, out: Array) -> None:
+    """The changes of all stages, out, for changes of the start and reduced columns; several at once.
+
+    start: (columns, n), columns and out: (K, s, columns, n).
+    """
+    K, s, count, n = columns.shape
+    y, first, scaled = np.empty((2, count, n)), start.copy(), np.empty((count, n))
+    d, mass = p.differentiation, p.mass
+    for k in range(K):
+        B = factors.blocks[k]
+        for m in range(count):
+            for r in range(n):
+                scaled[m, r] = mass[r] * first[m, r]
+                for i in range(2):
+                    y[i, m, r] = columns[k, i, m, r] - d[i, 0] * scaled[m, r]
+        for a in range(s - 1, 1, -1):
+            _back_to(B, a, columns[k], scaled, out[k])
+            for m in range(count):
+                for r in range(n):
+                    for i in range(2):
+                        y[i, m, r] -= d[i, a + 1] * mass[r] * out[k, a, m, r]
+        _first_two(B, y, p, out[k, 0], out[k, 1])
+        first[:] = out[k, s - 1]
+
+
+@compiled_for_vectors
+def _back_to(B: Array, a: int, columns: Array, scaled: Array, out: Array) -> None:
+    """Stage a, the third or a later one, into out, for reduced columns, both (s, columns, n).
+
+    scaled: M times the changes of the start, (columns, n).
+    """
+    s = len(B)
+    out[a] = 0.0
+    if a == s - 1:
+        out[a] = columns[a]
+        add_products(B[0, 1], scaled, out[a], 1.0)
+        return
+    side = columns[a].copy()
+    add_products(B[0, a], scaled, side, 1.0)
+    for j in range(a + 1, s):
+        add_products(B[a, j], out[j], side, -1.0)
+    add_products(B[a, a], side, out[a], 1.0)

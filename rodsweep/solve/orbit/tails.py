@@ -1,0 +1,175 @@
+"""The last coefficients of an orbit's polynomials in space and time, its tails: how fine its mesh is.
+
+Squares of the tails are the order of the errors of period and largest deflection, which converge twice as
+fast as states do.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from ...arrays import Array
+from ...discretization.collocation import radau
+from ...discretization.mesh import mesh
+from ...discretization.state_layout import COMPONENTS, stress_place
+from ...model.compilation import compiled_for_vectors
+from .orbit import Orbit
+
+LEAST_DECAY, LARGEST_DECAY = 0.2, 1.2
+"""Bounds of the decay of the coefficients in space, per order, natural logarithm."""
+LASTING = 4
+"""Coefficients at the end whose size changes smoothly from one orbit to the next."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tails:
+    """The last coefficients of the polynomials in space and in time in units of the largest ones.
+
+    decay: of those in space, per order, natural logarithm.
+    """
+
+    space: float
+    time: float
+    decay: float
+
+
+def tails_of(orbit: Orbit) -> Tails:
+    """The tails of an orbit."""
+    c = _space_coefficients(orbit)
+    last = np.hypot(c[:, -1], c[:, -2]) / np.maximum(c.max(axis=1), 1e-300)
+    return Tails(float(last.max()), _tail_in_time(orbit), _decay(c))
+
+
+@compiled_for_vectors
+def _decay(c: Array) -> float:
+    """The mean slope of the envelope of coefficients, (fields, p + 1), over their upper half."""
+    fields, size = c.shape
+    middle, highest = (size - 1) / 2 + (size // 2) / 2, 1e-16
+    along, squares = 0.0, 0.0
+    for k in range(size - 1, size // 2 - 1, -1):
+        for a in range(fields):
+            highest = max(highest, c[a, k] / max(c[a].max(), 1e-300))
+        along += (k - middle) * np.log(highest)
+        squares += (k - middle) ** 2
+    return min(max(-along / squares, LEAST_DECAY), LARGEST_DECAY)
+
+
+def _space_coefficients(orbit: Orbit) -> Array:
+    """The largest Legendre coefficients of n1, n2 and m3 at the ends of the intervals, (3, p + 1)."""
+    grid, ends = orbit.form.mesh, np.ascontiguousarray(orbit.states[:, -1])
+    return largest_coefficients(ends, grid.elements, _analysis_on_element(grid.order))
+
+
+@lru_cache(maxsize=64)
+def _analysis_on_element(order: int) -> Array:
+    """Matrix, applied from the right, from an element's nodes to Legendre coefficients, (p + 1, p + 1)."""
+    return np.ascontiguousarray(legendre_analysis(2 * mesh(1, order).positions - 1).T)
+
+
+@compiled_for_vectors
+def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array:
+    """The largest moduli of the coefficients of n1, n2, m3, (3, p + 1), of states (m, n) in all elements."""
+    size = len(analysis)
+    nodes = elements * (size - 1)
+    largest, c = np.zeros((COMPONENTS, size)), np.empty(size)
+    for k in range(len(states)):
+        for a in range(COMPONENTS):
+            for e in range(elements):
+                first = stress_place(a, e * (size - 1), nodes)
+                known = size if e < elements - 1 else size - 1  # at the tip stresses vanish
+                c[:] = 0.0
+                for j in range(known):
+                    stress = states[k, first + j]
+                    for i in range(size):
+                        c[i] += stress * analysis[j, i]
+                for i in range(size):
+                    largest[a, i] = max(largest[a, i], abs(c[i]))
+    return largest
+
+
+def lasting_tails(orbit: Orbit) -> Array:
+    """Tails in space and in time that change as smoothly as an orbit does, (2,); in units of largest values.
+
+    A last coefficient alone comes and goes: in space the last LASTING of all points stand for their envelope.
+    """
+    grid = orbit.form.mesh
+    end = largest_end(orbit.points, grid.elements, _lasting_on_element(grid.order))
+    return np.array([end, _tail_in_time(orbit)])
+
+
+@lru_cache(maxsize=64)
+def _lasting_on_element(order: int) -> Array:
+    """The last LASTING columns of `_analysis_on_element`, (p + 1, LASTING)."""
+    return np.ascontiguousarray(_analysis_on_element(order)[:, -LASTING:])
+
+
+@compiled_for_vectors
+def largest_end(points: Array, elements: int, analysis: Array) -> float:
+    """The largest end of the coefficients in an element of n1, n2 or m3, in units of its largest value.
+
+    points: (m, n); analysis: from an element's nodes to the coefficients at the end, (p + 1, count).
+    """
+    size, count = analysis.shape
+    nodes, c, worst = elements * (size - 1), np.empty(count), 0.0
+    for a in range(COMPONENTS):
+        largest, end = 0.0, 0.0
+        for k in range(len(points)):
+            for e in range(elements):
+                first = stress_place(a, e * (size - 1), nodes)
+                known = size if e < elements - 1 else size - 1  # at the tip stresses vanish
+                c[:] = 0.0
+                for j in range(known):
+                    stress = points[k, first + j]
+                    largest = max(largest, abs(stress))
+                    for i in range(count):
+                        c[i] += stress * analysis[j, i]
+                end = max(end, (c * c).sum())
+        worst = max(worst, np.sqrt(end) / max(largest, 1e-300))
+    return worst
+
+
+def _tail_in_time(orbit: Orbit) -> float:
+    """Of n1, n2 and m3 the worst."""
+    return largest_tail(orbit.points, _last_in_interval(orbit.stages), orbit.form.mesh.nodes)
+
+
+@lru_cache(maxsize=16)
+def _last_in_interval(stages: int) -> Array:
+    """Row from the values at an interval's start and stages to the last Legendre coefficient, (s + 1,)."""
+    nodes: Array = np.append(0.0, radau(stages).nodes)
+    row: Array = legendre_analysis(2 * nodes - 1)[-1]
+    return row
+
+
+@compiled_for_vectors
+def largest_tail(points: Array, row: Array, nodes: int) -> float:
+    """The largest last coefficient of n1, n2, m3 in an interval, in units of the largest value of each.
+
+    points: start and stages one after the other, (1 + K s, n); row: from an interval's values to that
+    coefficient, (s + 1,). Sizes are those of the vectors of a stress at all nodes.
+    """
+    s, worst = len(row) - 1, 0.0
+    for a in range(COMPONENTS):
+        largest, tail = 0.0, 0.0
+        for m in range(len(points)):
+            size = 0.0
+            for i in range(nodes):
+                size += points[m, stress_place(a, i, nodes)] ** 2
+            largest = max(largest, size)
+        for k in range(0, len(points) - 1, s):
+            size = 0.0
+            for i in range(nodes):
+                top = 0.0
+                for j in range(s + 1):
+                    top += row[j] * points[k + j, stress_place(a, i, nodes)]
+                size += top**2
+            tail = max(tail, size)
+        worst = max(worst, np.sqrt(tail / max(largest, 1e-300)))
+    return float(worst)
+
+
+def legendre_analysis(nodes: Array) -> Array:
+    """Matrix from values at nodes in [-1, 1], (n,), to Legendre coefficients, (n, n)."""
+    return np.linalg.inv(legendre.legvander(nodes, len(nodes) - 1))

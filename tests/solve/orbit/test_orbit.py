@@ -1,0 +1,26 @@
+"""An orbit on another mesh, in this process or another."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+from rodsweep.discretization.mesh import mesh
+from rodsweep.discretization.stress_form import StressForm
+from rodsweep.model.rod import Rod
+from rodsweep.solve.orbit.orbit import Orbit
+from rodsweep.solve.orbit.orbit_mesh import mesh_of
+from rodsweep.solve.orbit.symmetry import NONE, REFLECTION
+
+
+@pytest.mark.parametrize("symmetry", [NONE, REFLECTION], ids=["whole period", "half period"])
+def test_an_orbit_from_another_rank_is_the_same_to_the_last_bit(symmetry):
+    """On its own mesh, of which the other rank has a copy, and on a finer one."""
+    form = StressForm(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), mesh(2, 9))
+    states = np.random.default_rng(0).normal(size=(1 + 4 * 3, form.unknowns))
+    orbit = Orbit.of(form, symmetry, 0.02, states, 3)
+    sent = pickle.loads(pickle.dumps(orbit))
+    own, finer = mesh_of(orbit), mesh_of(orbit).finer
+    assert mesh_of(sent) == own
+    assert own.carry(sent).values.tobytes() == orbit.values.tobytes()
+    assert finer.carry(sent).values.tobytes() == finer.carry(orbit).values.tobytes()

@@ -1,0 +1,125 @@
+"""Matrices in a workspace: the last one made has its factors, and an earlier one raises."""
+
+import gc
+import tracemalloc
+
+import numpy as np
+import pytest
+
+from rodsweep.discretization.mesh import mesh
+from rodsweep.discretization.stress_form import StressForm
+from rodsweep.model.rod import Rod
+from rodsweep.solve.branch.bordered import BorderedMatrix, Scale
+from rodsweep.solve.orbit.matrix.linearisation import Linearisation
+from rodsweep.solve.orbit.matrix.workspace import KEPT_NUMBERS, MatrixMemory, NewtonWorkspace
+from rodsweep.solve.orbit.orbit import Orbit
+from rodsweep.solve.orbit.symmetry import REFLECTION
+
+INTERVALS, PERIOD = 4, 0.02
+ROD = Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=0.7)
+MOMENT = np.array([1.0, 0.0, 0.0])
+
+
+def orbit_with(stages):
+    """Any states: what is tested holds for orbits and for what is none."""
+    form = StressForm(ROD, mesh(1, 8))
+    states = np.random.default_rng(stages).normal(size=(1 + INTERVALS * stages, form.unknowns))
+    return Orbit.of(form, REFLECTION, PERIOD, states, stages)
+
+
+def matrix_of_a_cycle(orbit, workspace):
+    """Newton's matrix with its multipliers and what corrects another orbit."""
+    matrix = Linearisation(orbit, workspace)
+    return matrix, lambda: matrix.correction(orbit)
+
+
+def matrix_of_a_branch(orbit, workspace):
+    """The same with the force as a further unknown."""
+    matrix = BorderedMatrix(orbit, Scale.of(orbit, "F", 1.0), workspace)
+    return matrix, lambda: matrix.correction(orbit, MOMENT, 0.0)
+
+
+KINDS = [matrix_of_a_cycle, matrix_of_a_branch]
+
+
+@pytest.mark.parametrize("stages", [3, 4], ids=["as large", "larger"])
+@pytest.mark.parametrize("made", KINDS)
+@pytest.mark.parametrize("other", KINDS)
+def test_a_matrix_whose_workspace_another_one_used_raises_and_keeps_its_multipliers(made, other, stages):
+    workspace = NewtonWorkspace()
+    matrix, correct = made(orbit_with(3), workspace)
+    multipliers = matrix.multipliers()
+    assert np.isfinite(correct()).all()
+    other(orbit_with(stages), workspace)
+    with pytest.raises(RuntimeError, match="its workspace was used again"):
+        correct()
+    assert (matrix.multipliers() == multipliers).all()
+
+
+@pytest.mark.parametrize(
+    "used",
+    [
+        lambda matrix: matrix.step(MOMENT, 0.1),
+        lambda matrix: matrix.direction(MOMENT),
+        lambda matrix: matrix.other_way(),
+        lambda matrix: matrix.varied(matrix.orbit, np.ones((1, len(matrix.orbit.values) + 1))),
+        lambda matrix: matrix.spread(np.ones((1, 24)), np.ones((INTERVALS, 3, 1, 24))),
+    ],
+    ids=["step", "direction", "other_way", "varied", "spread"],
+)
+def test_all_that_needs_the_factors_of_a_branch_raises_without_them(used):
+    workspace, orbit = NewtonWorkspace(), orbit_with(3)
+    matrix, _ = matrix_of_a_branch(orbit, workspace)
+    assert used(matrix) is not None
+    Linearisation(orbit, workspace)
+    with pytest.raises(RuntimeError, match="its workspace was used again"):
+        used(matrix)
+
+
+@pytest.mark.parametrize("made", KINDS)
+@pytest.mark.parametrize("other", KINDS)
+def test_matrices_of_two_solvers_leave_each_other_alone(made, other):
+    """Each has the correction that it has where there is no other."""
+    _, alone = made(orbit_with(3), NewtonWorkspace())
+    expected = alone()
+    _, correct = made(orbit_with(3), NewtonWorkspace())
+    _, other_correct = other(orbit_with(4), NewtonWorkspace())
+    others = other_correct()
+    assert (correct() == expected).all()
+    assert (other_correct() == others).all()
+
+
+def test_a_workspace_serves_smaller_and_larger_matrices():
+    """In any order a matrix is the one that a workspace of its own has."""
+    workspace = NewtonWorkspace()
+    for stages in (4, 3, 5, 3):
+        _, shared = matrix_of_a_cycle(orbit_with(stages), workspace)
+        _, own = matrix_of_a_cycle(orbit_with(stages), NewtonWorkspace())
+        assert (shared() == own()).all()
+
+
+def test_matrices_of_one_workspace_take_the_memory_of_the_largest():
+    """Of twenty that are all alive, of which the largest needs 29 MB and all together 420."""
+    workspace = NewtonWorkspace()
+    gc.collect()
+    tracemalloc.start()
+    try:
+        kept = [MatrixMemory(workspace, 40 + k, 4, 72) for k in range(20)]
+        _, most = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    largest = 8 * 59 * 4 * 4 * 72**2
+    assert len(kept) == 20
+    assert largest < most < 1.1 * largest
+
+
+def test_a_released_workspace_keeps_what_most_rods_need():
+    workspace = NewtonWorkspace()
+    for numbers, kept in ((KEPT_NUMBERS, True), (KEPT_NUMBERS + 1, False)):
+        memory = MatrixMemory(workspace, numbers, 1, 1)
+        buffer = memory.factors.blocks.base
+        workspace.release()
+        with pytest.raises(RuntimeError, match="its workspace was used again"):
+            memory.factors  # noqa: B018 - raises
+        again = MatrixMemory(workspace, 1, 1, 1).factors.blocks.base
+        assert np.shares_memory(again, buffer) == kept
