@@ -16,17 +16,14 @@ from typing import NamedTuple
 
 from ..model.compilation import compiled
 from ..model.rod import Coefficients
+from .exponents import Hyperbolic, entire_cosh, exponents, hyperbolic, modulus
 
 UNIT = 4.440892098500626e-16
 """Unit of the noise of what D is made of, two roundings."""
-E_SERIES_BELOW = 0.1
-"""abs(z) below which E is summed as a series: the closed form of dE/dz would cancel there."""
-FEW_TERMS_BELOW = 0.25
-"""abs(v) below which sinh(q)/q, v = q^2, is summed as a series."""
-SUMMED_BELOW = 1.5
+SERIES_BELOW = 1.5
 """abs(M) + 2 abs(P) below which all is summed as a series in z+ and z-."""
 MOST_TERMS = 13
-APART_BELOW = 0.1
+SQUARES_BELOW = 0.1
 """abs(z+ z-), in units of abs(M)^2 + 4 abs(P)^2, below which each of them is taken alone."""
 
 
@@ -45,71 +42,8 @@ EvenSum = tuple[EvenFunctions, complex, float]
 """(the functions, the sum of z' E(z) times exp(-S), noise)."""
 
 
-class Hyperbolic(NamedTuple):
-    """cosh q, sinh(q)/q and d(sinh(q)/q)/dq/q, all entire in q^2, times exp(-Re q)."""
-
-    cosh: complex
-    sinhc: complex
-    slope: complex
-
-
 @compiled
-def modulus(z: complex) -> float:
-    """|z|, faster than abs, where z^2 neither overflows nor matters when it underflows."""
-    return math.sqrt(z.real * z.real + z.imag * z.imag)
-
-
-@compiled
-def entire_cosh(z: complex, root: complex, scale: float) -> tuple[complex, complex]:
-    """E(z) = (cosh sqrt(z) - 1)/z and dE/dz, both times exp(-scale); root = sqrt(z)."""
-    if abs(z) < E_SERIES_BELOW:
-        value = 1 + z / 30 * (1 + z / 56 * (1 + z / 90 * (1 + z / 132 * (1 + z / 182))))
-        slope = 1 + 3 * z / 112 * (1 + 4 * z / 270 * (1 + 5 * z / 528 * (1 + 6 * z / 910)))
-        size = math.exp(-scale)
-        return size * (0.5 + z / 24 * value), size * (1 + z / 15 * slope) / 24
-    grow = cmath.exp((root - scale) / 2)
-    decay = cmath.exp((-root - scale) / 2)
-    value = (grow - decay) ** 2 / (2 * z)
-    return value, ((grow**2 - decay**2) / (4 * root) - value) / z
-
-
-@compiled
-def exponents(w: complex, coefficients: Coefficients) -> tuple[complex, complex, complex]:
-    """(P, z+, z-) at w != 0; the smaller z comes from the product, which does not cancel."""
-    F, nu, c2, gamma3 = coefficients
-    g = nu + F * c2
-    P = cmath.sqrt(w * (g * nu + c2 * gamma3 * w))
-    total = (c2 + gamma3) * w - F * g
-    plus = total + 2 * P
-    minus = total - 2 * P
-    product = ((c2 - gamma3) * w) ** 2 - 2 * g * w * ((c2 + gamma3) * F + 2 * nu) + (F * g) ** 2
-    if abs(plus) >= abs(minus):
-        if plus != 0:
-            minus = product / plus
-    else:
-        plus = product / minus  # not zero, being the larger
-    return P, plus, minus
-
-
-@compiled
-def hyperbolic(v: complex, root: complex) -> Hyperbolic:
-    """The functions of q = root, from v = q^2, too."""
-    if modulus(v) < FEW_TERMS_BELOW:
-        first = 1 + v / 6 * (1 + v / 20 * (1 + v / 42 * (1 + v / 72 * (1 + v / 110 * (1 + v / 156)))))
-        second = 1 + v / 28 * (1 + v / 54 * (1 + v / 88 * (1 + v / 130 * (1 + v / 180))))
-        second = (1 + v / 10 * second) / 3
-        size = math.exp(-root.real)
-        return Hyperbolic(size * (first + v * second), size * first, size * second)
-    decay = math.exp(-2 * root.real)
-    even, odd = (1 + decay) / 2, (1 - decay) / 2
-    cosine, sine = math.cos(root.imag), math.sin(root.imag)
-    cosh = complex(even * cosine, odd * sine)
-    first = complex(odd * cosine, even * sine) / root
-    return Hyperbolic(cosh, first, (cosh - first) / v)
-
-
-@compiled
-def _noise_together(
+def _noise_by_roots(
     squares: tuple[complex, complex, complex, complex],
     apart: complex,
     of_u: Hyperbolic,
@@ -117,7 +51,7 @@ def _noise_together(
     results: tuple[complex, complex],
     blurs: tuple[float, float, float],
 ) -> tuple[float, float]:
-    """What rounding does to s and d of `together`, to first order: blurs = (exp(-S), of M, of P^2)."""
+    """What rounding does to s and d of `by_roots`, to first order: blurs = (exp(-S), of M, of P^2)."""
     M, square, u, v = modulus(squares[0]), modulus(squares[1]), modulus(squares[2]), modulus(squares[3])
     s, d = modulus(results[0]), modulus(results[1])
     one, blur_M, blur_square = blurs
@@ -136,7 +70,7 @@ def _noise_together(
 
 
 @compiled
-def together(
+def by_roots(
     M: complex, square: complex, blur_M: float, blur_square: float
 ) -> tuple[EvenFunctions, float, float]:
     """(the functions, noise of s, of d) by the roots q themselves, where neither z+ nor z- is small.
@@ -172,19 +106,19 @@ def together(
     d1 = (H / 2 + M * (H_M / 2 - 2 * d) - C_M) * per_R
     dd = (M * H_square / 2 - C_square + 4 * d) * per_R / 4
     squares, blurs = (M, square, u, v), (one, blur_M, blur_square)
-    noise_s, noise_d = _noise_together(squares, apart, of_u, of_v, (s, d), blurs)
+    noise_s, noise_d = _noise_by_roots(squares, apart, of_u, of_v, (s, d), blurs)
     return EvenFunctions(S, s, d, s1, d1, dd), noise_s, noise_d
 
 
 @compiled
-def _noise_each(
+def _noise_by_squares(
     sizes: tuple[float, float],
     coefficients: Coefficients,
     roots: tuple[complex, complex],
     slopes: tuple[complex, complex],
     blurs: tuple[float, float],
 ) -> float:
-    """What rounding does to the sum of z' E(z) in `each`; sizes: |w|, |P|, roots: sqrt z, slopes: z'.
+    """What rounding does to the sum of z' E(z) in `by_squares`; sizes: |w|, |P|, roots: sqrt z, slopes: z'.
 
     An error of z in units of the terms that cancel in it, half of that and a quarter of |q| in each exponent.
     """
@@ -214,7 +148,7 @@ def _noise_each(
 
 
 @compiled
-def each(w: complex, coefficients: Coefficients, blur_M: float, blur_square: float) -> EvenSum:
+def by_squares(w: complex, coefficients: Coefficients, blur_M: float, blur_square: float) -> EvenSum:
     """The functions and their sum from z+ and z-, of which one is the smaller by far; noise of the sum.
 
     The slope of that one comes from the product z+ z-, too: where w is large its two terms all but cancel.
@@ -238,12 +172,14 @@ def each(w: complex, coefficients: Coefficients, blur_M: float, blur_square: flo
     d, d1 = (E_plus - E_minus) * difference, (E1_plus - E1_minus) * difference
     dd = (s1 - 2 * d) * difference * difference
     sizes, roots, slopes = (modulus(w), modulus(P)), (root_plus, root_minus), (slope_plus, slope_minus)
-    noise = _noise_each(sizes, coefficients, roots, slopes, (blur_M, blur_square))
+    noise = _noise_by_squares(sizes, coefficients, roots, slopes, (blur_M, blur_square))
     return EvenFunctions(S, s, d, s1, d1, dd), slope_plus * E_plus + slope_minus * E_minus, noise
 
 
 @compiled
-def summed(M: complex, P: complex, blur_M: float, blur_square: float) -> tuple[EvenFunctions, float, float]:
+def by_series(
+    M: complex, P: complex, blur_M: float, blur_square: float
+) -> tuple[EvenFunctions, float, float]:
     """(the functions, noise of s, of d) by series where z+ and z- are small: E = sum z^n/(2n + 2)!."""
     plus, minus = M + 2 * P, M - 2 * P
     S = max(cmath.sqrt(plus).real, cmath.sqrt(minus).real)
@@ -288,14 +224,14 @@ def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
     stiffness = nu * soft + X * size
     blur_M, blur_square = T * size + abs(F) * soft, size * stiffness
     size_M, size_square = modulus(M), modulus(square)
-    small = size_M + 2 * math.sqrt(size_square) < SUMMED_BELOW
-    if small or modulus(M * M - 4 * square) > APART_BELOW * (size_M * size_M + 4 * size_square):
+    small = size_M + 2 * math.sqrt(size_square) < SERIES_BELOW
+    if small or modulus(M * M - 4 * square) > SQUARES_BELOW * (size_M * size_M + 4 * size_square):
         if small:
-            even, noise_s, noise_d = summed(M, cmath.sqrt(square), blur_M, blur_square)
+            even, noise_s, noise_d = by_series(M, cmath.sqrt(square), blur_M, blur_square)
         else:
-            even, noise_s, noise_d = together(M, square, blur_M, blur_square)
+            even, noise_s, noise_d = by_roots(M, square, blur_M, blur_square)
         total = T * even.s + 4 * N * even.d
         noise = T * noise_s + 4 * (stiffness + X * size) * noise_d
     else:
-        even, total, noise = each(w, coefficients, blur_M, blur_square)
+        even, total, noise = by_squares(w, coefficients, blur_M, blur_square)
     return even, total, UNIT * (math.exp(-even.S) + size / 2 * noise)

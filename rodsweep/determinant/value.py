@@ -24,7 +24,8 @@ from typing import NamedTuple
 
 from ..model.compilation import compiled
 from ..model.rod import Coefficients
-from .even_parts import EvenSum, even_parts, exponents
+from .even_parts import EvenSum, even_parts
+from .exponents import exponents
 
 ROUND_OFF = 2.220446049250313e-16
 TYPICAL_NOISE = 0.1

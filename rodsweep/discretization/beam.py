@@ -64,7 +64,7 @@ class Beam(RodOnMesh):
         return out.swapaxes(-1, -2)
 
     def tip_velocity(self, z: Array, direction: Array) -> Array:
-        """d/dt of the tip's (x, y, theta) for dz/dt = direction, by complex step, shape (3,)."""
+        """d/dt of the tip's (x, y, theta) for dz/dt = direction, by complex step, shape (3, ...)."""
         velocity: Array = np.divide(self.tip(z + 1j * TINY * direction).imag, TINY)
         return velocity
 

@@ -5,13 +5,14 @@ h2).
 """
 
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..arrays import Array
 from .basis import differentiation, interpolation
+from .equal_elements import EqualElements
 from .quadrature import gauss, gauss_lobatto
 
 EXTRA_POINTS = 10
@@ -31,14 +32,12 @@ class NodeMatrices(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Mesh:
-    """`elements` equal elements of order `order` on [0, 1], and the matrices on all their nodes.
+class Mesh(EqualElements):
+    """Equal elements, and the matrices on all their nodes; `nodes` is without the tip.
 
-    These follow from elements and order, by which meshes are equal, also that of another process.
+    The matrices follow from elements and order, by which meshes are equal, also that of another process.
     """
 
-    elements: int
-    order: int
     matrices: NodeMatrices = field(compare=False, repr=False)
 
     def __reduce__(self) -> tuple[Any, tuple[int, int]]:
@@ -46,33 +45,9 @@ class Mesh:
         return mesh, (self.elements, self.order)
 
     @property
-    def nodes(self) -> int:
-        """Nodes without the tip."""
-        return self.elements * self.order
-
-    @cached_property
-    def positions(self) -> Array:
-        """u of all nodes, the tip included, shape (nodes + 1,)."""
-        inner = (gauss_lobatto(self.order)[0][1:] + 1) / 2
-        return np.append(0.0, (np.arange(self.elements)[:, None] + inner).ravel() / self.elements)
-
-    @property
     def quadrature(self) -> Array:
         """Weights of all nodes, the tip included, shape (nodes + 1,)."""
         return self.matrices.weights
-
-    def evaluation(self, points: Array) -> Array:
-        """Matrix from values at all nodes to values at `points` in [0, 1], shape (points, nodes + 1)."""
-        element = np.clip((points * self.elements).astype(int), 0, self.elements - 1)
-        matrix = np.zeros((len(points), self.nodes + 1))
-        nodes = gauss_lobatto(self.order)[0]
-        for e in np.unique(element):
-            here = element == e
-            first = e * self.order
-            matrix[here, first : first + self.order + 1] = interpolation(
-                nodes, 2 * (points[here] * self.elements - e) - 1
-            )
-        return matrix
 
 
 @lru_cache(maxsize=64)

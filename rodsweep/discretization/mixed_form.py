@@ -85,7 +85,7 @@ class MixedForm:
         """A, shape (unknowns, unknowns)."""
         N, stresses, velocities = self.mesh.nodes, slice(self.stresses), slice(self.stresses, None)
         WD, each = -self.mesh.matrices.weak.T, np.eye(COMPONENTS)
-        A = self._coupling(self.straight, self.material.tip_stress, np.zeros(COMPONENTS))
+        A = self._coupling()
         A[stresses, velocities] -= np.kron(each, WD.T[:N])
         A[velocities, stresses] += np.kron(each, WD[:, :N])
         A[velocities, velocities] -= np.diag(np.kron(self.material.drag, self.mesh.quadrature))
@@ -118,33 +118,6 @@ class MixedForm:
         CS, CT, W = self._strain(S), self._strain(T), self.mesh.quadrature
         return self.unknown(W * (ad(CS, V) + ad(CT, U)), W * (coad(CS, T) + coad(CT, S)))
 
-    def rate(self, X: Values) -> Values:
-        """M dX/dt = A X + B(X, X)/2, shape (..., unknowns)."""
-        return X @ self.A.T + self.bilinear(X, X) / 2
-
-    def jacobian(self, X: Values) -> Values:
-        """A + B(X, .) of one X, shape (unknowns, unknowns)."""
-        S, V = self.fields(X)
-        return self.A + self._coupling(self._strain(S), S, V)
-
-    def reaction(self, X: Values) -> Values:
-        """r = -D^T W V + W ad_E V at the tip, shape (3, ...): -V(1) in the limit of fine meshes.
-
-        F r1 is the power of the force: dU/dt = F r1 - <Gamma V, V> holds to rounding on every mesh.
-        """
-        _, V = self.fields(X)
-        WD = -self.mesh.matrices.weak.T
-        return self.mesh.quadrature[-1] * ad(self._along(self.straight, V), V)[..., -1] - V @ WD[:, -1]
-
-    def energy(self, X: Values) -> Values:
-        """U = 1/2 int Sigma C Sigma in k3/L, shape (...)."""
-        S, _ = self.fields(X)
-        return self.material.energy(S + self._along(self.material.tip_stress, S)) @ self.mesh.quadrature
-
-    def dissipation(self, X: Values) -> Values:
-        """<Gamma V, V>, the power lost to the fluid in k3/(L tau2), shape (...)."""
-        return self.material.dissipation(self.fields(X)[1]) @ self.mesh.quadrature
-
     def _strain(self, S: Values) -> Values:
         """C S, the strain beyond that of the straight rod."""
         return self._along(self.material.compliance, S) * S
@@ -154,24 +127,17 @@ class MixedForm:
         """One number a component, to be combined with a field."""
         return constant.reshape(-1, *(1,) * (field.ndim - 1))
 
-    def _coupling(self, E: Values, Sigma: Values, V: Values) -> Values:
-        """The matrix of W (ad_E v + ad_{C s} V; ad*_E s + ad*_{C s} Sigma) in (s; v), node by node.
-
-        E, Sigma, V: at all nodes, (3, nodes + 1), or the same at each of them, (3,).
-        """
-        E, Sigma, V = (field.reshape(COMPONENTS, 1, -1) for field in (E, Sigma, V))
-        each, C = np.eye(COMPONENTS)[:, :, None], np.diag(self.material.compliance)[:, :, None]
-        N, W = self.mesh.nodes, self.mesh.quadrature
+    def _coupling(self) -> Array:
+        """The matrix of W (ad_E v; ad*_E s + ad*_{C s} Sigma) in (s; v) about the straight rod."""
+        each, C = np.eye(COMPONENTS), np.diag(self.material.compliance)
+        E, Sigma = self.straight[:, None], self.material.tip_stress[:, None]
+        N, W = self.mesh.nodes, self.mesh.quadrature[:-1]
         s = np.arange(self.stresses).reshape(COMPONENTS, N)
         v = np.arange(self.stresses, self.unknowns).reshape(COMPONENTS, N + 1)[:, :N]
-        matrix = np.zeros((self.unknowns, self.unknowns), np.result_type(E, Sigma, V))
-        for rows, columns, blocks in (
-            (s, v, ad(E, each)),
-            (s, s, ad(C, V)),
-            (v, s, coad(E, each) + coad(C, Sigma)),
-        ):
-            # At the tip nothing is left of it: s = 0 there, and E only enters an equation that is not asked.
-            matrix[rows[:, None], columns[None]] = (W * blocks)[..., :N]
+        matrix = np.zeros((self.unknowns, self.unknowns))
+        # At the tip nothing is left of it: s = 0 there, and E only enters an equation that is not asked.
+        matrix[s[:, None], v[None]] = W * ad(E, each)[..., None]
+        matrix[v[:, None], s[None]] = W * (coad(E, each) + coad(C, Sigma))[..., None]
         return matrix
 
 

@@ -16,7 +16,6 @@ inner product (Sec. VI), in which the problem at F = 0 is symmetric and s, which
 derivative, weighs next to nothing. Unscaled, the fourth eigenvalue loses four digits.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from math import sqrt
@@ -27,6 +26,7 @@ from numpy.typing import NDArray
 from ..arrays import Array, Complex
 from ..model.rod import Rod
 from .basis import differentiation, interpolation
+from .equal_elements import EqualElements
 from .quadrature import gauss, gauss_lobatto
 
 SHEAR_WEIGHT = 1e-9
@@ -37,26 +37,20 @@ NO_TIP = 1e-10
 """y(1) in units of the largest value, below which a vector cannot be scaled by it."""
 
 
-@dataclass(frozen=True, slots=True)
-class Pencil:
+@dataclass(frozen=True, eq=False)
+class Pencil(EqualElements):
     """Constant pieces for `elements` equal elements of order `order`.
 
     The matrix of one rod is A = sum_i coefficients(rod)[i] pieces[i], in coordinate form: pieces
     has shape (6, nnz), rows and columns shape (nnz,), sorted by row, then column, diagonal included.
     B is diagonal: 1 for y, gamma3 over the squared angle weight for theta, 0 for s.
-    The unknowns are (y, theta, s), (nodes, nodes, nodes) of them, nodes = elements * order.
+    The unknowns are (y, theta, s), (nodes, nodes, nodes) of them; `nodes` is without the clamp.
     """
 
-    elements: int
-    order: int
     rows: NDArray[np.int32]
     columns: NDArray[np.int32]
     pieces: Array
     mass: Array
-
-    @property
-    def nodes(self) -> int:
-        return self.elements * self.order
 
     @property
     def unknowns(self) -> int:
@@ -65,11 +59,6 @@ class Pencil:
     def finite(self, rod: Rod) -> int:
         """The number of finite eigenvalues: without shear or rotational drag theta follows y."""
         return self.nodes if rod.c2 == 0 or rod.rotational_drag == 0 else 2 * self.nodes
-
-    def positions(self) -> Array:
-        """u of the nodes of y and theta, shape (nodes,)."""
-        local = (gauss_lobatto(self.order)[0][1:] + 1) / 2
-        return np.add.outer(np.arange(self.elements), local).ravel() / self.elements
 
     def coefficients(self, rod: Rod) -> Array:
         """What the pieces are multiplied by, shape (6,)."""
@@ -106,22 +95,6 @@ class Pencil:
         y = vectors[: self.nodes] * scale
         theta = vectors[self.nodes : 2 * self.nodes] * scale / angle_weight(rod.rotational_drag)
         return np.vstack([clamp, y]), np.vstack([clamp, theta])
-
-    def evaluation(self, points: Array) -> Array:
-        """Matrix from values at all nodes to values at `points` in [0, 1], shape (points, nodes + 1)."""
-        nodes, _ = gauss_lobatto(self.order)
-        matrix = np.zeros((len(points), self.nodes + 1))
-        for first, here, local in self.by_element(points):
-            columns = np.arange(first, first + self.order + 1)
-            matrix[np.ix_(here, columns)] = interpolation(nodes, local)
-        return matrix
-
-    def by_element(self, points: Array) -> Iterator[tuple[int, NDArray[np.integer], Array]]:
-        """(first node of an element, which points lie in it, these in [-1, 1]) of all that have points."""
-        element = np.minimum((points * self.elements).astype(int), self.elements - 1)
-        for e in np.unique(element):
-            here = np.nonzero(element == e)[0]
-            yield int(e) * self.order, here, 2 * (points[here] * self.elements - e) - 1
 
 
 def angle_weight(gamma3: float) -> float:

@@ -46,11 +46,6 @@ def coad(E: Values, Sigma: Values) -> Values:
     return out
 
 
-def strain_rate(E: Values, V: Values, dV: Values) -> Values:
-    """dE/dt = D_E V from V and its derivative dV along the rod, in 1/tau2."""
-    return dV + ad(E, V)
-
-
 def elastic_force(E: Values, Sigma: Values, dSigma: Values) -> Values:
     """D*_E Sigma from Sigma and its derivative dSigma along the rod, in k3/L^3 (moments: k3/L^2)."""
     return dSigma + coad(E, Sigma)

@@ -4,6 +4,7 @@ Half a period is enough, X(t + T/2) = R X(t): what R keeps has even harmonics, w
 Nothing of the orbit solver is used but a first guess.
 """
 
+import mixed_motion as mixed
 import numpy as np
 
 from rodsweep.discretization.mesh import configuration
@@ -44,10 +45,10 @@ def solved_cycle(form, X, frequency):
         J = np.zeros((m * unknowns + 1,) * 2)
         blocks = J[:-1, :-1].reshape(m, unknowns, m, unknowns)
         blocks[:, r, :, r] = frequency * form.M[:, None, None] * D
-        blocks[each, :, each, :] -= np.array([form.jacobian(x) for x in X])
+        blocks[each, :, each, :] -= np.array([mixed.jacobian(form, x) for x in X])
         J[:-1, -1] = (form.M * dX).ravel()
         J[-1, :-1] = (odd[0][:, None] * form.tip_y).ravel()
-        residual = np.append((frequency * form.M * dX - form.rate(X)).ravel(), dX[0] @ form.tip_y)
+        residual = np.append((frequency * form.M * dX - mixed.rate(form, X)).ravel(), dX[0] @ form.tip_y)
         step = np.linalg.solve(J, -residual)
         X, frequency = X + step[:-1].reshape(m, unknowns), frequency + step[-1]
         moved = np.abs(step[:-1].reshape(m, unknowns)[:, : form.stresses]).max()

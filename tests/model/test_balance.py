@@ -11,7 +11,6 @@ from rodsweep.model.balance import (
     ad,
     coad,
     in_space,
-    strain_rate,
 )
 from rodsweep.model.rod import Rod
 
@@ -47,7 +46,7 @@ def rates(material, Sigma, dSigma, ddSigma):
     scale = material.compliance[:, None]
     E, V = material.strain(Sigma), material.velocity(Sigma, dSigma)
     dV = (ddSigma + coad(scale * dSigma, Sigma) + coad(E, dSigma)) / material.drag[:, None]
-    return V, strain_rate(E, V, dV)
+    return V, dV + ad(E, V)
 
 
 # --- the algebra ------------------------------------------------------------------------------------------
@@ -150,7 +149,7 @@ def collocated(beam, z):
     D, w = beam.mesh.matrices.D, beam.mesh.quadrature
     Sigma = stress_of(beam, z)
     V = PLANE.velocity(Sigma, Sigma @ D.T)
-    rate = strain_rate(PLANE.strain(Sigma), V, V @ D.T)[:, :-1]
+    rate = (V @ D.T + ad(PLANE.strain(Sigma), V))[:, :-1]
     rate[:, 0] += V[:, 0] / w[0]
     return (rate / beam.roots[:, :-1]).ravel()
 

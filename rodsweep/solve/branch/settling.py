@@ -46,7 +46,7 @@ def first_point(found: Converged, scale: Scale, side: Array, born: float, accura
 
 def due(point: ArcPoint) -> bool:
     """Whether the errors of a cycle should be measured, not only be taken from those before it."""
-    known = point.calibration.known.on_branch(point.orbit, 0.0)
+    known = point.calibration.known.on_branch(point.orbit)
     return point.unmeasured >= MOST_UNMEASURED or float(known.growth.max()) > LARGEST_GROWTH
 
 
@@ -136,7 +136,7 @@ def _with_errors_between(
     """
     ends = (last, end)
     slow = abs(point.rises) < SLOWER * min(abs(one.rises) for one in ends)
-    grown = min(one.calibration.known.on_branch(point.orbit, 0.0).growth.max() for one in ends)
+    grown = min(one.calibration.known.on_branch(point.orbit).growth.max() for one in ends)
     if slow or float(grown) > SIMILAR:
         return measured(point, accuracy)
     known = last.calibration.towards(end.calibration, share, slope_at(point.cycle.path, point.place))

@@ -123,9 +123,7 @@ def relative_distance(one: StressForm, other: StressForm, name: str) -> float:
     return abs(a - b) / max(abs(a), abs(b)) if a != b else 0.0
 
 
-def near_prediction(
-    predicted: Orbit, tolerance: float, workspace: NewtonWorkspace, name: str | None = None
-) -> Converged:
+def near_prediction(predicted: Orbit, tolerance: float, workspace: NewtonWorkspace, name: str) -> Converged:
     """The orbit at a prediction; Unsolvable where it is not near."""
     found = newton(predicted, tolerance, workspace, name)
     if _distance(predicted, found) > FARTHEST:

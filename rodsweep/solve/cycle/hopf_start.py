@@ -7,6 +7,7 @@ point of its own, perhaps on the other side of a force that is very near.
 """
 
 from dataclasses import dataclass, replace
+from math import isnan
 
 import numpy as np
 
@@ -23,9 +24,9 @@ from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import REFLECTION
 from ..point import Unsolvable
 from ..spectrum.candidates import BEHIND
-from ..spectrum.followed_leader import followed_leader
-from ..spectrum.search import SpectrumRequest, solve_spectrum
+from ..spectrum.spectrum import SpectrumRequest
 from .along_parameter import followed_from, in_steps
+from .straight_rod import straight_rod
 
 LEADING = SpectrumRequest(1, 1e-9, False)
 SCAN = 0.93
@@ -61,14 +62,10 @@ def leading_eigenvalue(rod: Rod, near: complex | None = None) -> complex:
 
     near: the one of a rod near by.
     """
-    followed = None if near is None else followed_leader(rod, near, LEADING.accuracy)
-    if followed is not None:
-        return followed
-    found = solve_spectrum(rod, LEADING)
-    if not len(found.eigenvalues):
+    found = straight_rod(rod, near, LEADING)
+    if isnan(found.error):
         raise Unsolvable(f"the spectrum at F = {rod.F:g} is not known: {found.message}")
-    w = complex(found.eigenvalues[0])
-    return complex(w.real, abs(w.imag))
+    return found.w
 
 
 def hopf_point_below(rod: Rod) -> Onset | None:

@@ -55,13 +55,13 @@ class StraightRod:
         return f"{rate}, so it leaves a straight state to which its motion on a mesh comes"
 
 
-def straight_rod(rod: Rod, near: complex | None = None) -> StraightRod:
+def straight_rod(rod: Rod, near: complex | None = None, request: SpectrumRequest = SPECTRUM) -> StraightRod:
     """The leading eigenvalue of a rod with its error; near: that of a rod near by, which is followed."""
-    followed = None if near is None else followed_leader(rod, near, SPECTRUM.accuracy)
+    followed = None if near is None else followed_leader(rod, near, request.accuracy)
     if followed is not None:
         return StraightRod(followed, root_error(followed, rod.coefficients)[0])
-    found = solve_spectrum(rod, SPECTRUM)
-    if not len(found.eigenvalues) or isnan(found.error_estimate[0]):
+    found = solve_spectrum(rod, request)
+    if isnan(found.error_estimate[0]):
         return StraightRod(complex(nan, nan), nan, found.message)
     w = complex(found.eigenvalues[0])
     return StraightRod(complex(w.real, abs(w.imag)), float(found.error_estimate[0]))

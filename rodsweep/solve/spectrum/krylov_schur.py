@@ -75,7 +75,7 @@ class EigenSolver:
         self.gamma3, self.pace = -1.0, 1.0
         self.inertia: Array = np.ones(n)
         first = np.zeros(n)
-        distance = (1 - self.pencil.positions()) * self.pencil.nodes / START_WIDTH
+        distance = (1 - self.pencil.positions[1:]) * self.pencil.nodes / START_WIDTH
         first[: self.pencil.nodes] = np.exp(-(distance**2)) * np.sqrt(self.pencil.mass)
         self.start = PETSc.Vec().createWithArray(first, comm=PETSc.COMM_SELF)
         self.users_krylov = PETSc.Options(SPECTRUM_PREFIX).getInt("eps_ncv", 0)

@@ -9,15 +9,9 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import Any
 
-import numpy as np
-
-from ...arrays import Array, Complex
 from ...determinant.box import squared_amplification
-from ...discretization.pencil import tip_scale
-from ...discretization.quadrature import lobatto_points
 from ...discretization.resolution import (
     MOST_UNKNOWNS,
-    Resolution,
     expected_wave_number,
     finer,
     mesh_accuracy,
@@ -27,8 +21,11 @@ from ...model.dispersion import most_amplified_wave
 from ...model.rod import Rod
 from ..point import solved
 from .candidates import Candidates, Verdict, attempt, judge
-from .krylov_schur import eigen_solver, forget_solvers
+from .krylov_schur import forget_solvers
+from .spectrum import Spectrum, SpectrumRequest, no_spectrum, vectors_on_nodes
 from .status import SpectrumStatus
+
+__all__ = ["SHIFT_ABOVE_GROWTH", "Search", "Spectrum", "SpectrumRequest", "solve_spectrum", "warm_up"]
 
 SHIFT_ABOVE_GROWTH = 1.05
 """Shift in units of the growth rate of the most amplified wave, which bounds most spectra."""
@@ -44,56 +41,6 @@ SAFETY, STALLED_SAFETY = 0.5, 0.8
 LARGEST_DISPLACEMENT, UNBOUNDED_DISPLACEMENT = 1e-3, 1e-6
 """Relative displacement of a mesh's eigenvalues from the roots of D that they lead to, beyond which it may
 have missed what it was to find; where no bound holds its convergence is the only witness."""
-
-
-@dataclass(frozen=True, slots=True)
-class SpectrumRequest:
-    """What is asked of every point: the number of modes, a relative accuracy, and the extras."""
-
-    modes: int
-    accuracy: float
-    certify: bool
-    vector_nodes: int = 0
-    """Number of Lobatto nodes on which (Y, Theta) are wanted; 0 for none."""
-
-
-EachRod = Any
-"""A number of one rod, or those of n rods that were solved together, shape (n,)."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Spectrum:
-    """The leading transverse eigenvalues of one rod, or of n rods: then every array has a leading axis (n,).
-
-    eigenvalues: complex, (modes,), in 1/tau2, in the order that `rodsweep.model` states; error_estimate:
-    |D/D'|, (modes,): at least a tenth of the error, and at most ten times it where that is no less than
-    rounding of the force or of w makes it. unstable_count: eigenvalues with Re w > 0, or -1 where it is not
-    known; proved where that was asked for. certified: the winding number proves that none right of the last
-    given mode is missing. elements, order: of the mesh, 0 where none was needed. seconds: of several rods the
-    even share of each. vectors: (Y, Theta), complex, (2, modes, vector_nodes), scaled to Y(1) = 1; or None.
-    """
-
-    status: EachRod
-    """A `SpectrumStatus`."""
-    eigenvalues: Complex
-    error_estimate: Array
-    unstable_count: EachRod = -1
-    certified: EachRod = False
-    elements: EachRod = 0
-    order: EachRod = 0
-    seconds: EachRod = 0.0
-    vectors: Complex | None = None
-    message: EachRod = ""
-
-    @property
-    def growth_rate(self) -> Array:
-        """Re w, (modes,)."""
-        return self.eigenvalues.real
-
-    @property
-    def frequency(self) -> Array:
-        """Im w, (modes,)."""
-        return self.eigenvalues.imag
 
 
 @dataclass(frozen=True, slots=True)
@@ -256,29 +203,4 @@ def _result(best: Judged, rod: Rod, request: SpectrumRequest) -> Spectrum:
         order=best.found.resolution.order,
         vectors=vectors_on_nodes(rod, request, best.found.resolution, best.found.vectors),
         message=message,
-    )
-
-
-def vectors_on_nodes(
-    rod: Rod, request: SpectrumRequest, resolution: Resolution, found: Complex | None
-) -> Complex | None:
-    """(Y, Theta) on the Lobatto nodes, complex, (2, modes, nodes), of a mesh's vectors, (unknowns, k).
-
-    NaN where Y(1) vanishes and cannot be scaled to 1.
-    """
-    if found is None:
-        return None
-    pencil = eigen_solver(resolution).pencil
-    y, theta = pencil.fields(found[:, : request.modes], rod)
-    matrix, scale = pencil.evaluation(lobatto_points(request.vector_nodes)), tip_scale(y, theta)
-    return np.stack([(matrix @ y * scale).T, (matrix @ theta * scale).T])
-
-
-def no_spectrum(status: SpectrumStatus, request: SpectrumRequest, message: str) -> Spectrum:
-    """The outcome without numbers."""
-    empty = np.full(request.modes, np.nan)
-    shape = (2, request.modes, request.vector_nodes)
-    vectors = np.full(shape, np.nan + 0j) if request.vector_nodes else None
-    return Spectrum(
-        status=status, eigenvalues=empty + 0j, error_estimate=empty, vectors=vectors, message=message
     )

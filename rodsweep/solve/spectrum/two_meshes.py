@@ -24,7 +24,8 @@ from ...model.dispersion import most_amplified_wave
 from ...model.rod import Rod
 from ..point import Unsolvable, solved
 from .krylov_schur import eigen_solver, forget_solvers
-from .search import SHIFT_ABOVE_GROWTH, Spectrum, SpectrumRequest, no_spectrum, vectors_on_nodes
+from .search import SHIFT_ABOVE_GROWTH
+from .spectrum import Spectrum, SpectrumRequest, no_spectrum, vectors_on_nodes
 from .status import SpectrumStatus
 
 MOST_FINER = 8

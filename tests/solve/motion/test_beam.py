@@ -7,7 +7,7 @@ from rodsweep.discretization.basis import differentiation
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.mesh import configuration, mesh
 from rodsweep.discretization.quadrature import gauss_lobatto
-from rodsweep.model.balance import strain_rate
+from rodsweep.model.balance import ad
 from rodsweep.model.longitudinal import longitudinal_rates
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
@@ -56,7 +56,7 @@ def injected_and_dissipated(beam, z):
     stress += material.tip_stress[:, None]
     V = material.velocity(stress, stress @ matrices.D.T)
     dissipated = material.dissipation(V) @ matrices.weights
-    straining = strain_rate(material.strain(stress), V, 0 * V)[0, -1]  # ad_E V of the tip
+    straining = ad(material.strain(stress), V)[0, -1]  # ad_E V of the tip
     reaction = matrices.weights[-1] * straining - matrices.D[:, -1] @ (matrices.weights * V[0])
     return beam.rod.F * reaction, dissipated
 

@@ -93,10 +93,10 @@ class Calibration:
         dies = tails[-1] < SHRUNK * self.tails[-1]
         return replace(self, growth=_growth(self.tails, tails), reach=inf if dies else self.reach + change)
 
-    def on_branch(self, orbit: Orbit, change: float) -> "Calibration":
+    def on_branch(self, orbit: Orbit) -> "Calibration":
         """The same where cycles are told apart by the moment at the clamp: then none dies before another."""
         growth = _growth(self.tails, _tails(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails * (0.0, 0.0, 1.0))
-        return replace(self, growth=growth, reach=self.reach + change)
+        return replace(self, growth=growth)
 
     @property
     def outdated(self) -> "Calibration":

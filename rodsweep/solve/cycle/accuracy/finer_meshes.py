@@ -31,7 +31,7 @@ def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
     return (replace(mesh, order=mesh.order + MORE_ORDERS), replace(mesh, intervals=longer)), share
 
 
-def calibrated(found: Converged, accuracy: float, before: Calibration | None = None) -> Calibration:
+def calibrated(found: Converged, accuracy: float, before: Calibration | None) -> Calibration:
     """The calibration of the mesh of an orbit; raises Unsolvable.
 
     before: of an orbit near by, on this mesh or another, which tells how fast errors fall; without it the

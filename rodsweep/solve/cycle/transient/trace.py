@@ -7,11 +7,8 @@ is some hundred numbers, the tip with its velocity six.
 import numpy as np
 
 from ....arrays import Array
-from ....discretization.beam import Beam
+from ....discretization.beam import TINY, Beam
 from ...motion.integrator import Trajectory
-
-TINY = 1e-30
-"""Complex step of a velocity."""
 
 
 class TipTrace:

@@ -1,0 +1,41 @@
+"""Motions of the rod in its mixed form: rate, Jacobian, energy and reaction, from the pieces of the form."""
+
+import numpy as np
+
+from rodsweep.model.balance import ad
+
+
+def along(constant, field):
+    """One number a component, to be combined with a field (3, ..., nodes + 1)."""
+    return constant.reshape(-1, *(1,) * (field.ndim - 1))
+
+
+def rate(form, X):
+    """M dX/dt = A X + B(X, X)/2, shape (..., unknowns)."""
+    return X @ form.A.T + form.bilinear(X, X) / 2
+
+
+def jacobian(form, X):
+    """A + B(X, .) of one X, shape (unknowns, unknowns)."""
+    return form.A + form.bilinear(X[None], np.eye(form.unknowns)).T
+
+
+def reaction(form, X):
+    """r = -D^T W V + W ad_E V at the tip, shape (3, ...): -V(1) in the limit of fine meshes.
+
+    F r1 is the power of the force: dU/dt = F r1 - <Gamma V, V> holds to rounding on every mesh.
+    """
+    _, V = form.fields(X)
+    WD = -form.mesh.matrices.weak.T
+    return form.mesh.quadrature[-1] * ad(along(form.straight, V), V)[..., -1] - V @ WD[:, -1]
+
+
+def energy(form, X):
+    """U = 1/2 int Sigma C Sigma in k3/L, shape (...)."""
+    S, _ = form.fields(X)
+    return form.material.energy(S + along(form.material.tip_stress, S)) @ form.mesh.quadrature
+
+
+def dissipation(form, X):
+    """<Gamma V, V>, the power lost to the fluid in k3/(L tau2), shape (...)."""
+    return form.material.dissipation(form.fields(X)[1]) @ form.mesh.quadrature
