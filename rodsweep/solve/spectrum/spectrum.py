@@ -63,12 +63,6 @@ class Spectrum:
         """Im w, (modes,)."""
         return self.eigenvalues.imag
 
-    def put(self, i: int, one: "Spectrum") -> None:
-        """Makes the spectrum of one rod that of the i-th of several; without its time and vectors."""
-        for field in ("status", "eigenvalues", "error_estimate", "unstable_count", "certified"):
-            getattr(self, field)[i] = getattr(one, field)
-        self.elements[i], self.order[i], self.message[i] = one.elements, one.order, one.message
-
 
 def vectors_on_nodes(
     rod: Rod, request: SpectrumRequest, resolution: Resolution, found: Complex | None
