@@ -4,8 +4,8 @@ import numpy as np
 import scipy.linalg
 
 from rodsweep.arrays import Array, Complex
-from rodsweep.discretization.pencil import assemble
-from rodsweep.discretization.resolution import Resolution
+from rodsweep.discretization.elements.resolution import Resolution
+from rodsweep.discretization.straight.pencil import assemble
 from rodsweep.model.rod import Rod
 
 Eigenvalues = Complex

@@ -16,12 +16,12 @@ from pathlib import Path
 import numpy as np
 from pydantic.fields import FieldInfo
 
-from rodsweep.config.arm import ArmSection
-from rodsweep.config.json_schema import meanings_of
+from rodsweep.config.arm.section import ArmSection
+from rodsweep.config.document.refusals import what_is_allowed
+from rodsweep.config.json.schema import meanings_of
 from rodsweep.config.phase_diagram import PhaseDiagramConfig
-from rodsweep.config.refusals import what_is_allowed
 from rodsweep.config.tasks import CONFIGS
-from rodsweep.model.arm_quantities import ALL_QUANTITIES
+from rodsweep.model.arm.quantities import ALL_QUANTITIES
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.results.layouts.arm import VALIDITY
 from rodsweep.results.layouts.phase_diagram import (
@@ -36,8 +36,8 @@ from rodsweep.results.layouts.phase_diagram import (
 from rodsweep.results.layouts.spectrum import FORCE_CHANGES
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from rodsweep.results.layouts.variables import DIMENSIONS, MISSING, Variable
-from rodsweep.tasks.arm_points import NoRod
-from rodsweep.tasks.job import Job, make_job
+from rodsweep.tasks.arm.points import NoRod
+from rodsweep.tasks.running.job import Job, make_job
 
 PAGE = Path(__file__).with_name("file-format.md")
 

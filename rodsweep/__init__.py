@@ -8,14 +8,14 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .api.answer import Answer
+    from .api.answers.answer import Answer
+    from .api.answers.picture import Picture, plot
+    from .api.answers.tabling import table
     from .api.arm import Arm
     from .api.axes import linspace, logspace
     from .api.dataset import open_result as open  # noqa: A004 - `rs.open`
-    from .api.picture import Picture, plot
     from .api.rod import SoftRod as Rod
     from .api.sweeping import sweep
-    from .api.tabling import table
     from .errors import EnvironmentLacks, InputError
 
 __version__ = "0.1.0"

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from benchmarks.lapack import inverse_spectrum, whole_matrices
-from rodsweep.determinant.box import eigenvalue_box
+from rodsweep.determinant.certificate.box import eigenvalue_box
 from rodsweep.determinant.parameter_path import Path
-from rodsweep.discretization.resolution import expected_wave_number, resolution_for
+from rodsweep.discretization.elements.resolution import expected_wave_number, resolution_for
 from rodsweep.model.dispersion import most_amplified_wave
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum

@@ -11,7 +11,7 @@ from rodsweep.results.file.view import View
 from rodsweep.results.layouts import layout_of
 from rodsweep.results.layouts.limit_cycle import HOPF_POINTS
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
-from rodsweep.sweep.points import Points
+from rodsweep.sweep.points.points import Points
 
 NAMES = ("F", "k1", "k2", "gamma3", "gamma1")
 FLAGS = {-1: "missing", 0: "cycle", 1: "straight", 2: "not_settled", 3: "left_the_model", 4: "failed"}

@@ -17,7 +17,7 @@ from conftest import ROOT
 
 from rodsweep.cli import commands
 from rodsweep.config import load_config
-from rodsweep.config.parsing import parse
+from rodsweep.config.document.parsing import parse
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.errors import InputError
 

@@ -14,7 +14,7 @@ import numpy as np
 from rodsweep.arrays import Array, Complex
 from rodsweep.bench.limit_cycle.tracking import height_near, on_cycle
 from rodsweep.discretization.beam import Beam
-from rodsweep.discretization.stress_form import StressForm
+from rodsweep.discretization.stress.form import StressForm
 from rodsweep.solve.motion.integrator import Ending, Trajectory
 from rodsweep.solve.orbit.orbit import Orbit
 

@@ -1,6 +1,6 @@
 """The nonlinear rod on a mesh in Fortran, as AUTO-07p takes it: dz/dt and its exact derivatives.
 
-The equations are those of `rodsweep.discretization.stress_balance` without Omega among the unknowns, the
+The equations are those of `rodsweep.discretization.stress.balance` without Omega among the unknowns, the
 state is z = C^(1/2) S, par(1) = F, and par(11) the period in tau2. The file `rod` holds the mesh and the rod,
 `start` the first cycle.
 """

@@ -23,7 +23,7 @@ from rodsweep.bench.limit_cycle.tracking import (
     orbit_of,
 )
 from rodsweep.bench.study import Measurement, Timed, failsafe, race, table
-from rodsweep.discretization.mesh import mesh
+from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.orbit.matrix.linearisation import Linearisation

@@ -9,7 +9,7 @@ import scipy.integrate
 
 from rodsweep.arrays import Array
 from rodsweep.bench.limit_cycle.integrators import CAREFUL, Family, Leg, by_petsc
-from rodsweep.discretization.stress_rates import rate, rate_jacobian
+from rodsweep.discretization.stress.rates import rate, rate_jacobian
 from rodsweep.solve.motion.integrator import Ending, Trajectory
 
 from ..installed import installed

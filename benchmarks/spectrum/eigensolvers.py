@@ -16,7 +16,7 @@ from rodsweep.arrays import Array
 from rodsweep.bench.spectrum.own_solvers import ORDERS, PENCIL, WANTED_MODES, leading, mesh_of, shift_of
 from rodsweep.bench.study import Contender
 from rodsweep.determinant.newton import refined
-from rodsweep.discretization.pencil import SHEAR_WEIGHT, assemble
+from rodsweep.discretization.straight.pencil import SHEAR_WEIGHT, assemble
 from rodsweep.model.rod import Rod
 
 from ..lapack import Eigenvalues, inverse_spectrum, qz, whole_matrices

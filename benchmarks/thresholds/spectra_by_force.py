@@ -16,7 +16,7 @@ from rodsweep.arrays import Array
 from rodsweep.bench.spectrum.own_solvers import leading
 from rodsweep.bench.study import Contender
 from rodsweep.bench.thresholds.cases import HOPF, ONSET, FirstThreshold, ThresholdCase
-from rodsweep.discretization.resolution import Resolution, expected_wave_number, resolution_for
+from rodsweep.discretization.elements.resolution import Resolution, expected_wave_number, resolution_for
 from rodsweep.model.dispersion import most_amplified_wave
 
 from ..lapack import Eigenvalues, inverse_spectrum, whole_matrices

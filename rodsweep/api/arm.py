@@ -5,13 +5,13 @@ from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Unpack
 
-from ..config.arguments import in_sentences
+from ..config.document.arguments import in_sentences
 from ..config.tasks import CONFIGS
 from ..errors import InputError
-from ..model.arm import SlenderArm
-from ..model.arm_quantities import LOADS, SECTION_SIDES
+from ..model.arm.arm import SlenderArm
+from ..model.arm.quantities import LOADS, SECTION_SIDES
 from ..model.units import Given
-from .answer import Answer
+from .answers.answer import Answer
 from .asking import job_from, known_load, tree_of
 from .options import OfBranch, OfCriticality, OfLimitCycle, OfModes, OfSpectrum, OfThresholds
 from .solving import solve_here

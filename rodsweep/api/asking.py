@@ -4,18 +4,18 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
-from ..config.arguments import unknown
-from ..config.arm import ArmSection
-from ..config.reading import validated, yaml_of
-from ..config.refusals import nearest
+from ..config.arm.section import ArmSection
+from ..config.document.arguments import unknown
+from ..config.document.reading import validated, yaml_of
+from ..config.document.refusals import nearest
 from ..config.schema import Config
 from ..config.tasks import CONFIGS
 from ..errors import InputError
-from ..model.arm import SlenderArm
-from ..model.arm_quantities import LOADS, RELATIVE
-from ..model.drag import DRAGS
+from ..model.arm.arm import SlenderArm
+from ..model.arm.drag import DRAGS
+from ..model.arm.quantities import LOADS, RELATIVE
 from ..solve.exclusive import signals_held
-from ..tasks.job import Job, job_of, memory
+from ..tasks.running.job import Job, job_of, memory
 from .axes import plain
 
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)

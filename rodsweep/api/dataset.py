@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..config.arguments import in_sentences
-from ..config.arm_axes import ALONG
+from ..config.arm.axes import ALONG
+from ..config.document.arguments import in_sentences
 from ..config.values import short
 from ..errors import InputError
-from ..model.arm_quantities import ALL_QUANTITIES
+from ..model.arm.quantities import ALL_QUANTITIES
 from ..results.file.content import SEAL, attribute_digests, variable_digest
 from ..results.file.creation import Plan
 from ..results.file.recent import journalled_points, put_in, unfolded

@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
-from ..config.arguments import in_sentences, unknown
 from ..config.axes import words
-from ..config.refusals import hint_of, nearest
+from ..config.document.arguments import in_sentences, unknown
+from ..config.document.refusals import hint_of, nearest
 from ..config.tasks import CONFIGS
 from ..config.values import as_number, short
 from ..errors import InputError
-from ..model.arm import SlenderArm
+from ..model.arm.arm import SlenderArm
 from ..model.parameters import PARAMETERS
-from ..sweep.grid import refuse_axes
-from .answer import Answer
+from ..sweep.points.grid import refuse_axes
+from .answers.answer import Answer
 from .asking import job_from, known_load, tree_of
 from .axes import plain
 from .options import OfBranch, OfCriticality, OfLimitCycle, OfModes, OfSpectrum, OfThresholds

@@ -18,14 +18,14 @@ from ..solve.backend.availability import require_solvers
 from ..solve.backend.kept import forget_all
 from ..solve.exclusive import solving
 from ..sweep.listener import RankListener
-from ..sweep.shards import Shard
-from ..tasks.job import Job
-from ..tasks.planning import plan_of
+from ..sweep.points.shards import Shard
 from ..tasks.protocol import AllPoints, Arrays, Solver
-from ..tasks.unforeseen import Note, guarded
+from ..tasks.running.job import Job
+from ..tasks.running.plan import plan_of
+from ..tasks.running.unforeseen import Note, guarded
 from ..watch import heard_by
+from .answers.showing import Display, display, listener
 from .dataset import dataset_of
-from .showing import Display, display, listener
 
 _warm: set[str] = set()
 """Tasks that have been solved in this process."""

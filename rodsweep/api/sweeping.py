@@ -13,13 +13,13 @@ from typing import Any
 
 import xarray as xr
 
-from ..config.arguments import in_sentences
-from ..config.reading import yaml_of
+from ..config.document.arguments import in_sentences
+from ..config.document.reading import yaml_of
 from ..errors import EnvironmentLacks, InputError
-from ..tasks.unforeseen import described, log_file
+from ..tasks.running.unforeseen import described, log_file
+from .answers.showing import Display, display
 from .asking import Tree, job_from, tree_of
 from .dataset import open_result
-from .showing import Display, display
 from .solving import solve_here
 
 COMPUTED = (0, 1)

@@ -12,7 +12,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from ..post.figures.work_precision import draw_work_precision
+from ..post.work_precision import draw_work_precision
 from ..results.file.measurements import Table
 
 Outcome = TypeVar("Outcome")

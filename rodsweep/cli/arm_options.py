@@ -5,7 +5,7 @@ from typing import Any
 
 import click
 
-from ..model.arm_quantities import QUANTITIES, UNITS
+from ..model.arm.quantities import QUANTITIES, UNITS
 
 REMARKS = {
     "radius": "; or give --width and --height",

@@ -3,7 +3,7 @@
 from rich.console import Console
 
 from ..errors import InputError
-from ..model.arm_quantities import UNITS
+from ..model.arm.quantities import UNITS
 
 STYLES = {"headline": "bold", "warning": "yellow"}
 """How lines of a report look."""
@@ -11,7 +11,7 @@ STYLES = {"headline": "bold", "warning": "yellow"}
 
 def describe_arm(given: dict[str, str | None], poisson: float) -> None:
     """Prints the report on an arm. InputError, naming the option, where a quantity is none."""
-    from ..model.arm import SlenderArm
+    from ..model.arm.arm import SlenderArm
     from ..verdict.arm import report_on
 
     quantities = {name: text for name, text in given.items() if text is not None}

@@ -6,17 +6,17 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from ..config.arm import ArmSection
-from ..config.arm_axes import SLENDER
-from ..config.quantities import given_text
-from ..model.neglected import wall_effect
-from ..post.summary.arm_answer import plane_lines, validity_sentence
+from ..config.arm.axes import SLENDER
+from ..config.arm.quantities import given_text
+from ..config.arm.section import ArmSection
+from ..model.arm.neglected import wall_effect
+from ..post.summary.arm.answer import plane_lines, validity_sentence
 from ..post.summary.ranges import span
 from ..sweep.estimate import SAMPLE
-from ..sweep.points import Points
-from ..tasks.arm_points import NoRod, same_rods
-from ..tasks.arm_validity import ArmValidity
-from ..tasks.job import Job
+from ..sweep.points.points import Points
+from ..tasks.arm.points import NoRod, same_rods
+from ..tasks.arm.validity import ArmValidity
+from ..tasks.running.job import Job
 from ..verdict.checks import wall_check
 from ..wording import counted
 

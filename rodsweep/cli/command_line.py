@@ -44,9 +44,9 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
 
     stop = StopRequest(speaks=not rank_variables())
     stop.listen()  # before everything that takes time: a warning may come early
-    from ..sweep.shards import shard_of
-    from .run_options import RunOptions
-    from .running import run_config
+    from ..sweep.points.shards import shard_of
+    from .run.options import RunOptions
+    from .run.running import run_config
 
     if options["fresh"] and options["extend"]:
         raise InputError("--fresh and --extend are both given: one replaces the file, the other adds to it")
@@ -65,7 +65,7 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
 def merge(output: Path, shards: tuple[Path, ...]) -> None:
     """Put the points of all SHARD files into OUTPUT: parts of a sweep, or grids that make a larger one."""
     from .merging import merge_files
-    from .running import CONTINUE
+    from .run.running import CONTINUE
 
     output = result_file(output)
     merged = merge_files(output, tuple(map(followed, shards)))
@@ -93,7 +93,7 @@ def snapshot(file: Path, output: Path | None) -> None:
 @overrides_option
 def check(config: Path, overrides: tuple[str, ...]) -> None:
     """Validate CONFIG and say what it would compute, at what cost, without computing."""
-    from ..tasks.job import make_job
+    from ..tasks.running.job import make_job
     from .checking import describe_job
 
     describe_job(make_job(config, overrides))
@@ -213,7 +213,7 @@ def schema() -> None:
     """Print the JSON schema of a config, from which editors complete keys and mark mistakes."""
     import json
 
-    from ..config.json_schema import json_schema
+    from ..config.json.schema import json_schema
 
     click.echo(json.dumps(json_schema(), indent=2, allow_nan=False))
 

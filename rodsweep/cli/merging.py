@@ -4,8 +4,8 @@ from pathlib import Path
 
 import click
 
-from ..results.file.merge import Merged, merge
-from ..tasks.planning import plan_without_solver
+from ..results.file.combination.merge import Merged, merge
+from ..tasks.running.plan import plan_without_solver
 from ..wording import counted
 
 

@@ -6,8 +6,8 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field, create_model, model_validator
 
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, PARAMETERS
-from .arm import ArmSection
-from .arm_axes import MOST_POINTS, moved_by, names_over
+from .arm.axes import MOST_POINTS, moved_by, names_over
+from .arm.section import ArmSection
 from .values import Axis, Number, Strict, Text, Values
 
 BEYOND_LINEAR = tuple(name for name in NONLINEAR_PARAMETERS if name not in LINEAR_PARAMETERS)

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from ..model.parameters import NONLINEAR_PARAMETERS
-from .arm_axes import AXIS_OF
+from .arm.axes import AXIS_OF
 from .axes import NonlinearParameters, words
 from .schema import Config, Nodes
 from .values import Number, Strict

@@ -5,9 +5,9 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from ..model.arm_quantities import RELATIVE
+from ..model.arm.quantities import RELATIVE
 from ..model.parameters import LINEAR_PARAMETERS, PARAMETERS, all_but
-from .arm_axes import AXIS_OF, FLUID
+from .arm.axes import AXIS_OF, FLUID
 from .axes import DEFAULTS, DiagramParameters, LinearAxes, words
 from .schema import Crossings, LinearConfig
 from .values import Axis, Strict

@@ -14,7 +14,7 @@ import cmath
 import math
 from typing import NamedTuple
 
-from ..model.compilation import compiled
+from ..model.compiled.compilation import compiled
 from ..model.rod import Coefficients
 from .exponents import Hyperbolic, entire_cosh, exponents, hyperbolic, modulus
 

@@ -7,7 +7,7 @@ import cmath
 import math
 from typing import NamedTuple
 
-from ..model.compilation import compiled
+from ..model.compiled.compilation import compiled
 from ..model.rod import Coefficients
 
 E_SERIES_BELOW = 0.1

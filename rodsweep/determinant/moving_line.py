@@ -6,18 +6,18 @@ interval of p, so that their number is the same for every p in it where D has no
     w = l(p) + i y,   0 <= y <= the height of that box,
 
 D being real on the real axis. The strip is walked upwards in rectangles of (y, p), each proved to be free of
-zeros as the boxes of `rodsweep.determinant.covering` are, with the displacement dw = i dy + l' dp, at most
-hypot(h_y, l' h_p), in the place of i dy.
+zeros as the boxes of `rodsweep.determinant.certificate.covering` are, with the displacement
+dw = i dy + l' dp, at most hypot(h_y, l' h_p), in the place of i dy.
 """
 
 import math
 from typing import NamedTuple
 
-from ..model.compilation import compiled
+from ..model.compiled.compilation import compiled
 from ..model.rod import Coefficients
-from .box import MARGIN, box_of, squared_amplification_between
-from .covering import costs, distance, mean_rates, remainder
-from .discs import CLEARANCE, ROUNDING_OF_D, centre_at
+from .certificate.box import MARGIN, box_of, squared_amplification_between
+from .certificate.covering import costs, distance, mean_rates, remainder
+from .certificate.discs import CLEARANCE, ROUNDING_OF_D, centre_at
 from .parameter_path import changes, determinant_along
 
 FIRST_HEIGHT = 0.35

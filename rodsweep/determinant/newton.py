@@ -8,7 +8,7 @@ and p does not.
 import math
 from typing import NamedTuple
 
-from ..model.compilation import compiled
+from ..model.compiled.compilation import compiled
 from ..model.rod import Coefficients
 from .parameter_path import coefficients_at, determinant_along
 from .value import ROUND_OFF, scaled_determinant

@@ -7,7 +7,7 @@ coefficients are affine: F, c1 = 1/k1, c2 = 1/k2 or gamma3.
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ..model.compilation import compiled
+from ..model.compiled.compilation import compiled
 from ..model.parameters import PARAMETERS, Parameter
 from ..model.rod import Coefficients, Rod, coefficients_of
 from .even_parts import even_parts

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array, Complex
-from ..model.compilation import compiled
+from ..model.compiled.compilation import compiled
 from ..model.rod import Coefficients
-from .box import box_of
+from .certificate.box import box_of
 from .newton import REAL_BELOW, refined
 from .value import TYPICAL_NOISE, distance_to_next, newton_correction, scaled_determinant, second_derivative
 
@@ -130,8 +130,9 @@ def roots(raw: Complex, coefficients: Coefficients, amplification: float, most_w
     """Those eigenvalues of a mesh that stand for a root of D.
 
     raw: eigenvalues of a mesh, complex, shape (n,). amplification: the root of
-    `rodsweep.determinant.box.squared_amplification`; most_waves: |q| that the mesh can stand for. Rounding
-    makes infinite eigenvalues finite: they lie outside the box or beyond the mesh, or have no root near.
+    `rodsweep.determinant.certificate.box.squared_amplification`; most_waves: |q| that the mesh can stand for.
+    Rounding makes infinite eigenvalues finite: they lie outside the box or beyond the mesh, or have no root
+    near.
     """
     error: Array = np.empty(len(raw))
     length: Array = np.empty(len(raw))

@@ -22,7 +22,7 @@ it. D is returned times exp(-S), with S = max Re sqrt(z+-), because it spans hun
 import math
 from typing import NamedTuple
 
-from ..model.compilation import compiled
+from ..model.compiled.compilation import compiled
 from ..model.rod import Coefficients
 from .even_parts import EvenSum, even_parts
 from .exponents import exponents

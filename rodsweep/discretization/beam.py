@@ -14,7 +14,7 @@ import numpy as np
 from ..arrays import Array
 from ..model.balance import Values
 from .rod_on_mesh import RodOnMesh
-from .stress_rates import rate_jacobians, rates
+from .stress.rates import rate_jacobians, rates
 
 TINY = 1e-30
 """Complex step of a velocity."""

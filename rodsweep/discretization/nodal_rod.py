@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..model.balance import Material
-from .mesh import Mesh
+from .elements.mesh import Mesh
 
 Integers = NDArray[np.int64]
 

@@ -1,7 +1,8 @@
 """The compiled equations of the rod in the plane: those of every algebra, for se(2)."""
 
 from ..model.algebra import SE2
-from . import stress_balance, stress_jacobian
+from .stress import balance as stress_balance
+from .stress import jacobian as stress_jacobian
 
 balance = stress_balance.balance.of(SE2)
 balance_change = stress_balance.balance_change.of(SE2)

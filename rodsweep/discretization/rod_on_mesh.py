@@ -14,7 +14,7 @@ import numpy as np
 from ..arrays import Array
 from ..model.balance import Material, Values
 from ..model.rod import Rod
-from .mesh import Mesh, configuration
+from .elements.mesh import Mesh, configuration
 from .nodal_rod import NodalRod, nodal_rod
 from .state_layout import StateLayout, plane_layout
 

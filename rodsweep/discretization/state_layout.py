@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..model.balance import Values
-from ..model.compilation import compiled_for_vectors
+from ..model.compiled.compilation import compiled_for_vectors
 
 FIELDS = {3: ("n1", "n2", "m3"), 6: ("n1", "n2", "n3", "m1", "m2", "m3")}
 """Names of the stresses in the plane and in space."""

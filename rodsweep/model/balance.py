@@ -12,8 +12,8 @@ where <ad*_E Sigma, V> = -<Sigma, ad_E V>. Multiplied by V and by Sigma and inte
 law dU/dt = Sigma(1) V(1) - <Gamma V, V> with U = <Sigma, C Sigma>/2 and Sigma(1) V(1) = -F v1(1).
 
 Arrays have the shape (3, ...) in the plane and (6, ...) in space. A compliance may be 0, for nothing is
-divided by one. `rodsweep.discretization.mixed_form` is made of these functions, and
-`rodsweep.discretization.stress_balance` of those of `algebra` beneath them and of the `Material`.
+divided by one. `rodsweep.discretization.straight.mixed_form` is made of these functions, and
+`rodsweep.discretization.stress.balance` of those of `algebra` beneath them and of the `Material`.
 """
 
 from typing import Any, NamedTuple

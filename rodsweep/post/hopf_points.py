@@ -15,7 +15,7 @@ from ..model.parameters import all_but
 from ..results.file.view import View
 from ..results.layouts.limit_cycle import HOPF_ALONG
 from ..results.layouts.thresholds import CROSSING_KINDS
-from ..sweep.lines import ParameterLine
+from ..sweep.points.lines import ParameterLine
 
 SAME_PLACE = 1e-9
 """Relative distance below which a point of a file lies on a Hopf point: the growth rate there is rounding."""

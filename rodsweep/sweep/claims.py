@@ -13,7 +13,7 @@ from collections.abc import Callable
 
 from ..watch import Whereabouts
 from .handout import OVER, Handout, Report
-from .ranges import IndexRange
+from .points.ranges import IndexRange
 from .stop import StopRequest
 from .team import Team
 

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..discretization.resolution import MOST_UNKNOWNS, expected_wave_number, resolution_for
+from ..discretization.elements.resolution import MOST_UNKNOWNS, expected_wave_number, resolution_for
 from ..model.dispersion import most_amplified_wave
-from .points import Points
-from .stretches import Stretches
+from .points.points import Points
+from .points.stretches import Stretches
 
 SAMPLE = 200
 HARDER_IF_LARGER = frozenset({"k1", "F"})

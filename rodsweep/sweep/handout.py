@@ -10,7 +10,7 @@ from collections import Counter, deque
 from dataclasses import dataclass, field
 from typing import Any
 
-from .ranges import IndexRange, total
+from .points.ranges import IndexRange, total
 
 CHUNK_SECONDS, CHUNK_SECONDS_A_RANK = 0.1, 1e-3
 """How long a chunk should take: long against a message, short against a run; with many ranks so long that the

@@ -14,7 +14,7 @@ from ..watch import Stopped, heard_by
 from .claims import FirstRankClaims, OtherRankClaims
 from .handout import GIVE_BACK_AFTER, OVER, Handout, Report, chunk_seconds
 from .listener import RankListener
-from .ranges import IndexRange
+from .points.ranges import IndexRange
 from .stop import StopRequest
 from .team import Team
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any, Protocol
 
 from .handout import OVER, Handout, Report
-from .ranges import IndexRange
+from .points.ranges import IndexRange
 
 
 class Wanting(Protocol):

@@ -7,7 +7,7 @@ A new task needs a module of its name here, in `rodsweep.config`, `rodsweep.resu
 from collections.abc import Callable
 from typing import Any
 
-from ..sweep.points import Points
+from ..sweep.points.points import Points
 from .branch import BranchTask
 from .criticality import CriticalityTask
 from .limit_cycle import LimitCycleTask

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from ..config.reading import validated, yaml_of
+from ..config.document.reading import validated, yaml_of
 from ..errors import EnvironmentLacks, InputError
 from ..results.file.view import View
 from ..results.layouts.limit_cycle import ENERGY, SHAPE, TIP
-from .job import Job, job_of
+from .running.job import Job, job_of
 
 SHAPES, SAMPLES = 48, 256
 """Times over a period at which the shapes are solved, as an animation needs them, and the energies."""

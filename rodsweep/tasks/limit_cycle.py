@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import Complex
 from ..config.limit_cycle import LimitCycleConfig
-from ..discretization.quadrature import lobatto_points
+from ..discretization.elements.quadrature import lobatto_points
 from ..model.parameters import Range
 from ..results.layouts.limit_cycle import (
     CYCLE,
@@ -21,11 +21,11 @@ from ..results.layouts.limit_cycle import (
 )
 from ..results.layouts.variables import Filled, Variable, recorded
 from ..solve.backend.availability import require_solvers
-from ..sweep.chains import ChainedWork, Chains
 from ..sweep.estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, MARCHED_CYCLE_SECONDS, Estimate
-from ..sweep.grid import refuse_outside
+from ..sweep.points.chains import ChainedWork, Chains
+from ..sweep.points.grid import refuse_outside
 from ..wording import counted
-from .hopf_lines import HopfLine, hopf_lines_of, hopf_variables
+from .hopf.lines import HopfLine, hopf_lines_of, hopf_variables
 from .parts import count_of, rod_parts
 from .protocol import InOrder, Part, Solver, Task, alone
 

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ..config.modes import ModesConfig
-from ..discretization.quadrature import lobatto_points
-from ..discretization.resolution import mesh_accuracy
+from ..discretization.elements.quadrature import lobatto_points
+from ..discretization.elements.resolution import mesh_accuracy
 from ..model.rod import Rod
 from ..results.layouts.modes import GROWTH, MODE_NUMBERS
 from ..results.layouts.spectrum import EACH_MODE, EACH_POINT
 from ..results.layouts.variables import Filled, recorded
 from ..sweep.estimate import Estimate, estimate_modes, estimate_spectra
-from .force_changes import force_changes
+from .hopf.force_changes import force_changes
 from .parts import ProvedTask, count_of
 from .protocol import Part, Solver
 

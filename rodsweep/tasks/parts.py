@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from ..model.parameters import PARAMETERS, Parameter
-from ..sweep.points import Points
+from ..sweep.points.points import Points
 from ..wording import counted
 from .protocol import Part, Task
 

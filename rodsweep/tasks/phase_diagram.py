@@ -11,8 +11,8 @@ from ..results.layouts.phase_diagram import (
     MOST_SPECIAL,
 )
 from ..sweep.estimate import Estimate, estimate_branches, estimate_lines
-from .diagram_curves import DiagramCurves
-from .diagram_cycles import cycles_record
+from .diagram.curves import DiagramCurves
+from .diagram.cycles import cycles_record
 from .parts import ProvedTask
 from .protocol import Part, Solver
 from .thresholds import search_record

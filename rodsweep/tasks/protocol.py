@@ -10,10 +10,10 @@ import numpy as np
 from ..results.file.view import View
 from ..results.layouts.variables import Filled
 from ..solve.status import PointStatus
-from ..sweep.chains import ChainedWork, Chains, State
 from ..sweep.estimate import Estimate
-from ..sweep.points import Points
-from ..sweep.stretches import SolveTogether, Stretches
+from ..sweep.points.chains import ChainedWork, Chains, State
+from ..sweep.points.points import Points
+from ..sweep.points.stretches import SolveTogether, Stretches
 
 Arrays = dict[str, np.ndarray]
 """The result of a unit of work."""

@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..config.spectrum import SpectrumConfig
-from ..discretization.quadrature import lobatto_points
-from ..discretization.resolution import mesh_accuracy
+from ..discretization.elements.quadrature import lobatto_points
+from ..discretization.elements.resolution import mesh_accuracy
 from ..errors import InputError
 from ..model.longitudinal import longitudinal_rates
 from ..results.layouts.spectrum import EACH_FOLLOWED_POINT, EACH_MODE, longitudinal
 from ..results.layouts.variables import Filled, recorded
 from ..sweep.estimate import Estimate, estimate_followed, estimate_spectra, estimate_two_meshes
-from ..sweep.stretches import Stretches, Together, along_the_longest
-from .force_changes import force_changes
+from ..sweep.points.stretches import Stretches, Together, along_the_longest
+from .hopf.force_changes import force_changes
 from .parts import ProvedTask, count_of
 from .protocol import InOrder, Part, Solver, alone
 

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from html import escape
 
-from ..model.arm import SlenderArm
-from ..model.neglected import Validity
+from ..model.arm.arm import SlenderArm
+from ..model.arm.neglected import Validity
 from .checks import Check, checks_of
 from .folding import folded
 from .load import Load

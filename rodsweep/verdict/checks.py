@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from math import isnan
 from typing import TYPE_CHECKING
 
-from ..model.arm import SlenderArm
-from ..model.neglected import SELF_BUCKLING, Effect, Validity, wall_effect
+from ..model.arm.arm import SlenderArm
+from ..model.arm.neglected import SELF_BUCKLING, Effect, Validity, wall_effect
 
 if TYPE_CHECKING:
     from .validity import Assessment  # which imports solvers

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from math import pi
 
-from ..model.arm import SlenderArm
-from ..model.drag import Drag
+from ..model.arm.arm import SlenderArm
+from ..model.arm.drag import Drag
 from ..model.rod import Rod
 from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
 from ..solve.changes.unstable_modes import Crossing, Kind

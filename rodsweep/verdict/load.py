@@ -2,8 +2,8 @@
 
 from math import floor, log10
 
-from ..model.arm import SlenderArm
-from ..model.arm_quantities import UNITS
+from ..model.arm.arm import SlenderArm
+from ..model.arm.quantities import UNITS
 from ..model.units import compact, split, unit_of, written_in
 from .flutter import Span
 

@@ -5,8 +5,8 @@ from math import inf
 from typing import Any, TypeVar
 
 from ..errors import InputError
-from ..model.arm import SlenderArm
-from ..model.arm_quantities import UNITS
+from ..model.arm.arm import SlenderArm
+from ..model.arm.quantities import UNITS
 from ..model.units import compact
 from ..solve.changes.unstable_modes import Kind
 from .flutter import FlutterRange, flutter_range

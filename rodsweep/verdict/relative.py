@@ -8,11 +8,11 @@ from functools import cache
 from math import inf
 from typing import TypeVar
 
-from ..determinant.covering import cover, first_boxes
+from ..determinant.certificate.covering import cover, first_boxes
 from ..determinant.newton import Zero
 from ..determinant.parameter_path import Path, coefficients_at, determinant_along
 from ..errors import InputError
-from ..model.arm import SlenderArm
+from ..model.arm.arm import SlenderArm
 from ..model.rod import Rod
 from ..solve.changes.unstable_modes import SHORT_OF_CRUSHED
 

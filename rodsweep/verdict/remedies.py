@@ -3,9 +3,9 @@
 from collections.abc import Iterable
 from math import isnan
 
-from ..model.arm import SlenderArm
-from ..model.arm_quantities import UNITS
-from ..model.neglected import Effect, Validity
+from ..model.arm.arm import SlenderArm
+from ..model.arm.neglected import Effect, Validity
+from ..model.arm.quantities import UNITS
 from ..model.units import unit_of, written_in
 from .load import Load
 from .validity import Assessment, rounded_down, rounded_up, thickness_factor, viscosity_factor

@@ -4,7 +4,7 @@ The first sentence is the headline. Where the model does not apply the headline 
 said under the condition that what the model leaves out did not matter.
 """
 
-from ..model.neglected import Validity
+from ..model.arm.neglected import Validity
 from ..solve.changes.unstable_modes import Kind
 from .flutter import FlutterRange, Span
 from .load import Load, rounded, rounded_percent

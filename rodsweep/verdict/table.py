@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from ..model.arm import SlenderArm
+from ..model.arm.arm import SlenderArm
 from .load import rounded
 from .planes import PlaneOfMotion
 

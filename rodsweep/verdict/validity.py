@@ -7,9 +7,9 @@ from math import floor, isnan, log10, nan
 
 import numpy as np
 
-from ..model.arm import SlenderArm
-from ..model.arm_quantities import LOADS, SECTION_SIDES
-from ..model.neglected import Effect, Validity, compression, effects_of, fastest_rate, worst_validity
+from ..model.arm.arm import SlenderArm
+from ..model.arm.neglected import Effect, Validity, compression, effects_of, fastest_rate, worst_validity
+from ..model.arm.quantities import LOADS, SECTION_SIDES
 from ..solve.changes.unstable_modes import Kind
 from ..solve.exclusive import solving
 from .flutter import FlutterRange, flutter_forces

@@ -108,7 +108,7 @@ def test_import_loads_nothing():
 
 def test_sweep_can_be_called_whatever_was_imported_first():
     code = (
-        "import rodsweep.sweep.grid, rodsweep as rs\n"
+        "import rodsweep.sweep.points.grid, rodsweep as rs\n"
         "from rodsweep import sweep\n"
         "assert rs.sweep is sweep\n"
         "try: rs.sweep('nothing')\n"

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import rodsweep as rs
-from rodsweep.model.arm import SlenderArm
-from rodsweep.model.neglected import Validity, effects_of, fastest_rate, worst_validity
+from rodsweep.model.arm.arm import SlenderArm
+from rodsweep.model.arm.neglected import Validity, effects_of, fastest_rate, worst_validity
 from rodsweep.solve.changes.thresholds import ThresholdStatus, nothing_found
 from rodsweep.solve.changes.unstable_modes import Kind
 from rodsweep.verdict.arm import report_on

@@ -9,9 +9,9 @@ from ruamel.yaml import YAML
 from slow_runs import FOR_EVER, pause_until_journalled, slowly
 
 from rodsweep.api.dataset import open_result
-from rodsweep.config.reading import canonical, validated
+from rodsweep.config.document.reading import canonical, validated
 from rodsweep.errors import InputError
-from rodsweep.results.file.identity import fingerprint_of
+from rodsweep.results.file.combination.identity import fingerprint_of
 from rodsweep.results.file.validation import FORMAT
 
 SPECTRA = """

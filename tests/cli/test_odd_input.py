@@ -12,8 +12,8 @@ import xarray as xr
 
 import rodsweep as rs
 from rodsweep.results.file.seal import seal
-from rodsweep.tasks import job
-from rodsweep.tasks.job import make_job
+from rodsweep.tasks.running import job
+from rodsweep.tasks.running.job import make_job
 
 SPECTRA = """
 task: spectrum

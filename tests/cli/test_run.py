@@ -121,7 +121,7 @@ def test_failed_point_is_a_status_and_not_the_end(command):
 def run_patched(command, patch, ranks=2):
     """A run whose every rank wraps `solve(index)` by the function `patched(rank, solve)` of `patch`."""
     patch = (
-        "import time\nimport rodsweep.cli.running as running\nreal = running.sweep\n"
+        "import time\nimport rodsweep.cli.run.running as running\nreal = running.sweep\n"
         + patch
         + "\nfrom dataclasses import replace\n"
         "def sweep(team, todo, loop, *words):\n"
@@ -311,7 +311,7 @@ def test_longitudinal_modes_are_added_only_where_asked(command):
 def test_package_imports_start_neither_mpi_nor_petsc(command):
     code = (
         "import sys, rodsweep, rodsweep.cli\n"
-        "from rodsweep.tasks.job import make_job\nfrom rodsweep.results.file.view import read_view\n"
+        "from rodsweep.tasks.running.job import make_job\nfrom rodsweep.results.file.view import read_view\n"
         "from rodsweep.post.figures import draw\nfrom rodsweep.post.summary import show_summary\n"
         "print([m for m in ('mpi4py.MPI', 'petsc4py.PETSc', 'slepc4py.SLEPc') if m in sys.modules])"
     )

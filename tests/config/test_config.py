@@ -5,9 +5,9 @@ import os
 import numpy as np
 import pytest
 
-from rodsweep.config.refusals import nearest
+from rodsweep.config.document.refusals import nearest
 from rodsweep.errors import InputError
-from rodsweep.tasks.job import make_job
+from rodsweep.tasks.running.job import make_job
 
 GOOD = """
 title: test

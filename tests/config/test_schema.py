@@ -10,11 +10,11 @@ from conftest import ROOT
 from faults import small
 
 from rodsweep.config import load_config
-from rodsweep.config.json_schema import json_schema
-from rodsweep.config.parsing import parse
+from rodsweep.config.document.parsing import parse
+from rodsweep.config.json.schema import json_schema
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.errors import InputError
-from rodsweep.tasks.job import job_of
+from rodsweep.tasks.running.job import job_of
 
 PROSE = {"$schema", "definitions", "title", "description", "default", "additionalProperties"}
 KINDS = {"number": float | int, "integer": int, "string": str, "boolean": bool, "object": dict, "array": list}

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from rods import rod_of
 
-from rodsweep.determinant.box import eigenvalue_box
-from rodsweep.determinant.dominance import dominant_factors, dominated
+from rodsweep.determinant.certificate.box import eigenvalue_box
+from rodsweep.determinant.certificate.dominance import dominant_factors, dominated
+from rodsweep.determinant.certificate.winding_number import count_right_of, phase_change, stepped_change
 from rodsweep.determinant.value import scaled_determinant
-from rodsweep.determinant.winding_number import count_right_of, phase_change, stepped_change
 from rodsweep.model.rod import Rod
 
 CROWDED = Rod(F=2000.0, k1=1e4, k2=1e4, gamma3=1e-4)

@@ -7,13 +7,13 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from rodsweep.determinant.box import (
+from rodsweep.determinant.certificate.box import (
     quiet_radius,
     squared_amplification,
     squared_amplification_over,
 )
-from rodsweep.determinant.covering import cover, distance, examine, first_boxes, slabs
-from rodsweep.determinant.discs import bound_on_bidisc, centre_at
+from rodsweep.determinant.certificate.covering import cover, distance, examine, first_boxes, slabs
+from rodsweep.determinant.certificate.discs import bound_on_bidisc, centre_at
 from rodsweep.determinant.newton import eigenvalue_newton
 from rodsweep.determinant.parameter_path import Path, changes, coefficients_at, determinant_along
 from rodsweep.determinant.value import scaled_determinant

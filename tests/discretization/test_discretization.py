@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from rodsweep.discretization.basis import differentiation, interpolation
-from rodsweep.discretization.mesh import configuration, mesh
-from rodsweep.discretization.pencil import assemble
-from rodsweep.discretization.quadrature import gauss, gauss_lobatto
-from rodsweep.discretization.resolution import LARGEST_ORDER, finer, required_order, resolution_for
-from rodsweep.discretization.tip_motion import tip_matrices, tip_motion
+from rodsweep.discretization.elements.basis import differentiation, interpolation
+from rodsweep.discretization.elements.mesh import configuration, mesh
+from rodsweep.discretization.elements.quadrature import gauss, gauss_lobatto
+from rodsweep.discretization.elements.resolution import LARGEST_ORDER, finer, required_order, resolution_for
+from rodsweep.discretization.straight.pencil import assemble
+from rodsweep.discretization.stress.tip_motion import tip_matrices, tip_motion
 from rodsweep.model.rod import Rod
 
 

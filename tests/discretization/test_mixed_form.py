@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from rods import rod_of
 
-from rodsweep.discretization.basis import differentiation
 from rodsweep.discretization.beam import Beam
-from rodsweep.discretization.mesh import mesh
-from rodsweep.discretization.mixed_form import mixed_form
-from rodsweep.discretization.quadrature import gauss_lobatto
+from rodsweep.discretization.elements.basis import differentiation
+from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.elements.quadrature import gauss_lobatto
+from rodsweep.discretization.straight.mixed_form import mixed_form
 from rodsweep.model.longitudinal import longitudinal_rates
 from rodsweep.model.rod import Rod
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rodsweep.discretization.periodic import (
+from rodsweep.discretization.elements.periodic import (
     coefficients,
     derivative,
     hermite_coefficients,

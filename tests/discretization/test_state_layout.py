@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from rodsweep.discretization.mesh import mesh
-from rodsweep.discretization.mixed_form import MixedForm
+from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.discretization.plane import balance
 from rodsweep.discretization.state_layout import StateLayout
-from rodsweep.discretization.stress_form import StressForm
+from rodsweep.discretization.straight.mixed_form import MixedForm
+from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.orbit.symmetry import NONE, REFLECTION, Symmetry
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rodsweep.discretization.mixed_form import mixed_form
-from rodsweep.discretization.straight_elements import LONGITUDINAL, TRANSVERSE, StraightElements
+from rodsweep.discretization.straight.elements import LONGITUDINAL, TRANSVERSE, StraightElements
+from rodsweep.discretization.straight.mixed_form import mixed_form
 from rodsweep.model.rod import Rod
 
 INF = np.inf

@@ -10,8 +10,8 @@ from matplotlib.contour import ContourSet
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from rodsweep.model.drag import DRAGS
-from rodsweep.model.neglected import Validity
+from rodsweep.model.arm.drag import DRAGS
+from rodsweep.model.arm.neglected import Validity
 
 from .arm_sentences import NAMED, UNIT, UNITS, force_unit, in_si, quantities_at_points
 from .drawing import (

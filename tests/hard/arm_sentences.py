@@ -11,9 +11,9 @@ import numpy as np
 from rods import rod_of
 
 import rodsweep as rs
-from rodsweep.model.arm import SlenderArm
-from rodsweep.model.drag import DRAGS
-from rodsweep.model.neglected import (
+from rodsweep.model.arm.arm import SlenderArm
+from rodsweep.model.arm.drag import DRAGS
+from rodsweep.model.arm.neglected import (
     HALF_LENGTH,
     WIDE_CURVATURE,
     Validity,

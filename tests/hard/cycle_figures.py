@@ -13,7 +13,7 @@ from matplotlib.patches import Patch
 from matplotlib.quiver import Quiver
 
 import rodsweep as rs
-from rodsweep.discretization.periodic import resampled
+from rodsweep.discretization.elements.periodic import resampled
 from rodsweep.model.parameters import LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import curves_of

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rodsweep.discretization.mesh import mesh
-from rodsweep.discretization.stress_form import StressForm
+from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.cycle.accuracy.refinement import RefinedCycle, refined_cycle

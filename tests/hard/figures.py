@@ -8,7 +8,7 @@ import numpy as np
 import rodsweep as rs
 from rodsweep.api.dataset import view_of
 from rodsweep.errors import InputError
-from rodsweep.model.neglected import Validity
+from rodsweep.model.arm.neglected import Validity
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.request import Look
 

@@ -7,10 +7,10 @@ Nothing of the orbit solver is used but a first guess.
 import mixed_motion as mixed
 import numpy as np
 
-from rodsweep.discretization.mesh import configuration
-from rodsweep.discretization.mixed_form import MixedForm
-from rodsweep.discretization.periodic import coefficients, maxima
+from rodsweep.discretization.elements.mesh import configuration
+from rodsweep.discretization.elements.periodic import coefficients, maxima
 from rodsweep.discretization.plane import balance
+from rodsweep.discretization.straight.mixed_form import MixedForm
 
 MOST_STEPS, SOLVED = 12, 1e-11
 

@@ -16,13 +16,13 @@ from rods import rod_of
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of
-from rodsweep.determinant.winding_number import count_right_of
-from rodsweep.model.arm import SlenderArm
+from rodsweep.determinant.certificate.winding_number import count_right_of
+from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.parameters import LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import curves_of
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
-from rodsweep.sweep.lines import lines_over
+from rodsweep.sweep.points.lines import lines_over
 
 from .arm_sentences import arm_sentences, random_arm, region_as_stated
 from .branch_sentences import branch_sentences

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from rods import rod_of
 
-from rodsweep.determinant.winding_number import count_right_of
+from rodsweep.determinant.certificate.winding_number import count_right_of
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.status import SpectrumStatus
 

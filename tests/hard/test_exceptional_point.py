@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from rods import rod_of
 
-from rodsweep.discretization.pencil import assemble
+from rodsweep.discretization.straight.pencil import assemble
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, ThresholdStatus, solve_thresholds
 from rodsweep.solve.modes.inverse_iteration import mode_vectors

@@ -7,7 +7,7 @@ unstable to either side. At the point itself nobody can say which, and a relativ
 import pytest
 from rods import rod_of
 
-from rodsweep.determinant.winding_number import count_right_of
+from rodsweep.determinant.certificate.winding_number import count_right_of
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
 from rodsweep.solve.spectrum.status import SpectrumStatus
 

@@ -12,7 +12,7 @@ import pytest
 from rods import rod_of
 from surveyed import RODS
 
-from rodsweep.determinant.winding_number import count_right_of
+from rodsweep.determinant.certificate.winding_number import count_right_of
 
 from .exact import SHIFT
 from .integral_equation import coefficients_of, dense_eigenvalues, fastest_wave, nodes_for

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from rods import rod_of
 
-from rodsweep.determinant.winding_number import count_right_of
+from rodsweep.determinant.certificate.winding_number import count_right_of
 from rodsweep.solve.spectrum.status import SpectrumStatus
 
 from .exact import leading, unstable

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.beam import Beam
-from rodsweep.discretization.mesh import mesh
-from rodsweep.discretization.quadrature import gauss
+from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.elements.quadrature import gauss
 from rodsweep.model.balance import (
     IN_SPACE,
     ad,

@@ -10,7 +10,7 @@ import numba
 import pytest
 from numba.core import event
 
-from rodsweep.model import compilation
+from rodsweep.model.compiled import compilation
 
 SOLVED_BEFORE = """
 from rodsweep.solve.branch import branches
@@ -37,7 +37,7 @@ PASSES_TOLD = "print('passes', len(passes.buffer))"
 INNER = '''
 """Formulas that those of another module call."""
 from typing import NamedTuple
-from rodsweep.model.compilation import compiled
+from rodsweep.model.compiled.compilation import compiled
 
 FACTOR = 2.0
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import rodsweep as rs
-from rodsweep.model.arm import SlenderArm
-from rodsweep.model.neglected import (
+from rodsweep.model.arm.arm import SlenderArm
+from rodsweep.model.arm.neglected import (
     COMPRESSION_LIMIT,
     INERTIA_LIMIT,
     REYNOLDS_LIMIT,

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from rodsweep.discretization.mesh import mesh
+from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.discretization.nodal_rod import nodal_rod
-from rodsweep.discretization.stress_balance import balance, strain_rates, velocity_balance
-from rodsweep.discretization.stress_jacobian import jacobian
+from rodsweep.discretization.stress.balance import balance, strain_rates, velocity_balance
+from rodsweep.discretization.stress.jacobian import jacobian
 from rodsweep.model.algebra import ALGEBRAS, SE3
 from rodsweep.model.balance import IN_SPACE, ad
 from rodsweep.model.rod import Rod

@@ -6,19 +6,19 @@ from functools import partial
 import numpy as np
 import pytest
 
-from rodsweep.discretization.mesh import mesh
+from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.discretization.nodal_rod import nodal_change, nodal_rod
-from rodsweep.discretization.stress_balance import balance, balance_change
-from rodsweep.discretization.stress_jacobian import jacobian
+from rodsweep.discretization.stress.balance import balance, balance_change
+from rodsweep.discretization.stress.jacobian import jacobian
 from rodsweep.model.algebra import SE2, SE3
-from rodsweep.model.kernel_digest import digest, kernel_of
+from rodsweep.model.compiled.digest import digest, kernel_of
+from rodsweep.model.compiled.unrolling import OverAlgebra
 from rodsweep.model.rod import Rod
-from rodsweep.model.unrolling import OverAlgebra
 
 ROD, GRID = Rod(F=50.0, k1=1e3, k2=1e2, gamma3=1e-2), mesh(2, 3)
 SPACE = ROD.changed(gamma1=0.7).material_in_space(twist_stiffness=0.6, twist_drag=0.02)
 MATERIALS = {SE2: ROD.changed(gamma1=0.7).material, SE3: SPACE}
-HEAD = "from rodsweep.model.unrolling import OverAlgebra\n\n@OverAlgebra\n"
+HEAD = "from rodsweep.model.compiled.unrolling import OverAlgebra\n\n@OverAlgebra\n"
 BOTH = pytest.mark.parametrize("g", [SE2, SE3], ids=["plane", "space"])
 
 
@@ -95,7 +95,8 @@ def test_compiled_code_is_kept_by_the_formula_not_by_its_comments(tmp_path, text
     for k, body in enumerate(("    return x[0]", text)):
         path = tmp_path / f"{k}.py"
         path.write_text(
-            f"from rodsweep.model.unrolling import OverAlgebra\n\n@OverAlgebra\ndef f(g, x):\n{body}\n"
+            "from rodsweep.model.compiled.unrolling import OverAlgebra\n\n"
+            f"@OverAlgebra\ndef f(g, x):\n{body}\n"
         )
         spec = importlib.util.spec_from_file_location("of_a_test", path)
         module = importlib.util.module_from_spec(spec)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from known_cycles import make_view
 
-from rodsweep.model.arm import SlenderArm
+from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.post.figures.cycle.animation import first_frame
 from rodsweep.post.figures.cycle.energy import draw_energy
 from rodsweep.post.figures.cycle.portrait import draw_portrait

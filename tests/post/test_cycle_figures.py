@@ -13,16 +13,16 @@ from matplotlib.quiver import Quiver
 from matplotlib.text import Annotation
 from PIL import Image
 
-from rodsweep.discretization.periodic import derivative, resampled
+from rodsweep.discretization.elements.periodic import derivative, resampled
 from rodsweep.errors import EnvironmentLacks, InputError
 from rodsweep.post.figures import draw
-from rodsweep.post.figures.cycle.amplitude import draw_amplitude
-from rodsweep.post.figures.cycle.amplitude_branches import branches_of
+from rodsweep.post.figures.cycle.amplitudes.amplitude import draw_amplitude
+from rodsweep.post.figures.cycle.amplitudes.branches import branches_of
+from rodsweep.post.figures.cycle.amplitudes.square_root import square_root_laws
 from rodsweep.post.figures.cycle.animation import first_frame
 from rodsweep.post.figures.cycle.energy import draw_energy
 from rodsweep.post.figures.cycle.portrait import ARROW, draw_portrait, drawn_shapes
 from rodsweep.post.figures.cycle.selection import chosen_cycles
-from rodsweep.post.figures.cycle.square_root import square_root_laws
 from rodsweep.post.figures.limit_cycle import figure_name
 from rodsweep.post.figures.request import FigureRequest
 from rodsweep.post.hopf_points import Located

@@ -10,7 +10,7 @@ from matplotlib.colors import LogNorm
 
 from rodsweep.errors import InputError
 from rodsweep.post.figures import draw
-from rodsweep.post.figures.cycle.hopf_lines import hopf_lines
+from rodsweep.post.figures.cycle.amplitudes.hopf_lines import hopf_lines
 from rodsweep.post.figures.cycle.maps import STATUS_LOOKS, draw_maps
 from rodsweep.post.figures.cycle.point_map import cell_edges, point_map
 from rodsweep.post.figures.limit_cycle import figure_name

@@ -18,10 +18,10 @@ from rodsweep.api.dataset import view_of
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.animation import first_frame
 from rodsweep.post.figures.cycle.selection import chosen_cycles
-from rodsweep.post.figures.fitting import WORDS, break_lines, fit
+from rodsweep.post.figures.layout.fitting import WORDS, break_lines, fit
+from rodsweep.post.figures.layout.ticks import labels_in_sight
 from rodsweep.post.figures.request import Look
 from rodsweep.post.figures.style import STYLE
-from rodsweep.post.figures.ticks import labels_in_sight
 
 WIDTHS = ("89 mm", "183 mm", None)
 IN_TURN = ("89 mm", "183 mm", "89 mm", None)

@@ -16,20 +16,20 @@ import rodsweep as rs
 from rodsweep.api.dataset import view_of
 from rodsweep.errors import InputError
 from rodsweep.post.figures import FIGURES, draw
-from rodsweep.post.figures.class_bars import CLASS_COLOURS
-from rodsweep.post.figures.diagram_curves import mark_cycles_on_rows
-from rodsweep.post.figures.regions import PIXELS, ClassedPlaces, coloured
 from rodsweep.post.figures.request import Look
-from rodsweep.post.figures.row_classes import class_along_row
 from rodsweep.post.figures.sections import section
 from rodsweep.post.figures.spectra.line import broken, followed_roots, mark_thresholds
+from rodsweep.post.figures.stability.class_bars import CLASS_COLOURS
+from rodsweep.post.figures.stability.diagram_curves import mark_cycles_on_rows
+from rodsweep.post.figures.stability.regions import PIXELS, ClassedPlaces, coloured
+from rodsweep.post.figures.stability.row_classes import class_along_row
+from rodsweep.post.figures.stability.threshold_lines import _alike
 from rodsweep.post.figures.style import INVERSE_DRAG, LABELS, number, scale
-from rodsweep.post.figures.threshold_lines import _alike
 from rodsweep.post.summary import SUMMARIES
 from rodsweep.results.file.view import View, read_view
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.tasks import TASKS
-from rodsweep.tasks.job import make_job
+from rodsweep.tasks.running.job import make_job
 
 
 def test_every_task_has_a_summary_and_a_figure():

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from known_cycles import UNSTABLE, hopf_variables, make_view, store
 
-from rodsweep.post.figures.cycle.amplitude import draw_amplitude
-from rodsweep.post.figures.cycle.square_root import square_root_laws
+from rodsweep.post.figures.cycle.amplitudes.amplitude import draw_amplitude
+from rodsweep.post.figures.cycle.amplitudes.square_root import square_root_laws
 from rodsweep.post.hopf_points import Bracket, Located, StoredChanges
 from rodsweep.post.summary.stability import stability_lines
-from rodsweep.sweep.lines import lines_over
-from rodsweep.tasks.job import make_job
+from rodsweep.sweep.points.lines import lines_over
 from rodsweep.tasks.protocol import alone
+from rodsweep.tasks.running.job import make_job
 
 pytestmark = pytest.mark.filterwarnings("error::UserWarning")
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rodsweep.post.figures.class_bars import draw_class_bars
-from rodsweep.post.figures.diagram_curves import boundaries_to_name, force_of_plane
+from rodsweep.post.figures.stability.class_bars import draw_class_bars
+from rodsweep.post.figures.stability.diagram_curves import boundaries_to_name, force_of_plane
 from rodsweep.post.stability_curves import bounds_stability
 from rodsweep.results.file.view import View
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS

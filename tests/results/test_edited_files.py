@@ -16,10 +16,10 @@ from faults.edits import copied, edited
 from rodsweep.api.dataset import open_result
 from rodsweep.cli.merging import plan_without_solver
 from rodsweep.errors import InputError
-from rodsweep.results.file.merge import merge
+from rodsweep.results.file.combination.merge import merge
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.view import read_view
-from rodsweep.tasks.job import make_job
+from rodsweep.tasks.running.job import make_job
 
 CONFIGS = {
     "spectrum": """

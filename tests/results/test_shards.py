@@ -14,11 +14,11 @@ from ranks import PATIENCE
 
 from rodsweep.cli.merging import plan_without_solver
 from rodsweep.errors import InputError
-from rodsweep.results.file.merge import merge
+from rodsweep.results.file.combination.merge import merge
 from rodsweep.results.run import lock
 from rodsweep.results.run.journal import journal_directory
 from rodsweep.results.run.lock import Lock
-from rodsweep.sweep.shards import Shard, shard_of
+from rodsweep.sweep.points.shards import Shard, shard_of
 
 SPECTRA = """
 title: shards

@@ -6,12 +6,12 @@ import h5py
 import numpy as np
 import pytest
 
-from rodsweep.config.reading import canonical, validated
+from rodsweep.config.document.reading import canonical, validated
 from rodsweep.errors import InputError
 from rodsweep.results.file import points, validation
+from rodsweep.results.file.combination.identity import config_difference
+from rodsweep.results.file.combination.merge import merge
 from rodsweep.results.file.creation import Plan
-from rodsweep.results.file.identity import config_difference
-from rodsweep.results.file.merge import merge
 from rodsweep.results.file.seal import seal
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.validation import read_header
@@ -20,7 +20,7 @@ from rodsweep.results.layouts import layout_of
 from rodsweep.results.run import journal as pages_of
 from rodsweep.results.run import lock
 from rodsweep.results.run.journal import Journal, journal_directory, read_journals
-from rodsweep.sweep.points import Points
+from rodsweep.sweep.points.points import Points
 
 CONFIG = canonical(
     validated(

@@ -19,7 +19,7 @@ from ranks import PATIENCE, kill, pause_until, ranks_in, wait_for_end
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.variables import MISSING
 from rodsweep.results.run.journal import JOURNAL_HEAD, journal_directory
-from rodsweep.tasks.job import make_job
+from rodsweep.tasks.running.job import make_job
 
 INCOMPLETE = re.compile(r"\d (points?|rows?|rods?) (is|are) missing|curves through them are missing")
 """How `show` says that a run is not complete."""

@@ -24,7 +24,7 @@ accuracy: 1.0e-4
 """
 CHAIN = CYCLES + "limit_cycle: {start: neighbour}\n"
 WHEN_SOLVERS_ARE_LOADED = """
-from rodsweep.tasks.job import Job
+from rodsweep.tasks.running.job import Job
 
 solver = Job.solver
 

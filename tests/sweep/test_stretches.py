@@ -12,8 +12,8 @@ from slow_runs import FOR_EVER, pause_until_journalled, slowly
 
 import rodsweep as rs
 from rodsweep.results.file.view import read_view
-from rodsweep.sweep.ranges import IndexSet, total
-from rodsweep.sweep.stretches import (
+from rodsweep.sweep.points.ranges import IndexSet, total
+from rodsweep.sweep.points.stretches import (
     LONGEST,
     SHORTEST_AXIS,
     Stretches,

@@ -11,9 +11,9 @@ from contents import content, same
 import rodsweep as rs
 from rodsweep.api.asking import job_from, tree_of
 from rodsweep.api.dataset import view_of
-from rodsweep.config.arm_axes import CRUSHED, NO_WALL, NOT_SLENDER
-from rodsweep.model.arm import SlenderArm
-from rodsweep.model.neglected import Validity
+from rodsweep.config.arm.axes import CRUSHED, NO_WALL, NOT_SLENDER
+from rodsweep.model.arm.arm import SlenderArm
+from rodsweep.model.arm.neglected import Validity
 from rodsweep.post.figures.sections import section
 from rodsweep.results.file.view import read_view
 

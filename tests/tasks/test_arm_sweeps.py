@@ -13,7 +13,7 @@ from pint import UnitRegistry
 
 import rodsweep as rs
 from rodsweep.api.asking import job_from, tree_of
-from rodsweep.model.arm import SlenderArm
+from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.post.figures import draw
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.arm import at_points, twin_of

@@ -7,11 +7,11 @@ import pytest
 from matplotlib.figure import Figure
 
 import rodsweep as rs
-from rodsweep.model.arm import SlenderArm
-from rodsweep.model.neglected import Validity, effects_of, fastest_rate, worst_validity
+from rodsweep.model.arm.arm import SlenderArm
+from rodsweep.model.arm.neglected import Validity, effects_of, fastest_rate, worst_validity
 from rodsweep.post.figures import draw
 from rodsweep.results.file.view import read_view
-from rodsweep.tasks.arm_validity import MOTIONS
+from rodsweep.tasks.arm.validity import MOTIONS
 
 SILICONE = {"radius": "5 mm", "young": "100 kPa", "viscosity": "4 Pa s"}
 LENGTHS = ["4 cm", "6 cm", "10 cm", "14 cm"]

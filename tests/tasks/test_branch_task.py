@@ -24,7 +24,7 @@ from rodsweep.results.layouts.variables import MISSING
 from rodsweep.solve.branch.branches import BranchRequest, solve_branches
 from rodsweep.solve.branch.special.point import EndReason, SpecialKind
 from rodsweep.tasks.branch import record
-from rodsweep.tasks.job import make_job
+from rodsweep.tasks.running.job import make_job
 
 CONFIG = (
     "task: branch\nparameters: {{k1: {k1}, k2: 1.0e4, gamma3: 1.0e-4}}\n"

@@ -22,10 +22,10 @@ from rodsweep.results.run import checkpoints
 from rodsweep.results.run.checkpoints import CHECKPOINTS, Checkpoints
 from rodsweep.results.run.journal import Journal, drop_files
 from rodsweep.solve.cycle.accuracy.cycle_errors import CycleErrors
-from rodsweep.sweep.chains import ChainedWork, Chains, ChainSolver
-from rodsweep.sweep.ranges import IndexSet
+from rodsweep.sweep.points.chains import ChainedWork, Chains, ChainSolver
+from rodsweep.sweep.points.ranges import IndexSet
 from rodsweep.sweep.stop import StopRequest
-from rodsweep.tasks.job import make_job
+from rodsweep.tasks.running.job import make_job
 
 GRID = {"F": "[1, 2]", "k1": "100", "k2": "[10, 20]", "gamma3": "0.5", "gamma1": "[0.5, 1]"}
 
@@ -393,7 +393,7 @@ def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
     file = filled_file(tmp_path)
     code = (
         "import sys\nfrom pathlib import Path\n"
-        "from rodsweep.cli.checking import describe_job\nfrom rodsweep.tasks.job import make_job\n"
+        "from rodsweep.cli.checking import describe_job\nfrom rodsweep.tasks.running.job import make_job\n"
         "from rodsweep.post.summary import show_summary\nfrom rodsweep.results.file.view import read_view\n"
         "describe_job(make_job(Path(sys.argv[1]), ()))\nshow_summary(read_view(Path(sys.argv[2])))\n"
         "print([m for m in ('mpi4py.MPI', 'petsc4py', 'slepc4py') if m in sys.modules])"

@@ -119,7 +119,7 @@ def test_two_ranks_share_the_halves_of_one_curve(whole):
     """Each waits within its first half until the other is within one."""
     patch = f"""
 import os, pathlib, time
-from rodsweep.tasks.diagram_curves import DiagramCurves
+from rodsweep.tasks.diagram.curves import DiagramCurves
 
 solve, rank = DiagramCurves.solve, os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK"))
 
@@ -142,7 +142,7 @@ DiagramCurves.solve = solve_beside_another
 
 def test_curve_whose_solver_raises_is_none_and_the_diagram_is_finished(whole):
     patch = """
-from rodsweep.tasks.diagram_curves import DiagramCurves
+from rodsweep.tasks.diagram.curves import DiagramCurves
 
 def broken(self, units, unit):
     raise IndexError("a bug")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray
 
-from rodsweep.discretization.resolution import Resolution
+from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.post.summary import NOUNS, show_summary
 from rodsweep.results.file.creation import Plan
 from rodsweep.results.file.store import Store
@@ -20,7 +20,7 @@ from rodsweep.results.run.journal import Journal
 from rodsweep.solve.spectrum.search import Spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.tasks import modes, spectrum, thresholds
-from rodsweep.tasks.job import make_job
+from rodsweep.tasks.running.job import make_job
 from rodsweep.tasks.thresholds import search_record
 
 CONFIGS = {
@@ -322,7 +322,7 @@ def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
     """For any task: they must work on a login node."""
     code = (
         "import sys\nfrom pathlib import Path\n"
-        "from rodsweep.cli.checking import describe_job\nfrom rodsweep.tasks.job import make_job\n"
+        "from rodsweep.cli.checking import describe_job\nfrom rodsweep.tasks.running.job import make_job\n"
         "from rodsweep.post.summary import show_summary\nfrom rodsweep.results.file.view import read_view\n"
         "for place in map(Path, sys.argv[1:]):\n"
         "    describe_job(make_job(place / 'c.yaml', ()))\n    show_summary(read_view(place / 'c.h5'))\n"

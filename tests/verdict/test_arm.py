@@ -8,9 +8,9 @@ import pytest
 
 from rodsweep import Arm
 from rodsweep.errors import InputError
-from rodsweep.model.drag import cox, gray_hancock, least_rotational, lighthill, most_rotational
+from rodsweep.model.arm.drag import cox, gray_hancock, least_rotational, lighthill, most_rotational
+from rodsweep.model.arm.section import Circle, Rectangle, Tube
 from rodsweep.model.rod import Rod
-from rodsweep.model.section import Circle, Rectangle, Tube
 from rodsweep.model.units import share_of_flutter
 from rodsweep.solve.changes.along_path import Transitions
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdStatus, nothing_found
@@ -265,7 +265,7 @@ def test_command_refuses_in_one_sentence(command, words, sentence):
 def test_numbers_need_no_solver_and_help_no_units():
     """An arm's numbers do not start PETSc, and the command line does not load pint."""
     code = (
-        "import sys, rodsweep.cli; from rodsweep.model.arm import SlenderArm;"
+        "import sys, rodsweep.cli; from rodsweep.model.arm.arm import SlenderArm;"
         "assert 'pint' not in sys.modules;"
         "SlenderArm(length='1 m', radius='1 cm', young='1 MPa', viscosity='1 Pa s', force='0 N').k2;"
         "assert 'petsc4py' not in sys.modules"

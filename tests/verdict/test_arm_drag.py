@@ -12,15 +12,15 @@ from matplotlib.figure import Figure
 
 import rodsweep as rs
 from rodsweep.api.asking import job_from, tree_of
-from rodsweep.config.arm import ArmSection
-from rodsweep.config.arm_axes import CRUSHED, NO_FLUTTER
-from rodsweep.model.arm import SlenderArm
-from rodsweep.model.drag import DRAGS
-from rodsweep.model.neglected import HALF_LENGTH, WIDE_CURVATURE, wall_effect
+from rodsweep.config.arm.axes import CRUSHED, NO_FLUTTER
+from rodsweep.config.arm.section import ArmSection
+from rodsweep.model.arm.arm import SlenderArm
+from rodsweep.model.arm.drag import DRAGS
+from rodsweep.model.arm.neglected import HALF_LENGTH, WIDE_CURVATURE, wall_effect
 from rodsweep.post.figures import draw
 from rodsweep.results.file.view import read_view
-from rodsweep.sweep.arm_grid import grid_of_arms
-from rodsweep.tasks.arm_points import same_rods
+from rodsweep.sweep.points.arm_grid import grid_of_arms
+from rodsweep.tasks.arm.points import same_rods
 from rodsweep.verdict.flutter import Kind
 from rodsweep.verdict.relative import first_flutter, first_hopf_force
 
@@ -246,7 +246,7 @@ def test_check_of_a_relative_load_and_of_a_tube_starts_no_petsc(tmp_path):
     (tmp_path / "a.yaml").write_text(tube, encoding="utf-8")
     code = (
         "import sys\nfrom pathlib import Path\nfrom rodsweep.cli.checking import describe_job\n"
-        "from rodsweep.tasks.job import make_job\ndescribe_job(make_job(Path(sys.argv[1]), ()))\n"
+        "from rodsweep.tasks.running.job import make_job\ndescribe_job(make_job(Path(sys.argv[1]), ()))\n"
         "print([m for m in ('mpi4py.MPI', 'petsc4py', 'slepc4py') if m in sys.modules])"
     )
     argv = [sys.executable, "-c", code, str(tmp_path / "a.yaml")]

@@ -19,7 +19,7 @@ from scipy.interpolate import PPoly, make_interp_spline
 
 from ...arrays import Array
 from ...discretization.beam import Beam
-from ...discretization.mesh import mesh
+from ...discretization.elements.mesh import mesh
 from ...model.rod import Rod
 from ...solve.cycle.limit_cycle import Cycle, CycleRequest, solve_cycle
 from ...solve.cycle.transient.returns import angle_weights

@@ -10,7 +10,7 @@ from math import ceil
 import numpy as np
 
 from ...arrays import Complex
-from ...discretization.resolution import LARGEST_ORDER, Resolution
+from ...discretization.elements.resolution import LARGEST_ORDER, Resolution
 from ...model.dispersion import most_amplified_wave
 from ...model.rod import Rod
 from ...solve.spectrum.krylov_schur import eigen_solver

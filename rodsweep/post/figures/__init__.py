@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from ...errors import EnvironmentLacks, InputError
 from ...results.file.view import View
-from .arm_map import can_draw, draw_arm_map
+from .arm.map import can_draw, draw_arm_map
 from .branch import draw_branch
 from .criticality import draw_criticality
 from .cycle.selection import outcomes

@@ -14,9 +14,9 @@ from ...results.file.view import View
 from . import style
 from .cycle.maps import label_maps, map_panels
 from .cycle.point_map import PointMap, cell_edges, is_map, point_map, varied_parameters
-from .fitting import MAP_ASPECT
-from .normal_forms import draw_predictions
+from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
+from .stability.normal_forms import draw_predictions
 
 MARKS = {
     -1: ("supercritical", style.FIRST, "o"),

@@ -4,8 +4,8 @@ import numpy as np
 
 from ...errors import InputError
 from ...results.file.view import View
-from .cycle.amplitude import BRANCH_LOOKS, draw_amplitude
-from .cycle.amplitude_branches import abscissa
+from .cycle.amplitudes.amplitude import BRANCH_LOOKS, draw_amplitude
+from .cycle.amplitudes.branches import abscissa
 from .cycle.animation import FILMS, write_animation
 from .cycle.energy import draw_energy
 from .cycle.maps import draw_maps
@@ -13,7 +13,7 @@ from .cycle.point_map import is_map, point_map, varied_parameters
 from .cycle.portrait import draw_portrait
 from .cycle.selection import ENERGIES, MOST_CYCLES, SHAPES, TRACE, chosen_cycles, outcomes
 from .cycle.transient import draw_transients
-from .fitting import MAP_ASPECT, STRIP_ASPECT
+from .layout.fitting import MAP_ASPECT, STRIP_ASPECT
 from .request import KINDS_OF_TASK, FigureRequest
 
 ALL_POINTS = {"amplitude": "amplitudes", "maps": "maps"}

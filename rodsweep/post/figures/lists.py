@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from ...model.arm_quantities import ALL_QUANTITIES, ARM_UNITS
+from ...model.arm.quantities import ALL_QUANTITIES, ARM_UNITS
 from ...model.units import compact
 from ...results.file.view import View
 

@@ -16,12 +16,12 @@ from ...model.parameters import CRUSHING, LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts import lacks_curves
 from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
-from .class_bars import BAR_ASPECT, CLASS_COLOURS, classes_behind_crossings
-from .diagram_curves import draw_curves, draw_cycle_curves, mark_cycles_on_rows
-from .fitting import MAP_ASPECT
-from .regions import PIXELS, ClassedPlaces, DrawnPlane, coloured
+from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
-from .row_classes import class_along_row
+from .stability.class_bars import BAR_ASPECT, CLASS_COLOURS, classes_behind_crossings
+from .stability.diagram_curves import draw_curves, draw_cycle_curves, mark_cycles_on_rows
+from .stability.regions import PIXELS, ClassedPlaces, DrawnPlane, coloured
+from .stability.row_classes import class_along_row
 from .style import LABELS, SYMBOLS, heading, is_logarithmic, legend_below, need, parameter_text, scale
 from .style import number as number_text
 

@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 from ...errors import InputError
 from ...model.units import in_si
 from ...results.file.view import View
-from .arm_axes import add_si_scales
-from .arm_validity import add_validity
-from .fitting import LEAST_ASPECT, fit
+from .arm.axes import add_si_scales
+from .arm.validity import add_validity
+from .layout.fitting import LEAST_ASPECT, fit
 
 Shapes = Callable[[View, Sequence[int]], View]
 """A file with the shapes of the cycles of some points, numbered from 1."""

@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...config.arm_axes import ALONG
-from ...config.refusals import nearest
+from ...config.arm.axes import ALONG
+from ...config.document.refusals import nearest
 from ...errors import InputError
-from ...model.arm_quantities import ALL_QUANTITIES
-from ...model.drag import DRAGS
+from ...model.arm.drag import DRAGS
+from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.units import in_si
 from ...results.file.view import View

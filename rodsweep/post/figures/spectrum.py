@@ -9,11 +9,11 @@ from matplotlib.figure import Figure
 
 from ...errors import InputError
 from ...results.file.view import View
-from .eigenvalues import draw_eigenvalues, draw_list_of_spectra
-from .fitting import MAP_ASPECT
+from .layout.fitting import MAP_ASPECT
 from .lists import as_grid
 from .request import FigureRequest
 from .sections import section
+from .spectra.eigenvalues import draw_eigenvalues, draw_list_of_spectra
 from .spectra.line import FOLLOWED_ROOTS, draw_line, roots_to_follow
 from .spectra.panels import MOST_PANELS, draw_panels
 from .style import LABELS, fixed_text, heading, long_axes, need, scale

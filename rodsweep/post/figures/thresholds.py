@@ -7,13 +7,13 @@ from matplotlib.patches import Patch
 from ...errors import InputError
 from ...results.file.view import View
 from . import style
-from .class_bars import BAR_ASPECT, draw_class_bars
 from .cycle.maps import label_maps, map_panels
 from .cycle.point_map import cell_edges, point_map
-from .fitting import LEAST_ASPECT, MAP_ASPECT
+from .layout.fitting import LEAST_ASPECT, MAP_ASPECT
 from .lists import as_grid
 from .request import FigureRequest
-from .threshold_lines import CRITICAL_FORCES, MOST_LINES, draw_all_lines, draw_lines_of_some
+from .stability.class_bars import BAR_ASPECT, draw_class_bars
+from .stability.threshold_lines import CRITICAL_FORCES, MOST_LINES, draw_all_lines, draw_lines_of_some
 
 NO_THRESHOLD = "#DDDDDD"
 """Colour of rods without the threshold."""

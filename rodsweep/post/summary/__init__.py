@@ -8,17 +8,17 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from ...config.arm_axes import NOT_SLENDER
+from ...config.arm.axes import NOT_SLENDER
 from ...config.values import printable
-from ...model.arm_quantities import ALL_QUANTITIES
+from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.units import written_in
 from ...results.file.provenance import RANK_SHARES, kernels_of
 from ...results.file.view import View
 from ...results.layouts import lacks_curves
 from ...results.layouts.variables import DIMENSIONS, MISSING
 from ...wording import counted, duration, is_or_are, plural
-from .arm import arm_lines
-from .arm_answer import arm_answer
+from .arm.answer import arm_answer
+from .arm.arm import arm_lines
 from .branch import branch_summary
 from .criticality import criticality_summary
 from .limit_cycle import limit_cycle_summary

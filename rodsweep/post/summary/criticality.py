@@ -7,7 +7,7 @@ import numpy as np
 from ...results.file.view import View
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, some_of
-from .arm import crossings_of_arm
+from .arm.arm import crossings_of_arm
 from .ranges import rounded, span, to_error
 from .thresholds import not_stored
 from .told import Told, in_brackets, region

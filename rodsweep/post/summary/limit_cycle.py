@@ -9,7 +9,7 @@ from ...results.file.view import View
 from ...results.layouts.limit_cycle import SECOND_STATES
 from ...wording import counted, some_of
 from ..hopf_points import StoredChanges
-from .arm import region_of_arms
+from .arm.arm import region_of_arms
 from .errors import span_of
 from .ranges import error_text, span, to_error
 from .stability import stability_lines

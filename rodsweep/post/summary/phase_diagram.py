@@ -8,7 +8,7 @@ from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, some_of
-from .arm import loads_at
+from .arm.arm import loads_at
 from .diagram_curves import agreement_lines, criticality_lines, curve_lines
 from .ranges import span
 from .thresholds import cost_lines, search_lines

@@ -5,10 +5,10 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from ...results.file.view import View
-from ...sweep.lines import ParameterLine, lines_over
+from ...sweep.points.lines import ParameterLine, lines_over
 from ...wording import counted, some_of
 from ..hopf_points import Bracket, Located
-from .arm import thresholds_of_arm
+from .arm.arm import thresholds_of_arm
 from .ranges import error_text, stated_error
 
 FEW_LINES = 3

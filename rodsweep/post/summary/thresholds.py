@@ -8,7 +8,7 @@ from ...results.file.view import View
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...results.layouts.variables import ANGULAR
 from ...wording import counted, plural, some_of
-from .arm import crossings_of_arm
+from .arm.arm import crossings_of_arm
 from .ranges import error_text, rounded, span, to_error
 from .told import Told, at_point, in_brackets
 

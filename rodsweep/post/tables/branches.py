@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.arm_quantities import LOADS
+from ...model.arm.quantities import LOADS
 from ...results.file.view import View
 from .columns import Column
 from .rows import Rows

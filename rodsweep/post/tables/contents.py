@@ -7,7 +7,7 @@ its status. `grid` is a diagram's grid, whose rows are points of the file.
 import json
 from dataclasses import dataclass
 
-from ...config.refusals import hint_of
+from ...config.document.refusals import hint_of
 from ...errors import InputError
 from ...model.parameters import PARAMETERS
 from ...results.file.view import View

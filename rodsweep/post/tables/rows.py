@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...config.arm_axes import ALONG
-from ...model.arm_quantities import ALL_QUANTITIES
-from ...model.drag import DRAGS
+from ...config.arm.axes import ALONG
+from ...model.arm.drag import DRAGS
+from ...model.arm.quantities import ALL_QUANTITIES
 from ...results.file.view import View
 from ...results.layouts.arm import any_unit_of, converted, twin_of
 from ...results.layouts.variables import DIMENSIONS, MISSING, STATUS, Variable

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...sweep.chains import Chains
-from ...sweep.points import Points
-from ...sweep.stretches import Stretches
+from ...sweep.points.chains import Chains
+from ...sweep.points.points import Points
+from ...sweep.points.stretches import Stretches
 from ..layouts.variables import DIMENSIONS, MISSING, TYPED, Filled, Layout, Variable
-from .identity import fingerprint_of
+from .combination.identity import fingerprint_of
 from .validation import FORMAT, PROGRAM
 
 

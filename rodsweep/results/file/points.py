@@ -13,8 +13,8 @@ from typing import Any
 import h5py
 import numpy as np
 
-from ...sweep.points import Points
-from ...sweep.ranges import IndexRange, joined
+from ...sweep.points.points import Points
+from ...sweep.points.ranges import IndexRange, joined
 from ..layouts.variables import MISSING, Layout
 
 POINTS_AT_ONCE = 1 << 16

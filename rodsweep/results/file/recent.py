@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 from ...errors import EnvironmentLacks, InputError
-from ...sweep.ranges import total
+from ...sweep.points.ranges import total
 from ..layouts.variables import MISSING
 from ..run.journal import journal_directory, read_journals
 from .exchange import Exchange, disk_refusals, identity

@@ -5,9 +5,9 @@ from pathlib import Path
 
 from ...errors import EnvironmentLacks, InputError
 from ..run.journal import journals_of
+from .combination.extension import extension_of
+from .combination.identity import change_between
 from .creation import Plan
-from .extension import extension_of
-from .identity import change_between
 from .points import parameters_of
 from .validation import Header, NotWhole, read_header
 

@@ -17,7 +17,7 @@ import h5py
 import numpy as np
 
 from ...errors import EnvironmentLacks, InputError
-from ...sweep.ranges import IndexRange, total
+from ...sweep.points.ranges import IndexRange, total
 from ..layouts.variables import MISSING, Filled, Layout
 from ..run.checkpoints import CHECKPOINTS
 from ..run.journal import (
@@ -30,9 +30,9 @@ from ..run.journal import (
     read_journals,
     set_aside,
 )
+from .combination.extension import extension_of
 from .creation import Plan, add_variables, create_file
 from .exchange import Exchange, disk_refusals, identity
-from .extension import extension_of
 from .points import missing_ranges, parameters_of, statuses, write_points
 from .provenance import merged_history
 from .recent import SNAPSHOT

@@ -15,8 +15,8 @@ from ...config.values import printable
 from ...errors import InputError
 from ..layouts import layout_of
 from ..layouts.variables import Layout
+from .combination.identity import fingerprint_of
 from .content import refuse_changed
-from .identity import fingerprint_of
 from .points import points_in
 from .seal import HDF5_SIGNATURE, check_frame
 

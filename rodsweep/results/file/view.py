@@ -8,7 +8,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from ...model.arm_quantities import ALL_QUANTITIES
+from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ..layouts.variables import TYPED
 from .content import is_users

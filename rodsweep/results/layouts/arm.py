@@ -14,16 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...config.arm import ArmSection
-from ...config.arm_axes import ALONG, names_over
+from ...config.arm.axes import ALONG, names_over
+from ...config.arm.quantities import typed_unit
+from ...config.arm.section import ArmSection
 from ...config.axes import Axes
-from ...config.quantities import typed_unit
 from ...config.tasks import makes_diagram
-from ...model.arm_quantities import ALL_QUANTITIES, LOADS, RELATIVE, SCALE_OF, UNITS
-from ...model.drag import DRAGS
-from ...model.neglected import Validity
+from ...model.arm.drag import DRAGS
+from ...model.arm.neglected import Validity
+from ...model.arm.quantities import ALL_QUANTITIES, LOADS, RELATIVE, SCALE_OF, UNITS
 from ...model.parameters import PARAMETERS
-from ...sweep.points import Points
+from ...sweep.points.points import Points
 from .variables import ANGULAR, DIMENSIONS, Filled, Layout, Variable, real, word
 
 SUFFIX, OF_HERTZ = "_si", "_hz"
@@ -71,7 +71,7 @@ WITHIN = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))
 """Dimensions beside the points of what is told in SI units too; longer tables are not stored twice."""
 
 EFFECTS = ("inertia_of_the_arm", "inertia_of_the_fluid", "compression", "weight", "Reynolds_number")
-"""What the model leaves out, as `rodsweep.model.neglected` names it but for the blanks."""
+"""What the model leaves out, as `rodsweep.model.arm.neglected` names it but for the blanks."""
 VALIDITY = (
     word(
         "model_applies",

@@ -15,7 +15,7 @@ from numba import types
 from numba.core import typing
 from numba.extending import intrinsic
 
-from ...model.compilation import c_callback, compiled
+from ...model.compiled.compilation import c_callback, compiled
 from .petsc import PETSc
 
 CALLED = (

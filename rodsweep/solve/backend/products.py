@@ -13,7 +13,7 @@ from numba.core import typing
 from numba.extending import get_cython_function_address
 
 from ...arrays import Array
-from ...model.compilation import compiled
+from ...model.compiled.compilation import compiled
 
 _ADDRESS = types.intp
 binding.add_symbol("rodsweep_dgemm", get_cython_function_address("scipy.linalg.cython_blas", "dgemm"))

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...determinant.newton import eigenvalue_newton
 from ...determinant.parameter_path import Path
-from ...discretization.stress_form import StressForm
+from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
 from ..changes.unstable_modes import Crossing
 from ..cycle.accuracy.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tolerance

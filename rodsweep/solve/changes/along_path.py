@@ -1,14 +1,14 @@
 """Everything that changes along a path of rods: crossings of the imaginary axis, and who leads.
 
-The crossings come from `rodsweep.determinant.covering`, which proves that there are no others, the changes
-of the leading eigenvalue from `leading_eigenvalue`. Here they become one list in increasing order of the
+The crossings come from `rodsweep.determinant.certificate.covering`, which proves that there are no
+others, the changes of the leading eigenvalue from `leading_eigenvalue`. Here they become one list in increasing order of the
 parameter, and the winding number confirms how many modes are unstable at both ends and in between.
 """
 
 import math
 from dataclasses import dataclass, replace
 
-from ...determinant.covering import Box, cover, first_boxes, slabs
+from ...determinant.certificate.covering import Box, cover, first_boxes, slabs
 from ...determinant.newton import Zero
 from ...determinant.parameter_path import Path, coefficients_at, determinant_along
 from ..point import Unsolvable

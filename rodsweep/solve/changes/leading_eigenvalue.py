@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...determinant.certificate.winding_number import count_right_of
 from ...determinant.newton import double_newton, eigenvalue_newton
 from ...determinant.parameter_path import Path, coefficients_at
-from ...determinant.winding_number import count_right_of
 from ..point import Unsolvable
 from ..spectrum.search import SpectrumRequest, solve_spectrum
 from .anchors import Anchor, unexplained

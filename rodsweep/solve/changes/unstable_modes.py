@@ -8,8 +8,8 @@ import math
 from dataclasses import dataclass, replace
 from enum import IntEnum
 
+from ...determinant.certificate.winding_number import count_right_of
 from ...determinant.parameter_path import Path
-from ...determinant.winding_number import count_right_of
 
 SHORT_OF_CRUSHED = 1e-6
 """How far below k1, relatively, the search ends where F_max lies beyond: at F = k1 the rod is crushed."""

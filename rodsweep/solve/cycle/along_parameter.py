@@ -11,7 +11,7 @@ from math import inf
 import numpy as np
 
 from ...arrays import Array
-from ...discretization.stress_form import StressForm
+from ...discretization.stress.form import StressForm
 from ..continuation.follower import StepControl, Stepped, advance
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import Converged, at_orbit, newton, relative_change

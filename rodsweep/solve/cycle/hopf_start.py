@@ -11,11 +11,11 @@ from math import isnan
 
 import numpy as np
 
+from ...determinant.certificate.winding_number import count_right_of
 from ...determinant.newton import crossing_newton, eigenvalue_newton
 from ...determinant.parameter_path import Path
-from ...determinant.winding_number import count_right_of
-from ...discretization.mesh import mesh
-from ...discretization.stress_form import StressForm
+from ...discretization.elements.mesh import mesh
+from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace

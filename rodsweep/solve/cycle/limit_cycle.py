@@ -13,8 +13,8 @@ from math import nan
 
 import numpy as np
 
-from ...discretization.mesh import mesh
-from ...discretization.stress_form import StressForm
+from ...discretization.elements.mesh import mesh
+from ...discretization.stress.form import StressForm
 from ...errors import EnvironmentLacks
 from ...model.rod import Rod
 from ..backend.petsc import options

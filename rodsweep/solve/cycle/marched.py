@@ -15,8 +15,8 @@ from scipy.interpolate import CubicSpline
 
 from ...arrays import Array
 from ...discretization.beam import Beam
-from ...discretization.mesh import mesh
-from ...discretization.stress_form import StressForm
+from ...discretization.elements.mesh import mesh
+from ...discretization.stress.form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ...watch import Whereabouts, report

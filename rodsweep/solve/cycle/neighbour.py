@@ -13,7 +13,7 @@ from math import inf, nan
 import numpy as np
 
 from ...arrays import Array
-from ...discretization.stress_form import StressForm
+from ...discretization.stress.form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ..orbit.matrix.workspace import NewtonWorkspace

@@ -4,7 +4,7 @@ No motion is followed: beside a supercritical Hopf point it grows or decays to t
 decays where the cubic part of its growth rate is small beside the linear one.
 """
 
-from ...discretization.stress_form import StressForm
+from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
 from ..hopf.normal_form import accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace

@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 
 from ...determinant.newton import eigenvalue_newton
 from ...determinant.parameter_path import Path
-from ...discretization.resolution import Resolution
-from ...discretization.resolution import finer as a_third_finer
-from ...discretization.straight_elements import TRANSVERSE, StraightElements
+from ...discretization.elements.resolution import Resolution
+from ...discretization.elements.resolution import finer as a_third_finer
+from ...discretization.straight.elements import TRANSVERSE, StraightElements
 from ...model.rod import Rod
 from ..changes.unstable_modes import Crossing
 from .normal_form import SAFETY, NormalForm, normal_form_on, of_odd_order, resolution_of

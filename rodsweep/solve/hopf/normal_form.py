@@ -1,7 +1,7 @@
 """The normal form of a Hopf point: amplitude, frequency and motion of the cycles that are born there.
 
-About the straight rod the mixed form (`rodsweep.discretization.mixed_form`) is M dX/dt = A X + B(X, X)/2.
-With a simple pair of eigenvalues w, conj w of (A, M), A q = w M q and p^H A = w p^H M, its small motions at a
+About the straight rod the mixed form (`rodsweep.discretization.straight.mixed_form`) is
+M dX/dt = A X + B(X, X)/2. With a simple pair of eigenvalues w, conj w of (A, M), A q = w M q and p^H A = w p^H M, its small motions at a
 force F' near F are, to second order,
 
     X = z q + conj(z q) + Re(z^2 h20) + |z|^2 h11,      dz/dt = [w + lambda_F (F' - F)] z + c |z|^2 z,
@@ -21,9 +21,9 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...determinant.value import newton_correction
-from ...discretization.mixed_form import MixedForm, mixed_form
-from ...discretization.resolution import Resolution, resolution_for
-from ...discretization.straight_elements import LONGITUDINAL, TRANSVERSE, StraightElements
+from ...discretization.elements.resolution import Resolution, resolution_for
+from ...discretization.straight.elements import LONGITUDINAL, TRANSVERSE, StraightElements
+from ...discretization.straight.mixed_form import MixedForm, mixed_form
 from ...model.rod import Rod
 from ..point import Unsolvable
 

@@ -12,8 +12,8 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...determinant.value import distance_to_next
-from ...discretization.pencil import assemble
-from ...discretization.resolution import Resolution, finer, mesh_accuracy, resolution_for
+from ...discretization.elements.resolution import Resolution, finer, mesh_accuracy, resolution_for
+from ...discretization.straight.pencil import assemble
 from ...model.rod import Rod
 from .inverse_iteration import Vectors, mode_vectors
 

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...determinant.value import ROUND_OFF
-from ...discretization.pencil import Pencil, shear_force, slope, tip_scale
-from ...discretization.resolution import Resolution
+from ...discretization.elements.resolution import Resolution
+from ...discretization.straight.pencil import Pencil, shear_force, slope, tip_scale
 from ...model.rod import Rod
 
 ITERATIONS = 4

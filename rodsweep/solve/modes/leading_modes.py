@@ -16,8 +16,8 @@ from math import nan
 import numpy as np
 
 from ...determinant.value import newton_correction
-from ...discretization.quadrature import lobatto_points
-from ...discretization.resolution import Resolution, resolution_for
+from ...discretization.elements.quadrature import lobatto_points
+from ...discretization.elements.resolution import Resolution, resolution_for
 from ...model.rod import Rod
 from ..point import solved
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum

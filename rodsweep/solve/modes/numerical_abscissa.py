@@ -4,8 +4,8 @@ from math import inf, nan
 
 import numpy as np
 
-from ...determinant.box import eigenvalue_box
-from ...discretization.pencil import Pencil, angle_weight
+from ...determinant.certificate.box import eigenvalue_box
+from ...discretization.straight.pencil import Pencil, angle_weight
 from ...model.adjoint import hermitian_tip
 from ...model.rod import Rod
 from .propagator import shifted_inverse

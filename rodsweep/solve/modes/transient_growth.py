@@ -14,8 +14,8 @@ from math import ceil, exp, inf, isnan, log, nan, pi, sqrt
 
 import numpy as np
 
-from ...discretization.pencil import Pencil, assemble
-from ...discretization.resolution import Resolution
+from ...discretization.elements.resolution import Resolution
+from ...discretization.straight.pencil import Pencil, assemble
 from ...model.rod import Rod
 from .norm_maximum import LARGEST_EXPONENT, highest
 from .numerical_abscissa import numerical_abscissa

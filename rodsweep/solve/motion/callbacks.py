@@ -15,9 +15,9 @@ import numpy as np
 from numba import types
 
 from ...discretization.beam import Beam
-from ...discretization.mesh import Mesh
+from ...discretization.elements.mesh import Mesh
 from ...discretization.state_layout import plane_layout
-from ...discretization.stress_rates import rate, rate_jacobian
+from ...discretization.stress.rates import rate, rate_jacobian
 from ..backend.c_functions import POINTER, c_function, call, floats, integers, petsc_function, record_at
 from ..backend.petsc import PETSc
 from .context import (

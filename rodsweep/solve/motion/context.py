@@ -9,9 +9,9 @@ import numpy as np
 
 from ...arrays import Array
 from ...discretization.beam import Beam
-from ...discretization.mesh import NodeMatrices
+from ...discretization.elements.mesh import NodeMatrices
 from ...discretization.nodal_rod import NodalRod
-from ...model.compilation import compiled
+from ...model.compiled.compilation import compiled
 from ..backend.c_functions import floats, floats_in, integers
 
 MOST_STAGES, MOST_POINTS = 16, 8

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...discretization.beam import Beam
-from ...discretization.mesh import Mesh
+from ...discretization.elements.mesh import Mesh
 from ...discretization.state_layout import plane_layout
 from ..backend.c_functions import call
 from ..backend.kept import Kept

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...model.compilation import compiled
+from ...model.compiled.compilation import compiled
 from ..backend.c_functions import POINTER, c_function, floats, integers, record_at
 from .context import AT_BASE, CONTEXT, MOST_POINTS, MOST_STAGES, TAKEN, states_of, times_of
 from .petsc_calls import context_of_ts, read_array, solution_of, step_of, time_of, unread_array

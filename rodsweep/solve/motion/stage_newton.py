@@ -12,8 +12,8 @@ import numpy as np
 from numba import types
 
 from ...arrays import Array
-from ...discretization.stress_rates import rate
-from ...model.compilation import compiled
+from ...discretization.stress.rates import rate
+from ...model.compiled.compilation import compiled
 from ..backend.c_functions import INT, POINTER, c_function, floats, integers, pointer, record_at
 from .context import AT_ITERATE, CONTEXT, TAKEN, UP_TO_DATE, matrices_of, rod_of, roots_of
 from .petsc_calls import (

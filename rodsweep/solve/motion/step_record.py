@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array
-from ...model.compilation import compiled
+from ...model.compiled.compilation import compiled
 from ..backend.c_functions import POINTER, c_function, floats, integers, record_at
 from ..backend.petsc import PETSc
 from .context import CONTEXT, TAKEN

@@ -5,11 +5,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...discretization.periodic import hermite_columns, maxima, minima, sampled_columns
+from ...discretization.elements.periodic import hermite_columns, maxima, minima, sampled_columns
 from ...discretization.plane import balance
 from ...discretization.state_layout import stress_place
-from ...discretization.tip_motion import TipMatrices, tip_motion
-from ...model.compilation import compiled_for_vectors
+from ...discretization.stress.tip_motion import TipMatrices, tip_motion
+from ...model.compiled.compilation import compiled_for_vectors
 from .semidiscrete import Semidiscrete
 
 REFLECTION = np.array([1.0, -1.0, -1.0])

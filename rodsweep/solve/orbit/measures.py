@@ -12,15 +12,15 @@ from math import nan
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...discretization.mesh import Mesh, configuration
-from ...discretization.periodic import (
+from ...discretization.elements.mesh import Mesh, configuration
+from ...discretization.elements.periodic import (
     hermite_coefficients,
     hermite_columns,
     rise_through_mean,
     samples_of,
 )
-from ...discretization.quadrature import lobatto_points
-from ...discretization.tip_motion import tip_matrices
+from ...discretization.elements.quadrature import lobatto_points
+from ...discretization.stress.tip_motion import tip_matrices
 from .compiled_measures import REFLECTION, harmonic_sizes, means, powers, tip_path
 from .orbit import Orbit
 

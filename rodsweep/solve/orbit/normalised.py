@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array
-from ...discretization.mesh import Mesh
+from ...discretization.elements.mesh import Mesh
 from ...discretization.state_layout import StateLayout
-from ...model.compilation import compiled_for_vectors
+from ...model.compiled.compilation import compiled_for_vectors
 from .orbit import Orbit
 from .symmetry import REFLECTION
 

@@ -13,9 +13,9 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ...arrays import Array
-from ...discretization.collocation import Collocation, radau
-from ...discretization.mesh import Mesh, transfer
-from ...discretization.stress_form import StressForm
+from ...discretization.elements.collocation import Collocation, radau
+from ...discretization.elements.mesh import Mesh, transfer
+from ...discretization.stress.form import StressForm
 from .semidiscrete import Semidiscrete
 from .symmetry import Symmetry
 

@@ -6,8 +6,8 @@ How fine a mesh must be is judged by the tails of an orbit near by (`tails`).
 from dataclasses import dataclass, replace
 from math import ceil, log
 
-from ...discretization.mesh import Mesh, mesh
-from ...discretization.resolution import LARGEST_ORDER
+from ...discretization.elements.mesh import Mesh, mesh
+from ...discretization.elements.resolution import LARGEST_ORDER
 from ...discretization.state_layout import plane_layout
 from .orbit import Orbit
 from .tails import tails_of

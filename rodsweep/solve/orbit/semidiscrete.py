@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from ...arrays import Array
-from ...discretization.mesh import NodeMatrices
+from ...discretization.elements.mesh import NodeMatrices
 from ...discretization.nodal_rod import NodalRod
 
 

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from ...arrays import Array
-from ...discretization.collocation import radau
-from ...discretization.mesh import mesh
+from ...discretization.elements.collocation import radau
+from ...discretization.elements.mesh import mesh
 from ...discretization.state_layout import COMPONENTS, stress_place
-from ...model.compilation import compiled_for_vectors
+from ...model.compiled.compilation import compiled_for_vectors
 from .orbit import Orbit
 
 LEAST_DECAY, LARGEST_DECAY = 0.2, 1.2

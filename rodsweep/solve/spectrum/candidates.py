@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Complex
-from ...determinant.box import squared_amplification
+from ...determinant.certificate.box import squared_amplification
+from ...determinant.certificate.winding_number import Count, count_right_of
 from ...determinant.roots import Roots, roots
-from ...determinant.winding_number import Count, count_right_of
-from ...discretization.resolution import Resolution
+from ...discretization.elements.resolution import Resolution
 from ...model.rod import Rod
 from ..backend.petsc import PETSC_ERRORS
 from ..point import cause_of

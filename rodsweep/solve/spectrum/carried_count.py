@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...determinant.moving_line import End, none_crosses
 from ...determinant.roots import BLURRED, ON_THE_AXIS
-from ...model.compilation import compiled
+from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
 from .prediction import Track
 

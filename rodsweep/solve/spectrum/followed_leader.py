@@ -3,9 +3,9 @@
 Newton's method on D leads from one to the other; that it leads here too is for the winding number to prove.
 """
 
+from ...determinant.certificate.winding_number import count_right_of
 from ...determinant.newton import refined
 from ...determinant.roots import root_error
-from ...determinant.winding_number import count_right_of
 from ...model.rod import Rod
 from .candidates import BEHIND
 

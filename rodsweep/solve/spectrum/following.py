@@ -14,7 +14,7 @@ from ...determinant.newton import REAL_BELOW
 from ...determinant.parameter_path import determinant_along
 from ...determinant.roots import SAME_ROOT, sort_descending
 from ...determinant.value import ROUND_OFF, TYPICAL_NOISE
-from ...model.compilation import compiled
+from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
 from .prediction import Track, guess_at, mates_of
 

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...discretization.pencil import Pencil, assemble
-from ...discretization.resolution import Resolution
-from ...model.compilation import compiled
+from ...discretization.elements.resolution import Resolution
+from ...discretization.straight.pencil import Pencil, assemble
+from ...model.compiled.compilation import compiled
 from ...model.rod import Rod
 from ...watch import report
 from ..backend.kept import Kept

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...determinant.roots import two_roots
-from ...model.compilation import compiled
+from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
 
 CLOSING = 4.0

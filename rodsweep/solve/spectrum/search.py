@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import Any
 
-from ...determinant.box import squared_amplification
-from ...discretization.resolution import (
+from ...determinant.certificate.box import squared_amplification
+from ...discretization.elements.resolution import (
     MOST_UNKNOWNS,
     expected_wave_number,
     finer,

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...discretization.pencil import tip_scale
-from ...discretization.quadrature import lobatto_points
-from ...discretization.resolution import Resolution
+from ...discretization.elements.quadrature import lobatto_points
+from ...discretization.elements.resolution import Resolution
+from ...discretization.straight.pencil import tip_scale
 from ...model.rod import Rod
 from .krylov_schur import eigen_solver
 from .status import SpectrumStatus

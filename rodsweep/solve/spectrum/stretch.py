@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
+from ...determinant.certificate.winding_number import count_right_of
 from ...determinant.parameter_path import Path
-from ...determinant.winding_number import count_right_of
 from ...model.rod import Rod, coefficients_of
 from ..point import FAILURES
 from .carried_count import best_gap, carry, judge_points, leading, line_in

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
-from ...discretization.resolution import (
+from ...discretization.elements.resolution import (
     MOST_UNKNOWNS,
     Resolution,
     expected_wave_number,

@@ -12,8 +12,8 @@ from benchmarks.auto import auto_program, run_auto, table_lines
 from benchmarks.limit_cycle.auto_cycles import rod_file, start_file
 from benchmarks.limit_cycle.auto_equations import EQUATIONS
 from rodsweep.determinant.parameter_path import Path
-from rodsweep.discretization.mesh import mesh
-from rodsweep.discretization.stress_form import StressForm
+from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc import next_point
 from rodsweep.solve.branch.beginning import beginning, hopf_point

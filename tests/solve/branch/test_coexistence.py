@@ -25,7 +25,7 @@ from rodsweep.solve.branch.special.cycle_curves import CurveEnd, CurvePoint, Cyc
 from rodsweep.solve.branch.special.point import SpecialKind
 from rodsweep.solve.changes.rows import RowRequest
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.tasks.job import make_job
+from rodsweep.tasks.running.job import make_job
 
 FOLD, RESTABILIZATION = 199.160114343, 155.600159298791
 """Of Fig. 2c's rod: the one of `configs/branches.yaml`, the other of 40-digit arithmetic."""

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from rodsweep.determinant.boundary import Boundary
+from rodsweep.determinant.certificate.winding_number import count_right_of
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
-from rodsweep.determinant.winding_number import count_right_of
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.boundaries import curves_through, seed_of
 from rodsweep.solve.changes.boundary_curves import trace

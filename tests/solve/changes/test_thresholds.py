@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from conftest import ROOT
 
+from rodsweep.determinant.certificate.winding_number import count_right_of
 from rodsweep.determinant.parameter_path import Path
-from rodsweep.determinant.winding_number import count_right_of
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes import along_path as transitions_module
 from rodsweep.solve.changes.along_path import transitions

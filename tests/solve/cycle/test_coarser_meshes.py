@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rodsweep.discretization.mesh import mesh
-from rodsweep.discretization.stress_form import StressForm
+from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.accuracy.calibration import SAFETY
 from rodsweep.solve.cycle.accuracy.coarser_meshes import CoarserMeshes

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from rods import rod_of
 
-from rodsweep.discretization.mesh import mesh
-from rodsweep.discretization.periodic import derivative, resampled
-from rodsweep.discretization.quadrature import lobatto_points
+from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.elements.periodic import derivative, resampled
+from rodsweep.discretization.elements.quadrature import lobatto_points
 from rodsweep.errors import EnvironmentLacks
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc

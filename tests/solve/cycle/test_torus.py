@@ -9,7 +9,7 @@ from scipy.integrate import LSODA
 from surveyed import survey_only
 
 from rodsweep.discretization.beam import Beam
-from rodsweep.discretization.mesh import mesh
+from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.transient import transient
 from rodsweep.solve.cycle.transient.returns import angle_weights

@@ -14,9 +14,9 @@ from test_paper import run, stated
 
 import rodsweep as rs
 from rodsweep.determinant.parameter_path import Path
-from rodsweep.discretization.mesh import mesh
-from rodsweep.discretization.mixed_form import mixed_form
-from rodsweep.discretization.stress_form import StressForm
+from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.straight.mixed_form import mixed_form
+from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.along_path import pair_crossings, transitions
@@ -32,7 +32,7 @@ from rodsweep.solve.hopf.normal_form import accurate_normal_form, normal_form
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point import Unsolvable
 from rodsweep.tasks.criticality import record
-from rodsweep.tasks.job import make_job
+from rodsweep.tasks.running.job import make_job
 
 INF = math.inf
 STRETCHABLE = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)

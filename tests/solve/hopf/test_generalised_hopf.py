@@ -14,14 +14,14 @@ import rodsweep as rs
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
-from rodsweep.post.figures.diagram_curves import parts_of_one_side
+from rodsweep.post.figures.stability.diagram_curves import parts_of_one_side
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.boundary_curves import trace
 from rodsweep.solve.hopf import bautin_curves, generalised
 from rodsweep.solve.hopf.bautin_curves import BautinCurvePoint, BautinEnd, BautinSpace, bautin_curve, lies_on
 from rodsweep.solve.hopf.generalised import curve_criticality
 from rodsweep.solve.point import Unsolvable
-from rodsweep.tasks.job import make_job
+from rodsweep.tasks.running.job import make_job
 
 K2, GAMMA3 = 1e4, 1e-4
 FOLD = 75.3972626336484526, 147.921519683199662, 770.860809443855688

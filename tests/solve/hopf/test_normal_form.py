@@ -12,7 +12,7 @@ from rods import rod_of
 
 from rodsweep.determinant.newton import eigenvalue_newton
 from rodsweep.determinant.value import newton_correction
-from rodsweep.discretization.mixed_form import mixed_form
+from rodsweep.discretization.straight.mixed_form import mixed_form
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.hopf.normal_form import accurate_normal_form, normal_form

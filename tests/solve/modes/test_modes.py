@@ -11,10 +11,10 @@ from rods import rod_of
 from scipy.linalg import expm
 
 from rodsweep.determinant.value import distance_to_next
-from rodsweep.discretization.basis import differentiation
-from rodsweep.discretization.pencil import assemble, shear_force, tip_scale
-from rodsweep.discretization.quadrature import gauss_lobatto, lobatto_points
-from rodsweep.discretization.resolution import Resolution
+from rodsweep.discretization.elements.basis import differentiation
+from rodsweep.discretization.elements.quadrature import gauss_lobatto, lobatto_points
+from rodsweep.discretization.elements.resolution import Resolution
+from rodsweep.discretization.straight.pencil import assemble, shear_force, tip_scale
 from rodsweep.model.rod import Rod
 from rodsweep.solve.modes import convergence as convergence_module
 from rodsweep.solve.modes import inverse_iteration as inverse_module

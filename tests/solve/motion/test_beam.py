@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from rodsweep.discretization.basis import differentiation
 from rodsweep.discretization.beam import Beam
-from rodsweep.discretization.mesh import configuration, mesh
-from rodsweep.discretization.quadrature import gauss_lobatto
+from rodsweep.discretization.elements.basis import differentiation
+from rodsweep.discretization.elements.mesh import configuration, mesh
+from rodsweep.discretization.elements.quadrature import gauss_lobatto
 from rodsweep.model.balance import ad
 from rodsweep.model.longitudinal import longitudinal_rates
 from rodsweep.model.rod import Rod

@@ -9,7 +9,7 @@ from rods import rod_of
 from scipy.integrate import solve_ivp
 
 from rodsweep.discretization.beam import Beam
-from rodsweep.discretization.mesh import mesh
+from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.errors import InputError
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.portrait import draw_portrait

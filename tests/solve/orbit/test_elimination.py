@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rodsweep.discretization.mesh import mesh
+from rodsweep.discretization.elements.mesh import mesh
 from rodsweep.discretization.plane import jacobian
-from rodsweep.discretization.stress_form import StressForm
+from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.parameters import NONLINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.orbit.matrix.elimination import eliminate

@@ -5,8 +5,8 @@ import pickle
 import numpy as np
 import pytest
 
-from rodsweep.discretization.mesh import mesh
-from rodsweep.discretization.stress_form import StressForm
+from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.orbit.orbit import Orbit
 from rodsweep.solve.orbit.orbit_mesh import mesh_of

@@ -6,8 +6,8 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from rodsweep.discretization.mesh import mesh
-from rodsweep.discretization.stress_form import StressForm
+from rodsweep.discretization.elements.mesh import mesh
+from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.bordered import BorderedMatrix, Scale
 from rodsweep.solve.orbit.matrix.linearisation import Linearisation

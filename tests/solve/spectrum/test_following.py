@@ -10,9 +10,9 @@ from followed_lines import Comparison, line, random_line
 from surveyed import RODS
 
 from rodsweep.determinant import moving_line
+from rodsweep.determinant.certificate.winding_number import count_right_of, stepped_change
 from rodsweep.determinant.moving_line import End, free_of_zeros, none_crosses
 from rodsweep.determinant.parameter_path import Path
-from rodsweep.determinant.winding_number import count_right_of, stepped_change
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.spectrum import stretch as stretch_of
 from rodsweep.solve.spectrum.prediction import extrapolated

@@ -6,8 +6,8 @@ import pytest
 from hard.exact import sensitivity
 from reference import determinant as reference
 
-from rodsweep.discretization.quadrature import lobatto_points
-from rodsweep.discretization.resolution import Resolution
+from rodsweep.discretization.elements.quadrature import lobatto_points
+from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.model.dispersion import most_amplified_wave
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from ....errors import EnvironmentLacks, InputError
 from ....results.file.view import View
-from ..fitting import fit
+from ..layout.fitting import fit
 from ..style import FIRST, SECOND
 from .portrait import clamp, force_arrow, frame, tip_path
 from .selection import SHAPES, Selection, StoredCycle, chosen_cycles

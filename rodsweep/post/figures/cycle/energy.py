@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 from ....results.file.view import View
 from ...summary.errors import power_error
 from ...summary.ranges import rounded
-from ..arm_quantities import TOGETHER
+from ..arm.quantities import TOGETHER
 from ..style import FIRST, SECOND, THIRD, legend_below
 from .selection import ENERGIES, StoredCycle, chosen_cycles, in_tex
 
@@ -55,7 +55,7 @@ def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
 
 def _budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
     """The three panels of a cycle."""
-    from ....discretization.periodic import derivative, resampled  # compiled code
+    from ....discretization.elements.periodic import derivative, resampled  # compiled code
 
     top, middle, bottom = column
     phase = np.linspace(0, 1, 401, dtype=np.float64)

@@ -18,7 +18,7 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from ....arrays import Array
-from ....config.arm_axes import MOVES
+from ....config.arm.axes import MOVES
 from ....results.file.view import View
 from ..style import (
     LABELS,
@@ -29,8 +29,8 @@ from ..style import (
     parameter_text,
     scale,
 )
-from .hopf_lines import hopf_lines
-from .hopf_marks import HOPF_SYMBOL
+from .amplitudes.hopf_lines import hopf_lines
+from .amplitudes.hopf_marks import HOPF_SYMBOL
 from .point_map import PointMap, cell_edges, point_map
 from .selection import CYCLE_WORDS, arms_told_apart, outcomes
 from .units import units_over

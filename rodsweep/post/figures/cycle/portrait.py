@@ -133,7 +133,7 @@ def _phase_bar(figure: Figure, panels: list[Axes], colours: ListedColormap, step
 
 def tip_path(axes: Axes, cycle: StoredCycle) -> None:
     """The closed path of the tip."""
-    from ....discretization.periodic import resampled  # compiled code, which few figures need
+    from ....discretization.elements.periodic import resampled  # compiled code, which few figures need
 
     phase = np.linspace(0, 1, 401, dtype=np.float64)
     axes.plot(*(resampled(v, phase) for v in cycle.tip), color="0.6", lw=0.8, ls=(0, (4, 2)), zorder=1)
@@ -187,7 +187,7 @@ def region(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[fl
 
 def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
     """x and y of the tip against time, and also in the paper's tau1 where there is one."""
-    from ....discretization.periodic import resampled  # compiled code, which few figures need
+    from ....discretization.elements.periodic import resampled  # compiled code, which few figures need
 
     time = np.linspace(0, end, 801, dtype=np.float64)
     for axes, values, colour in zip((upper, lower), cycle.tip, (FIRST, SECOND), strict=True):

@@ -14,7 +14,7 @@ from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import View
 from ...summary.ranges import rounded
-from ..arm_quantities import at_point, given_quantities, quantity_text, replaced
+from ..arm.quantities import at_point, given_quantities, quantity_text, replaced
 from ..style import heading, parameter_text
 from .units import NEEDED, PLAIN_UNITS, CycleUnits, units_of
 

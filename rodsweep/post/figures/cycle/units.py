@@ -11,7 +11,7 @@ from ....arrays import Array
 from ....model.units import compact, written_in
 from ....results.file.view import View
 from ...tables.rows import quantities_at_points
-from ..arm_quantities import TOGETHER
+from ..arm.quantities import TOGETHER
 
 LENGTHS = ("shape_x", "shape_y", "tip_x", "tip_y", "transient_x", "transient_y")
 LENGTHS_OF_CYCLES = ("tip_x_min", "tip_x_max", "tip_y_max")

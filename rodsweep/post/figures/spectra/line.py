@@ -10,11 +10,11 @@ from matplotlib.ticker import NullLocator, SymmetricalLogLocator
 
 from ....arrays import Array, Complex
 from ....results.file.view import View
-from ....sweep.lines import lines_over
+from ....sweep.points.lines import lines_over
 from ...hopf_points import Bracket, Located, StoredChanges
-from ..arm_quantities import TOGETHER
-from ..eigenvalues import spread
+from ..arm.quantities import TOGETHER
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, fixed_text, heading, legend_below, scale
+from .eigenvalues import spread
 
 FOLLOWED_ROOTS = {
     "rightmost": "the two rightmost roots",

@@ -5,7 +5,7 @@ from math import inf
 import numpy as np
 
 from ....arrays import Array
-from ....discretization.periodic import maxima, samples_of
+from ....discretization.elements.periodic import maxima, samples_of
 from ...orbit.measures import CyclePath
 from ...orbit.orbit import Orbit
 from ..arc import ArcPoint

@@ -11,7 +11,7 @@ from math import ceil, inf
 import numpy as np
 
 from ....arrays import Array
-from ....discretization.resolution import LARGEST_ORDER
+from ....discretization.elements.resolution import LARGEST_ORDER
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import (
     LEAST_INTERVALS,

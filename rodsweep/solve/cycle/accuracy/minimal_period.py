@@ -12,7 +12,7 @@ from math import gcd
 import numpy as np
 
 from ....arrays import Array
-from ....model.compilation import compiled
+from ....model.compiled.compilation import compiled
 from ...orbit.measures import CyclePath
 from ...orbit.orbit import Orbit, node_times
 

@@ -5,7 +5,7 @@ import numpy as np
 from ....arrays import Array
 from ....discretization.beam import Beam
 from ....discretization.plane import balance
-from ....discretization.stress_form import StressForm
+from ....discretization.stress.form import StressForm
 from ...motion.integrator import Trajectory
 from ...orbit.orbit import Orbit, node_times
 from ...orbit.symmetry import NONE, REFLECTION

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from ....discretization.resolution import Resolution, expected_wave_number, resolution_for
+from ....discretization.elements.resolution import Resolution, expected_wave_number, resolution_for
 from ....model.dispersion import most_amplified_wave
 from ....model.rod import Rod
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....discretization.beam import Beam
-from ....discretization.stress_form import StressForm
+from ....discretization.stress.form import StressForm
 from ....watch import Whereabouts, report
 from ...motion.integrator import RELAXATION_SHARE, Ending, Trajectory, integrator, relaxed
 from ...motion.leading_mode import leading_mode

@@ -17,7 +17,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....discretization.plane import jacobian
-from ....model.compilation import compiled_for_vectors
+from ....model.compiled.compilation import compiled_for_vectors
 from ...backend.products import square_product
 from ..semidiscrete import Semidiscrete
 from .inversion import PANEL, invert

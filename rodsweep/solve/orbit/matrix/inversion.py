@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from ....arrays import Array
-from ....model.compilation import compiled_for_vectors
+from ....model.compiled.compilation import compiled_for_vectors
 from ...backend.products import product
 
 PANEL = 12

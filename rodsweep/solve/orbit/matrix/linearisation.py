@@ -9,8 +9,8 @@ import numpy as np
 from ....arrays import Array, Complex
 from ....discretization.nodal_rod import NodalChange
 from ....discretization.state_layout import COMPONENTS, stress_place
-from ....discretization.stress_form import StressForm
-from ....model.compilation import compiled_for_vectors
+from ....discretization.stress.form import StressForm
+from ....model.compiled.compilation import compiled_for_vectors
 from ..orbit import Orbit
 from ..semidiscrete import Semidiscrete
 from .elimination import eliminate

@@ -8,7 +8,7 @@ and it does, however much the columns of A differ in size.
 import numpy as np
 
 from ....arrays import Array, Complex
-from ....model.compilation import compiled_for_vectors
+from ....model.compiled.compilation import compiled_for_vectors
 from ...backend.small_eigenvalues import eigenvalues
 
 NEGLIGIBLE = 1e-17

@@ -6,11 +6,11 @@ Its velocity there is that by the reaction, which converges twice as fast as the
 import numpy as np
 
 from ....arrays import Array
-from ....discretization.mesh import NodeMatrices
+from ....discretization.elements.mesh import NodeMatrices
 from ....discretization.nodal_rod import NodalChange, NodalRod
 from ....discretization.plane import balance, balance_change, jacobian
 from ....discretization.state_layout import BENDING, COMPONENTS, stress_place
-from ....model.compilation import compiled_for_vectors
+from ....model.compiled.compilation import compiled_for_vectors
 
 
 @compiled_for_vectors

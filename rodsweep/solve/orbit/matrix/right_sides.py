@@ -8,7 +8,7 @@ from ....arrays import Array
 from ....discretization.nodal_rod import NodalChange
 from ....discretization.plane import balance, balance_change, jacobian, velocity_balance
 from ....discretization.state_layout import stress_place, velocity_place
-from ....model.compilation import compiled_for_vectors
+from ....model.compiled.compilation import compiled_for_vectors
 from ..semidiscrete import Semidiscrete
 from .substitution import add_products
 

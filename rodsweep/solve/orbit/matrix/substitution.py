@@ -6,7 +6,7 @@ The first two stages of an interval are known by their inverses alone; the other
 import numpy as np
 
 from ....arrays import Array
-from ....model.compilation import compiled_for_vectors
+from ....model.compiled.compilation import compiled_for_vectors
 from ..semidiscrete import Semidiscrete
 from .workspace import Factors
 

@@ -1,0 +1,1 @@
+"""Answers of the Python interface: attributes, tables, pictures and printed text."""

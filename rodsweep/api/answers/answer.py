@@ -1,0 +1,189 @@
+"""What a task says of one rod: numbers and words by name, and lists that hold what was found."""
+
+import json
+from collections.abc import Sequence
+from enum import StrEnum
+from functools import cache
+from math import prod
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+import xarray as xr
+
+from ...post.tables import Tables
+from ...post.tables.columns import Column, column_of
+from ...post.tables.contents import POINTS
+from ...results.layouts import layout_of
+from ..dataset import view_of
+from .frames import frame_of, series_of
+from .printing import Printed, html_of, text_of
+
+EIGENVALUE = ("growth_rate", "frequency")
+"""Real and imaginary part of an eigenvalue."""
+
+
+class Answer:
+    """The variables of a task for one rod, and its lists.
+
+    A variable is an attribute: a number, a word, True or False, and None for a count that is not known; along
+    a list an array of as many items as were found. A list as a whole, such as `modes`, `crossings` or
+    `cycles`, is a pandas DataFrame with a row an item, numbered from 1. `data` is the xarray.Dataset, which
+    has room for a fixed number of items as the file has; `whole` has the rod's parameters as dimensions of
+    length 1, as the file of a sweep has.
+    """
+
+    def __init__(self, rod: str, whole: xr.Dataset, message: str):
+        self.rod, self.whole, self.message = rod, whole, message
+        self.config: dict[str, Any] = json.loads(whole.attrs["config_resolved"])
+        """The config that gives this answer, with all defaults."""
+        points = ("point",) if "point" in whole.dims else layout_of(self.config).parameters
+        self.data = whole.isel(dict.fromkeys(points, 0))
+        self._tables = Tables(view_of(whole, Path(rod)))
+
+    @property
+    def status(self) -> StrEnum:
+        """How the solve ended, as a word; the words that there are are the members of its class."""
+        flags = self.data["status"].attrs
+        values = [int(value) for value in np.atleast_1d(flags["flag_values"])]
+        words = str(flags["flag_meanings"]).split()
+        return _statuses(str(self.data.attrs["task"]), tuple(words))(
+            words[values.index(int(self.data["status"]))]
+        )
+
+    @property
+    def sentence(self) -> str:
+        """What the status means."""
+        lines = str(self.data.attrs["status_sentences"]).splitlines()
+        return dict(line.split(": ", 1) for line in lines).get(self.status, "")
+
+    @property
+    def units(self) -> dict[str, str]:
+        """The unit of every variable, by name."""
+        return {str(name): array.attrs["units"] for name, array in self.data.data_vars.items()}
+
+    @property
+    def meanings(self) -> dict[str, str]:
+        """What every variable is, by name."""
+        return {str(name): array.attrs["long_name"] for name, array in self.data.data_vars.items()}
+
+    @property
+    def lists(self) -> tuple[str, ...]:
+        """The names of the lists, each an attribute."""
+        return self._tables.contents.tables[1:]
+
+    def __getattr__(self, name: str) -> Any:
+        tables: Tables | None = self.__dict__.get("_tables")
+        if tables is None or name.startswith("__"):
+            raise AttributeError(name)
+        if name in self.lists:
+            columns = tables.items(name)
+            return frame_of(columns, columns[0].name if len(tables.contents.dimensions(name)) == 1 else None)
+        for variable in tables.contents.of_points:
+            if variable.name == name:
+                return _scalar(column_of(variable, np.ravel(self.whole[name].values)))
+        for each, variables in tables.contents.lists.items():
+            if name in (*(v.name for v in variables), *tables.contents.dimensions(each)):
+                return self._along(each, name)
+        if name == "eigenvalues" and EIGENVALUE[0] in self.data:
+            return self.growth_rate + 1j * self.frequency
+        if name in self.data.variables:  # a coordinate, or a number of the whole file
+            values = self.data[name].values
+            return values if values.ndim else values.item()
+        raise AttributeError(f"this answer has no {name!r}; it has {', '.join(self._names())}")
+
+    def _along(self, table: str, name: str) -> np.ndarray:
+        """A variable or a coordinate of a list: an array with the list's dimensions, as long as it is."""
+        dimensions = self._tables.contents.dimensions(table)
+        (column,) = (column for column in self._tables.items(table) if column.name == name)
+        if name in dimensions[1:]:
+            return np.asarray(self.data[name].values)
+        values = np.asarray(series_of(column) if not _lacks_counts(column) else _with_nan(column))
+        inner = [self.data.sizes[each] for each in dimensions[1:]]
+        return values[:: prod(inner)] if name == dimensions[0] else values.reshape(-1, *inner)
+
+    def _names(self) -> list[str]:
+        """What can be asked for: variables and lists."""
+        extra = ["eigenvalues"] if EIGENVALUE[0] in self.data else []
+        return [*map(str, self.data.data_vars), *self.lists, *extra]
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *map(str, self.data.variables), *self._names()})
+
+    def __repr__(self) -> str:
+        return text_of(self._printed())
+
+    def _repr_html_(self) -> str:
+        return html_of(self._printed())
+
+    def _printed(self) -> Printed:
+        tables = self._tables
+        own = [c for c in tables.table(POINTS).columns if c.name not in NOT_PRINTED and not c.given]
+        own.sort(key=_is_dimensionless)
+        lists = {name: _units_first(tables.items(name)) for name in self.lists}
+        if int(self.data["status"]) != 0:  # another answer than the one hoped for, as a rod at rest
+            lists = {name: columns for name, columns in lists.items() if len(columns[0].values)}
+        totals = {name: int(self.data[count]) for name, count in TOTALS.items() if count in self.data}
+        totals |= {"modes": self.data.sizes["mode"]} if "mode" in self.data.sizes else {}
+        return Printed(
+            heading=f"{self.rod}, {self.data.attrs['task']}: {self.status}",
+            told="; ".join(filter(None, (self.sentence, self.message))),
+            numbers=tuple(c for c in own if not c.absent[0]),
+            absent=tuple(c.name for c in own if c.absent[0]) if int(self.data["status"]) == 0 else (),
+            totals=totals,
+            lists={name: columns for name, columns in lists.items() if name in IN_FULL},
+            named={name: rows for name, columns in lists.items() if (rows := _rows_beyond(name, columns))},
+        )
+
+
+NOT_PRINTED = ("status", "seconds")
+"""Variables without a row: the status is in the heading, the time is of no rod but of a machine."""
+SI_UNITS = ("Pa", "N", "Hz", "s", "1/s", "m", "J", "W")
+"""Units of what is stored of an arm beside the units of the rod."""
+TOTALS = {"crossings": "crossing_count", "special_points": "special_count", "cycles": "point_count"}
+"""Variables that count all items of a list, stored or not."""
+IN_FULL = ("modes", "crossings", "special_points", "harmonics", "multipliers")
+"""Lists that are printed, all that was found of them; of the others the number of rows is."""
+
+
+@cache
+def _statuses(task: str, words: tuple[str, ...]) -> type[StrEnum]:
+    """The statuses of a task as words."""
+    made: Any = StrEnum  # of members that only the result knows
+    found = made("Status", {word: word for word in words})
+    found.__name__ = "".join(part.title() for part in task.split("_")) + "Status"
+    return cast(type[StrEnum], found)
+
+
+def _rows_beyond(name: str, columns: Sequence[Column]) -> int:
+    """How many rows a list has that is not printed."""
+    return 0 if name in IN_FULL else len(columns[0].values)
+
+
+def _is_dimensionless(column: Column) -> bool:
+    """Whether a column is in units of the rod; of an arm what is in SI units comes first."""
+    return column.unit not in SI_UNITS
+
+
+def _units_first(columns: Sequence[Column]) -> tuple[Column, ...]:
+    """The number of the items, what is in SI units, and the others, each in their order."""
+    first, *others = columns
+    return (first, *sorted(others, key=_is_dimensionless))
+
+
+def _scalar(column: Column) -> float | int | bool | str | None:
+    """The only value of a column; None for a word or a count where there is none, NaN for a real number."""
+    if column.absent[0] and column.values.dtype.kind != "f":
+        return None
+    value = series_of(column)[0]
+    return value if value is None or isinstance(value, str) else value.item()
+
+
+def _lacks_counts(column: Column) -> bool:
+    """Whether some items of a column have no count, and are no words."""
+    return column.values.dtype.kind in "iu" and bool(column.absent.any()) and not column.words
+
+
+def _with_nan(column: Column) -> np.ndarray:
+    """Counts as real numbers, NaN where one is not known."""
+    return np.where(column.absent, np.nan, column.values)

@@ -1,0 +1,122 @@
+"""`rs.plot`: the figures of `rodsweep plot`, shown in a notebook or written into a file."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from types import MappingProxyType
+from typing import Any, Literal, TypedDict, Unpack
+
+import xarray as xr
+
+from ...config.document.arguments import in_sentences, unknown
+from ...config.values import short
+from ...errors import InputError
+from ...post.figures import draw
+from ...post.figures.request import KINDS, ROOTS, Drawing, Look
+from ...post.figures.sections import choices_of, section
+from ...results.file.view import View
+from ...solve.exclusive import one_at_a_time
+from ...tasks.cycle_shapes import with_shapes
+from ..dataset import file_path
+from .answer import Answer
+from .tabling import view_for
+
+EXAMPLE = 'rs.plot(data, "figure.pdf", width="single")'
+Drawable = xr.Dataset | Answer | str | Path
+
+
+class Looks(TypedDict, total=False):
+    """How a figure looks, as the options of `rodsweep plot` say."""
+
+    title: bool
+    width: str | None
+    style: str | None
+
+
+def _refuse_other_than(**choices: tuple[str | None, Iterable[str]]) -> None:
+    """InputError for the first choice, by name, that is given and none of those that there are."""
+    for name, (given, known) in choices.items():
+        if given is not None and given not in known:
+            raise InputError(f"{name} = {given!r} is not allowed; choose {', '.join(known)}")
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A figure, which a notebook shows; `save` draws it into a file of any format that `plot` knows.
+
+    `figure()` gives it to matplotlib, for own data in its panels.
+    """
+
+    views: Sequence[View] = field(repr=False)
+    choices: dict[str, Any]
+    shown: str
+    """What the figure shows, in a sentence."""
+    image: bytes = field(repr=False)
+    """The PNG, or the GIF of an animation."""
+
+    @one_at_a_time
+    def save(self, path: str | Path) -> str:
+        """Draws the figure into a file (.png, .pdf, .svg); returns a sentence about it."""
+        return draw(self.views, Path(path), **self.choices)
+
+    @one_at_a_time
+    def figure(self) -> Drawing:
+        """The figure as a new `matplotlib.figure.Figure`, whose `axes` are the panels row by row.
+
+        Raises InputError for an animation.
+        """
+        drawn: list[Drawing] = []
+        name = Path("figure.gif" if self.is_film else "figure.png")
+        draw(self.views, name, keep=drawn.append, **self.choices)
+        return drawn[0]
+
+    @property
+    def is_film(self) -> bool:
+        """Whether it is an animation."""
+        return not self.image.startswith(b"\x89PNG")
+
+    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:
+        kind = "gif" if self.is_film else "png"
+        return {f"image/{kind}": self.image, "text/plain": self.shown}
+
+
+@one_at_a_time
+@in_sentences(EXAMPLE)
+def plot(
+    data: Drawable | Sequence[Drawable],
+    output: str | Path | None = None,
+    *,
+    roots: Literal["rightmost", "smallest", "all"] | None = None,
+    what: str | None = None,
+    points: Sequence[int] | int = (),
+    at: Mapping[str, float | str] = MappingProxyType({}),
+    **look: Unpack[Looks],
+) -> Picture:
+    """The figure that suits the task of `data`: a Dataset, an Answer, a file, or several of limit cycles
+    or of lines of spectra.
+
+    output: a file to write too. The choices are the options of `rodsweep plot`. Raises InputError where there
+    is nothing that a figure could show.
+    """
+    for name in look:
+        if name not in Looks.__annotations__:
+            raise unknown(name, ["output", "roots", "what", "points", "at", *Looks.__annotations__])
+    _refuse_other_than(roots=(roots, ROOTS), what=(what, KINDS))
+    points = [points] if isinstance(points, int) else points
+    if not isinstance(points, Sequence) or not all(isinstance(point, int) for point in points):
+        raise InputError(f"points = {short(points)} is not allowed; give whole numbers, from 1")
+    several = [data] if isinstance(data, Drawable) else list(data) if isinstance(data, Sequence) else []
+    if not several:
+        raise InputError("there is nothing to draw; give a Dataset, an answer or a file")
+    values = choices_of(at)
+    views = [section(view_for(one, EXAMPLE), values) for one in several]
+    choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(points)}
+    choices |= {"look": Look(**look), "shapes": with_shapes}
+    with TemporaryDirectory(prefix="rodsweep-") as place:
+        path = Path(place, "figure.gif" if what == "animation" else "figure.png")
+        shown = draw(views, path, **choices).partition(": ")[2]
+        picture = Picture(views, choices, shown, path.read_bytes())
+    if output is not None:
+        picture.save(file_path(output, EXAMPLE))
+    return picture

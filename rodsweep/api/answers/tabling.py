@@ -1,0 +1,49 @@
+"""`rs.table`: a table of a result as a pandas DataFrame, what `rodsweep export` writes as CSV."""
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import xarray as xr
+
+from ...config.document.arguments import in_sentences
+from ...config.values import short
+from ...errors import InputError
+from ...post.tables import Tables
+from ...results.file.view import View, read_view
+from ...solve.exclusive import one_at_a_time
+from ..dataset import file_path, view_of
+from .answer import Answer
+from .frames import frame_of
+
+EXAMPLE = 'rs.table(data, "crossings")'
+Result = xr.Dataset | Answer | str | Path
+
+
+@one_at_a_time
+@in_sentences(EXAMPLE)
+def table(data: Result, name: str | None = None, *, columns: Sequence[str] = ()) -> pd.DataFrame:
+    """A table of a result with a row an item: each with its parameters, words for what a file has as numbers.
+
+    name: `points`, or a list of the task such as `modes`, `crossings` or `branches`; by default the one with
+    the columns, or the first of the task. columns: by default all. `frame.attrs` has units and meanings.
+    Raises InputError for a name that there is not.
+    """
+    if name is not None and not isinstance(name, str):
+        raise InputError(f"name = {short(name)} is not the name of a table; write it as in {EXAMPLE}")
+    names = [columns] if isinstance(columns, str) else columns
+    if not isinstance(names, list | tuple) or not all(isinstance(each, str) for each in names):
+        raise InputError(f"columns = {short(columns)} is not a list of names, such as ['F', 'growth_rate']")
+    return frame_of(Tables(view_for(data, EXAMPLE)).table(name, tuple(names)).columns)
+
+
+def view_for(data: Any, example: str) -> View:
+    """A result as figures and tables see it; InputError, with an example, where it is none."""
+    if isinstance(data, str | os.PathLike):
+        return read_view(file_path(data, example))
+    if not isinstance(data, Answer | xr.Dataset):
+        raise InputError(f"{short(data)} is no result; give a Dataset, an answer or a file, as in {example}")
+    whole = data.whole if isinstance(data, Answer) else data
+    return view_of(whole, Path(str(whole.attrs.get("title", "data"))))

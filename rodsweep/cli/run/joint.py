@@ -1,0 +1,109 @@
+"""What only all points together give, as the curves of a phase diagram: in units, by all ranks of a run."""
+
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ...results.file.view import read_view
+from ...results.layouts.variables import Filled
+from ...results.run.checkpoints import UnitResults
+from ...results.run.journal import journal_directory
+from ...solve.backend.kept import forget_all
+from ...sweep.handout import Handout
+from ...sweep.listener import NoClaims, RankListener
+from ...sweep.loop import Indices, Loop, Share, sweep
+from ...sweep.pool import Pool
+from ...sweep.progress import Silent, Teller
+from ...sweep.stop import StopRequest
+from ...sweep.team import Team
+from ...tasks.protocol import AllPoints, Arrays
+from ...tasks.running.unforeseen import PASSING, UnitNote
+from ...watch import Stopped, heard_by
+
+NOUN = "halves of curves"
+"""What units are called; a curve is followed from one of its points in two halves."""
+
+
+@dataclass(frozen=True, slots=True)
+class JointDue:
+    """What all points together are to give: whether the file lacks it, and its units, if it has some."""
+
+    due: bool
+    units: Any = None
+
+
+class JointWork:
+    """The units of a run on this rank, and their results on the first."""
+
+    def __init__(
+        self,
+        team: Team,
+        together: AllPoints,
+        output: Path,
+        fingerprint: str,
+        note: UnitNote,
+        stop: StopRequest,
+    ):
+        """note: what is done about an exception that no solver foresees, in whose unit no curve is found."""
+        self.team, self.together, self.output = team, together, output
+        self.note, self.stop = note, stop
+        self.kept = UnitResults(journal_directory(output), fingerprint)
+        self.results: dict[int, Arrays] = {}
+        """On the first rank, those of all units that are done."""
+
+    def solve(self, units: Any, prepare: Callable[[], object], title: str | None) -> Share:
+        """Solves what is wanted of the units, on all ranks. title: of the progress; None shows none."""
+        found: dict[int, Arrays] = {}
+
+        def keep(unit: Indices, result: Arrays) -> None:
+            self.kept.write(int(unit), result)
+            found[int(unit)] = result
+
+        def taken() -> dict[int, Arrays]:
+            new = found.copy()
+            found.clear()
+            return new
+
+        todo = Handout([], self.team.size)
+        if self.team.first:
+            self.results = self.kept.read()
+            todo = Pool(units, self.results, self.team.size)
+        self._exchange_starts(units)
+        shown = Teller(None, f"{title}, curves", NOUN) if self.team.first and title else Silent()
+        loop = Loop(
+            solve=lambda unit: self._solved(units, unit),
+            keep=keep,
+            prepare=prepare,
+            results=taken,
+            name=units.where,
+        )
+        try:
+            return sweep(self.team, todo, loop, shown, self.stop)
+        finally:
+            shown.close()
+
+    def _exchange_starts(self, units: Any) -> None:
+        """Gives every rank what any has kept of where the first units start: none computes it anew."""
+        wanted = self.team.on_first(lambda: units.wanted(self.results))
+        for starts in self.team.exchange(self.together.starts(units, wanted)):
+            self.together.take(starts)
+
+    def _solved(self, units: Any, unit: int) -> Iterable[tuple[int, Arrays]]:
+        try:
+            yield unit, self.together.solve(units, unit)
+        except PASSING:
+            raise
+        except Exception as error:
+            forget_all()
+            self.note(units.where(unit), error)
+            yield unit, self.together.nothing()
+
+    def variables(self, units: Any) -> Sequence[Filled] | None:
+        """The variables of the file, on the first rank; None where a stop came before all was done."""
+        if units is not None and units.wanted(self.results):
+            return None
+        with suppress(Stopped), heard_by(RankListener(NoClaims(), self.stop)):
+            return self.together.variables(read_view(self.output), units, self.results)
+        return None

@@ -1,0 +1,99 @@
+"""The command as `rodsweep bench sweep` starts it: it notes each rank's memory, and can do without solving.
+
+    python -m rodsweep.cli.run.measured DIRECTORY KIND WORDS...
+
+runs `rodsweep WORDS...`. DIRECTORY and KIND are what `rodsweep.bench.sweep.launch` says.
+"""
+
+import os
+import resource
+import signal
+import sys
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from ...bench.sweep.launch import FIRST_RANK, KILLED, OTHER_RANKS, SOLVED
+from ...tasks import TASKS
+from ...tasks.protocol import Solver
+from ...tasks.spectrum import SpectrumTask
+from .. import main
+from ..launchers import speaks
+
+OUTCOMES = 4096
+"""That the points take in turn: more than any compression looks back."""
+
+
+@dataclass(frozen=True, slots=True)
+class InstantSpectra(SpectrumTask):
+    """The task spectrum with random outcomes from a table, so that all time is the sweep's own.
+
+    killed: where the rank that gets the last point notes its memory before it is killed there.
+    """
+
+    killed: Path | None = None
+
+    def solver(self) -> Solver:
+        from ...solve.spectrum.search import Spectrum
+        from ...solve.spectrum.status import SpectrumStatus
+
+        points, modes = self.points, self.config.spectrum.modes
+        parts = np.random.default_rng(1).standard_normal((OUTCOMES, 3, modes))
+        outcomes = [
+            Spectrum(
+                status=SpectrumStatus.ok,
+                eigenvalues=100 * (a + 1j * b),
+                error_estimate=1e-12 * c,
+                unstable_count=1,
+                certified=True,
+                elements=1,
+                order=20,
+                seconds=1e-7,
+            )
+            for a, b, c in parts
+        ]
+
+        def solve(index: int) -> Spectrum:
+            points.rod(index)
+            if self.killed and index == points.count - 1:
+                note_memory(self.killed)
+                os.kill(os.getpid(), signal.SIGKILL)
+            return outcomes[index % OUTCOMES]
+
+        return replace(SpectrumTask.solver(self), warm_up=lambda: None, solve=solve, stretched=None)
+
+
+def note_memory(directory: Path) -> None:
+    """Leaves this rank's peak memory so far."""
+    (directory / f"{FIRST_RANK if speaks() else OTHER_RANKS}-{os.getpid()}").write_text(str(peak_memory()))
+
+
+def peak_memory() -> int:
+    """Bytes that this process has held at most.
+
+    What getrusage says would also count what the process that started this one held: it outlives exec.
+    """
+    try:
+        lines = Path("/proc/self/status").read_text().splitlines()
+        return next(1024 * int(line.split()[1]) for line in lines if line.startswith("VmHWM:"))
+    except (OSError, StopIteration):
+        return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+
+def run_measured() -> None:
+    """Runs the command that the arguments ask for."""
+    directory, kind, *words = sys.argv[1:]
+    notes = Path(directory)
+    if kind != SOLVED:
+        TASKS["spectrum"] = partial(InstantSpectra, killed=notes if kind == KILLED else None)
+    sys.argv = ["rodsweep", *words]
+    try:
+        main()
+    finally:
+        note_memory(notes)
+
+
+if __name__ == "__main__":
+    run_measured()

@@ -1,0 +1,21 @@
+"""What the user asks of a run beside the config."""
+
+from dataclasses import dataclass
+
+from ...sweep.points.shards import Shard
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunOptions:
+    """The options of `rodsweep run`."""
+
+    overrides: tuple[str, ...] = ()
+    fresh: bool = False
+    """Whether an existing file is replaced."""
+    extend: bool = False
+    """Whether an existing file of a smaller config is extended."""
+    shard: Shard
+    strict: bool = False
+    """Whether the run ends at the first exception that is a bug."""
+    quiet: bool = False
+    """Whether only what is amiss is told."""

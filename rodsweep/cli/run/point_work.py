@@ -1,0 +1,107 @@
+"""The points of a run that a rank solves: which units they make, and how results reach its journal."""
+
+import socket
+from collections.abc import Callable, Iterable
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...errors import EnvironmentLacks
+from ...results.file.creation import Plan
+from ...results.run.checkpoints import Checkpoints
+from ...results.run.journal import Journal, journal_directory, kept_sentence
+from ...sweep.handout import Handout
+from ...sweep.loop import Indices, Loop, sweep
+from ...sweep.points.chains import ChainSolver
+from ...sweep.points.ranges import IndexRange, IndexSet, total
+from ...sweep.points.shards import Shard
+from ...sweep.points.stretches import StretchSolver, Together
+from ...sweep.progress import Silent, Teller
+from ...sweep.stop import StopRequest
+from ...sweep.team import Team
+from ...tasks.protocol import Solver
+from ...tasks.running.job import Job
+from .contribution import FAILURES_TOLD, Contribution, failures_of
+
+
+@dataclass(frozen=True, kw_only=True)
+class PointWork:
+    """The points of a job that are solved for a shard of a plan, into the journal beside `output`."""
+
+    team: Team
+    job: Job
+    solver: Solver
+    plan: Plan
+    shard: Shard
+    output: Path
+    stop: StopRequest
+    quiet: bool
+    """Whether no progress is shown."""
+    where: Callable[[int], str]
+    """The parameters of a point, in words."""
+
+    def units(self, missing: list[IndexRange]) -> tuple[list[IndexRange], int]:
+        """(the units of this shard that miss a point, the points that they miss)."""
+        if self.solver.stretched is not None:
+            stretches = self.solver.stretched[0]
+            units = self.shard.part(stretches.todo(missing), stretches.count)
+            return units, stretches.missing_in(units, missing)
+        if self.solver.chained is None:
+            units = self.shard.part(missing, self.job.points.count)
+            return units, total(units)
+        lacks, chains = IndexSet(missing), self.solver.chained.chains
+        units = self.shard.part(chains.todo(lacks), chains.count)
+        each = (lacks[chains.indices(chain)].sum() for unit in units for chain in range(*unit))
+        return units, int(sum(each))
+
+    def solve(
+        self, units: list[IndexRange], missing: list[IndexRange], count: int, prepare: Callable[[], object]
+    ) -> Contribution:
+        """Solves this rank's share of the units, into its journal."""
+        failures: list[str] = []
+        solver, plan = self.solver, self.plan
+
+        def keep(index: Indices, result: Any) -> None:
+            if isinstance(result, Together):
+                journal.append_all(np.asarray(index), result.values)
+            else:
+                journal.append(int(index), solver.record(int(index), result))
+            if len(failures) < FAILURES_TOLD:
+                failures.extend(failures_of(index, result, self.where))
+
+        shown = Teller(count, self.job.name) if self.team.first and not self.quiet else Silent()
+        directory = journal_directory(self.output)
+        try:
+            with closing(Journal(directory, self.team.rank, plan.layout, plan.fingerprint)) as journal:
+                solve = self._solve_unit(IndexSet(missing), directory)
+                loop = Loop(solve=solve, keep=keep, prepare=prepare, name=self._unit_name)
+                share = sweep(self.team, Handout(units, self.team.size), loop, shown, self.stop)
+        except OSError as error:
+            raise EnvironmentLacks(
+                f"cannot write beside {self.output}: {error.strerror or error}"
+                f"{kept_sentence(directory, plan.fingerprint)}: make room and run again"
+            ) from error
+        finally:
+            shown.close()
+        return Contribution(host=socket.gethostname(), failures=failures, share=share)
+
+    def _solve_unit(
+        self, missing: IndexSet, directory: Path
+    ) -> Callable[[int], Iterable[tuple[Indices, Any]]]:
+        """How a unit is solved: a point, a chain or a stretch."""
+        solver = self.solver
+        if solver.stretched:
+            return StretchSolver(*solver.stretched, missing)
+        if solver.chained:
+            kept = Checkpoints(directory, self.plan.fingerprint, solver.chained.state_of)
+            return ChainSolver(solver.chained, missing, kept, self.stop)
+        return lambda index: ((index, solver.solve(index)),)
+
+    def _unit_name(self, unit: int) -> str:
+        """Which point or chain a unit is."""
+        if self.solver.chained:
+            return f"chain {unit + 1} of {self.solver.chained.chains.count}"
+        return f"point {unit + 1} of {self.job.points.count}"

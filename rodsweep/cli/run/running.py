@@ -1,0 +1,245 @@
+"""`rodsweep run`, read aloud: read the config, open the file, solve what is missing, fold it in."""
+
+import time
+from collections.abc import Mapping, Sequence
+from functools import cache
+from pathlib import Path
+
+import click
+
+from ...results.file import provenance
+from ...results.file.store import Store
+from ...results.file.view import read_view
+from ...solve.backend.availability import require_directory, require_solvers
+from ...sweep.loop import Share
+from ...sweep.points.ranges import IndexRange, total
+from ...sweep.stop import StopRequest
+from ...sweep.team import Team
+from ...tasks.running.job import Job, make_job
+from ...tasks.running.plan import plan_of
+from ...tasks.running.unforeseen import Log, guarded
+from ...wording import counted
+from ..beforehand import planned_beforehand
+from .closing import RunEnd
+from .contribution import FAILURES_TOLD, Contribution, history_of, of_the_last_run
+from .joint import JointDue, JointWork
+from .options import RunOptions
+from .point_work import PointWork
+
+CONTINUE = 75
+"""Exit status of a run that was asked to stop: the same command continues it (EX_TEMPFAIL of sysexits.h)."""
+
+
+def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest) -> int:
+    """Runs a config, or a shard of it, on all ranks; returns the exit status."""
+    require_directory()
+    team = Team()
+    with team.together():
+        job = team.on_first(lambda: make_job(path, options.overrides))
+        team.all_can(require_solvers)
+        return _Run(team, job, output, options, stop).run()
+
+
+class _Run:
+    """One run of a job on this rank."""
+
+    store: Store
+    """On the first rank, once it is open."""
+
+    def __init__(self, team: Team, job: Job, output: Path, options: RunOptions, stop: StopRequest):
+        from ...solve.backend.blas_kernel import blas
+
+        self.team, self.job, self.output, self.stop = team, job, output, stop
+        self.options, self.shard = options, options.shard
+        self.began, self.started, self.seconds = time.monotonic(), provenance.now(), 0.0
+        self.log = Log(output, team.rank, self._where)
+        self.solver = guarded(job.solver(), job.layout, self._note)
+        self.kernels = provenance.united_kernels(team.gather(blas()) or [])
+        self.plan = plan_of(job, self.solver, self.shard, self.kernels)
+        self.prepare = cache(self.solver.warm_up)
+        self.work = PointWork(
+            team=team,
+            job=job,
+            solver=self.solver,
+            plan=self.plan,
+            shard=self.shard,
+            output=output,
+            stop=stop,
+            quiet=options.quiet,
+            where=self._where,
+        )
+        together = self.solver.together
+        self.joint = together and JointWork(
+            team, together, output, self.plan.fingerprint, self._note_unit, stop
+        )
+
+    def run(self) -> int:
+        """Solves what is missing and folds it into the file; returns the exit status."""
+        if self.team.on_first(self._creates):
+            plan = planned_beforehand(self.plan, self.job.task, self.team, self.stop)
+            if plan is None:
+                names = self.team.exchange(self.stop.name)
+                return self.team.on_first(lambda: self._stopped_beforehand(max(names)))
+            self.plan = plan
+        missing = self.team.on_first(self._open)
+        units, count = self.work.units(missing)
+        if self.team.first:
+            points, shard = self.job.points.count, f"; shard {self.shard}" if self.shard.of > 1 else ""
+            kept = f", {points - total(missing)} kept" if points > total(missing) else ""
+            if self.joint and self._lacks_curves(total(missing) - count):
+                kept += ", then curves through all"
+            self._say(f"{self.output}: {count} of {counted(points, 'point')} to do{kept}{shard}")
+        contributions: list[Contribution] = []
+        if count:
+            self.team.on_first(self._note_kernels)
+            contributions = self.team.gather(self.work.solve(units, missing, count, self.prepare)) or []
+        joint = self.team.on_first(lambda: self._fold(count, contributions))
+        shares: list[Share] = []
+        if self.joint and joint.units is not None:
+            title = None if self.options.quiet else self.job.name
+            shares = self.team.gather(self.joint.solve(joint.units, self.prepare, title)) or []
+        exceptions = sum(self.team.gather(self.log.count) or [])
+        return self.team.on_first(lambda: self._finish(count, contributions, joint, shares, exceptions))
+
+    def _creates(self) -> bool:
+        """Whether a file is to be created, as far as can be seen before it is opened."""
+        return self.options.fresh or self.options.extend or not self.output.exists()
+
+    @staticmethod
+    def _stopped_beforehand(signal: str) -> int:
+        """Says that a stop came before the file was created; returns the exit status."""
+        click.echo(f"stopped by {signal}; no point is computed yet, the same command begins again")
+        return CONTINUE
+
+    def _lacks_curves(self, missing: int) -> bool:
+        """Whether the file is not finished although no point is missing; on the first rank."""
+        return not missing and "finished" not in self.store.attributes()
+
+    def _fold(self, count: int, contributions: list[Contribution]) -> JointDue:
+        """Folds the points into the file; returns what all points together are still to give."""
+        self.seconds = time.monotonic() - self.began
+        if count:
+            history = history_of(contributions, self.team.MPI.Get_library_version())
+            started = {"started": self.started, "stopped": self.stop.name}
+            self.store.fold(of_the_last_run(self.plan) | history | started)
+        if not self._lacks_curves(total(self.store.missing())):
+            return JointDue(False)
+        if not self.joint:
+            return JointDue(True)
+        if not count:
+            self._note_kernels()
+        return JointDue(True, self.joint.together.units(read_view(self.output)))
+
+    def _say(self, text: str, amiss: bool = False) -> None:
+        """Tells the user, who may want to hear only what is amiss."""
+        if amiss or not self.options.quiet:
+            click.echo(text)
+
+    def _note(self, indices: Sequence[int], error: Exception) -> None:
+        """Writes an unforeseen exception into the log; raises it where the run is to end."""
+        self.log(indices, error)
+        if self.options.strict:
+            error.add_note(f"at {self._where(indices[0])}")
+            raise error
+
+    def _note_unit(self, place: str, error: Exception) -> None:
+        """The same of what is no point."""
+        self.log.note(place, error)
+        if self.options.strict:
+            error.add_note(f"at {place}")
+            raise error
+
+    def _open(self) -> list[IndexRange]:
+        """Opens the file; returns the points that it misses."""
+        self.store = Store(self.output, self.plan, self.options.fresh, self.options.extend)
+        if self.joint and (self.options.fresh or not self._lacks_curves(0)):
+            self.joint.kept.drop()
+        self._tell_notes()
+        return self.store.missing()
+
+    def _tell_notes(self) -> None:
+        """Tells what the store has to say of points and journals that are not where they were."""
+        for note in self.store.notes:
+            self._say(f"{self.output}: {note}", amiss=True)
+        self.store.notes.clear()
+
+    def _note_kernels(self) -> None:
+        """Keeps in the file which BLAS kernels compute its points, and says so where there are several."""
+        before = self.store.attributes()
+        kernels = provenance.united_kernels(provenance.kernels_of(before), self.kernels.splitlines())
+        if kernels != before.get(provenance.KERNELS):
+            self.store.fold({provenance.KERNELS: kernels})
+        if sentence := provenance.kernels_sentence(kernels):
+            click.echo(f"{self.output}: {sentence}")
+
+    def _where(self, index: int) -> str:
+        values = self.job.points.values(index)
+        return ", ".join(f"{name}={value!r}" for name, value in values.items())
+
+    def _finish_file(self, joint: JointDue) -> bool:
+        """Puts what all points together give into the file; whether that is still missing."""
+        if not joint.due:
+            return False
+        variables = self.joint.variables(joint.units) if self.joint else ()
+        if variables is None:
+            self.store.fold({"stopped": self.stop.name})
+            return True
+        self.store.finish({"finished": provenance.now(), "stopped": self.stop.name}, variables)
+        if self.joint:
+            self.joint.kept.drop()
+        return False
+
+    def _say_failures(self, contributions: list[Contribution], exceptions: int) -> None:
+        """Says which points failed, the first of them, and where tracebacks are."""
+        told = [failure for contribution in contributions for failure in contribution.failures]
+        for failure in told[:FAILURES_TOLD]:
+            click.echo(f"  {failure}")
+        if exceptions:
+            raised = counted(exceptions, "unforeseen exception")
+            click.echo(f"  {raised}: a bug, please report it with {self.log.path}, which has the traceback")
+
+    def _outcomes(self, counts: Mapping[str, int], left: int) -> str:
+        """How many points have each status, in words; left: those of this run that are not done."""
+        words = {"missing": "of other shards"} if self.shard and not left else {}
+        return ", ".join(f"{n} {words.get(name, name)}" for name, n in counts.items())
+
+    def _finish(
+        self,
+        count: int,
+        contributions: list[Contribution],
+        joint: JointDue,
+        shares: list[Share],
+        exceptions: int,
+    ) -> int:
+        """Finishes the file, says how the run ended, and with which status it exits."""
+        lacks_curves = self._finish_file(joint)
+        missing = self.store.missing()
+        self._tell_notes()
+        counts = self.store.status_counts()
+        self.store.close()
+        left = self.work.units(missing)[1]
+        part = f"shard {self.shard} of {self.output}" if missing else f"{self.output}"
+        ending = RunEnd(
+            ranks=self.team.size,
+            asked=count,
+            left=left,
+            kept=self.job.points.count - total(missing),
+            seconds=self.seconds,
+            curve_seconds=time.monotonic() - self.began - self.seconds,
+            in_the_middle=sum(contribution.share.ended for contribution in contributions),
+            followed=sum(share.points for share in shares) if joint.due and self.joint else None,
+            halves=len(self.joint.results) if self.joint and lacks_curves else None,
+        )
+        for sentence in ending.times() or [f"{part} is complete, nothing to do"]:
+            self._say(sentence)
+        expected = {status.name for status in self.solver.statuses if status.succeeded} | {"missing"}
+        amiss = not set(counts) <= expected
+        self._say(f"{self.output}: {self._outcomes(counts, left)}", amiss)
+        self._say_failures(contributions, exceptions)
+        if left or lacks_curves:
+            how = f"stopped by {self.stop.name}" if self.stop else "not complete"
+            click.echo(f"{how}; {ending.kept_words()}, the same command continues")
+            return CONTINUE
+        if amiss:
+            click.echo(f"  `rodsweep show {self.output}` says what each status means")
+        return int(amiss)

@@ -1,0 +1,1 @@
+"""The arm of a config: its section, axes and quantities."""

@@ -1,0 +1,163 @@
+"""What a quantity of an arm may be in a config: one value, a list or a range, with units; in SI then."""
+
+from collections.abc import Mapping
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
+
+from ...errors import InputError
+from ...model.arm.drag import DRAGS
+from ...model.arm.quantities import RELATIVE, UNITS
+from ...model.units import in_si, share_of_flutter, split, written_in
+from ..values import AXIS_SCHEMA, Axis, as_axis, as_number, short
+
+RANGE = "range"
+"""The drag that stands for all of DRAGS."""
+
+
+def as_quantities(value: Any, info: ValidationInfo) -> Axis:
+    """A quantity, a list or a range of quantities as an Axis in SI units; ValueError otherwise."""
+    name = str(info.field_name)
+    if isinstance(value, Axis):
+        return value
+    return _axis_in_si(name, value).model_copy(update={"written": value})
+
+
+def _axis_in_si(name: str, value: Any) -> Axis:
+    if isinstance(value, dict):
+        ends = {end: _read(name, value[end]) for end in ("start", "stop") if end in value}
+        try:
+            return as_axis(value | ends)
+        except ValueError as error:
+            remark = _without_unit(name, value) if ends.get("start", 0) >= ends.get("stop", 1) else ""
+            raise ValueError(f"{error}{remark}") from None
+    if isinstance(value, list | tuple):
+        return as_axis([_read(name, each) for each in value])
+    return as_axis(_read(name, value))
+
+
+def _without_unit(name: str, span: dict[str, Any]) -> str:
+    """A remark on a range of which one end has a unit and the other has none; else empty."""
+    ends = [end for end in ("start", "stop") if end in span]
+    bare = [end for end in ends if not isinstance(span[end], str)]
+    unit = UNITS[name][0]
+    return f" in {unit}; {bare[0]} has no unit, so it is in {unit}" if len(bare) == 1 < len(ends) else ""
+
+
+def _read(name: str, value: Any) -> float:
+    """A quantity in SI units; ValueError where it is none."""
+    if not isinstance(value, str):
+        return as_number(value)
+    try:
+        return in_si(f"parameters.arm.{name}", value, *UNITS[name])
+    except InputError as error:
+        raise ValueError(str(error)) from None
+
+
+def with_shares(given: Mapping[str, Any]) -> dict[str, Any]:
+    """The keys of an arm, in which a load relative to flutter stands under its name in RELATIVE.
+
+    ValueError where a load is relative in part only, or given in both ways.
+    """
+    found = dict(given)
+    for name, load in RELATIVE.items():
+        shares, is_relative = _shares(given.get(load))
+        if not is_relative:
+            continue
+        if not all(each is not None for each in shares):
+            raise ValueError(
+                f"parameters.arm.{load} = {short(given[load])} is relative to flutter in part; write all of "
+                "its values as in '1.2 of flutter', or none"
+            )
+        if given.get(name) is not None:
+            raise ValueError(
+                f"parameters.arm.{load} and parameters.arm.{name} are both given; give one of them"
+            )
+        is_range = isinstance(given[load], Mapping)
+        found[name] = {**given[load], **dict(zip(ENDS, shares, strict=True))} if is_range else shares
+        del found[load]
+    return found
+
+
+ENDS = ("start", "stop")
+"""Of a range."""
+
+
+def _shares(value: Any) -> tuple[list[float | None], bool]:
+    """(each number of a load's value over flutter, None where it is not relative; whether any is)."""
+    shares = [None if one is None else share_of_flutter(one) for one in _each(value)]
+    return shares, any(share is not None for share in shares)
+
+
+def as_drags(value: Any) -> Axis:
+    """Names of drags, one, a list or "range", as an Axis of their places in DRAGS; ValueError otherwise."""
+    if isinstance(value, Axis):
+        return value
+    names = list(DRAGS) if value == RANGE else value if isinstance(value, list | tuple) else [value]
+    if not names or not all(isinstance(name, str) and name in DRAGS for name in names):
+        raise ValueError(
+            f"{short(value)} is no drag; write {RANGE}, one of {', '.join(DRAGS)}, or a list of these"
+        )
+    return Axis(values=tuple(float(place) for place in sorted({DRAGS.index(name) for name in names})))
+
+
+def drags_written(values: list[float]) -> list[str]:
+    """Places in DRAGS by their names, as a config has them."""
+    return [DRAGS[int(place)] for place in values]
+
+
+def typed_unit(name: str, axis: Axis) -> str:
+    """The unit in which a quantity was typed, the first of several; the SI unit where it was none."""
+    units = [split(value)[1] for value in _each(axis.written) if isinstance(value, str)]
+    return next(filter(None, units), UNITS[name][0])
+
+
+def given_text(quantities: Mapping[str, Axis]) -> str:
+    """The quantities of an arm in the units that were taken, and which were given without one, as words."""
+    told, bare = [], []
+    for name, axis in quantities.items():
+        ends = axis.array()[[0, -1]].tolist()
+        if name == "drag":
+            names = drags_written(axis.array().tolist())
+            told.append(f"drag {RANGE if len(names) == len(DRAGS) else ' and '.join(names)}")
+            continue
+        unit = typed_unit(name, axis) if name in UNITS else ""
+        texts = [f"{written_in(end, unit, UNITS[name][0]) if unit else end:.6g}" for end in ends]
+        told.append(f"{name} {' to '.join(dict.fromkeys(texts))} {unit}".rstrip())
+        if unit and not all(isinstance(one, str) for one in _each(axis.written)):
+            bare.append(name)
+    remark = f" ({' and '.join(bare)} without a unit: SI)" if bare else ""
+    return f"{', '.join(told)}{remark}".replace("_", " ")
+
+
+def _each(written: Any) -> list[Any]:
+    """The values that a user wrote for a quantity; of a range its ends."""
+    if isinstance(written, Mapping):
+        return [written.get(end) for end in ENDS]
+    return list(written) if isinstance(written, list | tuple) else [written]
+
+
+def _schema() -> dict[str, Any]:
+    """What `as_quantities` takes, as a JSON schema: an axis whose numbers may be text with a unit."""
+    each: dict[str, Any] = {"anyOf": [{"type": "number"}, {"type": "string"}]}
+    *_, values, span = AXIS_SCHEMA["anyOf"]
+    ends = {end: {"description": span["properties"][end]["description"], **each} for end in ("start", "stop")}
+    return {
+        "anyOf": [
+            *each["anyOf"],
+            values | {"items": each},
+            span | {"properties": span["properties"] | ends},
+        ]
+    }
+
+
+NAMED_DRAG = {"enum": list(DRAGS)}
+"""A drag as a JSON schema."""
+Quantities = Annotated[Axis, BeforeValidator(as_quantities), WithJsonSchema(_schema())]
+Drags = Annotated[
+    Axis,
+    BeforeValidator(as_drags),
+    WithJsonSchema(
+        {"anyOf": [{"enum": [RANGE, *DRAGS]}, {"type": "array", "items": NAMED_DRAG, "minItems": 1}]}
+    ),
+]

@@ -1,0 +1,205 @@
+"""The section `parameters.arm` of a config: an arm in SI units, and the axes of a grid of parameters."""
+
+from collections.abc import Collection, Iterator, Mapping
+from itertools import product
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from ...arrays import Array
+from ...errors import InputError
+from ...model.arm.arm import NotSlender, NoWall, SlenderArm
+from ...model.arm.quantities import ARM_UNITS, LOADS, QUANTITIES, RELATIVE, SCALE_OF, UNITS
+from ...model.parameters import NONLINEAR_PARAMETERS, all_but
+from ..values import Axis, Strict, Values
+from .axes import AXIS_OF, LOAD_AXES, NO_WALL, NOT_SLENDER, SECTION
+from .quantities import Drags, Quantities, drags_written, with_shares
+
+Allowed = Field(description="a quantity with its unit, a list or a range of quantities; SI without unit")
+ShareAllowed = Field(description="a number from 0 on, a list or a range")
+DragAllowed = Field(description="range, the name of a drag, or a list of names")
+RatioAllowed = Field(description="a number above -1 and up to 0.5, a list or a range")
+
+
+UNCOVERED = {NotSlender: NOT_SLENDER, NoWall: NO_WALL}
+"""What refusals of an arm mean for a point."""
+NO_LOAD = {"pressure": 0.0}
+
+
+class UncoveredArm(ValueError):
+    """The refusal of an arm that no rod covers; `status` is that of its points."""
+
+    def __init__(self, error: NotSlender | NoWall):
+        super().__init__(f"parameters.arm.{error}")
+        self.status = UNCOVERED[type(error)]
+
+
+class ArmSection(Strict):
+    """An arm as `rodsweep arm` takes it, each quantity one value or an axis."""
+
+    length: Annotated[Quantities, Allowed]
+    """From the clamp to the tip."""
+    radius: Annotated[Quantities | None, Allowed] = None
+    """Of a circular section; or give width and height."""
+    inner_radius: Annotated[Quantities | None, Allowed] = None
+    """Of the bore of a tube, which is closed at its tip."""
+    width: Annotated[Quantities | None, Allowed] = None
+    """Of a rectangular section, across the plane of motion."""
+    height: Annotated[Quantities | None, Allowed] = None
+    """Of a rectangular section, in the plane of motion."""
+    young: Annotated[Quantities, Allowed]
+    """Young's modulus."""
+    poisson: Annotated[Values | None, RatioAllowed] = None
+    """Poisson's ratio, 0.5 where it is not given."""
+    viscosity: Annotated[Quantities, Allowed]
+    """Of the fluid; it moves no parameter, but times are proportional to it."""
+    fluid_density: Annotated[Quantities | None, Allowed] = None
+    """Of the fluid, that of water where it is not given; for whether the model applies."""
+    density_difference: Annotated[Quantities | None, Allowed] = None
+    """The arm's density less the fluid's, for whether the model applies; weight is left out without it."""
+    drag: Annotated[Drags | None, DragAllowed] = None
+    """Members of the range of drags that the literature has; the likeliest where it is not given."""
+    pressure: Annotated[Quantities | None, Allowed] = None
+    """On the tip's cross section; or give force. Not where the task finds F itself."""
+    force: Annotated[Quantities | None, Allowed] = None
+    """Follower force at the tip."""
+    pressure_over_flutter: Annotated[Values | None, ShareAllowed] = None
+    """The pressure over that of flutter with the likeliest drag: 1.2 is `pressure: 1.2 of flutter`."""
+    force_over_flutter: Annotated[Values | None, ShareAllowed] = None
+    """The same of a force."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_shares(cls, given: Any) -> Any:
+        """A load relative to flutter has a key of its own."""
+        return with_shares(given) if isinstance(given, dict) else given
+
+    @property
+    def load_axis(self) -> str | None:
+        """Which of LOAD_AXES is given, if any is."""
+        return next((name for name in LOAD_AXES if getattr(self, name) is not None), None)
+
+    @property
+    def load(self) -> str | None:
+        """Which of LOADS the load is told as, if any is given."""
+        return RELATIVE.get(str(self.load_axis), self.load_axis)
+
+    @property
+    def several(self) -> tuple[str, ...]:
+        """The quantities that have more than one value, or are relative to flutter."""
+        return tuple(name for name, axis in self.given.items() if axis.size > 1 or name in RELATIVE)
+
+    @property
+    def meaning(self) -> dict[str, float | None]:
+        """The quantities, and the values of those that the points do not tell, in SI."""
+        told = AXIS_OF if self.is_grid else self.several
+        return {name: None if name in told else float(axis.array()[0]) for name, axis in self.given.items()}
+
+    @property
+    def is_grid(self) -> bool:
+        """Whether every axis moves one parameter only, so that the points are a grid of parameters."""
+        return all(name in AXIS_OF for name in self.several)
+
+    @property
+    def given(self) -> dict[str, Axis]:
+        """The quantities that are given, those of the section first."""
+        names = (*SECTION, *LOAD_AXES)
+        return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+
+    def refuse_unfit(self) -> None:
+        """ValueError where a value is not allowed, or a grid of parameters is of arms that no rod covers."""
+        for name, axis in self.given.items():
+            low = float(axis.array()[0])
+            if name in RELATIVE and low < 0:
+                raise ValueError(f"parameters.arm.{name} = {low:.6g} is below 0")
+            if name in UNITS and not (QUANTITIES[name].signed or low > 0):
+                raise ValueError(f"parameters.arm.{name} = {low:.6g} {UNITS[name][0]} is not above 0")
+        if self.is_grid:
+            self.made(self.firsts, loaded=True)
+
+    def refuse_misuse(self, forced: bool, beside: Collection[str]) -> None:
+        """ValueError unless there is one load where the task needs one, and no axis that changes nothing.
+
+        forced: whether F is a parameter of the task; beside: the parameters that stand beside the arm.
+        """
+        loads = ["parameters.F"] if "F" in beside else []
+        loads += [f"parameters.arm.{name}" for name in LOAD_AXES if getattr(self, name) is not None]
+        if loads[1:]:
+            raise ValueError(f"{loads[0]} and {loads[1]} are both given; give one of them")
+        if "poisson" in self.several and "k2" in beside:
+            raise ValueError(
+                "parameters.arm.poisson has several values, and parameters.k2, which replaces all that it "
+                "moves, is given too; give one of them"
+            )
+        if self.load and not forced:
+            raise ValueError(
+                f"parameters.arm.{self.load} is given but the task finds the load itself; remove it and set "
+                "its option F_max, or stop"
+            )
+        if forced and not (self.load or "F" in beside):
+            raise ValueError("parameters.arm.pressure is missing; give the pressure on the tip or a force")
+
+    def grid_axes(self) -> dict[str, Axis]:
+        """The axes of the dimensionless parameters of a grid of these, by name; no F without load.
+
+        ValueError for what is no slender arm, and where the least load crushes it.
+        """
+        arm = self.made(self.firsts, loaded=True)
+        axes = {name: Axis(values=(arm.parameter(name),)) for name in all_but("F", NONLINEAR_PARAMETERS)}
+        for name in ("k2", "gamma3"):
+            different = {getattr(self.made(each), name) for each in self.sections()}
+            axes[name] = Axis(values=tuple(sorted(different)))
+        if self.load:
+            axes = {"F": self.given[self.load].scaled(1.0 / getattr(arm, SCALE_OF[self.load]))} | axes
+        return axes
+
+    def grid_quantities(self) -> dict[str, Array]:
+        """The quantities and units of a grid of parameters: numbers, shape (), or along their parameter."""
+        values = {name: axis.array() for name, axis in self.given.items()}
+        if self.poisson is not None:  # k2 falls as it rises
+            values["poisson"] = values["poisson"][::-1]
+        first = self.made(self.firsts)
+        units = {name: np.array([getattr(first, name)]) for name in ARM_UNITS}
+        if len(values.get("drag", ())) > 1:
+            arms = {place: self.made(self.firsts | {"drag": place}) for place in values["drag"].tolist()}
+            values["drag"] = np.array(sorted(arms, key=lambda place: arms[place].gamma3))
+            units["tau2"] = np.array([arms[place].tau2 for place in values["drag"].tolist()])
+        return {name: array[0] if len(array) == 1 else array for name, array in (values | units).items()}
+
+    def count(self, beside: int) -> int:
+        """Points of a grid, where `beside` the arm so many combinations of parameters are given."""
+        return int(np.prod([float(axis.size) for axis in self.given.values()])) * beside
+
+    @property
+    def firsts(self) -> dict[str, float]:
+        """The first value of every quantity."""
+        return {name: float(axis.array()[0]) for name, axis in self.given.items()}
+
+    def sections(self) -> Iterator[dict[str, float]]:
+        """The quantities of all sections, in row-major order."""
+        names = [name for name in SECTION if name in self.given]
+        for values in product(*(self.given[name].array() for name in names)):
+            yield dict(zip(names, map(float, values), strict=True))
+
+    def arm_at(self, number: int) -> SlenderArm:
+        """The arm of a section without load, numbered in row-major order of the section's axes."""
+        axes = {name: axis.array() for name, axis in self.given.items() if name in SECTION}
+        places = np.unravel_index(number, [len(column) for column in axes.values()])
+        values = {name: float(axes[name][place]) for name, place in zip(axes, places, strict=True)}
+        return self.made(values)
+
+    def made(self, values: Mapping[str, float], loaded: bool = False) -> SlenderArm:
+        """An arm of values by quantity, with its load or without; ValueError where it cannot be.
+
+        UncoveredArm where no rod covers it. A load that is relative to flutter is left out.
+        """
+        section = {name: value for name, value in values.items() if name in SECTION}
+        load = {self.load_axis: values[self.load_axis]} if loaded and self.load_axis in LOADS else NO_LOAD
+        (drag,) = drags_written([section.pop("drag", 0.0)])
+        try:
+            return SlenderArm(**section, **load, drag=drag)
+        except (NotSlender, NoWall) as error:
+            raise UncoveredArm(error) from None
+        except InputError as error:
+            raise ValueError(f"parameters.arm.{error}") from None

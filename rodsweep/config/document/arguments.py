@@ -1,0 +1,58 @@
+"""What is wrong with the arguments of a call in Python, as one sentence: missing, unknown or too many."""
+
+from collections.abc import Callable, Mapping
+from functools import wraps
+from inspect import Parameter, Signature, signature
+from typing import ParamSpec, TypeVar
+
+from ...errors import InputError
+from ..values import short
+from .refusals import hint_of
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def in_sentences(example: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """A function that raises InputError where arguments are missing, unknown or too many.
+
+    example: a call that is right, which the sentence shows.
+    """
+
+    def decorated(function: Callable[P, R]) -> Callable[P, R]:
+        asked = signature(function)
+
+        @wraps(function)
+        def call(*values: P.args, **named: P.kwargs) -> R:
+            refuse_misfit(asked, example, values, named)
+            return function(*values, **named)
+
+        return call
+
+    return decorated
+
+
+def refuse_misfit(
+    asked: Signature, example: str, values: tuple[object, ...], named: Mapping[str, object]
+) -> None:
+    """InputError for the first argument that a function does not take, or that it lacks."""
+    ours = list(asked.parameters.values())
+    by_place = [p.name for p in ours if p.kind is Parameter.POSITIONAL_OR_KEYWORD]
+    if len(values) > len(by_place):
+        raise InputError(f"{short(values[len(by_place)])} has no name; write it as in {example}")
+    known = [p.name for p in ours if p.kind not in (Parameter.VAR_KEYWORD, Parameter.VAR_POSITIONAL)]
+    takes_any = any(p.kind is Parameter.VAR_KEYWORD for p in ours)
+    for name in named:
+        if name in by_place[: len(values)]:
+            raise InputError(f"{name} is given twice; write it as in {example}")
+        if not takes_any and name not in known:
+            raise unknown(name, [word for word in known if word != "self"])
+    given = {*by_place[: len(values)], *named}
+    for parameter in ours:
+        if parameter.name in known and parameter.default is Parameter.empty and parameter.name not in given:
+            raise InputError(f"{parameter.name} is missing; write it as in {example}")
+
+
+def unknown(name: str, known: list[str]) -> InputError:
+    """What to say of an argument that is none of those known."""
+    return InputError(f"unknown key {name}; {hint_of(name, known)}")

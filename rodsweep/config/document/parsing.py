@@ -1,0 +1,110 @@
+"""The YAML that a config may be: version 1.2, one document, short, not deep, and nothing in it but data.
+
+Every event is looked at before anything is built of it, so that no text can run code or explode. What is
+refused here is refused in one sentence, with the place.
+"""
+
+from pathlib import Path
+from typing import Any
+
+from ruamel.yaml import YAML
+from ruamel.yaml.error import YAMLError
+from ruamel.yaml.events import AliasEvent, Event, ScalarEvent
+from ruamel.yaml.parser import Parser
+
+from ...errors import InputError
+from ..values import named, overflows, short
+
+LARGEST_FILE = 100_000
+"""Bytes: some 15,000 numbers, which are read in a second; longer lists of points are CSV files."""
+LONGEST = 1000
+"""Characters of a value or a key."""
+RESULT = b"\x89HDF"
+"""How result files begin, which are HDF5."""
+TABLES = (".csv", ".tsv")
+"""Endings of lists of points, and of what `rodsweep export` writes."""
+DEEPEST = 20
+"""Levels of lists and mappings in each other."""
+
+
+def read_text(path: Path) -> str:
+    """The text of a small UTF-8 file; InputError if it cannot be had."""
+    where = named(path)
+    try:
+        if path.exists() and not (path.is_file() or path.is_dir()):
+            raise InputError(f"{where} is not a file")  # to open a pipe would be to wait for its other end
+        with path.open("rb") as file:
+            data = file.read(LARGEST_FILE + 1)
+    except OSError as error:
+        raise InputError(f"{where} cannot be read: {error.strerror}") from error
+    if data.startswith(RESULT):
+        raise InputError(f"{where} is a result file and no config; `rodsweep show` says what it holds")
+    if path.suffix in TABLES:
+        raise InputError(
+            f"{where} is no config but a table; a config names a list of points, parameters.points"
+        )
+    if len(data) > LARGEST_FILE:
+        raise InputError(
+            f"{where} is larger than {LARGEST_FILE} bytes, which no config is; many points go into a CSV "
+            "file, parameters.points"
+        )
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(f"{where} is not UTF-8 text") from None
+
+
+def parse(text: str, where: str) -> Any:
+    """The tree of a text; InputError, which begins with `where`, for all that has no place in a config."""
+    if any(line.startswith("%") for line in text.splitlines()):
+        raise InputError(f"{where}: directives (%...) are not allowed in a config")
+    yaml = YAML(typ="safe", pure=True)
+    yaml.Parser = _DataOnly
+    try:
+        return yaml.load(text)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+    except YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        place = f", line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+        context, problem = (getattr(error, name, None) or "" for name in ("context", "problem"))
+        told = named(" ".join(f"{context} {problem}".split()) or " ".join(str(error).split()))
+        raise InputError(f"{where}{place}: not valid YAML: {told}") from None
+    except (ValueError, OverflowError, RecursionError) as error:
+        raise InputError(f"{where}: not valid YAML: {named(error)}") from None
+
+
+class _DataOnly(Parser):
+    """A parser that stops at the first thing that is not plain data, before it is built: InputError."""
+
+    depth = 0
+
+    def get_event(self) -> Event:
+        event = super().get_event()
+        if getattr(event, "anchor", None):
+            mark = "*" if isinstance(event, AliasEvent) else "&"
+            raise InputError(
+                f"anchors and aliases ({named(mark + event.anchor)}) are not allowed in a config"
+            )
+        if getattr(event, "tag", None):
+            raise InputError(f"tags ({named(event.tag)}) are not allowed in a config")
+        if isinstance(event, ScalarEvent):
+            _refuse_scalar(event)
+        name = type(event).__name__
+        self.depth += name.endswith("StartEvent") - name.endswith("EndEvent")
+        if self.depth > DEEPEST:
+            raise InputError("nested deeper than any config is")
+        return event
+
+
+def _refuse_scalar(event: ScalarEvent) -> None:
+    """InputError for a text that can be neither a key nor a value."""
+    text = event.value
+    if len(text) > LONGEST:
+        raise InputError(f"{short(text)} has {len(text)} characters, more than any value of a config")
+    if not text.isprintable():
+        raise InputError(f"{short(text)} has characters that cannot be printed")
+    if event.style is None and text == "<<":
+        raise InputError("merge keys (<<) are not allowed in a config")
+    if event.style is None and overflows(text):
+        raise InputError(f"{short(text)} is too large for a floating-point number")

@@ -1,0 +1,168 @@
+"""From a YAML file and --set overrides to a Config; every refusal is one sentence that names the key."""
+
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+from ruamel.yaml import YAML
+
+from ...errors import InputError
+from ..arm.quantities import drags_written
+from ..arm.section import ArmSection
+from ..axes import words
+from ..schema import Config
+from ..tasks import CONFIGS, makes_diagram
+from ..values import Axis, axis_of, named, short
+from .parsing import DEEPEST, parse, read_text
+from .refusals import KEY_SHOWN, dotted, nearest, sentence_of
+
+
+def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, str]:
+    """(config, its YAML text with the overrides listed); raises InputError for anything amiss."""
+    text, where = read_text(path), named(path)
+    tree = parse(text, where)
+    if not isinstance(tree, dict):
+        told = "is empty" if tree is None else f"is {short(tree)}, not a mapping of keys to values"
+        raise InputError(f"{where}: the config {told}; give task and parameters")
+    for override in overrides:
+        _override(tree, override)
+        text += f"\n# --set {override}"
+    try:
+        return validated(tree), text
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def validated(tree: dict[str, Any]) -> Config:
+    """The config that a tree of keys and values asks for; InputError for the first thing amiss."""
+    config = CONFIGS[_task(tree)]
+    try:
+        return config.model_validate(tree)
+    except ValidationError as error:
+        problems = sorted(error.errors(include_url=False), key=lambda problem: problem["type"] == "missing")
+        more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
+        raise InputError(f"{sentence_of(config, problems[0])}{more}") from None
+
+
+def canonical(config: Config) -> dict[str, Any]:
+    """The config with all defaults filled in, as JSON-compatible values; inf becomes "inf".
+
+    A grid of an arm has the axes too that are made of it.
+    """
+    tree = config.model_dump(mode="json", exclude_none=True)
+    if config.parameters.arm is not None:
+        axes = config.parameters.axes
+        tree["parameters"] |= {name: axis.resolved for name, axis in axes.items()}
+    return tree
+
+
+def config_of(resolved: dict[str, Any]) -> Config:
+    """The config that `canonical` made `resolved` of; ValueError if it is none that this version takes."""
+    try:
+        task = resolved["task"]
+        section: Any = CONFIGS[task].model_fields[task].annotation
+        fields = section.model_fields
+        parameters = _axes_of(resolved["parameters"])
+        if "arm" in parameters:
+            given = parameters | {"arm": _axes_of(parameters["arm"])}
+            parameters = _without_those_of_the_arm(given, makes_diagram(task))
+        # An option that is not used must not be given, but every resolved config has its default.
+        options = {
+            name: _axes_of(value) if isinstance(value, dict) else value
+            for name, value in resolved[task].items()
+            if name not in fields or value != fields[name].default
+        }
+        return validated(resolved | {"parameters": parameters, task: options})
+    except (InputError, LookupError, TypeError, AttributeError) as error:
+        raise ValueError(f"its config is none of this version of rodsweep: {error}") from None
+
+
+def _axes_of(section: dict[str, Any]) -> dict[str, Any]:
+    """The keys of a resolved section, its axes as such."""
+    return {
+        name: axis_of(value) if name != "arm" and isinstance(value, dict) else value
+        for name, value in section.items()
+    }
+
+
+def _without_those_of_the_arm(parameters: dict[str, Any], in_diagram: bool) -> dict[str, Any]:
+    """The parameters without the axes that `canonical` made of the arm; in_diagram: for a phase diagram."""
+    arm = ArmSection.model_validate(parameters["arm"])
+    made = arm.grid_axes() if in_diagram or arm.is_grid else {}
+    return {
+        name: value
+        for name, value in parameters.items()
+        if not (name in made and isinstance(value, Axis) and value.agrees(made[name]))
+    }
+
+
+def yaml_of(tree: dict[str, Any]) -> str:
+    """A tree as the text of a config file."""
+    text, yaml = StringIO(), YAML()
+    yaml.default_flow_style = None  # lists of numbers on one line
+    yaml.dump(tree, text)
+    return text.getvalue()
+
+
+def text_of(config: Config) -> str:
+    """A config as the text of a file: what is not a default, axes as a user writes them."""
+    given = config.model_dump(mode="json", exclude_defaults=True, exclude_none=True)
+    axes = {name: _written(value) for name, value in given["parameters"].items()}
+    options = {
+        name: {key: _written(axis) for key, axis in value.items()} if isinstance(value, dict) else value
+        for name, value in given.get(config.task, {}).items()
+    }
+    asked = {config.task: options} if options else {}
+    return yaml_of({"task": config.task} | given | {"parameters": axes} | asked)
+
+
+def _written(axis: Any) -> Any:
+    """A resolved axis as a user writes it: a number, a list or a range; and the axes of an arm."""
+    if not isinstance(axis, dict):
+        return axis
+    if "length" in axis:
+        own = {"drag": drags_written(axis["drag"]["values"])} if "drag" in axis else {}
+        return {name: _written(value) for name, value in axis.items()} | own
+    values = axis.get("values", axis)
+    return values[0] if isinstance(values, list) and len(values) == 1 else values
+
+
+def _override(tree: dict, override: str) -> None:
+    """Applies one `--set a.b=value` to the parsed tree; the value is YAML."""
+    where = named(f"--set {override}", KEY_SHOWN)
+    if not override.isprintable():
+        raise InputError(f"{where} has characters that cannot be printed")
+    key, equals, value = override.partition("=")
+    path = key.strip().split(".")
+    if not equals or not all(path):
+        raise InputError(f"{where}: write it as key=value, for example parameters.F.num=50")
+    if len(path) > DEEPEST:
+        raise InputError(f"{where}: nested deeper than any config is")
+    node = tree
+    for i, name in enumerate(path[:-1]):
+        node = node.setdefault(name, {})
+        if not isinstance(node, dict):
+            parent, rest = dotted(path[: i + 1]), dotted(path[i + 1 :])
+            raise InputError(f"{where}: {parent} is {short(node)}, which has no key {rest}")
+    node[path[-1]] = parse(value, where)
+
+
+def _task(tree: dict) -> str:
+    """The task that the config names; InputError if it is none, or if a section belongs to another."""
+    known = words(tuple(CONFIGS), "or")
+    if "task" not in tree:
+        others = [name for name in tree if isinstance(name, str) and name not in Config.model_fields]
+        close = nearest("task", others)
+        problem = f"unknown key {dotted(close)}; did you mean task?" if close else "task is missing;"
+        raise InputError(f"{problem} it should be {known}")
+    task = tree["task"]
+    if not isinstance(task, str) or task not in CONFIGS:
+        raise InputError(f"task = {short(task)} is not allowed; it should be {known}")
+    for name in CONFIGS:
+        if name in tree and name != task:
+            section: Any = CONFIGS[task].model_fields[task].annotation
+            if not isinstance(tree[name], dict) and name in section.model_fields:  # both, as modes
+                raise InputError(f"unknown key {name}; did you mean {task}.{name}?")
+            raise InputError(f"{name} is given but the task is {task}; remove it")
+    return task

@@ -1,0 +1,108 @@
+"""What a JSON schema says of keys together and of values' bounds: which are needed, which exclude each other.
+
+A key that is null counts as not given, as for the command.
+"""
+
+from collections.abc import Iterable, Mapping
+from copy import deepcopy
+from itertools import combinations
+from typing import Any
+
+from ...model.arm.quantities import LOADS, QUANTITIES, RELATIVE
+from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
+from ..arm.axes import LOAD_AXES, SECTION
+
+Schema = dict[str, Any]
+QUANTITY_TEXT = r"^\s*{sign}(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[A-Za-z\u00b5\u03bc{percent}]"
+"""A number and the beginning of a unit."""
+BOUNDS_OF_ARM: dict[str, Schema] = {
+    **{name: {"exclusiveMinimum": 0} for name in SECTION if not QUANTITIES[name].signed},
+    "poisson": {"exclusiveMinimum": -1, "maximum": 0.5},
+    **{name: {"minimum": 0} for name in RELATIVE},
+}
+"""Of the quantities of an arm that may not be any number."""
+
+
+def given(name: str) -> Schema:
+    """That a key is there and not null."""
+    return {"required": [name], "properties": {name: {"not": {"type": "null"}}}}
+
+
+def none_of(names: Iterable[str]) -> Schema:
+    """That none of the keys is given."""
+    return {"not": {"anyOf": [given(name) for name in names]}}
+
+
+def all_of(names: Iterable[str], *more: Schema) -> Schema:
+    """That all keys are given, and more."""
+    return {"allOf": [*map(given, names), *more]}
+
+
+def bounded(schema: Schema, bound: Mapping[str, float], words: tuple[str, ...] = ()) -> Schema:
+    """A schema of numbers with a bound on every one, and no words for numbers but those."""
+    copy = deepcopy(schema)
+    for node in nodes_of(copy):
+        kinds = node.get("anyOf", [])
+        if any("enum" in kind and "inf" in kind["enum"] for kind in kinds):
+            kept = [{"enum": list(words)}] if words else []
+            node["anyOf"] = [*(k for k in kinds if "inf" not in k.get("enum", [])), *kept]
+        if node.get("type") == "number":
+            node.update(bound)
+    return copy
+
+
+def with_bounds(properties: Schema, axis: Schema) -> None:
+    """Gives the parameters of a section, in place, what each may be; `axis`: what any axis may be."""
+    for name, parameter in PARAMETERS.items():
+        if name in properties:
+            kinds = [axis if "$ref" in kind else kind for kind in properties[name]["anyOf"]]
+            words = ("inf", "+inf") if parameter.rigid else ()
+            properties[name]["anyOf"] = [bounded(kind, parameter.allowed.bound, words) for kind in kinds]
+
+
+def restrict_arm(section: Schema, axis: Schema) -> None:
+    """Says in place of an arm: positive quantities with a unit, one section, one load at most.
+
+    axis: what an axis of numbers may be.
+    """
+    for name, key in section["properties"].items():
+        bound = BOUNDS_OF_ARM.get(name, {})
+        if "anyOf" in key:
+            kinds = [axis if "$ref" in kind else kind for kind in key["anyOf"]]
+            key["anyOf"] = [bounded(kind, bound) for kind in kinds]
+        pattern = QUANTITY_TEXT.format(
+            sign="[+]?" if bound else "[+-]?", percent="%" if name in LOADS else ""
+        )
+        for node in nodes_of(key):
+            if node.get("type") == "string":
+                node["pattern"] = pattern
+    circle, rectangle = all_of(["radius"], none_of(["width", "height"])), ["width", "height"]
+    section["allOf"] = [
+        {"oneOf": [circle, all_of(rectangle, none_of(["radius", "inner_radius"]))]},
+        *({"not": all_of(pair)} for pair in combinations(LOAD_AXES, 2)),
+    ]
+
+
+def points_of(needed: Iterable[str], lists: bool) -> Schema:
+    """What makes points: all axes `needed`, an arm, or a file where a task takes `lists`.
+
+    The arm has a load, or F beside it, where F is needed, and neither otherwise.
+    """
+    axes = tuple(name for name in needed if PARAMETERS[name].default is None)
+    loads = [all_of([name]) for name in LOAD_AXES]
+    loaded = {"properties": {"arm": {"anyOf": loads}}}
+    unloaded = {"properties": {"arm": none_of(LOAD_AXES)}}
+    load = {"oneOf": [given("F"), loaded]} if "F" in axes else unloaded
+    ways = [all_of(axes, none_of(["points", "arm"])), all_of(["arm"], none_of(["points"]), load)]
+    if lists:
+        ways.append(all_of(["points"], none_of(["arm", *LINEAR_PARAMETERS])))
+    return {"anyOf": ways} if "F" in axes else {"anyOf": ways, **none_of(["F"])}
+
+
+def nodes_of(schema: Any) -> Iterable[Schema]:
+    """All mappings of a schema."""
+    if isinstance(schema, dict):
+        yield schema
+    if isinstance(schema, dict | list):
+        for inner in list(schema.values() if isinstance(schema, dict) else schema):
+            yield from nodes_of(inner)

@@ -1,0 +1,124 @@
+"""Where transverse eigenvalues can lie: an a-priori box for every eigenvalue with Re w >= -depth.
+
+Testing the eigenproblem of Sec. VI with its own eigenfunction, y with weight 1 and theta with a
+weight rho > 0, gives, with N^2 = |y|^2 + rho gamma3 |theta|^2 (L2 norms over the rod),
+
+    w N^2 = -c2 |s|^2 - rho |theta'|^2 + (rho g - nu) <theta, s> - F <y, theta'>.
+
+With n^2 = (c2 |s|^2 + rho |theta'|^2)/N^2 the last two terms are at most a n N^2 in modulus, where
+a^2 = max(F^2/rho, (rho g - nu)^2/(c2 rho gamma3)), so that
+
+    Re w <= a n - n^2 <= a^2/4,   |Im w| <= a n,   and Re w >= -depth forces n^2 <= a n + depth.
+
+The weight is free; the best one makes both entries of the maximum equal.
+
+Beside w = 0 no eigenvalue lies on the imaginary axis: |E(z)| <= exp(Re sqrt z)/2 bounds D - 1 there.
+"""
+
+from functools import lru_cache
+from math import exp, inf, log, sqrt
+
+from ...model.compiled.compilation import compiled
+from ...model.rod import Coefficients, Rod
+from ..parameter_path import Path, changes, coefficients_at
+
+MARGIN = 1.01
+"""Factor on every bound, so that rounding in the bound itself cannot matter."""
+QUIET = 0.5
+"""Largest |D - 1| that counts as near 1."""
+
+
+def eigenvalue_box(rod: Rod, depth: float = 0.0) -> tuple[float, float]:
+    """(max Re w, max |Im w|) over all eigenvalues with Re w >= -depth, depth >= 0; inf if unknown."""
+    return box_of(sqrt(squared_amplification(rod)), depth)
+
+
+@compiled
+def box_of(a: float, depth: float) -> tuple[float, float]:
+    """`eigenvalue_box` from a, the root of `squared_amplification`."""
+    n = (a + sqrt(a * a + 4 * depth)) / 2
+    # A pad in proportion to the depth keeps the box open where F = 0 makes the bound vanish.
+    pad = 0.01 * depth + 1e-6
+    return MARGIN * a * a / 4 + pad, MARGIN * a * n + pad
+
+
+@lru_cache(maxsize=1)
+def squared_amplification(rod: Rod) -> float:
+    """The smallest a^2 over all weights rho.
+
+    For g > 0 it is F^2 g/(nu + |F| sqrt(c2 gamma3)), in every limit. For g < 0 (a pull beyond the
+    shear stiffness) rho g - nu has no zero, and with gamma3 = 0 there is no bound at all.
+    """
+    drag = rod.c2 * rod.rotational_drag
+    level = abs(rod.F) * sqrt(drag)
+    if rod.g >= 0:
+        return rod.F**2 * rod.g / (rod.nu + level)
+    if drag == 0:
+        return inf
+    weights = [rod.nu / -rod.g] + ([(level - rod.nu) / -rod.g] if level > rod.nu else [])
+    return min(max(rod.F**2 / rho, (rho * rod.g - rod.nu) ** 2 / (drag * rho)) for rho in weights)
+
+
+def squared_amplification_over(path: Path, start: float, stop: float) -> float:
+    """An upper bound of `squared_amplification` over all rods of a path between two p; inf if none."""
+    ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
+    return squared_amplification_between(ends[0], ends[1])
+
+
+@compiled
+def squared_amplification_between(first: Coefficients, last: Coefficients) -> float:
+    """An upper bound of `squared_amplification` over all rods between two on a path; inf if none.
+
+    Every factor is monotone along a path but for nu g, which is not used: ends are extremes.
+    """
+    load = max(abs(first.F), abs(last.F))
+    least_load = 0.0 if first.F * last.F < 0 else min(abs(first.F), abs(last.F))
+    weak = 1.0
+    for rod in (first, last):
+        if rod.c2 > 0:
+            weak = max(weak, rod.c2 / rod.gamma3 if rod.gamma3 > 0 else inf)
+    g_first, g_last = first.nu + first.F * first.c2, last.nu + last.F * last.c2
+    root_of_drag = min(sqrt(first.c2 * first.gamma3), sqrt(last.c2 * last.gamma3))
+    denominator = min(first.nu, last.nu) + least_load * root_of_drag
+    strong = inf
+    if min(g_first, g_last) >= 0 and denominator > 0:
+        strong = max(g_first, g_last) / denominator
+    least = min(weak, strong)
+    return load**2 * least if least < inf else inf
+
+
+def quiet_radius(path: Path, start: float, stop: float, largest: float) -> float:
+    """r <= largest with |D(i eta) - 1| < 1/2 for |eta| <= r and all p from start to stop."""
+    ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
+    T = max(c2 + gamma3 for *_, c2, gamma3 in ends)
+    X = max(c2 * gamma3 for *_, c2, gamma3 in ends)
+    bends = [changes(c, path.direction) for c in ends]
+    span = (stop - start) ** 2 / 8
+    G = max(abs(nu * (nu + F * c2)) for F, nu, c2, _ in ends) + span * max(abs(b.G2) for b in bends)
+    pull = max(max(-F * (nu + F * c2) for F, nu, c2, _ in ends) + span * max(abs(b.N2) for b in bends), 0.0)
+    if all(F >= 0 and nu + F * c2 >= 0 for F, nu, c2, _ in ends):
+        pull = 0.0  # a product of two factors that are linear, or one of which does not change
+    return _quiet(largest, T, X, G, pull)
+
+
+def quiet_radius_of(coefficients: Coefficients, largest: float) -> float:
+    """`quiet_radius` of a single rod."""
+    F, nu, c2, gamma3 = coefficients
+    g = nu + F * c2
+    return _quiet(largest, c2 + gamma3, c2 * gamma3, abs(g * nu), max(-F * g, 0.0))
+
+
+def _quiet(r: float, T: float, X: float, G: float, pull: float) -> float:
+    """The first of r, r/2, r/4, ... such that D is near 1 for |eta| <= it; 0 where numbers underflow."""
+    while _departure(r, T, X, G, pull) >= QUIET:
+        r /= 2
+    return r
+
+
+def _departure(r: float, T: float, X: float, G: float, pull: float) -> float:
+    """A bound of |D(i eta) - 1| for |eta| <= r."""
+    exponent = sqrt(pull + T * r + 2 * sqrt(r * (G + X * r)))
+    if exponent > 1 + sqrt(pull):
+        return inf
+    factor = (T * r + sqrt(r * G) + 2 * r * sqrt(X)) / 2
+    return exp(min(exponent + log(factor), 1.0)) if factor > 0 else 0.0

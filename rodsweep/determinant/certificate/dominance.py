@@ -1,0 +1,159 @@
+"""Where one exponential of D outweighs all the rest: there D has no zero, and its phase is known.
+
+With sqrt(z+) the root of larger real part, D (`rodsweep.determinant.value`) is
+
+    D = A (1 + e),   A = w z+' exp(sqrt z+)/(4 z+),
+    A e = 1 + (w z+'/(4 z+)) (exp(-sqrt z+) - 2) + (w/2) z-' E(z-).
+
+Over a disc |dw| <= rho in which |e| < 1 and Re sqrt(z+) > Re sqrt(z-) the phase of D is that of A but for
+arg(1 + e), which stays within a right angle and is needed only where a chain of such discs begins and
+ends. All bounds are relative to exp(L dw), L = z+'/(2 sqrt z+), as in
+`rodsweep.determinant.certificate.discs`. Far from the negative real axis, where the eigenvalues lie, a disc
+may be a third of |w| wide.
+"""
+
+import cmath
+import math
+from typing import NamedTuple
+
+from ...model.compiled.compilation import compiled
+from ...model.rod import Coefficients
+from ..value import branches, scaled_determinant
+from .discs import CLEARANCE, bend_of_root, terms_on_bidisc
+
+SHARE = 0.25
+"""Radius of the first disc tried, in units of the distance to the next branch point."""
+HALVINGS = 2
+"""Smaller discs tried where the first is too large."""
+FACTOR = 0.5
+"""Largest relative change over a disc of what A is made of: keeps every phase within a right angle."""
+
+
+class Exponent(NamedTuple):
+    """One of z+ and z- at some w, dz/dw and sqrt z."""
+
+    z: complex
+    slope: complex
+    root: complex
+
+
+@compiled
+def _ordered(w: complex, coefficients: Coefficients) -> tuple[complex, Exponent, Exponent]:
+    """(P, the dominant exponent, the other)."""
+    P, P_w, _, plus, minus = branches(w, coefficients)
+    drag = coefficients.c2 + coefficients.gamma3
+    of_plus = Exponent(plus, drag + 2 * P_w, cmath.sqrt(plus))
+    of_minus = Exponent(minus, drag - 2 * P_w, cmath.sqrt(minus))
+    if of_plus.root.real >= of_minus.root.real:
+        return P, of_plus, of_minus
+    return P, of_minus, of_plus
+
+
+@compiled
+def _bend_and_turn(w: complex, rho: float, P: complex, coefficients: Coefficients) -> tuple[float, float]:
+    """(bound of z+- beyond the linear part over the disc, of the change of z+-'); inf where none is given.
+
+    z = T w - F g +- 2 P: beyond the linear part only P bends, majorised by 2 - sqrt(1 - e).
+    """
+    F, nu, c2, gamma3 = coefficients
+    X = c2 * gamma3
+    gn = (nu + F * c2) * nu
+    e1, e2 = rho / abs(w), 0.0
+    if X > 0:
+        e2 = X * rho / abs(gn + X * w)
+    if e1 > FACTOR or e2 > FACTOR:
+        return math.inf, math.inf
+    least = math.sqrt((1 - e1) * (1 - e2))
+    numerator = abs(gn + 2 * X * w)
+    bend = 2 * abs(P) * ((2 - math.sqrt(1 - e1)) * (2 - math.sqrt(1 - e2)) - 1 - (e1 + e2) / 2)
+    return bend, ((numerator + 2 * X * rho) / least - numerator) / abs(P)
+
+
+@compiled
+def dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
+    """Whether |e| < 1 is proved on the disc of radius rho about w."""
+    P, (z, slope, root), (z_other, slope_other, root_other) = _ordered(w, coefficients)
+    if P == 0 or root.real <= root_other.real:
+        return False
+    bend, turn = _bend_and_turn(w, rho, P, coefficients)
+    change = abs(slope) * rho + bend
+    x = change / abs(z)
+    if x > FACTOR or turn > FACTOR * abs(slope):
+        return False
+    L = slope / (2 * root)
+    drift = abs(L) * rho
+    curve = bend_of_root(root, bend, x)
+    lowest = root.real - drift - curve
+    change_other = abs(slope_other) * rho + bend
+    highest = math.sqrt(max((abs(z_other) + z_other.real) / 2 + change_other, 0.0))
+    if change_other < FACTOR * abs(z_other):
+        curve_other = bend_of_root(root_other, bend, change_other / abs(z_other))
+        together = abs(slope_other / (2 * root_other) - L) * rho + curve_other
+        if not root.real - curve > root_other.real + together:
+            return False
+    elif not lowest > highest:
+        return False
+    S = root.real
+    far = abs(w) + rho
+    A = (abs(w) - rho) * (abs(slope) - turn) / (4 * (abs(z) + change)) * math.exp(-curve)
+    still = math.exp(drift - S)
+    rest = still + far * (abs(slope) + turn) / (4 * (abs(z) - change)) * (
+        2 * still + math.exp(2 * drift + curve - 2 * S)
+    )
+    E = terms_on_bidisc(z_other, (slope_other, 0j), (L, 0j), (rho, 0.0), bend, S)[0]
+    rest += far / 2 * (abs(slope_other) + turn) * E
+    return rest < CLEARANCE * A
+
+
+@compiled
+def dominant_factors(w: complex, coefficients: Coefficients) -> tuple[complex, complex]:
+    """(w z'/z, sqrt z) of the dominant exponential."""
+    _, dominant, _ = _ordered(w, coefficients)
+    return w * dominant.slope / dominant.z, dominant.root
+
+
+@compiled
+def _beside(w: complex, factor: complex, root: complex, coefficients: Coefficients) -> float:
+    """arg(1 + e) = arg(D/A)."""
+    D, _, _, _ = scaled_determinant(w, coefficients)
+    return cmath.phase(D / (factor * cmath.exp(complex(0.0, root.imag))))
+
+
+@compiled
+def dominated_stretch(
+    start: complex, direction: complex, length: float, coefficients: Coefficients
+) -> tuple[float, float, int]:
+    """(how far from start one exponential is proved to outweigh the rest, change of arg D, discs)."""
+    F, nu, c2, gamma3 = coefficients
+    X = c2 * gamma3
+    gn = (nu + F * c2) * nu
+    w, t, total = start, 0.0, 0.0
+    discs = 0
+    factor, root = 0j, 0j
+    first, first_root = 0j, 0j
+    while t < length:
+        rho = SHARE * abs(w)
+        if X > 0:
+            rho = min(rho, SHARE * abs(gn + X * w) / X)
+        rho = min(rho, (length - t) / 2)
+        found = False
+        for _ in range(HALVINGS + 1):
+            discs += 1
+            # A little wider than the step, so that rounding leaves no gap between two discs.
+            if dominated(w + direction * rho, 1.001 * rho, coefficients):
+                found = True
+                break
+            rho /= 2
+        if not found:
+            break
+        if t == 0.0:
+            factor, root = dominant_factors(w, coefficients)
+            first, first_root = factor, root
+        t = length if t + 2 * rho >= length * (1 - 1e-15) else t + 2 * rho
+        w = start + direction * t
+        factor_next, root_next = dominant_factors(w, coefficients)
+        total += (root_next - root).imag + cmath.phase(factor_next / factor)
+        factor, root = factor_next, root_next
+    if t > 0.0:
+        total += _beside(w, factor, root, coefficients) - _beside(start, first, first_root, coefficients)
+    return t, total, discs

@@ -1,0 +1,51 @@
+"""Radau IIA collocation in time: a state is a polynomial on each interval, exact at nodes that include its
+end.
+
+With s stages the ends of the intervals are right to order 2 s - 1, and also what has no time derivative, for
+the end of an interval is one of its nodes.
+"""
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from ...arrays import Array
+from .basis import differentiation, interpolation
+
+
+class Collocation(NamedTuple):
+    """The method with s stages on [0, 1].
+
+    nodes, weights: (s,), the last node is 1. differentiation: (s, s + 1), from values at 0 and at the nodes
+    to derivatives at the nodes.
+    """
+
+    nodes: Array
+    weights: Array
+    differentiation: Array
+
+    @property
+    def stages(self) -> int:
+        return len(self.nodes)
+
+    def evaluation(self, at: Array) -> Array:
+        """Matrix from values at 0 and at the nodes to values at `at` in [0, 1], shape (len(at), s + 1)."""
+        return interpolation(np.append(0.0, self.nodes), at)
+
+
+@cache
+def radau(stages: int) -> Collocation:
+    """Radau IIA; its nodes are the zeros of P_(s-1) - P_s."""
+    series = np.zeros(stages + 1)
+    series[-2:] = 1.0, -1.0
+    x = np.sort(legendre.legroots(series).real)
+    for _ in range(3):  # Newton, for the eigenvalues of a companion matrix are right to 1e-14 only
+        x = x - legendre.legval(x, series) / legendre.legval(x, legendre.legder(series))
+    x[-1] = 1.0
+    moments = np.zeros(stages)
+    moments[0] = 1.0
+    weights = np.linalg.solve(legendre.legvander(x, stages - 1).T, moments)
+    D = 2 * differentiation(np.append(-1.0, x))
+    return Collocation((x + 1) / 2, weights, np.ascontiguousarray(D[1:]))

@@ -1,0 +1,47 @@
+"""Gauss and Gauss-Lobatto-Legendre nodes and weights on [-1, 1]."""
+
+from functools import cache
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from ...arrays import Array
+
+
+@cache
+def gauss(n: int) -> tuple[Array, Array]:
+    """Nodes and weights of the n-point Gauss-Legendre rule, exact to degree 2n - 1; shape (n,)."""
+    nodes, weights = legendre.leggauss(n)
+    return nodes, weights
+
+
+@cache
+def gauss_lobatto(p: int) -> tuple[Array, Array]:
+    """Nodes and weights of the (p + 1)-point Lobatto rule, exact to degree 2p - 1; shape (p + 1,).
+
+    The inner nodes are the zeros of P_p', found by Newton from Chebyshev's points.
+    """
+    x = -np.cos(np.pi * np.arange(p + 1) / p)
+    for _ in range(50):
+        # (1 - x^2) P_p' = p (P_{p-1} - x P_p) and its derivative -p (p + 1) P_p.
+        P, Q = _legendre_pair(p, x)
+        step = (x * P - Q) / ((p + 1) * P)
+        x = x - step
+        if np.abs(step).max() < 4e-16:
+            break
+    x = (x - x[::-1]) / 2
+    x[0], x[-1] = -1.0, 1.0
+    return x, 2 / (p * (p + 1) * _legendre_pair(p, x)[0] ** 2)
+
+
+def lobatto_points(nodes: int) -> Array:
+    """The Gauss-Lobatto points on [0, 1], shape (nodes,)."""
+    return (gauss_lobatto(nodes - 1)[0] + 1) / 2
+
+
+def _legendre_pair(p: int, x: Array) -> tuple[Array, Array]:
+    """P_p(x) and P_{p-1}(x) by the three-term recurrence."""
+    below, here = np.ones_like(x), x.copy()
+    for n in range(1, p):
+        below, here = here, ((2 * n + 1) * x * here - n * below) / (n + 1)
+    return here, below

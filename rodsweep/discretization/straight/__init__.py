@@ -1,0 +1,1 @@
+"""The eigenproblem of the straight rod on elements."""

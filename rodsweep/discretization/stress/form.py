@@ -1,0 +1,59 @@
+"""One nonlinear rod on one mesh, in its stresses: every limit, k1 = inf, k2 = inf and gamma3 = 0, included.
+
+The equations and the unknowns are `rodsweep.discretization.stress.balance`'s.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ...arrays import Array
+from ..nodal_rod import NodalChange, NodalRod, nodal_change
+from ..rod_on_mesh import RodOnMesh
+
+LEAST_ELIMINATED_DRAG = 1e-5
+"""Rotational drag from which Omega is eliminated: below, the division by it costs multipliers their digits,
+2e-9 at 1e-6 and 2e-7 at 1e-8, and soft rods their cycles; as an unknown Omega costs 2.4 times the time."""
+OMEGA = (2,)
+"""Which component of V that is."""
+
+
+@dataclass(frozen=True, eq=False)
+class StressForm(RodOnMesh):
+    """One rod on one mesh.
+
+    A state x has shape (..., unknowns): n1 + F, n2 in k3/L^2 and m3 in k3/L at every node but the tip, where
+    they vanish, and Omega in 1/tau2 at all nodes where gamma3 is small.
+    """
+
+    @property
+    def omega_unknown(self) -> bool:
+        """Whether Omega is among the unknowns."""
+        return self.rod.rotational_drag < LEAST_ELIMINATED_DRAG
+
+    @property
+    def kept(self) -> tuple[int, ...]:
+        return OMEGA if self.omega_unknown else ()
+
+    def stresses(self, x: Array) -> Array:
+        return self.layout.stresses(x)
+
+    def change(self, name: str) -> NodalChange:
+        """The derivative of `nodal` by a parameter, by 1/k of a stiffness k."""
+        return nodal_change(self.rod.material_change(name), self.mesh)
+
+    @cached_property
+    def mass(self) -> Array:
+        """The diagonal of W C, 0 for Omega, shape (unknowns,)."""
+        return self.mass_of(self.nodal)
+
+    def mass_of(self, rod: NodalRod | NodalChange) -> Array:
+        """`mass` for other compliances."""
+        weighted = rod.compliance * self.mesh.quadrature
+        return self.layout.state(weighted, np.zeros(weighted.shape))
+
+    def size(self, x: Array) -> Array:
+        """sqrt of the energy of the stresses beyond the straight rod's, an amplitude of the motion, (...)."""
+        size: Array = np.sqrt(x**2 @ self.mass)
+        return size

@@ -1,0 +1,69 @@
+"""The rod on a mesh as an explicit differential equation, for finite stiffnesses, compiled.
+
+Its unknown is z = C^(1/2) S, the stresses of `stress_balance` in units of energy.
+"""
+
+import numpy as np
+
+from ...arrays import Array
+from ...model.compiled.compilation import compiled_for_vectors
+from ..elements.mesh import NodeMatrices
+from ..nodal_rod import NodalRod
+from ..plane import balance, jacobian
+from ..state_layout import stress_place
+
+
+@compiled_for_vectors
+def rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
+    """dz/dt in 1/tau2 into out, both (unknowns,), of z = C^(1/2) S; roots: of C, (d, nodes + 1), above 0."""
+    d, size = c.drag.shape
+    V, G, x = np.empty((d, size)), np.empty((d, size)), np.empty(len(z))
+    _unscale(z, x, roots)
+    balance(x, V, G, c, m)
+    for a in range(d):
+        for i in range(size - 1):
+            out[stress_place(a, i, size - 1)] = G[a, i] / (m.weights[i] * roots[a, i])
+
+
+@compiled_for_vectors
+def _unscale(z: Array, x: Array, roots: Array) -> None:
+    """S of z = C^(1/2) S into x, both (unknowns,)."""
+    d, n = roots.shape[0], roots.shape[1] - 1
+    for a in range(d):
+        for i in range(n):
+            at = stress_place(a, i, n)
+            x[at] = z[at] / roots[a, i]
+
+
+@compiled_for_vectors
+def rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
+    """d(dz/dt)/dz into out, (unknowns, unknowns), as LAPACK and PETSc store it: out[column, row]."""
+    (d, size), unknowns = c.drag.shape, len(z)
+    V, G, x = np.empty((d, size)), np.empty((d, size)), np.empty(unknowns)
+    J, tip = np.empty((unknowns, unknowns)), np.empty((d, unknowns))
+    _unscale(z, x, roots)
+    balance(x, V, G, c, m)
+    jacobian(x, V, J, tip, c, m)
+    scale, inverse = np.empty(unknowns), np.empty(unknowns)
+    for a in range(d):
+        for i in range(size - 1):
+            at = stress_place(a, i, size - 1)
+            inverse[at] = 1 / roots[a, i]
+            scale[at] = inverse[at] / m.weights[i]
+    for p in range(unknowns):
+        for q in range(unknowns):
+            out[q, p] = scale[p] * inverse[q] * J[p, q]
+
+
+@compiled_for_vectors
+def rates(states: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
+    """`rate` of each of the states, into out, both of shape (n, unknowns): one call for many."""
+    for i in range(len(states)):
+        rate(states[i], out[i], roots, c, m)
+
+
+@compiled_for_vectors
+def rate_jacobians(states: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
+    """`rate_jacobian` of each of the states, shape (n, unknowns), into out, (n, unknowns, unknowns)."""
+    for i in range(len(states)):
+        rate_jacobian(states[i], out[i], roots, c, m)

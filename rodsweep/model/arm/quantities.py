@@ -1,0 +1,86 @@
+"""The quantities of an arm: one table of units, meanings and how they are written, and its derived lists.
+
+Configs, files, figures and the command take units and words from here. Knows no arm and no formula.
+"""
+
+from typing import NamedTuple
+
+from ...errors import InputError
+from ..units import Given, in_si, share_of_flutter
+
+LOADS = ("pressure", "force")
+"""What may push the tip; an arm has one of them or none."""
+
+
+class Quantity(NamedTuple):
+    """A quantity of an arm: its SI unit, what it is, and how it may be written where it has a unit."""
+
+    unit: str
+    meaning: str
+    example: str = ""
+    needed: bool = False
+    """Whether no arm is without it."""
+    signed: bool = False
+    """Whether it may be 0 or negative."""
+
+
+QUANTITIES = {
+    "length": Quantity("m", "length of the arm", "10 cm", needed=True),
+    "radius": Quantity("m", "radius of the arm's circular section", "5 mm"),
+    "inner_radius": Quantity("m", "radius of the bore of the arm, closed at its tip", "3 mm"),
+    "width": Quantity("m", "width of the arm's section, across the plane of motion", "10 mm"),
+    "height": Quantity("m", "height of the arm's section, in the plane of motion", "8 mm"),
+    "young": Quantity("Pa", "Young's modulus of the arm", "100 kPa", needed=True),
+    "viscosity": Quantity("Pa*s", "viscosity of the fluid", "1.4 Pa s", needed=True),
+    "pressure": Quantity("Pa", "pressure on the tip's cross section", "2 kPa", signed=True),
+    "force": Quantity("N", "follower force at the tip", "0.16 N", signed=True),
+    "fluid_density": Quantity("kg/m^3", "density of the fluid", "1260 kg/m^3"),
+    "density_difference": Quantity(
+        "kg/m^3", "density of the arm less that of the fluid", "-160 kg/m^3", signed=True
+    ),
+    "poisson": Quantity("1", "Poisson's ratio of the arm"),
+    "drag": Quantity("1", "which member of the range of drags"),
+    **{
+        f"{load}_over_flutter": Quantity(
+            "1", f"{load} over that of the first flutter, with the likeliest drag"
+        )
+        for load in LOADS
+    },
+}
+"""All quantities that may be given."""
+UNITS = {name: (each.unit, each.example) for name, each in QUANTITIES.items() if each.example}
+"""SI unit of each quantity that has one, and how it may be written."""
+RELATIVE = {f"{load}_over_flutter": load for load in LOADS}
+"""Loads in units of that at which the arm flutters first, with the likeliest drag."""
+SECTION_SIDES = ("radius", "inner_radius"), ("width", "height")
+"""What makes a round section, and what a rectangular one."""
+ARM_UNITS = {
+    "tau2": Quantity("s", "unit of time, gamma2 L^4/k3"),
+    "force_scale": Quantity("N", "unit of force, k3/L^2"),
+    "pressure_scale": Quantity("Pa", "pressure on the tip's cross section that makes F = 1, k3/(L^2 A)"),
+}
+"""Units of time, force and pressure that an arm makes, by the names of its properties."""
+SCALE_OF = {load: f"{load}_scale" for load in LOADS}
+"""The unit of a load, which makes F = 1."""
+ALL_QUANTITIES = QUANTITIES | ARM_UNITS
+"""All that a file says of an arm beside its parameters."""
+
+
+def number_in_si(name: str, given: Given | None) -> float:
+    """A quantity of UNITS in SI; nan where it is not given, or relative to the threshold of flutter.
+
+    InputError, naming the quantity, where it may not be so.
+    """
+    if given is None or (name in LOADS and share_of_flutter(given) is not None):
+        return float("nan")
+    value = in_si(name, given, *UNITS[name])
+    if not (QUANTITIES[name].signed or value > 0):
+        raise InputError(f"{told(name, given)} is not above 0")
+    return value
+
+
+def told(name: str, given: Given) -> str:
+    """A quantity of UNITS as it was given, for a sentence."""
+    if isinstance(given, str):
+        return f"{name} = '{given}'"
+    return f"{name} = {in_si(name, given, *UNITS[name]):.6g} {UNITS[name][0]}"

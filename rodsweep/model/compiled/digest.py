@@ -1,0 +1,175 @@
+"""What a compiled function is made of: its bytecode, and all that the bytecode refers to.
+
+numba puts into a compiled function the functions that it calls and the global values that it reads. `digest`
+is equal where all of these are, whatever the comments, docstrings and line numbers, and differs where one
+differs: compiled code is kept under it (`rodsweep.model.compiled.cache`).
+"""
+
+import builtins
+import dis
+import inspect
+from collections.abc import Iterable, Iterator, Mapping, MutableMapping
+from hashlib import sha256
+from types import BuiltinFunctionType, CodeType, FunctionType, ModuleType
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import types
+from numba.core.dispatcher import Dispatcher
+
+VARIADIC = inspect.CO_VARARGS | inspect.CO_VARKEYWORDS
+"""Flags of a code object that change what is compiled."""
+READS = ("LOAD_GLOBAL", "LOAD_NAME")
+"""Instructions that read a global value."""
+PLAIN = (bool, int, float, complex, str, bytes, type(None), type(Ellipsis))
+
+
+class Part(NamedTuple):
+    """One function of a kernel: its code and constants as text, and the functions that it calls in turn."""
+
+    text: str
+    called: list["Kernel"]
+
+
+class Kernel(NamedTuple):
+    """A Python function and numba's options for it."""
+
+    function: FunctionType
+    options: str
+
+
+Parts = MutableMapping[FunctionType, Part]
+
+
+def kernel_of(function: Any, options: Mapping[str, Any]) -> Kernel:
+    """The kernel that numba makes of `function` with these options."""
+    return Kernel(function, repr(sorted((name, _ordered(value)) for name, value in options.items())))
+
+
+def digest(kernel: Kernel, parts: Parts) -> str:
+    """Digest of a kernel and of all that it calls; `parts` remembers every function that was described."""
+    texts: dict[FunctionType, str] = {}
+    due = [kernel]
+    while due:
+        function, options = due.pop()
+        if function not in texts:
+            part = parts.get(function) or _described(function, options)
+            parts[function] = part
+            texts[function] = part.text
+            due += part.called
+    return sha256("\n".join(texts.values()).encode()).hexdigest()
+
+
+def type_text(numba_type: Any) -> str:
+    """The type of an argument with the names of its fields, which numba's own name of the type leaves out.
+
+    Compiled code refers to the class of a NamedTuple by its module, so that the text names the module too.
+    TypeError: the type belongs to a function, whose code this cannot tell.
+    """
+    if isinstance(numba_type, types.Callable):
+        raise TypeError(f"kernels take no functions as arguments: {numba_type}")
+    inner = numba_type.types if isinstance(numba_type, types.BaseTuple) else ()
+    if hasattr(numba_type, "dtype") and numba_type.dtype is not numba_type:
+        inner = (*inner, numba_type.dtype)
+    fields = getattr(numba_type, "fields", "")
+    own = _name_of(numba_type.instance_class) if isinstance(numba_type, types.BaseNamedTuple) else ""
+    return f"{type(numba_type).__name__} {own} {numba_type} {fields} ({', '.join(map(type_text, inner))})"
+
+
+def _described(function: FunctionType, options: str) -> Part:
+    lines, values = [_name_of(function), options], _Values(function)
+    cells = [cell.cell_contents for cell in function.__closure__ or ()]
+    lines += map(values.text, (function.__defaults__, function.__kwdefaults__, *cells))
+    for code in _code_objects(function.__code__):
+        instructions = list(dis.get_instructions(code))
+        lines += _code_lines(code, instructions)
+        for name in dict.fromkeys(i.argval for i in instructions if i.opname in READS):
+            if name in function.__globals__:
+                lines.append(f"{name} = {values.text(function.__globals__[name])}")
+            elif not hasattr(builtins, name):
+                raise NameError(f"{_name_of(function)} reads {name}, which its module has not")
+    return Part("\n".join(lines), values.called)
+
+
+def _code_objects(code: CodeType) -> Iterator[CodeType]:
+    yield code
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _code_objects(constant)
+
+
+def _code_lines(code: CodeType, instructions: Iterable[dis.Instruction]) -> list[str]:
+    """Bytecode with constants instead of their places, which a docstring shifts."""
+    counts = code.co_argcount, code.co_posonlyargcount, code.co_kwonlyargcount, code.co_flags & VARIADIC
+    lines = [code.co_name, repr((counts, code.co_varnames, code.co_freevars, code.co_cellvars))]
+    lines.append(code.co_exceptiontable.hex())
+    for instruction in instructions:
+        value = instruction.argval
+        shown = value.co_name if isinstance(value, CodeType) else repr(_ordered(value))
+        lines.append(f"{instruction.opname} {shown}")
+    return lines
+
+
+def _ordered(value: Any) -> Any:
+    """Sets have another order in each process."""
+    return sorted(value, key=repr) if isinstance(value, set | frozenset) else value
+
+
+class _Values:
+    """Values that one function refers to, as text equal in every process; `called`: functions among them."""
+
+    def __init__(self, user: FunctionType) -> None:
+        self.user = user
+        self.called: list[Kernel] = []
+
+    def text(self, value: Any) -> str:
+        """TypeError: there is no such text for values of this type."""
+        if isinstance(value, PLAIN):
+            return repr(value)
+        if isinstance(value, Mapping):
+            return self.text(list(value.items()))
+        if isinstance(value, tuple | list):
+            return f"{self._class_text(type(value))} [{', '.join(map(self.text, value))}]"
+        if isinstance(value, type):
+            return self._class_text(value)
+        return _array_text(value) or self._object_text(value)
+
+    def _object_text(self, value: Any) -> str:
+        if hasattr(value, "_defn"):  # an intrinsic of numba's
+            value = value._defn
+        if isinstance(value, Dispatcher):
+            self.called.append(kernel_of(value.py_func, value.targetoptions))
+            return _name_of(value.py_func)
+        if isinstance(value, ModuleType) and not self._is_ours(value.__name__):
+            return value.__name__
+        if isinstance(value, FunctionType) and self._is_ours(value.__module__):
+            self.called.append(Kernel(value, ""))
+        if isinstance(value, FunctionType | BuiltinFunctionType):
+            return _name_of(value)
+        raise TypeError(f"{_name_of(self.user)}: there is no digest of {value!r}; import what it has by name")
+
+    def _class_text(self, kind: type) -> str:
+        fields = getattr(kind, "_fields", None)
+        if fields is not None:
+            return f"{_name_of(kind)} {fields} {self.text(getattr(kind, '_field_defaults', {}))}"
+        if self._is_ours(kind.__module__):
+            raise TypeError(f"{_name_of(self.user)}: {kind} is no NamedTuple")
+        return _name_of(kind)
+
+    def _is_ours(self, module: str) -> bool:
+        return module.partition(".")[0] == self.user.__module__.partition(".")[0]
+
+
+def _array_text(value: Any) -> str | None:
+    """Arrays and types of NumPy and numba; None for anything else."""
+    if isinstance(value, np.ndarray | np.generic):
+        return f"{_array_text(value.dtype)} {np.shape(value)} {value.tobytes().hex()}"
+    if isinstance(value, np.dtype):
+        return f"{value!r} {value.itemsize} {value.fields}"
+    if isinstance(value, types.ExternalFunction):
+        return f"{value.symbol} {value.sig}"
+    return type_text(value) if isinstance(value, types.Type) else None
+
+
+def _name_of(value: Any) -> str:
+    return f"{value.__module__}.{value.__qualname__}"

@@ -1,0 +1,69 @@
+"""A second scale in SI units beside a follower force, in the figures of an arm.
+
+Where the section of the file's arm is one, F is a pressure or a force at the tip in some unit: a linear or
+logarithmic axis of F gets a second scale opposite.
+"""
+
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter, MaxNLocator
+
+from ....model.arm.quantities import SCALE_OF, UNITS
+from ....results.file.view import View
+from ..style import CRITICAL_FORCE, LABELS
+
+SCALABLE = ("linear", "log")
+"""Scales whose opposite matplotlib draws at the right places."""
+MOST_TICKS = 5
+LOAD_WORDS = {"pressure": "pressure on the tip", "force": "force at the tip"}
+"""What a follower force is told in."""
+
+
+def add_si_scales(figure: Figure, views: Sequence[View]) -> None:
+    """Adds them to every axis of a follower force; none where the files have no arm, or several."""
+    load = "force" if all("force" in view.quantities for view in views) else "pressure"
+    given = [view.quantities.get(SCALE_OF[load]) for view in views]
+    units = {float(unit) for values in given if values is not None for unit in np.ravel(values)}
+    if len(units) != 1 or any(values is None for values in given):
+        return
+    (unit,) = units
+    for axes in list(figure.axes):
+        for which in ("x", "y"):
+            label, scale = (getattr(axes, f"get_{which}{what}")() for what in ("label", "scale"))
+            if label in (LABELS["F"], CRITICAL_FORCE) and scale in SCALABLE:
+                _add(_outermost(axes, which), which, unit, load)
+
+
+def _outermost(axes: Axes, which: str) -> Axes:
+    """The panel farthest from the label of an axis, of those in a line that share it."""
+    shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
+    place = axes.get_subplotspec()
+    panels = [other for other in shared.get_siblings(axes) if other.get_subplotspec() is not None]
+    if place is None or not panels:
+        return axes
+    if which == "x":
+        column = [other for other in panels if other.get_subplotspec().colspan == place.colspan]
+        return min(column, key=lambda other: other.get_subplotspec().rowspan.start)
+    row = [other for other in panels if other.get_subplotspec().rowspan == place.rowspan]
+    return max(row, key=lambda other: other.get_subplotspec().colspan.start)
+
+
+def _add(axes: Axes, which: str, unit: float, load: str) -> None:
+    """A scale opposite to an axis, whose numbers are the axis' times `unit`."""
+    symbol, word = UNITS[load][0], LOAD_WORDS[load]
+    largest = unit * max(map(abs, getattr(axes, f"get_{which}lim")()))
+    power = 3 * int(np.floor(np.log10(largest) / 3)) if largest > 0 else 0
+    power = int(np.clip(power, min(EngFormatter.ENG_PREFIXES), max(EngFormatter.ENG_PREFIXES)))
+    unit, symbol = unit * 10.0**-power, EngFormatter.ENG_PREFIXES[power] + symbol
+    functions = partial(np.multiply, unit), partial(np.multiply, 1 / unit)
+    if which == "x":
+        second = axes.secondary_xaxis("top", functions=functions)
+        second.set_xlabel(f"{word} ({symbol})")
+    else:
+        second = axes.secondary_yaxis("right", functions=functions)
+        second.set_ylabel(f"{word} ({symbol})")
+    getattr(second, f"{which}axis").set_major_locator(MaxNLocator(MOST_TICKS))

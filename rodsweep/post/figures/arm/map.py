@@ -1,0 +1,206 @@
+"""Results over an arm's own quantities, in the units that were typed: lines over one, maps over two.
+
+The points of the file are the centres of cells. Where the model does not apply, or no rod covers the arm, a
+cell is hatched.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from ....arrays import Array
+from ....config.arm.axes import CRUSHED, NO_FLUTTER, NO_WALL, NOT_SLENDER
+from ....model.arm.drag import DRAGS
+from ....model.arm.neglected import Validity
+from ....model.arm.quantities import ARM_UNITS
+from ....results.file.view import View
+from ...summary.arm.arm import word
+from .. import style
+from ..cycle.point_map import cell_edges
+from ..request import FigureRequest
+from .panels import PANELS, Panel
+from .quantities import in_typed, quantity_text
+
+MAPS = ("map", "maps")
+"""What may be asked for of a task that has several figures."""
+HATCHES: tuple[tuple[str, int, str, dict[str, Any]], ...] = (
+    ("model_applies", Validity.doubtful, "model doubtful", {"fc": "none", "hatch": "..."}),
+    ("model_applies", Validity.does_not_apply, "model does not apply", {"fc": "none", "hatch": "////"}),
+    ("status", NOT_SLENDER, "shorter than 10 radii", {"fc": "0.85", "hatch": ""}),
+    ("status", CRUSHED, "crushed", {"fc": "0.65", "hatch": ""}),
+    ("status", NO_FLUTTER, "no flutter", {"fc": "0.75", "hatch": ""}),
+    ("status", NO_WALL, "no wall", {"fc": "0.45", "hatch": ""}),
+)
+"""Which cells are covered: the variable, its value, what the legend says, and how; later ones lie above."""
+DRAG = "drag"
+BAND = 0.25
+"""Opacity of the band between the least and the largest number over the drags."""
+WITHOUT: dict[str, Any] = {"fc": "#E8EDF2"}
+HATCHING = "0.35"
+
+
+def draw_arm_map(request: FigureRequest) -> str:
+    """The main numbers of a task over the axes of an arm: two panels, of lines or of maps."""
+    view = replace(request, what=None).only_view()
+    long = [name for name in view.over if len(view.variables[name]) > 1] or list(view.over[:1])
+    if DRAG in long and long[1:]:  # drawn as a band, or of one drag
+        long.remove(DRAG)
+    axes = sorted(long, key=lambda name: -len(view.variables[name]))[:2]
+    x = next(name for name in view.over if name in axes)
+    y = next((name for name in view.over if name in axes and name != x), "")
+    first = {name: 0 for name in view.over if name not in axes}
+    if DRAG in first:  # the likeliest is the first of those that are there
+        first[DRAG] = int(np.argmin(view.variables[DRAG]))
+    place = tuple(first.get(name, slice(None)) for name in view.over)
+    panels = PANELS[view.task](view)
+    style.need(view, any(np.isfinite(panel.values[place]).any() for panel in panels), "number")
+    figure, drawn = _panels(len(panels), request.look.narrow, bool(y))
+    handles: list[Artist] = []
+    for subplot, panel in zip(drawn, panels, strict=True):
+        if y:
+            handles = [*handles, *_map(subplot, panel, view, (x, y), place)]
+        else:
+            handles = [*handles, *_lines(subplot, panel, view, x, place)]
+    covers = [
+        _cover(subplot, view, panel, (x, y), place) for subplot, panel in zip(drawn, panels, strict=True)
+    ]
+    style.legend_below(figure, [*_once(handles), *covers[0]], columns=3)
+    banded = [DRAG] if not y and DRAG in first else []
+    figure.suptitle(style.heading(view, _fixed(view, axes + banded)))
+    return request.write(
+        figure, f"{' and '.join(p.label for p in panels)} over {' and '.join(map(word, axes))}"
+    )
+
+
+def _once(handles: Sequence[Artist]) -> list[Artist]:
+    """Entries of a legend, of those that say the same the first."""
+    return list({str(handle.get_label()): handle for handle in reversed(handles)}.values())[::-1]
+
+
+def can_draw(request: FigureRequest) -> bool:
+    """Whether a figure is one over an arm's quantities: of its tasks, and nothing else is asked for."""
+    view = request.views[0]
+    chosen = request.what not in (None, *MAPS) or request.points or request.roots
+    return bool(view.over) and view.task in PANELS and not chosen
+
+
+def _axis(view: View, name: str) -> tuple[Array, str]:
+    """(values along an axis, its label)."""
+    values = view.variables[name]
+    if name in style.LABELS:
+        return values, style.LABELS[name]
+    values, unit = in_typed(view, name, values)
+    return values, word(name) + (f" ({unit})" if unit else "")
+
+
+def _panels(count: int, narrow: bool, maps: bool) -> tuple[Figure, list[Axes]]:
+    """Panels side by side, or one above the other."""
+    across = maps and not narrow
+    size = (4.8 * count, 4.4) if across else (4.6, 2.9 * count)
+    apart = ConstrainedLayoutEngine(wspace=0.06 if across else 0.0)  # a bar's label is that of its own panel
+    figure = Figure(figsize=size, layout=apart)
+    shape = (1, count) if across else (count, 1)
+    return figure, list(figure.subplots(*shape, sharex=True, sharey=maps, squeeze=False).ravel())
+
+
+def _map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], place: Any) -> list[Artist]:
+    """A panel as colours over two axes; returns what the legend says of its line."""
+    (x, x_label), (y, y_label) = (_axis(view, name) for name in names)
+    values = np.ma.masked_invalid(panel.values[place].T)
+    style.colour_cells(axes, (cell_edges(x), cell_edges(y)), panel.values[place].T, panel.label)
+    handles: list[Artist] = []
+    if panel.turns and values.min() < 0 < values.max():
+        axes.contour(x, y, values, [0.0], colors="k", linewidths=1.4)
+        handles.append(Line2D([], [], color="k", lw=1.4, label=panel.turns))
+    style.scale(axes, "x", x)
+    style.scale(axes, "y", y)
+    subplot = axes.get_subplotspec()
+    if subplot is None or subplot.is_last_row():
+        axes.set_xlabel(x_label)
+    if subplot is None or subplot.is_first_col():
+        axes.set_ylabel(y_label)
+    return handles
+
+
+def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[Artist]:
+    """A panel as lines over one axis; returns what the legend says of them."""
+    x, label = _axis(view, name)
+    colours = (style.SECOND, style.FIRST, style.THIRD)
+    handles: list[Artist] = []
+    for colour, (line, values) in zip(colours, (panel.lines or {"": panel.values}).items(), strict=False):
+        style_of_line = "o" if name == DRAG else "-o"
+        axes.plot(x, values[place], style_of_line, ms=2.5, lw=1.2, color=colour)
+        handles += _band(axes, view, name, values, place, colour)
+        if line and np.isfinite(values[place]).any():
+            handles.append(Line2D([], [], color=colour, marker="o", ms=2.5, lw=1.2, label=line))
+    style.scale(axes, "x", x)
+    if name == DRAG:
+        axes.set_xticks(x, [DRAGS[int(drag)].replace("_", "\n") for drag in x], rotation=90)
+    subplot = axes.get_subplotspec()
+    if subplot is None or subplot.is_last_row():
+        axes.set_xlabel(label)
+    axes.set_ylabel(panel.of_lines if sum(isinstance(each, Line2D) for each in handles) > 1 else panel.label)
+    return handles
+
+
+def _band(axes: Axes, view: View, x: str, values: Array, place: Any, colour: str) -> list[Artist]:
+    """The band of a number, on the grid of points, over the drags of the file; returns its legend entry.
+
+    Where some of the drags have no number it is drawn from those that have one.
+    """
+    if DRAG not in view.over or x == DRAG or len(view.variables[DRAG]) < 2:
+        return []
+    drag = view.over.index(DRAG)
+    whole = np.moveaxis(values, drag, -1)[tuple(each for i, each in enumerate(place) if i != drag)]
+    low, high = (extreme.reduce(whole, axis=-1) for extreme in (np.fmin, np.fmax))
+    axes.fill_between(_axis(view, x)[0], low, high, color=colour, alpha=BAND, lw=0, zorder=1)
+    return [Patch(color="0.3", alpha=BAND, lw=0, label=f"range of drag (line: {_drag_of(view)})")]
+
+
+def _drag_of(view: View) -> str:
+    """The drag that is drawn as a line, in words."""
+    return DRAGS[int(view.variables[DRAG].min())].replace("_", " ")
+
+
+def _cover(axes: Axes, view: View, panel: Panel, names: tuple[str, str], place: Any) -> list[Artist]:
+    """Hatches cells in which the model does not apply, or no rod covers the arm; returns legend entries."""
+    x, y = names
+    rods = view.variables["status"][place] < NOT_SLENDER
+    empty = [(rods & np.isnan(panel.values[place]), panel.without, WITHOUT)] if y else []
+    across = cell_edges(_axis(view, x)[0])
+    limits = axes.get_ylim()
+    up = cell_edges(_axis(view, y)[0]) if y else np.array(limits)
+    handles: list[Artist] = []
+    for variable, value, says, look in HATCHES:
+        there = view.variables[variable][place] == value
+        empty.append((there if variable == "status" else there & rods, says, look))
+    for there, says, look in empty:
+        for i, j in np.argwhere(there if y else there[:, None]):
+            corner = across[[i, i + 1]], up[[j, j + 1]]
+            axes.fill_between(corner[0], *corner[1], ec=HATCHING, lw=0, zorder=3 if y else 0, **look)
+        if there.any():
+            handles.append(Patch(label=says, ec=HATCHING, lw=0.5, **look))
+    axes.set_xlim(across[0], across[-1])
+    axes.set_ylim(up[0], up[-1]) if y else axes.set_ylim(limits)
+    return handles
+
+
+def _fixed(view: View, drawn: list[str]) -> str:
+    """The quantities that are not along an axis of the figure, with their values."""
+    told = []
+    for name, values in view.quantities.items():
+        if name in drawn or name in ARM_UNITS:
+            continue
+        if np.size(values) > 1 and name not in view.over:  # as the load that one relative to flutter is
+            continue
+        more = f" (of {len(values)} values)" if np.size(values) > 1 else ""
+        told.append(quantity_text(view, name, float(np.min(values))) + more)
+    return ", ".join(told)

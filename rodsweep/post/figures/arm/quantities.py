@@ -1,0 +1,70 @@
+"""An arm's quantities as figures name them: in words, in the units in which they were typed."""
+
+from math import isclose
+from typing import Any
+
+import numpy as np
+
+from ....arrays import Array
+from ....config.arm.axes import ALONG
+from ....model.arm.arm import SlenderArm
+from ....model.arm.drag import DRAGS
+from ....model.arm.quantities import ALL_QUANTITIES, ARM_UNITS, RELATIVE
+from ....model.units import written_in
+from ....results.file.view import View
+from ...summary.arm.arm import word
+
+TOGETHER = "\N{NO-BREAK SPACE}"
+"""Between a number and its unit, which no line of a figure parts."""
+
+SAME_NUMBER = 1e-9
+"""Relative distance within which a parameter is that of the arm, made once more from its quantities."""
+
+
+def in_typed(view: View, name: str, values: Array, si: str = "") -> tuple[Array, str]:
+    """(values of a quantity, of any shape, in the unit in which it was typed, that unit)."""
+    si = si or ALL_QUANTITIES[name].unit
+    unit = view.typed.get(name, si)
+    return (values, "") if si == "1" else (values * written_in(1.0, unit, si), unit)
+
+
+def quantity_text(view: View, name: str, value: float) -> str:
+    """A quantity with its value as it was typed: `length 12 cm`."""
+    if name == "drag":
+        return f"{name}{TOGETHER}{DRAGS[int(value)].replace('_', TOGETHER)}"
+    shown, unit = in_typed(view, name, np.array([value]))
+    unit = unit.replace("^3", "$^3$").replace("*", " ").replace(" ", TOGETHER)
+    return f"{word(name)}{TOGETHER}{shown[0]:.4g}{TOGETHER}{unit}".rstrip(TOGETHER)
+
+
+def given_quantities(view: View) -> list[str]:
+    """The quantities that make the arm of a file; its units of time, force and pressure follow from them."""
+    return [name for name in view.quantities if name not in (*ARM_UNITS, *RELATIVE)]
+
+
+def at_point(view: View, name: str, number: int) -> float:
+    """A quantity at a point of a grid of parameters or of a list, numbered from 1."""
+    values = np.asarray(view.variables[name])
+    if values.size == 1:
+        return float(values.ravel()[0])
+    if view.is_grid:  # along the one parameter that it moves
+        shape = view.variables["status"].shape
+        return float(values[np.unravel_index(number - 1, shape)[view.parameters.index(ALONG[name])]])
+    return float(values.ravel()[number - 1])
+
+
+def replaced(view: View, number: int) -> dict[str, float]:
+    """The parameters at a point, numbered from 1, that were given beside the arm instead of its own."""
+    given: dict[str, Any] = {name: at_point(view, name, number) for name in given_quantities(view)}
+    if "drag" in given:
+        given["drag"] = DRAGS[int(given["drag"])]
+    own = SlenderArm(**given)
+    columns = view.point_columns
+    at = {name: float(columns[name][number - 1]) for name in view.parameters}
+    if own.load:
+        at.pop("F", None)
+    return {
+        name: value
+        for name, value in at.items()
+        if name == "F" or not isclose(value, getattr(own, name), rel_tol=SAME_NUMBER)
+    }

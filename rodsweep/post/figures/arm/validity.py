@@ -1,0 +1,84 @@
+"""Where the model does not apply to an arm, in the figures of a rod: hatched along F, and told above them."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ....arrays import Array
+from ....model.arm.neglected import Validity
+from ....results.file.view import View
+from ..cycle.point_map import cell_edges
+from ..style import LABELS
+
+HATCH, HATCHING = "////", "0.6"
+
+
+def add_validity(figure: Figure, views: Sequence[View]) -> None:
+    """Hatches what it can of a figure of arms, and says above it where the model does not apply."""
+    outside = [_outside(view) for view in views if "model_applies" in view.variables]
+    number, count = (sum(map(each, outside)) for each in (np.count_nonzero, np.size))
+    if not number:
+        return
+    along = _varied(views[0]) if len(views) == 1 else []
+    hatched = bool(along) and _hatch(figure, views[0], along, outside[0])
+    where = "" if number == count else f" at {number} of {count} points"
+    note = "hatched: the model does not apply" if hatched else f"the model does not apply{where}"
+    before = figure.get_suptitle()
+    figure.suptitle(f"{before}\n{note}".strip())
+
+
+def _outside(view: View) -> np.ndarray:
+    return np.asarray(view.variables["model_applies"] == Validity.does_not_apply)
+
+
+def _varied(view: View) -> list[str]:
+    """The parameters of a grid's points that have several values; the rows of a diagram have one."""
+    return [name for name in view.parameters if len(view.axes[name]) > 1] if view.is_grid else []
+
+
+def _hatch(figure: Figure, view: View, along: list[str], outside: np.ndarray) -> bool:
+    """Hatches the cells over one parameter, or over two; whether any panel has such axes."""
+    cells = np.squeeze(outside)
+    edges = [cell_edges(view.axes[name]) for name in along]
+    done = False
+    for axes in list(figure.axes):
+        labels = [_label(axes, which) for which in "xy"]
+        for which, label in zip("xy", labels, strict=True):
+            if len(along) == 1 and label == LABELS[along[0]]:
+                _spans(axes, which, edges[0], cells)
+                done = True
+        if len(along) == 2 and labels == [LABELS[name] for name in along]:
+            _cells(axes, edges, cells)
+            done = True
+    return done
+
+
+def _label(axes: Axes, which: str) -> str:
+    """The label of an axis, or of one that is shared with it."""
+    shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
+    labels = [getattr(each, f"get_{which}label")() for each in (axes, *shared.get_siblings(axes))]
+    return next(filter(None, labels), "")
+
+
+def _spans(axes: Axes, which: str, edges: Array, there: np.ndarray) -> None:
+    """Hatches the cells of an axis, across the panel."""
+    limits = axes.get_xlim() if which == "x" else axes.get_ylim()
+    hatch = axes.axvspan if which == "x" else axes.axhspan
+    low, high = sorted(limits)
+    for i in np.flatnonzero(there):
+        left, right = np.clip(edges[[i, i + 1]], low, high)
+        hatch(left, right, fc="none", ec=HATCHING, hatch=HATCH, lw=0, zorder=0 if which == "x" else 3)
+    axes.set(**{f"{which}lim": limits})
+
+
+def _cells(axes: Axes, edges: list[Array], there: np.ndarray) -> None:
+    """Hatches the cells of a map, (nx, ny)."""
+    limits = axes.get_xlim(), axes.get_ylim()
+    for i, j in np.argwhere(there):
+        axes.fill_between(
+            edges[0][[i, i + 1]], *edges[1][[j, j + 1]], fc="none", ec=HATCHING, hatch=HATCH, lw=0, zorder=3
+        )
+    axes.set_xlim(limits[0])
+    axes.set_ylim(limits[1])

@@ -1,0 +1,176 @@
+"""Cycles over a parameter: amplitudes of the tip, as in the paper's Fig. 6, the period and the power."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from .....config.arm.axes import MOVES
+from .....config.limit_cycle import LONGEST
+from .....errors import InputError
+from .....results.file.view import View
+from ...style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, need, plain, scale
+from ..selection import CYCLE_WORDS, arms_told_apart, told_apart
+from ..units import units_over
+from .branches import AmplitudeBranch, abscissa, branches_of
+from .hopf_marks import draw_laws, mark_hopf_points
+
+BRANCH_LOOKS = tuple(
+    zip((FIRST, SECOND, THIRD, "#CC79A7", "#56B4E9", "#000000"), ("o", "s", "^", "D", "v", "P"), strict=True)
+)
+"""Colour, of Okabe and Ito, and marker of each branch."""
+LEAST_FOR_ARROW = 4
+"""Points of a line that has an arrow."""
+UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 3}
+"""Open markers, on those of the branch, for cycles that nothing stays on."""
+
+
+def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure, str]:
+    """Half the reach of the tip's x, its largest y, the period and the power against F.
+
+    A straight arm has the amplitude 0 and no period. narrow: whether the panels are below each other.
+    """
+    first = views[0]
+    name = abscissa(first)
+    every = [np.arange(view.variables["status"].size) for view in views]
+    units = units_over(views, every)
+    pairs = zip(views, units, strict=True)
+    branches = [branch for view, drawn_in in pairs for branch in branches_of(view, name, drawn_in)]
+    if len(branches) > len(BRANCH_LOOKS):
+        raise InputError(
+            f"{first.path} makes {len(branches)} lines over {name}, for which a figure has no room; "
+            f"it has room for {len(BRANCH_LOOKS)}: choose by --at k1=150, or draw two parameters, each"
+            " combination once, as maps (--what maps)"
+        )
+    need(first, any(np.isfinite(branch.amplitude_y).any() for branch in branches), "amplitude")
+    figure = Figure(figsize=(4.4, 8.4) if narrow else (8.6, 5.6), layout="constrained")
+    panels = figure.subplots(*((4, 1) if narrow else (2, 2)), sharex=True).T.ravel()
+    shared, own = _names(branches, name)
+    handles = _draw_branches(panels, branches, own, _file_words(views, name))
+    colours = (colour for colour, _ in BRANCH_LOOKS)
+    marks = [
+        (point, colour) for branch, colour in zip(branches, colours, strict=False) for point in branch.hopf
+    ]
+    handles += mark_hopf_points(panels, marks)
+    handles += draw_laws(
+        panels[1], [law for branch in branches for law in branch.laws], units[0].names[0] * units[0].in_si
+    )
+    _label(panels, name, units[0].labels_over)
+    for panel in panels:
+        scale(panel, "x", np.unique(branches[0].x))
+    if legend := [handle for handle in handles if handle.get_label()]:
+        legend_below(figure, legend, columns=min(2, len(legend)))
+    figure.suptitle(heading(first, shared))
+    return figure, f"amplitudes of the tip, period and power against {name}"
+
+
+def _draw_branches(
+    panels: Sequence[Axes],
+    branches: Sequence[AmplitudeBranch],
+    texts: Sequence[str],
+    words: dict[Path, tuple[str, bool | None]],
+) -> list[Line2D]:
+    """All branches in both panels; returns what the legend says: texts of each, words of each file."""
+    handles, lost = [], set[str]()
+    for branch, text, (colour, marker) in zip(branches, texts, BRANCH_LOOKS, strict=False):
+        look: dict[str, Any] = {"color": colour, "marker": marker, "lw": 1.2, "ms": 3.5}
+        if branch.view is not branches[0].view:  # open, larger markers leave an earlier file's to be seen
+            look |= {"mfc": "none", "ms": 6.5, "ls": "--"}
+        word, upward = words[branch.view.path]
+        handles.append(Line2D([], [], label=", ".join(filter(None, (word, text))), **look))
+        lost |= _draw_branch(panels, branch, look)
+        if upward is not None:
+            _show_direction(panels, branch, upward, colour)
+    if any("unstable" in branch.words for branch in branches):
+        handles.append(Line2D([], [], color="0.3", marker="o", label="unstable cycle", **UNSTABLE_LOOK))
+    if lost:
+        label = ", ".join(sorted(lost)) + " (at the top)"
+        handles.append(Line2D([], [], color="0.3", marker="x", ls="", ms=5, label=label))
+    return handles
+
+
+def _file_words(views: Sequence[View], name: str) -> dict[Path, tuple[str, bool | None]]:
+    """What the legend calls each of several files, and whether its chains go upwards where that is said.
+
+    Files that were followed along the axis in both directions are told apart by these, others by their names.
+    """
+    if len(views) == 1:
+        return {views[0].path: ("", None)}
+    options = [
+        json.loads(view.attributes.get("config_resolved", "{}")).get("limit_cycle", {}) for view in views
+    ]
+    followed = all(
+        chosen.get("start") == "neighbour" and chosen.get("along", LONGEST) in (name, LONGEST)
+        for chosen in options
+    )
+    directions = [chosen.get("direction", "up") for chosen in options]
+    if not followed or len(set(directions)) < len(views):
+        return {view.path: (plain(view.path.stem), None) for view in views}
+    words = {"up": f"${SYMBOLS[name]}$ rising", "down": f"${SYMBOLS[name]}$ falling"}
+    return {
+        view.path: (words[direction], direction == "up")
+        for view, direction in zip(views, directions, strict=True)
+    }
+
+
+def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: bool, colour: str) -> None:
+    """An arrow beside each line, the way it was followed."""
+    for axes, values in zip(panels, branch.measures, strict=True):
+        known = np.flatnonzero(np.isfinite(values))
+        if len(known) < LEAST_FOR_ARROW:
+            continue
+        ends = known[len(known) * 3 // 4 - 1], known[len(known) * 3 // 4]
+        here, there = ends if upward else ends[::-1]
+        axes.annotate(
+            "",
+            (branch.x[there], values[there]),
+            (branch.x[here], values[here]),
+            arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.2, "mutation_scale": 14},
+            zorder=4,
+        )
+
+
+def _names(branches: Sequence[AmplitudeBranch], name: str) -> tuple[str, list[str]]:
+    """(what all branches over a parameter share, what tells each from the others); of an arm in its units."""
+    view = branches[0].view
+    if branches[0].units.in_si and all(branch.view is view for branch in branches):
+        along = {name, *(quantity for quantity, moved in MOVES.items() if moved == name)}
+        return arms_told_apart(view, [branch.first for branch in branches], along)
+    return told_apart([branch.parameters for branch in branches])
+
+
+def _label(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> None:
+    """Axes and their labels: 0, of straight arms, is drawn, and a little below it shown."""
+    for axes, label in zip(panels, labels, strict=True):
+        height = axes.dataLim.y1 if np.isfinite(axes.dataLim.y1) and axes.dataLim.y1 > 0 else 1.0
+        axes.set_ylim(-0.04 * height, 1.1 * height)
+        axes.axhline(0, color="0.8", lw=0.6, zorder=0)
+        axes.set_ylabel(label)
+        place = axes.get_subplotspec()
+        if place is not None and place.is_last_row():
+            axes.set_xlabel(LABELS[name])
+
+
+def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, look: dict[str, Any]) -> set[str]:
+    """A branch in both panels, unstable cycles open; returns what became of points without an amplitude."""
+    unstable = branch.words == "unstable"
+    lost: set[str] = set()
+    for axes, values in zip(panels, branch.measures, strict=True):
+        axes.plot(*branch.broken_at_onset(values), **look)
+        if unstable.any():
+            axes.plot(branch.x[unstable], values[unstable], **look | UNSTABLE_LOOK)
+        lost |= _mark_unknown(axes, branch, look["color"])
+    return lost
+
+
+def _mark_unknown(axes: Axes, branch: AmplitudeBranch, colour: str) -> set[str]:
+    """Marks at the top where no amplitude is known; returns what became of those points."""
+    lost = ~np.isin(branch.words, (*CYCLE_WORDS, "straight", "missing"))
+    for x in branch.x[lost]:
+        axes.plot(x, 1.0, "x", color=colour, ms=5, clip_on=False, transform=axes.get_xaxis_transform())
+    return {str(word).replace("_", " ") for word in branch.words[lost]}

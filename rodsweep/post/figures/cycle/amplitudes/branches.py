@@ -1,0 +1,97 @@
+"""The cycles of a file as branches over one parameter: amplitudes of the tip, periods, powers."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .....arrays import Array
+from .....errors import InputError
+from .....results.file.view import View
+from .....sweep.points.lines import lines_over
+from ....hopf_points import Located, StoredChanges
+from ..selection import CYCLE_WORDS, outcomes
+from ..units import PLAIN_UNITS, CycleUnits
+from .square_root import SquareRootLaw, square_root_laws
+
+
+@dataclass(frozen=True, slots=True)
+class AmplitudeBranch:
+    """Points in the order of the file that differ in one parameter only; amplitudes NaN where unknown.
+
+    parameters: the other ones, by name; power: of the force, the mean over a period; units: of all of
+    these; words: of the status; all arrays have the shape (points,); hopf: the Hopf points along the
+    branch, none where it is not over F.
+    """
+
+    view: View
+    parameters: dict[str, float]
+    x: Array
+    amplitude_x: Array
+    amplitude_y: Array
+    period: Array
+    power: Array
+    words: NDArray[np.str_]
+    hopf: list[Located]
+    units: CycleUnits
+    first: int
+    """The number of its first point in the file, from 1."""
+
+    @property
+    def measures(self) -> tuple[Array, ...]:
+        """What each panel shows, in the order of the panels."""
+        return self.amplitude_x, self.amplitude_y, self.period, self.power
+
+    @property
+    def laws(self) -> list[SquareRootLaw]:
+        """The square-root laws that the largest y follows next to the Hopf points."""
+        return square_root_laws(self.x, self.amplitude_y, self.hopf)
+
+    def broken_at_onset(self, values: Array) -> tuple[Array, Array]:
+        """(x, values) with a gap between a straight arm and a beating one: a line would invent a slope."""
+        straight = self.words == "straight"
+        change = np.flatnonzero(straight[1:] != straight[:-1]) + 1
+        return np.insert(self.x, change, np.nan), np.insert(values, change, np.nan)
+
+
+def abscissa(view: View) -> str:
+    """The parameter against which is drawn: F, or the one with most values where F is fixed."""
+    sizes = {name: len(np.unique(column)) for name, column in view.point_columns.items()}
+    name = "F" if sizes["F"] > 1 else max(sizes, key=sizes.__getitem__)
+    if sizes[name] < 2:
+        raise InputError(f"{view.path} holds one point; amplitudes are drawn against F where it has values")
+    return name
+
+
+def branches_of(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[AmplitudeBranch]:
+    """The file's points, one branch for each combination of the parameters other than `name`."""
+    words, v = outcomes(view), view.variables
+    straight, cycle = words == "straight", np.isin(words, CYCLE_WORDS)
+    reach = (v["tip_x_max"] - v["tip_x_min"]).ravel() / 2
+    along_x, along_y = (
+        units.length * np.where(straight, 0.0, np.where(cycle, values, np.nan))
+        for values in (reach, v["tip_y_max"].ravel())
+    )
+    period = units.time * np.where(cycle, v["period"].ravel(), np.nan)
+    power = units.power * np.where(cycle, v["injection_mean"].ravel(), np.nan)
+    branches = []
+    stored = StoredChanges(view, "F")
+    for line in lines_over(view.point_columns, name):
+        changes = stored.on(line) if name == "F" else []
+        at, hopf = line.at, [change for change in changes if isinstance(change, Located) and change.is_hopf]
+        branches.append(
+            AmplitudeBranch(
+                view=view,
+                parameters=line.parameters,
+                x=line.x,
+                amplitude_x=along_x[at],
+                amplitude_y=along_y[at],
+                period=period[at],
+                power=power[at],
+                words=words[at],
+                hopf=hopf,
+                units=units,
+                first=int(at[0]) + 1,
+            )
+        )
+    return branches

@@ -1,0 +1,84 @@
+"""What a figure over F shows of Hopf points: where they lie, and the square-root law of amplitudes there."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from ....hopf_points import Located
+from ....summary.ranges import rounded
+from ...style import SYMBOLS
+from .square_root import SquareRootLaw
+
+HOPF_SYMBOL = rf"{SYMBOLS['F']}_{{**}}"
+HOPF_WORDS = {"hopf": f"${HOPF_SYMBOL}$", "restabilization": "restabilization"}
+"""What the legend calls a Hopf point above which the rod is unstable, and one above which it is stable."""
+HOPF_DIGITS = 6
+"""To which a Hopf point is written in a legend."""
+DOTTED: dict[str, Any] = {"ls": ":", "lw": 1.1}
+SHARED_GREY, LAW_GREY = "0.3", "0.45"
+COEFFICIENT_DIGITS = 3
+"""To which a coefficient is written at most."""
+MOST_COEFFICIENTS = 3
+"""Coefficients of square-root laws that one line of a legend can hold."""
+
+
+def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[Located, str]]) -> list[Line2D]:
+    """A vertical dotted line at each Hopf point in its branch's colour; returns what the legend says.
+
+    One that several branches share is drawn once, in grey; where a kind has one position the legend names it.
+    """
+    handles = []
+    for kind, word in HOPF_WORDS.items():
+        own = [mark for mark in marks if mark[0].kind == kind]
+        places: list[tuple[Located, set[str]]] = []
+        for point, colour in own:
+            same = next((colours for other, colours in places if other.agrees(point)), None)
+            if same is None:
+                places.append((point, {colour}))
+            else:
+                same.add(colour)
+        for point, colours in places:
+            colour = colours.pop() if len(colours) == 1 else SHARED_GREY
+            for axes in panels:
+                axes.axvline(point.position, color=colour, zorder=0.5, **DOTTED)
+        if len(places) == 1:
+            equals = f"{word} = " if kind == "hopf" else rf"{word} at $\tilde F$ = "
+            handles.append(
+                Line2D(
+                    [], [], color=colour, label=f"{equals}{places[0][0].position:.{HOPF_DIGITS}g}", **DOTTED
+                )
+            )
+        elif places:
+            handles.append(Line2D([], [], color=SHARED_GREY, label=word, **DOTTED))
+    return handles
+
+
+def draw_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str = "") -> list[Line2D]:
+    """The square-root laws as dashed curves; returns what the legend says: formula and coefficients.
+
+    unit: of the coefficients, empty where that is L.
+    """
+    handles = []
+    for above in (True, False):
+        here = [law for law in laws if law.above == above]
+        if not here:
+            continue
+        look: dict[str, Any] = {"color": LAW_GREY, "lw": 1.0, "ls": (0, (5, 2.5))}
+        for law in here:
+            axes.plot(*law.curve(), zorder=1.5, **look)
+        difference = rf"\tilde F - {HOPF_SYMBOL}" if above else rf"{HOPF_SYMBOL} - \tilde F"
+        formula = rf"$a\sqrt{{({difference})/{HOPF_SYMBOL}}}$, $a$ = {_coefficients(here)} {unit}".rstrip()
+        handles.append(Line2D([], [], label=formula, **look))
+    return handles
+
+
+def _coefficients(laws: Sequence[SquareRootLaw]) -> str:
+    """Those of the laws that differ in what is written, or their range where they are many."""
+    ordered = sorted(laws, key=lambda law: law.coefficient)
+    each = {law: rounded(law.coefficient, law.error, COEFFICIENT_DIGITS) for law in laws}
+    texts = list(dict.fromkeys(each.values()))
+    if len(texts) > MOST_COEFFICIENTS:
+        return f"{each[ordered[0]]} to {each[ordered[-1]]}"
+    return ", ".join(texts)

@@ -1,0 +1,79 @@
+"""Spectra without an axis: the eigenvalues of one point in their plane, and those of a list's points."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from ....results.file.view import View
+from ..lists import number_points, shared_parameters
+from ..style import FIRST, SECOND, heading, legend_below, need, parameter_text
+
+SPREAD = 100.0
+"""Largest eigenvalue in units of the smallest from which on their axes are logarithmic but near 0."""
+LEAST_OF_LARGEST = 1e-6
+"""In units of the largest eigenvalue: what is nearer to 0 is not spread out."""
+FEW = 0.1
+"""Share of the numbers that is on the linear part of such an axis."""
+LOOKS = {True: (SECOND, "s", "growing mode"), False: (FIRST, "o", "decaying mode")}
+"""Colour, marker and word of modes, by whether they grow."""
+MOST_NUMBERED = 8
+"""Modes whose numbers have room beside their marks."""
+
+
+def draw_eigenvalues(view: View) -> Figure:
+    """The stored eigenvalues of the only point in the complex plane, numbered as in the file."""
+    modes = len(view.variables["mode"])
+    growth, frequency = (view.variables[name].reshape(modes) for name in ("growth_rate", "frequency"))
+    need(view, np.isfinite(growth).any(), "computed point")
+    figure = Figure(figsize=(5.2, 4.0), layout="constrained")
+    axes = figure.subplots()
+    handles = _mark(axes, growth, frequency, growth > 0)
+    spread(axes, growth, frequency)
+    for place in range(min(modes, MOST_NUMBERED)):
+        if np.isfinite(growth[place]):
+            at = growth[place], frequency[place]
+            axes.annotate(str(place + 1), at, (5, 5), textcoords="offset points", size=8)
+    axes.axvline(0, color="0.5", lw=0.6)
+    axes.axhline(0, color="0.8", lw=0.6, zorder=0)
+    axes.margins(0.12)
+    axes.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
+    legend_below(figure, handles, columns=2)
+    figure.suptitle(heading(view, parameter_text(shared_parameters(view))))
+    return figure
+
+
+def draw_list_of_spectra(view: View) -> Figure:
+    """Growth rates and frequencies of every point of a list, in its order: nothing joins its points."""
+    growth, frequency = view.variables["growth_rate"], view.variables["frequency"]
+    figure = Figure(figsize=(5.2, 5.4), layout="constrained")
+    panels = figure.subplots(2, 1, sharex=True)
+    number = np.broadcast_to(np.arange(1, len(growth) + 1)[:, None], growth.shape)
+    for axes, values, part in zip(panels, (growth, frequency), ("Re", "Im"), strict=True):
+        handles = _mark(axes, number, values, growth > 0)
+        spread(axes, None, values)
+        axes.axhline(0, color="0.5", lw=0.6, zorder=0)
+        axes.set_ylabel(rf"$\mathrm{{{part}}}\,\omega\,\tau_2$")
+    number_points(panels[1], view, len(growth))
+    legend_below(figure, handles, columns=2)
+    figure.suptitle(heading(view, parameter_text(shared_parameters(view))))
+    return figure
+
+
+def _mark(axes: Axes, x: np.ndarray, y: np.ndarray, grows: np.ndarray) -> list[Line2D]:
+    """A mark at each (x, y), all arrays of one shape; returns what the legend says of those there are."""
+    handles = []
+    for kind, (colour, marker, word) in LOOKS.items():
+        there = (grows == kind) & np.isfinite(y)
+        if there.any():
+            handles += axes.plot(x[there], y[there], marker, color=colour, mfc="none", ms=4.5, label=word)
+    return handles
+
+
+def spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
+    """Makes those axes logarithmic but near 0 whose numbers, of any shape, are of very different size."""
+    for set_scale, values in ((axes.set_xscale, x), (axes.set_yscale, y)):
+        sizes = np.abs(values[np.isfinite(values) & (values != 0)]) if values is not None else np.zeros(0)
+        if sizes.size and sizes.max() > SPREAD * sizes.min():
+            smallest = max(float(np.quantile(sizes, FEW)), sizes.max() * LEAST_OF_LARGEST)
+            set_scale("symlog", linthresh=10 ** np.floor(np.log10(smallest)))

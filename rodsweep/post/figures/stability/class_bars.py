@@ -1,0 +1,156 @@
+"""What single rods do over F: a bar of classes for each, with its thresholds marked."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from numpy.typing import NDArray
+
+from ....arrays import Array
+from ....results.file.view import View
+from ....results.layouts.phase_diagram import CLASSES
+from ....results.layouts.thresholds import CROSSING_KINDS
+from ....wording import plural
+from ..lists import number_points, shared_parameters
+from ..style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, need, parameter_text
+
+CLASS_COLOURS = {
+    "missing": "white",
+    "monotone": "#DCE9F5",
+    "oscillatory": "#9CC3E4",
+    "flutter": "#F2B28A",
+    "undecided": "#666666",
+    "crushed": "#BBBBBB",
+}
+"""Light to dark blue for stable rods and orange for unstable ones: told apart by all, and in grey."""
+STABLE_CLASS = {
+    "onset": "oscillatory",
+    "restabilization": "oscillatory",
+    "real_again": "monotone",
+    "real_leads": "monotone",
+    "pair_leads": "oscillatory",
+}
+"""What a rod does beyond a crossing where no mode grows, by the kind of the crossing."""
+LATER = "later"
+"""Hopf points at which the rod is unstable already, and further modes begin to grow."""
+MARKS = {
+    "onset": (FIRST, "o", rf"onset ${SYMBOLS['F']}_*$"),
+    "hopf": (SECOND, "s", rf"Hopf ${SYMBOLS['F']}_{{**}}$"),
+    LATER: (SECOND, "D", "further Hopf point"),
+    "restabilization": (THIRD, "^", "restabilization"),
+}
+"""Colour, marker and word of the crossings that are marked."""
+FILL = 0.8
+"""Part of its place that the bar of a rod takes."""
+BAR_ASPECT = 0.12
+"""Height of the panel with one bar in units of its width."""
+DIGITS = 6
+"""To which the thresholds of a single rod are written."""
+
+
+def draw_class_bars(view: View) -> Figure:
+    """A horizontal bar for one rod, upright ones side by side for a list, in its order."""
+    count = view.variables["status"].size
+    v = {name: view.variables[name] for name in ("F_end", "crossing_kind")}
+    need(view, np.isfinite(v["F_end"]).any(), "computed rod")
+    figure = Figure(figsize=(5.8, 2.2 if count == 1 else 4.0), layout="constrained")
+    axes = figure.subplots()
+    seen = set[str]()
+    for rod in range(count):
+        seen |= _bar(axes, view, rod, upright=count > 1)
+    handles: list = [
+        Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=word)
+        for word, colour in CLASS_COLOURS.items()
+        if word in seen
+    ]
+    handles += _mark(axes, view, upright=count > 1)
+    end = float(np.nanmax(v["F_end"]))
+    if count == 1:
+        axes.set(xlim=(0, end), ylim=(-0.75, 0.75), yticks=[], xlabel=LABELS["F"])
+        axes.spines["left"].set_visible(False)
+    else:
+        axes.set(ylim=(0, end), ylabel=LABELS["F"])
+        number_points(axes, view, count)
+    legend_below(figure, handles, columns=2)
+    figure.suptitle(heading(view, parameter_text(shared_parameters(view))))
+    return figure
+
+
+def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str]]:
+    """(F from, F to, class) of a rod from F = 0, where all modes are real, to the end of the search."""
+    kinds, F, after = (view.by_point(name)[rod] for name in ("crossing_kind", "crossing_F", "unstable_after"))
+    end = float(view.variables["F_end"].ravel()[rod])
+    found = int(view.variables["crossing_count"].ravel()[rod])
+    start, word = 0.0, "monotone"
+    for place in np.flatnonzero(kinds > 0):
+        yield start, float(F[place]), word
+        start = float(F[place])
+        word = _class_behind(int(kinds[place]), int(after[place]))
+    if found > np.count_nonzero(kinds > 0):  # more than the file has room for
+        word = "undecided"
+    if np.isfinite(end):
+        yield start, end, word
+
+
+def classes_behind_crossings(view: View, row: str) -> tuple[Array, Array, NDArray[np.intp]]:
+    """(value along the line, value of the row, number of the class) half way between crossings of a diagram.
+
+    They are known however close two crossings are. Rows at infinity are left out.
+    """
+    numbers = {word: number for number, word in CLASSES}
+    kinds, after, at = map(view.by_point, ("crossing_kind", "unstable_after", "crossing_at"))
+    values = view.point_columns[row]
+    found: list[tuple[float, float, int]] = []
+    for place in np.flatnonzero(np.isfinite(values)):
+        known = np.flatnonzero(kinds[place] > 0)
+        for this, following in pairwise(known):
+            word = _class_behind(int(kinds[place, this]), int(after[place, this]))
+            middle = (at[place, this] + at[place, following]) / 2
+            found.append((float(middle), float(values[place]), numbers[word]))
+    x, y, classes = np.array(found, dtype=float).reshape(-1, 3).T
+    return x, y, classes.astype(np.intp)
+
+
+def _class_behind(kind: int, unstable: int) -> str:
+    """What a rod does behind a crossing of a kind, with so many unstable modes there, -1 where not known."""
+    stable = STABLE_CLASS.get(CROSSING_KINDS[kind], "undecided")
+    return "flutter" if unstable > 0 else stable if unstable == 0 else "undecided"
+
+
+def _bar(axes: Axes, view: View, rod: int, upright: bool) -> set[str]:
+    """Draws the bar of a rod; returns the classes that it has."""
+    pieces = list(classes_over_force(view, rod))
+    from_, to = (view.variables[name].ravel()[rod] for name in ("open_from", "open_to"))
+    if np.isfinite(from_):
+        pieces.append((float(from_), float(to), "undecided"))
+    for start, end, word in pieces:
+        if upright:
+            axes.bar(rod + 1, end - start, FILL, bottom=start, color=CLASS_COLOURS[word])
+        else:
+            axes.barh(0, end - start, FILL, left=start, color=CLASS_COLOURS[word])
+    return {word for *_, word in pieces}
+
+
+def _mark(axes: Axes, view: View, upright: bool) -> list[Line2D]:
+    """Marks the thresholds; returns what the legend says of them, with the numbers of a single rod."""
+    kinds, F, after = map(view.by_point, ("crossing_kind", "crossing_F", "unstable_after"))
+    hopf = kinds == CROSSING_KINDS.index("hopf")
+    chosen = {kind: kinds == CROSSING_KINDS.index(kind) for kind in MARKS if kind != LATER}
+    chosen |= {"hopf": hopf & (after <= 2), LATER: hopf & (after > 2)}
+    handles = []
+    for kind, (colour, marker, word) in MARKS.items():
+        rods, places = np.nonzero(chosen[kind])
+        if not rods.size:
+            continue
+        force = F[rods, places]
+        x, y = (rods + 1, force) if upright else (force, rods)
+        name = plural(word) if kind == LATER and rods.size > 1 else word
+        label = name if upright else f"{name} = " + ", ".join(f"{at:#.{DIGITS}g}" for at in force)
+        handles += axes.plot(
+            x, y, marker, color=colour, mec="white", mew=0.6, ms=6, label=label, clip_on=False
+        )
+    return handles

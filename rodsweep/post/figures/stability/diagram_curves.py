@@ -1,0 +1,244 @@
+"""The curves of a phase diagram and the special points on them, and what the legend says of both."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from ....arrays import Array
+from ....model.parameters import LINEAR_PARAMETERS
+from ....results.file.view import View
+from ....results.layouts.branch import SPECIAL_KINDS
+from ...stability_curves import bounds_stability
+from ..style import SYMBOLS, THIRD
+from ..style import number as number_text
+
+CURVE_LOOKS = {1: ("Hopf points", 1.4, "-"), 0: ("double eigenvalue", 1.0, "--")}
+"""Legend, width and style of a curve, by its kind in the file."""
+CURVE_NAMES = {1: (r"$\tilde F_{**}$", 0.85), 0: (r"$\tilde F_*$", 0.12)}
+"""What stands beside the longest curve of a kind, and where on the part of it that is in sight."""
+SIDE_LOOKS = {
+    -1: ("supercritical Hopf points", 1.4, "-"),
+    1: ("subcritical Hopf points", 1.4, "--"),
+    0: ("Hopf points, side undecided", 0.6, "-"),
+}
+"""Of the parts of Hopf curves, where the file tells on which side cycles are born; by Re c's sign."""
+CYCLE_MARKS = {
+    "fold": ("folds of cycles on rows", "s"),
+    "torus": ("torus points on rows", "D"),
+    "symmetry_breaking": ("symmetry breakings", "^"),
+    "period_doubling": ("period doublings", "v"),
+}
+"""Legend and marker of special points of cycles on rows through which no curve goes, by kind."""
+ON_CURVE = 1e-3
+"""Distance of a point of a row from a curve through it, in units of the axis, that chords make."""
+CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", THIRD)}
+"""Legend and colour of the curves of special points of cycles, by kind."""
+SAME_PLACE = 1e-6
+"""Relative distance of places that are one: a place of a curve lies on its own chord but for rounding."""
+NAME_SIZE = 8
+"""Points of type of a curve's name."""
+BESIDE_SIDES = "double eigenvalue", 1.0, ":"
+"""Of double eigenvalues beside them, because dashed then means subcritical."""
+
+
+def draw_curves(axes: Axes, view: View, line: str, row: str, states: bool) -> list[Line2D]:
+    """Draws the boundaries and folds; returns what the legend says of them.
+
+    states: whether stable states are shown, which only Hopf points bound.
+    """
+    v = view.variables
+    sides = "curve_criticality" in v
+    handles = _sides(axes, view, line, row) if sides else []
+    looks = {0: BESIDE_SIDES} if sides else CURVE_LOOKS
+    for number, (word, width, style) in looks.items():
+        there = v["curve_kind"] == number
+        if states and number == 0:
+            continue
+        curves = [v["curve_number"] == curve for curve in np.unique(v["curve_number"][there])]
+        for one in curves:
+            axes.plot(v[f"curve_{line}"][one], v[f"curve_{row}"][one], style, color="k", lw=width)
+        if there.any():
+            handles.append(Line2D([], [], color="k", lw=width, ls=style, label=word))
+        if there.any() and not sides:
+            named = boundaries_to_name(view, number, line, row)
+            paths = [np.column_stack([v[f"curve_{n}"][one] for n in (line, row)]) for one in named]
+            if paths and "F" in (line, row):
+                paths = _first_over_force(paths, 0 if line == "F" else 1)
+            name, share = CURVE_NAMES[number]
+            if paths:
+                _name_longest(axes, paths, name + force_of_plane(view, line, row), share)
+    return handles if states else handles + _points(axes, view, line, row)
+
+
+def boundaries_to_name(view: View, kind: int, line: str, row: str) -> list[NDArray[np.bool_]]:
+    """The curves that a symbol may stand beside, each as a mask of the curves' points, (curve_point,).
+
+    F** is where the straight rod becomes unstable: not at Hopf points of further modes.
+    """
+    v = view.variables
+    numbers = np.unique(v["curve_number"][v["curve_kind"] == kind])
+    bounds = bounds_stability(view, line, row) if kind else dict.fromkeys(numbers.tolist(), True)
+    return [v["curve_number"] == number for number in numbers if bounds[int(number)]]
+
+
+def force_of_plane(view: View, line: str, row: str) -> str:
+    """The force at which a plane lies that has none, behind the symbol of a critical one; else nothing."""
+    return "" if "F" in (line, row) else f" = {float(view.axes['F'][0]):g}"
+
+
+def _points(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
+    """Marks the folds of Hopf curves and the partial beam's; returns what the legend says of them."""
+    v = view.variables
+    handles = []
+    for i in range(len(v["fold"])):
+        if v["fold_kind"][i] == 1 and v["fold_of"][i] == 1:  # where a window of flutter closes
+            F, k = v[f"fold_{line}"][i], v[f"fold_{row}"][i]
+            axes.plot(F, k, "ko", ms=4)
+            label = rf"fold ${SYMBOLS[line]} = {F:.6g}$, ${SYMBOLS[row]} = {k:.6g}$"
+            handles.append(Line2D([], [], color="k", marker="o", ls="", ms=4, label=label))
+    if "partial_beam_k1" in v:
+        F, k = float(v["partial_beam_F"]), float(v["partial_beam_k1"])
+        x, y = (F, k) if line == "F" else (k, F)
+        if not (_holds(v[line], x) and _holds(view.axes[row], y)):
+            return handles
+        label = rf"partial beam $2F_c = {F:.6g}$, $4F_c = {k:.6g}$"
+        (cross,) = axes.plot(x, y, "+", color="k", ls="", ms=10, mew=1.2, label=label)
+        handles.append(cross)
+    return handles
+
+
+def _holds(values: Array, at: float) -> bool:
+    """Whether a place lies between the ends of an axis, (n,)."""
+    return bool(values[0] <= at <= values[-1])
+
+
+def draw_cycle_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
+    """Draws the curves of folds and torus points of cycles; returns what the legend says of them."""
+    v, handles = view.variables, []
+    for kind, (word, colour) in CYCLE_CURVES.items():
+        there = v["cycle_curve_kind"] == SPECIAL_KINDS.index(kind)
+        for curve in np.unique(v["cycle_curve_number"][there]):
+            one = v["cycle_curve_number"] == curve
+            points = v[f"cycle_curve_{line}"][one], v[f"cycle_curve_{row}"][one]
+            axes.plot(*points, color=colour, lw=1.8, zorder=1.9)  # below marks and Hopf curves
+        if there.any():
+            handles.append(Line2D([], [], color=colour, lw=1.8, label=word))
+    return handles
+
+
+def mark_cycles_on_rows(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
+    """Marks special points of cycles on rows through which no curve goes; what the legend says of them."""
+    handles: list[Line2D] = []
+    values = view.point_columns[row]
+    kinds, at = (view.by_point(f"cycle_special_{name}") for name in ("kind", line))
+    for kind, (word, marker) in CYCLE_MARKS.items():
+        rows, places = np.nonzero(kinds == SPECIAL_KINDS.index(kind))
+        there = ~_on_curves(view, SPECIAL_KINDS.index(kind), line, row, at[rows, places], values[rows])
+        x, y = at[rows, places][there], values[rows][there]
+        if there.any():
+            handles += axes.plot(x, y, marker, color="k", mfc="white", ms=3.5, mew=0.8, label=word)
+    return handles
+
+
+def _on_curves(view: View, kind: int, line: str, row: str, x: Array, y: Array) -> NDArray[np.bool_]:
+    """Which special points of a kind, x along a row at y, (n,), lie on a curve of their kind."""
+    v, near = view.variables, np.zeros(len(x), dtype=bool)
+    if "cycle_curve_number" not in v:
+        return near
+    for curve in np.unique(v["cycle_curve_number"][v["cycle_curve_kind"] == kind]):
+        on = v["cycle_curve_number"] == curve
+        along, across = v[f"cycle_curve_{line}"][on], v[f"cycle_curve_{row}"][on]
+        before, after = across[:-1, None] - y, across[1:, None] - y
+        share = np.divide(before, before - after, out=np.zeros_like(before), where=before != after)
+        places = along[:-1, None] + share * np.diff(along)[:, None]
+        off = np.where(before * after <= 0, np.abs(places - x), np.inf)
+        near |= off.min(axis=0, initial=np.inf) <= ON_CURVE * np.ptp(v[line])
+    return near
+
+
+def _sides(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
+    """Draws Hopf curves by the side on which cycles are born, and where it changes; returns the legend."""
+    v = view.variables
+    used = set()
+    for curve in np.unique(v["curve_number"][v["curve_kind"] == 1]):
+        for side, points in parts_of_one_side(view, int(curve), line, row):
+            _, width, style = SIDE_LOOKS[side]
+            axes.plot(*points.T, style, color="k", lw=width)
+            used.add(side)
+    handles = [
+        Line2D([], [], color="k", lw=width, ls=style, label=word)
+        for side, (word, width, style) in SIDE_LOOKS.items()
+        if side in used
+    ]
+    for i in range(len(v["bautin_curve"])):
+        x, y = v[f"bautin_{line}"][i], v[f"bautin_{row}"][i]
+        label = rf"Re $c$ = 0: ${SYMBOLS[line]}$ = {x:.6g}, ${SYMBOLS[row]}$ = {y:.6g}"
+        handles += axes.plot(x, y, "kD", mfc="white", ls="", ms=5, label=label)
+    return handles + (_bautin_curves(axes, view, line, row) if "bautin_along_curve" in v else [])
+
+
+def _bautin_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
+    """Draws the ways of the generalised Hopf points over a third parameter; returns the legend."""
+    v, drawn = view.variables, []
+    third = next(n for n in LINEAR_PARAMETERS if f"bautin_along_{n}" in v and n not in (line, row))
+    for number in np.unique(v["bautin_along_curve"]):
+        on = v["bautin_along_curve"] == number
+        reach = v[f"bautin_along_{third}"][on]
+        low, high = (number_text(float(end), 3) for end in (reach.min(), reach.max()))
+        label = rf"Re $c$ = 0, ${SYMBOLS[third]}$ = ${low}$ to ${high}$"
+        x, y = (v[f"bautin_along_{name}"][on] for name in (line, row))
+        drawn += axes.plot(x, y, "-.", color="tab:red", lw=1.2, label=label)
+    return drawn
+
+
+def parts_of_one_side(view: View, curve: int, line: str, row: str) -> list[tuple[int, np.ndarray]]:
+    """The parts of a Hopf curve between generalised Hopf points: (-1, 1 or 0 undecided, points (n, 2))."""
+    v = view.variables
+    rows = np.flatnonzero(v["curve_number"] == curve)
+    on = np.flatnonzero(v["bautin_curve"] == curve)
+    places = np.searchsorted(rows, v["bautin_curve_point"][on] - 1, side="right")
+    columns = [np.insert(v[f"curve_{name}"][rows], places, v[f"bautin_{name}"][on]) for name in (line, row)]
+    points = np.column_stack(columns)
+    side = np.insert(np.nan_to_num(v["curve_criticality"][rows]), places, 0)
+    # The sides of a piece are those of its ends; a point within the error of a change takes its neighbour's.
+    ends = side[:-1], side[1:]
+    pieces = np.where(ends[0] * ends[1] < 0, 0, np.sign(ends[0] + ends[1])).astype(int)
+    cuts = [0, *(np.flatnonzero(np.diff(pieces)) + 1), len(pieces)]
+    return [(int(pieces[a]), points[a : b + 1]) for a, b in zip(cuts[:-1], cuts[1:], strict=True) if b > a]
+
+
+def _first_over_force(paths: list[Array], force: int) -> list[Array]:
+    """The parts of curves, (n, 2) each, that come first over F, which is the column `force`.
+
+    Points elsewhere are left out.
+    """
+    starts, ends = (
+        np.concatenate([path[piece] for path in paths]) for piece in (slice(None, -1), slice(1, None))
+    )
+    y0, y1 = starts[:, 1 - force], ends[:, 1 - force]
+    parts = []
+    for path in paths:
+        y = path[:, 1 - force, None]
+        share = (y - y0) / np.where(y1 == y0, np.inf, y1 - y0)
+        there = (np.minimum(y0, y1) <= y) & (y <= np.maximum(y0, y1))
+        at = np.where(there, starts[:, force] + share * (ends[:, force] - starts[:, force]), np.inf)
+        parts.append(path[path[:, force] <= at.min(axis=1, initial=np.inf) * (1 + SAME_PLACE)])
+    return parts
+
+
+def _name_longest(axes: Axes, paths: list[Array], name: str, share: float) -> None:
+    """Writes a name beside the curve, (points, 2), that is longest in sight, at a share of its length."""
+    lengths, seen = [], []
+    for path in paths:
+        places = axes.transAxes.inverted().transform(axes.transData.transform(path))
+        inside = ((places >= 0) & (places <= 1)).all(axis=1)
+        steps = np.linalg.norm(np.diff(places[inside], axis=0), axis=1)
+        seen.append(path[inside])
+        lengths.append(np.append(0.0, np.cumsum(steps)) if inside.any() else np.zeros(1))
+    longest = max(range(len(paths)), key=lambda i: lengths[i][-1])
+    if lengths[longest][-1] > 0:
+        at = int(np.searchsorted(lengths[longest], share * lengths[longest][-1]))
+        axes.annotate(
+            name, seen[longest][at], xytext=(4, -2), textcoords="offset points", size=NAME_SIZE, va="top"
+        )

@@ -1,0 +1,179 @@
+"""The first thresholds of rods as lines over a parameter, for all values of another one or for some."""
+
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from ....arrays import Array
+from ....results.file.view import View
+from .. import style
+
+CRITICAL_FORCES = (
+    ("F_onset", r"onset $\tilde F_*$", style.FIRST, "o", ":"),
+    ("F_hopf", r"Hopf $\tilde F_{**}$", style.SECOND, "s", "-"),
+    ("F_restabilization", "restabilization", style.THIRD, "^", "--"),
+)
+"""Variable and words of each threshold; the colour of a line among those of one rod; its marker and line."""
+LINE_STYLES = ("-", "--", ":")
+"""For the values of the other parameter for which lines are drawn in one panel."""
+MOST_LINES = 6
+"""Values of the other parameter whose lines can be told apart by their colours."""
+DARKEST, LIGHTEST = 0.0, 0.85
+"""Part of the map of colours that shows on white."""
+UNSEEN = 0.01
+"""Distance of two lines, in units of the largest force, below which one of them is drawn."""
+HEADROOM = 1.05
+"""Height of the axis of forces in units of the largest force."""
+
+
+def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, str]:
+    """Lines over the longer of at most two parameters, for every value of the shorter; what they show."""
+    along = max(long, key=lambda name: np.count_nonzero(np.isfinite(view.axes[name])))
+    other = next((name for name in long if name != along), None)
+    figure = Figure(figsize=(5.6, 4.2), layout="constrained")
+    axes = figure.subplots()
+    table = _table(view, along, other)
+    style.need(view, np.isfinite(_abscissa(view, along)).sum() > 1, f"two finite values of {along}")
+    shades = matplotlib.colormaps["viridis"](np.linspace(DARKEST, LIGHTEST, len(table)))
+    handles = []
+    for values, shade in zip(table, shades, strict=True):
+        for forces, (_, word, colour, marker, line) in zip(values, CRITICAL_FORCES, strict=True):
+            look: dict[str, Any] = {"marker": marker, "ms": 3, "lw": 1.2, "color": shade if other else colour}
+            look |= {"ls": line} if other else {}
+            _plot(axes, _abscissa(view, along), forces, look)
+            if not other and np.isfinite(forces).any():
+                handles.append(Line2D([], [], label=word, **look))
+    if other:
+        handles = _kinds(table) + [
+            Line2D([], [], color=shade, lw=2, label=f"${style.SYMBOLS[other]} = {style.number(value)}$")
+            for value, shade in zip(view.axes[other].tolist(), shades, strict=True)
+        ]
+    _label(axes, view, along, table)
+    axes.set_ylabel(style.CRITICAL_FORCE)
+    style.legend_below(figure, handles, columns=3)
+    figure.suptitle(style.heading(view, style.fixed_text(view, *long), searched))
+    words = f"critical forces against {along}" + (f" for every {other}" if other else "")
+    return figure, words + _left_out(view, [along])
+
+
+def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str) -> tuple[Figure, str]:
+    """As the paper's Fig. 3: a panel for each of two parameters, lines for some values of the other."""
+    rows, columns = (2, 1) if narrow else (1, 2)
+    figure = Figure(figsize=(4.6 * columns + 0.4, 4.0 * rows), layout="constrained")
+    panels = figure.subplots(rows, columns, sharey=True, squeeze=False).ravel()
+    drawn = []
+    for panel, along, other in zip(panels, long, reversed(long), strict=True):
+        count = _some_lines(panel, view, along, other)
+        drawn.append(f"{count} of {len(view.axes[other])} values of {other}")
+        if narrow or panel is panels[0]:
+            panel.set_ylabel(style.CRITICAL_FORCE)
+    there = [
+        Line2D([], [], color=colour, marker=marker, ms=3, lw=1.2, label=word)
+        for name, word, colour, marker, _ in CRITICAL_FORCES
+        if np.isfinite(view.variables[name]).any()
+    ]
+    style.legend_below(figure, there, columns=3)
+    figure.suptitle(style.heading(view, style.fixed_text(view, *long), searched))
+    said = f"critical forces against {' and '.join(long)}, lines for {' and '.join(drawn)} (--what map: all)"
+    return figure, said + _left_out(view, long)
+
+
+def _some_lines(panel: Axes, view: View, along: str, other: str) -> int:
+    """Lines over one parameter, for the values of the other that differ most; returns of how many values."""
+    table = _table(view, along, other)
+    some = _far_apart(table)
+    for line, alike in zip(LINE_STYLES, _alike({at: table[at] for at in some}), strict=False):
+        for forces, (_, _, colour, marker, _) in zip(table[alike[0]], CRITICAL_FORCES, strict=True):
+            look = {"color": colour, "marker": marker, "ms": 2, "lw": 1.2, "ls": line}
+            _plot(panel, _abscissa(view, along), forces, look)
+        said = ", ".join(style.number(float(view.axes[other][at]), 3) for at in alike)
+        text = f"${style.SYMBOLS[other]} = {said}$" + (" (one line)" if len(alike) > 1 else "")
+        panel.plot([], [], line, color="0.3", label=text)
+    _label(panel, view, along, _table(view, along, other)[some])
+    panel.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0))
+    return len(some)
+
+
+def _table(view: View, along: str, other: str | None) -> Array:
+    """The three forces, (values of the other parameter or 1, 3, values along)."""
+    names = list(view.axes)
+    kept = [names.index(name) for name in (other, along) if name]
+    rest = tuple(place for place in range(len(names)) if place not in kept)
+    found = []
+    for force, *_ in CRITICAL_FORCES:
+        values = view.variables[force].squeeze(rest)
+        values = values if other and kept[0] < kept[1] else values.T
+        found.append(np.atleast_2d(values))
+    return np.stack(found, axis=1)
+
+
+def _abscissa(view: View, along: str) -> Array:
+    """What is along the axis: the parameter, or 1/gamma3 as in the paper."""
+    values = view.axes[along]
+    return 1 / values if along == "gamma3" else values
+
+
+def _plot(axes: Axes, x: Array, forces: Array, look: dict) -> None:
+    """A line through the forces that are known, (n,), with gaps where one is not."""
+    place = np.isfinite(x)
+    axes.plot(x[place], forces[place], **look)
+
+
+def _label(axes: Axes, view: View, along: str, table: Array) -> None:
+    """Scale and label of the axis, and one of forces from 0 to above the largest."""
+    x = _abscissa(view, along)
+    style.scale(axes, "x", np.sort(x[np.isfinite(x)]))
+    axes.set_xlabel(style.INVERSE_DRAG if along == "gamma3" else style.LABELS[along])
+    highest = max(float(np.nanmax(table, initial=0.0)) * HEADROOM, axes.get_ylim()[1] if axes.lines else 0.0)
+    axes.set_ylim(0, highest or 1.0)
+
+
+def _kinds(table: Array) -> list[Line2D]:
+    """What the legend says of the thresholds that there are, (values, 3, values along)."""
+    there = np.isfinite(table).any(axis=(0, 2))
+    return [
+        Line2D([], [], color="0.3", marker=marker, ls=line, ms=3, lw=1.2, label=word)
+        for known, (_, word, _, marker, line) in zip(there, CRITICAL_FORCES, strict=True)
+        if known
+    ]
+
+
+def _left_out(view: View, names: list[str]) -> str:
+    """What is said of values that have no place on an axis."""
+    left_out = [
+        f"{name} = {value:g}"
+        for name in names
+        for value in view.axes[name][~np.isfinite(_abscissa(view, name))]
+    ]
+    return f"; {' and '.join(left_out)} has no place on an axis and is left out" if left_out else ""
+
+
+def _far_apart(table: Array) -> list[int]:
+    """Of the numbers of lines, (lines, 3, n), the first, the last, and the one that lies most between."""
+    last = len(table) - 1
+    if last < 2:
+        return list(range(len(table)))
+    heights = np.array([np.nanmean(values) if np.isfinite(values).any() else np.inf for values in table])
+    between = np.abs(heights - (heights[0] + heights[last]) / 2)
+    middle = 1 + int(np.argmin(between[1:last])) if np.isfinite(between[1:last]).any() else last // 2
+    return [0, middle, last]
+
+
+def _alike(lines: dict[int, Array]) -> list[list[int]]:
+    """The numbers of lines, (3, points) each, in groups of those that cannot be told apart."""
+    size = max(float(np.nanmax(values, initial=0.0)) for values in lines.values())
+    groups: list[list[int]] = []
+    for number, values in lines.items():
+        for group in groups:
+            other = lines[group[0]]
+            same = np.isnan(values) == np.isnan(other)
+            if same.all() and np.nanmax(np.abs(values - other), initial=0.0) < UNSEEN * size:
+                group.append(number)
+                break
+        else:
+            groups.append([number])
+    return groups

@@ -1,0 +1,1 @@
+"""Summaries of arms in SI units."""

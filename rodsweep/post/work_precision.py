@@ -1,0 +1,85 @@
+"""Errors of methods against their time, as the benchmarks measure them."""
+
+from math import ceil, sqrt
+from pathlib import Path
+from textwrap import fill
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from ..errors import EnvironmentLacks
+from ..results.file.measurements import Table
+from .figures.style import FIRST, SECOND, STYLE, THIRD
+
+GROUP_COLOURS = (FIRST, SECOND, THIRD, "black", "0.55")
+"""Of the groups, in the order in which they appear; the first group is drawn thick."""
+METHOD_MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+"""Of the methods of one group."""
+WIDE_RATIO = 1e3
+"""Ratio of the times from which on only powers of ten have a label."""
+LEAST_ERROR = 1e-17
+"""Relative errors are drawn from here up: an error of exactly zero has no logarithm."""
+PANEL_SIZE, PANEL_TITLE_WIDTH = 3.6, 36
+"""Of one panel, in inches, and of its title, in characters."""
+
+
+def draw_work_precision(measured: Table, xlabel: str, target: float | None, output: Path) -> None:
+    """Writes the figure: a panel for each case, a curve for each method, the target as a line.
+
+    measured: columns case, method, group, seconds and error; what has no finite error is left out.
+    """
+    columns = {name: np.array(measured[name]) for name in ("case", "method", "group", "seconds", "error")}
+    cases, methods, groups, seconds, errors = (
+        values[np.isfinite(columns["error"])] for values in columns.values()
+    )
+    looks = _looks(dict(zip(methods.tolist(), groups.tolist(), strict=True)))
+    titles = list(dict.fromkeys(cases.tolist()))
+    wide = np.nanmax(seconds) > WIDE_RATIO * np.nanmin(seconds)
+    across = ceil(sqrt(len(titles)))
+    down = ceil(len(titles) / across)
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(PANEL_SIZE * across + 3.0, PANEL_SIZE * down + 0.5), layout="constrained")
+        grid = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False)
+        for axes, title in zip(grid.flat, titles, strict=False):
+            axes.set(xscale="log", yscale="log")
+            axes.set_title(fill(title, PANEL_TITLE_WIDTH), fontsize=10)
+            if target is not None:
+                axes.axhline(target, color="0.75", lw=0.8, zorder=0)
+            for method, look in looks.items():
+                own = (cases == title) & (methods == method)
+                axes.plot(1e3 * seconds[own], np.maximum(errors[own], LEAST_ERROR), **look)
+            axes.xaxis.set_major_locator(LogLocator(subs=(1,) if wide else (1, 2, 5)))
+            axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axes.xaxis.set_minor_formatter(NullFormatter())
+        for axes in grid.flat[len(titles) :]:
+            axes.set_axis_off()
+        figure.supxlabel(xlabel)
+        figure.supylabel("relative error")
+        handles = [Line2D([], [], label=method, **look) for method, look in looks.items()]
+        figure.legend(handles=handles, loc="outside right center", frameon=False, fontsize=9)
+        try:
+            figure.savefig(output)
+        except OSError as error:
+            raise EnvironmentLacks(f"{output} cannot be written: {error.strerror}") from error
+
+
+def _looks(groups: dict[str, str]) -> dict[str, dict]:
+    """Colour by group, marker within it, for every method with its group."""
+    order = list(dict.fromkeys(groups.values()))
+    looks = {}
+    for method, group in groups.items():
+        place = [other for other, its in groups.items() if its == group].index(method)
+        first = group == order[0]
+        colour = GROUP_COLOURS[order.index(group) % len(GROUP_COLOURS)]
+        looks[method] = {
+            "color": colour,
+            "marker": METHOD_MARKERS[place % len(METHOD_MARKERS)],
+            "ms": 5,
+            "lw": 2.2 if first else 1.1,
+            "mfc": colour if first else "white",
+            "zorder": 3 if first else 2,
+        }
+    return looks

@@ -1,0 +1,194 @@
+"""A larger config over a stored file: whether it contains the file's, and which stored points stay.
+
+A point stays only if a run of the whole larger config would give it to the last bit: its parameters are the
+same bits, it has everything that is asked for, and so are all points before it in a chain, or all points of
+its stretch.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....arrays import Array
+from ....config.axes import words
+from ....config.document.reading import config_of
+from ....errors import InputError
+from ....sweep.points.points import Points
+from ....sweep.points.stretches import LONGEST, along_the_longest
+from ...layouts import INCREASES
+from ...layouts.variables import Increase, Layout
+from ..creation import Plan
+from ..points import stored_points
+from ..validation import Header
+from .identity import config_difference
+
+SAME = 4 * np.finfo(float).eps
+"""Relative distance of two values of an axis that rounding alone sets apart."""
+
+Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Where the stored points are among the new ones: of each dimension, or of a list."""
+
+    shape: tuple[int, ...]
+    """That of the stored points."""
+    new_shape: tuple[int, ...]
+    places: tuple[Indices, ...]
+    """The new place of every stored value of a dimension, -1 where its points are computed anew."""
+
+    def __call__(self, index: Indices) -> Indices:
+        """New flat indices of stored ones, both (n,); -1 where a point is computed anew."""
+        each = [place[i] for place, i in zip(self.places, np.unravel_index(index, self.shape), strict=True)]
+        stays = np.min(each, axis=0) >= 0
+        new = np.ravel_multi_index([np.maximum(place, 0) for place in each], self.new_shape)
+        return np.where(stays, new, -1)
+
+
+@dataclass(frozen=True, slots=True)
+class Extension:
+    """The points of a stored file that stay in the file of a larger config."""
+
+    path: Path
+    old: Layout
+    new: Layout
+    places: Places
+    grown: tuple[tuple[Increase, Any], ...]
+    """What is newly asked of every point, each with what was asked before."""
+    nothing_stays: bool
+    """Whether every stored point is computed anew."""
+
+    def kept(self) -> Iterator[np.ndarray]:
+        """Records, (n,) at a time in the new layout, of the points that stay."""
+        if self.nothing_stays:
+            return
+        for records in stored_points(self.path, self.old):
+            index = self.places(records["index"])
+            stays = index >= 0
+            for increase, before in self.grown:
+                stays &= increase.has(records, before)
+            if stays.any():
+                yield self._converted(records[stays], index[stays])
+
+    def _converted(self, records: np.ndarray, index: Indices) -> np.ndarray:
+        """Records of the new layout; what the old one has less of is filled up."""
+        found = np.empty(len(records), self.new.record)
+        found["index"] = index
+        for variable in self.new.variables:
+            target = found[variable.name]
+            target[...] = variable.fill
+            if variable.name in records.dtype.names:
+                values = records[variable.name]
+                part = tuple(map(slice, np.minimum(values.shape, target.shape)))
+                target[part] = values[part]
+        return found
+
+
+def extension_of(header: Header, points: Points, plan: Plan) -> Extension:
+    """The extension of a stored file, of these points, to a larger plan.
+
+    InputError, which names the difference, unless the plan contains all that the file was made for.
+    """
+    theirs, ours = config_of(header.config).meaning, config_of(plan.config).meaning
+    task = theirs["task"]
+    _refuse(header, config_difference(task, ours["task"], "task"))
+    line_grew = False
+    for key, value in theirs["parameters"].items():
+        new = ours["parameters"].get(key)
+        if isinstance(value, dict) and isinstance(new, dict):  # the line of a phase diagram
+            _places_on_axis(header, key, np.array(value["values"]), np.array(new["values"]))
+            line_grew = line_grew or value != new
+        else:
+            _refuse(header, config_difference(value, new, f"parameters.{key}"))
+    _refuse(header, config_difference(theirs.get("arm"), ours.get("arm"), "parameters.arm"))
+    _refuse(header, config_difference(theirs["accuracy"], ours["accuracy"], "accuracy"))
+    grown = []
+    for name, value in theirs[task].items():
+        if name not in ours[task] or ours[task][name] == value:
+            continue
+        increase = INCREASES[task].get(name)
+        if increase is None or not increase.is_more(value, ours[task][name]):
+            _refuse(header, config_difference(value, ours[task][name], f"{task}.{name}"))
+        else:
+            grown.append((increase, value))
+    places = _places(header, points, plan)
+    return Extension(header.path, header.layout, plan.layout, places, tuple(grown), line_grew)
+
+
+def _refuse(header: Header, difference: str) -> None:
+    """InputError where there is a difference that no extension can bridge."""
+    if difference:
+        raise InputError(
+            f"{header.path} cannot be extended to this config ({difference}); choose another file with -o, "
+            "or replace it with --fresh"
+        )
+
+
+def _places(header: Header, old: Points, plan: Plan) -> Places:
+    """Where the stored points are among those of the plan; InputError if one is not among them."""
+    new = plan.points
+    if tuple(old.axes) != tuple(new.axes) or old.names != new.names:
+        kinds = [
+            f"a grid of {words(tuple(p.axes), 'and')}" if p.axes else f"a list of {words(p.names, 'and')}"
+            for p in (old, new)
+        ]
+        _refuse(header, config_difference(kinds[0], kinds[1], "parameters"))
+    if not old.axes:
+        return Places(old.shape, new.shape, (_places_in_list(header, old, new),))
+    places = [_places_on_axis(header, name, axis, new.axes[name]) for name, axis in old.axes.items()]
+    if plan.chains:
+        axis = plan.chains.axis
+        places[axis] = _same_from_the_start(places[axis], new.shape[axis], plan.chains.upward)
+    if plan.stretches:
+        axis, before = plan.stretches.axis, along_the_longest(old.shape, old.moved)
+        same = _same_stretches(places[axis], new.shape[axis])
+        places[axis] = np.where(same & (before is not None and before.axis == axis), places[axis], -1)
+    return Places(old.shape, new.shape, tuple(places))
+
+
+def _places_on_axis(header: Header, name: str, old: Array, new: Array) -> Indices:
+    """Of every old value its place on the new axis, (n,), or -1 where rounding has moved it."""
+    right = np.searchsorted(new, old).clip(max=len(new) - 1)
+    left = (right - 1).clip(min=0)
+    with np.errstate(invalid="ignore"):
+        nearest = np.where(np.abs(new[left] - old) < np.abs(new[right] - old), left, right)
+        apart = np.abs(new[nearest] - old)
+        near = (new[nearest] == old) | (np.isfinite(apart) & (apart <= SAME * np.abs(old)))
+    if not near.all():
+        _refuse(header, f"parameters.{name} = {old[~near][0]:.15g} is in the file and not in the config")
+    return np.where(new[nearest] == old, nearest, -1).astype(np.int64)
+
+
+def _same_from_the_start(places: Indices, count: int, upward: bool) -> Indices:
+    """The places of a chain's points, (n,), as long as all points before are the same; else -1."""
+    ahead = places if upward else np.where(places < 0, -1, count - 1 - places)[::-1]
+    stays = np.logical_and.accumulate(ahead == np.arange(len(ahead)))
+    return np.where(stays if upward else stays[::-1], places, -1)
+
+
+def _same_stretches(places: Indices, count: int) -> NDArray[np.bool_]:
+    """Whether each old point of a line, (n,), is in a stretch of the same points on an axis of that size."""
+    at = np.arange(len(places))
+    first = at // LONGEST * LONGEST
+    whole = np.minimum(first + LONGEST, len(places)) == np.minimum(first + LONGEST, count)
+    moved = np.logical_or.reduceat(places != at, np.arange(0, len(places), LONGEST))
+    return whole & ~moved[at // LONGEST]
+
+
+def _places_in_list(header: Header, old: Points, new: Points) -> Indices:
+    """Of every old point its place in the new list, (n,)."""
+    rows = [np.column_stack(points.columns) + 0.0 for points in (new, old)]
+    known: dict[bytes, int] = {}
+    for i, row in enumerate(rows[0]):
+        known.setdefault(row.tobytes(), i)
+    found = np.array([known.get(row.tobytes(), -1) for row in rows[1]], dtype=np.int64)
+    if (found < 0).any():
+        values = old.values(int(np.argmax(found < 0)))
+        where = ", ".join(f"{name} = {value:.15g}" for name, value in values.items())
+        _refuse(header, f"the point {where} is in the file and not in the list")
+    return found

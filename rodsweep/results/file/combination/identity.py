@@ -1,0 +1,100 @@
+"""Which results two configs share: what makes them ask for the same, and how it is said where they do not.
+
+Compared is what a config means. How an axis is written, the title, the name of a list of points and options
+that nothing uses make no other config.
+"""
+
+import json
+from collections.abc import Sequence
+from hashlib import sha256
+from itertools import zip_longest
+from typing import Any
+
+import numpy as np
+
+from ....arrays import Array
+from ....config.axes import Axes
+from ....config.document.reading import config_of
+from ....config.values import Axis
+
+LONGEST_VALUE = 80
+"""Characters of a config's value in a sentence."""
+
+
+def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
+    """What two files must share for the one to continue the other: of a resolved config and its points.
+
+    columns: the `identity` of the points, each (n,). ValueError for a config of no use.
+    """
+    asked = config_of(config)
+    meant = {"meaning": asked.meaning, "grid": not asked.parameters.is_list}
+    if asked.parameters.over:
+        meant["over"] = asked.parameters.over
+    digest = sha256(json.dumps(meant, sort_keys=True).encode())
+    for column in columns:
+        digest.update(len(column).to_bytes(8, "little"))
+        digest.update(np.ascontiguousarray(column + 0.0).tobytes())  # -0.0 becomes 0.0, which it equals
+    return digest.hexdigest()
+
+
+def change_between(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
+    """How two resolved configs differ that do not ask for the same points, in words."""
+    if theirs["task"] != ours["task"]:
+        return config_difference(theirs["task"], ours["task"], "task")
+    configs = config_of(theirs), config_of(ours)
+    axes = [config.parameters.axes for config in configs]
+    same = {name for name in axes[0].keys() & axes[1].keys() if _same_axis(axes[0][name], axes[1][name])}
+    written = [
+        {name: value for name, value in config["parameters"].items() if name not in same and name != "points"}
+        for config in (theirs, ours)
+    ]
+    kinds = [_kind(config.parameters) for config in configs]
+    return (
+        config_difference(kinds[0], kinds[1], "parameters")
+        or config_difference(written[0], written[1], "parameters")
+        or config_difference(configs[0].meaning, configs[1].meaning)
+        or "the points listed in parameters.points differ"
+    )
+
+
+def _kind(parameters: Axes) -> str:
+    """What kind of points a config has, in words."""
+    if parameters.over:
+        return f"a grid over {' and '.join(parameters.over)}"
+    return "a list of points" if parameters.is_list else "a grid"
+
+
+def _same_axis(first: Axis, second: Axis) -> bool:
+    return np.array_equal(first.array(), second.array())
+
+
+def config_difference(
+    theirs: Any, ours: Any, key: str = "", places: tuple[str, str] = ("the file", "the config")
+) -> str:
+    """The first key in which two resolved configs differ, with both values; empty if none does.
+
+    places: where the two are.
+    """
+    if isinstance(theirs, dict) and isinstance(ours, dict):
+        for name in [*ours, *(n for n in theirs if n not in ours)]:
+            inner = f"{key}.{name}" if key else name
+            found = config_difference(theirs.get(name), ours.get(name), inner, places)
+            if found:
+                return found
+        return ""
+    if theirs == ours:
+        return ""
+    texts = json.dumps(theirs), json.dumps(ours)
+    if isinstance(theirs, list) and isinstance(ours, list) and max(map(len, texts)) > LONGEST_VALUE:
+        return f"{key} has {_list_difference(theirs, ours, places)}"
+    shown = [f"{text[:LONGEST_VALUE]} in {place}" for text, place in zip(texts, places, strict=True)]
+    return f"{key} is {shown[0]} and {shown[1]}"
+
+
+def _list_difference(theirs: list[Any], ours: list[Any], places: tuple[str, str]) -> str:
+    """How two lists differ that are too long to be shown: their lengths, and the first value that differs."""
+    sizes = f"{len(theirs)} values in {places[0]} and {len(ours)} in {places[1]}"
+    pairs = enumerate(zip_longest(theirs, ours), 1)
+    number, values = next((i, pair) for i, pair in pairs if pair[0] != pair[1])
+    first, second = ("missing" if v is None else json.dumps(v)[:LONGEST_VALUE] for v in values)
+    return f"{sizes}; value {number} is {first} in {places[0]} and {second} in {places[1]}"

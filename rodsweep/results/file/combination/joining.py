@@ -1,0 +1,223 @@
+"""Files of one task whose points belong together: their grids as one larger grid, their lists as one list.
+
+Only whole grids are made, so nothing is missing afterwards that none of the files was made for. A point that
+several files have must be the same in all.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Literal
+
+import h5py
+import numpy as np
+
+from ....arrays import Array
+from ....config.document.reading import canonical, config_of, text_of
+from ....config.schema import Config
+from ....config.values import Axis
+from ....errors import InputError
+from ....sweep.points.points import Points
+from ...layouts.variables import MISSING, SECONDS
+from ..content import SEAL
+from ..creation import Plan
+from ..points import parameters_of, points_at, stored_points, write_points
+from ..provenance import LONGEST_ATTRIBUTE, kernels_of
+from ..validation import Header
+from .extension import SAME, Places
+from .identity import config_difference
+
+OF_ONE_FILE = (
+    "program", "format", "fingerprint", "config_resolved", "coordinates", "finished", "snapshot", SEAL,
+)  # fmt: skip
+"""Attributes that a joined file does not take over."""
+ROUNDING_FACTOR = 1e3
+"""In units of the accuracy asked for: how far numbers that differ by rounding may lie apart."""
+
+Planner = Callable[[Config, Points], Plan]
+"""Makes the plan of a config on given points, without attributes and flags."""
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """The plan of the joined file, and where in it the points of each file are."""
+
+    plan: Plan
+    sources: Sequence[Header]
+    places: Sequence[Places]
+
+    def write(self, path: Path) -> list[Header]:
+        """Writes the points of all files into one of the plan; returns the files that gave some.
+
+        InputError where two files disagree.
+        """
+        owner = np.full(self.plan.points.count, -1, np.int32)
+        for number, (source, places) in enumerate(zip(self.sources, self.places, strict=True)):
+            for records in stored_points(source.path, source.layout):
+                records["index"] = places(records["index"])
+                is_new = owner[records["index"]] < 0
+                self._compare(path, records[~is_new], owner, number)
+                write_points(path, [records[is_new]], self.plan.layout)
+                owner[records["index"][is_new]] = number
+        return [self.sources[number] for number in np.unique(owner[owner >= 0])]
+
+    def _compare(self, path: Path, records: np.ndarray, owner: np.ndarray, number: int) -> None:
+        """InputError where records, (n,), are not what the file has of the same points."""
+        if not len(records):
+            return
+        stored = points_at(path, records["index"], self.plan.layout)
+        for name in (v.name for v in self.plan.layout.variables if v.name != SECONDS.name):
+            differs = ~_equal(stored[name], records[name])
+            if not differs.any():
+                continue
+            for i in np.flatnonzero(differs):
+                index = int(records["index"][i])
+                pair = (self.sources[owner[index]], self.sources[number])
+                if not self._is_rounding(name, stored[i][name], records[i][name], pair):
+                    where = _place(self.plan.points, index)
+                    both = " and ".join(str(source.path) for source in pair)
+                    raise InputError(f"{both} disagree about the point {where}: their {name} differ")
+
+    def _is_rounding(self, name: str, first: Any, second: Any, sources: tuple[Header, Header]) -> bool:
+        """Whether two values differ as those of two BLAS kernels may, or of points with other neighbours."""
+        kernels = {kernel for source in sources for kernel in kernels_of(source.attributes)}
+        if (len(kernels) < 2 and not self.plan.stretches) or name == "status":
+            return False
+        if np.asarray(first).dtype.kind != "f" or name.endswith(("error", "error_estimate")):
+            return True
+        most = ROUNDING_FACTOR * float(self.plan.config["accuracy"])
+        scale = np.nanmax(np.abs([first, second]), initial=0.0)
+        return bool(np.allclose(first, second, rtol=most, atol=most * scale, equal_nan=True))
+
+
+def _place(points: Points, index: int) -> str:
+    """The parameters of a point, in words."""
+    return ", ".join(f"{name} = {value:.15g}" for name, value in points.values(index).items())
+
+
+def _equal(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Of which points, (n,), two variables, (n, ...), are the same to the last bit, or both not a number."""
+    same = (first == second) | (np.isnan(first) & np.isnan(second))
+    return same.reshape(len(same), -1).all(axis=1)
+
+
+def joint_of(sources: Sequence[Header], planner: Planner) -> Joint:
+    """How files of different points become one; InputError, which says why, where they do not."""
+    first, *others = sources
+    meant = config_of(first.config).meaning
+    grids = [parameters_of(source.path, source.layout) for source in sources]
+    for other, points in zip(others, grids[1:], strict=True):
+        theirs = config_of(other.config).meaning
+        apart = config_difference(
+            meant | {"together": None}, theirs | {"together": None}, places=(first.path.name, other.path.name)
+        )
+        if apart:
+            raise InputError(f"{other.path} was made from another config than {first.path} ({apart})")
+        if points.is_grid != grids[0].is_grid:
+            raise InputError(f"of {first.path} and {other.path} one is a grid and one a list of points")
+    if "arm" in meant:
+        raise InputError(
+            f"{first.path} is of an arm, whose files are merged as shards of one config only; run --extend "
+            "adds points to it"
+        )
+    if grids[0].is_grid:
+        points, places = _joined_grid(grids)
+    else:
+        points, places = _joined_list(grids)
+    config = _joined_config(first, meant, points)
+    plan = planner(config, points)
+    _refuse_broken_chains(sources, grids, plan)
+    return Joint(_with_attributes(plan, first, config), sources, places)
+
+
+def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[Places]]:
+    """The grid of all values of every axis, and where each grid is in it."""
+    axes = []
+    for name in grids[0].names:
+        axis = np.unique(np.concatenate([grid.by_name[name] for grid in grids]))
+        close = np.flatnonzero(np.diff(axis) <= SAME * np.abs(axis[:-1]))
+        if len(close):
+            values = " and ".join(repr(float(value)) for value in axis[close[0] : close[0] + 2])
+            raise InputError(f"the files have {name} = {values}, which only rounding sets apart")
+        axes.append(axis)
+    whole = Points(grids[0].names, tuple(axes), is_grid=True)
+    covered = np.zeros(whole.shape, bool)
+    places = []
+    for grid in grids:
+        each = [np.searchsorted(axis, column) for axis, column in zip(axes, grid.columns, strict=True)]
+        covered[np.ix_(*each)] = True
+        places.append(Places(grid.shape, whole.shape, tuple(each)))
+    if not covered.all():
+        raise InputError(
+            f"together the files are no full grid: {np.count_nonzero(~covered)} of {covered.size} points are "
+            f"in none, the first at {_place(whole, int(np.argmin(covered)))}; compute them into a file of "
+            "their own, or merge fewer files"
+        )
+    return whole, places
+
+
+def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[Places]]:
+    """The points of all lists, each once, one list after the other; and where each list is in it."""
+    known: dict[bytes, int] = {}
+    rows = [np.column_stack(points.columns) + 0.0 for points in lists]
+    places = [np.array([known.setdefault(row.tobytes(), len(known)) for row in each]) for each in rows]
+    whole = np.empty((len(known), rows[0].shape[1]))
+    for place, each in zip(places, rows, strict=True):
+        whole[place] = each
+    joined = Points(lists[0].names, tuple(np.ascontiguousarray(whole.T)), is_grid=False)
+    shapes = (points.shape for points in lists)
+    return joined, [Places(shape, joined.shape, (p,)) for shape, p in zip(shapes, places, strict=True)]
+
+
+def _joined_config(first: Header, meant: dict[str, Any], points: Points) -> Config:
+    """The config of the first file with the axes of all; options as they are meant, whatever the axes are."""
+    task = first.config["task"]
+    parameters = dict(first.config["parameters"])
+    if points.is_grid:
+        own = config_of(first.config).parameters.axes
+        axes = {name: _axis(own[name], column) for name, column in points.by_name.items()}
+        parameters |= {name: axis.model_dump(mode="json", exclude_none=True) for name, axis in axes.items()}
+    return config_of(first.config | {"parameters": parameters, task: meant[task]})
+
+
+def _axis(own: Axis, values: Array) -> Axis:
+    """An axis of these values as it is written in short: as a range if it is one to the last bit."""
+    if np.array_equal(own.array(), values):
+        return own
+    if len(values) > 2 and np.isfinite(values).all():
+        spacings: tuple[Literal["linear", "log"], ...] = ("linear", "log") if values[0] > 0 else ("linear",)
+        for spacing in spacings:
+            start, stop = float(values[0]), float(values[-1])
+            axis = Axis(start=start, stop=stop, num=len(values), spacing=spacing)
+            if np.array_equal(axis.array(), values):
+                return axis
+    return Axis(values=tuple(values.tolist()))
+
+
+def _refuse_broken_chains(sources: Sequence[Header], grids: Sequence[Points], plan: Plan) -> None:
+    """InputError where chains of the joined file would be pieced together of those of several."""
+    if not plan.chains:
+        return
+    name = plan.points.names[plan.chains.axis]
+    for source, grid in zip(sources, grids, strict=True):
+        if not np.array_equal(grid.by_name[name], plan.points.by_name[name]):
+            raise InputError(
+                f"{source.path} has not the {name} of the other files, along which each point starts from "
+                "its neighbour: chains cannot be pieced together; use run --extend"
+            )
+
+
+def _with_attributes(plan: Plan, first: Header, config: Config) -> Plan:
+    """The plan with what the first file says of itself, and the text of the joined config."""
+    text = text_of(config)
+    resolved = canonical(config)
+    if max(len(text), len(str(resolved))) > LONGEST_ATTRIBUTE:
+        raise InputError(
+            "the joined axes are too long to be listed in the file; compute them as ranges by run"
+        )
+    with h5py.File(first.path, "r") as file:
+        described = file["status"].attrs
+        pairs = zip(described["flag_values"], str(described["flag_meanings"]).split(), strict=True)
+        flags = tuple((int(value), word) for value, word in pairs if value != MISSING)
+    kept = {name: value for name, value in first.attributes.items() if name not in OF_ONE_FILE}
+    return replace(plan, attributes=kept | {"config": text}, flags=flags)

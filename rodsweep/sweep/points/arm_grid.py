@@ -1,0 +1,87 @@
+"""The grid over an arm's own quantities: each point has parameters of its own, or a status but no rod."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from ...arrays import Array
+from ...config.arm.axes import CRUSHED, NO_FLUTTER, SLENDER
+from ...config.arm.section import ArmSection, UncoveredArm
+from ...model.arm.arm import CRUSHED_FROM, SlenderArm
+from ...model.arm.quantities import ARM_UNITS, RELATIVE, SCALE_OF
+from ...model.parameters import NONLINEAR_PARAMETERS, all_but
+from .points import Points
+
+FlutterOf = Callable[[SlenderArm], float]
+"""From an arm to the F at which it flutters first with the likeliest drag, inf where it does not."""
+
+
+def grid_of_arms(
+    section: ArmSection, beside: Mapping[str, Array], names: tuple[str, ...], flutter: FlutterOf
+) -> Points:
+    """The grid over the arm's quantities, and over those parameters of `beside` that have several values.
+
+    beside: values of parameters that replace the arm's, (n,); names: the task's parameters; flutter: what a
+    load may be relative to. ValueError where no rod covers any point.
+    """
+    arms, statuses = zip(*(_arm_or_status(section, values) for values in section.sections()), strict=True)
+    loads = section.given[section.load_axis].array() if section.load_axis else np.zeros(1)
+    crossed = dict(zip(beside, np.meshgrid(*beside.values(), indexing="ij"), strict=True))
+    shape = (len(arms), len(loads), next(iter(crossed.values())).size if crossed else 1)
+    table = {
+        name: _along(0, [arm.parameter(name) if arm else np.nan for arm in arms])
+        for name in all_but("F", NONLINEAR_PARAMETERS)
+    }
+    units = {name: _along(0, [getattr(arm, name) if arm else np.nan for arm in arms]) for name in ARM_UNITS}
+    covered = np.broadcast_to(_along(0, statuses), shape).copy()
+    if section.load:
+        scale = _along(0, [_force_of(section, arm, flutter) if arm else np.nan for arm in arms])
+        table["F"] = np.where(np.isinf(scale), np.nan, scale) * _along(1, loads)
+        if section.load_axis in RELATIVE:
+            units[section.load] = table["F"] * units[SCALE_OF[section.load]]
+            covered[(covered == SLENDER) & np.isinf(scale)] = NO_FLUTTER
+    table |= {name: _along(2, column.ravel()) for name, column in crossed.items()}
+    if "F" in table:
+        crushed = np.broadcast_to(table["F"] >= CRUSHED_FROM * table["k1"], shape)
+        covered[(covered == SLENDER) & crushed] = CRUSHED
+    if (covered != SLENDER).all():
+        _refuse_all(section, beside, bool((covered == NO_FLUTTER).any()))
+    axes = {name: section.given[name].array() for name in section.several}
+    over = axes | {name: column for name, column in beside.items() if len(column) > 1}
+    columns, at_points = (
+        {name: np.broadcast_to(column, shape).ravel() for name, column in each.items()}
+        for each in ({name: table[name] for name in names}, units)
+    )
+    return Points(names, tuple(columns.values()), False, over, at_points, covered.astype(np.int8).ravel())
+
+
+def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:
+    """(the arm of a section without load, or None where no rod covers it; its status)."""
+    try:
+        return section.made(values), SLENDER
+    except UncoveredArm as error:
+        return None, error.status
+
+
+def _force_of(section: ArmSection, arm: SlenderArm, flutter: FlutterOf) -> float:
+    """F of a load of 1 on an arm, in SI or of flutter."""
+    if section.load_axis in RELATIVE:
+        return flutter(arm)
+    return 1.0 / getattr(arm, SCALE_OF[str(section.load)])
+
+
+def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bool) -> None:
+    """ValueError, with what is wrong at the first point; no_flutter: whether some arm has none."""
+    section.made(section.firsts, loaded=True)
+    if no_flutter:
+        raise ValueError(
+            f"parameters.arm.{section.load} is relative to flutter, which no arm has with the likeliest drag"
+        )
+    k1 = float(beside["k1"][0])
+    raise ValueError(f"parameters.k1 is {k1:.15g} and every F is above; the rod is crushed where F >= k1")
+
+
+def _along(dimension: int, values: Any) -> Array:
+    """Values, (n,), along one of three dimensions: arms, loads, parameters beside them."""
+    return np.asarray(values).reshape([-1 if i == dimension else 1 for i in range(3)])

@@ -1,0 +1,101 @@
+"""From what a config asks for to the points of its sweep; refuses values that the model does not allow."""
+
+import math
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array
+from ...config.arm.axes import CRUSHED, MOST_POINTS, SLENDER
+from ...config.schema import Config
+from ...errors import InputError
+from ...model.arm.arm import CRUSHED_FROM, SlenderArm
+from ...model.parameters import CRUSHING, PARAMETERS, Range
+from .arm_grid import grid_of_arms
+from .lists import read_points
+from .points import Points
+
+
+def grid_size(config: Config) -> int:
+    """Number of points of a grid of parameters, known before its axes are made; 0 for others."""
+    if config.parameters.is_list or config.parameters.over:
+        return 0
+    return math.prod(config.parameters.axes[name].size for name in config.names)
+
+
+def points_of(config: Config, directory: Path) -> Points:
+    """The points that the config asks for; InputError for any value that the model does not allow."""
+    parameters = config.parameters
+    for name, value in parameters.numbers.items():
+        refuse_outside(PARAMETERS[name].allowed, name, (value,))
+    if parameters.points is not None:
+        columns = read_points(directory / parameters.points, config.names)
+        return Points(config.names, columns, is_grid=False)
+    axes = {name: axis.array() for name, axis in parameters.axes.items()}
+    if parameters.arm is not None and parameters.over:
+        for name, column in axes.items():
+            refuse_outside(PARAMETERS[name].allowed, name, column)
+        try:
+            return grid_of_arms(parameters.arm, axes, config.names, _first_flutter)
+        except ValueError as error:
+            raise InputError(str(error)) from None
+    named = {name: axes[name] for name in config.names}
+    covered = None if parameters.arm is None else _partly_crushed(named)
+    refuse_axes(axes, config.into_crushed or covered is not None)
+    return Points(config.names, tuple(named.values()), is_grid=True, covered=covered)
+
+
+def _partly_crushed(axes: dict[str, Array]) -> NDArray[np.int8] | None:
+    """Which points of an arm's grid of parameters its load crushes, (points,); None where all or none are."""
+    count = math.prod(map(len, axes.values()))
+    if not set(CRUSHING) <= axes.keys() or axes["F"].max() < axes["k1"].min() or count > MOST_POINTS:
+        return None
+    F, k1 = (axes[name].reshape([-1 if each == name else 1 for each in axes]) for name in CRUSHING)
+    shape = tuple(map(len, axes.values()))
+    crushed = np.broadcast_to(CRUSHED_FROM * k1 <= F, shape).ravel()
+    return None if crushed.all() else np.where(crushed, CRUSHED, SLENDER).astype(np.int8)
+
+
+def _first_flutter(arm: SlenderArm) -> float:
+    """The F at which an arm flutters first in any plane, inf where it does not; imports its solver."""
+    from ...verdict.relative import first_flutter
+
+    return first_flutter(arm)
+
+
+def refuse_outside(
+    allowed: Range, name: str, values: Iterable[float], where: str = "", why: str = ""
+) -> None:
+    """InputError for the first value of a parameter that is not allowed; `where` it is not, and `why`."""
+    bad = allowed.first_outside(values)
+    if bad is not None:
+        raise InputError(
+            f"parameters.{name} = {bad:g} is not allowed{where}; it must be {allowed.phrase}{why}"
+        )
+
+
+def refuse_axes(axes: dict[str, Array], into_crushed: bool = False) -> None:
+    """InputError for a value of an axis, each (n,), that is not allowed, and for rods that are crushed.
+
+    into_crushed: whether some may be, though not all.
+    """
+    for name, column in axes.items():
+        refuse_outside(PARAMETERS[name].allowed, name, column)
+    if set(CRUSHING) <= axes.keys():
+        _refuse_crushed(axes["F"], axes["k1"], into_crushed)
+
+
+def _refuse_crushed(F: Array, k1: Array, some: bool) -> None:
+    """InputError where a grid has crushed rods; where `some` may be, only if it has no other."""
+    if some and F.min() >= k1.max():
+        raise InputError(
+            f"parameters.F starts at {F.min():.15g} and parameters.k1 ends at {k1.max():.15g}; the rod is "
+            "crushed where F >= k1, which is everywhere here"
+        )
+    if not some and F.max() >= k1.min():
+        raise InputError(
+            f"parameters.F reaches {F.max():.15g} and parameters.k1 starts at {k1.min():.15g}; F must stay "
+            "below every k1, because the rod is crushed at F = k1"
+        )

@@ -1,0 +1,39 @@
+"""Points that differ in one parameter only: the lines on which a rod is looked at as that parameter grows."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...arrays import Array
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterLine:
+    """The points that differ in one parameter only, in their own order."""
+
+    name: str
+    """The parameter."""
+    parameters: dict[str, float]
+    """The other ones, by name."""
+    x: Array
+    """The values of the one, shape (n,)."""
+    at: np.ndarray
+    """The flat indices of the points, shape (n,)."""
+
+
+def lines_over(columns: Mapping[str, Array], name: str) -> Iterator[ParameterLine]:
+    """The lines over a parameter in the order of their first points, without points where it is inf.
+
+    columns: every parameter at every point, (points,).
+    """
+    x, others = columns[name], [other for other in columns if other != name]
+    table = np.stack([columns[other] for other in others], axis=-1)
+    _, first, line = np.unique(table, axis=0, return_index=True, return_inverse=True)
+    by_line = np.argsort(line.ravel(), kind="stable")
+    ends = np.cumsum(np.bincount(line.ravel()))
+    for number in np.argsort(first):
+        at = by_line[ends[number - 1] if number else 0 : ends[number]]
+        at = at[np.isfinite(x[at])]
+        fixed = dict(zip(others, table[first[number]].tolist(), strict=True))
+        yield ParameterLine(name, fixed, x[at], at)

@@ -1,0 +1,79 @@
+"""Lists of points from CSV files, whose header names the parameters in any order."""
+
+import csv
+from array import array
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TextIO
+
+import numpy as np
+
+from ...arrays import Array
+from ...config.axes import words
+from ...config.values import as_number, overflows, short
+from ...errors import InputError
+from ...model.parameters import PARAMETERS
+from ...model.rod import Rod
+from .points import NEUTRAL
+
+LONGEST_LINE = 10_000
+"""Characters of a line of a CSV file."""
+
+
+def read_points(path: Path, names: tuple[str, ...]) -> tuple[Array, ...]:
+    """The columns `names`, each (n,), of a CSV file with that header; InputError where it is none."""
+    try:
+        if path.exists() and not path.is_file():  # to open a pipe would be to wait for its other end
+            raise InputError(f"parameters.points: {path} is not a file")
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            rows = csv.reader(_lines(file, path))
+            header = [cell.strip() for cell in next(rows, [])]
+            if sorted(header) != sorted(names):
+                raise InputError(f"{path}: {_header_told(header)}; it must name {words(names, 'and')}")
+            columns = [array("d") for _ in header]  # a list of numbers would take eight times the memory
+            for row in filter(None, rows):
+                numbers = _row(row, header, f"{path}, line {rows.line_num}")
+                for column, number in zip(columns, numbers, strict=True):
+                    column.append(number)
+    except MemoryError:
+        raise InputError(f"{path} is too large to be read") from None
+    except OSError as error:
+        raise InputError(f"parameters.points: {path} cannot be read: {error.strerror}") from error
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"parameters.points: {path} is not CSV text ({error})") from error
+    if not columns[0]:
+        raise InputError(f"{path}: there is no point after the header")
+    return tuple(np.array(columns[header.index(name)]) for name in names)
+
+
+def _header_told(header: list[str]) -> str:
+    """What is wrong with a header: quoted only where it is one, for any file may be given for a list."""
+    if set(header) & set(PARAMETERS) and all(cell.isidentifier() for cell in header):
+        return f"the header is {short(','.join(header))}"
+    return "the first line names no parameter"
+
+
+def _lines(file: TextIO, path: Path) -> Iterator[str]:
+    """The lines of a text; InputError at one that has no end in sight."""
+    while line := file.readline(LONGEST_LINE):
+        if len(line) == LONGEST_LINE:
+            raise InputError(f"{path}: a line has {LONGEST_LINE} characters or more, which no point needs")
+        yield line
+
+
+def _row(row: list[str], header: list[str], where: str) -> list[float]:
+    if len(row) != len(header):
+        raise InputError(f"{where}: {len(row)} values, where the header names {len(header)}")
+    numbers = []
+    for cell, name in zip(row, header, strict=True):
+        try:
+            if "_" in cell or not cell.isascii() or overflows(cell):
+                raise ValueError
+            numbers.append(as_number(float(cell)))
+        except ValueError:
+            raise InputError(f"{where}: {name} = {cell.strip()[:40]!r} is not a number") from None
+    try:
+        Rod(**{**NEUTRAL, **dict(zip(header, numbers, strict=True))})
+    except ValueError as error:
+        raise InputError(f"{where}: {error}") from None
+    return numbers

@@ -1,0 +1,1 @@
+"""Points of arms, and whether the model applies to them."""

@@ -1,0 +1,152 @@
+"""Whether the model applies at each point of an arm's sweep, from what it leaves out and how the arm moves.
+
+The rate of the motion is that of the task: of the first Hopf point, of the leading mode that oscillates, of
+the cycle. Where nothing moves only compression and weight count.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from math import pi
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array
+from ...config.arm.axes import SECTION, SLENDER
+from ...config.arm.section import ArmSection
+from ...config.schema import Config
+from ...model.arm.arm import SlenderArm
+from ...model.arm.neglected import HALF_LENGTH, effects_of, least_drag, worst_validity
+from ...results.layouts.arm import EFFECTS
+from ...results.layouts.thresholds import CROSSING_KINDS
+from ...sweep.points.points import Points
+
+Record = Mapping[str, Any]
+ARMS_KEPT = 64
+"""Arms that are not made again for the next point."""
+
+
+@dataclass(frozen=True, slots=True)
+class ArmMotion:
+    """How the arm moves at n points, each (n, ...): frequency in 1/tau2, F, and the tip's amplitude in L."""
+
+    frequency: Array
+    F: Array | None = None
+    """None where it is that of the points, which comes first where they have one."""
+    amplitude: Array | float = HALF_LENGTH
+    is_cycle: bool = False
+
+
+def _of_modes(record: Record) -> ArmMotion:
+    """That of the leading mode which oscillates."""
+    frequency = np.abs(record["frequency"])
+    first = np.argmax(frequency > 0, axis=-1, keepdims=True)  # the first of all where none does
+    leading = np.take_along_axis(frequency, first, axis=-1)[..., 0]
+    return ArmMotion(np.where(leading > 0, leading, np.nan))
+
+
+def _of_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
+    """That of the first Hopf point, whose force is the variable `at`."""
+
+    def found(record: Record) -> ArmMotion:
+        hopf = np.asarray(record["crossing_kind"]) == CROSSING_KINDS.index("hopf")
+        first = np.argmax(hopf, axis=-1, keepdims=True)
+        there = hopf.any(axis=-1)
+        pair = (np.asarray(record[name], float) for name in ("crossing_frequency", at))
+        frequency, F = (np.where(there, np.take_along_axis(v, first, axis=-1)[..., 0], np.nan) for v in pair)
+        return ArmMotion(np.abs(frequency), F)
+
+    return found
+
+
+def _of_cycle(record: Record) -> ArmMotion:
+    frequency, amplitude = (np.asarray(record[name], float) for name in ("frequency", "tip_y_max"))
+    return ArmMotion(frequency, None, np.where(np.isfinite(amplitude), amplitude, 0.0), is_cycle=True)
+
+
+def _of_branches(record: Record) -> ArmMotion:
+    period, F, amplitude = (np.asarray(record[name], float) for name in ("period", "branch_F", "tip_y_max"))
+    return ArmMotion(2 * pi / period, F, amplitude, is_cycle=True)
+
+
+MOTIONS: dict[str, Callable[[Record], ArmMotion]] = {
+    "spectrum": _of_modes,
+    "modes": _of_modes,
+    "thresholds": _of_hopf_point("crossing_F"),
+    "criticality": _of_hopf_point("crossing_F"),
+    "phase_diagram": _of_hopf_point("crossing_at"),
+    "limit_cycle": _of_cycle,
+    "branch": _of_branches,
+}
+"""How the arm moves, from the variables of a task."""
+
+
+class ArmValidity:
+    """Whether the model applies at the points of a config's arm."""
+
+    def __init__(self, config: Config, points: Points):
+        assert config.parameters.arm is not None
+        self.section: ArmSection = config.parameters.arm
+        self.points, self.task = points, config.task
+        sections = [axis.size for name, axis in self.section.given.items() if name in SECTION]
+        self.each = points.count // int(np.prod(sections)) if points.over else points.count
+        """Points of an arm, one after another."""
+        self.arm = lru_cache(ARMS_KEPT)(self.section.arm_at)
+
+    def of(self, record: Record, index: int | NDArray[np.int64]) -> dict[str, Any]:
+        """The variables of VALIDITY of a point, or of several of one arm, (n,), with records (n, ...)."""
+        motion = MOTIONS[self.task](record)
+        return self._told(self._arm_of(int(np.ravel(index)[0])), motion, index)
+
+    def at_rest(self) -> dict[str, Array]:
+        """The variables of VALIDITY at all points with a rod, (n,), before anything moves."""
+        found = []
+        for first in range(0, self.points.count, self.each):
+            indices = np.arange(first, first + self.each)
+            if self.points.covered is not None:
+                indices = indices[self.points.covered[indices] == SLENDER]
+            if len(indices):
+                nothing = ArmMotion(np.full(len(indices), np.nan))
+                found.append(self._told(self._arm_of(first), nothing, indices))
+        return {name: np.concatenate([each[name] for each in found]) for name in found[0]}
+
+    def _arm_of(self, index: int) -> SlenderArm:
+        return self.arm(index // self.each if self.points.over else 0)
+
+    def _told(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> dict[str, Any]:
+        drag = arm.own_drag if "drag" in self.points.over else least_drag(arm)
+        rate = motion.frequency / arm.tau2_with(drag)
+        F = self._force(arm, motion, index)
+        effects = effects_of(arm, rate, F, drag=drag, amplitude=motion.amplitude)
+        counted = [effect for effect in effects if motion.is_cycle or not effect.of_cycles_only]
+        excess = np.array([effect.excess for effect in counted])  # (effects, n, ...)
+        validity = worst_validity(effects, of_cycles=motion.is_cycle)
+        points = excess.reshape(len(counted), *np.shape(index), -1)  # the last axis: all motions of a point
+        largest = np.nanmax(np.where(np.isnan(points), -1.0, points), axis=-1)
+        worst = np.argmax(largest, axis=0)
+        number = np.array([EFFECTS.index(effect.name.replace(" ", "_")) for effect in counted])[worst]
+        at_worst = np.max(largest, axis=0)
+        return {
+            "model_applies": validity.reshape(*np.shape(index), -1).max(axis=-1),
+            "neglected_effect": np.where(at_worst > 0, number, -1),
+            "neglected_excess": np.where(at_worst >= 0, at_worst, np.nan),
+        }
+
+    def _force(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> Array:
+        """F in units of the arm's own k1, which a parameter beside it may replace; nan without load."""
+        own = self._column("k1", index)
+        F = self._column("F", index) if "F" in self.points.names else motion.F
+        if F is None:
+            return np.asarray(np.nan)
+        if own is None:
+            return np.asarray(F)
+        own = own.reshape(own.shape + (1,) * (np.ndim(F) - own.ndim))
+        return np.asarray(F) * (arm.k1 / own)
+
+    def _column(self, name: str, index: int | NDArray[np.int64]) -> Array | None:
+        """A parameter at a point, shape (), or at several, (n,); None where it makes no point."""
+        if name not in self.points.names:
+            return None
+        return np.asarray(self.points.values_of(np.asarray(index))[name])

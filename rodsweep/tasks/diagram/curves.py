@@ -1,0 +1,185 @@
+"""The curves of a phase diagram, which all its rows together give."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...config.values import Axis
+from ...model.parameters import CRUSHING
+from ...model.rod import Rod
+from ...results.file.view import View
+from ...results.layouts.phase_diagram import MOST_SPECIAL
+from ...results.layouts.variables import Filled
+from .cycles import row_specials, unstored_specials, with_hopf_ends
+from .records import bautin_curve_record, criticality_record, curve_record, cycle_curve_record
+
+if TYPE_CHECKING:
+    from ...determinant.parameter_plane import Plane
+    from ...solve.branch.coexistence import CoexistenceRow
+    from ...solve.branch.special.boundaries import SpecialBoundaries
+    from ...solve.branch.special.point import SpecialPoint
+    from ...solve.changes.boundary_curves import BoundaryCurve
+    from ...solve.continuation.boundaries import Boundaries
+    from ...solve.hopf.generalised import CurveCriticality
+    from ...solve.orbit.matrix.workspace import NewtonWorkspace
+    from ..phase_diagram import PhaseDiagramTask
+
+MAX_KEPT_ROWS = 200
+"""Rows whose special points a process keeps: the cycles of a row take up to a megabyte. The special points of
+others are located anew, which gives the same and takes some seconds."""
+
+
+@dataclass(slots=True, eq=False)
+class DiagramCurves:
+    """Boundaries, their criticality, generalised Hopf points and curves of cycles of a task's diagram.
+
+    The curves of cycles take longest, and are units of work.
+    """
+
+    task: "PhaseDiagramTask"
+    workspace: "NewtonWorkspace"
+    """Memory of Newton's matrices of this process."""
+    special: "dict[int, tuple[SpecialPoint, ...]]" = field(default_factory=dict)
+    """Special points, with their cycles, of rows that this process has solved: by the row's number."""
+
+    def keep(self, number: int, row: "CoexistenceRow") -> "CoexistenceRow":
+        """The row, whose special points are kept while there is room."""
+        if len(self.special) < MAX_KEPT_ROWS:
+            self.special[number] = row.special
+        return row
+
+    def starts(self, units: "SpecialBoundaries", wanted: Sequence[int]) -> "dict[int, Any]":
+        """What this rank has kept of the rows from which units start, by the row's number."""
+        rows = {units.row_of(unit) for unit in wanted}
+        return {row: self.special[row] for row in rows if row in self.special}
+
+    def take(self, starts: "Mapping[int, Any]") -> None:
+        """Keeps what another rank has of rows."""
+        self.special.update(starts)
+
+    def units(self, view: View) -> "SpecialBoundaries | None":
+        """The curves of cycles as units of work, from a view with all rows; None where there are none."""
+        from ...solve.branch.special.boundaries import SpecialBoundaries
+
+        plane = self.plane if self.task.config.phase_diagram.cycles else None
+        if plane is None:
+            return None
+        row = self.task.config.plane[1]
+        special = row_specials(view, plane.axes[0].name, self.task.points.by_name[row])
+        return SpecialBoundaries(*plane.axes, special)
+
+    def solve(self, units: "SpecialBoundaries", unit: int) -> dict[str, np.ndarray]:
+        """The result of a unit, arrays of the shapes that `TracedHalf` has."""
+        return units.solve(unit, self._special_points, self.workspace)
+
+    def nothing(self) -> dict[str, np.ndarray]:
+        """The result of a unit that finds no curve, arrays of no length along their first shape."""
+        from ...solve.branch.special.cycle_curves import TracedHalf
+
+        return TracedHalf(None).arrays()
+
+    def variables(
+        self, view: View, units: "SpecialBoundaries | None", results: Mapping[int, dict[str, np.ndarray]]
+    ) -> list[Filled]:
+        """All curves as variables of the file. results: of all units that were wanted, of their shapes."""
+        plane = self.plane
+        if plane is None:
+            return []
+        (line, row), options = self.task.config.plane, self.task.config.phase_diagram
+        names = (line, row)
+        found, limit = self._boundaries(plane, view, self.task.points.by_name[row]), {}
+        if names == CRUSHING:  # the fold of the Hopf curve in the partial beam limit (Sec. VIII)
+            from ...solve.changes.thresholds import filament_hopf
+
+            Fc = filament_hopf()
+            limit = {"filament_F_hopf": Fc, "partial_beam_k1": 4 * Fc, "partial_beam_F": 2 * Fc}
+        variables = curve_record(found, names, **limit)
+        told = self._criticality(plane, found) if options.criticality or options.cycles else []
+        if options.criticality:
+            variables += criticality_record(told, names, self.task.config.gamma1)
+        if options.third is not None:
+            variables += self._bautin_curves(plane, told, *options.third)
+        if units is not None:
+            curves = with_hopf_ends(units.curves(results), plane, told, unstored_specials(view, self._finite))
+            variables += cycle_curve_record(curves, names)
+        return variables
+
+    @property
+    def _finite(self) -> np.ndarray:
+        """Which rows have a finite value, (rows,)."""
+        return np.isfinite(self.task.points.by_name[self.task.config.plane[1]])
+
+    @property
+    def plane(self) -> "Plane | None":
+        """The plane of the line's parameter and the finite rows; None where these are fewer than two."""
+        from ...determinant.parameter_plane import Plane, PlaneAxis
+
+        line, row = self.task.config.plane
+        finite = self.task.points.by_name[row][self._finite]
+        if len(finite) < 2:
+            return None
+        axes = self.task.config.parameters.axes
+        not_crushed = {name: float(axis.array()[-1 if name == "k1" else 0]) for name, axis in axes.items()}
+        abscissa, ordinate = (
+            PlaneAxis(name, float(values[0]), float(values[-1]), axes[name].logarithmic)
+            for name, values in ((line, self.task.line), (row, finite))
+        )
+        return Plane(Rod(**not_crushed, gamma1=self.task.config.gamma1), (abscissa, ordinate))
+
+    def _boundaries(self, plane: "Plane", view: View, rows: np.ndarray) -> "Boundaries[BoundaryCurve]":
+        """The curves through the crossings of all finite rows, whose values are given, (rows,)."""
+        from ...solve.changes.boundaries import curves_through, seed_of
+
+        names = ("crossing_at", "crossing_kind", "crossing_frequency", "crossing_growth_rate")
+        at, kind, frequency, rate = map(view.by_point, names)
+        seeds = [
+            seed_of(
+                (float(at[i, j]), float(rows[i])), int(kind[i, j]), float(frequency[i, j]), float(rate[i, j])
+            )
+            for i in np.flatnonzero(np.isfinite(rows))
+            for j in np.flatnonzero(kind[i])
+        ]
+        found = curves_through(plane, [seed for seed in seeds if seed is not None])
+        # Where a list is full its last crossings are not stored, and no curve starts from them.
+        cut = view.variables["crossing_count"].ravel() - np.count_nonzero(kind, axis=1)
+        return replace(found, untraced=found.untraced + int(cut[np.isfinite(rows)].clip(min=0).sum()))
+
+    def _special_points(self, number: int) -> "tuple[SpecialPoint, ...]":
+        """The special points of the branches of the row of a number, kept or solved anew."""
+        from ...solve.branch.coexistence import row_branches, special_of
+
+        if number not in self.special:
+            request = self.task.row_request()
+            return special_of(row_branches(self.task.rod(number), request, MOST_SPECIAL, self.workspace))
+        return self.special[number]
+
+    def _criticality(self, plane: "Plane", found: "Boundaries[BoundaryCurve]") -> "list[CurveCriticality]":
+        """On which side of each curve cycles are born, if it is one of Hopf points."""
+        from ...solve.hopf.generalised import CurveCriticality, curve_criticality
+
+        accuracy = self.task.config.accuracy
+        return [
+            curve_criticality(plane, curve, accuracy)
+            if curve.hopf
+            else CurveCriticality(np.full(len(curve.values), np.nan), (), 0)
+            for curve in found.curves
+        ]
+
+    def _bautin_curves(
+        self, plane: "Plane", told: Sequence["CurveCriticality"], name: str, axis: Axis
+    ) -> list[Filled]:
+        """The curves of generalised Hopf points over the third parameter, as variables of the file."""
+        from ...determinant.parameter_plane import PlaneAxis
+        from ...solve.hopf.bautin_curves import BautinCurve, BautinSpace, bautin_curve, lies_on, on_curve
+
+        options, (line, row) = self.task.config, self.task.config.plane
+        asked, here = axis.array(), float(options.parameters.axes[name].array()[0])
+        third = PlaneAxis(name, float(asked[0]), float(asked[-1]), axis.logarithmic)
+        space = BautinSpace(plane.rod, (*plane.axes, third), np.append(asked, here), options.accuracy)
+        curves: list[BautinCurve] = []
+        for point in (on_curve(found, here) for curve in told for found in curve.points):
+            if not any(lies_on(space, point, curve) for curve in curves):
+                curves.append(bautin_curve(space, point))
+        return bautin_curve_record(curves, (line, row), name)

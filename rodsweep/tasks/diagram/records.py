@@ -1,0 +1,109 @@
+"""Curves of a phase diagram as the variables of its file, which `results.layouts.phase_diagram` declares.
+
+plane: the parameter along a row, and the one across the rows.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...results.layouts.phase_diagram import (
+    bautin_curve_variables,
+    criticality_variables,
+    curve_variables,
+    cycle_curve_variables,
+)
+from ...results.layouts.variables import Filled, Variable, listed, recorded
+
+if TYPE_CHECKING:
+    from ...solve.branch.special.cycle_curves import CycleCurve
+    from ...solve.changes.boundary_curves import BoundaryCurve
+    from ...solve.continuation.boundaries import Boundaries
+    from ...solve.hopf.bautin_curves import BautinCurve
+    from ...solve.hopf.generalised import CurveCriticality
+
+
+def curve_record(found: "Boundaries[BoundaryCurve]", plane: tuple[str, str], **more: Any) -> list[Filled]:
+    """Curves and their folds; more: the variables of a limit."""
+    points, folds = [], []
+    for number, curve in enumerate(found.curves, 1):
+        each = np.broadcast_arrays(curve.frequency, curve.growth_rate, curve.values[:, 0], curve.values[:, 1])
+        for numbers in zip(*each, strict=True):
+            named = dict(zip(("frequency", "growth_rate", *plane), numbers, strict=True))
+            points.append((SimpleNamespace(number=number, kind=curve.hopf, **named),))
+        folds += [_located(fold, plane, curve=number, kind=curve.hopf, of=fold.axis) for fold in curve.folds]
+    declared = curve_variables(*plane)
+    values = _columns(declared, "curve_point", "curve_", points) | _columns(declared, "fold", "fold_", folds)
+    values |= {"curve_agreement": found.agreement, "curves_untraced": found.untraced}
+    return _filled(declared, values | more)
+
+
+def criticality_record(
+    told: Sequence["CurveCriticality"], plane: tuple[str, str], gamma1: float
+) -> list[Filled]:
+    """What was found along each curve, in their order, of rods of this gamma1."""
+    rows, start = [], 0
+    for number, curve in enumerate(told, 1):
+        for point in curve.points:
+            rows.append(_located(point, plane, curve=number, curve_point=start + point.after + 1))
+        start += len(curve.criticality)
+    declared = criticality_variables(*plane)
+    values = _columns(declared, "bautin", "bautin_", rows) | {
+        "curve_criticality": np.concatenate([np.empty(0), *(curve.criticality for curve in told)]),
+        "bautin_unlocated": sum(curve.unlocated for curve in told),
+        "curve_gamma1": gamma1,
+    }
+    return _filled(declared, values)
+
+
+def bautin_curve_record(curves: Sequence["BautinCurve"], plane: tuple[str, str], third: str) -> list[Filled]:
+    """Curves of generalised Hopf points over a third parameter."""
+    rows = [
+        _located(point, (*plane, third), curve=number, end=end)
+        for number, curve in enumerate(curves, 1)
+        for point, end in zip(curve.points, _ends(curve.ends, len(curve.points)), strict=True)
+    ]
+    declared = bautin_curve_variables(*plane, third)
+    return _filled(declared, _columns(declared, "bautin_step", "bautin_along_", rows))
+
+
+def cycle_curve_record(found: "Boundaries[CycleCurve]", plane: tuple[str, str]) -> list[Filled]:
+    """Curves of folds and torus points, with the Hopf points where they end."""
+    rows: list[tuple[Any, ...]] = []
+    for number, curve in enumerate(found.curves, 1):
+        first, last = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.vanishing)
+        own: list[tuple[dict[str, float], Any]] = [*first, *(({}, point) for point in curve.points), *last]
+        for (beside, point), end in zip(own, _ends(curve.ends, len(own)), strict=True):
+            named = dict(zip(plane, (point.at, point.row), strict=True)) | beside
+            rows.append((SimpleNamespace(number=number, kind=int(curve.kind), end=end, **named), point))
+    declared = cycle_curve_variables(*plane)
+    values = _columns(declared, "cycle_curve_point", "cycle_curve_", rows)
+    values |= {"cycle_curve_agreement": found.agreement, "cycle_curves_untraced": found.untraced}
+    return _filled(declared, values)
+
+
+def _located(point: Any, names: Sequence[str], **beside: Any) -> tuple[Any, ...]:
+    """A point with its values and errors by parameter, and what else is stored beside it."""
+    errors = {f"{name}_error": error for name, error in zip(names, point.errors, strict=True)}
+    return SimpleNamespace(**dict(zip(names, point.values, strict=True)), **errors, **beside), point
+
+
+def _columns(
+    declared: Mapping[str, Variable], dimension: str, prefix: str, rows: Iterable[tuple[Any, ...]]
+) -> dict[str, Any]:
+    """The variables of a prefix along a dimension, as lists; each row has the outcomes of one item."""
+    along = [v for v in declared.values() if v.extra == (dimension,) and v.name.startswith(prefix)]
+    return listed(along, [recorded(along, *row, prefix=prefix) for row in rows])
+
+
+def _filled(declared: Mapping[str, Variable], values: Mapping[str, Any]) -> list[Filled]:
+    return [(declared[name], np.asarray(value)) for name, value in values.items()]
+
+
+def _ends(ends: Sequence[int], count: int) -> list[int]:
+    """Why a curve ends at each of its points, 0 between its ends; of a single point the last says it."""
+    why = [0] * count
+    why[0], why[-1] = ends
+    return why

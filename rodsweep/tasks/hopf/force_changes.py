@@ -1,0 +1,153 @@
+"""Where the rods of a file of spectra start to oscillate along F, become unstable, or stable again.
+
+Found from the stored eigenvalues once all points are there, and stored beside them: `show` and figures mark
+what the file has. It costs some 30 us a change: 1 % of the time of spectra followed along 512 forces a line,
+3 to 5 % along 50.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import prod
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array, Complex
+from ...model.parameters import LINEAR_PARAMETERS
+from ...model.rod import Rod
+from ...results.layouts.spectrum import FORCE_CHANGES
+from ...results.layouts.thresholds import CROSSING_KINDS
+from ...results.layouts.variables import Filled
+from ...sweep.points.lines import lines_over
+from ...sweep.points.points import Points
+
+POINTS_AT_ONCE = 1 << 13
+"""Points whose eigenvalues are read together; memory does not grow with the file beyond that."""
+
+
+@dataclass(frozen=True, slots=True)
+class ForceLines:
+    """Lines with points at the same forces.
+
+    fixed: k1, k2 and gamma3 of each line, (lines, 3); F: increasing, (n,); eigenvalues: leading first,
+    (lines, n, modes), in 1/tau2; unstable: how many grow, -1 where that is not known, (lines, n).
+    """
+
+    fixed: Array
+    F: Array
+    eigenvalues: Complex
+    unstable: NDArray[np.int64]
+
+
+def force_changes(points: Points, values: Mapping[str, Any]) -> tuple[Filled, ...]:
+    """The changes on all lines over F as variables of the file; none where F does not vary.
+
+    values: the variables of the points by name, of their shape and their own, as arrays or HDF5 datasets.
+    """
+    F = points.by_name["F"]
+    if len(np.unique(F[np.isfinite(F)])) < 2:
+        return ()
+    lines = _of_grid(points, values) if points.is_grid else _of_list(points, values)
+    kind = np.dtype([(v.name, v.dtype) for v in FORCE_CHANGES])
+    rows = (tuple(row[v.name] for v in FORCE_CHANGES) for some in lines for row in _changes_on(some))
+    table = np.fromiter(rows, kind)
+    return tuple((v, table[v.name]) for v in FORCE_CHANGES)
+
+
+def _of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
+    """The lines of a grid, some at a time."""
+    along = points.names.index("F")
+    others = [axis for axis in range(len(points.names)) if axis != along]
+    widest = max(others, key=lambda axis: points.shape[axis])
+    step = max(1, POINTS_AT_ONCE * points.shape[widest] // prod(points.shape))
+    for first in range(0, points.shape[widest], step):
+        place: list[slice] = [slice(None)] * len(points.shape)
+        place[widest] = slice(first, first + step)
+        columns = [points.columns[axis][place[axis]] for axis in others]
+        fixed = np.stack([table.ravel() for table in np.meshgrid(*columns, indexing="ij")], axis=-1)
+        growth, frequency, unstable = (
+            np.moveaxis(values[name][tuple(place)], along, len(others))
+            for name in ("growth_rate", "frequency", "unstable_count")
+        )
+        shape = (len(fixed), points.shape[along])
+        w = (growth + 1j * frequency).reshape(*shape, -1)
+        yield ForceLines(fixed, points.columns[along], w, unstable.reshape(shape))
+
+
+def _of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
+    """The lines of a list, one after another."""
+    count = points.count
+    w = (values["growth_rate"][...] + 1j * values["frequency"][...]).reshape(count, -1)
+    unstable = values["unstable_count"][...].ravel()
+    for line in lines_over(points.by_name, "F"):
+        if len(line.x) > 1:
+            order = np.argsort(line.x, kind="stable")
+            at = line.at[order]
+            yield ForceLines(
+                np.array([[*line.parameters.values()]]), line.x[order], w[None, at], unstable[None, at]
+            )
+
+
+def _changes_on(lines: ForceLines) -> Iterator[dict[str, float]]:
+    """The changes on lines, one line after another, by the names of their variables."""
+    from ...determinant.stability_changes import onset_between, stability_change_between
+
+    F, w = lines.F.tolist(), lines.eigenvalues
+    onsets, changes = _by_line(_new_pairs(w)), _by_line(_sign_changes(w))
+    for number in sorted(onsets.keys() | changes.keys()):
+        fixed = dict(zip(LINEAR_PARAMETERS[1:], lines.fixed[number].tolist(), strict=True))
+        rod, here = Rod(F=0.0, **fixed), w[number]
+        rods = rod.coefficients, rod.direction("F")
+        tried = (onset_between(rods, (F[i], F[j]), here[i], here[j]) for i, j in onsets.get(number, ()))
+        found = [next(filter(None, tried), None)]
+        for i, j in changes.get(number, ()):
+            unstable = max(_growing(here[k], lines.unstable[number, k]) for k in (i, j))
+            found.append(stability_change_between(rods, (F[i], F[j]), here[i], here[j], unstable))
+        for change in filter(None, found):
+            named = {"kind": CROSSING_KINDS.index(change.kind), "F": change.F, **fixed}
+            named |= {"error": change.error / abs(change.F) if change.F else change.error}
+            named |= {"growth_rate": change.growth_rate, "frequency": change.frequency}
+            yield {f"change_{name}": value for name, value in named.items()}
+
+
+def _growing(w: Complex, counted: int) -> int:
+    """How many modes grow at a point: as counted, or of those stored, (modes,), where that is not known."""
+    return int(counted) if counted >= 0 else int(np.count_nonzero(w.real > 0))
+
+
+Steps = NDArray[np.int64]
+"""Neighbouring points of lines, (steps, 3): the line, the point before, the point behind."""
+
+
+def _sign_changes(w: Complex) -> Steps:
+    """Where the leading growth rate changes its sign; w: (lines, n, modes)."""
+    growing = w[..., 0].real > 0
+    line, before, behind = _neighbours(np.isfinite(w[..., 0].real))
+    differ = growing[line, before] != growing[line, behind]
+    return np.stack([line, before, behind], axis=-1)[differ]
+
+
+def _new_pairs(w: Complex) -> Steps:
+    """Where two real eigenvalues lead, and a pair leads at the next point; w: (lines, n, modes)."""
+    if w.shape[-1] < 2:
+        return np.empty((0, 3), np.int64)
+    real = (w[..., :2].imag == 0).all(axis=-1)
+    line, before, behind = _neighbours(np.isfinite(w[..., :2].real).all(axis=-1))
+    begins = real[line, before] & (w[line, behind, 0].imag > 0)
+    return np.stack([line, before, behind], axis=-1)[begins]
+
+
+def _neighbours(known: NDArray[np.bool_]) -> tuple[NDArray[np.int64], ...]:
+    """(line, point before, point behind) of all neighbours among the known points of lines, (lines, n)."""
+    line, point = np.nonzero(known)
+    together = line[1:] == line[:-1]
+    return line[1:][together], point[:-1][together], point[1:][together]
+
+
+def _by_line(steps: Steps) -> dict[int, list[tuple[int, int]]]:
+    """The neighbouring points of each line that has some."""
+    found: dict[int, list[tuple[int, int]]] = {}
+    for line, before, behind in steps.tolist():
+        found.setdefault(line, []).append((before, behind))
+    return found

@@ -1,0 +1,116 @@
+"""The Hopf points of the straight rods between the points of a file, which its figures and `show` mark.
+
+They depend on the config alone, so the file has them before any point is solved: whatever of it is computed,
+extended or merged, they are those of all of its lines.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...model.parameters import LINEAR_PARAMETERS, all_but
+from ...model.rod import Rod
+from ...results.layouts.limit_cycle import HOPF_ALONG, HOPF_POINTS
+from ...results.layouts.variables import Filled
+from ...sweep.points.points import Points
+
+if TYPE_CHECKING:
+    from ...solve.changes.along_path import Transitions
+    from ...solve.changes.unstable_modes import Crossing
+
+
+@dataclass(frozen=True, slots=True)
+class HopfLine:
+    """Rods from which points of a file are taken: all that lie between two values of one parameter."""
+
+    name: str
+    """The parameter."""
+    fixed: dict[str, float]
+    """The other ones of the straight rod."""
+    start: float
+    stop: float
+
+    def search(self) -> "Transitions | None":
+        """The Hopf points on the line; None where they cannot be had. Needs no PETSc."""
+        from ...determinant.parameter_path import Path
+        from ...solve.changes.along_path import pair_crossings
+        from ...solve.changes.unstable_modes import SHORT_OF_CRUSHED
+        from ...solve.point import FAILURES
+
+        start, stop = self.start, self.stop
+        if self.name == "F":
+            stop = min(stop, self.fixed["k1"] * (1 - SHORT_OF_CRUSHED))
+        if self.name == "k1":
+            start = max(start, self.fixed["F"] / (1 - SHORT_OF_CRUSHED))
+        if not start < stop:
+            return None
+        try:
+            return pair_crossings(Path(Rod(**self.fixed, **{self.name: start}), self.name), start, stop)
+        except (*FAILURES, ValueError):  # ValueError: the model has no rod where the search asks for one
+            return None
+
+
+def hopf_lines_of(points: Points) -> list[HopfLine]:
+    """The lines on which points lie, once each: rods that differ in gamma1 alone are one."""
+    return [line for name in HOPF_ALONG for line in _lines_over(points, name)]
+
+
+def _lines_over(points: Points, name: str) -> Iterator[HopfLine]:
+    """The lines over a parameter of points with at least two finite values of it; over F from 0 on.
+
+    Below the first force the rod may have begun to beat, and that is told too.
+    """
+    columns = {n: points.of_rods[n] for n in LINEAR_PARAMETERS}
+    others = all_but(name)
+    if points.is_grid:
+        rods = np.array(list(product(*(np.unique(columns[n]) for n in others))))
+        ends = [_ends(columns[name])] * len(rods)
+    else:
+        table = np.stack([columns[n] for n in others], axis=-1)
+        rods, line = np.unique(table, axis=0, return_inverse=True)
+        order = np.argsort(line.ravel(), kind="stable")
+        cuts = np.cumsum(np.bincount(line.ravel()))[:-1]
+        ends = [_ends(values) for values in np.split(columns[name][order], cuts)]
+    for rod, (start, stop) in zip(rods.tolist(), ends, strict=True):
+        if start < stop:
+            first = min(start, 0.0) if name == "F" else start
+            yield HopfLine(name, dict(zip(others, rod, strict=True)), first, stop)
+
+
+def _ends(values: np.ndarray) -> tuple[float, float]:
+    """Smallest and largest finite value, (n,); twice the same where there is none to search between."""
+    finite = values[np.isfinite(values)]
+    return (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
+
+
+def hopf_variables(lines: Sequence[HopfLine], found: "Sequence[Transitions | None]") -> tuple[Filled, ...]:
+    """The Hopf points of lines, one line after another, as variables of the file."""
+    rows = [
+        _row(line, crossing)
+        for line, transitions in zip(lines, found, strict=True)
+        for crossing in (transitions.crossings if transitions else ())
+    ]
+    counts = {
+        "hopf_lines": len(lines),
+        "hopf_lines_proved": sum(transitions is not None and transitions.proved for transitions in found),
+    }
+    return tuple(
+        (v, np.array(counts[v.name] if v.name in counts else [row[v.name] for row in rows], v.dtype))
+        for v in HOPF_POINTS
+    )
+
+
+def _row(line: HopfLine, crossing: "Crossing") -> dict[str, Any]:
+    """A Hopf point by the names of its variables."""
+    rod = line.fixed | {line.name: crossing.at}
+    return {f"hopf_{name}": rod[name] for name in HOPF_ALONG} | {
+        "hopf_along": HOPF_ALONG.index(line.name),
+        "hopf_kind": int(crossing.kind),
+        "hopf_error": crossing.error / abs(crossing.at),
+        "hopf_frequency": crossing.frequency,
+        "hopf_frequency_error": crossing.frequency_error,
+        "hopf_unstable_after": crossing.unstable_after,
+    }

@@ -1,0 +1,125 @@
+"""From a config file to everything a run needs that is neither PETSc nor MPI."""
+
+import os
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...config import Config, load_config
+from ...config.document.reading import canonical
+from ...errors import InputError
+from ...results.layouts import LAYOUTS, layout_of
+from ...results.layouts.arm import at_points, in_si, quantities_of
+from ...results.layouts.variables import Filled, Layout
+from ...sweep.points.grid import grid_size, points_of
+from ...sweep.points.points import Points
+from ...sweep.points.stretches import Together
+from .. import TASKS
+from ..arm.points import around, shared
+from ..arm.validity import ArmValidity
+from ..protocol import Solver, Task
+
+LARGEST_FILE = 2**63 - 1
+"""Bytes of a file, and the largest number of a point."""
+BYTES_A_VALUE = 40
+"""Memory of a value of an axis while a run is set up: 33 to 36 were measured, four arrays of numbers."""
+LARGEST_RECORD = 100_000_000
+"""Bytes of one point's results, which are held in memory and written at once."""
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """A validated config with its points and its task."""
+
+    path: Path
+    config: Config
+    text: str
+    points: Points
+    task: Task
+
+    @property
+    def name(self) -> str:
+        """The config's title, or the name of its file."""
+        return self.config.title or self.path.stem
+
+    @property
+    def resolved(self) -> dict:
+        return canonical(self.config)
+
+    @property
+    def quantities(self) -> tuple[Filled, ...]:
+        """The quantities of the arm, where the config has one, as coordinates of the points."""
+        return quantities_of(self.config.parameters, self.points)
+
+    def solver(self) -> Solver:
+        """The task's solver, whose records tell an arm's results in SI units too. Starts PETSc."""
+        solver = self.task.solver()
+        if self.config.parameters.arm is None:
+            return solver
+        once = shared(self._in_si(solver), self.points, self.layout)
+        return around(once, self.points, self.layout)
+
+    def _in_si(self, solver: Solver) -> Solver:
+        """The solver whose records tell results in SI units too, and whether the model applies."""
+        layout = LAYOUTS[self.config.task](self.resolved)
+        quantities = at_points(self.quantities, self.points)
+        validity = ArmValidity(self.config, self.points)
+
+        def told(values: dict[str, Any], index: int | NDArray[np.int64]) -> dict[str, Any]:
+            return values | in_si(values, index, layout, quantities) | validity.of(values, index)
+
+        if solver.stretched is None:
+            return replace(solver, record=lambda index, outcome: told(solver.record(index, outcome), index))
+        stretches, solve_together = solver.stretched
+
+        def together(indices: NDArray[np.int64]) -> Together:
+            found = solve_together(indices)
+            return replace(found, values=told(found.values, indices))
+
+        return replace(
+            solver,
+            record=lambda index, outcome: told(solver.record(index, outcome), index),
+            stretched=(stretches, together),
+        )
+
+    @property
+    def layout(self) -> Layout:
+        return layout_of(self.resolved)
+
+
+def memory() -> int:
+    """Bytes of this machine's memory."""
+    return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+
+
+def make_job(path: Path, overrides: tuple[str, ...]) -> Job:
+    """The job of a config file; InputError for everything that can be known to be wrong beforehand."""
+    return job_of(path, *load_config(path, overrides))
+
+
+def job_of(path: Path, config: Config, text: str) -> Job:
+    """The job of a config with its YAML text, beside whose path a file of points is looked for."""
+    values = sum(axis.size for axis in config.parameters.axes.values())  # before any axis is made
+    if values * BYTES_A_VALUE > memory():
+        raise InputError(
+            f"{path}: parameters make {grid_size(config):.6g} points, whose axes of {values:.6g} values take "
+            f"{values * BYTES_A_VALUE / 1e9:.3g} GB, more than the {memory() / 1e9:.3g} GB of memory of this "
+            "machine; use fewer values"
+        )
+    each = layout_of(canonical(config)).bytes_per_point
+    if grid_size(config) * each > LARGEST_FILE:
+        raise InputError(
+            f"{path}: parameters make a grid of {grid_size(config):.6g} points, whose results take "
+            f"{grid_size(config) * each:.3g} bytes, more than a file can have ({LARGEST_FILE:.3g}); use "
+            "fewer values"
+        )
+    if each > LARGEST_RECORD:
+        raise InputError(
+            f"{path}: the results of one point take {each / 1e9:.3g} GB, more than the "
+            f"{LARGEST_RECORD / 1e9:.3g} GB that a record may have; use fewer values"
+        )
+    points = points_of(config, path.parent)
+    return Job(path, config, text, points, TASKS[config.task](config, points))

@@ -1,0 +1,161 @@
+"""Exceptions that no solver foresees, which are bugs: the point gets the status `failed`, the sweep goes on.
+
+Refusals and errors of the operating system are no bugs and pass: the machine lacks something, for every
+point.
+"""
+
+import os
+import socket
+import time
+import traceback
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ... import __version__
+from ...errors import Refusal
+from ...results.file.provenance import now
+from ...results.layouts.variables import SECONDS, STATUS, Layout
+from ...solve.backend.kept import forget_all
+from ...solve.status import PointStatus
+from ...sweep.points.chains import State
+from ...sweep.points.stretches import Together
+from ..protocol import Solver
+
+PASSING = (Refusal, OSError)
+"""Exceptions that are not of a point: they end the run in a sentence."""
+MAX_NOTES = 1000
+"""Exceptions that a rank writes into its log; more of them than this are one bug at every point."""
+FAILED = "failed"
+"""The status of a point whose solver raised; every task has it."""
+
+Note = Callable[[Sequence[int], Exception], None]
+"""What is done about an exception, from the flat indices of its points."""
+UnitNote = Callable[[str, Exception], None]
+"""What is done about an exception of a unit, from what that is in words."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """A point with its record made: every variable of the layout by name."""
+
+    status: PointStatus
+    message: str
+    values: dict[str, Any]
+
+
+def guarded(solver: Solver, layout: Layout, note: Note) -> Solver:
+    """The solver with outcomes of the type `Outcome`: an exception is `note`d, its point has no numbers.
+
+    A stretch that raises is solved again point by point. Its other points keep their spectra.
+    """
+    return _Guard(solver, layout, note).solver()
+
+
+@dataclass(frozen=True, slots=True)
+class _Guard:
+    inner: Solver
+    layout: Layout
+    note: Note
+
+    def solver(self) -> Solver:
+        """The guarded solver."""
+        return self.inner.within(self._outcome, self._together, record=lambda index, outcome: outcome.values)
+
+    def _outcome(
+        self, index: int, start: State, solve: Callable[[], tuple[Any, State]]
+    ) -> tuple[Outcome, State]:
+        """(outcome, state for the neighbour) of a point whose solver, or whose record, may raise."""
+        began = time.perf_counter()
+        try:
+            found, state = solve()
+            return Outcome(found.status, found.message, self.inner.record(index, found)), state
+        except PASSING:
+            raise
+        except Exception as error:
+            forget_all()
+            self.note([index], error)
+            return self._failed(error, time.perf_counter() - began), None
+
+    def _failed(self, error: Exception, seconds: float) -> Outcome:
+        """The outcome of a point whose solver raised: the fill of every variable."""
+        status = next(status for status in self.inner.statuses if status.name == FAILED)
+        values = {SECONDS.name: seconds, STATUS.name: int(status)}
+        return Outcome(status, described(error), self.layout.empty_point | values)
+
+    def _together(self, indices: NDArray[np.int64]) -> Together:
+        assert self.inner.stretched is not None
+        try:
+            return self.inner.stretched[1](indices)
+        except PASSING:
+            raise
+        except Exception as error:
+            forget_all()
+            self.note(indices.tolist(), error)
+            return self._one_by_one(indices)
+
+    def _one_by_one(self, indices: NDArray[np.int64]) -> Together:
+        """The points of a stretch, each solved alone."""
+        solve = self.solver().solve
+        outcomes = [solve(index) for index in indices.tolist()]
+        names = [variable.name for variable in self.layout.variables]
+        return Together(
+            values={name: np.stack([outcome.values[name] for outcome in outcomes]) for name in names},
+            succeeded=np.array([outcome.status.succeeded for outcome in outcomes]),
+            told=lambda i: f"{outcomes[i].status.name} {outcomes[i].message}",
+        )
+
+
+def described(error: Exception) -> str:
+    """An unforeseen exception in one line: its class, what it says, and where it was raised."""
+    said = " ".join(str(error).split())
+    place = traceback.extract_tb(error.__traceback__)[-1]
+    where = f"{Path(place.filename).name}, line {place.lineno}, in {place.name}"
+    return f"unforeseen {type(error).__name__}{': ' if said else ''}{said} ({where}), a bug of rodsweep"
+
+
+def log_file(output: Path) -> Path:
+    """The file beside a result that has the tracebacks of its points."""
+    return output.with_name(output.name + ".log")
+
+
+class Log:
+    """The tracebacks of a rank's points, appended to a file beside the result that all ranks share."""
+
+    def __init__(self, output: Path, rank: int, where: Callable[[int], str]):
+        """where: the parameters of a point in words."""
+        self.path, self.rank, self.where = log_file(output), rank, where
+        self.count = 0
+        """Exceptions of this rank's points."""
+        self._known: set[str] = set()
+
+    def __call__(self, indices: Sequence[int], error: Exception) -> None:
+        """Appends a traceback; of one that this rank has written before, its last line."""
+        points = self.where(indices[0])
+        if len(indices) > 1:
+            points = f"{len(indices)} points together, from {points} to {self.where(indices[-1])}"
+        self.note(points, error)
+
+    def note(self, place: str, error: Exception) -> None:
+        """The same of a place in words."""
+        self.count += 1
+        if self.count > MAX_NOTES:
+            return
+        head = f"{now()} rodsweep {__version__}, rank {self.rank} on {socket.gethostname()}: {place}\n"
+        lines = traceback.format_exception(error)
+        text = "".join(lines)
+        body = f"{lines[-1]}as above\n" if text in self._known else text
+        self._known.add(text)
+        self._append(f"{head}{body}\n")
+
+    def _append(self, text: str) -> None:
+        """Writes by one call, so that ranks do not write into each other's lines."""
+        handle = os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
+        try:
+            os.write(handle, text.encode(errors="backslashreplace"))
+        finally:
+            os.close(handle)
