@@ -35,18 +35,18 @@ __all__ = [
 ]
 
 _PLACES = {
-    "Answer": "api.answer.Answer",
+    "Answer": "api.answers.answer.Answer",
     "Arm": "api.arm.Arm",
     "EnvironmentLacks": "errors.EnvironmentLacks",
     "InputError": "errors.InputError",
-    "Picture": "api.picture.Picture",
+    "Picture": "api.answers.picture.Picture",
     "Rod": "api.rod.SoftRod",
     "linspace": "api.axes.linspace",
     "logspace": "api.axes.logspace",
     "open": "api.dataset.open_result",
-    "plot": "api.picture.plot",
+    "plot": "api.answers.picture.plot",
     "sweep": "sweep",
-    "table": "api.tabling.table",
+    "table": "api.answers.tabling.table",
 }
 """Where the public names come from; `sweep` is a package that can be called."""
 

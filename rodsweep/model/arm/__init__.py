@@ -1,1 +1,1 @@
-"""The soft arm in SI units: its quantities, cross-section and drag, and the effects that the model neglects."""
+"""The soft arm in SI units: quantities, cross-section, drag, and effects that the model neglects."""

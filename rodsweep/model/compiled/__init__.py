@@ -1,1 +1,1 @@
-"""Compilation of kernels with Numba: loops over an algebra unrolled, machine code cached by the kernels' source."""
+"""Compiled kernels: loops over an algebra unrolled, machine code cached by the kernels' source."""

@@ -1,8 +1,9 @@
 """Everything that changes along a path of rods: crossings of the imaginary axis, and who leads.
 
 The crossings come from `rodsweep.determinant.certificate.covering`, which proves that there are no
-others, the changes of the leading eigenvalue from `leading_eigenvalue`. Here they become one list in increasing order of the
-parameter, and the winding number confirms how many modes are unstable at both ends and in between.
+others, the changes of the leading eigenvalue from `leading_eigenvalue`. Here they become one list in
+increasing order of the parameter, and the winding number confirms how many modes are unstable at both ends
+and in between.
 """
 
 import math

@@ -1,8 +1,8 @@
 """The normal form of a Hopf point: amplitude, frequency and motion of the cycles that are born there.
 
 About the straight rod the mixed form (`rodsweep.discretization.straight.mixed_form`) is
-M dX/dt = A X + B(X, X)/2. With a simple pair of eigenvalues w, conj w of (A, M), A q = w M q and p^H A = w p^H M, its small motions at a
-force F' near F are, to second order,
+M dX/dt = A X + B(X, X)/2. With a simple pair of eigenvalues w, conj w of (A, M),
+A q = w M q and p^H A = w p^H M, its small motions at a force F' near F are, to second order,
 
     X = z q + conj(z q) + Re(z^2 h20) + |z|^2 h11,      dz/dt = [w + lambda_F (F' - F)] z + c |z|^2 z,
     h20 = (2 i Im w M - A)^-1 B(q, q),                  h11 = -A^-1 B(q, conj q),
