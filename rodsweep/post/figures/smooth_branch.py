@@ -5,28 +5,30 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
-from scipy.interpolate import Akima1DInterpolator, CubicHermiteSpline, barycentric_interpolate
+from scipy.interpolate import CubicHermiteSpline, barycentric_interpolate
 
 from ...arrays import Array
 from ..branch_curves import CurveOfCycles
 
 MIRRORED, IMAGE = 3, np.array([1.0, -1.0, 1.0])
-"""Cycles that are mirrored at a Hopf point, as many as a slope of Akima's cubic depends on; their image."""
+"""Cycles that are mirrored at a Hopf point, more than a slope depends on; their image."""
 SHARES = np.array([0.5, 1.0, 1.0])
 """Of the parameter, of y and of the logarithm of the period in the length along a branch, in units of their
 extents: next to a Hopf point the parameter goes with the square of y, and a length that is y is smoothest."""
+POWERS = (1.0, 0.5)
+"""Powers of the chords of which the smoother one is taken: where steps grow at a bend their root is."""
 OF_SLOPE = 5
 """Cycles through which the polynomial goes whose slope the curve has, so that few cycles suffice."""
-CORNER = 0.15
-"""Difference of that slope from Akima's, in units of the steeper chord, that only a corner makes."""
 NO_Y = np.array([1.0, 0.0, 1.0])
 """The parameter and the period of a place, without y."""
 OF_CORNER = 4
-"""Cycles on each side of a corner from which it is found, by a cubic."""
+"""Cycles on each side of a corner from which it is found, by a cubic; fewer at an end of the branch."""
 LEAST_ANGLE = 0.25
 """Difference of the slopes at a corner over the steepest chord beside it; errors of 1 % make half of it."""
+BEND = 3.0
+"""Least ratio of the angle in y to those in parameter and period: at a smooth sharp bend they are alike."""
 SAME = 1e-9
-"""Imaginary part of a root, in units of the distance of two cycles, that is rounding."""
+"""Distance of two cycles, in units of the branch's extent, and imaginary part of a root that are rounding."""
 BETWEEN = 12
 """Places at which the curve between two cycles is drawn."""
 
@@ -37,12 +39,14 @@ def through_cycles(curve: CurveOfCycles) -> tuple[Array, Array, Array, NDArray[n
     A branch has a corner where another maximum of y(t) becomes the largest.
     """
     places = np.column_stack([curve.at, curve.y, np.log(curve.period)])
-    moves = (np.diff(places, axis=0) != 0).any(axis=1)  # the end of the range is a cycle too
+    extent = np.ptp(places, axis=0)
+    extent[extent == 0] = 1.0
+    moves = (np.abs(np.diff(places, axis=0)) > SAME * extent).any(
+        axis=1
+    )  # the end of the range is a cycle too
     own, stable = places[np.append(True, moves)], curve.stable[moves]
     if len(own) <= MIRRORED:
         return curve.at, curve.y, curve.period, curve.stable
-    extent = np.ptp(places, axis=0)
-    extent[extent == 0] = 1.0
     corners = corners_of(own, extent)
     for i in sorted(corners, reverse=True):
         own = np.insert(own, i + 1, corners[i], axis=0)
@@ -62,7 +66,7 @@ def _smooth(own: Array, extent: Array) -> Array:
     before, behind = (some * IMAGE for some in (own[MIRRORED:0:-1], own[-2 : -MIRRORED - 2 : -1]))
     first, last = (int(vertex[1] == 0) * MIRRORED for vertex in (own[0], own[-1]))
     whole = np.concatenate([before[:first], own, behind[:last]])
-    s = _lengths(whole, extent)
+    s = min((_lengths(whole, extent, power) for power in POWERS), key=lambda s: _roughness(s, whole / extent))
     ends = s[first : first + len(own)]
     finer = np.append(np.linspace(ends[:-1], ends[1:], BETWEEN, endpoint=False, axis=1).ravel(), ends[-1])
     places: Array = CubicHermiteSpline(s, whole, slopes_at_cycles(s, whole))(finer)
@@ -79,16 +83,17 @@ def corners_of(own: Array, extent: Array) -> dict[int, Array]:
     """
     lengths = _lengths(own * NO_Y, extent)
     found: dict[int, tuple[float, Array]] = {}
-    for i in range(OF_CORNER - 1, len(own) - OF_CORNER):
-        window = slice(i + 1 - OF_CORNER, i + 1 + OF_CORNER)
-        x, y = (lengths[window] - lengths[i]) / (lengths[i + 1] - lengths[i]), own[window, 1]
-        before = Polynomial.fit(x[:OF_CORNER], y[:OF_CORNER], OF_CORNER - 1).convert()
-        behind = Polynomial.fit(x[OF_CORNER:], y[OF_CORNER:], OF_CORNER - 1).convert()
-        angle = (behind - before).deriv() / np.abs(np.diff(y) / np.diff(x)).max()
-        meet = [x.real for x in (behind - before).roots() if abs(x.imag) < SAME and 0 < x.real < 1]
-        if meet and angle(meet[0]) > LEAST_ANGLE:
-            at, _, log_period = barycentric_interpolate(x, own[window], meet[0])
-            found[i] = float(angle(meet[0])), np.array([at, before(meet[0]), log_period])
+    for i in range(1, len(own) - 2):
+        window = slice(max(0, i + 1 - OF_CORNER), i + 1 + OF_CORNER)
+        x = (lengths[window] - lengths[i]) / (lengths[i + 1] - lengths[i])
+        rises = [_rise(x, column) for column in own[window].T]
+        for root in rises[1].roots():
+            angles = [float(rise.deriv()(root.real)) for rise in rises]
+            is_between = abs(root.imag) < SAME and 0 < root.real < 1
+            if is_between and angles[1] > LEAST_ANGLE and angles[1] > BEND * max(map(abs, angles[::2])):
+                place = barycentric_interpolate(x, own[window], root.real)
+                place[1] = barycentric_interpolate(x[x < 0.5], own[window][x < 0.5, 1], root.real)
+                found[i] = angles[1], place
     return {
         i: place
         for i, (angle, place) in found.items()
@@ -96,25 +101,37 @@ def corners_of(own: Array, extent: Array) -> dict[int, Array]:
     }
 
 
-def _lengths(places: Array, extent: Array) -> Array:
-    """Lengths along the chords from the first of some places, (n, 3), to each, (n,)."""
-    return np.append(0.0, np.cumsum(np.linalg.norm(np.diff(places / extent * SHARES, axis=0), axis=1)))
+def _rise(x: Array, values: Array) -> Polynomial:
+    """The polynomial through the values at x > 0.5 less that through the others, over the steepest chord."""
+    before, behind = (
+        Polynomial.fit(x[side], values[side], side.sum() - 1).convert() for side in (x < 0.5, x > 0.5)
+    )
+    return (behind - before) / (np.abs(np.diff(values) / np.diff(x)).max() or 1.0)
+
+
+def _lengths(places: Array, extent: Array, power: float = 1.0) -> Array:
+    """Sums of the powers of the chords from the first of some places, (n, 3), to each, (n,)."""
+    chords = np.linalg.norm(np.diff(places / extent * SHARES, axis=0), axis=1)
+    return np.append(0.0, np.cumsum(chords**power))
+
+
+def _roughness(s: Array, places: Array) -> float:
+    """The largest distance of a place, (n, columns), from the cubic in s through the two on each side."""
+    beside = (-2, -1, 1, 2)
+    off = [
+        places[i] - barycentric_interpolate(s[[i + k for k in beside]], places[[i + k for k in beside]], s[i])
+        for i in range(2, len(s) - 2)
+    ]
+    return float(np.abs(off).max()) if off else 0.0
 
 
 def slopes_at_cycles(s: Array, places: Array) -> Array:
-    """The derivatives of places by s, both (n, columns): of the polynomial through OF_SLOPE cycles beside.
-
-    Akima's where the two differ much: beside a corner, where another maximum of y(t) becomes the largest, his
-    cubic makes no waves.
-    """
-    akima = Akima1DInterpolator(s, places)(s, 1)
+    """The derivatives of places by s, both (n, columns): of the polynomial through OF_SLOPE cycles beside."""
     count = min(OF_SLOPE, len(s))
-    smooth = np.empty_like(places)
+    slopes = np.empty_like(places)
     for i, start in enumerate(np.clip(np.arange(len(s)) - count // 2, 0, len(s) - count)):
         beside = s[start : start + count] - s[i]
         size = np.abs(beside).max()
         powers = np.vander(beside / size, increasing=True)
-        smooth[i] = np.linalg.solve(powers, places[start : start + count])[1] / size
-    chords = np.abs(np.diff(places, axis=0) / np.diff(s)[:, None])
-    steepest = np.maximum(np.vstack([chords[:1], chords]), np.vstack([chords, chords[-1:]]))
-    return np.where(np.abs(smooth - akima) <= CORNER * steepest, smooth, akima)
+        slopes[i] = np.linalg.solve(powers, places[start : start + count])[1] / size
+    return slopes
