@@ -117,7 +117,7 @@ class Pencil:
         return matrix
 
     def by_element(self, points: Array) -> Iterator[tuple[int, NDArray[np.integer], Array]]:
-        """(first node of an element, which points lie in it, these in [-1, 1]) of all that have points."""
+        """(first node, indices of the points, local points in [-1, 1]) of each element that has points."""
         element = np.minimum((points * self.elements).astype(int), self.elements - 1)
         for e in np.unique(element):
             here = np.nonzero(element == e)[0]
@@ -130,7 +130,7 @@ def angle_weight(gamma3: float) -> float:
 
 
 def tip_scale(y: Complex, theta: Complex) -> Complex:
-    """What makes y(1) = 1 of fields at all nodes, shape (nodes + 1, k); NaN where the tip does not move."""
+    """Factors (k,) that scale k modes (nodes + 1, k) to y(1) = 1; NaN for a mode whose tip does not move."""
     size = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))
     return np.where(np.abs(y[-1]) > NO_TIP * size, 1 / y[-1], np.nan + 0j)
 
