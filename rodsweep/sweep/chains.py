@@ -17,9 +17,9 @@ from .ranges import IndexRange, IndexSet, joined
 from .stop import StopRequest
 
 State = Array | None
-"""What a point starts from where its neighbour has something to offer; None otherwise."""
+"""State of the previous point in the chain from which a point starts; None for a cold start."""
 ChainStep = Callable[[int, State], tuple[Any, State]]
-"""From an index and what the point starts from to its outcome and what its neighbour starts from."""
+"""Function from a point's index and start state to its outcome and the start state of its neighbour."""
 
 
 class ChainStates(Protocol):
@@ -58,7 +58,7 @@ class Chains:
         return along if self.upward else along[::-1]
 
     def todo(self, missing: IndexSet) -> list[IndexRange]:
-        """Ranges of the chains that miss a point."""
+        """Ranges of the chains with missing points."""
         chains = (n for n in range(self.count) if missing[self.indices(n)].any())
         return joined((n, n + 1) for n in chains)
 
