@@ -17,7 +17,7 @@ from .rod_on_mesh import RodOnMesh
 from .stress.rates import rate_jacobians, rates
 
 TINY = 1e-30
-"""Complex step of a velocity."""
+"""Imaginary step of the complex-step derivative in `tip_velocity`, in units of time, tau2."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,5 +69,5 @@ class Beam(RodOnMesh):
         return velocity
 
     def _along(self, field: Values) -> Array:
-        """The roots, to be combined with a field (3, ..., nodes + 1)."""
+        """`roots` reshaped to broadcast against a field (3, ..., nodes + 1)."""
         return self.roots.reshape(3, *(1,) * (field.ndim - 2), -1)

@@ -1,7 +1,8 @@
 """Where each field of a flat state lies: stresses at the nodes but the tip, then unknown velocities.
 
-Nobody else counts places in a state. Python asks a `StateLayout`, compiled code `stress_place` and
-`velocity_place`: numbers, for a view costs it as much as a sum over the nodes.
+No other module computes indices into a state. Python code asks a `StateLayout`. Compiled code asks
+`stress_place` and `velocity_place` for indices, because an array view costs as much there as a sum over the
+nodes.
 """
 
 from dataclasses import dataclass
@@ -15,14 +16,15 @@ from ..model.compiled.compilation import compiled_for_vectors
 FIELDS = {3: ("n1", "n2", "m3"), 6: ("n1", "n2", "n3", "m1", "m2", "m3")}
 """Names of the stresses in the plane and in space."""
 COMPONENTS, BENDING = 3, 2
-"""How many the plane has, and which of them is m3, for compiled code."""
+"""Number of stress components in the plane, and the index of m3 among them, for compiled code."""
 
 
 @dataclass(frozen=True, slots=True)
 class StateLayout:
-    """Of states (..., unknowns): components of a stress, nodes without the tip, unknown components of V.
+    """Order of the unknowns in states of shape (..., unknowns).
 
-    Each velocity has a value at the tip, too.
+    components: number of stress components; nodes: number of nodes without the tip; kept: indices of the
+    unknown components of V. Velocities are unknown at the tip, too; stresses vanish there.
     """
 
     components: int
@@ -39,7 +41,7 @@ class StateLayout:
         return x[..., first : first + self.nodes]
 
     def place(self, name: str, node: int = 0) -> int:
-        """Which of the unknowns a stress at a node is; node 0 is the clamp."""
+        """Index of the named stress at a node among the unknowns; node 0 is the clamp."""
         return FIELDS[self.components].index(name) * self.nodes + node
 
     def at(self, x: Values, name: str, node: int = 0) -> Values:
@@ -48,7 +50,7 @@ class StateLayout:
         return at
 
     def transverse(self, x: Values) -> Values:
-        """All of states x in the plane but n1: what is 0 while the rod is straight, a view."""
+        """All unknowns of plane states x but n1, a view; they vanish while the rod is straight."""
         return x[..., self.nodes :]
 
     def stresses(self, x: Values) -> Values:
@@ -66,19 +68,19 @@ class StateLayout:
     def state(self, S: Values, V: Values) -> Values:
         """States (..., unknowns) of stresses and of all of V at all nodes, (components, ..., nodes + 1) each.
 
-        What a stress has at the tip does not count, nor does what of V is no unknown.
+        Stresses at the tip and the components of V outside `kept` are ignored.
         """
         return np.concatenate([*S[..., :-1], *(V[a] for a in self.kept)], axis=-1)
 
     def carried(self, x: Array, E: Array) -> Array:
-        """States x on another mesh; E: from all nodes to all there, (nodes there + 1, nodes + 1)."""
+        """States x on another mesh; E: matrix of `mesh.transfer`, (nodes there + 1, nodes + 1)."""
         split = self.components * self.nodes
         places = [slice(first, first + self.nodes) for first in range(0, split, self.nodes)]
         parts = [x[..., here] @ E[:-1, :-1].T for here in places]
         return np.concatenate([*parts, *(self.velocities(x) @ E.T if self.kept else ())], axis=-1)
 
     def row(self, values: dict[str, Array]) -> Array:
-        """A row (unknowns,) with these numbers, (nodes,), where a stress lies and 0 elsewhere."""
+        """Row (unknowns,) with the given numbers, (nodes,), at each named stress and 0 elsewhere."""
         row = np.zeros(self.unknowns)
         for name, numbers in values.items():
             self.field(row, name)[:] = numbers
@@ -86,17 +88,17 @@ class StateLayout:
 
 
 def plane_layout(nodes: int, kept: tuple[int, ...] = ()) -> StateLayout:
-    """Of a rod in the plane."""
+    """Layout of a rod in the plane; `nodes` without the tip, `kept` the unknown components of V."""
     return StateLayout(COMPONENTS, nodes, kept)
 
 
 @compiled_for_vectors
 def stress_place(a: int, node: int, nodes: int) -> int:
-    """Which of the unknowns component a of the stress at a node is."""
+    """Index of stress component a at a node among the unknowns."""
     return a * nodes + node
 
 
 @compiled_for_vectors
 def velocity_place(k: int, node: int, components: int, nodes: int) -> int:
-    """Which of the unknowns the k-th of the velocities that are unknown is at a node."""
+    """Index of the k-th unknown velocity at a node among the unknowns."""
     return components * nodes + k * (nodes + 1) + node

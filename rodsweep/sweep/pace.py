@@ -9,13 +9,14 @@ long, the share that is done of those that are being solved counts, too. Knows n
 from math import exp
 
 FORGET = 0.5
-"""Share of the points done that the pace is taken from, the latest."""
+"""Fraction of the finished points, the latest ones, from which the pace is measured."""
 FEWEST = 2
 """Points, after those that are heard of first, after which anything is said."""
 LEAST_BEGUN = 0.1
 """Share of a long point that has to be done before the time left is told: earlier its start would decide."""
 SLOWNESS = 0.25
-"""In which share of the time so far, and of the time still left, what is told follows what is found."""
+"""Time constant with which the reported time left follows its estimate, as a fraction of the time passed or
+left, whichever is shorter."""
 THINNED = 1.02
 """Ratio of points done between records that are kept: some 35 for each doubling."""
 

@@ -10,12 +10,12 @@ from contextlib import suppress
 from types import FrameType
 
 STOP_SIGNALS = (signal.SIGTERM, signal.SIGUSR1, signal.SIGINT)
-"""What asks for a stop: what `kill` and a scheduler's end send, what schedulers warn with, and Ctrl-C."""
+"""Signals that ask for a stop: `kill` or a scheduler's end, a scheduler's warning, and Ctrl-C."""
 GRACE = 0.3
-"""Seconds that a point may still take once a stop is asked for. What takes longer is computed again: a run is
-to end within two seconds, and the launcher of Open MPI kills after one."""
+"""Seconds that a point may still take after a stop request. A point that needs longer is given up and
+computed again on resuming: a run is to end within two seconds, and Open MPI's launcher kills after one."""
 HEARD_CTRL_C = b"\nstopping: all points that are done are kept (Ctrl-\\ ends at once)\n"
-"""What is said at once."""
+"""Message printed at once on Ctrl-C."""
 
 
 class StopRequest:
@@ -33,20 +33,20 @@ class StopRequest:
 
     @property
     def is_due(self) -> bool:
-        """Whether what is being solved is to end now, also in the middle."""
+        """Whether the grace time is over, so that the current point has to be given up unfinished."""
         if not self.name:
             return False
         self._since = self._since or time.monotonic()
         return time.monotonic() - self._since >= GRACE
 
     def listen(self) -> None:
-        """From here on the signals no longer end the process. Only the main thread may call it."""
+        """Record the stop signals instead of ending the process. Only the main thread may call it."""
         for number in STOP_SIGNALS:
             signal.signal(number, self._note)
 
     @staticmethod
     def ignore() -> None:
-        """From here on the signals do nothing, also while Python and MPI end. Only for the main thread."""
+        """Ignore the stop signals, also while Python and MPI end. Only for the main thread."""
         for number in STOP_SIGNALS:
             signal.signal(number, signal.SIG_IGN)
 

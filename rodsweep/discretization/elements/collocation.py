@@ -1,8 +1,8 @@
 """Radau IIA collocation in time: a state is a polynomial on each interval, exact at nodes that include its
 end.
 
-With s stages the ends of the intervals are right to order 2 s - 1, and also what has no time derivative, for
-the end of an interval is one of its nodes.
+With s stages the error at the ends of the intervals is of order 2 s - 1, also for algebraic unknowns, which
+have no time derivative, because the end of an interval is a node.
 """
 
 from functools import cache

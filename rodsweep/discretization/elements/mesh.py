@@ -16,7 +16,7 @@ from .equal_elements import EqualElements
 from .quadrature import gauss, gauss_lobatto
 
 EXTRA_POINTS = 10
-"""Gauss points beyond the nodes with which shapes are integrated: theta turns by a radian or two."""
+"""Gauss points of an element minus its order, for integrals of shapes: theta turns by a radian or two."""
 
 
 class NodeMatrices(NamedTuple):

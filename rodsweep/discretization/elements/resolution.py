@@ -15,10 +15,10 @@ WAVE_FACTOR, MODE_OFFSET = 1.4, 0.3
 START_ACCURACY = 1e-4
 """Relative accuracy of a mesh whose eigenvalues are refined on D."""
 LARGEST_ORDER = 32
-"""Order beyond which another element costs less than a higher order."""
+"""Largest order of an element; beyond this order a further element costs less than a higher order."""
 SMALLEST_ORDER = 6
 MOST_UNKNOWNS = 10_000
-"""Unknowns beyond which a point is given up: some seconds with a sparse factorisation."""
+"""Largest number of unknowns, some seconds with a sparse factorisation; a point that needs more fails."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,7 +29,7 @@ from ..elements.mesh import Mesh, mesh
 from ..state_layout import COMPONENTS, StateLayout, plane_layout
 
 MIRROR = np.array([1.0, -1.0, -1.0])
-"""What the reflection of the plane in the straight rod does to the components of a stress or a velocity."""
+"""Signs of the components of a stress or a velocity under reflection in the straight rod's axis."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,7 @@ class MixedForm:
 
     @property
     def stresses(self) -> int:
-        """How many of the unknowns are stresses."""
+        """Number of unknown stresses."""
         return plane_layout(self.mesh.nodes).unknowns
 
     @property

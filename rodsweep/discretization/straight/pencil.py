@@ -103,7 +103,7 @@ def angle_weight(gamma3: float) -> float:
 
 
 def tip_scale(y: Complex, theta: Complex) -> Complex:
-    """What makes y(1) = 1 of fields at all nodes, shape (nodes + 1, k); NaN where the tip does not move."""
+    """Factors (k,) that scale k modes (nodes + 1, k) to y(1) = 1; NaN for a mode whose tip does not move."""
     size = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))
     return np.where(np.abs(y[-1]) > NO_TIP * size, 1 / y[-1], np.nan + 0j)
 

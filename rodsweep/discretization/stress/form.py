@@ -16,7 +16,7 @@ LEAST_ELIMINATED_DRAG = 1e-5
 """Rotational drag from which Omega is eliminated: below, the division by it costs multipliers their digits,
 2e-9 at 1e-6 and 2e-7 at 1e-8, and soft rods their cycles; as an unknown Omega costs 2.4 times the time."""
 OMEGA = (2,)
-"""Which component of V that is."""
+"""Index of Omega among the components of V, as a tuple."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +40,7 @@ class StressForm(RodOnMesh):
         return self.layout.stresses(x)
 
     def change(self, name: str) -> NodalChange:
-        """The derivative of `nodal` by a parameter, by 1/k of a stiffness k."""
+        """Derivative of `nodal` by the parameter `name`; for a stiffness k, by 1/k."""
         return nodal_change(self.rod.material_change(name), self.mesh)
 
     @cached_property

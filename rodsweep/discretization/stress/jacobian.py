@@ -23,7 +23,7 @@ from ..state_layout import stress_place, velocity_place
 def jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count references at each use
     g: Algebra, x: Array, V: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
 ) -> None:
-    """The derivative of the equations at x, of which V is known, into J, (unknowns, unknowns).
+    """Write the Jacobian of the equations at x, with V already computed, into J, (unknowns, unknowns).
 
     Rows are equations, in the order of the unknowns: G at all nodes but the tip, then the balance of each V
     that is unknown. tip, (d, unknowns): the derivative of the reaction.
@@ -38,7 +38,7 @@ def jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count referenc
 
 @OverAlgebra
 def _velocity_slopes(g: Algebra, x: Array, slopes: Array, c: NodalRod) -> None:
-    """Mobility B at all nodes into slopes, (d, d, nodes + 1), where it does not vanish."""
+    """Write mobility B at all nodes into slopes, (d, d, nodes + 1), where B does not vanish."""
     n = slopes.shape[2] - 1
     for i in range(n + 1):
         s = [x[stress_place(a, i, n)] if i < n else 0.0 for a in g.components]
@@ -56,7 +56,7 @@ def _velocity_slopes(g: Algebra, x: Array, slopes: Array, c: NodalRod) -> None:
 def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decides is no branch
     g: Algebra, x: Array, V: Array, slopes: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
 ) -> None:
-    """The derivative of G by S into J and tip; slopes as in `_velocity_slopes`."""
+    """Write the derivative of G by S into J and tip; slopes as in `_velocity_slopes`."""
     n = len(m.weights) - 1
     for i in range(n + 1):
         s = [x[stress_place(a, i, n)] if i < n else 0.0 for a in g.components]
@@ -90,7 +90,7 @@ def _rows(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decid
 def _kept_columns(  # noqa: PLR0913, PLR0917 - as above
     g: Algebra, k: int, x: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
 ) -> None:
-    """The derivative of G by the k-th of the V that are unknowns, into J and tip."""
+    """Write the derivative of G by the k-th unknown velocity into J and tip."""
     size, n, of = len(m.weights), len(m.weights) - 1, c.kept[k]
     first = velocity_place(k, 0, g.dimension, n)
     for i in range(size):
@@ -106,7 +106,7 @@ def _kept_columns(  # noqa: PLR0913, PLR0917 - as above
 
 @OverAlgebra
 def _kept_rows(g: Algebra, k: int, x: Array, J: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """The rows of the balance of the k-th of the V that are unknowns into J."""
+    """Write the rows of the balance of the k-th unknown velocity into J."""
     size, n, of = len(m.weights), len(m.weights) - 1, c.kept[k]
     first = velocity_place(k, 0, g.dimension, n)
     for i in range(size):

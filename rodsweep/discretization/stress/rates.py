@@ -15,7 +15,10 @@ from ..state_layout import stress_place
 
 @compiled_for_vectors
 def rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """dz/dt in 1/tau2 into out, both (unknowns,), of z = C^(1/2) S; roots: of C, (d, nodes + 1), above 0."""
+    """Write dz/dt (1/tau2) of z = C^(1/2) S into out, both (unknowns,).
+
+    roots: square roots of C, (d, nodes + 1), positive.
+    """
     d, size = c.drag.shape
     V, G, x = np.empty((d, size)), np.empty((d, size)), np.empty(len(z))
     _unscale(z, x, roots)
@@ -27,7 +30,7 @@ def rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> No
 
 @compiled_for_vectors
 def _unscale(z: Array, x: Array, roots: Array) -> None:
-    """S of z = C^(1/2) S into x, both (unknowns,)."""
+    """Write the stresses S = C^(-1/2) z into x; x and z have shape (unknowns,)."""
     d, n = roots.shape[0], roots.shape[1] - 1
     for a in range(d):
         for i in range(n):

@@ -14,10 +14,11 @@ from ..elements.mesh import reconstruction
 
 
 class TipMatrices(NamedTuple):
-    """On one of equal elements: from its p + 1 nodes to g Gauss points, and integrals over the element.
+    """Interpolation and quadrature on one element of a uniform mesh, with p + 1 nodes and g Gauss points.
 
-    values, angles: at the Gauss points a function and its integral from the element's start, (p + 1, g);
-    weights: of functions given at the Gauss points, (g,); ends: of such given at the nodes, (p + 1,).
+    values: interpolation from the nodes to the Gauss points; angles: integrals of nodal polynomials from the
+    element's start to the Gauss points; both (p + 1, g). weights: weights of the integral over the element
+    at the Gauss points, (g,); ends: weights of this integral at the nodes, (p + 1,).
     """
 
     values: Array
@@ -28,7 +29,7 @@ class TipMatrices(NamedTuple):
 
 @lru_cache(maxsize=64)
 def tip_matrices(elements: int, order: int) -> TipMatrices:
-    """The matrices of the mesh of `elements` equal elements of order `order`, (p + 1, g) and vectors."""
+    """`TipMatrices` of the mesh of `elements` equal elements of order `order`."""
     values, angles, integrals, ends = reconstruction(order)
     parts = values, angles / elements, integrals[:, -1] / elements, ends[:, -1] / elements
     return TipMatrices(*map(np.ascontiguousarray, parts))

@@ -43,7 +43,7 @@ class Tables:
 
     @cached_property
     def contents(self) -> Contents:
-        """Which tables there are."""
+        """Names and variables of the result's tables."""
         return contents_of(self.view)
 
     def table(self, name: str | None = None, columns: Sequence[str] = ()) -> Table:

@@ -45,7 +45,7 @@ def merged_columns(
 
 
 def _filled(values: Column, others: Column) -> Column:
-    """A column whose missing values are those of another."""
+    """Column `values` with its missing values taken from `others`."""
     both = np.where(values.absent, others.values, values.values)
     return replace(values, values=both, absent=values.absent & others.absent)
 

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from ...results.layouts.variables import NOT_KNOWN, SECONDS, Variable
 
 NO_WORD = ("none", "missing")
-"""Words of a list that stand for no item."""
+"""Flag words that mark an unused place of a list."""
 TRUTHS = {0: "false", 1: "true"}
-"""What CSV has for variables that say yes or no."""
+"""Text of boolean values in CSV."""
 ERROR_DIGITS = 3
 """Significant digits of an error or a time: estimates have no more."""
 ROUNDING = 4 * np.finfo(float).eps
-"""Relative error of a coordinate that a conversion of units or the making of a range leaves."""
+"""Largest relative rounding error of a coordinate after a conversion of units or in a range."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,9 +31,9 @@ class Column:
     values: NDArray
     absent: NDArray[np.bool_]
     words: Mapping[int, str] = field(default_factory=dict)
-    """What the values mean, where they are words."""
+    """Words by value; empty for a column of numbers."""
     given: bool = False
-    """Whether the values are what was asked for, not what was found."""
+    """Whether the values are input coordinates, not results."""
     is_truth: bool = False
     """Whether the values say yes or no."""
 
@@ -104,7 +104,7 @@ def _typed(value: float, text: str) -> str:
 
 
 def absent_in(variable: Variable, values: NDArray) -> NDArray[np.bool_]:
-    """Where a variable has no value, of the shape of the values: NaN, an unknown count, or no word."""
+    """Mask of missing values, of the shape of `values`: NaN, the fill value -1, or a word of `NO_WORD`."""
     if values.dtype.kind == "f":
         return np.isnan(values)
     if variable.flags:

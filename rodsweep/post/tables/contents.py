@@ -17,7 +17,7 @@ from ...results.layouts.variables import Variable
 THERE_ARE = "there are"
 POINTS, GRID, BRANCHES = "points", "grid", "branches"
 PARTS_OF_BRANCHES = {"cycles", "special_points"}
-"""What `branches` puts together."""
+"""Tables that the table `branches` merges."""
 NAMES = {
     ("mode",): "modes",
     ("mode", "u"): "mode_shapes",
@@ -48,7 +48,7 @@ FIRST = {
     "limit_cycle": POINTS,
     "branch": BRANCHES,
 }
-"""The table of every task that is meant where none is named."""
+"""Default table of each task."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,16 +20,16 @@ Arrays = dict[str, Array]
 
 
 class ChainState(Protocol):
-    """What a point has for the next one of its chain to start from."""
+    """State of the previous point in a chain, from which the next point starts."""
 
     def arrays(self) -> Arrays:
         """All of it as named arrays, of any shapes, for a checkpoint."""
 
 
 State = ChainState | None
-"""What a point starts from; None where its neighbour has nothing for it."""
+"""State of the previous point in the chain from which a point starts; None for a cold start."""
 ChainStep = Callable[[int, Any], tuple[Any, Any]]
-"""From an index and the State from which the point starts to its outcome and the State for the next point."""
+"""Function from a point's index and start state to its outcome and the start state of its neighbour."""
 
 
 class ChainStates(Protocol):
@@ -68,7 +68,7 @@ class Chains:
         return along if self.upward else along[::-1]
 
     def todo(self, missing: IndexSet) -> list[IndexRange]:
-        """Ranges of the chains that miss a point."""
+        """Ranges of the chains with missing points."""
         chains = (n for n in range(self.count) if missing[self.indices(n)].any())
         return joined((n, n + 1) for n in chains)
 

@@ -1,4 +1,4 @@
-"""Points that differ in one parameter only: the lines on which a rod is looked at as that parameter grows."""
+"""Lines of points of a sweep: on each line only one parameter varies."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -10,14 +10,14 @@ from ...arrays import Array
 
 @dataclass(frozen=True, slots=True)
 class ParameterLine:
-    """The points that differ in one parameter only, in their own order."""
+    """Points that differ in one parameter only, in the order of the sweep."""
 
     name: str
-    """The parameter."""
+    """The parameter that varies."""
     parameters: dict[str, float]
-    """The other ones, by name."""
+    """Values of the fixed parameters, by name."""
     x: Array
-    """The values of the one, shape (n,)."""
+    """Values of the varying parameter, shape (n,)."""
     at: np.ndarray
     """The flat indices of the points, shape (n,)."""
 

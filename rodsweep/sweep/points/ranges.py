@@ -1,4 +1,4 @@
-"""Ranges of flat indices, of points or of chains, each as (first, end): what is left to do."""
+"""Ranges (first, end) of flat indices of points or chains, and the set of the indices in such ranges."""
 
 from collections.abc import Iterable, Sequence
 from typing import Any
@@ -9,12 +9,12 @@ IndexRange = tuple[int, int]
 
 
 def total(ranges: Iterable[IndexRange]) -> int:
-    """How many indices the ranges hold."""
+    """Number of indices in the ranges."""
     return sum(end - first for first, end in ranges)
 
 
 def joined(ranges: Iterable[IndexRange]) -> list[IndexRange]:
-    """Sorted ranges as few as possible: those that touch become one."""
+    """Sorted ranges with adjacent ranges merged."""
     result: list[IndexRange] = []
     for first, end in ranges:
         touches = bool(result) and result[-1][1] == first
@@ -26,10 +26,10 @@ class IndexSet:
     """The indices in some ranges, which are sorted; takes no memory for the indices themselves."""
 
     def __init__(self, ranges: Sequence[IndexRange]):
-        # The first one is empty: an index before all others has a range to be compared with.
+        # An empty first range, so that an index before all ranges also has a range on its left.
         self.firsts, self.ends = np.array([(-1, -1), *ranges]).T
 
     def __getitem__(self, indices: Any) -> Any:
-        """Whether an index is in the set, or an array of it for an array of indices."""
+        """Whether an index is in the set; for an array of indices, a boolean array."""
         place = np.searchsorted(self.firsts, indices, side="right") - 1
         return indices < self.ends[place]
