@@ -1,4 +1,4 @@
-"""The report on an arm: warnings, verdict, numbers with their formulas, and what the model leaves out."""
+"""Report on an arm: warnings, verdict, numbers with formulas, checks of neglected effects."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -16,22 +16,22 @@ from .validity import Assessment
 
 OVER_DRAG = "In brackets: the range over drag, which is known by factors only."
 NUMBERS_BEGIN = 18
-"""Column of the numbers, behind their names."""
+"""Column at which the values begin, right of the names."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmReport:
-    """All that is said of an arm; as text, the same without colours, and as a table in a notebook."""
+    """Report on an arm: `lines` for a terminal, text without colours, a table in a notebook."""
 
     validity: Validity
     """Whether the model applies at the threshold and under the load."""
     warnings: tuple[Check, ...]
-    """What makes the verdict doubtful; it stands above the verdict."""
+    """Checks that make the verdict doubtful, printed above the verdict."""
     verdict: tuple[str, ...]
-    """Sentences, of which the first is the headline."""
+    """Sentences of the verdict; the first is the headline."""
     rows: tuple[NumberRow, ...]
     checks: tuple[Check, ...]
-    """What else the model leaves out."""
+    """All other checks of neglected effects."""
 
     def __str__(self) -> str:
         return "\n".join(line for line, _ in self.lines())
@@ -39,7 +39,7 @@ class ArmReport:
     __repr__ = __str__
 
     def lines(self) -> Iterator[tuple[str, str]]:
-        """(line of at most 80 columns, what it is: "warning", "headline" or "")."""
+        """Pairs (line of at most 80 columns, style); the style is "warning", "headline" or ""."""
         for check in self.warnings:
             yield folded(check.told), "warning"
         for number, sentence in enumerate(self.verdict):
@@ -66,7 +66,7 @@ class ArmReport:
 
 
 def report_on(arm: SlenderArm) -> ArmReport:
-    """The report, for which thresholds are solved. InputError where a load is relative to no flutter."""
+    """Solves for the thresholds of an arm and reports. InputError if a relative load has no flutter."""
     planes = with_load(planes_of(arm))
     first = planes.first
     assessment = Assessment(first.arm, first.found)

@@ -1,4 +1,4 @@
-"""What the model leaves out, held against an arm's numbers: plain sentences, some of them warnings."""
+"""Checks of the neglected effects for one arm: plain sentences, some of them warnings."""
 
 from dataclasses import dataclass
 from math import isnan
@@ -8,47 +8,47 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import SELF_BUCKLING, Effect, Validity, wall_effect
 
 if TYPE_CHECKING:
-    from .validity import Assessment  # which imports solvers
+    from .validity import Assessment  # for annotations only: the module imports solvers
 
 SLENDER = 20.0
-"""Lengths a radius from which the logarithms of slender-body theory are good to some ten percent."""
+"""Smallest ratio of length to radius at which slender-body theory is accurate to about ten percent."""
 LOWERED_BY_INERTIA = 0.64
-"""Relative fall of the flutter threshold over the phase by which inertia turns the drag, for small phases."""
+"""Relative decrease of the flutter threshold per radian of phase between drag and velocity by inertia."""
 SAG_OF_BUCKLING = SELF_BUCKLING / 8
-"""Sag of a level arm over its length, for a weight of 1 of what buckles an upright one: w L^4/(8 E I)."""
+"""Sag over length, w L^3/(8 E I), of a horizontal arm with the weight that buckles an upright arm."""
 LARGEST_SAG = 0.25
-"""Sag over length up to which the linear formula is good to some percent."""
+"""Largest sag over length at which the linear formula is accurate to some percent."""
 USUAL_POISSON = (0.3, 0.5)
 """Poisson's ratios of rubbers and gels."""
 
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One thing that the model leaves out; `validity` of the model under it."""
+    """Check of one neglected effect; validity: of the model with this effect."""
 
     validity: Validity
     sentence: str
     of_verdict: bool = False
-    """Whether the verdict depends on it, rather than wide beating or how far the range of drag reaches."""
+    """Whether the effect matters for the verdict, not only for wide beating or the drag range's width."""
 
     @property
     def doubts_the_verdict(self) -> bool:
-        """Whether it is said above the verdict; beyond the limit the verdict itself says so."""
+        """Whether the check is printed above the verdict; beyond the limit the verdict itself states it."""
         return self.of_verdict and self.validity == Validity.doubtful
 
     @property
     def fine(self) -> bool:
-        """Whether the model leaves it out with reason."""
+        """Whether the effect is small enough to be neglected."""
         return self.validity == Validity.applies
 
     @property
     def told(self) -> str:
-        """The sentence, which begins with the word warning where it is one."""
+        """The sentence, with the prefix "warning: " unless the effect is negligible."""
         return self.sentence if self.fine else f"warning: {self.sentence}"
 
 
 def checks_of(assessment: "Assessment") -> list[Check]:
-    """All of them."""
+    """All checks of an arm, in the order of the report."""
     arm, effects = assessment.arm, {effect.name: effect for effect in assessment.at_flutter}
     return [
         slenderness(arm),
@@ -62,7 +62,7 @@ def checks_of(assessment: "Assessment") -> list[Check]:
 
 
 def slenderness(arm: SlenderArm) -> Check:
-    """Length over radius."""
+    """Check of the ratio of length to radius."""
     ratio = arm.si.length / arm.section.drag_radius
     fine = ratio >= SLENDER
     why = (
@@ -74,7 +74,7 @@ def slenderness(arm: SlenderArm) -> Check:
 
 
 def compression(assessment: "Assessment", at_flutter: Effect) -> Check:
-    """F/k1, the share of its length that the straight arm loses."""
+    """Check of F/k1, the compressive strain of the straight arm."""
     says, effects = [], [at_flutter, *assessment.under_load]
     if assessment.under_load:
         verb = "shortens" if assessment.arm.F >= 0 else "lengthens"
@@ -93,12 +93,12 @@ def compression(assessment: "Assessment", at_flutter: Effect) -> Check:
 
 
 def stiffening(share: float) -> float:
-    """Relative rise of the tangent modulus of neo-Hookean rubber, E (1 + 2/stretch^3)/3, by compression."""
+    """Relative increase of neo-Hookean tangent modulus E (1 + 2/stretch^3)/3; share: compressive strain."""
     return float(2 * ((1 - share) ** -3 - 1) / 3)
 
 
 def inertia(of_arm: Effect, of_fluid: Effect) -> list[Check]:
-    """Inertia of the arm and of the fluid beside it at the threshold; nothing where nothing flutters."""
+    """Check of inertia of arm and surrounding fluid at the threshold; empty without flutter."""
     if isnan(of_arm.value):
         return []
     validity = max(map(_validity, (of_arm, of_fluid)))
@@ -116,7 +116,7 @@ def inertia(of_arm: Effect, of_fluid: Effect) -> list[Check]:
 
 
 def reynolds(number: Effect) -> list[Check]:
-    """Reynolds number of beating as wide as half the length, as fast as at the threshold."""
+    """Check of the Reynolds number for an amplitude of L/2 at the threshold's frequency."""
     if isnan(number.value):
         return []
     validity = _validity(number)
@@ -130,7 +130,7 @@ def reynolds(number: Effect) -> list[Check]:
 
 
 def wall(arm: SlenderArm) -> list[Check]:
-    """How far the section of a tube flattens in wide beating; nothing of other sections."""
+    """Check of the flattening of a tube in wide beating; empty for other sections."""
     if arm.inner_radius is None:
         return []
     si = arm.si
@@ -138,7 +138,7 @@ def wall(arm: SlenderArm) -> list[Check]:
 
 
 def wall_check(effect: Effect) -> Check:
-    """The same from the effect on one tube."""
+    """Check of a tube's wall from the effect of flattening."""
     lost = float(effect.value)
     loses = f"takes some {100 * lost:.2g} % of its bending stiffness" if lost < 1 else "folds the tube"
     validity = _validity(effect)
@@ -152,7 +152,7 @@ def wall_check(effect: Effect) -> Check:
 
 
 def weight(effect: Effect | None) -> Check:
-    """Weight less buoyancy against bending stiffness."""
+    """Check of weight minus buoyancy against bending stiffness."""
     if effect is None:
         says = "Weight: left out, as if the arm floated; give a density difference to have it checked."
         return Check(Validity.applies, says)
@@ -169,7 +169,7 @@ def weight(effect: Effect | None) -> Check:
 
 
 def poisson(arm: SlenderArm) -> Check:
-    """Poisson's ratio of soft materials."""
+    """Check of Poisson's ratio against the range of soft materials."""
     fine = USUAL_POISSON[0] <= arm.poisson <= USUAL_POISSON[1]
     why = "usual for soft materials" if fine else "unusual: rubbers and gels are near 0.5"
     return Check(_doubt(not fine), f"Poisson's ratio: {arm.poisson:g}, {why}; it enters through shear only.")

@@ -1,4 +1,4 @@
-"""Where an arm flutters, how fast, and whether it returns, over its range of drag. Forces in k3/L^2."""
+"""Thresholds of an arm over its range of drag: flutter, beating frequency, return. Forces in k3/L^2."""
 
 from dataclasses import dataclass
 from math import pi
@@ -12,39 +12,40 @@ from ..solve.exclusive import solving
 from .relative import FARTHEST
 
 REQUEST = ThresholdsRequest(F_max=FARTHEST, accuracy=1e-6, certify=True, crossings=1000)
+"""Search request for the thresholds of an arm: complete lists, thresholds to six digits."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlutterForces:
-    """The changes of an arm with one drag; None where there is none. Forces in k3/L^2, frequencies in Hz."""
+    """Thresholds of an arm with one drag. Forces in k3/L^2, frequencies in Hz; None without such a change."""
 
     tau2: float
-    """In s."""
+    """Time scale, in s."""
     thresholds: Thresholds
 
     def first(self, kind: Kind) -> Crossing | None:
-        """The first change of a kind."""
+        """The first change of a kind along the force."""
         return next((c for c in self.thresholds.crossings if c.kind == kind), None)
 
     def frequency(self, kind: Kind) -> float | None:
-        """At the first change of a kind, in Hz."""
+        """Frequency at the first change of a kind, in Hz."""
         found = self.first(kind)
         return None if found is None else abs(found.frequency) / (2 * pi * self.tau2)
 
     def force(self, kind: Kind) -> float | None:
-        """At the first change of a kind, in k3/L^2."""
+        """Force at the first change of a kind, in k3/L^2."""
         found = self.first(kind)
         return None if found is None else found.at
 
     def unstable_at(self, F: float) -> bool:
-        """Whether the straight arm beats at a force; beyond where changes were sought, as at the end."""
+        """Whether the straight arm is unstable at a force; beyond the searched range, as at its end."""
         before = [c.unstable_after for c in self.thresholds.crossings if c.at <= F]
         return bool(before) and before[-1] != 0
 
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """From the least to the greatest of a number over the range of drag; `always` where every drag has it."""
+    """Range of a quantity over the range of drag; always: whether every drag has a value."""
 
     low: float
     high: float
@@ -53,19 +54,19 @@ class Span:
 
 @dataclass(frozen=True, slots=True)
 class FlutterRange:
-    """The changes of an arm with each drag, the likeliest first."""
+    """Thresholds of an arm for each drag, the likeliest drag first."""
 
     forces: tuple[FlutterForces, ...]
 
     @property
     def failures(self) -> list[str]:
-        """What a search says that did not end well."""
+        """Messages of the searches that failed, without repetition."""
         searches = [f.thresholds for f in self.forces]
         return sorted({t.message or t.status.sentence for t in searches if not t.status.succeeded})
 
     @property
     def end(self) -> float:
-        """How far changes were sought, in k3/L^2."""
+        """Largest force of the search, in k3/L^2."""
         return self.forces[0].thresholds.end
 
     def force(self, kind: Kind) -> Span | None:
@@ -73,18 +74,18 @@ class FlutterRange:
         return span_of([f.force(kind) for f in self.forces])
 
     def frequency(self, kind: Kind) -> Span | None:
-        """Range of the frequency there, in Hz."""
+        """Range of the frequency at the first change of a kind, in Hz."""
         return span_of([f.frequency(kind) for f in self.forces])
 
     def unstable_at(self, F: float) -> list[bool]:
-        """Whether the straight arm beats at a force, with each drag."""
+        """Whether the straight arm is unstable at a force, for each drag."""
         return [f.unstable_at(F) for f in self.forces]
 
 
 def span_of(values: list[float | None]) -> Span | None:
-    """From the least to the greatest of those that are there; None where none is."""
-    there = [value for value in values if value is not None]
-    return Span(min(there), max(there), len(there) == len(values)) if there else None
+    """Smallest and largest value that is not None; None if every value is None."""
+    known = [value for value in values if value is not None]
+    return Span(min(known), max(known), len(known) == len(values)) if known else None
 
 
 def flutter_forces(arm: SlenderArm, drag: Drag) -> FlutterForces:

@@ -3,9 +3,9 @@
 import textwrap
 
 WIDTH = 80
-"""Columns of a line of a report."""
+"""Width of a report, in columns."""
 
 
 def folded(text: str, first: str = "", further: str = "  ") -> str:
-    """A text in lines of at most 80 columns, with what they begin with."""
+    """A text wrapped to WIDTH columns; first, further: indents of the first and of further lines."""
     return textwrap.fill(text, WIDTH, initial_indent=first, subsequent_indent=further)

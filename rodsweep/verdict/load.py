@@ -1,4 +1,4 @@
-"""The load of an arm in the words and the unit in which it was given, and numbers as sentences have them."""
+"""The load of an arm in the unit in which the user gave it, and the format of numbers in sentences."""
 
 from math import floor, log10
 
@@ -8,11 +8,11 @@ from ..model.units import compact, split, unit_of, written_in
 from .flutter import Span
 
 FLUTTER_ABOUT = 36.0
-"""F at which arms flutter, roughly: which prefix a pressure has where none is given."""
+"""Typical F of flutter, in k3/L^2: chooses the prefix of a pressure if the user gave no load."""
 ROUNDING = 1e-12
-"""Relative error of a number that has three digits but for it."""
+"""Relative rounding error that must not cut a number of three digits to the next lower one."""
 LONGEST_GIVEN = 6
-"""Characters of a load's number that are repeated as they were given."""
+"""Longest number of a load, in characters, that is repeated as the user wrote it."""
 
 
 def digits(value: float) -> str:
@@ -22,20 +22,20 @@ def digits(value: float) -> str:
 
 
 def rounded(low: float, high: float) -> str:
-    """A range to three digits; one number where its ends look alike."""
+    """A range to three digits; one number if both ends round to the same digits."""
     ends = [digits(low), digits(high)]
     return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 
 
 def rounded_percent(low: float, high: float) -> str:
-    """A range of shares in percent, without decimals but for small ones."""
+    """A range of fractions in percent: integers, or one digit below 1 percent."""
     percents = [100 * value for value in sorted((low, high))]
     ends = [f"{value:.0f}" if value >= 1 else f"{value:.1g}" for value in percents]
     return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 
 
 class Load:
-    """What pushes the arm; without load, a pressure that might."""
+    """Load of an arm in the user's unit; a pressure if the arm has no load."""
 
     def __init__(self, arm: SlenderArm):
         self.name = arm.load or "pressure"
@@ -44,23 +44,23 @@ class Load:
             unit_of(given, si) if given is not None else compact(FLUTTER_ABOUT * arm.load_scale, si)[1]
         )
         self.given = "" if given is None else _short(given, float(getattr(arm.si, self.name)), si)
-        """The load as it was given, of four digits where it has more than six."""
+        """Load as the user wrote it; of four digits if longer than LONGEST_GIVEN; empty without load."""
         self.scale = written_in(arm.load_scale, self.unit, si)
-        """How much of it F = 1 is."""
+        """Load at F = 1, in `unit`."""
 
     def of(self, forces: Span) -> str:
-        """A range of forces in k3/L^2, as this load."""
+        """Converts a range of forces, in k3/L^2, to this load's unit."""
         return f"{rounded(forces.low * self.scale, forces.high * self.scale)} {self.unit}"
 
     def at_most(self, F: float) -> str:
-        """A force in k3/L^2 as this load, cut to three digits."""
+        """Converts a force, in k3/L^2, to this load's unit, rounded down to three digits."""
         value = F * self.scale
         unit = 10.0 ** (floor(log10(value)) - 2)
         return f"{digits(floor(value / unit * (1 + ROUNDING)) * unit)} {self.unit}"
 
 
 def _short(given: object, value: float, si: str) -> str:
-    """A load as it was given, or with four digits where it has many; value: the same in SI."""
+    """A load as the user wrote it, or rounded to four digits if long; value: the load in SI units."""
     if not isinstance(given, str):
         return f"{value:.4g} {si}"
     number = given.split()[0]

@@ -1,4 +1,4 @@
-"""The planes in which an arm may move, and which of them it leaves first as the load grows."""
+"""Planes in which an arm can move, and the plane in which it flutters at the smallest load."""
 
 from dataclasses import dataclass, replace
 from math import inf
@@ -17,31 +17,31 @@ A = TypeVar("A", bound=SlenderArm)
 
 @dataclass(frozen=True, slots=True)
 class PlaneOfMotion:
-    """An arm as it moves in one plane, with its changes there."""
+    """An arm that moves in one plane, with its thresholds in this plane."""
 
     arm: SlenderArm
-    """Its height lies in the plane."""
+    """The arm, with its height in the plane of motion."""
     found: FlutterRange
     name: str = ""
-    """Which plane, after "in"; empty where the section is the same in all."""
+    """Name of the plane, as it follows the word "in"; empty if all planes are equivalent."""
 
     @property
     def flutter_loads(self) -> list[float]:
-        """Force of the first flutter with each drag, in N; inf where there is none."""
+        """Force of the first flutter for each drag, in N; inf without flutter."""
         forces = [each.force(Kind.hopf) for each in self.found.forces]
         return [inf if force is None else force * self.arm.force_scale for force in forces]
 
 
 @dataclass(frozen=True, slots=True)
 class Planes:
-    """The planes of an arm, of which it leaves `first` first: with the likeliest drag where drag decides."""
+    """Planes of an arm. The arm flutters in `first` at the smaller load, with the likeliest drag."""
 
     first: PlaneOfMotion
     second: PlaneOfMotion | None = None
 
     @property
     def always(self) -> bool:
-        """Whether the first plane is the first with every drag."""
+        """Whether the arm flutters in `first` at the smaller load with every drag."""
         if self.second is None:
             return True
         loads = zip(self.first.flutter_loads, self.second.flutter_loads, strict=True)
@@ -49,7 +49,7 @@ class Planes:
 
 
 def planes_of(arm: SlenderArm) -> Planes:
-    """Both planes of a rectangle, or the only one of a section that is the same in all. Solves for them."""
+    """Both planes of a rectangle, or one plane if all are equivalent; solves for the thresholds."""
     if arm.radius is not None or arm.si.width == arm.si.height:
         return Planes(PlaneOfMotion(arm, flutter_range(arm)))
     other = turned(arm)
@@ -61,9 +61,9 @@ def planes_of(arm: SlenderArm) -> Planes:
 
 
 def with_load(planes: Planes) -> Planes:
-    """The planes with a load as a quantity where it is given relative to flutter.
+    """The planes, with a load that is given relative to flutter converted to a quantity with a unit.
 
-    Relative to the first flutter of all planes with the likeliest drag. InputError where nothing flutters.
+    The reference is the first flutter in any plane with the likeliest drag. InputError without flutter.
     """
     first = planes.first
     share, load = first.arm.share_of_flutter, first.arm.load
@@ -83,7 +83,7 @@ def with_load(planes: Planes) -> Planes:
 
 
 def with_known_load(arm: A) -> A:
-    """The arm with its load as a quantity; solves where it is given relative to flutter."""
+    """The arm with its load as a quantity; solves for flutter if the load is given relative to it."""
     load = arm.load
     if load is None or arm.share_of_flutter is None:
         return arm

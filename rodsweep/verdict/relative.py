@@ -1,6 +1,6 @@
-"""The flutter that a load is relative to: of the plane that an arm leaves first, with the likeliest drag.
+"""Reference flutter of a relative load: the smallest in any plane of the arm, with the likeliest drag.
 
-Knows no PETSc, which starts on all ranks of a run together: the first one makes the points of a config alone.
+This module must not need PETSc: PETSc starts on all ranks together, but rank 0 alone makes the points.
 """
 
 from dataclasses import replace
@@ -18,21 +18,21 @@ from ..solve.changes.unstable_modes import SHORT_OF_CRUSHED
 
 A = TypeVar("A", bound=SlenderArm)
 FARTHEST = 1000.0
-"""Force up to which changes are sought, if the arm is not crushed before: 25 times where filaments do."""
+"""Largest force of the search, in k3/L^2, unless crushed before: 25 times flutter of a filament."""
 NEAR = 200.0
-"""Force up to which flutter is sought first, which takes half of the time; few arms flutter beyond."""
+"""Largest force of a first search, in k3/L^2, which takes half of the time; few arms flutter beyond."""
 DIGITS = 10
-"""Digits of the threshold that a load is relative to: far more than are known of an arm, and the same on all
-machines, so that a run that goes on elsewhere has the same points."""
+"""Digits of the reference threshold: more than the data of an arm have, and few enough to agree on all
+machines, so that a run that is resumed on another machine has the same points."""
 
 
 def turned(arm: A) -> A:
-    """The arm that moves in the other plane of its rectangular section."""
+    """The same arm, turned by 90 degrees: width and height of the rectangle exchanged."""
     return replace(arm, width=arm.height, height=arm.width)
 
 
 def first_flutter(arm: SlenderArm) -> float:
-    """The F, in k3/L^2 of the arm, that a load relative to flutter is relative to; inf without flutter."""
+    """Smallest flutter force over the planes of an arm, in its k3/L^2; inf without flutter."""
     own = _in_its_plane(arm)
     if arm.radius is not None or arm.si.width == arm.si.height:
         return own
@@ -41,15 +41,15 @@ def first_flutter(arm: SlenderArm) -> float:
 
 
 def _in_its_plane(arm: SlenderArm) -> float:
-    """The same of one plane."""
+    """Flutter force in the plane of the arm's height, in k3/L^2; inf without flutter."""
     return first_hopf_force(arm.k1, arm.k2, arm.gamma3_with(arm.drags[0]))
 
 
 @cache
 def first_hopf_force(k1: float, k2: float, gamma3: float) -> float:
-    """The first F at which a pair of modes begins to grow, to DIGITS digits; inf without one up to FARTHEST.
+    """The smallest F at which a pair of modes becomes unstable, to DIGITS digits; inf if none up to FARTHEST.
 
-    InputError where the covering cannot decide what lies below.
+    InputError where the covering cannot exclude a smaller one.
     """
     path = Path(Rod(k1=k1, k2=k2, gamma3=gamma3, F=0.0), "F")
     for end in (NEAR, FARTHEST):
@@ -66,7 +66,7 @@ def first_hopf_force(k1: float, k2: float, gamma3: float) -> float:
 
 
 def _grows(path: Path, zero: Zero) -> bool:
-    """Whether the pair on the axis grows with F."""
+    """Whether the growth rate of the pair on the imaginary axis increases with F."""
     there = determinant_along(
         complex(0.0, zero.eta_or_x), coefficients_at(zero.p, path.origin, path.direction), path.direction
     )

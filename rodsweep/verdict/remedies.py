@@ -1,4 +1,4 @@
-"""That the model does not apply to an arm, by how much, and what would have to change."""
+"""Sentences for arms outside the model: the violated limit, by how much, and the remedy."""
 
 from collections.abc import Iterable
 from math import isnan
@@ -11,11 +11,11 @@ from .load import Load
 from .validity import Assessment, rounded_down, rounded_up, thickness_factor, viscosity_factor
 
 LEAST_EXCESS = 1.1
-"""Value over limit below which two digits would not tell the difference from 1."""
+"""Ratio of value and limit below which two digits could read 1.0; four are printed."""
 
 
 def does_not_apply(arm: SlenderArm, assessment: Assessment) -> list[str]:
-    """The headline where an effect is beyond its limit, and a sentence on each other kind of effect."""
+    """Headline on the effect furthest beyond its limit, and a sentence on each further kind of effect."""
     first, *others = _one_of_a_kind(assessment.those(Validity.does_not_apply))
     remedy = _remedy(first, arm, assessment)
     at = f" at {Load(arm).given}" if assessment.of_thresholds != Validity.does_not_apply else ""
@@ -29,17 +29,17 @@ def does_not_apply(arm: SlenderArm, assessment: Assessment) -> list[str]:
 
 
 def words_of(effects: Iterable[Effect]) -> str:
-    """The kinds of neglected effects, in words."""
+    """Kinds of neglected effects, joined by "and"."""
     return " and ".join(dict.fromkeys(map(kind_of, effects)))
 
 
 def kind_of(effect: Effect) -> str:
-    """The first word of an effect's name: inertia is one kind, of the arm and of the fluid."""
+    """Kind of an effect, the first word of its name: inertia of arm and of fluid are one kind."""
     return effect.name.split()[0]
 
 
 def times(effect: Effect) -> str:
-    """How far an effect is beyond its limit."""
+    """Ratio of an effect to its limit, in words."""
     excess = float(effect.excess)
     return f"{float(f'{excess:.2g}'):g} times" if excess >= LEAST_EXCESS else f"{excess:.4g} times"
 
@@ -50,7 +50,7 @@ def _one_of_a_kind(effects: list[Effect]) -> list[Effect]:
 
 
 def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
-    """What would bring an effect to its limit, rounded to the safe side."""
+    """Change of arm, fluid or load that brings an effect to its limit, rounded to the safe side."""
     share = float(1 / effect.excess)
     if kind_of(effect) == "inertia":
         return _thicker_fluid_or_thinner_arm(arm, assessment)
@@ -66,7 +66,7 @@ def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
 
 
 def _thicker_fluid_or_thinner_arm(arm: SlenderArm, assessment: Assessment) -> str:
-    """By how much the fluid would have to be more viscous, or the arm thinner."""
+    """Required increase of the viscosity, or required decrease of the thickness."""
     si = UNITS["viscosity"][0]
     unit, factor = unit_of(arm.viscosity, si), viscosity_factor(assessment.at_flutter)
     viscosity = f"{rounded_up(written_in(arm.si.viscosity * factor, unit, si)):g} {unit.replace('*', ' ')}"

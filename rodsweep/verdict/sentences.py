@@ -1,7 +1,7 @@
-"""The verdict on an arm in plain sentences: whether it flutters, how fast it beats, whether it returns.
+"""Verdict on an arm in plain sentences: flutter, frequency of beating, return to the straight state.
 
-The first sentence is the headline. Where the model does not apply the headline says so, and what follows is
-said under the condition that what the model leaves out did not matter.
+The first sentence is the headline. Where the model does not apply, the headline says so, and the further
+sentences are conditional: they hold if the neglected effects were absent.
 """
 
 from ..model.arm.neglected import Validity
@@ -14,7 +14,7 @@ from .validity import Assessment
 
 
 def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
-    """What becomes of the arm in the plane in which it flutters first, over the range of its drag."""
+    """Verdict in the plane in which the arm flutters first, over the range of drag."""
     plane = planes.first
     if plane.found.failures:
         return ["The thresholds could not be found with every drag: " + "; ".join(plane.found.failures) + "."]
@@ -30,7 +30,7 @@ def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
 
 
 def _verdict(plane: PlaneOfMotion) -> list[str]:
-    """The sentences where the model applies, or may."""
+    """Sentences where the model applies or is doubtful."""
     arm, found, load = plane.arm, plane.found, Load(plane.arm)
     flutter, back = found.force(Kind.hopf), found.force(Kind.restabilization)
     if flutter is None:
@@ -53,13 +53,13 @@ def _verdict(plane: PlaneOfMotion) -> list[str]:
 
 
 def _where(plane: PlaneOfMotion, flutter: Span) -> str:
-    """The load of flutter, and the plane of a rectangle."""
+    """Range of the flutter load, with the plane's name for a rectangle."""
     where = Load(plane.arm).of(flutter)
     return f"{where} in {plane.name}" if plane.name else where
 
 
 def _place(plane: PlaneOfMotion, flutter: Span, load: Load) -> str:
-    """Where the load lies beside the range of flutter."""
+    """Sentence that compares the load with the range of the flutter load."""
     F, found, where = plane.arm.F, plane.found, _where(plane, flutter)
     if F <= 0:
         return f"Flutter is at {where}; {load.given} does not push, and the arm stays straight."
@@ -79,13 +79,13 @@ def _place(plane: PlaneOfMotion, flutter: Span, load: Load) -> str:
 
 
 def _above(F: float, flutter: Span) -> str:
-    """How far a force is above the range of flutter: in percent, or as a multiple."""
+    """Distance of a force above the range of flutter: in percent, or as a multiple above 2."""
     low, high = (F / edge for edge in (flutter.high, flutter.low))
     return f"{rounded(low, high)} times" if low > 2 else f"{rounded_percent(low - 1, high - 1)} % above"
 
 
 def _without(plane: PlaneOfMotion, neglected: str) -> list[str]:
-    """What the model gives for an arm to which it does not apply."""
+    """Conditional sentences for an arm outside the model: flutter without the neglected effects."""
     arm, found, load = plane.arm, plane.found, Load(plane.arm)
     flutter, rate = found.force(Kind.hopf), found.frequency(Kind.hopf)
     if flutter is None:
@@ -104,7 +104,7 @@ def _without(plane: PlaneOfMotion, neglected: str) -> list[str]:
 
 
 def _other_plane(planes: Planes, verb: str) -> list[str]:
-    """When a rectangle flutters in the plane in which it does not flutter first."""
+    """Sentence on flutter in the second plane of a rectangle; empty for other sections."""
     second = planes.second
     if second is None:
         return []
@@ -118,7 +118,7 @@ def _other_plane(planes: Planes, verb: str) -> list[str]:
 
 
 def _until(plane: PlaneOfMotion, load: Load) -> str:
-    """How far changes were sought."""
+    """Largest load of the search, or the load that crushes the arm."""
     end = load.of(Span(plane.found.end, plane.found.end))
     if plane.found.end > 0.999 * plane.arm.k1:
         return f"before it is crushed at {end}"
@@ -126,6 +126,6 @@ def _until(plane: PlaneOfMotion, load: Load) -> str:
 
 
 def _swinging(found: FlutterRange, load: Load) -> list[str]:
-    """From where on a disturbance swings while it dies away."""
+    """Sentence on the onset of oscillation of decaying disturbances; empty without an onset."""
     onset = found.force(Kind.onset)
     return [] if onset is None else [f"From {load.of(onset)} on a disturbance swings as it dies away."]

@@ -1,4 +1,4 @@
-"""The numbers of an arm beside their formulas and sources, as rows of text."""
+"""Rows of text with the numbers of an arm, their formulas and sources."""
 
 from typing import NamedTuple
 
@@ -8,7 +8,7 @@ from .planes import PlaneOfMotion
 
 
 class NumberRow(NamedTuple):
-    """One number of an arm."""
+    """Name, value, formula and source of one number of an arm."""
 
     name: str
     value: str
@@ -17,13 +17,13 @@ class NumberRow(NamedTuple):
 
 
 def number_rows(plane: PlaneOfMotion) -> list[NumberRow]:
-    """Every number that an arm becomes in the plane of its verdict, dimensional ones first."""
+    """All numbers of an arm in the plane of its verdict, dimensional numbers first."""
     arm = plane.arm
     return [*plane_row(plane), *dimensional(arm), *drag_rows(arm), *dimensionless(arm)]
 
 
 def plane_row(plane: PlaneOfMotion) -> list[NumberRow]:
-    """The sides of a rectangle, of which h lies in the plane of motion; nothing of other sections."""
+    """Sides of a rectangle, with h in the plane of motion; empty for other sections."""
     if not plane.name:
         return []
     sides = f"w = {plane.arm.si.width:.4g} m, h = {plane.arm.si.height:.4g} m"
@@ -31,7 +31,7 @@ def plane_row(plane: PlaneOfMotion) -> list[NumberRow]:
 
 
 def dimensional(arm: SlenderArm) -> list[NumberRow]:
-    """Section, stiffness and load."""
+    """Rows of section, stiffness and load."""
     section = arm.section
     kappa = section.shear_coefficient(arm.poisson)
     return [
@@ -45,7 +45,7 @@ def dimensional(arm: SlenderArm) -> list[NumberRow]:
 
 
 def load_row(arm: SlenderArm) -> list[NumberRow]:
-    """The resultant of the load; nothing of an arm without load."""
+    """Row of the tip force; empty without load."""
     if arm.load is None:
         return []
     formula = arm.section.face_formula if arm.load == "pressure" else "as given"
@@ -53,12 +53,12 @@ def load_row(arm: SlenderArm) -> list[NumberRow]:
 
 
 def over(arm: SlenderArm, values: list[float], unit: str = "") -> str:
-    """The likeliest value and the range over drag."""
+    """Value for the likeliest drag, then in brackets the range over drag."""
     return f"{values[0]:.3g} ({rounded(min(values), max(values))}){unit}"
 
 
 def drag_rows(arm: SlenderArm) -> list[NumberRow]:
-    """Drag and times, each with its range."""
+    """Rows of drag coefficients and the time scale, each with its range."""
     drags = arm.drags
     translation = "Cox 1970; Gray & Hancock 1955, Lighthill 1976"
     return [
@@ -87,7 +87,7 @@ def drag_rows(arm: SlenderArm) -> list[NumberRow]:
 
 
 def dimensionless(arm: SlenderArm) -> list[NumberRow]:
-    """What the other commands take as parameters."""
+    """Rows of the dimensionless parameters, as the other commands take them."""
     drags = arm.drags
     force = NumberRow("F", f"{arm.F:.5g}", "tip force L^2/k3", "paper, Sec. IV, VI") if arm.load else None
     return [

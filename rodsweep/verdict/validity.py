@@ -1,4 +1,4 @@
-"""Whether the model applies to an arm at its threshold and under its load, and what would have to change."""
+"""Validity of the model at an arm's threshold and under its load, and the changes that restore it."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,55 +15,55 @@ from ..solve.exclusive import solving
 from .flutter import FlutterRange, flutter_forces
 
 DIGITS_OF_FACTORS = 2
-"""Digits of what would have to change; it is rounded to the safe side."""
+"""Digits of the factors in remedies, which are rounded to the safe side."""
 THINNING_STEPS = 20
-"""Most solves for a thickness; ten do where fluid and arm share the inertia."""
+"""Maximum iterations for a thickness; ten suffice if inertia of arm and fluid are comparable."""
 AIM = 0.995
-"""Viscosity that is needed over that of the fluid, for which a thickness is sought."""
+"""Target of the iteration for a thickness: required viscosity over viscosity of the fluid."""
 CLOSE_TO_LIMIT = 0.99
-"""Viscosity that is needed over that of the fluid from which on the thickness is right to two digits."""
+"""Required viscosity over that of the fluid above which (up to 1) the thickness has two correct digits."""
 
 
 @dataclass(frozen=True)
 class Assessment:
-    """The neglected effects on an arm, at the threshold of its flutter and under its load."""
+    """Neglected effects on an arm, at the flutter threshold and under the load."""
 
     arm: SlenderArm
     found: FlutterRange
 
     @cached_property
     def at_flutter(self) -> tuple[Effect, ...]:
-        """Effects at the first flutter with the likeliest drag, as fast as the least drag lets."""
+        """Effects at the first flutter with the likeliest drag, at the rate that the smallest drag gives."""
         return effects_at_flutter(self.arm, self.found)
 
     @cached_property
     def under_load(self) -> tuple[Effect, ...]:
-        """Effects of the load itself; none without."""
+        """Effects of the load itself; empty without a load."""
         return () if self.arm.load is None else (compression(self.arm, np.asarray(self.arm.F)),)
 
     @property
     def effects(self) -> tuple[Effect, ...]:
-        """All of them, those of the threshold first."""
+        """All effects: at the threshold, then under the load."""
         return *self.at_flutter, *self.under_load
 
     @property
     def of_thresholds(self) -> Validity:
-        """Whether the thresholds are the arm's."""
+        """Validity of the model for the thresholds of the arm."""
         return Validity(int(worst_validity(self.at_flutter, of_cycles=False)))
 
     @property
     def of_verdict(self) -> Validity:
-        """Whether the verdict on the load is the arm's."""
+        """Validity of the model for the verdict on the load."""
         return Validity(int(worst_validity(self.effects, of_cycles=False)))
 
     def those(self, validity: Validity) -> list[Effect]:
-        """The effects of a validity that concern more than cycles, the largest first."""
+        """Effects of a given validity by decreasing excess, without effects that concern cycles only."""
         counted = [e for e in self.effects if e.validity == validity and not e.of_cycles_only]
         return sorted(counted, key=lambda effect: -float(effect.excess))
 
 
 def effects_at_flutter(arm: SlenderArm, found: FlutterRange) -> tuple[Effect, ...]:
-    """The neglected effects at the threshold; inertia and compression are nan where nothing flutters."""
+    """Neglected effects at the threshold; inertia and compression are NaN without flutter."""
     first = next((each for c in found.forces if (each := c.first(Kind.hopf))), None)
     if first is None:
         return effects_of(arm, nan, nan)
@@ -71,16 +71,16 @@ def effects_at_flutter(arm: SlenderArm, found: FlutterRange) -> tuple[Effect, ..
 
 
 def viscosity_factor(effects: tuple[Effect, ...]) -> float:
-    """How many times as viscous a fluid has to be for inertia to be within its limit; nan without motion."""
+    """Factor on the viscosity that brings inertia to its limit; NaN without flutter."""
     return max(float(e.viscosity_factor) for e in effects if e.name.startswith("inertia"))
 
 
 @solving
 def thickness_factor(arm: SlenderArm) -> float:
-    """How many times as thick an arm may be at most for inertia to be within its limit in the same fluid.
+    """Largest factor on all sides of the section at which inertia is within its limit in the same fluid.
 
-    All sides of the section are multiplied by it. Thresholds of the thinner arms are solved for; nan where
-    these have none, and where the thinner arm would bend too much under its weight.
+    Solves for the thresholds of the thinner arms. NaN if they do not flutter, or if the model does not apply
+    to the thinner arm for another reason, such as its weight.
     """
     factor = 1.0
     for _ in range(THINNING_STEPS):
@@ -91,25 +91,25 @@ def thickness_factor(arm: SlenderArm) -> float:
         if CLOSE_TO_LIMIT < excess <= 1.0:
             applies = worst_validity(effects, of_cycles=False) < Validity.does_not_apply
             return factor if applies else nan
-        # Mass times rate over drag has the sixth power of the thickness, and the square of the viscosity.
+        # Mass times rate over drag scales as thickness^6/viscosity^2, hence thickness as viscosity^(1/3).
         factor *= (excess / AIM) ** (-1 / 3)
     return nan
 
 
 def _scaled(arm: SlenderArm, factor: float) -> SlenderArm:
-    """The arm without load with a section so many times as large."""
+    """The arm without load, all sides of its section multiplied by a factor."""
     given = {name: value for name, value in vars(arm.si).items() if not isnan(value) and name not in LOADS}
     section = {name: factor * given[name] for name in chain(*SECTION_SIDES) if name in given}
     return SlenderArm(**(given | section), poisson=arm.poisson)
 
 
 def rounded_down(value: float) -> float:
-    """A positive number down to DIGITS_OF_FACTORS digits."""
+    """Rounds a positive number down to DIGITS_OF_FACTORS digits."""
     unit = 10.0 ** (floor(log10(value)) - DIGITS_OF_FACTORS + 1)
     return floor(value / unit) * unit
 
 
 def rounded_up(value: float) -> float:
-    """A positive number up to DIGITS_OF_FACTORS digits."""
+    """Rounds a positive number up to DIGITS_OF_FACTORS digits."""
     unit = 10.0 ** (floor(log10(value)) - DIGITS_OF_FACTORS + 1)
     return -floor(-value / unit) * unit

@@ -1,1 +1,1 @@
-"""What is born at a Hopf point: the normal form of the nonlinear rod, from the straight rod alone."""
+"""Normal forms of Hopf points: amplitude, frequency and stability of the cycles born there."""

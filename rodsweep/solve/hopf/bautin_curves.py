@@ -1,9 +1,9 @@
 """Curves of generalised Hopf points over three parameters.
 
-On a plane of two of three parameters generalised Hopf points, D(i eta) = 0 and Re c = 0, are points; when the
-third moves they make a curve. It is followed with that of the three held that changes fastest, so that it may
-turn back in any of them. In the plane of the other two the secant method finds the point, at a place
-along the Hopf curve beside what the last two points predict.
+Generalised Hopf points, D(i eta) = 0 and Re c = 0, are isolated in a plane of two parameters; with a third
+parameter they form a curve. Each step holds the parameter that changes fastest along the curve, so that the
+curve may have folds in all three parameters. In the plane of the two free parameters the secant method moves
+along the Hopf curve, from the point that a line through the last two points predicts, to Re c = 0.
 """
 
 from collections.abc import Sequence
@@ -24,18 +24,23 @@ from ..point import FAILURES, Unsolvable
 from .generalised import FINEST, GeneralisedHopfPoint, HopfCurve
 
 STEPS = StepControl(first=0.01, longest=0.1, shortest=1e-4, far=0.2, sharpest=inf, growth=1.5, most=2000)
-"""Lengths in units of the ranges; the distance from a prediction is in units of the step."""
-MOST_SECANTS, PROBE, SETTLED = 10, 1e-3, 1e-12
+"""Step lengths in units of the ranges; the prediction error is in units of the step."""
+MOST_SECANTS = 10
+"""Maximum number of secant steps to a generalised Hopf point."""
+PROBE = 1e-3
+"""First secant step along the Hopf curve, in units of the ranges."""
+SETTLED = 1e-12
+"""Length of a secant step, in units of the ranges, at which the iteration has converged."""
 ON_EDGE = 1e-12
-"""Distance from an end of a range that is none."""
+"""Distance from an end of a range, in units of the range, below which a point lies on this end."""
 LEAST_LOOP = 5
-"""Points of a closed curve, at least."""
+"""Minimum number of points of a closed curve."""
 SAME_POINT = 1e-6
-"""Distance of two points, in units of the ranges, that are one."""
+"""Distance, in units of the ranges, below which two points are the same."""
 
 
 class BautinEnd(IntEnum):
-    """Where a curve of generalised Hopf points ends."""
+    """Reasons why a curve of generalised Hopf points ends."""
 
     none = 0
     range_end = 1
@@ -50,12 +55,16 @@ END_OTHERWISE = {
     CurveStop.lost: BautinEnd.not_found,
     CurveStop.full: BautinEnd.list_full,
 }
-"""Why a curve ends that reaches no end of a range."""
+"""`BautinEnd` of each stop of the follower except a margin, where the curve reaches an end of a range."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BautinCurvePoint:
-    """A generalised Hopf point. values, errors: of the plane's two parameters and the third, (3,)."""
+    """A generalised Hopf point in the space of three parameters.
+
+    values, errors: the plane's two parameters, then the third, shape (3,). frequency in 1/tau2,
+    landau_imag = Im c in 1/(tau2 L^2).
+    """
 
     values: Array
     errors: Array
@@ -65,7 +74,7 @@ class BautinCurvePoint:
 
 @dataclass(frozen=True, slots=True)
 class BautinCurve:
-    """Its points in order, and why it ends where it begins and where it ends."""
+    """Points of a curve in order, and the reasons why it stops at its first and at its last point."""
 
     points: tuple[BautinCurvePoint, ...]
     ends: tuple[BautinEnd, BautinEnd]
@@ -81,10 +90,10 @@ class _Place:
 
 @dataclass(frozen=True, slots=True)
 class BautinSpace:
-    """Three parameters in their ranges, the third with the values asked for.
+    """Space of three parameters, each with its range.
 
-    rod: for the parameters that do not vary; accuracy: of c, relative. side: 1 or -1, to which a curve goes
-    first along the third.
+    rod: values of the fixed parameters. asked: values of the third parameter at which points are stored.
+    accuracy: relative accuracy of c. side: direction of the first step along the third parameter, 1 or -1.
     """
 
     rod: Rod
@@ -94,12 +103,12 @@ class BautinSpace:
     side: float = 1.0
 
     def scaled(self, values: Array, frequency: float) -> Array:
-        """(x, y, z, log eta) of three values, (3,), and a frequency."""
+        """Coordinates (x, y, z, log eta), shape (4,), of three parameter values, (3,), and a frequency."""
         places = [axis.scaled(float(value)) for axis, value in zip(self.axes, values, strict=True)]
         return np.array([*places, np.log(frequency)])
 
     def solved(self, guess: Array, held: int) -> _Place:
-        """The point near a guess, (4,), with one of its three places held; raises Unsolvable."""
+        """The point near a guess, (4,), with the scaled parameter `held` fixed; raises Unsolvable."""
         free = [i for i in range(3) if i != held]
         values = {axis.name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)}
         plane = Plane(self.rod.changed(**values), (self.axes[free[0]], self.axes[free[1]]))
@@ -118,7 +127,7 @@ class BautinSpace:
         return _Place(self.scaled(values_there, point.frequency), found)
 
     def step(self, behind: Sequence[_Place], length: float) -> Stepped[_Place]:
-        """The point a step along the chord of the last two; raises Unsolvable."""
+        """The next point, predicted along the chord of the last two points; raises Unsolvable."""
         here, tangent = behind[-1].v, np.array([0.0, 0.0, self.side, 0.0])
         if len(behind) > 1:
             chord = here - behind[-2].v
@@ -128,13 +137,13 @@ class BautinSpace:
         except ValueError as why:
             raise Unsolvable(f"the step leaves the rods: {why}") from why
         missed = float(np.abs(there.v[:3] - here[:3] - length * tangent[:3]).max()) / length
-        # The first step has no prediction, one to an edge is shorter.
+        # No prediction error for the first step, which has no chord, and for a step that an edge shortened.
         return Stepped(there, 0.0 if on_edge or len(behind) == 1 else missed, 1.0)
 
     def _within(self, here: Array, change: Array) -> tuple[_Place, bool]:
-        """(the point a change, (4,), ahead or where that leaves the ranges, whether it does).
+        """(point after a change, (4,), or where the change leaves the ranges; whether it leaves them).
 
-        Beyond the ranges there may be no rod. Raises Unsolvable.
+        No point beyond the ranges is solved for: its parameters may describe no rod. Raises Unsolvable.
         """
         ahead = (here + change)[:3]
         beyond = np.where(ahead > 1, 1.0, np.where(ahead < 0, 0.0, np.nan))
@@ -147,23 +156,24 @@ class BautinSpace:
         return self.solved(guess, which), True
 
     def margins(self, place: _Place) -> Array:
-        """Distances from the ends of the three ranges, less than 0 on them, (6,)."""
+        """Distances from the ends of the three ranges, negative on an end, shape (6,)."""
         return np.ravel([place.v[:3], 1 - place.v[:3]], order="F") - ON_EDGE
 
     def landed(self, behind: Sequence[_Place], outer: _Place, margin: int) -> _Place | None:
-        """The last point, for steps lead no further than to an edge."""
+        """The outer point itself: `_within` has already shortened the step to end on the edge."""
         return outer
 
     def closes(self, behind: Sequence[_Place], there: _Place) -> bool:
-        """Whether the first point lies between the last one and the next."""
+        """Whether the curve is closed: its first point lies between the last point and the next."""
         first, last, step = behind[0].v, behind[-1].v, float(np.linalg.norm(there.v - behind[-1].v))
         near = max(np.linalg.norm(first - last), np.linalg.norm(first - there.v)) < step
         return len(behind) > LEAST_LOOP and bool(near)
 
     @staticmethod
     def _zero(hopf: HopfCurve, start: Array, way: Array) -> GeneralisedHopfPoint:
-        """Where Re c vanishes along a Hopf curve near a start, (3,), in its direction; raises Unsolvable."""
-        s, before = PROBE, 0.0
+        """The zero of Re c along a Hopf curve from a start, (3,), along `way`, (3,); raises Unsolvable."""
+        before = 0.0
+        s = PROBE
         last = hopf.at(start, way, hopf.accuracy).share
         for _ in range(MOST_SECANTS):
             here = hopf.at(start + s * way, way, hopf.accuracy)
@@ -181,7 +191,7 @@ class BautinSpace:
 
 
 def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:
-    """The curve through a generalised Hopf point, both ways to where it ends."""
+    """The curve through a generalised Hopf point, followed in both directions."""
     here = _Place(space.scaled(start.values, start.frequency), start)
     back, first = _followed(replace(space, side=-1.0), here)
     if first is BautinEnd.closed:
@@ -191,7 +201,7 @@ def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:
 
 
 def on_curve(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoint:
-    """A point of a plane at the plane's value of the third parameter."""
+    """Generalised Hopf point of a plane as a point of a curve; third: the plane's third parameter."""
     return BautinCurvePoint(
         values=np.array([*point.values, third]),
         errors=np.array([*point.errors, 0.0]),
@@ -201,14 +211,14 @@ def on_curve(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoint:
 
 
 def lies_on(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> bool:
-    """Whether a point whose third value is one of those asked for is one of a curve."""
+    """Whether a point, at a requested value of the third parameter, is a stored point of a curve."""
     v = space.scaled(point.values, point.frequency)
     others = [space.scaled(other.values, other.frequency) for other in curve.points]
     return any(float(np.abs(v - other).max()) < SAME_POINT for other in others)
 
 
 def _followed(space: BautinSpace, start: _Place) -> tuple[list[_Place], BautinEnd]:
-    """The points from the start to one side, those asked for among them, and why they end."""
+    """Points from the start to `space.side`, requested third values included, and why the curve ends."""
     if not 0 < start.v[2] + space.side * STEPS.shortest < 1:
         return [start], BautinEnd.range_end
     curve = follow(space, start, STEPS, _report)
@@ -224,12 +234,12 @@ def _followed(space: BautinSpace, start: _Place) -> tuple[list[_Place], BautinEn
 
 
 def _report(places: Sequence[_Place]) -> None:
-    """Says how far a curve is."""
+    """Reports the number of points found so far."""
     report(lambda: Whereabouts(f"curve of generalised Hopf points, {len(places)} points"))
 
 
 def _asked_between(space: BautinSpace, here: _Place, there: _Place) -> list[_Place]:
-    """The points at the values asked for between two of a curve; raises Unsolvable or ValueError."""
+    """Points at requested third values between two of a curve; raises Unsolvable or ValueError."""
     a, b = here.v[2], there.v[2]
     inner = [z for z in map(space.axes[2].scaled, space.asked) if min(a, b) < z < max(a, b)]
     found = []

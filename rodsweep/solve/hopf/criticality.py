@@ -1,7 +1,7 @@
-"""The task criticality for one rod: all its Hopf points, and on which side each bears its cycles.
+"""Task `criticality` for one rod: all Hopf points, each with the criticality of its branch of cycles.
 
-The Hopf points are those of `task: thresholds`, proved complete by the same covering; gamma1 moves none of
-them, so that neighbours along it share one search.
+The Hopf points are found and proved complete as in `task: thresholds`. They do not depend on gamma1, so that
+rods that differ in gamma1 only share one search.
 """
 
 import math
@@ -17,11 +17,11 @@ from ..status import PointStatus
 from .hopf_coefficients import HopfCoefficients, hopf_coefficients
 
 SEARCHES_KEPT = 8
-"""Rods whose Hopf points are remembered for their neighbours along gamma1."""
+"""Number of cached searches for Hopf points, shared by rods that differ in gamma1 only."""
 
 
 class CriticalityStatus(PointStatus):
-    """Outcome of one rod: of the search for its Hopf points, and of their coefficients."""
+    """Outcome for one rod: of the search for Hopf points and of the coefficients."""
 
     ok = 0, "every Hopf point is found, and its coefficients are as accurate as asked for", True
     not_certified = (
@@ -54,18 +54,22 @@ class CriticalityStatus(PointStatus):
 
 @dataclass(frozen=True, slots=True)
 class CriticalityRequest:
-    """What is asked of every rod: the largest force, a relative accuracy of the coefficients, a proof."""
+    """Request for each rod.
+
+    F_max: largest force, in k3/L^2. accuracy: relative accuracy of the coefficients. certify: whether the
+    list of Hopf points is proved complete.
+    """
 
     F_max: float
     accuracy: float
     certify: bool
     crossings: int
-    """Most Hopf points that will be kept."""
+    """Maximum number of Hopf points with coefficients."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Criticality:
-    """The Hopf points of a rod up to the force `end`, and the coefficients of those that are kept."""
+    """Hopf points of a rod up to the force `end`, with coefficients of the first ones."""
 
     status: CriticalityStatus
     transitions: Transitions
@@ -76,12 +80,12 @@ class Criticality:
 
     @property
     def crossings(self) -> tuple[Crossing, ...]:
-        """All Hopf points in increasing order of the force, kept or not."""
+        """All Hopf points, with or without coefficients, by increasing force."""
         return self.transitions.crossings
 
 
 def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
-    """All Hopf points of one rod, whatever its force, with their coefficients; failures are a status."""
+    """All Hopf points of one rod with coefficients; the rod's force is ignored, failures become a status."""
     end = min(request.F_max, rod.stretch_stiffness * (1 - SHORT_OF_CRUSHED))
 
     def search() -> Criticality:
@@ -98,7 +102,7 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
 
 
 def warm_up() -> None:
-    """Loads what is compiled and created at first use, so that no point pays for it."""
+    """Triggers compilation and caches once, so that no timed point includes them."""
     solve_criticality(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), CriticalityRequest(40.0, 1e-8, True, 4))
 
 
@@ -108,7 +112,7 @@ def _hopf_points(path: Path, end: float, certify: bool) -> Transitions:
 
 
 def _coefficients(rod: Rod, hopf: Crossing, request: CriticalityRequest) -> HopfCoefficients:
-    """The coefficients of one Hopf point, whose failure costs no other its own."""
+    """Coefficients of one Hopf point; a failure becomes a message and leaves other points untouched."""
     try:
         return hopf_coefficients(replace(rod, F=hopf.at), hopf, request.accuracy)
     except FAILURES as error:
@@ -128,7 +132,7 @@ def _nothing(end: float, cause: str) -> Criticality:
 def _judged(
     found: Transitions, coefficients: tuple[HopfCoefficients, ...], request: CriticalityRequest
 ) -> tuple[CriticalityStatus, str]:
-    """(status, message): what matters most is said first."""
+    """(status, message); the most serious status that holds wins."""
     failures = "; ".join(filter(None, (c.message for c in coefficients)))
     known = [c for c in coefficients if c.known]
     worse = any(c.error > request.accuracy * abs(c.at) for c in found.crossings) or any(

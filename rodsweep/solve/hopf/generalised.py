@@ -1,9 +1,9 @@
-"""Generalised Hopf (Bautin) points: where the side on which cycles are born changes along a Hopf curve.
+"""Generalised Hopf (Bautin) points: the criticality Re c changes its sign along a Hopf curve.
 
-At every stored point of a curve the sign of Re c is that of its normal form. Between two neighbours of
-opposite signs D(i eta) = 0 and Re c = 0 hold together once: Newton's method on D finds the Hopf point at
-each place between them, and Brent's the place where Re c vanishes. Two changes between the same neighbours
-are not seen.
+The normal form gives the sign of Re c at every stored point of a Hopf curve. Between two neighbours of
+opposite sign D(i eta) = 0 and Re c = 0 have a common solution: Newton's method on D finds the Hopf point at
+each position between the neighbours, Brent's method the position where Re c vanishes. Two sign changes
+between the same neighbours are missed.
 """
 
 import math
@@ -22,23 +22,24 @@ from ..point import FAILURES, Unsolvable
 from .hopf_coefficients import HopfCoefficients, hopf_coefficients
 
 FINEST = 1e-10
-"""Relative accuracy of c, unless a better one is asked for: points are located to 1e-9."""
+"""Coarsest relative accuracy of c for locating generalised Hopf points, which are located to 1e-9."""
 ROUGH = 1e-5
-"""That is enough for most signs; one that it leaves undecided is looked at again."""
+"""Relative accuracy of c for a first sign; undecided signs are recomputed with `accuracy`."""
 PLACE = 1e-13
-"""Of the distance between two neighbours, to which Brent's method goes."""
+"""Tolerance of Brent's method, as a fraction of the distance between two neighbours."""
 BESIDE = 1e-3
-"""Of the distance between two neighbours, to either side of the point, for the slope of Re c."""
+"""Difference step for the slope of Re c, as a fraction of the distance between two neighbours."""
 VANISHES = 1e-6
-"""Re c/|c| at the place found, beyond which it changes sign there without being 0."""
+"""Largest |Re c|/|c| at a zero; a larger value means that Re c jumps through 0."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GeneralisedHopfPoint:
-    """A point of a Hopf curve with Re c = 0.
+    """Point of a Hopf curve with Re c = 0.
 
-    values, errors: of both parameters of the plane. frequency in 1/tau2, growth_slope = dw/dF in
-    L^2/(k3 tau2), landau_imag = Im c in 1/(tau2 L^2). after: the point of the curve behind which it lies.
+    values, errors: both parameters of the plane. frequency in 1/tau2, growth_slope = dw/dF in
+    L^2/(k3 tau2), landau_imag = Im c in 1/(tau2 L^2). after: index of the
+    stored point of the curve before this point.
     """
 
     after: int
@@ -51,10 +52,10 @@ class GeneralisedHopfPoint:
 
 @dataclass(frozen=True, slots=True)
 class CurveCriticality:
-    """What the normal form says along one Hopf curve.
+    """Criticality along one Hopf curve.
 
-    criticality: -1, 1 or 0 where undecided, NaN where there is no normal form, shape (points,). unlocated:
-    changes of sign that no point was found for.
+    criticality: sign of Re c, 0 where undecided, NaN where the normal form failed, shape (points,).
+    points: generalised Hopf points. unlocated: number of sign changes without a located point.
     """
 
     criticality: Array
@@ -64,22 +65,22 @@ class CurveCriticality:
 
 @dataclass(frozen=True, slots=True)
 class _At:
-    """A Hopf point of the plane with its normal form."""
+    """Hopf point of the plane with its normal form."""
 
     there: OnBoundary
     coefficients: HopfCoefficients
 
     @property
     def share(self) -> float:
-        """Re c/|c|, which has the zeros of Re c and no scale."""
+        """Re c/|c|: dimensionless, with the zeros of Re c."""
         return self.coefficients.landau.real / abs(self.coefficients.landau)
 
 
 def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> CurveCriticality:
     """The sign of Re c at every point of a Hopf curve, and the generalised Hopf points between them.
 
-    accuracy: of c, relative; at least FINEST is asked for. Points where the normal form
-    fails have none, and cost no other its own.
+    accuracy: relative accuracy of c, tightened to FINEST where it is coarser. A failure of the normal form
+    makes the sign NaN at this point only.
     """
     hopf = HopfCurve(Boundary(plane, curve.sign), curve.scaled, min(accuracy, FINEST))
     signs = np.array([hopf.sign(i) for i in range(len(curve.scaled))])
@@ -95,14 +96,17 @@ def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> Cu
 
 @dataclass(frozen=True, slots=True)
 class HopfCurve:
-    """The points (x, y, h) of a Hopf curve, shape (points, 3), and what computes normal forms on it."""
+    """Normal forms along a Hopf curve.
+
+    scaled: points (x, y, h) of the curve, h = log eta, shape (points, 3). accuracy: relative, of c.
+    """
 
     boundary: Boundary
     scaled: Array
     accuracy: float
 
     def sign(self, i: int) -> float:
-        """That of Re c at a point: -1, 1, 0 undecided, NaN where there is no normal form."""
+        """Sign of Re c at point i: -1 or 1, 0 where undecided, NaN where the normal form fails."""
         points = len(self.scaled)
         report(lambda: Whereabouts(f"criticality of a Hopf curve, point {i + 1} of {points}", i / points))
         try:
@@ -114,7 +118,7 @@ class HopfCurve:
             return math.nan
 
     def at(self, guess: Array, normal: Array, accuracy: float) -> _At:
-        """The Hopf point in the plane through a guess with that normal, both (3,); raises Unsolvable."""
+        """The Hopf point in the plane through a guess, (3,), with a normal, (3,); raises Unsolvable."""
         there = self.boundary.corrected(guess, normal)
         if there is None:
             raise Unsolvable("no Hopf point is found between two of a curve")
@@ -122,14 +126,14 @@ class HopfCurve:
         rod, w = self.boundary.plane.at(x, y), complex(0.0, math.exp(h))
         along = determinant_along(w, rod.coefficients, rod.direction("F"))
         value = self.boundary.plane.determinant(w, x, y)
-        # An error of the point is one of the force, the other parameters as they are.
+        # The normal form has only the force as its parameter: convert the point's error into one of F.
         error = there.error * (abs(value.D_x) + abs(value.D_y)) / abs(along.D_p)
         hopf = Crossing(rod.F, Kind.hopf, w.imag, 0.0, error, frequency_error=there.error * w.imag)
         return _At(there, hopf_coefficients(rod, hopf, accuracy))
 
     def located(self, first: int, last: int) -> GeneralisedHopfPoint | None:
-        """The point with Re c = 0 between two of opposite signs, or None where it is not found."""
-        from scipy.optimize import brentq  # a tenth of a second of every start
+        """The zero of Re c between two points of opposite sign; None if Brent's method does not find it."""
+        from scipy.optimize import brentq  # imported here: it costs a tenth of a second
 
         start, chord = self.scaled[first], self.scaled[last] - self.scaled[first]
         normal = chord / np.linalg.norm(chord)
@@ -150,7 +154,7 @@ class HopfCurve:
         return self.as_point(here, first + int(passed.sum()), chord * along)
 
     def as_point(self, here: _At, after: int, moved: Array) -> GeneralisedHopfPoint:
-        """The point of its normal form; moved: by how much it may be off along the chord, (3,)."""
+        """Generalised Hopf point from its normal form; moved: position error along the chord, (3,)."""
         there, axes = here.there, self.boundary.plane.axes
         tangent = there.tangent
         way = tangent * float(np.linalg.norm(moved) ** 2 / (tangent @ moved))

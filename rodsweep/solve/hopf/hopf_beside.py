@@ -1,8 +1,8 @@
-"""The subcritical Hopf point next to a force at which the straight rod is stable, if there is one.
+"""Subcritical Hopf point next to a force at which the straight rod is stable, if there is one.
 
-From a subcritical Hopf point unstable cycles go to the side where the straight rod is stable. They are the
-threshold beside it: a start beyond them leaves the straight rod, mostly for a stable cycle to which the
-branch turns at a fold.
+The unstable cycles of a subcritical Hopf point coexist with the stable straight rod. They separate its basin:
+a perturbation larger than the unstable cycle leaves the straight rod, mostly for a stable cycle on the same
+branch behind a fold.
 """
 
 from dataclasses import dataclass, replace
@@ -14,18 +14,19 @@ from ..changes.unstable_modes import SHORT_OF_CRUSHED
 from .hopf_coefficients import hopf_coefficients
 
 FARTHEST_FORCE = 1.5
-"""Ratio of the forces within which a Hopf point is looked for."""
+"""Hopf points are sought at forces from F / this ratio to F * this ratio."""
 ACCURACY = 1e-3
-"""Relative, of c, of which the sign is wanted."""
+"""Relative accuracy of c, of which only the sign and the leading digits are needed."""
 LARGEST_Y = 0.5
-"""Largest tip y, in L, of an unstable cycle for which the normal form may speak."""
+"""Largest tip y, in L, of an unstable cycle for which the normal form is used."""
 
 
 @dataclass(frozen=True, slots=True)
 class SubcriticalHopf:
-    """A subcritical Hopf point at F, k3/L^2, and what its normal form gives for the force that it is next to.
+    """Subcritical Hopf point near the force of a rod.
 
-    unstable_y: largest tip y, in L, of the unstable cycle at that force, to leading order.
+    F: force of the Hopf point, in k3/L^2. unstable_y: largest tip y, in L, of the unstable cycle at the force
+    of the rod, to leading order.
     """
 
     F: float
@@ -33,15 +34,14 @@ class SubcriticalHopf:
 
 
 def subcritical_hopf_beside(rod: Rod) -> SubcriticalHopf | None:
-    """The nearest of the Hopf points above and below a rod's force, if it is subcritical, else the other one.
+    """The subcritical Hopf point nearest to a rod's force; None if neither neighbour is subcritical.
 
-    Only the first on either side counts, and only where its unstable cycle is no larger than LARGEST_Y. The
-    straight rod is stable. Raises Unsolvable where the Hopf points or a coefficient cannot be had.
+    The candidates are the first Hopf point above and the first below the force, where the tip y of their
+    unstable cycle is at most LARGEST_Y. The straight rod must be stable. Raises Unsolvable if the search for
+    Hopf points or a coefficient fails.
     """
-    low, high = (
-        rod.F / FARTHEST_FORCE,
-        min(rod.F * FARTHEST_FORCE, rod.stretch_stiffness * (1 - SHORT_OF_CRUSHED)),
-    )
+    low = rod.F / FARTHEST_FORCE
+    high = min(rod.F * FARTHEST_FORCE, rod.stretch_stiffness * (1 - SHORT_OF_CRUSHED))
     if not 0 < low < high:
         return None
     crossings = pair_crossings(Path(rod, "F"), low, high, certify=False).crossings

@@ -1,9 +1,9 @@
 """The coefficients of a Hopf point with estimates of their errors, from two meshes and from D.
 
-The Landau coefficient is that of the finer of two meshes. What the coarser one changes is the estimate of its
-error, which the finer one undercuts by some decades; below that lies what rounding leaves, and what the last
-digits of the Hopf point itself do. The slope of the eigenvalue is that of the root of D, which knows no mesh,
-and the finer mesh has it too: what they differ by is the estimate.
+The Landau coefficient c is computed on two meshes. The value of the finer mesh is stored, and its difference
+from the coarser mesh is the error estimate, which overestimates the error by some decades. Rounding and the
+error of the Hopf point itself are added. The slope dw/dF is the slope of the root of D, free of mesh error;
+its difference from the slope on the finer mesh is the error estimate.
 """
 
 import math
@@ -19,19 +19,19 @@ from ..changes.unstable_modes import Crossing
 from .normal_form import SAFETY, NormalForm, normal_form_on, of_odd_order, resolution_of
 
 MORE_ORDERS = 4
-"""By which the second mesh is finer than the first: its c is better by one to four decades."""
+"""Increase of the order from the first mesh to the second, which reduces the error of c by 10 to 10^4."""
 MOST_REFINED = 4
-"""Meshes beyond the first."""
+"""Maximum number of refinements of the first mesh."""
 COARSEST = 1e-2
-"""Accuracy of the coarsest mesh that is a start: the eigenvalue must be recognised on it."""
+"""Coarsest relative accuracy of the first mesh, on which the eigenvalue must still be identified."""
 ROUNDING = 1.5e-14
-"""Relative error of c that rounding leaves, in units of the condition number of the eigenvalue. The
-largest seen is 9e-15, of rods soft in stretch and shear, nearly crushed; of most rods it is 1e-15."""
+"""Relative rounding error of c, in units of the condition number of the eigenvalue. Most rods have 1e-15;
+the largest measured value is 9e-15, for nearly crushed rods that are soft in stretch and shear."""
 SENSITIVITY = 20.0
-"""Of c to the force, in units of what dw/dF and the distances to F = 0 and F = k1 suggest. The largest seen
-is 10, of high modes of rods soft in shear; where a window closes it is 1."""
+"""Bound on |dc/dF|/|c|, in units of |w''|/|w'| + 1/|F| + 1/|k1 - F|. The largest measured value is 10, for
+high modes of rods soft in shear; where a window of flutter closes it is 1."""
 BESIDE = 1e-5
-"""Relative distance of the forces between which the curvature of w(F) is measured."""
+"""Relative difference step in the force for the second derivative of w(F)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,7 +40,8 @@ class HopfCoefficients:
 
     growth_slope in L^2/(k3 tau2), landau in 1/(tau2 L^2), their errors relative to their moduli;
     amplitude_coefficient a in L, frequency_slope b in L^2/(k3 tau2), their errors relative to their own
-    values. All are nan where `message` says why there is none.
+    values. All are NaN where the computation failed; `message` then has
+    the cause.
     """
 
     growth_slope: complex = complex(math.nan, math.nan)
@@ -57,7 +58,7 @@ class HopfCoefficients:
 
     @property
     def known(self) -> bool:
-        """Whether there are any."""
+        """Whether the coefficients were computed."""
         return not math.isnan(self.landau_error)
 
     @property
@@ -71,17 +72,17 @@ class HopfCoefficients:
 
     @property
     def largest_error(self) -> float:
-        """Of c and dw/dF, of which the others are made."""
+        """Larger relative error of c and dw/dF, from which a and b follow."""
         return max(self.landau_error, self.growth_slope_error)
 
 
 def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoefficients:
     """The coefficients of a Hopf point of a rod, c to a relative accuracy; raises Unsolvable.
 
-    rod: at the force of the crossing. c may be worse where rounding leaves no more digits.
+    rod: at the force of the crossing. c may be less accurate where rounding limits it.
     """
     w = complex(0.0, hopf.frequency)
-    # The rule has a factor for what its errors are at worst; here the second mesh is there to tell.
+    # Undo the worst-case factor of the mesh rule: here the second mesh measures the actual error.
     start = resolution_of(rod, w, min(accuracy / SAFETY, COARSEST))
     fine, change, rounding = normal_form_on(start, rod, w, COARSEST), math.inf, 0.0
     for number in range(MOST_REFINED):
@@ -100,10 +101,10 @@ def hopf_coefficients(rod: Rod, hopf: Crossing, accuracy: float) -> HopfCoeffici
     landau_error = max(change, rounding) + moved
     off = abs(fine.slope - slope) / abs(slope)
     slope_error = max(off, rounding) + hopf.error * bend / abs(slope)
-    return _told(replace(fine, slope=slope), landau_error, slope_error, hopf.error / abs(rod.F))
+    return _with_errors(replace(fine, slope=slope), landau_error, slope_error, hopf.error / abs(rod.F))
 
 
-def _told(
+def _with_errors(
     normal: NormalForm, landau_error: float, slope_error: float, force_error: float
 ) -> HopfCoefficients:
     """All coefficients of a normal form, from the relative errors of c, dw/dF and the force."""
@@ -137,6 +138,6 @@ def _slope(rod: Rod, w: complex) -> tuple[complex, float]:
 
 
 def _rounding(normal: NormalForm) -> float:
-    """The relative error of c that rounding leaves, by the condition of the eigenvalue."""
+    """Relative rounding error of c, from the condition number of the eigenvalue."""
     sizes = StraightElements(normal.form, TRANSVERSE).size_of_product(normal.p, normal.q)
     return ROUNDING * sizes / abs(normal.w)

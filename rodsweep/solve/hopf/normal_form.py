@@ -1,4 +1,4 @@
-"""The normal form of a Hopf point: amplitude, frequency and motion of the cycles that are born there.
+"""Normal form of a Hopf point: amplitude, frequency and motion of the cycles born there.
 
 About the straight rod the mixed form (`rodsweep.discretization.straight.mixed_form`) is
 M dX/dt = A X + B(X, X)/2. With a simple pair of eigenvalues w, conj w of (A, M),
@@ -28,20 +28,21 @@ from ...model.rod import Rod
 from ..point import Unsolvable
 
 OFFSET = 1e-10
-"""Relative distance of a shift from the eigenvalue that it is: the matrix must not be singular."""
+"""Relative offset of the shift from the eigenvalue estimate, which keeps the shifted matrix regular."""
 ITERATIONS = 2
 """Inverse iterations with one shift."""
 FOUND = 1e-8
-"""Relative distance of a shift from its eigenvalue from which the iterations leave nothing but rounding."""
+"""Relative distance of shift and eigenvalue below which the iterations converge to rounding error."""
 MOST_SHIFTS = 10
+"""Maximum number of shifts of the inverse iteration."""
 HARMONIC = 2
-"""Wave number of h20 and h11, and so of what c is made of, in units of that of q."""
+"""Wave number of h20 and h11, which determine c, in units of the wave number of q."""
 SAFETY = 0.1
-"""By the rule for eigenvalues alone c is off by five times the accuracy asked for, at worst."""
+"""Safety factor on the accuracy: the mesh rule for eigenvalues leaves up to five times the error in c."""
 LARGEST_ORDER = 20
-"""Order beyond which another element costs less: all elements are eliminated at once."""
+"""Largest order of an element: beyond it a further element is cheaper, as all are eliminated at once."""
 MOST_NODES = 2000
-"""Nodes beyond which a rod is given up."""
+"""Maximum number of nodes; Unsolvable for rods that need more."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -88,7 +89,7 @@ class NormalForm:
     def cycle(self, F: float) -> tuple[float, float]:
         """(squared largest tip y in L^2, frequency in 1/tau2) of the cycle at a force near this one.
 
-        It is the cycle of the eigenvalue w + slope (F - self.F). A squared amplitude below 0 is no cycle.
+        The cycle belongs to the eigenvalue w + slope (F - self.F). With a negative square no cycle exists.
         """
         w = self.w + self.slope * (F - self.F)
         squared = -w.real / self.c.real
@@ -106,7 +107,7 @@ class NormalForm:
 def normal_form(form: MixedForm, guess: complex) -> NormalForm:
     """The normal form of the eigenvalue of (A, M) nearest to a guess, i Im w at a Hopf point.
 
-    Raises Unsolvable where it is real, or none is found.
+    Raises Unsolvable where the eigenvalue is real or the iteration finds none.
     """
     transverse, longitudinal = (StraightElements(form, part) for part in (TRANSVERSE, LONGITUDINAL))
     w, q, p = _modes(transverse, guess)
@@ -132,7 +133,7 @@ def resolution_of(rod: Rod, w: complex, accuracy: float) -> Resolution:
 
 
 def of_odd_order(resolution: Resolution) -> Resolution:
-    """A mesh at least as fine, whose elements may be eliminated one by one."""
+    """A mesh of odd order at least as fine: only elements of odd order can be eliminated one by one."""
     return Resolution(resolution.elements, resolution.order | 1)
 
 
@@ -153,7 +154,7 @@ def normal_form_on(resolution: Resolution, rod: Rod, w: complex, accuracy: float
 def _modes(elements: StraightElements, guess: complex) -> tuple[complex, Complex, Complex]:
     """(w, q, p) of the eigenvalue nearest to a guess, of the transverse unknowns alone, scaled.
 
-    By inverse iteration from both sides; the two-sided Rayleigh quotient is the next shift.
+    Two-sided inverse iteration, with the two-sided Rayleigh quotient as the next shift.
     """
     w = complex(guess)
     for _ in range(MOST_SHIFTS):
