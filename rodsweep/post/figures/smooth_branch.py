@@ -27,7 +27,7 @@ LEAST_ANGLE = 0.25
 """Difference of the slopes at a corner over the steepest chord beside it; errors of 1 % make half of it."""
 BEND = 3.0
 """Least ratio of the angle in y to those in parameter and period: at a smooth sharp bend they are alike."""
-SAME = 1e-9
+COINCIDENT = 1e-9
 """Distance of two cycles, in units of the branch's extent, and imaginary part of a root that are rounding."""
 BETWEEN = 12
 """Places at which the curve between two cycles is drawn."""
@@ -41,7 +41,7 @@ def through_cycles(curve: CurveOfCycles) -> tuple[Array, Array, Array, NDArray[n
     places = np.column_stack([curve.at, curve.y, np.log(curve.period)])
     extent = np.ptp(places, axis=0)
     extent[extent == 0] = 1.0
-    moves = (np.abs(np.diff(places, axis=0)) > SAME * extent).any(
+    moves = (np.abs(np.diff(places, axis=0)) > COINCIDENT * extent).any(
         axis=1
     )  # the end of the range is a cycle too
     own, stable = places[np.append(True, moves)], curve.stable[moves]
@@ -89,7 +89,7 @@ def corners_of(own: Array, extent: Array) -> dict[int, Array]:
         rises = [_rise(x, column) for column in own[window].T]
         for root in rises[1].roots():
             angles = [float(rise.deriv()(root.real)) for rise in rises]
-            is_between = abs(root.imag) < SAME and 0 < root.real < 1
+            is_between = abs(root.imag) < COINCIDENT and 0 < root.real < 1
             if is_between and angles[1] > LEAST_ANGLE and angles[1] > BEND * max(map(abs, angles[::2])):
                 place = barycentric_interpolate(x, own[window], root.real)
                 place[1] = barycentric_interpolate(x[x < 0.5], own[window][x < 0.5, 1], root.real)
