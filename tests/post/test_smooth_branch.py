@@ -58,3 +58,10 @@ def test_a_branch_of_one_maximum_has_no_corner(count):
     places = np.column_stack([curve.at, curve.y, np.log(curve.period)])
     assert not corners_of(places, np.ptp(places, axis=0))
     assert farthest(u, lambda u: 0.0 * u) < 5e-4
+
+
+def test_a_corner_next_to_a_hopf_point_leaves_few_cycles_on_one_side():
+    u = np.linspace(0, 1, 9)
+    drawn = through_cycles(curve_through(u, lambda u: 4.0 * (u - 0.1)))
+    assert all(np.isfinite(column).all() for column in drawn)
+    assert np.ptp(drawn[0]) == pytest.approx(170) and drawn[1].max() < 4

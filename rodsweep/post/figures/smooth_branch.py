@@ -41,9 +41,8 @@ def through_cycles(curve: CurveOfCycles) -> tuple[Array, Array, Array, NDArray[n
     places = np.column_stack([curve.at, curve.y, np.log(curve.period)])
     extent = np.ptp(places, axis=0)
     extent[extent == 0] = 1.0
-    moves = (np.abs(np.diff(places, axis=0)) > COINCIDENT * extent).any(
-        axis=1
-    )  # the end of the range is a cycle too
+    # The end of the range is stored as a cycle and as a special point.
+    moves = (np.abs(np.diff(places, axis=0)) > COINCIDENT * extent).any(axis=1)
     own, stable = places[np.append(True, moves)], curve.stable[moves]
     if len(own) <= MIRRORED:
         return curve.at, curve.y, curve.period, curve.stable
@@ -64,7 +63,8 @@ def _smooth(own: Array, extent: Array) -> Array:
     curve has the square root there.
     """
     before, behind = (some * IMAGE for some in (own[MIRRORED:0:-1], own[-2 : -MIRRORED - 2 : -1]))
-    first, last = (int(vertex[1] == 0) * MIRRORED for vertex in (own[0], own[-1]))
+    first = len(before) if own[0, 1] == 0 else 0
+    last = len(behind) if own[-1, 1] == 0 else 0
     whole = np.concatenate([before[:first], own, behind[:last]])
     s = min((_lengths(whole, extent, power) for power in POWERS), key=lambda s: _roughness(s, whole / extent))
     ends = s[first : first + len(own)]
