@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Unpack
 
-from ..config.document.arguments import in_sentences
+from ..config.document.call_arguments import in_sentences
 from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from ..config.arm.section import ArmSection
-from ..config.document.arguments import unknown
+from ..config.document.call_arguments import unknown
 from ..config.document.reading import validated, yaml_of
 from ..config.document.refusals import nearest
 from ..config.schema import Config

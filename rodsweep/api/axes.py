@@ -5,7 +5,7 @@ from typing import Any, TypedDict
 
 import numpy as np
 
-from ..config.document.arguments import in_sentences
+from ..config.document.call_arguments import in_sentences
 from ..errors import InputError
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from ..config.arm.axes import ALONG
-from ..config.document.arguments import in_sentences
+from ..config.document.call_arguments import in_sentences
 from ..config.values import short
 from ..errors import InputError
 from ..model.arm.quantities import ALL_QUANTITIES

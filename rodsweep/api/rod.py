@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 
 from ..config.axes import words
-from ..config.document.arguments import in_sentences, unknown
+from ..config.document.call_arguments import in_sentences, unknown
 from ..config.document.refusals import hint_of, nearest
 from ..config.tasks import CONFIGS
 from ..config.values import as_number, short

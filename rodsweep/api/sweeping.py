@@ -13,7 +13,7 @@ from typing import Any
 
 import xarray as xr
 
-from ..config.document.arguments import in_sentences
+from ..config.document.call_arguments import in_sentences
 from ..config.document.reading import yaml_of
 from ..errors import EnvironmentLacks, InputError
 from ..tasks.running.unforeseen import described, log_file

@@ -12,7 +12,7 @@ from ..config.arm.section import ArmSection
 from ..model.arm.neglected import wall_effect
 from ..post.summary.arm.answer import plane_lines, validity_sentence
 from ..post.summary.ranges import span
-from ..sweep.estimate import SAMPLE
+from ..sweep.cost_estimate import SAMPLE
 from ..sweep.points.points import Points
 from ..tasks.arm.points import NoRod, same_rods
 from ..tasks.arm.validity import ArmValidity

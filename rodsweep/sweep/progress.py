@@ -7,7 +7,7 @@ import time
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
-from .pace import Pace, in_words, rate_in_words
+from .remaining_time import Pace, in_words, rate_in_words
 
 FIRST_SECONDS, LINE_SECONDS = 1.0, 10.0
 """Seconds after which something is shown, and between lines in a log."""

@@ -9,7 +9,7 @@ import numpy as np
 from ..config.branch import BranchConfig
 from ..results.layouts.branch import followed_variables, special_variables
 from ..results.layouts.variables import listed, recorded
-from ..sweep.estimate import Estimate, estimate_branches
+from ..sweep.cost_estimate import Estimate, estimate_branches
 from .parts import NonlinearTask, count_of
 from .protocol import Part, Solver
 

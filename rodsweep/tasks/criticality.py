@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from ..config.criticality import CriticalityConfig
 from ..results.layouts.criticality import NORMAL_FORM, OF_NO_HOPF_POINT
 from ..results.layouts.variables import listed, recorded
-from ..sweep.estimate import Estimate, estimate_criticality
+from ..sweep.cost_estimate import Estimate, estimate_criticality
 from .parts import NonlinearTask, count_of
 from .protocol import Part, Solver
 from .thresholds import search_record

@@ -21,7 +21,7 @@ from ..results.layouts.limit_cycle import (
 )
 from ..results.layouts.variables import Filled, Variable, recorded
 from ..solve.backend.availability import require_solvers
-from ..sweep.estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, MARCHED_CYCLE_SECONDS, Estimate
+from ..sweep.cost_estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, MARCHED_CYCLE_SECONDS, Estimate
 from ..sweep.points.chains import ChainedWork, Chains
 from ..sweep.points.grid import refuse_outside
 from ..wording import counted

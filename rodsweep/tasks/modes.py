@@ -13,7 +13,7 @@ from ..model.rod import Rod
 from ..results.layouts.modes import GROWTH, MODE_NUMBERS
 from ..results.layouts.spectrum import EACH_MODE, EACH_POINT
 from ..results.layouts.variables import Filled, recorded
-from ..sweep.estimate import Estimate, estimate_modes, estimate_spectra
+from ..sweep.cost_estimate import Estimate, estimate_modes, estimate_spectra
 from .hopf.force_changes import force_changes
 from .parts import ProvedTask, count_of
 from .protocol import Part, Solver

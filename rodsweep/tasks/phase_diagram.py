@@ -10,7 +10,7 @@ from ..model.rod import Rod
 from ..results.layouts.phase_diagram import (
     MOST_SPECIAL,
 )
-from ..sweep.estimate import Estimate, estimate_branches, estimate_lines
+from ..sweep.cost_estimate import Estimate, estimate_branches, estimate_lines
 from .diagram.curves import DiagramCurves
 from .diagram.cycles import cycles_record
 from .parts import ProvedTask

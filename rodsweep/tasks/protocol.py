@@ -10,7 +10,7 @@ import numpy as np
 from ..results.file.view import View
 from ..results.layouts.variables import Filled
 from ..solve.status import PointStatus
-from ..sweep.estimate import Estimate
+from ..sweep.cost_estimate import Estimate
 from ..sweep.points.chains import ChainedWork, Chains, State
 from ..sweep.points.points import Points
 from ..sweep.points.stretches import SolveTogether, Stretches

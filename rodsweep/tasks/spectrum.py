@@ -14,7 +14,7 @@ from ..errors import InputError
 from ..model.longitudinal import longitudinal_rates
 from ..results.layouts.spectrum import EACH_FOLLOWED_POINT, EACH_MODE, longitudinal
 from ..results.layouts.variables import Filled, recorded
-from ..sweep.estimate import Estimate, estimate_followed, estimate_spectra, estimate_two_meshes
+from ..sweep.cost_estimate import Estimate, estimate_followed, estimate_spectra, estimate_two_meshes
 from ..sweep.points.stretches import Stretches, Together, along_the_longest
 from .hopf.force_changes import force_changes
 from .parts import ProvedTask, count_of

@@ -8,7 +8,7 @@ import numpy as np
 from ..config.thresholds import ThresholdsConfig
 from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
 from ..results.layouts.variables import listed, recorded
-from ..sweep.estimate import Estimate, estimate_lines
+from ..sweep.cost_estimate import Estimate, estimate_lines
 from .parts import ProvedTask, count_of
 from .protocol import Part, Solver
 

@@ -5,7 +5,7 @@ from itertools import accumulate
 import numpy as np
 import pytest
 
-from rodsweep.sweep.pace import THINNED, Pace, in_words, rate_in_words
+from rodsweep.sweep.remaining_time import THINNED, Pace, in_words, rate_in_words
 
 RANDOM = np.random.default_rng(3)
 COLD, WARM = 0.1, 0.01

@@ -9,7 +9,7 @@ from typing import Any, Literal, TypedDict, Unpack
 
 import xarray as xr
 
-from ...config.document.arguments import in_sentences, unknown
+from ...config.document.call_arguments import in_sentences, unknown
 from ...config.values import short
 from ...errors import InputError
 from ...post.figures import draw

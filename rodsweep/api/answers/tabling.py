@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 import xarray as xr
 
-from ...config.document.arguments import in_sentences
+from ...config.document.call_arguments import in_sentences
 from ...config.values import short
 from ...errors import InputError
 from ...post.tables import Tables

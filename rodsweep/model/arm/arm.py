@@ -232,6 +232,11 @@ class SlenderArm:
         return drag.gamma2 * self.si.length**4 / self.bending_stiffness
 
     @property
+    def tau1(self) -> float:
+        """The shortest time scale, dimensional gamma3/k2, in s (Sec. VI)."""
+        return self.tau2 * self.gamma3 / self.k2
+
+    @property
     def gamma3(self) -> float:
         """gamma3/(gamma2 L^2) (Sec. VI)."""
         return self.gamma3_with(self.own_drag)

@@ -16,7 +16,7 @@ from ...model.rod import Rod
 from ..changes.unstable_modes import Crossing
 from ..cycle.accuracy.refinement import FIRST_ACCURACY, NEAR, matrix_distance, newton_tolerance
 from ..cycle.hopf_start import NORMAL_FORM_ACCURACY, orbit_with
-from ..hopf.hopf_coefficients import HopfCoefficients, hopf_coefficients
+from ..hopf.coefficient_errors import HopfCoefficients, hopf_coefficients
 from ..hopf.normal_form import NormalForm, accurate_normal_form
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.orbit import Orbit

@@ -14,7 +14,7 @@ from ..changes.along_path import Transitions, pair_crossings
 from ..changes.unstable_modes import SHORT_OF_CRUSHED, Crossing
 from ..point import FAILURES, cause_of, solved
 from ..status import PointStatus
-from .hopf_coefficients import HopfCoefficients, hopf_coefficients
+from .coefficient_errors import HopfCoefficients, hopf_coefficients
 
 SEARCHES_KEPT = 8
 """Number of cached searches for Hopf points, shared by rods that differ in gamma1 only."""

@@ -19,7 +19,7 @@ from ...watch import Whereabouts, report
 from ..changes.boundary_curves import BoundaryCurve
 from ..changes.unstable_modes import Crossing, Kind
 from ..point import FAILURES, Unsolvable
-from .hopf_coefficients import HopfCoefficients, hopf_coefficients
+from .coefficient_errors import HopfCoefficients, hopf_coefficients
 
 FINEST = 1e-10
 """Coarsest relative accuracy of c for locating generalised Hopf points, which are located to 1e-9."""

@@ -11,7 +11,7 @@ from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ..changes.along_path import pair_crossings
 from ..changes.unstable_modes import SHORT_OF_CRUSHED
-from .hopf_coefficients import hopf_coefficients
+from .coefficient_errors import hopf_coefficients
 
 FARTHEST_FORCE = 1.5
 """Hopf points are sought at forces from F / this ratio to F * this ratio."""

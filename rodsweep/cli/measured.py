@@ -1,6 +1,6 @@
 """The command as `rodsweep bench sweep` starts it: it notes each rank's memory, and can do without solving.
 
-    python -m rodsweep.cli.run.measured DIRECTORY KIND WORDS...
+    python -m rodsweep.cli.measured DIRECTORY KIND WORDS...
 
 runs `rodsweep WORDS...`. DIRECTORY and KIND are what `rodsweep.bench.sweep.launch` says.
 """
@@ -15,12 +15,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ...bench.sweep.launch import FIRST_RANK, KILLED, OTHER_RANKS, SOLVED
-from ...tasks import TASKS
-from ...tasks.protocol import Solver
-from ...tasks.spectrum import SpectrumTask
-from .. import main
-from ..launchers import speaks
+from ..bench.sweep.launch import FIRST_RANK, KILLED, OTHER_RANKS, SOLVED
+from ..tasks import TASKS
+from ..tasks.protocol import Solver
+from ..tasks.spectrum import SpectrumTask
+from . import main
+from .launchers import speaks
 
 OUTCOMES = 4096
 """That the points take in turn: more than any compression looks back."""
@@ -36,8 +36,8 @@ class InstantSpectra(SpectrumTask):
     killed: Path | None = None
 
     def solver(self) -> Solver:
-        from ...solve.spectrum.search import Spectrum
-        from ...solve.spectrum.status import SpectrumStatus
+        from ..solve.spectrum.search import Spectrum
+        from ..solve.spectrum.status import SpectrumStatus
 
         points, modes = self.points, self.config.spectrum.modes
         parts = np.random.default_rng(1).standard_normal((OUTCOMES, 3, modes))
