@@ -16,7 +16,7 @@ from ..parameters import PARAMETERS
 from ..units import Given, share_of_flutter, unit_of, written_in
 from .drag import DRAGS, LEAST_SLENDERNESS, Drag, range_of_drag
 from .quantities import LOADS, QUANTITIES, UNITS, number_in_si, told
-from .section import Circle, Rectangle, Section, Tube
+from .section import Circle, NoWall, Rectangle, Section, Tube
 
 CRUSHED_FROM = 1 - 1e-14
 """Part of k1 from which on F is as large: what conversion of units leaves between them."""
@@ -24,10 +24,6 @@ CRUSHED_FROM = 1 - 1e-14
 
 class NotSlender(InputError):
     """The refusal of an arm that is too short for the drag of slender bodies."""
-
-
-class NoWall(InputError):
-    """The refusal of an arm whose bore is as wide as itself."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -232,11 +228,6 @@ class SlenderArm:
         return drag.gamma2 * self.si.length**4 / self.bending_stiffness
 
     @property
-    def tau1(self) -> float:
-        """The shortest time scale, dimensional gamma3/k2, in s (Sec. VI)."""
-        return self.tau2 * self.gamma3 / self.k2
-
-    @property
     def gamma3(self) -> float:
         """gamma3/(gamma2 L^2) (Sec. VI)."""
         return self.gamma3_with(self.own_drag)
@@ -250,3 +241,8 @@ class SlenderArm:
     def tau2(self) -> float:
         """The longest time scale gamma2 L^4/k3, in s (Sec. VI)."""
         return self.tau2_with(self.own_drag)
+
+    @property
+    def tau1(self) -> float:
+        """The shortest time scale, dimensional gamma3/k2, in s (Sec. VI)."""
+        return self.tau2 * self.gamma3 / self.k2

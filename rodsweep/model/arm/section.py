@@ -4,6 +4,12 @@ from dataclasses import dataclass
 from math import pi
 from typing import ClassVar
 
+from ...errors import InputError
+
+
+class NoWall(InputError):
+    """The refusal of an arm whose bore is as wide as itself."""
+
 
 @dataclass(frozen=True, slots=True)
 class Circle:
