@@ -10,8 +10,8 @@ from pydantic import Field, model_validator
 from ...arrays import Array
 from ...errors import InputError
 from ...model.arm.arm import NotSlender, SlenderArm
-from ...model.arm.section import NoWall
 from ...model.arm.quantities import ARM_UNITS, LOADS, QUANTITIES, RELATIVE, SCALE_OF, UNITS
+from ...model.arm.section import NoWall
 from ...model.parameters import NONLINEAR_PARAMETERS, all_but
 from ..values import Axis, Strict, Values
 from .axes import AXIS_OF, LOAD_AXES, NO_WALL, NOT_SLENDER, SECTION
