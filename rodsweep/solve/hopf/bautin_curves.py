@@ -62,8 +62,7 @@ END_OTHERWISE = {
 class BautinCurvePoint:
     """A generalised Hopf point in the space of three parameters.
 
-    values, errors: the plane's two parameters, then the third, shape (3,). frequency in 1/tau2,
-    landau_imag = Im c in 1/(tau2 L^2).
+    values, errors: the plane's two parameters, then the third, (3,). landau_imag: Im c, in 1/(tau2 L^2).
     """
 
     values: Array
