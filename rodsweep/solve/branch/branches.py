@@ -44,7 +44,7 @@ class BranchStatus(PointStatus):
     special_undecided = (
         3,
         "a special point is located less accurately than asked for, as its error says, or multipliers cross "
-        "the circle for which none was found",
+        "the circle for which none was found; a smaller number for the accuracy may decide it",
     )
     search_open = (
         4,
@@ -192,14 +192,19 @@ def _judged(
     count = sum(len(curve.special) for curve in curves)
     special = [point for curve in curves for point in curve.special]
     aim = max(request.accuracy, 1e-9)
-    rough = any(point.error > aim * abs(point.at) for point in special)
+    rough = [point for point in special if point.error > aim * abs(point.at)]
+    said += [
+        f"{point.kind.name.replace('_', ' ')} at {request.along} = {point.at:.9g}: located to {point.error:.1e}"
+        for point in rough
+        if not point.message
+    ]
     if any(not curve.explained for curve in curves):
         said.append("multipliers cross the circle where no special point is found")
     verdicts = {
         BranchStatus.stopped: bool(failures)
         or any(not curve.complete and not curve.full for curve in curves),
         BranchStatus.list_full: any(curve.full for curve in curves) or count > request.special,
-        BranchStatus.special_undecided: rough or any(not curve.explained for curve in curves),
+        BranchStatus.special_undecided: bool(rough) or any(not curve.explained for curve in curves),
         BranchStatus.search_open: request.certify and not found.proved,
     }
     status = next((status for status, holds in verdicts.items() if holds), BranchStatus.ok)

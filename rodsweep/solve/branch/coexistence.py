@@ -47,7 +47,8 @@ class CoexistenceStatus(PointStatus):
     special_undecided = (
         7,
         "the branches are complete, but a special point is located less accurately than asked for or does "
-        "not explain the multipliers beside it; stretches whose multipliers disagree are undecided",
+        "not explain the multipliers beside it; stretches whose multipliers disagree are undecided, and a "
+        "smaller number for the accuracy may decide them",
     )
     special_full = 8, "there are more special points on the branches of the row than the file holds"
 
