@@ -194,7 +194,7 @@ def _judged(
     aim = max(request.accuracy, 1e-9)
     rough = [point for point in special if point.error > aim * abs(point.at)]
     said += [
-        f"{point.kind.name.replace('_', ' ')} at {request.along} = {point.at:.9g}: located to {point.error:.1e}"
+        f"{point.kind.name.replace('_', ' ')} at {request.along} = {point.at:.9g}: error {point.error:.1e}"
         for point in rough
         if not point.message
     ]
