@@ -60,8 +60,31 @@ def test_a_branch_of_one_maximum_has_no_corner(count):
     assert farthest(u, lambda u: 0.0 * u) < 5e-4
 
 
-def test_a_corner_next_to_a_hopf_point_leaves_few_cycles_on_one_side():
+def test_a_corner_may_lie_behind_the_second_cycle_from_a_hopf_point():
     u = np.linspace(0, 1, 9)
-    drawn = through_cycles(curve_through(u, lambda u: 4.0 * (u - 0.1)))
-    assert all(np.isfinite(column).all() for column in drawn)
-    assert np.ptp(drawn[0]) == pytest.approx(170) and drawn[1].max() < 4
+    at, y, period = 30 + 170 * u, np.maximum(u, 4 * u - 0.48), np.exp(-u)
+    curve = CurveOfCycles(at, y, period, np.ones(8, dtype=int), np.ones(9, dtype=bool), ())
+    places = np.column_stack([at, y, np.log(period)])
+    (corner,) = corners_of(places, np.ptp(places, axis=0)).items()
+    assert corner[0] == 1
+    assert corner[1] == pytest.approx([30 + 170 * 0.16, 0.16, -0.16], rel=1e-9)
+    x, drawn, drawn_period, _ = through_cycles(curve)
+    beyond = (x - 30) / 170 >= 0.16  # before, the branch leaves its mirror image at y = 0
+    true = (x[beyond] - 30) / 170
+    assert drawn[beyond] == pytest.approx(4 * true - 0.48, abs=1e-9)
+    assert drawn_period[beyond] == pytest.approx(np.exp(-true), rel=1e-9)
+    assert (np.diff(x) >= 0).all() and (np.diff(drawn) >= 0).all()
+
+
+def test_steps_that_grow_at_a_bend_make_no_waves():
+    at = np.array([82.0, 84, 86, 88.3, 91, 93.1, 96.3, 100.9, 105.9, 107.6])
+
+    def log_period(at):
+        return 0.3 * np.logaddexp(0, (at - 97) / 3.5) ** 1.5 / 8 - 0.02 * np.tanh((at - 82) / 3)
+
+    fine = np.linspace(at[0], at[-1], 2001)
+    pieces = np.ones(len(at) - 1, dtype=int)
+    curve = CurveOfCycles(at, 0.1 - 1e-4 * (at - 91) ** 2 / 3, np.exp(log_period(at)), pieces, pieces > 0, ())
+    x, _, period, _ = through_cycles(curve)
+    off = np.interp(fine, x, np.log(period)) - log_period(fine)
+    assert np.abs(off).max() < 4e-3 * np.ptp(log_period(at))

@@ -10,31 +10,36 @@ from scipy.interpolate import CubicHermiteSpline, barycentric_interpolate
 from ...arrays import Array
 from ..branch_curves import CurveOfCycles
 
-MIRRORED, IMAGE = 3, np.array([1.0, -1.0, 1.0])
-"""Cycles that are mirrored at a Hopf point, more than a slope depends on; their image."""
+MIRRORED = 3
+"""Cycles beside a Hopf point whose mirror images continue the branch beyond the point."""
+IMAGE = np.array([1.0, -1.0, 1.0])
+"""Factors of (parameter, y, log period) that make the mirror image of a cycle."""
 SHARES = np.array([0.5, 1.0, 1.0])
-"""Of the parameter, of y and of the logarithm of the period in the length along a branch, in units of their
-extents: next to a Hopf point the parameter goes with the square of y, and a length that is y is smoothest."""
+"""Weights of parameter, y and log period in the length of a chord, each in units of the branch's extent: next
+to a Hopf point the parameter goes with the square of y, and a length close to y is smoothest."""
+WITHOUT_Y = np.array([1.0, 0.0, 1.0])
+"""Factors that leave y out of the length of a chord."""
 POWERS = (1.0, 0.5)
-"""Powers of the chords of which the smoother one is taken: where steps grow at a bend their root is."""
-OF_SLOPE = 5
-"""Cycles through which the polynomial goes whose slope the curve has, so that few cycles suffice."""
-NO_Y = np.array([1.0, 0.0, 1.0])
-"""The parameter and the period of a place, without y."""
-OF_CORNER = 4
-"""Cycles on each side of a corner from which it is found, by a cubic; fewer at an end of the branch."""
+"""Powers of chords whose sums are tried as variable of the curve. The length (1) is best on most branches,
+the sum of roots (0.5) where the steps grow at a bend."""
+SLOPE_CYCLES = 5
+"""Cycles of the polynomial that gives the curve its slope at the middle cycle."""
+CORNER_CYCLES = 4
+"""Cycles on each side of a corner whose cubics locate the corner; fewer at an end of the branch."""
 LEAST_ANGLE = 0.25
-"""Difference of the slopes at a corner over the steepest chord beside it; errors of 1 % make half of it."""
-BEND = 3.0
-"""Least ratio of the angle in y to those in parameter and period: at a smooth sharp bend they are alike."""
+"""Smallest jump of slope that is drawn as a corner, in units of the steepest chord beside the corner. A
+smaller jump moves the curve by a few per cent of the chord at most."""
+ANGLE_RATIO = 3.0
+"""Smallest ratio of the jump of slope in y to those of parameter and period, which are smooth at a corner.
+At a sharp bend that the cycles do not resolve all three jumps are alike."""
 COINCIDENT = 1e-9
-"""Distance of two cycles, in units of the branch's extent, and imaginary part of a root that are rounding."""
-BETWEEN = 12
-"""Places at which the curve between two cycles is drawn."""
+"""Rounding, in units of the branch's extent (of distances) and of a step (of imaginary parts of roots)."""
+PIECES = 12
+"""Straight pieces drawn between two cycles."""
 
 
 def through_cycles(curve: CurveOfCycles) -> tuple[Array, Array, Array, NDArray[np.integer]]:
-    """(at, y, period, stable) of a branch as it is drawn, (n,), the last (n - 1,): smooth between corners.
+    """(parameter, y, period, stable) of the drawn branch, (n,), the last (n - 1,): smooth between corners.
 
     A branch has a corner where another maximum of y(t) becomes the largest.
     """
@@ -53,11 +58,11 @@ def through_cycles(curve: CurveOfCycles) -> tuple[Array, Array, Array, NDArray[n
     inner = [i + 1 + k for k, i in enumerate(sorted(corners))]
     parts = [_smooth(own[low : high + 1], extent) for low, high in pairwise([0, *inner, len(own) - 1])]
     at, y, log_period = np.concatenate([*(part[:-1] for part in parts), parts[-1][-1:]]).T
-    return at, y, np.exp(log_period), np.repeat(stable, BETWEEN)
+    return at, y, np.exp(log_period), np.repeat(stable, PIECES)
 
 
 def _smooth(own: Array, extent: Array) -> Array:
-    """Places on a smooth curve through cycles, both (n, 3): BETWEEN pieces from each cycle to the next.
+    """Vertices of a smooth curve through cycles, both (n, 3), with PIECES pieces between two cycles.
 
     At a Hopf point a branch is its own mirror image, y to -y: beyond it the cycles are mirrored, so that the
     curve has the square root there.
@@ -68,41 +73,47 @@ def _smooth(own: Array, extent: Array) -> Array:
     whole = np.concatenate([before[:first], own, behind[:last]])
     s = min((_lengths(whole, extent, power) for power in POWERS), key=lambda s: _roughness(s, whole / extent))
     ends = s[first : first + len(own)]
-    finer = np.append(np.linspace(ends[:-1], ends[1:], BETWEEN, endpoint=False, axis=1).ravel(), ends[-1])
+    finer = np.append(np.linspace(ends[:-1], ends[1:], PIECES, endpoint=False, axis=1).ravel(), ends[-1])
     places: Array = CubicHermiteSpline(s, whole, slopes_at_cycles(s, whole))(finer)
     return places
 
 
 def corners_of(own: Array, extent: Array) -> dict[int, Array]:
-    """The corners of a branch through cycles, (n, 3): at, y and log period, (3,), by the cycle before.
+    """Corners of a branch through cycles, (n, 3), by index of the cycle before: (at, y, log period), (3,).
 
-    At a corner the polynomials for y through the cycles before and behind meet, and the latter rises more
-    steeply, because y is the larger of two maxima of y(t). Their variable is the length along the curve of
-    period and parameter, which has no corner. Polynomials that reach beyond a corner meet elsewhere at a
-    smaller angle: among neighbouring places the one with the largest angle is the corner.
+    At a corner two polynomials for y meet, through the cycles before and through the cycles behind. The
+    second polynomial rises more steeply, because y is the larger of two maxima of y(t). The variable is the
+    length along the curve of parameter and period, which has no corner. Polynomials that reach beyond a
+    corner meet elsewhere at a smaller angle: of neighbouring intervals the largest angle has the corner.
     """
-    lengths = _lengths(own * NO_Y, extent)
+    lengths = _lengths(own * WITHOUT_Y, extent)
     found: dict[int, tuple[float, Array]] = {}
     for i in range(1, len(own) - 2):
-        window = slice(max(0, i + 1 - OF_CORNER), i + 1 + OF_CORNER)
+        window = slice(max(0, i + 1 - CORNER_CYCLES), i + 1 + CORNER_CYCLES)
+        if (np.diff(lengths[window]) == 0).any():
+            continue  # y alone changes, which a jump between two maxima does not do
         x = (lengths[window] - lengths[i]) / (lengths[i + 1] - lengths[i])
         rises = [_rise(x, column) for column in own[window].T]
         for root in rises[1].roots():
             angles = [float(rise.deriv()(root.real)) for rise in rises]
             is_between = abs(root.imag) < COINCIDENT and 0 < root.real < 1
-            if is_between and angles[1] > LEAST_ANGLE and angles[1] > BEND * max(map(abs, angles[::2])):
+            if (
+                is_between
+                and angles[1] > LEAST_ANGLE
+                and angles[1] > ANGLE_RATIO * max(map(abs, angles[::2]))
+            ):
                 place = barycentric_interpolate(x, own[window], root.real)
                 place[1] = barycentric_interpolate(x[x < 0.5], own[window][x < 0.5, 1], root.real)
                 found[i] = angles[1], place
     return {
         i: place
         for i, (angle, place) in found.items()
-        if angle == max(found[k][0] for k in found if abs(k - i) < OF_CORNER)
+        if angle == max(found[k][0] for k in found if abs(k - i) < CORNER_CYCLES)
     }
 
 
 def _rise(x: Array, values: Array) -> Polynomial:
-    """The polynomial through the values at x > 0.5 less that through the others, over the steepest chord."""
+    """Polynomial through values at x > 0.5 minus polynomial through the rest, over the steepest chord."""
     before, behind = (
         Polynomial.fit(x[side], values[side], side.sum() - 1).convert() for side in (x < 0.5, x > 0.5)
     )
@@ -110,13 +121,13 @@ def _rise(x: Array, values: Array) -> Polynomial:
 
 
 def _lengths(places: Array, extent: Array, power: float = 1.0) -> Array:
-    """Sums of the powers of the chords from the first of some places, (n, 3), to each, (n,)."""
+    """Sums of powers of the chords from the first place to each, (n,); places has the shape (n, 3)."""
     chords = np.linalg.norm(np.diff(places / extent * SHARES, axis=0), axis=1)
     return np.append(0.0, np.cumsum(chords**power))
 
 
 def _roughness(s: Array, places: Array) -> float:
-    """The largest distance of a place, (n, columns), from the cubic in s through the two on each side."""
+    """Largest distance of a place from the cubic through two places on each side; places: (n, columns)."""
     beside = (-2, -1, 1, 2)
     off = [
         places[i] - barycentric_interpolate(s[[i + k for k in beside]], places[[i + k for k in beside]], s[i])
@@ -126,8 +137,8 @@ def _roughness(s: Array, places: Array) -> float:
 
 
 def slopes_at_cycles(s: Array, places: Array) -> Array:
-    """The derivatives of places by s, both (n, columns): of the polynomial through OF_SLOPE cycles beside."""
-    count = min(OF_SLOPE, len(s))
+    """Derivatives of places by s, both (n, columns), from polynomials through SLOPE_CYCLES neighbours."""
+    count = min(SLOPE_CYCLES, len(s))
     slopes = np.empty_like(places)
     for i, start in enumerate(np.clip(np.arange(len(s)) - count // 2, 0, len(s) - count)):
         beside = s[start : start + count] - s[i]

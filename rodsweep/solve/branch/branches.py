@@ -192,19 +192,14 @@ def _judged(
     count = sum(len(curve.special) for curve in curves)
     special = [point for curve in curves for point in curve.special]
     aim = max(request.accuracy, 1e-9)
-    rough = [point for point in special if point.error > aim * abs(point.at)]
-    said += [
-        f"{point.kind.name.replace('_', ' ')} at {request.along} = {point.at:.9g}: error {point.error:.1e}"
-        for point in rough
-        if not point.message
-    ]
+    rough = any(point.error > aim * abs(point.at) for point in special)
     if any(not curve.explained for curve in curves):
         said.append("multipliers cross the circle where no special point is found")
     verdicts = {
         BranchStatus.stopped: bool(failures)
         or any(not curve.complete and not curve.full for curve in curves),
         BranchStatus.list_full: any(curve.full for curve in curves) or count > request.special,
-        BranchStatus.special_undecided: bool(rough) or any(not curve.explained for curve in curves),
+        BranchStatus.special_undecided: rough or any(not curve.explained for curve in curves),
         BranchStatus.search_open: request.certify and not found.proved,
     }
     status = next((status for status, holds in verdicts.items() if holds), BranchStatus.ok)
