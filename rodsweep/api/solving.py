@@ -71,9 +71,9 @@ def _solved(job: Job, solver: Solver, plan: Plan, shown: Display) -> tuple[dict[
     flat = {name: np.repeat(fill[None], count, axis=0) for name, fill in layout.empty_point.items()}
     messages = [""] * count
     if solver.stretched is not None:
-        stretches, solve_together = solver.stretched
+        stretches, solve_stretch = solver.stretched
         for indices in map(stretches.indices, range(stretches.count)):
-            found = solve_together(indices).values
+            found = solve_stretch(indices).values
             for name, array in flat.items():
                 array[indices] = found[name]
             shown(int(indices[-1]) + 1)

@@ -12,7 +12,7 @@ from ..config.arm.section import ArmSection
 from ..model.arm.neglected import wall_effect
 from ..post.summary.arm.answer import plane_lines, validity_sentence
 from ..post.summary.ranges import span
-from ..sweep.cost_estimate import SAMPLE
+from ..sweep.cost_estimate import MAX_SAMPLE
 from ..sweep.points.points import Points
 from ..tasks.arm.points import NoRod, same_rods
 from ..tasks.arm.validity import ArmValidity
@@ -42,9 +42,10 @@ def describe_job(job: Job) -> None:
         f"{job.points.count * job.layout.bytes_per_point / 1e6:.3g} MB of results"
     )
     if cost.too_large:
+        sampled = min(MAX_SAMPLE, job.points.count)
         console.print(
-            f"warning: about {cost.too_large} of {min(SAMPLE, job.points.count)} sampled points need more "
-            "unknowns than the limit and will end with status failed"
+            f"warning: about {cost.too_large} of {sampled} sampled points need more unknowns than the limit "
+            "and will end with status failed"
         )
 
 

@@ -42,7 +42,7 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
     """Compute CONFIG, continuing an interrupted result file. Start it with mpiexec for many ranks."""
     from ..sweep.stop import StopRequest
 
-    stop = StopRequest(speaks=not rank_variables())
+    stop = StopRequest(acknowledges=not rank_variables())
     stop.listen()  # before everything that takes time: a warning may come early
     from ..sweep.points.shards import shard_of
     from .run.options import RunOptions

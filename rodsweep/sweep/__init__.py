@@ -1,10 +1,11 @@
-"""Many points: from axes to points, who solves which, and the loop. The only sender of MPI messages.
+"""Sweeps over many points: their coordinates, their distribution over ranks, and the loop that solves them.
 
-Nothing here knows HDF5: finished points go to a function that the caller gives.
+This package is the only sender of MPI messages. It does not know HDF5: the caller passes a function that
+stores finished points.
 
-To a user of `import rodsweep as rs` this name is the function that sweeps. Python gives the name of a package
-to the package, so it is this that is called, and passes the call on to `rodsweep.api.sweeping.sweep`, where
-its arguments are described.
+For a user of `import rodsweep as rs`, `rs.sweep` is a function. Python binds the name of a package to the
+package, so the package itself is made callable; it passes the call on to `rodsweep.api.sweeping.sweep`, which
+describes the arguments.
 """
 
 import sys
@@ -18,8 +19,8 @@ class _CalledPackage(ModuleType):
 
     @property
     def __wrapped__(self) -> Any:
-        """The function itself, by which `help` and completion find its arguments."""
-        return import_module("rodsweep.api.sweeping").sweep  # by name: the arrow of imports points here
+        """The function itself; `help` and completion read its arguments here."""
+        return import_module("rodsweep.api.sweeping").sweep  # by name: `api` imports `sweep`, not the reverse
 
     def __call__(self, *words: Any, **keywords: Any) -> Any:
         return self.__wrapped__(*words, **keywords)

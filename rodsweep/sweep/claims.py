@@ -1,9 +1,10 @@
-"""How ranks claim their chunks: the first from its handout, the others from the first by messages.
+"""How ranks claim chunks of units: the first rank from its own handout, the others by messages to the first.
 
-The first rank computes like any other; a thread of it answers the requests of the others, so they
-need not wait for its own solve to end. A solve may keep the thread waiting, so ranks ask for their next
-chunk when they begin one, and get it while plenty is left. A rank that is asked to stop tells the first,
-which tells all: each ends with the point that it is at.
+The first rank computes like every rank. A thread of the first rank answers the requests of the others, so
+that they need not wait until its current solve ends. A solve may still delay this thread. Every rank
+therefore requests its next chunk when it begins a chunk, and gets it while plenty of units are left. A rank
+that receives a stop signal notifies the first rank, which notifies all; each rank stops after its current
+point.
 """
 
 import threading
@@ -17,21 +18,28 @@ from .points.ranges import IndexRange
 from .stop import StopRequest
 from .team import Team
 
-REQUEST_TAG, ANSWER_TAG, STOP_TAG, PLACE_TAG = 71, 72, 73, 74
-POLL_SECONDS, RELIEVED_POLL_SECONDS = 2e-3, 5e-3
-"""How long the thread sleeps: each waking takes the first rank 20 microseconds or more of its solve. Longer
-where that rank itself answers between its points."""
-ASK_SECONDS, LONGEST_ASK_SECONDS = 1e-4, 1e-2
-"""Seconds between two looks of a rank that waits for its next chunk, at first and after a while: what idles
-must not take the processor from what solves."""
+REQUEST_TAG = 71
+ANSWER_TAG = 72
+STOP_TAG = 73
+PLACE_TAG = 74
+POLL_SECONDS = 2e-3
+"""Seconds between two polls by the thread of the first rank. Each poll takes 20 microseconds or more from the
+solve of that rank."""
+RELIEVED_POLL_SECONDS = 5e-3
+"""Seconds between two polls by the thread while the first rank itself answers between its points."""
+ASK_SECONDS = 1e-4
+"""First pause, in seconds, between two polls of a rank that waits for its next chunk."""
+LONGEST_ASK_SECONDS = 1e-2
+"""Longest such pause, in seconds: an idle rank must not take processor time from ranks that solve."""
 ASK_GROWTH = 1.1
-"""Ratio of a pause between looks to the one before: a wait of a millisecond costs a few looks."""
+"""Ratio of a pause to the previous pause; growth is slow, so that a wait of a millisecond is not
+prolonged."""
 WAIT_SECONDS = 0.05
-"""Seconds for which the first rank waits for a change before it looks at its mail itself."""
+"""Seconds for which the idle first rank waits for a change of the handout before it polls for messages."""
 
 
 class FirstRankClaims:
-    """How the first rank gets its chunks, and how its thread serves the others."""
+    """Claims of the first rank, with a thread that serves the other ranks."""
 
     def __init__(
         self,
@@ -40,15 +48,18 @@ class FirstRankClaims:
         stop: StopRequest,
         show: Callable[[str, float], None],
     ):
-        """show: takes where a rank is in a long point, in words, and how much of all long points is done."""
-        self.team, self.handout, self.stop, self.show = team, handout, stop, show
+        """show: displays the progress of a long point, in words, and the work done of all unfinished points."""
+        self.team = team
+        self.handout = handout
+        self.stop = stop
+        self.show = show
         self.waiting: deque[int] = deque()
         self.ahead: set[int] = set()
-        """Ranks that have an answer to their next request already."""
+        """Ranks that already have the answer to their next request."""
         self.working = set(range(1, team.size))
         self.status = team.MPI.Status()
         self.places: dict[int, Whereabouts] = {}
-        """Where each rank is in a long point, as it has said last."""
+        """Latest reported progress of each rank within a long point."""
         self.serving = threading.Lock()
         self.served = 0.0
         self.thread: threading.Thread | None = None
@@ -57,6 +68,7 @@ class FirstRankClaims:
             self.thread.start()
 
     def claim(self, report: Report) -> IndexRange:
+        """The next chunk; waits until a chunk is available or the work is over."""
         with self.serving:
             self._heed_stop()
         self.places.pop(0, None)
@@ -71,24 +83,25 @@ class FirstRankClaims:
         return chunk
 
     def close(self) -> None:
+        """Waits for the thread to end, after all other ranks have finished."""
         if self.thread is not None:
             self.thread.join()
             self._hear_places()
 
-    def tell_place(self, place: Whereabouts) -> None:
-        """Where this rank is in a long point."""
+    def report_place(self, place: Whereabouts) -> None:
+        """Shows the progress of this rank within a long point."""
         self.places[0] = place
         self.show(place.words, self._begun())
 
     def _begun(self) -> float:
-        """How much is done of the long points that are being solved, in points."""
+        """Work done of all unfinished long points, in points."""
         return sum(place.share or 0.0 for place in list(self.places.values()))
 
     def between_points(self) -> None:
-        """Answers what other ranks ask; while a long point is solved, the thread does.
+        """Answers requests of other ranks; called between points.
 
-        The thread alone would not do: a solve inside PETSc keeps Python's lock, and the thread might
-        get it only once a point for each of its steps.
+        During a long point the thread answers. The thread alone would not be enough: a solve inside PETSc
+        keeps Python's lock, and the thread might get the lock only once a point for each of its steps.
         """
         if self.thread is not None:
             self._serve()
@@ -97,7 +110,7 @@ class FirstRankClaims:
             self._heed_stop()
 
     def _heed_stop(self) -> None:
-        """Once this rank has been asked to stop, nothing more is handed out, and all are told."""
+        """After a stop request to this rank, ends the handout and notifies all working ranks, once."""
         if self.stop and not self.handout.stopped:
             self.handout.stop()
             for rank in self.working:
@@ -126,13 +139,16 @@ class FirstRankClaims:
             self.places[rank] = comm.recv(source=rank, tag=PLACE_TAG)
 
     def _hear(self, rank: int, report: Report) -> None:
-        """A report: its rank waits for an answer unless it has it; one to a request ahead is sent at once."""
+        """Handles a report of a rank: answers a request ahead at once, and queues any other request.
+
+        A rank whose request ahead was answered already has its next chunk and is not queued.
+        """
         if report.ahead:
             if (chunk := self.handout.take_ahead(rank)) is not None:
                 self.team.comm.send(chunk, dest=rank, tag=ANSWER_TAG)
                 self.ahead.add(rank)
             return
-        if report.stop:  # which may come before the message that says so
+        if report.stop:  # the report may arrive before the rank's message with STOP_TAG
             self.stop.take(report.stop)
             self._heed_stop()
         self.places.pop(rank, None)
@@ -143,7 +159,7 @@ class FirstRankClaims:
             self.waiting.append(rank)
 
     def _serve_until_over(self) -> None:
-        with self.team.together():
+        with self.team.aborting_together():
             while self.working:
                 self._serve()
                 answering = time.monotonic() - self.served < RELIEVED_POLL_SECONDS
@@ -151,12 +167,15 @@ class FirstRankClaims:
 
 
 class OtherRankClaims:
-    """How every other rank gets its chunks: by asking the first."""
+    """Claims of every other rank, by messages to the first."""
 
     def __init__(self, team: Team, stop: StopRequest):
-        self.comm, self.stop, self.told = team.comm, stop, False
+        self.comm = team.comm
+        self.stop = stop
+        self.stop_exchanged = False
 
     def claim(self, report: Report) -> IndexRange:
+        """The next chunk; waits until the first rank has sent it, and requests the chunk after it."""
         self.comm.send(report, dest=0, tag=REQUEST_TAG)
         # A blocking receive would spin and take the processor from the ranks that compute.
         pause = ASK_SECONDS
@@ -169,15 +188,15 @@ class OtherRankClaims:
             self.comm.send(Report(ahead=True), dest=0, tag=REQUEST_TAG)
         return chunk
 
-    def tell_place(self, place: Whereabouts) -> None:
-        """Where this rank is in a long point."""
+    def report_place(self, place: Whereabouts) -> None:
+        """Sends the progress of this rank within a long point to the first rank."""
         self.comm.send(place, dest=0, tag=PLACE_TAG)
 
     def between_points(self) -> None:
-        """Passes a request to stop on to the first rank, or learns of it from there."""
-        if not self.told and self.comm.Iprobe(source=0, tag=STOP_TAG):
+        """Sends a stop request to the first rank, or receives a stop request from it; once in all."""
+        if not self.stop_exchanged and self.comm.Iprobe(source=0, tag=STOP_TAG):
             self.stop.take(self.comm.recv(source=0, tag=STOP_TAG))
-            self.told = True
-        if not self.told and self.stop:
+            self.stop_exchanged = True
+        if not self.stop_exchanged and self.stop:
             self.comm.send(self.stop.name, dest=0, tag=STOP_TAG)
-            self.told = True
+            self.stop_exchanged = True

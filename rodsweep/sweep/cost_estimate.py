@@ -1,4 +1,7 @@
-"""What a sweep will cost, before it starts: for spectra, unknowns and time a point from a sample."""
+"""Cost of a sweep before it starts: time, and for spectra also memory and unknowns, from a sample of points.
+
+Times are of one core like that of docs/performance.md.
+"""
 
 import math
 from dataclasses import dataclass, replace
@@ -12,98 +15,128 @@ from ..model.dispersion import most_amplified_wave
 from .points.points import Points
 from .points.stretches import Stretches
 
-SAMPLE = 200
+MAX_SAMPLE = 200
+"""Largest number of points whose meshes are computed for an estimate."""
 HARDER_IF_LARGER = frozenset({"k1", "F"})
-"""Parameters of which the largest value decides what branches cost; of others the smallest."""
-FIXED_MS, LINEAR_MS, CUBIC_MS = 0.03, 2.2e-3, 1.5e-7
-"""Time of a solve with n unknowns: overhead, orthogonalisation and dense factorisation, measured."""
-SPARSE_FROM, SPARSE_MS = 300, 8e-3
+"""Parameters whose largest value makes branches most expensive; for other parameters the smallest value
+does."""
+FIXED_MS = 0.03
+"""Overhead of the solve of a spectrum, in ms, measured."""
+LINEAR_MS = 2.2e-3
+"""Time of its orthogonalisation, in ms per unknown, measured."""
+CUBIC_MS = 1.5e-7
+"""Time of its dense factorisation, in ms per cubed number of unknowns, measured."""
+SPARSE_FROM = 300
+"""Number of unknowns above which factorisations are sparse."""
+SPARSE_MS = 8e-3
+"""Time of a solve with a sparse factorisation, in ms per unknown."""
 CERTIFICATE_MS = 0.15
-FIRST_POINTS, FOLLOWED_MS = 2.0, 0.006
-"""Points alone that the first point of a stretch costs as much as, and time of each point of it."""
-LINE_MS, LINE_CERTIFICATE_MS = 24.0, 16.0
-"""Time of a search for crossings along one parameter, a mean over 72 rods: some take four times as long."""
-HOPF_SEARCH_MS, HOPF_CERTIFICATE_MS, HOPF_POINTS_MS = 25.0, 3.0, 18.0
-"""Time of a search for the Hopf points of a rod, of its certificate, and of the normal forms of those that it
-has, two or three: means over 90 rods."""
-TWO_MESHES, FINER_MESH = 8.0, 4 / 3
-"""Time of a spectrum on two meshes, in units of one that begins on one mesh: a mean over 800 rods; and the
-unknowns of the second mesh in units of the first's."""
-MODES_MS, GROWTH_MS = 1.5, 20.0
-"""Time that the vectors take beside the eigenvalues, in units of the modes squared, because the mesh grows
-with them, and that the growth takes: means over 24 rods."""
-CYCLE_SECONDS, CHAINED_CYCLE_SECONDS, MARCHED_CYCLE_SECONDS = 0.1, 0.01, 0.25
-"""Time of a limit cycle from the leading mode, and from its neighbour: about those of the benchmark; and by
-time integration alone to 1e-5, the mean over 40 rods."""
-BRANCH_SECONDS, BRANCH_ACCURACY, BRANCH_BENDING = 0.004, -0.17, 1.5
-"""All branches of a rod take BRANCH_SECONDS F (accuracy/1e-7)^BRANCH_ACCURACY (1 + F/k2)^BRANCH_BENDING;
-F is the largest of the range, or k1. Fourteen random rods (F up to 60 to 200, k2 from 12 to 9000, accuracies
-from 1e-4 to 1e-9) took 0.3 to 21 s, all within a factor of three and most within two; some near F = k1 take
-four times as long."""
+"""Time of the certificate of a spectrum, in ms."""
+FIRST_POINTS = 2.0
+"""Cost of the first point of a stretch, in units of a point solved alone."""
+FOLLOWED_MS = 0.006
+"""Time of every point of a stretch that is followed from its neighbour, in ms."""
+LINE_MS = 24.0
+"""Time of a search for crossings along one parameter, in ms: mean over 72 rods, some of which take four times
+as long."""
+LINE_CERTIFICATE_MS = 16.0
+"""Time of the certificate of such a search, in ms: mean over the same rods."""
+HOPF_SEARCH_MS = 25.0
+"""Time of a search for the Hopf points of a rod, in ms: mean over 90 rods."""
+HOPF_CERTIFICATE_MS = 3.0
+"""Time of the certificate of the Hopf points, in ms: mean over the same rods."""
+HOPF_POINTS_MS = 18.0
+"""Time of the normal forms of the two or three Hopf points of a rod, in ms: mean over the same rods."""
+TWO_MESHES = 8.0
+"""Time of a spectrum on two meshes, in units of one that begins on one mesh: mean over 800 rods."""
+FINER_MESH = 4 / 3
+"""Ratio of the unknowns of the second mesh to the unknowns of the first."""
+MODES_MS = 1.5
+"""Time of the eigenvectors, in ms per squared number of modes, because the mesh grows with that number: mean
+over 24 rods."""
+GROWTH_MS = 20.0
+"""Time of the transient growth of a rod, in ms: mean over the same rods."""
+CYCLE_SECONDS = 0.1
+"""Time of a limit cycle that starts from the leading mode: about that of the benchmark."""
+CHAINED_CYCLE_SECONDS = 0.01
+"""Time of a limit cycle that starts from its neighbour: about that of the benchmark."""
+MARCHED_CYCLE_SECONDS = 0.25
+"""Time of a limit cycle by time integration alone to 1e-5: mean over 40 rods."""
+BRANCH_SECONDS = 0.004
+"""All branches of a rod take BRANCH_SECONDS F (accuracy/1e-7)^BRANCH_ACCURACY (1 + F/k2)^BRANCH_BENDING, in
+seconds, where F is the largest force of the range, or k1. Fourteen random rods (F up to 60 to 200, k2 from 12
+to 9000, accuracies from 1e-4 to 1e-9) took 0.3 to 21 s, all within a factor of three of the formula and most
+within two; some near F = k1 take four times as long."""
+BRANCH_ACCURACY = -0.17
+"""Exponent of the accuracy in the formula of BRANCH_SECONDS."""
+BRANCH_BENDING = 1.5
+"""Exponent of 1 + F/k2 in the formula of BRANCH_SECONDS."""
 MEMORY_PER_UNKNOWN = 40_000
+"""Bytes per unknown of the largest mesh."""
 BASE_MEMORY = 200_000_000
+"""Bytes of a rank without any mesh."""
 
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """For one core like that of docs/performance.md."""
+    """Estimated cost of a sweep on one core like that of docs/performance.md."""
 
     seconds: float
     """Time of the whole sweep on one rank."""
     memory: int = BASE_MEMORY
-    """Bytes per rank."""
+    """Memory, in bytes per rank."""
     unknowns: tuple[int, int] | None = None
-    """Smallest and largest number of unknowns over the sample; None where there is no mesh."""
+    """Smallest and largest number of unknowns in the sample; None without a mesh."""
     too_large: int = 0
-    """Sampled points whose mesh would exceed the limit."""
+    """Number of sampled points whose mesh would exceed MOST_UNKNOWNS."""
 
 
 def estimate_lines(lines: int, certify: bool) -> Estimate:
-    """The cost of searching `lines` rods for crossings, each along one parameter."""
+    """Cost of searching `lines` rods for crossings, each along one parameter."""
     return Estimate(lines * 1e-3 * (LINE_MS + (LINE_CERTIFICATE_MS if certify else 0)))
 
 
 def estimate_criticality(rods: int, certify: bool) -> Estimate:
-    """The cost of the Hopf points of `rods` rods and their normal forms."""
+    """Cost of the Hopf points of `rods` rods with their normal forms."""
     each = HOPF_SEARCH_MS + HOPF_POINTS_MS + (HOPF_CERTIFICATE_MS if certify else 0)
     return Estimate(rods * 1e-3 * each)
 
 
 def estimate_branches(points: Points, along: str, reach: tuple[float, float], accuracy: float) -> Estimate:
-    """The cost of the branches of cycles of all rods, each along a parameter from a value to another.
+    """Cost of the branches of cycles of all rods, each along a parameter between two values.
 
-    points: the rods, without that parameter. accuracy: that of the cycles, relative.
+    points: the rods; the branch's parameter is no column. accuracy: relative accuracy of the cycles.
     """
     indices = _sample(points)
     values: dict[str, Array | float] = points.values_of(indices) | {along: reach[along in HARDER_IF_LARGER]}
-    F = np.clip(values["F"], 0.0, values["k1"])  # nothing that is pulled beats
+    F = np.clip(values["F"], 0.0, values["k1"])  # a rod under tension has no cycles
     per_force = BRANCH_SECONDS * (accuracy / 1e-7) ** BRANCH_ACCURACY
     each = per_force * F * (1 + F / values["k2"]) ** BRANCH_BENDING
     return Estimate(float(np.mean(each)) * points.count if indices.size else 0.0)
 
 
 def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> Estimate:
-    """The cost of modes at `count` points, `modes` each, from that of their eigenvalues alone."""
+    """Cost of `modes` modes with vectors at each of `count` points, from the cost of the eigenvalues alone."""
     more = count * 1e-3 * (MODES_MS * modes**2 + (GROWTH_MS if growth else 0))
     return replace(spectra, seconds=spectra.seconds + more, unknowns=None)
 
 
 def estimate_followed(alone: Estimate, stretches: Stretches) -> Estimate:
-    """The cost of spectra along stretches, from that of each point alone: of few points in full."""
+    """Cost of spectra along stretches, from the cost of the same points solved alone."""
     points = math.prod(stretches.shape)
     share = FIRST_POINTS * stretches.count / points
     return replace(alone, seconds=alone.seconds * min(1.0, share) + points * 1e-3 * FOLLOWED_MS)
 
 
 def estimate_two_meshes(points: Points, modes: int, accuracy: float) -> Estimate:
-    """The cost of spectra by Krylov-Schur on two meshes alone."""
+    """Cost of spectra by Krylov-Schur on two meshes."""
     alone = estimate_spectra(points, modes, accuracy, certify=False)
     unknowns = alone.unknowns and (alone.unknowns[0], math.ceil(FINER_MESH * alone.unknowns[1]))
     return replace(alone, seconds=TWO_MESHES * alone.seconds, unknowns=unknowns)
 
 
 def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool) -> Estimate:
-    """The cost of a sweep from points spread evenly over it."""
+    """Cost of spectra, from sampled points spread evenly over the sweep."""
     sizes = []
     for index in _sample(points):
         _, wave = most_amplified_wave(points.rod(int(index)))
@@ -119,6 +152,6 @@ def estimate_spectra(points: Points, modes: int, accuracy: float, certify: bool)
 
 
 def _sample(points: Points) -> NDArray[np.int64]:
-    """The flat indices, (n,), of points spread evenly over a sweep that have a rod."""
-    indices = np.unique(np.linspace(0, points.count - 1, min(SAMPLE, points.count)).astype(np.int64))
+    """Flat indices, (n,), of evenly spread points of a sweep, without points that have no rod."""
+    indices = np.unique(np.linspace(0, points.count - 1, min(MAX_SAMPLE, points.count)).astype(np.int64))
     return indices[[points.has_rod(int(index)) for index in indices]]

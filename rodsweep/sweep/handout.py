@@ -1,8 +1,8 @@
-"""Who solves which unit, a point or a chain of points: small chunks from the first rank, sized by pace.
+"""Distribution of units, each a point or a chain of points: small chunks, sized by the pace of each rank.
 
-A rank that finds its chunk slower than foreseen gives back what is left of it with its next request. Nobody
-is told that the work is over while another rank may still give something back, so the ranks finish within
-about one unit of each other. `rodsweep.sweep.claims` has the messages.
+A rank whose chunk takes longer than planned gives back the rest of the chunk with its next request. No rank
+is dismissed while another rank may still give units back, so that all ranks finish within about one unit of
+each other. `rodsweep.sweep.claims` holds the messages.
 """
 
 import threading
@@ -12,29 +12,34 @@ from typing import Any
 
 from .points.ranges import IndexRange, total
 
-CHUNK_SECONDS, CHUNK_SECONDS_A_RANK = 0.1, 1e-3
-"""How long a chunk should take: long against a message, short against a run; with many ranks so long that the
-first one, which answers a request in 50 microseconds, spends a twentieth of its time on answers."""
+CHUNK_SECONDS = 0.1
+"""Planned time of a chunk, in s: long compared with a message, short compared with a run."""
+CHUNK_SECONDS_A_RANK = 1e-3
+"""Planned time of a chunk with many ranks, in s per rank. The first rank answers a request in 50 microseconds
+and so spends a twentieth of its time on answers."""
 GIVE_BACK_AFTER = 3.0
-"""Time after which a rank gives back what is left of its chunk, in units of what the chunk should take."""
+"""A rank gives back the rest of its chunk after this time, in units of the planned time of the chunk."""
 LARGEST_CHUNK = 1 << 16
-PLENTY = 4
-"""Units a rank that have to be left for a rank to get its next chunk before it has done the last."""
+"""Largest number of units in a chunk."""
+MIN_UNITS_AHEAD = 4
+"""A rank gets its next chunk ahead only if at least this number of units per rank is left."""
 OVER: IndexRange = (0, 0)
+"""Answer to a request once no work is left."""
 
 
 def chunk_seconds(ranks: int) -> float:
-    """How long a chunk should take where so many ranks ask for more."""
+    """Planned time of a chunk, in s, for this number of ranks."""
     return max(CHUNK_SECONDS, ranks * CHUNK_SECONDS_A_RANK)
 
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """What a rank says when it wants more: units done, their seconds, what it gives back, points kept.
+    """Report of a rank with its request for the next chunk.
 
-    ahead: it says nothing but that it has begun a chunk, and would take the next. stop: the signal by which
-    it was asked to stop; what it gives back then is for another run. results: of units on which it depends
-    what is to be done next.
+    done: units finished since its last report, in `seconds`. given_back: units of its chunk left undone.
+    points: points stored. ahead: the rank has only begun a chunk, and requests its next chunk ahead. stop:
+    name of the signal that asked the rank to stop, or empty; units given back after a stop are left for
+    another run. results: of finished units, by unit, where later units depend on them.
     """
 
     done: int = 0
@@ -47,22 +52,23 @@ class Report:
 
 
 class Handout:
-    """The units still to do, on the first rank; safe to use from its two threads."""
+    """Units still to do, held by the first rank; safe to use from its two threads."""
 
     def __init__(self, todo: list[IndexRange], ranks: int):
         self.todo = deque(todo)
         self.left = total(todo)
         self.ranks = ranks
         self.held: Counter[int] = Counter()
-        """Chunks that each rank has and has not reported on."""
+        """Number of chunks that each rank holds and has not reported on."""
         self.points = 0
-        """That all ranks have reported kept."""
+        """Number of points that all ranks have reported as stored."""
         self.pace: dict[int, float] = {}
+        """Latest time per unit of each rank, in s."""
         self.stopped = False
         self.change = threading.Condition()
 
     def settle(self, rank: int, report: Report) -> None:
-        """Takes in a report: what is done, and what is given back."""
+        """Takes a report into account: finished units, and units given back."""
         with self.change:
             if self.held[rank]:
                 self.held[rank] -= 1
@@ -71,22 +77,22 @@ class Handout:
                 self.pace[rank] = report.seconds / report.done
             first, end = report.given_back
             if end > first and not self.stopped:
-                self.pace[rank] = report.seconds  # as slow as its slowest unit may be: next, one unit
+                self.pace[rank] = report.seconds  # pessimistic, so that its next chunk is one unit
                 self.todo.appendleft(report.given_back)
                 self.left += end - first
             self.change.notify_all()
 
     def take(self, rank: int) -> IndexRange | None:
-        """The next chunk for a rank, OVER when all work is done, None when it has to wait."""
+        """The next chunk for a rank; OVER if no work is left, None if the rank has to wait."""
         with self.change:
             if self.todo:
                 return self._take(rank)
             return None if self.held.total() and not self.stopped else OVER
 
     def take_ahead(self, rank: int) -> IndexRange | None:
-        """The next chunk for a rank that still works on one, None unless plenty is left."""
+        """The next chunk for a rank that still works on a chunk; None if too few units are left."""
         with self.change:
-            return self._take(rank) if self.todo and self.left >= PLENTY * self.ranks else None
+            return self._take(rank) if self.todo and self.left >= MIN_UNITS_AHEAD * self.ranks else None
 
     def _take(self, rank: int) -> IndexRange:
         share = max(1, self.left // (2 * self.ranks))
@@ -101,7 +107,7 @@ class Handout:
         return first, end
 
     def stop(self) -> None:
-        """Leaves what has not been handed out for another run."""
+        """Drops all units that are not handed out; a later run solves them."""
         with self.change:
             self.stopped = True
             self.todo.clear()

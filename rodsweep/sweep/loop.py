@@ -1,4 +1,4 @@
-"""The loop that every rank runs: claim a chunk, solve its units, keep the points, give back what is left."""
+"""The loop of every rank: claim a chunk, solve its units, store the points, give back unsolved units."""
 
 import time
 from collections.abc import Callable, Iterable
@@ -19,33 +19,33 @@ from .stop import StopRequest
 from .team import Team
 
 Indices = int | NDArray[np.int64]
-"""The index of a point, or those of points that are kept together, shape (n,)."""
+"""Index of one point, or indices of points that are stored together, shape (n,)."""
 
 
 class Solve(Protocol):
-    """From a unit to its points, each an index and a result, one after another.
+    """Function from a unit to its points; yields (index, result) for each point, or for a whole stretch.
 
-    A unit is a point or a chain of them, or a stretch, whose points come all at once.
+    A unit is a point, a chain of points that are yielded one by one, or a stretch of points yielded at once.
     """
 
     def __call__(self, unit: int, /) -> Iterable[tuple[Indices, Any]]: ...
 
 
 class ProgressSink(Protocol):
-    """What shows the first rank's user how far all are."""
+    """Display of the progress of all ranks, on the first rank."""
 
     def __call__(self, done: int) -> None:
-        """So many points are done in all."""
+        """Shows the total number of finished points."""
 
     def place(self, words: str, begun: float) -> None:
-        """Where a rank is in a long point; how much is done of all that are being solved, in points."""
+        """Shows the progress of a long point; begun: work done of all unfinished points, in points."""
 
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """What one rank did: points, and seconds spent on them and on waiting for more or for the others.
+    """Work of one rank: number of points, and seconds spent on solving (busy) and on waiting (idle).
 
-    ended: whether a stop ended what it was solving, which is to be solved again.
+    ended: a stop request ended an unfinished solve; another run solves this unit again.
     """
 
     points: int
@@ -56,11 +56,11 @@ class Share:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Loop:
-    """What every rank does with its units.
+    """Work of every rank on its units.
 
-    prepare: what it does before the first. keep: makes a point durable before the next is asked for, on the
-    rank that solves it. results: of what it has kept since, for the first rank where these decide what is to
-    be done next. name: of a unit, in words.
+    prepare: runs before the first unit. keep: stores a point durably, on the rank that solved it, before the
+    next point begins. results: of the units stored since the last call, by unit, where later units depend on
+    them. name: describes a unit in words.
     """
 
     solve: Solve
@@ -71,10 +71,10 @@ class Loop:
 
 
 def sweep(team: Team, todo: Handout, loop: Loop, shown: ProgressSink, stop: StopRequest) -> Share:
-    """Solves every unit of `todo`, which only the first rank knows; returns when all ranks are done.
+    """Solves every unit of `todo`, which only the first rank knows; returns when all ranks have finished.
 
-    What is raised ends all ranks. Once any rank has been asked to stop, each ends with the unit or the point
-    of a chain that it is at, or within it where that takes longer than `stop.GRACE`.
+    An exception on one rank ends all ranks. After a stop request to any rank, each rank ends after its
+    current point, or within this point if it takes longer than `stop.GRACE` seconds.
     """
     claims = FirstRankClaims(team, todo, stop, shown.place) if team.first else OtherRankClaims(team, stop)
     with suppress(Stopped), heard_by(RankListener(claims, stop)):
@@ -94,16 +94,21 @@ class _Rank:
         shown: ProgressSink,
         stop: StopRequest,
     ):
-        self.team, self.claims, self.loop, self.shown, self.stop = team, claims, loop, shown, stop
+        self.team = team
+        self.claims = claims
+        self.loop = loop
+        self.shown = shown
+        self.stop = stop
         self.points = 0
         self.ended = False
 
     def share(self) -> Share:
-        """Solves chunk after chunk; returns what was done once all ranks are through."""
+        """Solves chunk after chunk; returns the work of this rank once all ranks have finished."""
         started, busy = time.monotonic(), 0.0
         chunk = self.claims.claim(Report())
         while chunk != OVER:
-            began, before = time.monotonic(), self.points
+            began = time.monotonic()
+            before = self.points
             at = self._solved_up_to(chunk)
             spent = time.monotonic() - began
             busy += spent
@@ -118,20 +123,24 @@ class _Rank:
             chunk = self.claims.claim(report)
         if isinstance(self.claims, FirstRankClaims):
             self.claims.close()
-        self.team.meet()
+        self.team.wait_for_all()
         return Share(self.points, busy, time.monotonic() - started - busy, self.ended)
 
     def _solved_up_to(self, chunk: IndexRange) -> int:
-        """Solves units of a chunk; returns the first that is left to others, or after a stop."""
+        """Solves units of a chunk; returns the first unit that is not solved.
+
+        The rest of the chunk is left undone after a stop request, or if the chunk takes too long.
+        """
         patience = time.monotonic() + GIVE_BACK_AFTER * chunk_seconds(self.team.size)
-        at, before = chunk[0], self.points
+        at = chunk[0]
+        before = self.points
         while at < chunk[1] and not self.stop:
             try:
                 with heard_by(RankListener(self.claims, self.stop, partial(self.loop.name, at))):
                     self._solve(at, before)
             except Stopped:
                 self.ended = True
-            if self.stop:  # in the middle of the unit, perhaps
+            if self.stop:  # the unit may be unfinished, so it does not count as solved
                 break
             at += 1
             if time.monotonic() > patience:
@@ -139,7 +148,7 @@ class _Rank:
         return at
 
     def _solve(self, unit: int, before: int) -> None:
-        """Solves a unit. before: the points that this rank had kept when its chunk began."""
+        """Solves a unit and stores its points. before: number of points stored before the current chunk."""
         for index, result in self.loop.solve(unit):
             self.loop.keep(index, result)
             self.points += 1 if isinstance(index, int) else len(index)

@@ -1,4 +1,4 @@
-"""Units of work of which it depends on results which are wanted: handed out one by one by the first rank."""
+"""Units chosen one by one on the first rank, where the results so far decide which units are solved next."""
 
 from collections.abc import Mapping
 from typing import Any, Protocol
@@ -7,35 +7,36 @@ from .handout import OVER, Handout, Report
 from .points.ranges import IndexRange
 
 
-class Wanting(Protocol):
-    """Says which units are wanted next, most needed first, from the results so far."""
+class UnitChooser(Protocol):
+    """Chooses the units to solve next from the results so far, the most urgent unit first."""
 
     def wanted(self, results: Mapping[int, Any]) -> list[int]: ...
 
 
 class Pool(Handout):
-    """The units that are wanted, on the first rank; safe to use from its two threads.
+    """Units to solve next, held by the first rank; safe to use from its two threads.
 
-    results: those of an earlier run, and then all, by unit.
+    results: by unit, at first those of an earlier run; reported results are added.
     """
 
-    def __init__(self, work: Wanting, results: dict[int, Any], ranks: int):
+    def __init__(self, work: UnitChooser, results: dict[int, Any], ranks: int):
         super().__init__([], ranks)
-        self.work, self.results = work, results
+        self.work = work
+        self.results = results
         self.taken: dict[int, IndexRange] = {}
-        """What each rank has in hand."""
+        """Unit that each rank works on."""
         self._wanted: list[int] | None = None
 
     @property
     def open(self) -> list[int]:
-        """Units that are wanted and in nobody's hands."""
+        """Chosen units on which no rank works."""
         if self._wanted is None:
             self._wanted = self.work.wanted(self.results)
         in_hand = {first for first, _ in self.taken.values()}
         return [unit for unit in self._wanted if unit not in in_hand]
 
     def settle(self, rank: int, report: Report) -> None:
-        """Takes in what a rank has found; what it gives back is wanted again."""
+        """Takes the results of a rank into account; a unit without a result can be chosen again."""
         with self.change:
             self.points += report.points
             self.results |= report.results
@@ -44,7 +45,7 @@ class Pool(Handout):
             self.change.notify_all()
 
     def take(self, rank: int) -> IndexRange | None:
-        """The next unit for a rank, OVER when nothing more is wanted, None when it has to wait."""
+        """The next unit for a rank; OVER if no unit is left, None if the rank has to wait."""
         with self.change:
             if self.stopped:
                 return OVER
@@ -55,5 +56,5 @@ class Pool(Handout):
             return None if self.taken else OVER
 
     def take_ahead(self, rank: int) -> IndexRange | None:
-        """Nothing: what is wanted next depends on what is in hand."""
+        """None: the choice of the next unit depends on the unfinished unit."""
         return None

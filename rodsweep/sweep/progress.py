@@ -1,4 +1,4 @@
-"""How far a sweep is: a bar on a terminal or in a notebook, a plain line now and then in a log."""
+"""Progress of a sweep: a bar on a terminal or in a notebook, and lines at intervals in a log."""
 
 import os
 import sys
@@ -9,13 +9,19 @@ from rich.progress import BarColumn, Progress, TextColumn
 
 from .remaining_time import Pace, in_words, rate_in_words
 
-FIRST_SECONDS, LINE_SECONDS = 1.0, 10.0
-"""Seconds after which something is shown, and between lines in a log."""
+FIRST_SECONDS = 1.0
+"""Seconds before progress is shown for the first time; a shorter sweep shows none."""
+LINE_SECONDS = 10.0
+"""Seconds between two lines in a log."""
 BAR_SECONDS = 0.1
+"""Seconds between two updates of a bar."""
 
 
 def on_terminal() -> bool:
-    """Whether the user sees our output live: a launcher's ranks write to its pipe, not to its terminal."""
+    """Whether the user sees standard error live.
+
+    Under a launcher the ranks write to a pipe, and the launcher's own standard error decides.
+    """
     if sys.stderr.isatty():
         return True
     launcher = f"/proc/{os.getppid()}/fd/2"
@@ -24,12 +30,12 @@ def on_terminal() -> bool:
 
 
 def in_notebook() -> bool:
-    """Whether output goes into a cell of a notebook."""
+    """Whether the output appears in a cell of a notebook."""
     return Console().is_jupyter
 
 
 class Silent:
-    """Shows nothing."""
+    """Progress display that shows nothing."""
 
     def __call__(self, done: int) -> None: ...
 
@@ -38,36 +44,46 @@ class Silent:
     def close(self) -> None: ...
 
 
-class Teller:
-    """Shows how many of `total` points are done, with rate and remaining time, and where a long point is.
+class ProgressReporter:
+    """Shows the number of finished points, the rate, the remaining time and the progress of a long point.
 
-    total: None where it is not known, as of units that depend on each other. noun: of what is counted.
+    total: number of all points; None if later units depend on results, so that it is not known. noun: name of
+    the counted objects.
     """
 
     def __init__(self, total: int | None, title: str, noun: str = "points", live: bool | None = None):
-        """live: whether there is a bar instead of lines; by default on a terminal."""
-        self.total, self.noun = total, noun
+        """live: True for a bar, False for lines; by default a bar on a terminal."""
+        self.total = total
+        self.noun = noun
         self.pace = None if total is None else Pace(total)
         self.began = self.next = 0.0
-        self.done, self.begun, self.where = 0, 0.0, ""
+        self.done = 0
+        self.begun = 0.0
+        self.where = ""
         self.bar = _bar(title) if (on_terminal() if live is None else live) else None
         if self.bar is not None:
             self.task = self.bar.add_task(title, total=total, count="", rate="", left="", where="")
 
     def __call__(self, done: int) -> None:
-        """Takes how many points are done in all; shows it when it is time. The clock starts at 0."""
+        """Takes the total number of finished points and shows it if an update is due.
+
+        The clock starts with the call for 0 points.
+        """
         if not done:
             self.began = time.monotonic()
             self.next = self.began + FIRST_SECONDS
-        self.done, self.begun, self.where = done, 0.0, ""
+        self.done = done
+        self.begun = 0.0
+        self.where = ""
         self._show()
 
     def place(self, words: str, begun: float = 0.0) -> None:
-        """Takes where a long point is; shows it when it is time.
+        """Takes the progress of a long point, in words, and shows it if an update is due.
 
-        begun: how much is done of all points that are being solved, in points.
+        begun: work done of all unfinished points, in points.
         """
-        self.begun, self.where = begun, words
+        self.begun = begun
+        self.where = words
         self._show()
 
     def _show(self) -> None:
@@ -93,8 +109,8 @@ class Teller:
             self.bar.refresh()
             return
         self.next = now + LINE_SECONDS
-        told = ", ".join(filter(None, (f"{count} {self.noun}" if count else "", rate, left)))
-        print("; ".join(filter(None, (told, self.where))), file=sys.stderr, flush=True)
+        overall = ", ".join(filter(None, (f"{count} {self.noun}" if count else "", rate, left)))
+        print("; ".join(filter(None, (overall, self.where))), file=sys.stderr, flush=True)
 
     def close(self) -> None:
         if self.bar is not None:
@@ -102,7 +118,7 @@ class Teller:
 
 
 def _bar(title: str) -> Progress:
-    """A bar on standard error, or in a notebook."""
+    """Progress bar on standard error, or in a notebook."""
     console = Console() if in_notebook() else Console(file=sys.stderr, force_terminal=True)
     columns = (
         TextColumn(title, markup=False),

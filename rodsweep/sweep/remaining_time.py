@@ -1,80 +1,83 @@
-"""How long a sweep will still take, from how many points were done when: a number that does not jump.
+"""Remaining time of a sweep from the number of finished points over time, smoothed so that it does not jump.
 
-Points cost unlike: the first of a chain is cold, others start from a neighbour, some are hard. So the pace is
-that of the later half of what is done, and never of what is heard of first, the cold start. What is told
-follows it slowly, by a share of the time that has passed, and faster the nearer the end is. Where points are
-long, the share that is done of those that are being solved counts, too. Knows no clock.
+Points differ in cost: the first point of a chain starts cold, others start from a neighbour, some are hard.
+The pace is therefore that of the latest half of the finished points, and never includes the first ones, which
+started cold. The reported time follows the estimate slowly, with a time constant that is a fraction of the
+time passed, and faster near the end. Where points are long, the work done of unfinished points counts as
+well. This module reads no clock: the caller passes all times.
 """
 
 from math import exp
 
-FORGET = 0.5
-"""Fraction of the finished points, the latest ones, from which the pace is measured."""
-FEWEST = 2
-"""Points, after those that are heard of first, after which anything is said."""
-LEAST_BEGUN = 0.1
-"""Share of a long point that has to be done before the time left is told: earlier its start would decide."""
-SLOWNESS = 0.25
-"""Time constant with which the reported time left follows its estimate, as a fraction of the time passed or
-left, whichever is shorter."""
-THINNED = 1.02
-"""Ratio of points done between records that are kept: some 35 for each doubling."""
+PACE_FROM = 0.5
+"""The pace is measured from this fraction of the finished points to the latest."""
+MIN_POINTS = 2
+"""Finished points after the first record that are needed for a pace."""
+MIN_BEGUN = 0.1
+"""Least work of unfinished points, in points, for a first estimate; with less work the start-up cost
+dominates."""
+TIME_CONSTANT = 0.25
+"""Time constant of the reported remaining time, as a fraction of the time passed or left, whichever is
+shorter."""
+RECORD_RATIO = 1.02
+"""Ratio of finished points between two stored records: about 35 records for each doubling."""
 
 
 class Pace:
-    """The time left of `total` points; times are in s since the start."""
+    """Remaining time of `total` points; times are in s since the start."""
 
     def __init__(self, total: int):
         self.total = total
         self.records: list[tuple[int, float]] = []
-        """(points done, time), both increasing: what was heard of first, ..., the latest."""
-        self.told: tuple[float, float] | None = None
-        """(time, what was said to be left then)."""
+        """(finished points, time), both increasing; the first and the latest report are always stored."""
+        self.reported: tuple[float, float] | None = None
+        """(time of the last report, remaining time reported then)."""
 
     def left(self, done: int, now: float, begun: float = 0.0) -> float | None:
-        """The time left when `done` points are done at the time `now`; None where too little is.
+        """Remaining time, in s, when `done` points are finished at the time `now`.
 
-        begun: how much is done of the points that are being solved, in points.
+        begun: work done of unfinished points, in points. None if too little is done for an estimate.
         """
         if done == self.total:
             return 0.0
         if done and (not self.records or done > self.records[-1][0]):
             self._record(done, now)
-        each = self._each(done, now, begun)
+        each = self._seconds_per_point(done, now, begun)
         if each is None:
             return None
         found = max(self.total - done - begun, 0.0) * each
-        if self.told is None:
-            self.told = now, found
+        if self.reported is None:
+            self.reported = now, found
             return found
-        before, said = self.told
-        expected = max(said - (now - before), 0.0)
-        within = SLOWNESS * min(now, max(found, expected)) or 1.0
-        follow = 1 - exp(-(now - before) / within)
-        self.told = now, expected + follow * (found - expected)
-        return self.told[1]
+        before, reported = self.reported
+        expected = max(reported - (now - before), 0.0)
+        time_constant = TIME_CONSTANT * min(now, max(found, expected)) or 1.0
+        follow = 1 - exp(-(now - before) / time_constant)
+        self.reported = now, expected + follow * (found - expected)
+        return self.reported[1]
 
     def _record(self, done: int, now: float) -> None:
-        """Keeps the latest, and of those before a few for each doubling."""
-        if len(self.records) > 2 and self.records[-1][0] < THINNED * self.records[-2][0]:
+        """Stores the latest record; earlier ones are thinned to about 35 for each doubling of the points."""
+        if len(self.records) > 2 and self.records[-1][0] < RECORD_RATIO * self.records[-2][0]:
             self.records.pop()
         self.records.append((done, now))
 
-    def _each(self, done: int, now: float, begun: float) -> float | None:
-        """Time a point over the latest FORGET of what is done; longer while the next one takes longer.
+    def _seconds_per_point(self, done: int, now: float, begun: float) -> float | None:
+        """Time per point over the latest finished points, longer if the current point takes longer.
 
-        Before FEWEST points are done it is that of what is begun; None where that is too little.
+        Before MIN_POINTS points are finished it follows from the work of unfinished points; None if that is
+        too little.
         """
-        if not self.records or done < self.records[0][0] + FEWEST:
-            return now / (done + begun) if begun >= LEAST_BEGUN else None
-        half = (record for record in reversed(self.records) if record[0] <= FORGET * done)
+        if not self.records or done < self.records[0][0] + MIN_POINTS:
+            return now / (done + begun) if begun >= MIN_BEGUN else None
+        half = (record for record in reversed(self.records) if record[0] <= PACE_FROM * done)
         points, began = next(half, self.records[0])
         latest = self.records[-1][1]
         return max((latest - began) / (done - points), (now - began) / (done - points + (begun or 1.0)))
 
 
 def in_words(seconds: float) -> str:
-    """A time as one says it, to two digits at most: 8 s, 1.5 min, 3.2 h, 12 d."""
+    """A time with at most two digits: 8 s, 1.5 min, 3.2 h, 12 d."""
     for unit, length in (("d", 86400.0), ("h", 3600.0), ("min", 60.0)):
         if seconds >= 1.45 * length:
             return f"{float(f'{seconds / length:.2g}'):g} {unit}"
@@ -82,7 +85,7 @@ def in_words(seconds: float) -> str:
 
 
 def rate_in_words(done: int, seconds: float) -> str:
-    """How many points a time are done, or how long one takes where that is more than a second."""
+    """Points per second, or time per point where it exceeds a second; empty before the first point."""
     if not done or not seconds:
         return ""
     rate = done / seconds

@@ -1,4 +1,4 @@
-"""The ranks of a run: who is first, and how an error on one ends all at once."""
+"""The ranks of a run: the first rank, collective calls, and errors that end all ranks at once."""
 
 import sys
 import time
@@ -11,12 +11,14 @@ from ..errors import BUG_STATUS, EnvironmentLacks, Refusal
 
 T = TypeVar("T")
 S = TypeVar("S")
-SHORTEST_PAUSE, LONGEST_PAUSE = 1e-4, 1e-2
-"""Seconds between two looks at whether the others have come, at first and after a while."""
+SHORTEST_PAUSE = 1e-4
+"""First pause, in seconds, between two tests whether all ranks have arrived."""
+LONGEST_PAUSE = 1e-2
+"""Longest such pause, in seconds; pauses double until then."""
 
 
 class Team:
-    """All ranks of MPI's world; a single rank where there is no launcher."""
+    """All ranks of MPI's world; a single rank without a launcher."""
 
     def __init__(self) -> None:
         try:
@@ -34,32 +36,36 @@ class Team:
 
     @property
     def first(self) -> bool:
-        """Whether this rank is the one that talks, hands out points and writes the file."""
+        """Whether this is the first rank, which prints, hands out points and writes the file."""
         return self.rank == 0
 
     def on_first(self, work: Callable[[], T]) -> T:
-        """What `work` returns on the first rank, on every rank; its refusals are raised on every rank."""
+        """Result of `work` on the first rank, returned on every rank; every rank raises its refusal."""
         outcome: Any = None
         if self.first:
             try:
                 outcome = (work(), None)
             except Refusal as error:
                 outcome = (None, error)
-        self.meet()
+        self.wait_for_all()
         value, refusal = self.comm.bcast(outcome)
         if refusal is not None:
             raise refusal.on_all_ranks()
         return value
 
-    def meet(self) -> None:
-        """Waits for all ranks without taking the processor from those that still work, as a barrier would."""
-        request, pause = self.comm.Ibarrier(), SHORTEST_PAUSE
+    def wait_for_all(self) -> None:
+        """Waits for all ranks.
+
+        Unlike MPI's barrier the wait sleeps, which leaves the processor to ranks that still work.
+        """
+        request = self.comm.Ibarrier()
+        pause = SHORTEST_PAUSE
         while not request.Test():
             time.sleep(pause)
             pause = min(2 * pause, LONGEST_PAUSE)
 
-    def all_can(self, work: Callable[[], object]) -> None:
-        """Does `work` on every rank; where one refuses it, all raise its refusal."""
+    def require_on_all_ranks(self, work: Callable[[], object]) -> None:
+        """Does `work` on every rank; if any rank refuses it, all ranks raise the same refusal."""
         refusal: Refusal | None = None
         try:
             work()
@@ -70,26 +76,26 @@ class Team:
             raise refusals[0].on_all_ranks()
 
     def gather(self, value: T) -> list[T] | None:
-        """The values of all ranks on the first rank, None elsewhere."""
-        self.meet()
+        """Values of all ranks on the first rank; None on other ranks."""
+        self.wait_for_all()
         return self.comm.gather(value)
 
     def exchange(self, value: T) -> list[T]:
-        """The values of all ranks on every rank."""
-        self.meet()
+        """Values of all ranks, on every rank."""
+        self.wait_for_all()
         return self.comm.allgather(value)
 
     def in_order(self, items: Sequence[T], work: Callable[[T], S]) -> list[S]:
-        """The work on all items, each done by one of the ranks, on every rank and in their order."""
+        """Results of `work` for all items, in their order, on every rank; the ranks divide the items."""
         parts = self.exchange([work(item) for item in items[self.rank :: self.size]])
         return [parts[i % self.size][i // self.size] for i in range(len(items))]
 
     @contextmanager
-    def together(self) -> Iterator[None]:
-        """What fails in here on one rank ends all ranks with its message and exit status: they would wait.
+    def aborting_together(self) -> Iterator[None]:
+        """An exception in this context on one rank ends all ranks, with its message and exit status.
 
-        With a single rank there is nobody to wait, and a refusal that all ranks share needs no abort:
-        such exceptions go on.
+        The other ranks would wait for ever. With a single rank nobody waits, and a refusal that all ranks
+        share needs no abort: both exceptions propagate.
         """
         try:
             yield
@@ -102,7 +108,7 @@ class Team:
                 sys.stderr.write(f"rodsweep: rank {self.rank} failed, all ranks end\n")
                 traceback.print_exc()
             for stream in (sys.stdout, sys.stderr):
-                with suppress(OSError):  # a full disk under the log must not keep the others waiting
+                with suppress(OSError):  # a full disk under the log must not prevent the abort
                     stream.flush()
             status = error.exit_status if isinstance(error, Refusal) else BUG_STATUS
             self.comm.Abort(status)

@@ -13,7 +13,7 @@ from ..solve.status import PointStatus
 from ..sweep.cost_estimate import Estimate
 from ..sweep.points.chains import ChainedWork, Chains, State
 from ..sweep.points.points import Points
-from ..sweep.points.stretches import SolveTogether, Stretches
+from ..sweep.points.stretches import SolveStretch, Stretches
 
 Arrays = dict[str, np.ndarray]
 """The result of a unit of work."""
@@ -72,10 +72,10 @@ class Solver:
     """What only all points together give, where there is such."""
     chained: ChainedWork | None = None
     """Where points start one from the other: how they are solved, instead of by `solve`."""
-    stretched: tuple[Stretches, SolveTogether] | None = None
+    stretched: tuple[Stretches, SolveStretch] | None = None
     """Where neighbours are solved together: how, from their flat indices, instead of by `solve`."""
 
-    def within(self, around: Around, together: SolveTogether | None = None, **changed: Any) -> "Solver":
+    def within(self, around: Around, together: SolveStretch | None = None, **changed: Any) -> "Solver":
         """The solver with something `around` the solve of every point, and `together` for stretches."""
         chained, stretched = self.chained, self.stretched
         if chained is not None:

@@ -15,7 +15,7 @@ from ..model.longitudinal import longitudinal_rates
 from ..results.layouts.spectrum import EACH_FOLLOWED_POINT, EACH_MODE, longitudinal
 from ..results.layouts.variables import Filled, recorded
 from ..sweep.cost_estimate import Estimate, estimate_followed, estimate_spectra, estimate_two_meshes
-from ..sweep.points.stretches import Stretches, Together, along_the_longest
+from ..sweep.points.stretches import Stretches, StretchResult, stretches_along_longest_axis
 from .hopf.force_changes import force_changes
 from .parts import ProvedTask, count_of
 from .protocol import InOrder, Part, Solver, alone
@@ -43,7 +43,11 @@ class SpectrumTask(ProvedTask):
     @property
     def stretches(self) -> Stretches | None:
         """The stretches along which eigenvalues are followed, where they are."""
-        return along_the_longest(self.points.shape, self.points.moved) if self.config.follows else None
+        return (
+            stretches_along_longest_axis(self.points.shape, self.points.moved)
+            if self.config.follows
+            else None
+        )
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """The material coordinate of the vectors' nodes, shape (nodes,), where there are vectors."""
@@ -113,7 +117,7 @@ class SpectrumTask(ProvedTask):
             stretched=(stretches, lambda indices: self._together(indices, request)) if stretches else None,
         )
 
-    def _together(self, indices: NDArray[np.int64], request: "SpectrumRequest") -> Together:
+    def _together(self, indices: NDArray[np.int64], request: "SpectrumRequest") -> StretchResult:
         """What comes of the points of a stretch."""
         from ..determinant.parameter_path import Path
         from ..solve.spectrum.status import SpectrumStatus
@@ -125,10 +129,10 @@ class SpectrumTask(ProvedTask):
         path = Path(self.points.rod(int(indices[0])), varied)
         found = solve_stretch(Stretch(path, self.points.values_of(indices)[varied]), request)
         words = {status.value: status.name for status in SpectrumStatus}
-        return Together(
+        return StretchResult(
             values=record(found),
             succeeded=found.status == SpectrumStatus.ok,
-            told=lambda i: f"{words[int(found.status[i])]} {found.message[i]}".rstrip(),
+            message=lambda i: f"{words[int(found.status[i])]} {found.message[i]}".rstrip(),
         )
 
 

@@ -236,11 +236,11 @@ def test_progress_counts_what_is_done_of_every_long_point_until_it_is_reported(m
     first = claims(mail, [(0, 9)], monkeypatch, lambda words, begun: shown.append((words, begun)))
     mail.post(PLACE_TAG, Whereabouts("branch", 0.5))
     first.between_points()
-    first.tell_place(Whereabouts("mesh"))  # its share is not known
-    first.tell_place(Whereabouts("cycle", 0.25))
+    first.report_place(Whereabouts("mesh"))  # its share is not known
+    first.report_place(Whereabouts("cycle", 0.25))
     mail.post(REQUEST_TAG, Report(1, 9.0))
     first.between_points()
-    first.tell_place(Whereabouts("cycle", 0.75))
+    first.report_place(Whereabouts("cycle", 0.75))
     assert shown == [("mesh", 0.5), ("cycle", 0.75), ("cycle", 0.75)]
 
 

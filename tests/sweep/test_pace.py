@@ -5,7 +5,7 @@ from itertools import accumulate
 import numpy as np
 import pytest
 
-from rodsweep.sweep.remaining_time import THINNED, Pace, in_words, rate_in_words
+from rodsweep.sweep.remaining_time import RECORD_RATIO, Pace, in_words, rate_in_words
 
 RANDOM = np.random.default_rng(3)
 COLD, WARM = 0.1, 0.01
@@ -101,14 +101,14 @@ def test_share_that_is_done_of_the_point_in_work_counts_beside_whole_points():
     for done in range(1, 6):
         pace.left(done, 10.0 * done)
     assert pace.left(5, 55.0, 0.5) == pytest.approx(45)
-    assert pace._each(5, 90.0, 0.5) > 10, "the point in work takes longer than those before it"
+    assert pace._seconds_per_point(5, 90.0, 0.5) > 10, "the point in work takes longer than those before it"
 
 
 def test_memory_does_not_grow_with_the_points():
     pace = Pace(10**6)
     for done in range(1, 10**5):
         pace.left(done, done * 1e-3)
-    assert len(pace.records) < 3 * np.log(10**5) / np.log(THINNED)
+    assert len(pace.records) < 3 * np.log(10**5) / np.log(RECORD_RATIO)
 
 
 @pytest.mark.parametrize(

@@ -14,12 +14,12 @@ import rodsweep as rs
 from rodsweep.results.file.view import read_view
 from rodsweep.sweep.points.ranges import IndexSet, total
 from rodsweep.sweep.points.stretches import (
-    LONGEST,
     SHORTEST_AXIS,
+    STRETCH_POINTS,
     Stretches,
+    StretchResult,
     StretchSolver,
-    Together,
-    along_the_longest,
+    stretches_along_longest_axis,
 )
 
 SPECTRA = """
@@ -36,28 +36,28 @@ SHAPES = [(100, 3, 2, 2), (3, 130, 2, 1), (2, 2, 64, 5), (1, 1, 1, 9)]
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_every_point_is_in_one_stretch_of_neighbours(shape):
-    stretches = along_the_longest(shape, EVERY[: len(shape)])
+    stretches = stretches_along_longest_axis(shape, EVERY[: len(shape)])
     parts = [stretches.indices(n) for n in range(stretches.count)]
     assert sorted(np.concatenate(parts).tolist()) == list(range(math.prod(shape)))
     for part in parts:
         places = np.array(np.unravel_index(part, shape))
         others = np.delete(places, stretches.axis, axis=0)
-        assert len(part) <= LONGEST
+        assert len(part) <= STRETCH_POINTS
         assert (others == others[:, :1]).all()
         assert (np.diff(places[stretches.axis]) == 1).all()
 
 
 def test_the_axis_with_most_values_is_followed_and_a_short_one_is_not():
-    assert along_the_longest((5, 9, 9, 2), EVERY).axis == 1
-    assert along_the_longest((1, 1, 1, SHORTEST_AXIS), EVERY).axis == 3
-    assert along_the_longest((1, SHORTEST_AXIS - 1, 1, 1), EVERY) is None
-    assert along_the_longest((99, 9, 8), ("", "F", "k2")).axis == 1
-    assert along_the_longest((99, 99), ("", "")) is None
+    assert stretches_along_longest_axis((5, 9, 9, 2), EVERY).axis == 1
+    assert stretches_along_longest_axis((1, 1, 1, SHORTEST_AXIS), EVERY).axis == 3
+    assert stretches_along_longest_axis((1, SHORTEST_AXIS - 1, 1, 1), EVERY) is None
+    assert stretches_along_longest_axis((99, 9, 8), ("", "F", "k2")).axis == 1
+    assert stretches_along_longest_axis((99, 99), ("", "")) is None
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_stretches_to_do_are_those_that_miss_a_point(shape):
-    stretches = along_the_longest(shape, EVERY[: len(shape)])
+    stretches = stretches_along_longest_axis(shape, EVERY[: len(shape)])
     count = math.prod(shape)
     assert stretches.todo([(0, count)]) == [(0, stretches.count)]
     assert stretches.missing_in([(0, stretches.count)], [(0, count)]) == count
@@ -76,14 +76,14 @@ def test_of_a_stretch_only_missing_points_are_kept():
     def solve(indices):
         asked.append(indices.tolist())
         values = {"growth_rate": 10.0 * indices}
-        return Together(values, indices % 2 == 0, lambda i: f"told {indices[i]}")
+        return StretchResult(values, indices % 2 == 0, lambda i: f"told {indices[i]}")
 
     solver = StretchSolver(Stretches((10, 2), 0), solve, IndexSet([(4, 7)]))
     ((index, kept),) = solver(0)
     assert asked == [list(range(0, 20, 2))]
     assert index.tolist() == [4, 6]
     assert kept.values["growth_rate"].tolist() == [40.0, 60.0]
-    assert kept.told(1) == "told 6"
+    assert kept.message(1) == "told 6"
 
 
 def test_any_number_of_ranks_gives_the_same_spectra(command):

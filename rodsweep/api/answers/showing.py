@@ -4,10 +4,10 @@ import sys
 
 from ...errors import InputError
 from ...sweep.listener import NoClaims, RankListener
-from ...sweep.progress import Silent, Teller, in_notebook
+from ...sweep.progress import ProgressReporter, Silent, in_notebook
 from ...sweep.stop import StopRequest
 
-Display = Teller | Silent
+Display = ProgressReporter | Silent
 
 
 def display(progress: bool | None, total: int | None, title: str) -> Display:
@@ -18,7 +18,7 @@ def display(progress: bool | None, total: int | None, title: str) -> Display:
     if not (progress is None or isinstance(progress, bool)):
         raise InputError(f"progress = {progress!r} is not allowed; it should be True, False or None")
     shown = sys.stderr.isatty() or in_notebook() if progress is None else progress
-    return Teller(total, title, live=True) if shown else Silent()
+    return ProgressReporter(total, title, live=True) if shown else Silent()
 
 
 def listener(shown: Display, name: str) -> RankListener:

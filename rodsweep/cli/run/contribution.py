@@ -10,7 +10,7 @@ import numpy as np
 from ...results.file import provenance
 from ...results.file.creation import Plan
 from ...sweep.loop import Indices, Share
-from ...sweep.points.stretches import Together
+from ...sweep.points.stretches import StretchResult
 
 FAILURES_TOLD = 3
 """Failed points that are named at the end of a run; the file has the status of all."""
@@ -27,9 +27,9 @@ class Contribution:
 
 def failures_of(index: Indices, result: Any, where: Callable[[int], str]) -> list[str]:
     """What to tell of points that did not succeed, as many as are told. where: the parameters of one."""
-    if isinstance(result, Together):
+    if isinstance(result, StretchResult):
         failed = np.flatnonzero(~result.succeeded)[:FAILURES_TOLD]
-        told = [(int(np.asarray(index)[i]), result.told(int(i))) for i in failed]
+        told = [(int(np.asarray(index)[i]), result.message(int(i))) for i in failed]
     else:
         told = [] if result.status.succeeded else [(int(index), f"{result.status.name} {result.message}")]
     return [f"{where(at)}: {outcome}".rstrip() for at, outcome in told]

@@ -15,7 +15,7 @@ from ...sweep.handout import Handout
 from ...sweep.listener import NoClaims, RankListener
 from ...sweep.loop import Indices, Loop, Share, sweep
 from ...sweep.pool import Pool
-from ...sweep.progress import Silent, Teller
+from ...sweep.progress import ProgressReporter, Silent
 from ...sweep.stop import StopRequest
 from ...sweep.team import Team
 from ...tasks.protocol import AllPoints, Arrays
@@ -71,7 +71,7 @@ class JointWork:
             self.results = self.kept.read()
             todo = Pool(units, self.results, self.team.size)
         self._exchange_starts(units)
-        shown = Teller(None, f"{title}, curves", NOUN) if self.team.first and title else Silent()
+        shown = ProgressReporter(None, f"{title}, curves", NOUN) if self.team.first and title else Silent()
         loop = Loop(
             solve=lambda unit: self._solved(units, unit),
             keep=keep,

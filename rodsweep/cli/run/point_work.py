@@ -18,8 +18,8 @@ from ...sweep.loop import Indices, Loop, sweep
 from ...sweep.points.chains import ChainSolver
 from ...sweep.points.ranges import IndexRange, IndexSet, total
 from ...sweep.points.shards import Shard
-from ...sweep.points.stretches import StretchSolver, Together
-from ...sweep.progress import Silent, Teller
+from ...sweep.points.stretches import StretchResult, StretchSolver
+from ...sweep.progress import ProgressReporter, Silent
 from ...sweep.stop import StopRequest
 from ...sweep.team import Team
 from ...tasks.protocol import Solver
@@ -65,14 +65,14 @@ class PointWork:
         solver, plan = self.solver, self.plan
 
         def keep(index: Indices, result: Any) -> None:
-            if isinstance(result, Together):
+            if isinstance(result, StretchResult):
                 journal.append_all(np.asarray(index), result.values)
             else:
                 journal.append(int(index), solver.record(int(index), result))
             if len(failures) < FAILURES_TOLD:
                 failures.extend(failures_of(index, result, self.where))
 
-        shown = Teller(count, self.job.name) if self.team.first and not self.quiet else Silent()
+        shown = ProgressReporter(count, self.job.name) if self.team.first and not self.quiet else Silent()
         directory = journal_directory(self.output)
         try:
             with closing(Journal(directory, self.team.rank, plan.layout, plan.fingerprint)) as journal:

@@ -34,9 +34,9 @@ def run_config(path: Path, output: Path, options: RunOptions, stop: StopRequest)
     """Runs a config, or a shard of it, on all ranks; returns the exit status."""
     require_directory()
     team = Team()
-    with team.together():
+    with team.aborting_together():
         job = team.on_first(lambda: make_job(path, options.overrides))
-        team.all_can(require_solvers)
+        team.require_on_all_ranks(require_solvers)
         return _Run(team, job, output, options, stop).run()
 
 

@@ -1,4 +1,4 @@
-"""The grid over an arm's own quantities: each point has parameters of its own, or a status but no rod."""
+"""Grid over the quantities of an arm: each point has its own parameters, or a status but no rod."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -14,16 +14,16 @@ from ...model.parameters import NONLINEAR_PARAMETERS, all_but
 from .points import Points
 
 FlutterOf = Callable[[SlenderArm], float]
-"""From an arm to the F at which it flutters first with the likeliest drag, inf where it does not."""
+"""Function from an arm to the F at which it first flutters with the likeliest drag; inf without flutter."""
 
 
 def grid_of_arms(
     section: ArmSection, beside: Mapping[str, Array], names: tuple[str, ...], flutter: FlutterOf
 ) -> Points:
-    """The grid over the arm's quantities, and over those parameters of `beside` that have several values.
+    """Grid over the arm's quantities, and over those parameters of `beside` that have several values.
 
-    beside: values of parameters that replace the arm's, (n,); names: the task's parameters; flutter: what a
-    load may be relative to. ValueError where no rod covers any point.
+    beside: values of parameters that replace the arm's, (n,). names: the parameters of the task. flutter:
+    force of flutter, to which a load may be relative. Raises ValueError if no rod covers any point.
     """
     arms, statuses = zip(*(_arm_or_status(section, values) for values in section.sections()), strict=True)
     loads = section.given[section.load_axis].array() if section.load_axis else np.zeros(1)
@@ -57,7 +57,7 @@ def grid_of_arms(
 
 
 def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:
-    """(the arm of a section without load, or None where no rod covers it; its status)."""
+    """(arm of a section without load, status); the arm is None if no rod covers it."""
     try:
         return section.made(values), SLENDER
     except UncoveredArm as error:
@@ -65,14 +65,14 @@ def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[Sl
 
 
 def _force_of(section: ArmSection, arm: SlenderArm, flutter: FlutterOf) -> float:
-    """F of a load of 1 on an arm, in SI or of flutter."""
+    """F of a load of 1 on an arm; the load is in SI units or relative to flutter."""
     if section.load_axis in RELATIVE:
         return flutter(arm)
     return 1.0 / getattr(arm, SCALE_OF[str(section.load)])
 
 
 def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bool) -> None:
-    """ValueError, with what is wrong at the first point; no_flutter: whether some arm has none."""
+    """Raises ValueError with the cause at the first point; no_flutter: whether some arm does not flutter."""
     section.made(section.firsts, loaded=True)
     if no_flutter:
         raise ValueError(
@@ -83,5 +83,5 @@ def _refuse_all(section: ArmSection, beside: Mapping[str, Array], no_flutter: bo
 
 
 def _along(dimension: int, values: Any) -> Array:
-    """Values, (n,), along one of three dimensions: arms, loads, parameters beside them."""
+    """Values, (n,), as an array along one of the three dimensions: arms, loads, replaced parameters."""
     return np.asarray(values).reshape([-1 if i == dimension else 1 for i in range(3)])

@@ -1,7 +1,7 @@
-"""Points that start one from the other: the chains of a grid along one of its axes, and how one is solved.
+"""Chains: points of a grid along one of its axes, each of which starts from the state of the previous point.
 
-A chain is solved by one rank, point after point. What the next point starts from is kept after each,
-so a chain that was killed goes on where it stood and ends in the same numbers.
+One rank solves a whole chain, point after point. The start state of the next point is stored after each
+point, so that a chain that was killed resumes after its last point and gives the same numbers.
 """
 
 import math
@@ -23,7 +23,7 @@ class ChainState(Protocol):
     """State of the previous point in a chain, from which the next point starts."""
 
     def arrays(self) -> Arrays:
-        """All of it as named arrays, of any shapes, for a checkpoint."""
+        """The whole state as named arrays of any shape, for a checkpoint."""
 
 
 State = ChainState | None
@@ -33,7 +33,7 @@ ChainStep = Callable[[int, Any], tuple[Any, Any]]
 
 
 class ChainStates(Protocol):
-    """Where the state of a chain's last point is kept."""
+    """Checkpoints: for each unfinished chain, the index of its last point and the state after that point."""
 
     def write(self, chain: int, index: int, state: State) -> None: ...
 
@@ -44,7 +44,7 @@ class ChainStates(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Chains:
-    """The points of a grid of some shape as chains along an axis, upward or downward."""
+    """Chains of a grid of this shape along one axis, solved upward or downward."""
 
     shape: tuple[int, ...]
     axis: int
@@ -52,30 +52,30 @@ class Chains:
 
     @property
     def length(self) -> int:
-        """Points of a chain."""
+        """Number of points in a chain."""
         return self.shape[self.axis]
 
     @property
     def count(self) -> int:
-        """Number of chains, which are numbered in row-major order of the other axes."""
+        """Number of chains. They are numbered in row-major order of the other axes."""
         return math.prod(self.shape) // self.length
 
     def indices(self, chain: int) -> NDArray[np.int64]:
-        """The flat indices of a chain's points in the order in which they are solved, shape (length,)."""
+        """Flat indices of the points of a chain in the order of solution, shape (length,)."""
         inner = math.prod(self.shape[self.axis + 1 :])
         outer, within = divmod(chain, inner)
         along = outer * self.length * inner + within + inner * np.arange(self.length)
         return along if self.upward else along[::-1]
 
     def todo(self, missing: IndexSet) -> list[IndexRange]:
-        """Ranges of the chains with missing points."""
+        """Ranges of the chains that have missing points."""
         chains = (n for n in range(self.count) if missing[self.indices(n)].any())
         return joined((n, n + 1) for n in chains)
 
 
 @dataclass(frozen=True, slots=True)
 class ChainedWork:
-    """How the points of chains are solved. state_of: the inverse of `ChainState.arrays`."""
+    """Solver of the points of chains. state_of: inverse of `ChainState.arrays`."""
 
     chains: Chains
     solve_from: ChainStep
@@ -84,7 +84,7 @@ class ChainedWork:
 
 @dataclass(frozen=True, slots=True)
 class ChainSolver:
-    """Solves the chains of a run, of which only the `missing` points are to be kept."""
+    """Solves the chains of a run; only their `missing` points are stored."""
 
     work: ChainedWork
     missing: IndexSet
@@ -92,10 +92,10 @@ class ChainSolver:
     stop: StopRequest
 
     def __call__(self, chain: int) -> Iterator[tuple[int, Any]]:
-        """The missing points of a chain, each with its outcome; fewer once a stop is asked for.
+        """Yields the missing points of a chain, each with its outcome; fewer after a stop request.
 
-        The state is kept after the point, so a kill in between costs one point that is solved again;
-        if the state came first, a kill could lose the point for good.
+        The state is stored after the point. A kill between both then costs one point, which is solved again;
+        in the reverse order a kill could lose the point for good.
         """
         order = list(map(int, self.work.chains.indices(chain)))
         first, state = self._resume(chain, order)
@@ -110,7 +110,10 @@ class ChainSolver:
         self.checkpoints.remove(chain)
 
     def _resume(self, chain: int, order: list[int]) -> tuple[int, State]:
-        """(place in the chain, state) to go on from: its checkpoint, if all points before it are there."""
+        """(place in the chain, state) from which to resume.
+
+        A checkpoint is used if no point before it is missing; otherwise the chain starts again.
+        """
         found = self.checkpoints.read(chain)
         if found is None or found[0] not in order:
             return 0, None

@@ -1,4 +1,4 @@
-"""From what a config asks for to the points of its sweep; refuses values that the model does not allow."""
+"""Points of a sweep from its config; values that the model does not allow are refused."""
 
 import math
 from collections.abc import Iterable
@@ -19,14 +19,14 @@ from .points import Points
 
 
 def grid_size(config: Config) -> int:
-    """Number of points of a grid of parameters, known before its axes are made; 0 for others."""
+    """Number of points of a grid of parameters, without making its axes; 0 for a list or an arm's grid."""
     if config.parameters.is_list or config.parameters.over:
         return 0
     return math.prod(config.parameters.axes[name].size for name in config.names)
 
 
 def points_of(config: Config, directory: Path) -> Points:
-    """The points that the config asks for; InputError for any value that the model does not allow."""
+    """Points of the sweep of a config; raises InputError for any value that the model does not allow."""
     parameters = config.parameters
     for name, value in parameters.numbers.items():
         refuse_outside(PARAMETERS[name].allowed, name, (value,))
@@ -48,7 +48,10 @@ def points_of(config: Config, directory: Path) -> Points:
 
 
 def _partly_crushed(axes: dict[str, Array]) -> NDArray[np.int8] | None:
-    """Which points of an arm's grid of parameters its load crushes, (points,); None where all or none are."""
+    """Codes of `covered`, (points,), for a grid of parameters that an arm's load crushes in part.
+
+    None if all points are crushed or none, and for grids of more than MOST_POINTS points.
+    """
     count = math.prod(map(len, axes.values()))
     if not set(CRUSHING) <= axes.keys() or axes["F"].max() < axes["k1"].min() or count > MOST_POINTS:
         return None
@@ -59,7 +62,7 @@ def _partly_crushed(axes: dict[str, Array]) -> NDArray[np.int8] | None:
 
 
 def _first_flutter(arm: SlenderArm) -> float:
-    """The F at which an arm flutters first in any plane, inf where it does not; imports its solver."""
+    """F at which an arm first flutters in any plane; inf without flutter. Imports its solver only here."""
     from ...verdict.relative import first_flutter
 
     return first_flutter(arm)
@@ -68,7 +71,10 @@ def _first_flutter(arm: SlenderArm) -> float:
 def refuse_outside(
     allowed: Range, name: str, values: Iterable[float], where: str = "", why: str = ""
 ) -> None:
-    """InputError for the first value of a parameter that is not allowed; `where` it is not, and `why`."""
+    """Raises InputError for the first value of a parameter that is not allowed.
+
+    where, why: continue the sentence of the error.
+    """
     bad = allowed.first_outside(values)
     if bad is not None:
         raise InputError(
@@ -77,9 +83,9 @@ def refuse_outside(
 
 
 def refuse_axes(axes: dict[str, Array], into_crushed: bool = False) -> None:
-    """InputError for a value of an axis, each (n,), that is not allowed, and for rods that are crushed.
+    """Raises InputError for a value on an axis, each (n,), that is not allowed, and for crushed rods.
 
-    into_crushed: whether some may be, though not all.
+    into_crushed: whether the grid may contain crushed rods, as long as not all are crushed.
     """
     for name, column in axes.items():
         refuse_outside(PARAMETERS[name].allowed, name, column)
@@ -88,7 +94,7 @@ def refuse_axes(axes: dict[str, Array], into_crushed: bool = False) -> None:
 
 
 def _refuse_crushed(F: Array, k1: Array, some: bool) -> None:
-    """InputError where a grid has crushed rods; where `some` may be, only if it has no other."""
+    """Raises InputError for crushed rods of a grid; if `some` may be crushed, only if all are."""
     if some and F.min() >= k1.max():
         raise InputError(
             f"parameters.F starts at {F.min():.15g} and parameters.k1 ends at {k1.max():.15g}; the rod is "

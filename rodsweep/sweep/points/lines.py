@@ -19,11 +19,11 @@ class ParameterLine:
     x: Array
     """Values of the varying parameter, shape (n,)."""
     at: np.ndarray
-    """The flat indices of the points, shape (n,)."""
+    """Flat indices of the points, shape (n,)."""
 
 
 def lines_over(columns: Mapping[str, Array], name: str) -> Iterator[ParameterLine]:
-    """The lines over a parameter in the order of their first points, without points where it is inf.
+    """Lines over a parameter in the order of their first points, without points where the parameter is inf.
 
     columns: every parameter at every point, (points,).
     """

@@ -17,20 +17,25 @@ from ...model.rod import Rod
 from .points import NEUTRAL
 
 LONGEST_LINE = 10_000
-"""Characters of a line of a CSV file."""
+"""Largest number of characters in a line of a CSV file; a longer line is refused before it fills the
+memory."""
 
 
 def read_points(path: Path, names: tuple[str, ...]) -> tuple[Array, ...]:
-    """The columns `names`, each (n,), of a CSV file with that header; InputError where it is none."""
+    """Columns `names`, each (n,), of a CSV file whose header has these names in any order.
+
+    Raises InputError for a file that cannot be read, has another header, no point, or a value that no rod
+    has.
+    """
     try:
-        if path.exists() and not path.is_file():  # to open a pipe would be to wait for its other end
+        if path.exists() and not path.is_file():  # opening a pipe would wait for its other end
             raise InputError(f"parameters.points: {path} is not a file")
         with path.open(newline="", encoding="utf-8-sig") as file:
             rows = csv.reader(_lines(file, path))
             header = [cell.strip() for cell in next(rows, [])]
             if sorted(header) != sorted(names):
-                raise InputError(f"{path}: {_header_told(header)}; it must name {words(names, 'and')}")
-            columns = [array("d") for _ in header]  # a list of numbers would take eight times the memory
+                raise InputError(f"{path}: {_header_fault(header)}; it must name {words(names, 'and')}")
+            columns = [array("d") for _ in header]  # a Python list would take eight times the memory
             for row in filter(None, rows):
                 numbers = _row(row, header, f"{path}, line {rows.line_num}")
                 for column, number in zip(columns, numbers, strict=True):
@@ -46,15 +51,15 @@ def read_points(path: Path, names: tuple[str, ...]) -> tuple[Array, ...]:
     return tuple(np.array(columns[header.index(name)]) for name in names)
 
 
-def _header_told(header: list[str]) -> str:
-    """What is wrong with a header: quoted only where it is one, for any file may be given for a list."""
+def _header_fault(header: list[str]) -> str:
+    """Fault of a header as a phrase. A line that is no header is not quoted: the file may be of any kind."""
     if set(header) & set(PARAMETERS) and all(cell.isidentifier() for cell in header):
         return f"the header is {short(','.join(header))}"
     return "the first line names no parameter"
 
 
 def _lines(file: TextIO, path: Path) -> Iterator[str]:
-    """The lines of a text; InputError at one that has no end in sight."""
+    """Yields the lines of a text; raises InputError for a line that is too long."""
     while line := file.readline(LONGEST_LINE):
         if len(line) == LONGEST_LINE:
             raise InputError(f"{path}: a line has {LONGEST_LINE} characters or more, which no point needs")
@@ -62,6 +67,10 @@ def _lines(file: TextIO, path: Path) -> Iterator[str]:
 
 
 def _row(row: list[str], header: list[str], where: str) -> list[float]:
+    """Numbers of one line of the file.
+
+    Raises InputError for a cell that is no number, and for a rod that the model does not allow.
+    """
     if len(row) != len(header):
         raise InputError(f"{where}: {len(row)} values, where the header names {len(header)}")
     numbers = []

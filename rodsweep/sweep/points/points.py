@@ -1,4 +1,7 @@
-"""The points of a sweep, by index and never all at once: a grid, of axes or of an arm, or a list."""
+"""Points of a sweep by flat index: a grid of parameters, a grid over an arm's quantities, or a list.
+
+The points are never expanded into rods all at once, so that a grid takes the memory of its axes only.
+"""
 
 import math
 from dataclasses import dataclass, field
@@ -12,27 +15,29 @@ from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 
 NEUTRAL = {name: parameter.neutral for name, parameter in PARAMETERS.items()}
-"""Values of parameters that are no column, with which a rod is one if it is with any."""
+"""Values for parameters without a column. Any rod that is admissible with some value is admissible with
+these."""
 
 
 @dataclass(frozen=True, slots=True)
 class Points:
-    """Values of some parameters: a grid's axes (row-major order, the last fastest) or equal columns.
+    """Values of parameters: axes of a grid (row-major, the last axis fastest), or columns of equal length.
 
-    Columns are of the points of a list, or of a grid over the quantities of an arm.
+    Columns belong to the points of a list, or to a grid over the quantities of an arm.
     """
 
     names: tuple[str, ...]
     """The parameter of each column."""
     columns: tuple[Array, ...]
+    """Values of each parameter: along its axis, or at every point, (points,)."""
     is_grid: bool
     """Whether the columns are the axes of a grid."""
     over: dict[str, Array] = field(default_factory=dict)
-    """The axes of a grid over an arm's quantities, in SI."""
+    """Axes of a grid over an arm's quantities, in SI units."""
     units: dict[str, Array] = field(default_factory=dict)
-    """The units that the arm makes at every point of such a grid, (points,)."""
+    """Units of length, time and so on that the arm defines at every point of such a grid, (points,)."""
     covered: NDArray[np.int8] | None = None
-    """Whether a rod covers each point of an arm, as `rodsweep.config.arm.axes` numbers it, (points,)."""
+    """Codes of `rodsweep.config.arm.axes`: whether a rod covers each point of an arm, (points,)."""
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -41,22 +46,22 @@ class Points:
 
     @property
     def axes(self) -> dict[str, Array]:
-        """The axes of a grid of either kind by name; none of a list."""
+        """Axes of a grid of either kind, by name; empty for a list."""
         return self.by_name if self.is_grid else self.over
 
     @property
     def moved(self) -> tuple[str, ...]:
-        """The one parameter that each axis moves; empty where it moves several or none."""
+        """The parameter that varies along each axis; empty where an axis varies several parameters or none."""
         return self.names if self.is_grid else tuple(map(moved_by, self.over))
 
     @property
     def identity(self) -> list[Array]:
-        """What tells these points from all others of a config: values of axes and columns, each (n,)."""
+        """Values of axes and columns, each (n,), by which the points of two sweeps are compared."""
         return [*self.over.values(), *self.columns]
 
     @property
     def of_rods(self) -> dict[str, Array]:
-        """The columns by their parameters, without points that no rod covers."""
+        """Columns by parameter, without points that no rod covers."""
         if self.covered is None:
             return self.by_name
         return self.values_of(np.flatnonzero(self.covered == SLENDER))
@@ -67,15 +72,16 @@ class Points:
 
     @property
     def by_name(self) -> dict[str, Array]:
-        """The columns by their parameters."""
+        """Columns by parameter."""
         return dict(zip(self.names, self.columns, strict=True))
 
     @property
     def count(self) -> int:
+        """Number of points."""
         return math.prod(self.shape)
 
     def values(self, index: int) -> dict[str, float]:
-        """The parameters at a flat index, by name."""
+        """Parameters at a flat index, by name."""
         values = {}
         for name, column in zip(reversed(self.names), reversed(self.columns), strict=True):
             place = index
@@ -85,14 +91,14 @@ class Points:
         return {name: values[name] for name in self.names}
 
     def values_of(self, indices: NDArray[np.int64]) -> dict[str, Array]:
-        """The parameters at flat indices, (n,), by name, each (n,)."""
+        """Parameters at flat indices, (n,), by name, each (n,)."""
         places = np.unravel_index(indices, self.shape) if self.is_grid else [indices] * len(self.names)
         return {
             name: column[place] for name, column, place in zip(self.names, self.columns, places, strict=True)
         }
 
     def rod(self, index: int, **beside: float) -> Rod:
-        """The rod at a flat index, with other parameters beside the columns'; else they are NEUTRAL.
+        """Rod at a flat index; parameters without a column are those of `beside`, or NEUTRAL.
 
         Raises Crushed.
         """

@@ -1,4 +1,4 @@
-"""Ranges (first, end) of flat indices of points or chains, and the set of the indices in such ranges."""
+"""Ranges (first, end) of flat indices of points or chains, and sets of such indices."""
 
 from collections.abc import Iterable, Sequence
 from typing import Any
@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 IndexRange = tuple[int, int]
+"""(first index, index after the last)."""
 
 
 def total(ranges: Iterable[IndexRange]) -> int:
@@ -23,7 +24,7 @@ def joined(ranges: Iterable[IndexRange]) -> list[IndexRange]:
 
 
 class IndexSet:
-    """The indices in some ranges, which are sorted; takes no memory for the indices themselves."""
+    """Set of the indices in sorted ranges; takes no memory for the indices themselves."""
 
     def __init__(self, ranges: Sequence[IndexRange]):
         # An empty first range, so that an index before all ranges also has a range on its left.

@@ -1,4 +1,4 @@
-"""A shard: the part of a sweep that one of several separate runs does, each into a file of its own."""
+"""Shards: parts of a sweep, each solved by a separate run into its own file."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,13 +7,13 @@ from ...errors import InputError
 from .ranges import IndexRange
 
 BLOCKS_A_SHARD = 64
-"""Blocks of neighbouring units that a shard consists of: many, so that shards cost alike, but no more, so
-that neighbours stay together in its file."""
+"""Number of blocks of neighbouring units in a shard. Many blocks make shards equal in cost; more blocks would
+separate neighbours in the file of the shard."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shard:
-    """The number-th of `of` parts; the only one where a sweep is not divided."""
+    """Part `number` of `of` parts; 1/1 is the whole sweep."""
 
     number: int = 1
     of: int = 1
@@ -22,7 +22,10 @@ class Shard:
         return f"{self.number}/{self.of}"
 
     def part(self, todo: Sequence[IndexRange], units: int) -> list[IndexRange]:
-        """What of the ranges `todo` among all `units` is this shard's: blocks dealt out in turn."""
+        """Ranges of this shard within the ranges `todo`.
+
+        Blocks of all `units` are dealt out to the shards in turn.
+        """
         if self.of == 1:
             return list(todo)
         block = max(1, units // (self.of * BLOCKS_A_SHARD))
@@ -37,7 +40,7 @@ class Shard:
 
 
 def shard_of(text: str) -> Shard:
-    """The shard that "2/8" names; InputError for anything else."""
+    """Shard of a text such as "2/8"; raises InputError for any other form."""
     number, _, of = text.partition("/")
     if number.isdecimal() and of.isdecimal() and len(text) < 20 and 1 <= int(number) <= int(of):
         return Shard(int(number), int(of))

@@ -1,7 +1,7 @@
-"""Neighbouring points of a grid that are solved together: its lines along one axis, cut into stretches.
+"""Stretches: neighbouring points of a grid that are solved at once, cut from its lines along one axis.
 
-Where the cuts are follows from the grid alone, so that what is computed depends neither on ranks nor on what
-was kept of an earlier run: a stretch of which any point is missing is solved again as a whole.
+The cuts follow from the grid alone, so that results depend neither on the number of ranks nor on points
+stored by an earlier run: a stretch with any missing point is solved again as a whole.
 """
 
 import math
@@ -14,38 +14,38 @@ from numpy.typing import NDArray
 
 from .ranges import IndexRange, IndexSet, joined, total
 
-LONGEST = 64
-"""Points of a stretch."""
+STRETCH_POINTS = 64
+"""Largest number of points in a stretch."""
 SHORTEST_AXIS = 8
-"""Values of an axis below which its neighbours are too far from each other to help."""
+"""Least number of values on an axis. On a shorter axis neighbours are too far apart to help each other."""
 STRETCHES_AT_ONCE = 1 << 12
-"""Stretches that are looked through together."""
+"""Number of stretches whose points are tested in one array operation, which bounds the memory."""
 
 
 @dataclass(frozen=True, slots=True)
-class Together:
-    """What came of points that were solved together.
+class StretchResult:
+    """Result of points that were solved at once.
 
-    values: every variable of the file, shape (n, ...); succeeded: whether each ended as it should, (n,);
-    told: the status's name and the message of a point that did not.
+    values: every variable of the file, shape (n, ...). succeeded: whether each point succeeded, (n,).
+    message: status name and message of a point that failed, by its place.
     """
 
     values: dict[str, NDArray]
     succeeded: NDArray[np.bool_]
-    told: Callable[[int], str]
+    message: Callable[[int], str]
 
     def at(self, places: NDArray[np.int64]) -> dict[str, NDArray]:
-        """The variables of some of the points, by their places."""
+        """Variables of some of the points, by their places, (places,)."""
         return {name: column[places] for name, column in self.values.items()}
 
 
-SolveTogether = Callable[[NDArray[np.int64]], Together]
-"""From the flat indices of neighbours, (n,), to what came of them."""
+SolveStretch = Callable[[NDArray[np.int64]], StretchResult]
+"""Function from the flat indices of neighbouring points, (n,), to their result."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stretches:
-    """The points of a grid of some shape as stretches along one of its axes."""
+    """Stretches of a grid of the given shape along one axis."""
 
     shape: tuple[int, ...]
     axis: int
@@ -57,54 +57,59 @@ class Stretches:
 
     @property
     def count(self) -> int:
-        """Number of stretches: the first of all lines, in row-major order of the other axes, the second, ...
+        """Number of stretches.
 
-        So those that are solved one after another are neighbours in the file.
+        They are numbered by their place on the line first, then in row-major order of the other axes, so that
+        consecutive stretches are neighbours in the file.
         """
-        return self.lines * -(-self.shape[self.axis] // LONGEST)
+        return self.lines * -(-self.shape[self.axis] // STRETCH_POINTS)
 
     def indices(self, stretch: int) -> NDArray[np.int64]:
-        """The flat indices of a stretch's points, shape (n,)."""
+        """Flat indices of the points of a stretch, shape (n,)."""
         part, line = divmod(stretch, self.lines)
-        along = np.arange(part * LONGEST, min((part + 1) * LONGEST, self.shape[self.axis]))
+        along = np.arange(part * STRETCH_POINTS, min((part + 1) * STRETCH_POINTS, self.shape[self.axis]))
         inner = math.prod(self.shape[self.axis + 1 :])
         outer, within = divmod(line, inner)
         return outer * self.shape[self.axis] * inner + within + inner * along
 
     def missing_of(self, stretches: IndexRange, missing: IndexSet) -> NDArray[np.int64]:
-        """How many points of each stretch of a range are missing, shape (stretches,)."""
+        """Number of missing points of each stretch in a range, shape (stretches,)."""
         part, line = np.divmod(np.arange(*stretches)[:, None], self.lines)
-        along = part * LONGEST + np.arange(LONGEST)
+        along = part * STRETCH_POINTS + np.arange(STRETCH_POINTS)
         inner = math.prod(self.shape[self.axis + 1 :])
         outer, within = np.divmod(line, inner)
         index = outer * self.shape[self.axis] * inner + within + inner * along
         return (missing[index] & (along < self.shape[self.axis])).sum(axis=1)
 
     def todo(self, missing: Sequence[IndexRange]) -> list[IndexRange]:
-        """Ranges of the stretches that miss a point."""
+        """Ranges of the stretches with missing points."""
         if total(missing) == math.prod(self.shape):
             return [(0, self.count)]
-        lacks = IndexSet(missing)
+        missing_points = IndexSet(missing)
         ranges: list[IndexRange] = []
         for first in range(0, self.count, STRETCHES_AT_ONCE):
-            some = self.missing_of((first, min(first + STRETCHES_AT_ONCE, self.count)), lacks) > 0
-            edges = first + np.flatnonzero(np.diff(some, prepend=False, append=False))
+            last = min(first + STRETCHES_AT_ONCE, self.count)
+            incomplete = self.missing_of((first, last), missing_points) > 0
+            edges = first + np.flatnonzero(np.diff(incomplete, prepend=False, append=False))
             ranges += zip(map(int, edges[::2]), map(int, edges[1::2]), strict=True)
         return joined(ranges)
 
     def missing_in(self, stretches: Sequence[IndexRange], missing: Sequence[IndexRange]) -> int:
-        """How many points of ranges of stretches are missing."""
-        lacks, number = IndexSet(missing), 0
+        """Number of missing points in ranges of stretches."""
+        missing_points = IndexSet(missing)
+        number = 0
         for first, end in stretches:
             for at in range(first, end, STRETCHES_AT_ONCE):
-                number += int(self.missing_of((at, min(at + STRETCHES_AT_ONCE, end)), lacks).sum())
+                block = (at, min(at + STRETCHES_AT_ONCE, end))
+                number += int(self.missing_of(block, missing_points).sum())
         return number
 
 
-def along_the_longest(shape: tuple[int, ...], moved: Sequence[str]) -> Stretches | None:
-    """The stretches of a grid along the first of its longest axes; None where it is too short.
+def stretches_along_longest_axis(shape: tuple[int, ...], moved: Sequence[str]) -> Stretches | None:
+    """Stretches of a grid along the first of its longest axes; None if every usable axis is too short.
 
-    moved: the one parameter that each axis moves; empty where it moves several, along which none is followed.
+    moved: the parameter that varies along each axis; empty for an axis that varies several, which is not
+    usable.
     """
     able = [axis for axis, name in enumerate(moved) if name]
     axis = max(able, key=lambda i: shape[i], default=None)
@@ -113,16 +118,18 @@ def along_the_longest(shape: tuple[int, ...], moved: Sequence[str]) -> Stretches
 
 @dataclass(frozen=True, slots=True)
 class StretchSolver:
-    """Solves the stretches of a run, of which only the `missing` points are to be kept."""
+    """Solves the stretches of a run; only their `missing` points are stored."""
 
     stretches: Stretches
-    solve_together: SolveTogether
+    solve_stretch: SolveStretch
     missing: IndexSet
 
     def __call__(self, stretch: int) -> Iterator[tuple[NDArray[np.int64], Any]]:
-        """(flat indices of the missing points, what came of them as `Together` of these alone)."""
+        """Yields (flat indices of the missing points, `StretchResult` of these points), once."""
         indices = self.stretches.indices(stretch)
-        found = self.solve_together(indices)
+        result = self.solve_stretch(indices)
         places = np.flatnonzero(self.missing[indices])
-        some = Together(found.at(places), found.succeeded[places], lambda i: found.told(int(places[i])))
-        yield indices[places], some
+        missing = StretchResult(
+            result.at(places), result.succeeded[places], lambda i: result.message(int(places[i]))
+        )
+        yield indices[places], missing

@@ -16,7 +16,7 @@ from ...results.layouts.variables import SECONDS, STATUS, Layout
 from ...solve.status import PointStatus
 from ...sweep.points.chains import State
 from ...sweep.points.points import Points
-from ...sweep.points.stretches import Together
+from ...sweep.points.stretches import StretchResult
 from ..protocol import Solver
 
 MODEL_APPLIES = VALIDITY[0].name
@@ -159,7 +159,7 @@ class _Around:
         """Every variable of a point without a rod but its status."""
         return self.layout.empty_point | {SECONDS.name: 0.0, MODEL_APPLIES: Validity.does_not_apply}
 
-    def _together(self, indices: NDArray[np.int64]) -> Together:
+    def _together(self, indices: NDArray[np.int64]) -> StretchResult:
         """What comes of the points of a stretch, of which only those with a rod are solved."""
         assert self.inner.stretched is not None
         covered = self.covered[indices]
@@ -172,6 +172,6 @@ class _Around:
         succeeded = np.ones(len(indices), bool)
         if found:
             succeeded[places] = found.succeeded
-        return Together(
-            values, succeeded, lambda i: found.told(int(np.searchsorted(places, i))) if found else ""
+        return StretchResult(
+            values, succeeded, lambda i: found.message(int(np.searchsorted(places, i))) if found else ""
         )

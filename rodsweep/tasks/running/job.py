@@ -16,7 +16,7 @@ from ...results.layouts.arm import at_points, in_si, quantities_of
 from ...results.layouts.variables import Filled, Layout
 from ...sweep.points.grid import grid_size, points_of
 from ...sweep.points.points import Points
-from ...sweep.points.stretches import Together
+from ...sweep.points.stretches import StretchResult
 from .. import TASKS
 from ..arm.points import around, shared
 from ..arm.validity import ArmValidity
@@ -73,10 +73,10 @@ class Job:
 
         if solver.stretched is None:
             return replace(solver, record=lambda index, outcome: told(solver.record(index, outcome), index))
-        stretches, solve_together = solver.stretched
+        stretches, solve_stretch = solver.stretched
 
-        def together(indices: NDArray[np.int64]) -> Together:
-            found = solve_together(indices)
+        def together(indices: NDArray[np.int64]) -> StretchResult:
+            found = solve_stretch(indices)
             return replace(found, values=told(found.values, indices))
 
         return replace(

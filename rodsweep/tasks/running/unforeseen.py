@@ -23,7 +23,7 @@ from ...results.layouts.variables import SECONDS, STATUS, Layout
 from ...solve.backend.kept import forget_all
 from ...solve.status import PointStatus
 from ...sweep.points.chains import State
-from ...sweep.points.stretches import Together
+from ...sweep.points.stretches import StretchResult
 from ..protocol import Solver
 
 PASSING = (Refusal, OSError)
@@ -87,7 +87,7 @@ class _Guard:
         values = {SECONDS.name: seconds, STATUS.name: int(status)}
         return Outcome(status, described(error), self.layout.empty_point | values)
 
-    def _together(self, indices: NDArray[np.int64]) -> Together:
+    def _together(self, indices: NDArray[np.int64]) -> StretchResult:
         assert self.inner.stretched is not None
         try:
             return self.inner.stretched[1](indices)
@@ -98,15 +98,15 @@ class _Guard:
             self.note(indices.tolist(), error)
             return self._one_by_one(indices)
 
-    def _one_by_one(self, indices: NDArray[np.int64]) -> Together:
+    def _one_by_one(self, indices: NDArray[np.int64]) -> StretchResult:
         """The points of a stretch, each solved alone."""
         solve = self.solver().solve
         outcomes = [solve(index) for index in indices.tolist()]
         names = [variable.name for variable in self.layout.variables]
-        return Together(
+        return StretchResult(
             values={name: np.stack([outcome.values[name] for outcome in outcomes]) for name in names},
             succeeded=np.array([outcome.status.succeeded for outcome in outcomes]),
-            told=lambda i: f"{outcomes[i].status.name} {outcomes[i].message}",
+            message=lambda i: f"{outcomes[i].status.name} {outcomes[i].message}",
         )
 
 

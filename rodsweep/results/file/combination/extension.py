@@ -18,7 +18,7 @@ from ....config.axes import words
 from ....config.document.reading import config_of
 from ....errors import InputError
 from ....sweep.points.points import Points
-from ....sweep.points.stretches import LONGEST, along_the_longest
+from ....sweep.points.stretches import STRETCH_POINTS, stretches_along_longest_axis
 from ...layouts import INCREASES
 from ...layouts.variables import Increase, Layout
 from ..creation import Plan
@@ -145,7 +145,7 @@ def _places(header: Header, old: Points, plan: Plan) -> Places:
         axis = plan.chains.axis
         places[axis] = _same_from_the_start(places[axis], new.shape[axis], plan.chains.upward)
     if plan.stretches:
-        axis, before = plan.stretches.axis, along_the_longest(old.shape, old.moved)
+        axis, before = plan.stretches.axis, stretches_along_longest_axis(old.shape, old.moved)
         same = _same_stretches(places[axis], new.shape[axis])
         places[axis] = np.where(same & (before is not None and before.axis == axis), places[axis], -1)
     return Places(old.shape, new.shape, tuple(places))
@@ -174,10 +174,10 @@ def _same_from_the_start(places: Indices, count: int, upward: bool) -> Indices:
 def _same_stretches(places: Indices, count: int) -> NDArray[np.bool_]:
     """Whether each old point of a line, (n,), is in a stretch of the same points on an axis of that size."""
     at = np.arange(len(places))
-    first = at // LONGEST * LONGEST
-    whole = np.minimum(first + LONGEST, len(places)) == np.minimum(first + LONGEST, count)
-    moved = np.logical_or.reduceat(places != at, np.arange(0, len(places), LONGEST))
-    return whole & ~moved[at // LONGEST]
+    first = at // STRETCH_POINTS * STRETCH_POINTS
+    whole = np.minimum(first + STRETCH_POINTS, len(places)) == np.minimum(first + STRETCH_POINTS, count)
+    moved = np.logical_or.reduceat(places != at, np.arange(0, len(places), STRETCH_POINTS))
+    return whole & ~moved[at // STRETCH_POINTS]
 
 
 def _places_in_list(header: Header, old: Points, new: Points) -> Indices:
