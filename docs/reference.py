@@ -406,7 +406,7 @@ def variables_of(job: Job) -> dict[str, tuple[Variable, list[str]]]:
 def variable_row(variable: Variable, dims: list[str], only: str) -> list[str]:
     """A variable as a row of a table."""
     meaning = variable.long_name
-    if variable.is_truth:
+    if variable.is_boolean:
         meaning += ": 1 yes, 0 no"
     if variable.flags:
         meaning += ": " + ", ".join(f"{value} {word}" for value, word in variable.flags)

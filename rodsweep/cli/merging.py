@@ -4,12 +4,12 @@ from pathlib import Path
 
 import click
 
-from ..results.file.combination.merge import Merged, merge
+from ..results.file.combination.merge import MergeResult, merge
 from ..tasks.running.plan import plan_without_solver
 from ..wording import counted
 
 
-def merge_files(output: Path, paths: tuple[Path, ...]) -> Merged:
+def merge_files(output: Path, paths: tuple[Path, ...]) -> MergeResult:
     """Merges result files into `output` and says what came of it."""
     merged = merge(output, paths, plan_without_solver)
     click.echo(

@@ -1,4 +1,4 @@
-"""The result file: its schema as one table, the store that survives kills, and provenance.
+"""Result files: one table as their schema, a store that survives kills, and provenance.
 
-The only importer of h5py. Nothing here knows how a number was computed.
+This package is the only importer of h5py. It does not know how a number was computed.
 """

@@ -48,7 +48,7 @@ class FirstRankClaims:
         stop: StopRequest,
         show: Callable[[str, float], None],
     ):
-        """show: displays the progress of a long point, in words, and the work done of all unfinished points."""
+        """show: displays the progress of a long point, in words, and the work done of unfinished points."""
         self.team = team
         self.handout = handout
         self.stop = stop

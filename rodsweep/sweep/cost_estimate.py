@@ -116,7 +116,7 @@ def estimate_branches(points: Points, along: str, reach: tuple[float, float], ac
 
 
 def estimate_modes(spectra: Estimate, count: int, modes: int, growth: bool) -> Estimate:
-    """Cost of `modes` modes with vectors at each of `count` points, from the cost of the eigenvalues alone."""
+    """Cost of `modes` modes with vectors at each of `count` points, from the cost of eigenvalues alone."""
     more = count * 1e-3 * (MODES_MS * modes**2 + (GROWTH_MS if growth else 0))
     return replace(spectra, seconds=spectra.seconds + more, unknowns=None)
 

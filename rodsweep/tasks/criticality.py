@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ..config.criticality import CriticalityConfig
-from ..results.layouts.criticality import NORMAL_FORM, OF_NO_HOPF_POINT
+from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM
 from ..results.layouts.variables import listed, recorded
 from ..sweep.cost_estimate import Estimate, estimate_criticality
 from .parts import NonlinearTask, count_of
@@ -57,7 +57,7 @@ class CriticalityTask(NonlinearTask):
 def record(result: "Criticality", most: int) -> dict[str, Any]:
     """A Criticality as the variables of the file."""
     search = search_record(result, most, "F", "crossing_F")
-    for name in OF_NO_HOPF_POINT:
+    for name in ABSENT_FROM_HOPF_SEARCH:
         del search[name]
     pairs = zip(result.coefficients, result.crossings, strict=False)
     rows = [recorded(NORMAL_FORM, *pair, prefix="crossing_") for pair in pairs]

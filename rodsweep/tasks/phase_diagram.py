@@ -8,7 +8,7 @@ import numpy as np
 from ..config.phase_diagram import PhaseDiagramConfig
 from ..model.rod import Rod
 from ..results.layouts.phase_diagram import (
-    MOST_SPECIAL,
+    MAX_CYCLE_SPECIAL,
 )
 from ..sweep.cost_estimate import Estimate, estimate_branches, estimate_lines
 from .diagram.curves import DiagramCurves
@@ -124,7 +124,7 @@ class PhaseDiagramTask(ProvedTask):
         curves = DiagramCurves(self, workspace)
 
         def solve(index: int) -> CoexistenceRow:
-            row = solve_coexistence(self.rod(index), request, MOST_SPECIAL, workspace)
+            row = solve_coexistence(self.rod(index), request, MAX_CYCLE_SPECIAL, workspace)
             return curves.keep(index, row)
 
         return Solver(

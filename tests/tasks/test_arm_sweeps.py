@@ -16,7 +16,7 @@ from rodsweep.api.asking import job_from, tree_of
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.post.figures import draw
 from rodsweep.results.file.view import read_view
-from rodsweep.results.layouts.arm import at_points, twin_of
+from rodsweep.results.layouts.arm import at_points, si_name_of
 
 SILICONE = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "1.4 Pa s"}
 LOADED = SILICONE | {"pressure": "2 kPa"}
@@ -195,7 +195,7 @@ def test_file_of_every_task_has_si_units_and_is_what_python_gives(command, task)
         if file[name].dims[-1] in ("curve_point", "fold", "hopf", "change"):
             continue  # told once
         if not name.endswith("_hz"):
-            hertz = file[twin_of(name, "Hz")]
+            hertz = file[si_name_of(name, "Hz")]
             assert (hertz.units, file[name].units) == ("Hz", "rad/tau2")
             xr.testing.assert_allclose(2 * np.pi * hertz * file.tau2, file[name], rtol=1e-12)
     load = next((name for name in ("pressure", "force") if name in file.coords), None)

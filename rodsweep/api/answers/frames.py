@@ -23,7 +23,7 @@ def frame_of(columns: Iterable[Column], index: str | None = None) -> pd.DataFram
 
 def series_of(column: Column) -> Any:
     """The values of a column as pandas has them: words or None, truths, numbers, counts or <NA>."""
-    if column.is_truth:
+    if column.is_boolean:
         return column.values.astype(bool)
     if column.words:
         return np.array(words_of(column), dtype=object)

@@ -95,7 +95,7 @@ def _upright(columns: Sequence[Column]) -> list[Line]:
 
 def _texts(column: Column) -> list[str]:
     """The values of a column as they are shown: numbers with few digits, words, nothing for nothing."""
-    if column.is_truth:
+    if column.is_boolean:
         return [YES_NO[int(value)] for value in column.values]
     if column.words or column.values.dtype.kind != "f":
         return column.text()

@@ -44,7 +44,7 @@ def of_the_last_run(plan: Plan) -> dict[str, Any]:
 def history_of(contributions: Sequence[Contribution], mpi_library: str) -> dict[str, Any]:
     """Attributes that say where, by what and by whom the points of a run were computed."""
     hosts = {contribution.host for contribution in contributions}
-    shares = [contribution.share for contribution in contributions[: provenance.MOST_RANKS_TOLD]]
+    shares = [contribution.share for contribution in contributions[: provenance.MAX_RANK_SHARES]]
     points, busy, idle = zip(*((share.points, share.busy, share.idle) for share in shares), strict=True)
     numbers = (np.array(points, "i4"), np.array(busy, "f4"), np.array(idle, "f4"))
     return {

@@ -34,7 +34,7 @@ class Column:
     """Words by value; empty for a column of numbers."""
     given: bool = False
     """Whether the values are input coordinates, not results."""
-    is_truth: bool = False
+    is_boolean: bool = False
     """Whether the values say yes or no."""
 
     @property
@@ -52,7 +52,7 @@ class Column:
 
     def text(self) -> list[str]:
         """The values as CSV has them: words, or the shortest decimal number that reads back the same."""
-        if self.is_truth:
+        if self.is_boolean:
             texts = [TRUTHS[int(value)] for value in self.values]
         elif self.words:
             texts = [self.words.get(int(v), "") for v in np.nan_to_num(self.values)]
@@ -85,7 +85,7 @@ def column_of(variable: Variable, values: NDArray, words: Mapping[int, str] | No
         values,
         absent_in(variable, values),
         known,
-        is_truth=variable.is_truth,
+        is_boolean=variable.is_boolean,
     )
 
 

@@ -10,7 +10,7 @@ from ...config.arm.axes import ALONG
 from ...model.arm.drag import DRAGS
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...results.file.view import View
-from ...results.layouts.arm import any_unit_of, converted, twin_of
+from ...results.layouts.arm import converted, si_name_of, si_unit_of
 from ...results.layouts.variables import DIMENSIONS, MISSING, STATUS, Variable
 from .columns import Column, absent_in, column_of, coordinate, tells_of_items
 
@@ -88,9 +88,9 @@ def si_columns(
         # At a crossing along a row of forces lies a force.
         is_force = declared.name == "crossing_at" and "F" not in view.parameters
         variable = replace(declared, name="crossing_F") if is_force else declared
-        si = any_unit_of(variable, "force" in view.quantities)
+        si = si_unit_of(variable, "force" in view.quantities)
         known = {*si.factors, *si.divisors} <= at.keys()
-        if si.unit and known and twin_of(variable.name, si.unit) not in view.variables:
+        if si.unit and known and si_name_of(variable.name, si.unit) not in view.variables:
             twin, values = converted(variable, column.values, at)
             yield replace(column_of(twin, values), absent=column.absent)
 

@@ -1,1 +1,1 @@
-"""The result file: its creation, exchange, seal and validation; reading, merging, provenance."""
+"""The result file: creation, exchange, seal and validation; reading, merging and provenance."""

@@ -1,8 +1,8 @@
-"""What a result file says, as one digest of each variable and attribute; and what must not be in a file.
+"""Content of a result file as one digest of each variable and attribute, and refusal of foreign content.
 
-A digest is of what is meant, not of how it is stored: type, shape, dimensions, numbers and attributes of a
-variable. So it stays the same where another program writes the same into a file of its own, as xarray does.
-Names that begin with `user_` are the user's: they have no digest, and only `rs.open` reads them.
+A digest covers the meaning, not the storage: type, shape, dimensions, numbers and attributes of a variable.
+It stays the same if another program, such as xarray, writes the same content into a new file. Names that
+begin with `user_` belong to the user: they have no digest, and only `rs.open` reads them.
 """
 
 import json
@@ -17,26 +17,29 @@ import numpy as np
 from ...config.values import named
 
 SEAL = "seal"
-"""The attribute with the digests."""
+"""Name of the attribute with the digests."""
 USER_PREFIX = "user_"
+"""Prefix of the names of variables and attributes that belong to the user."""
 DIGITS = 16
-"""Hexadecimal digits of a digest: a change goes unnoticed once in 2^64 times."""
+"""Number of hexadecimal digits of a digest: one change in 2^64 goes unnoticed."""
 BOOKKEEPING = frozenset(
     {
         "CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST", "DIMENSION_LABELS", "_Netcdf4Dimid",
         "_Netcdf4Coordinates", "_NCProperties", "coordinates", SEAL,
     }
 )  # fmt: skip
-"""Attributes by which HDF5 and netCDF tie dimensions to variables; digests have the dimensions themselves."""
+"""Attributes by which HDF5 and netCDF link dimensions to variables; digests contain the dimensions
+themselves."""
 NUMBERS = "iuf"
-"""Kinds of NumPy's types that variables of a result have."""
+"""Kinds of NumPy types that variables of a result have."""
 BYTES_A_READ = 1 << 18
+"""Bytes read at once, which bounds the memory."""
 
 FILLED_WITH_NAN = ("_FillValue", "[nan]")
-"""An attribute that xarray adds to what it writes, and which changes nothing."""
+"""Attribute that xarray adds when it writes a file; it changes nothing."""
 
 Digests = dict[str, dict[str, str]]
-"""Digests of `attributes` and of `variables`, by name."""
+"""Digests by name, under the keys `attributes` and `variables`."""
 
 
 def is_users(name: str) -> bool:
@@ -51,33 +54,35 @@ def variable_digest(
     attributes: Mapping[str, Any],
     blocks: Iterable[Any],
 ) -> str:
-    """The digest of a variable, whose numbers are given as buffers in row-major order."""
-    told = [kind.newbyteorder("<").str, list(shape), list(dimensions), _plain_attributes(attributes)]
-    digest = sha256(json.dumps(told, sort_keys=True).encode())
+    """Digest of a variable; its numbers are given as buffers in row-major order."""
+    described = [kind.newbyteorder("<").str, list(shape), list(dimensions), _plain_attributes(attributes)]
+    digest = sha256(json.dumps(described, sort_keys=True).encode())
     for block in blocks:
         digest.update(block)
     return digest.hexdigest()[:DIGITS]
 
 
 def attribute_digests(attributes: Mapping[str, Any]) -> dict[str, str]:
-    """The digest of every attribute of a whole file, by name."""
+    """Digest of every attribute of a file, by name."""
     plain = _plain_attributes(attributes)
     return {name: sha256(json.dumps(value).encode()).hexdigest()[:DIGITS] for name, value in plain.items()}
 
 
 def digests_of(file: h5py.File) -> Digests:
-    """The digests of an open file. ValueError, as the rest of a sentence, where it has what no result has."""
+    """Digests of an open file; raises ValueError, as a clause, for content that no result has."""
     variables = {name: _dataset_digest(name, data) for name, data in _variables(file)}
     return {"attributes": attribute_digests(file.attrs), "variables": variables}
 
 
 def refuse_changed(file: h5py.File) -> None:
-    """ValueError, as the rest of a sentence, unless an open file says what it said when it was sealed."""
+    """Raises ValueError, as a clause, if the content of an open file differs from its sealed content."""
     if SEAL not in file.attrs:
         raise ValueError("its seal is gone")
-    sealed, found = json.loads(file.attrs[SEAL]), digests_of(file)
+    sealed = json.loads(file.attrs[SEAL])
+    found = digests_of(file)
     for noun in ("attribute", "variable"):
-        before, now = sealed[f"{noun}s"], found[f"{noun}s"]
+        before = sealed[f"{noun}s"]
+        now = found[f"{noun}s"]
         for name, digest in before.items():
             if name not in now:
                 raise ValueError(f"its {noun} {name} is gone")
@@ -90,7 +95,7 @@ def refuse_changed(file: h5py.File) -> None:
 
 
 def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
-    """The variables of a file with their names. ValueError for links, and for what lies in another file."""
+    """Yields (name, variable) of a file; raises ValueError for links and for data stored in another file."""
     places = set()
     for name in file:
         shown = named(name, 40)
@@ -112,23 +117,23 @@ def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
 
 
 def _dataset_digest(name: str, data: h5py.Dataset) -> str:
-    """The digest of a variable of an open file."""
+    """Digest of a variable of an open file."""
     if data.dtype.kind not in NUMBERS or data.shape is None:
         raise ValueError(f"{named(name, 40)} has no numbers")
     return variable_digest(data.dtype, data.shape, _dimensions(name, data), data.attrs, _blocks(data))
 
 
 def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
-    """The dimensions of a variable: itself, or those that its attributes refer to.
+    """Dimensions of a variable: itself for a coordinate, else the dimensions that its attributes refer to.
 
-    Not by HDF5's own functions for dimensions, which crash where these attributes are not as HDF5 wrote them.
+    HDF5's own functions for dimensions are not used, because they crash on damaged attributes.
     """
     attributes = data.attrs
     changed = ValueError(f"the dimensions of {named(name, 40)} are not as rodsweep wrote them")
     if "CLASS" in attributes:
-        number = attributes.get("_Netcdf4Dimid", 0)  # of netCDF's dimensions, in files that xarray wrote
-        told = [attributes["CLASS"], attributes.get("NAME"), attributes.get("_Netcdf4Coordinates", number)]
-        if [_plain(value) for value in told] != [["DIMENSION_SCALE"], [name], _plain(number)]:
+        number = attributes.get("_Netcdf4Dimid", 0)  # number of the dimension, in files that xarray wrote
+        stored = [attributes["CLASS"], attributes.get("NAME"), attributes.get("_Netcdf4Coordinates", number)]
+        if [_plain(value) for value in stored] != [["DIMENSION_SCALE"], [name], _plain(number)]:
             raise changed
         return [name]
     if "DIMENSION_LIST" not in attributes:
@@ -137,20 +142,21 @@ def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
     if kind is None or h5py.check_ref_dtype(kind) is not h5py.Reference:
         raise changed
     file = data.file.id
-    try:  # by handles: an object of each, `data.file[place]`, took half of the time of opening a file
+    try:  # by low-level handles, because `data.file[place]` takes half the time of opening a file
         scales = [h5py.h5r.dereference(r, file) for places in attributes["DIMENSION_LIST"] for r in places]
         names = [h5py.h5i.get_name(scale) if scale else None for scale in scales]
     except (ValueError, RuntimeError, OSError, LookupError):
         raise changed from None
-    told = [name.decode(errors="surrogateescape").removeprefix("/") for name in names if name]
-    if len(told) < len(names):
+    dimensions = [name.decode(errors="surrogateescape").removeprefix("/") for name in names if name]
+    if len(dimensions) < len(names):
         raise changed
-    return told
+    return dimensions
 
 
 def _blocks(data: h5py.Dataset) -> Iterator[Any]:
-    """The numbers of a variable as buffers, straight from the file where they lie in one piece."""
-    start, size = data.id.get_offset(), data.id.get_storage_size()
+    """Yields the numbers of a variable as buffers, read directly from the file if they are contiguous."""
+    start = data.id.get_offset()
+    size = data.id.get_storage_size()
     if start is None or data.dtype.byteorder == ">":
         yield np.ascontiguousarray(data[...], data.dtype.newbyteorder("<"))
         return
@@ -160,14 +166,14 @@ def _blocks(data: h5py.Dataset) -> Iterator[Any]:
 
 
 def _plain_attributes(attributes: Mapping[str, Any]) -> dict[str, Any]:
-    """Attributes without those of HDF5 and netCDF and the user's, each as a list of numbers or texts."""
+    """Attributes as lists of numbers or texts, without attributes of HDF5, netCDF and the user."""
     names = (name for name in attributes if name not in BOOKKEEPING and not is_users(name))
     plain = {name: _plain(attributes[name]) for name in names}
     return {name: value for name, value in plain.items() if (name, str(value)) != FILLED_WITH_NAN}
 
 
 def _plain(value: Any) -> Any:
-    """The value of an attribute as JSON has it: netCDF takes one number and a list of one for the same."""
+    """Value of an attribute as a list for JSON. A number and a list of one number are the same for netCDF."""
     if isinstance(value, h5py.Empty):
         return [""]
     array = np.atleast_1d(value)

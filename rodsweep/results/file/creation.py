@@ -1,4 +1,4 @@
-"""A new result file: netCDF-4-compatible HDF5 with every variable in its place; and what is added later."""
+"""Creation of a result file: netCDF-4-compatible HDF5 with every variable in place, and later additions."""
 
 import json
 from collections.abc import Callable, Mapping, Sequence
@@ -21,27 +21,29 @@ from .validation import FORMAT, PROGRAM
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What makes a file: the points, the layout, and the config that it answers."""
+    """Plan of a file: its points, its layout, and the config that it answers."""
 
     points: Points
     layout: Layout
     coordinates: dict[str, Array]
-    """Values of extra dimensions that have some, such as u."""
+    """Coordinates of extra dimensions that have some, such as u."""
     constants: Callable[[], tuple[Filled, ...]]
-    """Variables that are known before any point is solved; asked for once, where a file is created."""
+    """Variables known before any point is solved; called once, when a file is created."""
     config: dict[str, Any]
     """The resolved config."""
     attributes: dict[str, Any]
+    """Attributes of the file besides those of every result file."""
     flags: tuple[tuple[int, str], ...]
-    """Values and meanings of `status`, beside MISSING."""
+    """Values and meanings of `status`, without MISSING."""
     quantities: tuple[Filled, ...] = ()
-    """Those of an arm, which are coordinates of the points beside the parameters; or their dimensions."""
+    """Quantities of an arm. They are coordinates of the points besides the parameters, or dimensions of the
+    points."""
     chains: Chains | None = None
-    """The chains in which points start one from the other, where they do."""
+    """Chains of points; None if no point starts from another."""
     stretches: Stretches | None = None
-    """The stretches of points that are solved together, where they are."""
+    """Stretches of points that are solved at once; None if every point is solved alone."""
     afterwards: Callable[[Mapping[str, Any]], tuple[Filled, ...]] = lambda values: ()
-    """Variables that those of all points, by name, give at once: asked for when the last point is there."""
+    """Variables computed from the variables of all points, by name; called when no point is missing."""
 
     @property
     def dimensions(self) -> tuple[str, ...]:
@@ -50,12 +52,12 @@ class Plan:
 
     @property
     def fingerprint(self) -> str:
-        """What two files must share for the one to continue the other."""
+        """Fingerprint of config and points; a file can continue another only if both have the same."""
         return fingerprint_of(self.config, self.points.identity)
 
 
 def create_file(path: Path, plan: Plan) -> None:
-    """Writes the file that `plan` asks for, without any point."""
+    """Writes the file of a plan, without any point."""
     with h5py.File(path, "w") as file:
         _write_parameters(file, plan)
         for name, extent in plan.layout.extents.items():
@@ -74,7 +76,7 @@ def create_file(path: Path, plan: Plan) -> None:
 
 
 def add_variables(file: h5py.File, filled: Sequence[Filled]) -> None:
-    """Adds whole variables to an open file, with those of their dimensions that it does not have yet."""
+    """Adds complete variables to an open file, with coordinates of dimensions that the file lacks."""
     for variable, values in filled:
         for name, extent in zip(variable.extra, values.shape, strict=True):
             if name not in file:
@@ -84,8 +86,9 @@ def add_variables(file: h5py.File, filled: Sequence[Filled]) -> None:
 
 
 def _write_parameters(file: h5py.File, plan: Plan) -> None:
-    """What makes a point: dimensions of a grid, or all parameters along `point`."""
-    names, points = plan.layout.parameters, plan.points
+    """Writes the coordinates of the points: axes of a grid, or all parameters along `point`."""
+    names = plan.layout.parameters
+    points = plan.points
     for variable, values in plan.quantities:
         if is_axis(variable):
             _write_scale(file, variable.name, values, variable)
@@ -106,12 +109,12 @@ def _write_parameters(file: h5py.File, plan: Plan) -> None:
 
 
 def is_axis(variable: Variable) -> bool:
-    """Whether a variable is the coordinate of a dimension of its name."""
+    """Whether a variable is the coordinate of the dimension of its own name."""
     return variable.extra == (variable.name,)
 
 
 def _write_scale(file: h5py.File, name: str, values: NDArray[Any], variable: Variable | None = None) -> None:
-    """A dimension with its coordinate; variable: where that is in no table of dimensions."""
+    """Writes a dimension with its coordinate; variable: describes a dimension that is not in DIMENSIONS."""
     data = file.create_dataset(name, data=values)
     data.make_scale(name)
     if variable is None:
@@ -121,13 +124,13 @@ def _write_scale(file: h5py.File, name: str, values: NDArray[Any], variable: Var
 
 
 def _name(data: h5py.Dataset, name: str) -> None:
-    """What the table says of a parameter or a dimension."""
+    """Adds unit and long name of a parameter or a dimension, from DIMENSIONS."""
     units, long_name = DIMENSIONS[name]
     data.attrs.update(units=units, long_name=long_name)
 
 
 def _contiguous(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> h5py.Dataset:
-    """A dataset in one piece that has its place in the file, filled, from the start."""
+    """Contiguous dataset, allocated and filled on creation, so that its place in the file is final."""
     creation = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
     creation.set_layout(h5py.h5d.CONTIGUOUS)
     creation.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
@@ -138,7 +141,7 @@ def _contiguous(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> 
 
 
 def _describe(file: h5py.File, data: h5py.Dataset, variable: Variable, dimensions: Sequence[str]) -> None:
-    """What the table says of a variable, and its dimensions."""
+    """Adds unit, long name, flags and dimensions of a variable."""
     data.attrs.update(units=variable.units, long_name=variable.long_name)
     if variable.typed:
         data.attrs[TYPED] = variable.typed
@@ -151,5 +154,6 @@ def _describe(file: h5py.File, data: h5py.Dataset, variable: Variable, dimension
 
 
 def _describe_flags(data: h5py.Dataset, flags: Sequence[tuple[int, str]]) -> None:
+    """Adds the values and meanings of a word variable."""
     data.attrs["flag_values"] = np.array([value for value, _ in flags], dtype="i1")
     data.attrs["flag_meanings"] = " ".join(meaning for _, meaning in flags)

@@ -1,6 +1,6 @@
-"""A result file exchanged for another in one instant, under the lock of one run or merge at a time.
+"""Atomic exchange of a result file, under a lock that admits one run or merge at a time.
 
-The new file is made beside the journals, is sealed and on the disk proper before it takes the name.
+The new file is written beside the journals. It is sealed and synced to disk before it takes the name.
 """
 
 import os
@@ -15,11 +15,11 @@ from ..run.lock import Lock
 from .seal import seal
 
 Identity = tuple[int, ...]
-"""What changes where a file is exchanged for another of its name, or written to; empty without a file."""
+"""Numbers that change when a file is replaced or written to; empty if there is no file."""
 
 
 def identity(path: Path) -> Identity:
-    """The identity of the file that has a name."""
+    """Identity of the file at a path."""
     try:
         status = path.stat()
     except OSError:
@@ -29,7 +29,7 @@ def identity(path: Path) -> Identity:
 
 @contextmanager
 def disk_refusals(path: Path, kept: Callable[[], str] = str) -> Iterator[None]:
-    """What the disk refuses here (HDF5: RuntimeError) is EnvironmentLacks; `kept` says what is not lost."""
+    """Turns errors of the disk (RuntimeError from HDF5) into EnvironmentLacks; kept: what is not lost."""
     try:
         yield
     except (OSError, RuntimeError) as error:
@@ -38,22 +38,25 @@ def disk_refusals(path: Path, kept: Callable[[], str] = str) -> Iterator[None]:
 
 
 class Exchange:
-    """The right to replace a result file, which need not exist yet, until it is closed."""
+    """Exclusive right to replace a result file, which need not exist yet, until it is closed."""
 
     def __init__(self, path: Path):
-        """Takes the lock; InputError if another run keeps it."""
-        self.path, self.journals = path, journal_directory(path)
+        """Takes the lock; raises InputError if another run holds it."""
+        self.path = path
+        self.journals = journal_directory(path)
         self.copy = self.journals / "next.h5"
         path.parent.mkdir(parents=True, exist_ok=True)
         self.lock = Lock(self.journals, path)
         self.left: Identity = ()
-        """The file as it was last checked or written here."""
+        """Identity of the file when it was last checked or written by this exchange."""
 
     @contextmanager
     def replacing(self, source: Path | None) -> Iterator[Path]:
-        """The path of a copy of `source`, or of nothing, which becomes the file at the end."""
-        self.journals.mkdir(parents=True, exist_ok=True)  # it may have been moved or deleted meanwhile
-        self.copy.unlink(missing_ok=True)  # it may be a link
+        """Yields the path of a copy of `source`, or of no file, which replaces the file at the end."""
+        self.journals.mkdir(
+            parents=True, exist_ok=True
+        )  # the directory may have been moved or deleted meanwhile
+        self.copy.unlink(missing_ok=True)  # a link would redirect the writing
         if source:
             shutil.copyfile(source, self.copy)
         yield self.copy
@@ -67,7 +70,7 @@ class Exchange:
         os.close(directory)
 
     def close(self) -> None:
-        """Gives the lock back and removes the journal directory where nothing is left in it."""
+        """Releases the lock and removes the journal directory if it is empty."""
         with suppress(OSError):
             self.copy.unlink()
         self.lock.release()

@@ -1,4 +1,4 @@
-"""The file of a benchmark: a group of columns for each study, and where they were measured."""
+"""File of a benchmark: a group of columns for each study, and attributes of the machine."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -12,10 +12,11 @@ Table = dict[str, Sequence[str] | Sequence[float]]
 """Columns of equal length, by name."""
 
 UNITS = {"seconds": "s", "error": "1"}
+"""Units of the columns that have one."""
 
 
 def write_measurements(path: Path, tables: Mapping[str, Table], attributes: Mapping[str, str]) -> None:
-    """Writes /STUDY/COLUMN, each of shape (measurement,); EnvironmentLacks where it cannot be written."""
+    """Writes /STUDY/COLUMN, each (measurement,); raises EnvironmentLacks if the file cannot be written."""
     try:
         with h5py.File(path, "w") as file:
             file.attrs.update(attributes)

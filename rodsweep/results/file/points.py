@@ -1,7 +1,8 @@
-"""The points of a closed result file, read and written by arithmetic: every variable lies in one piece.
+"""Points of a closed result file, read and written at computed offsets: every variable is contiguous.
 
-Not through HDF5, whose blocks follow the axes of a grid: along the first, which may have one value only.
-Nothing is mapped: pages that are touched would count as this process's memory, in the end the whole file.
+HDF5 is not used, because its blocks follow the axes of a grid, and the first axis may have a single value.
+The file is not mapped into memory, because touched pages would count as memory of this process, finally the
+whole file.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -18,15 +19,18 @@ from ...sweep.points.ranges import IndexRange, joined
 from ..layouts.variables import MISSING, Layout
 
 POINTS_AT_ONCE = 1 << 16
+"""Largest number of points in a block that is read at once."""
 BYTES_AT_ONCE = 1 << 26
-"""How many points are read together, and how many bytes of them."""
+"""Largest size of such a block, in bytes, beyond which it has fewer points."""
 
 
 def statuses(path: Path, at_once: int | None = None) -> Iterator[tuple[int, np.ndarray]]:
-    """(flat index of the first, statuses) of all points, a block at a time."""
+    """Yields (flat index of the first point, statuses) of all points, a block at a time, each (n,)."""
     with h5py.File(path, "r") as file:
         data = file["status"]
-        offset, kind, count = data.id.get_offset(), data.dtype, data.size
+        offset = data.id.get_offset()
+        kind = data.dtype
+        count = data.size
     at_once = at_once or POINTS_AT_ONCE
     with path.open("rb") as stream:
         for first in range(0, count, at_once):
@@ -35,7 +39,7 @@ def statuses(path: Path, at_once: int | None = None) -> Iterator[tuple[int, np.n
 
 
 def missing_ranges(path: Path) -> list[IndexRange]:
-    """Ranges of flat indices that are not computed yet, in order."""
+    """Ranges of flat indices of points that are not computed yet, in order."""
     ranges: list[IndexRange] = []
     for start, status in statuses(path):
         edges = start + np.flatnonzero(np.diff(status == MISSING, prepend=False, append=False))
@@ -44,7 +48,7 @@ def missing_ranges(path: Path) -> list[IndexRange]:
 
 
 def points_to_add(path: Path, other: Path, layout: Layout) -> Iterator[np.ndarray]:
-    """Records, (n,) at a time, of points that `other` has and `path`, a file of that layout, misses."""
+    """Yields records, (n,), of points that the file `other` has and the file `path` lacks."""
     at_once = _at_once(layout)
     pairs = zip(statuses(path, at_once), statuses(other, at_once), strict=True)
     yield from _read(
@@ -55,18 +59,18 @@ def points_to_add(path: Path, other: Path, layout: Layout) -> Iterator[np.ndarra
 
 
 def stored_points(path: Path, layout: Layout) -> Iterator[np.ndarray]:
-    """Records, (n,) at a time, of all points that a file of that layout has."""
+    """Yields records, (n,), of all computed points of a file with this layout."""
     blocks = statuses(path, _at_once(layout))
     yield from _read(path, layout, ((first, status != MISSING) for first, status in blocks))
 
 
 def _at_once(layout: Layout) -> int:
-    """How many points of a layout are read together."""
+    """Number of points of a layout that are read at once."""
     return min(POINTS_AT_ONCE, BYTES_AT_ONCE // layout.record.itemsize + 1)
 
 
 def _read(path: Path, layout: Layout, blocks: Iterable[tuple[int, np.ndarray]]) -> Iterator[np.ndarray]:
-    """Records of the points that are wanted of each block, given as (flat index of the first, which)."""
+    """Yields records of selected points; blocks are (flat index of the first point, selection)."""
     offsets = _offsets(path, layout)
     with path.open("rb") as stream:
         for first, wanted in blocks:
@@ -82,7 +86,7 @@ def _read(path: Path, layout: Layout, blocks: Iterable[tuple[int, np.ndarray]]) 
 
 
 def points_at(path: Path, index: np.ndarray, layout: Layout) -> np.ndarray:
-    """Records, (n,), of a file of that layout at flat indices, (n,)."""
+    """Records, (n,), of a file with this layout at flat indices, (n,)."""
     records = np.empty(len(index), layout.record)
     records["index"] = index
     offsets = _offsets(path, layout)
@@ -96,14 +100,15 @@ def points_at(path: Path, index: np.ndarray, layout: Layout) -> np.ndarray:
 
 
 def parameters_of(path: Path, layout: Layout) -> Points:
-    """The points of a file of that layout, made or not."""
+    """All points of a file with this layout, computed or not."""
     with h5py.File(path, "r") as file:
         return points_in(file, layout)
 
 
 def points_in(file: h5py.File, layout: Layout) -> Points:
-    """The points of an open file: the axes of a grid, or the parameters of all points."""
-    names, over = layout.parameters, {name: file[name][...] for name in layout.over}
+    """Points of an open file: axes of a grid, or parameters of all points."""
+    names = layout.parameters
+    over = {name: file[name][...] for name in layout.over}
     if not over:
         return Points(names, tuple(file[name][...] for name in names), is_grid="point" not in file)
     columns = tuple(np.broadcast_to(table, file["status"].shape).ravel() for table in on_grid(file, layout))
@@ -111,7 +116,7 @@ def points_in(file: h5py.File, layout: Layout) -> Points:
 
 
 def on_grid(variables: Mapping[str, Any], layout: Layout) -> Iterator[np.ndarray]:
-    """Every parameter on a grid over an arm's quantities, of its shape or along its own axis."""
+    """Yields every parameter on a grid over an arm's quantities: in its shape, or along the own axis."""
     for name in layout.parameters:
         along = [-1 if axis == name else 1 for axis in layout.over]
         table = variables[name][...]
@@ -119,13 +124,18 @@ def on_grid(variables: Mapping[str, Any], layout: Layout) -> Iterator[np.ndarray
 
 
 def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> bool:
-    """Writes records, (n,) in any order, into the variables, neighbours by one call; whether any were."""
+    """Writes records, (n,) in any order, into the variables; returns whether there was any record.
+
+    Neighbouring points are written by a single call.
+    """
     offsets = _offsets(path, layout)
     any_written = False
     with path.open("r+b") as stream:
         for records in filter(len, blocks):
             any_written = True
-            ordered = records[np.argsort(records["index"], kind="stable")]  # of a point twice, the last stays
+            ordered = records[
+                np.argsort(records["index"], kind="stable")
+            ]  # stable: the last record of a point wins
             index = ordered["index"]
             edges = [0, *map(int, np.flatnonzero(np.diff(index) != 1) + 1), len(index)]
             runs = [(a, b, int(index[a])) for a, b in pairwise(edges)]
@@ -138,6 +148,6 @@ def write_points(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> bo
 
 
 def _offsets(path: Path, layout: Layout) -> dict[str, int]:
-    """Where in the file each variable begins."""
+    """Offset of each variable in the file, in bytes."""
     with h5py.File(path, "r") as file:
         return {variable.name: file[variable.name].id.get_offset() for variable in layout.variables}

@@ -1,4 +1,4 @@
-"""Where a result came from: versions, commit, hosts, times and BLAS kernels, as attributes of the file."""
+"""Provenance of a result: versions, commit, hosts, times and BLAS kernels, as attributes of the file."""
 
 import platform
 import subprocess
@@ -14,24 +14,26 @@ import numpy as np
 
 from ... import __version__
 
-MOST_RANKS_TOLD, LONGEST_ATTRIBUTE = 10_000, 60_000
-"""Ranks whose share is stored, and characters of an attribute: HDF5 allows one 64 kB."""
+MAX_RANK_SHARES = 10_000
+"""Largest number of ranks whose share of the work is stored, so that the attribute stays below 64 kB."""
+LONGEST_ATTRIBUTE = 60_000
+"""Largest number of characters of an attribute; HDF5 allows 64 kB."""
 RANK_SHARES = ("rank_points", "rank_busy_seconds", "rank_idle_seconds")
-"""Attributes of what each rank of the last run did."""
+"""Attributes with the work of each rank of the last run."""
 KERNELS = "blas_kernels"
-"""The attribute with the kernels that computed the points of a file over all its runs: one kernel a line,
-as `rodsweep.solve.backend.blas_kernel` calls it."""
+"""Attribute with the BLAS kernels that computed the points of a file in all its runs, one kernel a line,
+named by `rodsweep.solve.backend.blas_kernel`."""
 KERNEL_NOT_RECORDED = "unknown"
-"""The kernel of points that an earlier version wrote, which did not ask."""
+"""Kernel of points that were written by an earlier version, which did not record kernels."""
 
 
 def now() -> str:
-    """The time in ISO 8601, UTC."""
+    """Current time in ISO 8601, UTC."""
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 
 def provenance() -> dict[str, str]:
-    """Versions of everything that is not the solver's, and the commit of the source tree."""
+    """Versions of everything but the solver's libraries, and the commit of the source tree."""
     return {
         "rodsweep_version": __version__,
         "git_commit": git_commit(),
@@ -46,17 +48,17 @@ def provenance() -> dict[str, str]:
 
 
 def kernels_of(attributes: Mapping[str, Any]) -> list[str]:
-    """The kernels that a file's attributes name."""
+    """Kernels named by the attributes of a file."""
     return str(attributes.get(KERNELS, KERNEL_NOT_RECORDED)).splitlines()
 
 
 def united_kernels(*several: Iterable[str]) -> str:
-    """The attribute of a file with the points of all these kernels."""
+    """Value of the attribute for a file with points of all these kernels."""
     return "\n".join(sorted({kernel for kernels in several for kernel in kernels}))
 
 
 def kernels_sentence(attribute: str) -> str:
-    """A sentence where a file has, or will have, points of more than one kernel; else empty."""
+    """Warning that points of a file were computed by several kernels; empty for a single kernel."""
     kernels = attribute.splitlines()
     if len(kernels) < 2:
         return ""
@@ -67,7 +69,7 @@ def kernels_sentence(attribute: str) -> str:
 
 
 def merged_history(several: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """By whom the points of several files were computed: the attributes of their merged file, from theirs."""
+    """Attributes of a merged file about the computation of its points, from the attributes of its sources."""
     history: dict[str, Any] = {
         "shard": "",
         KERNELS: united_kernels(*map(kernels_of, several))[:LONGEST_ATTRIBUTE],
@@ -84,13 +86,13 @@ def merged_history(several: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     }
     for name in RANK_SHARES:
         values = [np.atleast_1d(run[name]) for run in runs if name in run]
-        history |= {name: np.concatenate(values)[:MOST_RANKS_TOLD]} if values else {}
+        history |= {name: np.concatenate(values)[:MAX_RANK_SHARES]} if values else {}
     return history
 
 
 @cache
 def git_commit() -> str:
-    """The commit of the checkout that this code runs from, marked if it was changed; or unknown."""
+    """Commit of the checkout that contains this code, marked if files were changed; or unknown."""
     root = Path(__file__).resolve().parents[3]
     if not (root / ".git").exists():
         return "unknown"
@@ -108,7 +110,7 @@ def git_commit() -> str:
 
 
 def cpu_name() -> str:
-    """The processor's name, as the system gives it."""
+    """Name of the processor as the system reports it."""
     try:
         for line in Path("/proc/cpuinfo").read_text().splitlines():
             if line.startswith("model name"):

@@ -1,6 +1,6 @@
-"""What a run has done so far: its file, and the points in its journals that are not in the file yet.
+"""Current state of a run: its file, and the points in its journals that are not in the file yet.
 
-Only read here, so that a run that goes on is not disturbed, and needs no lock.
+Nothing is written, so that a running run is not disturbed and no lock is needed.
 """
 
 import os
@@ -20,30 +20,32 @@ from .points import missing_ranges, write_points
 from .provenance import now
 from .validation import Header, is_ours, read_header, reading
 
-FOLDS_MET = 20
-"""How often a file is read again because a run folded its journals in meanwhile: folds are seconds apart."""
+MAX_REREADS = 20
+"""Largest number of readings of a file that a run keeps replacing. Replacements are seconds apart, so that
+more of them point to a fault."""
 SNAPSHOT = "snapshot"
-"""The attribute with the time of a snapshot, which marks a file as one."""
+"""Attribute with the time of a snapshot, which marks a file as a snapshot."""
 
 Found = TypeVar("Found")
 
 
 def unfolded(path: Path, read: Callable[[], Found]) -> Found:
-    """What `read` makes of a file and its journals: again, where a run folds these in meanwhile.
+    """Result of `read`, which reads a file and its journals; repeated if a run folds journals in meanwhile.
 
-    A fold exchanges the file before it drops the journals: where the file is the same, none was dropped.
-    EnvironmentLacks where the file never stays as it is.
+    A fold replaces the file before it deletes the journals. If the file is the same before and after the
+    reading, no journal was deleted. Raises EnvironmentLacks if the file keeps changing.
     """
-    for _ in range(FOLDS_MET):
-        runs, before = journal_directory(path).is_dir(), identity(path)
+    for _ in range(MAX_REREADS):
+        has_journals = journal_directory(path).is_dir()
+        before = identity(path)
         found = read()
-        if not runs or identity(path) == before:
+        if not has_journals or identity(path) == before:
             return found
-    raise EnvironmentLacks(f"{path} is exchanged again and again, so that it cannot be read; try again")
+    raise EnvironmentLacks(f"{path} cannot be read, because a run keeps replacing it; try again")
 
 
 def journalled_points(header: Header, status: np.ndarray) -> np.ndarray:
-    """Records, (n,), of the points that are in a file's journals and, by `status`, (points,), not in it."""
+    """Records, (n,), of journalled points that are missing in the file by `status`, (points,)."""
     found = np.empty(0, header.layout.record)
     directory = journal_directory(header.path)
     if not directory.is_dir():
@@ -51,21 +53,21 @@ def journalled_points(header: Header, status: np.ndarray) -> np.ndarray:
     missing = status == MISSING
     blocks = read_journals(directory, header.layout, header.fingerprint, len(status))
     found = np.concatenate([found, *(block[missing[block["index"]]] for block in blocks)])
-    _, last = np.unique(found["index"][::-1], return_index=True)  # of a point twice, the last stays
+    _, last = np.unique(found["index"][::-1], return_index=True)  # the last record of a point wins
     return found[::-1][last]
 
 
 def put_in(values: np.ndarray, name: str, records: np.ndarray) -> None:
-    """Puts what records, (n,), have of a variable into its values, of the points' shape and its own."""
+    """Writes records, (n,), of a variable into its values; these have the shape of the points and its own."""
     inner = records[name].shape[1:]
     values.reshape(-1, *inner)[records["index"]] = records[name]
 
 
 def take_snapshot(path: Path, output: Path) -> tuple[int, int]:
-    """Writes what is done of a run so far into a file of its own; returns (points that it has, all points).
+    """Writes the points computed so far into a separate file; returns (points in it, all points).
 
-    InputError if `path` is no result, or `output` is a file that is no snapshot; EnvironmentLacks where the
-    disk refuses.
+    Raises InputError if `path` is no result, or if `output` exists and is no snapshot. Raises
+    EnvironmentLacks if the disk fails.
     """
     read_header(path)
     if output.exists():
@@ -82,7 +84,7 @@ def take_snapshot(path: Path, output: Path) -> tuple[int, int]:
 
 
 def _copied(path: Path, exchange: Exchange) -> tuple[int, int]:
-    """Exchanges the file for a copy of the one at `path` with its journals folded in."""
+    """Replaces the snapshot by a copy of the file at `path` with its journals folded in."""
     header = read_header(path)
     with disk_refusals(exchange.path), exchange.replacing(path) as copy:
         blocks = read_journals(journal_directory(path), header.layout, header.fingerprint, header.points)
@@ -94,7 +96,7 @@ def _copied(path: Path, exchange: Exchange) -> tuple[int, int]:
 
 
 def _is_snapshot(path: Path) -> bool:
-    """Whether a file is a snapshot that no run has continued since."""
+    """Whether a file is a snapshot that no run has continued."""
     if not is_ours(path):
         return False
     with reading(path), h5py.File(path, "r") as file:

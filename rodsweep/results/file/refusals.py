@@ -1,4 +1,4 @@
-"""Why a run may not take a file for its own, or not begin it, and what the user may do about that."""
+"""Refusals at the start of a run: no room, or another file in the way; and the user's options."""
 
 import shutil
 from pathlib import Path
@@ -9,14 +9,16 @@ from .combination.extension import extension_of
 from .combination.identity import change_between
 from .creation import Plan
 from .points import parameters_of
-from .validation import Header, NotWhole, read_header
+from .validation import Header, IncompleteFile, read_header
 
-SPACE_FACTOR, SPACE_FIXED = 3, 300_000
-"""Room that a run needs: the file, the journals and the copy in units of the file, and bytes besides."""
+SPACE_FACTOR = 3
+"""Room that a run needs, in units of its file: for the file, the journals, and the copy that replaces it."""
+SPACE_FIXED = 300_000
+"""Room that a run needs besides, in bytes, for attributes, coordinates and checkpoints."""
 
 
 def require_room(path: Path, plan: Plan) -> None:
-    """EnvironmentLacks unless the file, its journals and the copy that replaces it have room."""
+    """Raises EnvironmentLacks unless the disk has room for the file, its journals and its copy."""
     size = SPACE_FACTOR * plan.points.count * (plan.layout.bytes_per_point + 12) + SPACE_FIXED
     free = shutil.disk_usage(path.parent).free
     if free < size:
@@ -27,29 +29,29 @@ def require_room(path: Path, plan: Plan) -> None:
 
 
 def header_in_the_way(path: Path, plan: Plan, journals: Path) -> Header:
-    """The header of an existing file where a plan's is to be; InputError unless it is a whole result."""
+    """Header of an existing file at the path of a plan; raises InputError unless it is a complete result."""
     if not path.is_file():
         raise InputError(f"{path} is not a file; choose another with -o")
     try:
         return read_header(path)
-    except NotWhole as error:
+    except IncompleteFile as error:
         raise InputError(f"{error}; it is left as it is: {_ways_out(plan, journals)}") from None
 
 
 def refuse_other(header: Header, plan: Plan, journals: Path) -> None:
-    """Refuses a file that was made for something else than the plan."""
+    """Refuses a file that was made for another config than the plan's."""
     change = change_between(header.config, plan.config)
     ways = _ways_out(plan, journals)
     try:
         extension_of(header, parameters_of(header.path, header.layout), plan)
         ways += "; --extend computes what it lacks"
-    except InputError:  # its config is not contained in ours
+    except InputError:  # the plan lacks points or results of the file
         pass
     raise InputError(f"{header.path} was made from another config ({change}); {ways}")
 
 
 def _ways_out(plan: Plan, journals: Path) -> str:
-    """What may be done about a file that stands in the way of a run."""
+    """What the user can do about a file in the way of a run."""
     if journals_of(journals, plan.fingerprint):
         return f"move it away, and the same command takes the points that wait in {journals}"
     return "choose another file with -o, or replace it with --fresh"

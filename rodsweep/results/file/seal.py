@@ -1,9 +1,10 @@
-"""The seal of a result file, in two parts: of its content, and of its bytes.
+"""Seal of a result file in two parts: digests of its content, and a checksum of its HDF5 structures.
 
-The attribute `seal` has a digest of every variable and attribute (`rodsweep.results.file.content`), by which
-a change is noticed whichever program made it. Behind HDF5's own end, where other programs do not see it, lies
-a checksum of HDF5's structures: a flipped bit in those is an endless loop or a crash of HDF5, so they are
-compared before HDF5 reads the file. A program that changes the file by HDF5 takes this checksum off.
+The attribute `seal` has a digest of every variable and attribute (`rodsweep.results.file.content`), which
+shows a change by any program. A checksum of HDF5's structures lies behind HDF5's own end of the file, where
+other programs do not see it. A flipped bit in the structures can make HDF5 loop for ever or crash, so that
+the checksum is compared before HDF5 reads the file. A program that changes the file by HDF5 removes the
+checksum.
 """
 
 import json
@@ -18,26 +19,31 @@ import h5py
 from .content import SEAL, digests_of
 
 FRAME_HEAD = b"\nrodsweep seal 2 "
+"""First bytes of the checksum, behind HDF5's end of the file."""
 FORMER_HEAD = b"\nrodsweep seal 1 "
-"""Of files of format 4 and before, which are refused by their format."""
+"""First bytes of the checksum in files of format 4 and before, which are refused by their format."""
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+"""First bytes of every HDF5 file."""
 END_AT = {0: 40, 1: 44, 2: 28, 3: 28}
-"""Where the superblock of each version has the end of the file, in eight bytes."""
+"""Offset, by version of the superblock, of the eight bytes with HDF5's end of the file."""
 LONGEST_FRAME = 100_000
-"""Bytes of the checksum with the places of the numbers that it leaves out."""
+"""Largest size, in bytes, of the checksum with the places of the numbers that it leaves out."""
 BYTES_A_READ = 1 << 20
+"""Bytes read at once, which bounds the memory."""
 SMALL = 1 << 16
-"""Bytes of a variable up to which the frame has its numbers too: axes, and what is read at every look."""
+"""Largest size, in bytes, of a variable whose numbers the checksum includes: axes, and all that every opening
+reads."""
 
 Piece = tuple[int, int]
+"""(offset, size) in bytes."""
 
 
 class BrokenSeal(ValueError):
-    """Why a file is not as it was written, as the rest of a sentence."""
+    """Difference of a file from its seal; the message is a clause."""
 
 
 def seal(path: Path) -> None:
-    """Puts new seals on a closed file that rodsweep has just written."""
+    """Adds new seals to a closed file that rodsweep has just written."""
     with h5py.File(path, "r+") as file:
         file.attrs[SEAL] = json.dumps(digests_of(file))
     with h5py.File(path, "r") as file:
@@ -51,12 +57,13 @@ def seal(path: Path) -> None:
 
 
 def check_frame(path: Path) -> bool:
-    """Whether HDF5's structures are as they were sealed; False where another program took the checksum off.
+    """Whether HDF5's structures agree with their checksum; False if another program has removed the checksum.
 
-    BrokenSeal where they are not, or OSError. Takes a millisecond.
+    Raises BrokenSeal if they differ, or OSError. Takes a millisecond.
     """
     with path.open("rb") as stream:
-        end, size = _end(stream), os.fstat(stream.fileno()).st_size
+        end = _end(stream)
+        size = os.fstat(stream.fileno()).st_size
         if size < end:
             raise BrokenSeal(f"it ends after {size} of {end} bytes")
         stream.seek(end)
@@ -77,7 +84,7 @@ def check_frame(path: Path) -> bool:
 
 
 def _end(stream: BinaryIO) -> int:
-    """Where HDF5 says that the file ends."""
+    """HDF5's end of the file, from the superblock."""
     stream.seek(0)
     head = stream.read(64)
     if not head.startswith(HDF5_SIGNATURE) or len(head) < 64 or head[8] not in END_AT:
@@ -87,14 +94,14 @@ def _end(stream: BinaryIO) -> int:
 
 
 def _large_pieces(file: h5py.File) -> list[Piece]:
-    """(start, bytes) of the numbers of every variable that lies in one large piece, in order."""
+    """(offset, size) of the numbers of every large contiguous variable, in order."""
     variables = [data for data in map(file.get, file) if isinstance(data, h5py.Dataset)]
     places = {(data.id.get_offset(), data.id.get_storage_size()) for data in variables}
     return sorted((start, size) for start, size in places if start is not None and size > SMALL)
 
 
 def _between(pieces: list[Piece], end: int) -> Iterator[Piece]:
-    """What lies before, between and behind the pieces."""
+    """Yields the pieces before, between and behind the given pieces."""
     at = 0
     for start, size in [*pieces, (end, 0)]:
         if not 0 <= at <= start <= end:
@@ -104,7 +111,7 @@ def _between(pieces: list[Piece], end: int) -> Iterator[Piece]:
 
 
 def _checksum(stream: BinaryIO, pieces: Iterator[Piece]) -> int:
-    """The CRC-32 of pieces of a file, one after another."""
+    """CRC-32 of pieces of a file, one after another."""
     checksum = 0
     for start, size in pieces:
         stream.seek(start)

@@ -1,9 +1,9 @@
-"""The result file of a run: created whole at the start, replaced whole when points are folded in.
+"""Result file of a run: created complete at the start, replaced as a whole when points are folded in.
 
-The file is netCDF-4-compatible HDF5 and is only ever exchanged by a rename, so it opens at any
-instant. What ranks finish goes to the journal beside it (`rodsweep.results.run.journal`) and is folded
-in at the end of a run, or at the start of the next one where a run was killed. Journals are recognised by
-the fingerprint of their points, whatever has become of the file; others are set aside, never deleted.
+The file is netCDF-4-compatible HDF5. It is only ever replaced by a rename, so that it opens at any instant.
+Ranks write finished points to journals beside it (`rodsweep.results.run.journal`). Journals are folded in at
+the end of a run, or at the start of the next run if a run was killed. A journal is recognised by the
+fingerprint of its points, whatever happened to the file; foreign journals are moved away, never deleted.
 """
 
 import json
@@ -40,28 +40,30 @@ from .refusals import header_in_the_way, refuse_other, require_room
 from .validation import Header, is_ours, reading
 
 BEFORE = "before-*.h5"
-"""Files beside the journals as they were before an extension that is not complete yet."""
+"""Copies, beside the journals, of the file before an extension that is not complete yet."""
 
 Additions = Callable[[h5py.File], Sequence[Filled]]
-"""Whole variables that a file gets, from its own."""
+"""Function from the open file to complete variables that are added to it."""
 
 
-def nothing(file: h5py.File) -> Sequence[Filled]:
+def no_additions(file: h5py.File) -> Sequence[Filled]:
     """No variables."""
     return ()
 
 
 class Store:
-    """A result file under one run; only the first rank has one, and only one run at a time."""
+    """Result file of one run. Only the first rank has a store, and a file has one run at a time."""
 
     def __init__(self, path: Path, plan: Plan, fresh: bool = False, extend: bool = False):
-        """Opens the file that continues `plan`, or creates it; InputError if it is another's.
+        """Opens the file of a plan or creates it; raises InputError if the file belongs to another plan.
 
-        extend: whether the file of a smaller config becomes that of the plan, with the points that stay.
+        fresh: replaces a result of any plan. extend: extends the file of a smaller config to the plan, with
+        the points that stay.
         """
-        self.path, self.plan = path, plan
+        self.path = path
+        self.plan = plan
         self.notes: list[str] = []
-        """What is to be said of points that are computed anew, of journals, and of a file that was moved."""
+        """Notes for the user about points that are computed again, journals, and a file that was moved."""
         with disk_refusals(path, self._kept):
             self.exchange = Exchange(path)
             self.journals = self.exchange.journals
@@ -84,10 +86,10 @@ class Store:
             else:
                 refuse_other(header, self.plan, self.journals)
         self._set_aside(other_journals(self.journals, self.plan.fingerprint), "journals of other points")
-        drop_files(self.journals, JOURNALS)  # what is left has no points
+        drop_files(self.journals, JOURNALS)  # the remaining journals have no points
 
     def _create(self, fresh: bool) -> None:
-        """Makes the file of the plan, with the points of its journals unless all is to be computed anew."""
+        """Creates the file of the plan, with the points of its journals unless `fresh`."""
         if self.path.exists() and not is_ours(self.path):
             raise InputError(f"{self.path} is no result file, so --fresh leaves it alone")
         require_room(self.path, self.plan)
@@ -103,7 +105,7 @@ class Store:
             self.notes.append("the file was gone, and is made anew with the points of its journal")
 
     def _extend(self, header: Header) -> None:
-        """Exchanges the file of a smaller config for that of the plan, with all points that stay."""
+        """Replaces the file of a smaller config by the file of the plan, with all points that stay."""
         points = parameters_of(self.path, header.layout)
         extension = extension_of(header, points, self.plan)
         require_room(self.path, self.plan)
@@ -127,51 +129,51 @@ class Store:
         self.fold({})
 
     def _keep_before(self) -> Path:
-        """Copies the file beside the journals, where it stays until the extension is complete."""
+        """Copies the file beside the journals, where the copy stays until the extension is complete."""
         number = 1 + sum(1 for _ in self.journals.glob(BEFORE))
         copy = self.journals / BEFORE.replace("*", str(number))
         shutil.copyfile(self.path, copy)
         return copy
 
     def _set_aside(self, paths: Sequence[Path], what: str) -> None:
-        """Moves what a later run could use, and this one does not, out of the way."""
+        """Moves files away that a later run could use and this run does not."""
         if paths:
             self.notes.append(f"{what} are kept in {set_aside(self.journals, paths)}")
 
     def _new_title(self) -> dict[str, Any]:
-        """The attributes that change where the config has another title than the file; else none."""
+        """Attributes to change if the config has another title than the file; empty otherwise."""
         names = {name: self.plan.attributes.get(name, "") for name in ("title", "config")}
         if names["title"] == self.attributes().get("title", ""):
             return {}
         return names | {"config_resolved": json.dumps(self.plan.config)}
 
     def attributes(self) -> dict[str, Any]:
-        """What the file says of itself."""
+        """Attributes of the file."""
         with reading(self.path), h5py.File(self.path, "r") as file:
             return dict(file.attrs)
 
     def missing(self) -> list[IndexRange]:
-        """Ranges of flat indices that are not computed yet, in order."""
+        """Ranges of flat indices of points that are not computed yet, in order."""
         with reading(self.path):
             return missing_ranges(self.path)
 
     def finish(self, attributes: dict[str, Any], variables: Sequence[Filled] = ()) -> None:
-        """Folds, and adds whole variables with those that the points of the whole file give at once."""
+        """Folds journals in, and adds variables, also those computed from all points of the complete file."""
         self.fold(attributes, lambda file: (*variables, *self.plan.afterwards(file)))
 
-    def fold(self, attributes: dict[str, Any], additions: Additions = nothing) -> None:
-        """Puts journalled points, attributes and whole variables into the file at once; drops journals."""
+    def fold(self, attributes: dict[str, Any], additions: Additions = no_additions) -> None:
+        """Adds journalled points, attributes and variables by one replacement; deletes the journals."""
         plan = self.plan
         with disk_refusals(self.path, self._kept):
-            self._look_again()
+            self._restore_if_gone()
         blocks = read_journals(self.journals, plan.layout, plan.fingerprint, plan.points.count)
         self._fold_blocks(blocks, plan.layout, plan.fingerprint, attributes, additions)
         if not self.missing():
             for pattern in (CHECKPOINTS, BEFORE):
                 drop_files(self.journals, pattern)
 
-    def _look_again(self) -> None:
-        """Makes the file anew where it was moved or deleted; EnvironmentLacks where another is there."""
+    def _restore_if_gone(self) -> None:
+        """Creates the file again if it was moved or deleted; EnvironmentLacks if another file is there."""
         if identity(self.path) == self.exchange.left:
             return
         if not self.path.exists():
@@ -192,8 +194,9 @@ class Store:
         layout: Layout,
         fingerprint: str,
         attributes: dict[str, Any],
-        additions: Additions = nothing,
+        additions: Additions = no_additions,
     ) -> None:
+        """Writes blocks of points of this fingerprint into the file, and deletes their journals."""
         with disk_refusals(self.path, self._kept):
             journals = journals_of(self.journals, fingerprint)
             first = next(blocks, None)
@@ -209,11 +212,11 @@ class Store:
                 journal.unlink(missing_ok=True)
 
     def _kept(self) -> str:
-        """How a refusal goes on where points wait in the journals."""
+        """Clause of a refusal about points that wait in the journals; empty without points."""
         return kept_sentence(journal_directory(self.path), self.plan.fingerprint)
 
     def status_counts(self) -> dict[str, int]:
-        """How many points have each status, by the name of the status."""
+        """Number of points with each status, by the name of the status."""
         names = {MISSING: "missing", **dict(self.plan.flags)}
         counts: dict[str, int] = {}
         with reading(self.path):
@@ -228,7 +231,7 @@ class Store:
         self.exchange.close()
 
     def _header(self) -> Header:
-        """The header of the existing file; InputError unless it is a whole result."""
+        """Header of the existing file; raises InputError unless it is a complete result."""
         left = identity(self.path)
         header = header_in_the_way(self.path, self.plan, self.journals)
         self.exchange.left = left

@@ -1,4 +1,4 @@
-"""Whether a file is a whole rodsweep result, and which config it answers; what is said where it is not."""
+"""Validation: whether a file is a complete rodsweep result, which config it answers, and refusals if not."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -21,34 +21,35 @@ from .points import points_in
 from .seal import HDF5_SIGNATURE, check_frame
 
 PROGRAM = "rodsweep"
-"""The attribute `program` of our files."""
+"""Value of the attribute `program` of result files."""
 FORMAT = 8
-"""The attribute `format` of our files: grows when a variable is added or changes its meaning. Only files of
-this format are read: 5 was the first whose content is sealed, 6 has frequencies in Hz, counts from 1,
-the Hopf points of the lines of limit cycles, and grids over an arm's quantities."""
+"""Value of the attribute `format` of result files. It grows when a variable is added or changes its meaning,
+and files of any other format are refused. Format 5 was the first with sealed content; 6 introduced
+frequencies in Hz, counts from 1, the Hopf points of the lines of limit cycles, and grids over an arm's
+quantities."""
 CONFIGS = (".yaml", ".yml")
-"""Endings of configs."""
+"""Suffixes of configs."""
 LONGEST_REASON = 150
-"""Characters of what a library says."""
+"""Largest number of characters of a library's message in a sentence."""
 DAMAGES = (OSError, LookupError, ValueError, TypeError, RuntimeError, OverflowError, MemoryError)
-"""What h5py raises, and what reading goes on to raise, where a file is damaged."""
+"""Exceptions that h5py, and reading afterwards, raises for a damaged file."""
 
 
-class NotWhole(InputError):
-    """The refusal of a file that is no result, or is not as rodsweep wrote it."""
+class IncompleteFile(InputError):
+    """Refusal of a file that is no result, or that was damaged or changed."""
 
 
 @contextmanager
 def reading(path: Path) -> Iterator[None]:
-    """What is raised in here because the file is no result, or is damaged, becomes NotWhole."""
+    """Turns exceptions for a damaged or foreign file into IncompleteFile."""
     try:
         yield
     except DAMAGES as error:
-        raise NotWhole(f"{path} is not a whole rodsweep result file ({reason_of(error)})") from None
+        raise IncompleteFile(f"{path} is not a whole rodsweep result file ({reason_of(error)})") from None
 
 
 def reason_of(error: Exception) -> str:
-    """What a library says of a file, on one line."""
+    """Message of a library about a file, on one line."""
     text = getattr(error, "strerror", None) or str(error) or type(error).__name__
     text = "".join(c if c.isprintable() else " " for c in text)
     return text if len(text) <= LONGEST_REASON else text[: LONGEST_REASON - 3] + "..."
@@ -56,7 +57,7 @@ def reason_of(error: Exception) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """What a whole result file says of itself; `config` is the resolved one, `points` their number."""
+    """Description of a complete result file. config: the resolved config; points: their number."""
 
     path: Path
     attributes: dict[str, Any]
@@ -67,15 +68,15 @@ class Header:
 
 
 def open_whole(path: Path, values: bool = True) -> tuple[h5py.File, Header]:
-    """The open file and its header: the one way to a result, for whoever reads, continues or merges it.
+    """The open file and its header: the only entry to a result, for reading, continuing and merging.
 
-    values: whether its numbers are compared with the seal too, which takes a second for each GB; otherwise
-    only what lies around the large variables, and all where another program has had the file. Raises
-    InputError unless the file is a whole result that says what rodsweep wrote.
+    values: whether the numbers are compared with the seal as well, which takes a second for each GB.
+    Otherwise only the structures around the large variables are, unless another program has written the file.
+    Raises InputError unless the file is a complete result with the content that rodsweep wrote.
     """
     refuse_absent(path)
     if path.suffix in CONFIGS:
-        raise NotWhole(f"{path} is a config and no result file; `rodsweep run` makes one of it")
+        raise IncompleteFile(f"{path} is a config and no result file; `rodsweep run` makes one of it")
     with reading(path):
         is_framed = check_frame(path)
         file = h5py.File(path, "r")
@@ -87,22 +88,22 @@ def open_whole(path: Path, values: bool = True) -> tuple[h5py.File, Header]:
 
 
 def read_header(path: Path) -> Header:
-    """InputError unless the file is a whole result, its numbers included."""
+    """Header of a file; raises InputError unless it is a complete result, its numbers included."""
     file, header = open_whole(path)
     file.close()
     return header
 
 
 def refuse_absent(path: Path) -> None:
-    """InputError unless there is a file of that name."""
+    """Raises InputError unless the path is a file."""
     if not path.is_file():
         raise InputError(f"{path} is not a file" if path.exists() else f"{path} does not exist")
 
 
 def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Header:
-    """The header of an open file; one of DAMAGES unless it is a result, and as it was sealed.
+    """Header of an open file; raises one of DAMAGES unless it is a result with the sealed content.
 
-    InputError where another version of rodsweep wrote the file in a format that this one does not read.
+    Raises InputError for a format that this version does not read.
     """
     attributes = {name: cleaned(value) for name, value in file.attrs.items()}
     if attributes.get("program") != PROGRAM:
@@ -119,15 +120,15 @@ def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Header
 
 
 def cleaned(value: Any) -> Any:
-    """The value of an attribute, a text without control characters that a terminal would obey."""
+    """Value of an attribute; a text loses control characters, which a terminal would obey."""
     if isinstance(value, bytes):
         value = value.decode(errors="replace")
     return printable(value) if isinstance(value, str) else value
 
 
 def _refuse_other_format(path: Path, attributes: Mapping[str, Any]) -> None:
-    """InputError for a file whose format is newer than this program knows, or older than it reads."""
-    found = int(np.atleast_1d(attributes.get("format", 0))[0])  # netCDF has lists of one
+    """Raises InputError for a file whose format differs from FORMAT."""
+    found = int(np.atleast_1d(attributes.get("format", 0))[0])  # netCDF stores a list of one number
     version, commit = (str(attributes.get(name, "unknown")) for name in ("rodsweep_version", "git_commit"))
     writer = f"{version}, commit {commit[:12]}"
     if found > FORMAT:
@@ -144,7 +145,7 @@ def _refuse_other_format(path: Path, attributes: Mapping[str, Any]) -> None:
 
 
 def refuse_misfit(file: h5py.File, layout: Layout) -> None:
-    """One of DAMAGES unless every variable of the layout is there, with its type, its shape and its place."""
+    """Raises one of DAMAGES unless every variable of the layout has its type and shape and is contiguous."""
     shape = tuple(len(file[name]) for name in layout.dimensions(is_list="point" in file))
     expected = {v.name: (shape + layout.inner(v), np.dtype(v.dtype)) for v in layout.variables}
     expected |= {name: ((extent,), file[name].dtype) for name, extent in layout.extents.items()}
@@ -157,7 +158,7 @@ def refuse_misfit(file: h5py.File, layout: Layout) -> None:
 
 
 def is_ours(path: Path) -> bool:
-    """Whether a file is a rodsweep result, or HDF5 that is too damaged to say whose it is."""
+    """Whether a file is a rodsweep result, or HDF5 too damaged to identify."""
     if not path.is_file():
         return False
     with path.open("rb") as stream:

@@ -1,4 +1,4 @@
-"""A result file with what its journals add to it, read only: what `show` and `plot` work on."""
+"""Read-only view of a result file together with the points in its journals, for `show` and `plot`."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -15,15 +15,16 @@ from .content import is_users
 from .recent import journalled_points, put_in, unfolded
 from .validation import cleaned, open_whole, reading, refuse_absent
 
-CHECKED_WHOLE = 10**9
-"""Bytes up to which the numbers are checked too, not only HDF5's structures, before a file is shown."""
+LARGEST_CHECKED = 10**9
+"""Largest size, in bytes, of a file whose numbers are compared with the seal before it is shown. Of a larger
+file only HDF5's structures are checked, because the numbers take a second for each GB."""
 
 
 class Variables(Mapping[str, np.ndarray]):
-    """The variables of an open file as NumPy arrays, each read when it is first asked for."""
+    """Variables of an open file as NumPy arrays, each read on first access."""
 
     def __init__(self, path: Path, file: h5py.File, recent: np.ndarray):
-        """`recent`: records, (n,), of points that belong into the file and are not in it yet."""
+        """recent: records, (n,), of points that are still in the journals."""
         self.path, self.file, self.recent = path, file, recent
         self.read: dict[str, np.ndarray] = {}
 
@@ -49,24 +50,25 @@ class Variables(Mapping[str, np.ndarray]):
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """A file's attributes and its variables as NumPy arrays."""
+    """Attributes of a file and its variables as NumPy arrays."""
 
     path: Path
     attributes: dict[str, Any]
     variables: Mapping[str, np.ndarray]
     parameters: tuple[str, ...]
-    """What makes a point: the dimensions of a grid, or what is given along `point`."""
+    """Parameters of a point: dimensions of a grid, or columns along `point`."""
     flags: dict[int, str]
+    """Values of `status` and their words."""
     journalled: int
-    """Finished points that are shown and still in the journal: of a run that goes on, or was interrupted."""
+    """Number of points that are still in the journals, of a run that goes on or was interrupted."""
     over: tuple[str, ...] = ()
-    """The dimensions of a grid over an arm's quantities."""
+    """Dimensions of a grid over an arm's quantities."""
     typed: dict[str, str] = field(default_factory=dict)
-    """The units in which an arm's quantities were typed."""
+    """Units in which the user typed an arm's quantities."""
 
     @property
     def task(self) -> str:
-        """The task whose results these are."""
+        """Task of the results."""
         return str(self.attributes["task"])
 
     @property
@@ -76,20 +78,21 @@ class View:
 
     @property
     def axes(self) -> dict[str, np.ndarray]:
-        """The parameters that the file knows: axes of a grid, or columns of a list, each (n,)."""
+        """Parameters in the file: axes of a grid, or columns of a list, each (n,)."""
         return {name: self.variables[name] for name in NONLINEAR_PARAMETERS if name in self.variables}
 
     @property
     def quantities(self) -> dict[str, np.ndarray]:
-        """Those of an arm in SI units; none without one.
+        """Quantities of an arm in SI units; empty without an arm.
 
-        Each is of shape () or along a parameter, along `point`, or of a grid over them along their own.
+        Each has shape (), or is along a parameter or `point`; in a grid over quantities each has its own
+        axes.
         """
         return {name: self.variables[name] for name in ALL_QUANTITIES if name in self.variables}
 
     @property
     def listed(self) -> "View":
-        """A grid over an arm's quantities as the list of its points; itself where it is of another kind."""
+        """A grid over an arm's quantities as the list of its points; for other points the view itself."""
         if not self.over:
             return self
         shape = self.variables["status"].shape
@@ -98,7 +101,7 @@ class View:
         return replace(self, variables=found, over=())
 
     def _listed(self, name: str, shape: tuple[int, ...]) -> np.ndarray:
-        """A variable along the list of points, where it is along axes of their grid."""
+        """A variable along the list of points if it has the axes of their grid, else unchanged."""
         values = self.variables[name]
         if name in self.over:
             along = [-1 if axis == name else 1 for axis in self.over]
@@ -112,14 +115,14 @@ class View:
         return values.reshape(-1, *values.shape[self.variables["status"].ndim :])
 
     def of_point(self, index: int) -> dict[str, np.ndarray]:
-        """The variables of the point at a flat index, each in its shape there."""
+        """Variables of the point at a flat index, each in its shape at one point."""
         shape = self.variables["status"].shape
         names = (name for name, values in self.variables.items() if values.shape[: len(shape)] == shape)
         return {name: self.by_point(name)[index] for name in names}
 
     @property
     def point_columns(self) -> dict[str, np.ndarray]:
-        """Every parameter at every point, shape (points,); in a grid the last axis is the fastest."""
+        """Every parameter at every point, (points,); in a grid the last axis is the fastest."""
         columns = [self.variables[name] for name in self.parameters]
         if self.is_grid:
             columns = [table.ravel() for table in np.meshgrid(*columns, indexing="ij")]
@@ -127,14 +130,14 @@ class View:
 
 
 def read_view(path: Path) -> View:
-    """The file, which stays open, with what its journals add to it; InputError if it is no result."""
+    """View of a file, which stays open, with journalled points; InputError if the file is no result."""
     return unfolded(path, lambda: _view(path))
 
 
 def _view(path: Path) -> View:
     refuse_absent(path)
-    # Opened once: a run may exchange the file at any instant.
-    file, header = open_whole(path, values=path.stat().st_size <= CHECKED_WHOLE)
+    # Opened only once, because a run may replace the file at any instant.
+    file, header = open_whole(path, values=path.stat().st_size <= LARGEST_CHECKED)
     with reading(path):
         status = file["status"]
         words = str(cleaned(status.attrs["flag_meanings"])).split()
@@ -147,5 +150,5 @@ def _view(path: Path) -> View:
 
 
 def is_typed(file: h5py.File, name: str) -> bool:
-    """Whether a file says in which unit a quantity was typed."""
+    """Whether the file records in which unit a quantity was typed."""
     return name in file and TYPED in file[name].attrs

@@ -1,4 +1,4 @@
-"""What the file of each task holds: its variables, and `layout_of`, which finds them from a config."""
+"""Layouts: the variables in the file of each task, and `layout_of`, which finds them from a config."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -20,8 +20,10 @@ MODULES = {
 LAYOUTS: dict[str, Callable[[dict[str, Any]], Layout]] = {
     task: module.layout for task, module in MODULES.items()
 }
+"""Function of each task from its resolved config to its layout."""
 INCREASES: dict[str, dict[str, Increase]] = {task: module.INCREASES for task, module in MODULES.items()}
-"""The options of every task that ask for more of a point; another value of any other makes another file."""
+"""Options of each task that ask for more of a point. A changed value of any other option makes a different
+file."""
 
 BESIDE_POINTS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
     "spectrum": spectrum.beside_points,
@@ -29,11 +31,12 @@ BESIDE_POINTS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]]
     "phase_diagram": phase_diagram.beside_points,
     "limit_cycle": lambda config, is_grid: limit_cycle.HOPF_POINTS,
 }
-"""What tasks store that all points share or together give, from (resolved config, whether a grid)."""
+"""Variables of each task that all points share or together give, as a function of (resolved config,
+is_grid)."""
 
 
 def layout_of(config: dict[str, Any]) -> Layout:
-    """The layout that the resolved config of any task asks for."""
+    """Layout of the file of a resolved config of any task."""
     task = config["task"]
     if task not in LAYOUTS:
         raise KeyError(f"unknown task {task}")
@@ -41,13 +44,16 @@ def layout_of(config: dict[str, Any]) -> Layout:
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """What the file of a resolved config may hold beside its points; `extra` has all dimensions."""
+    """Variables that the file of a resolved config may hold besides its points.
+
+    Their `extra` has all of their dimensions.
+    """
     found = BESIDE_POINTS.get(config["task"])
     return found(config, is_grid) if found else ()
 
 
 def lacks_curves(attributes: Mapping[str, Any]) -> bool:
-    """Whether the file with these attributes still lacks the curves that all its points together give."""
+    """Whether the file with these attributes still lacks curves that need all of its points."""
     if "finished" in attributes or "config_resolved" not in attributes:
         return False
     return layout_of(json.loads(attributes["config_resolved"])).needs_all_points

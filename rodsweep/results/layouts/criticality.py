@@ -1,43 +1,48 @@
-"""What the file of the task criticality holds: the Hopf points of every rod and their normal forms."""
+"""Layout of the task criticality: the Hopf points of every rod and their normal forms."""
 
 from math import nan
 from typing import Any
 
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, all_but
 from .thresholds import CROSSINGS, search_variables
-from .variables import ANEW, ANGULAR, Layout, Variable, real, whole
+from .variables import ANGULAR, NEEDS_NEW_SOLVE, Layout, Variable, integer, real
 
 FORCE = PARAMETERS["F"].unit
 SLOPE = "L^2/(k3 tau2)"
+"""Unit of the slope dw/dF of an eigenvalue."""
 LANDAU = "1/(tau2 L^2)"
+"""Unit of the Landau coefficient c."""
 ALONG = "crossing"
-OF_NO_HOPF_POINT = ("crossing_growth_rate", "solves")
-"""Variables of a search that a search for Hopf points has not: 0 at all of them."""
+ABSENT_FROM_HOPF_SEARCH = ("crossing_growth_rate", "solves")
+"""Variables of a search for crossings that a search for Hopf points lacks: the growth rate is 0, no solve is
+needed."""
 SIDES = ((-1, "supercritical"), (0, "undecided"), (1, "subcritical"))
-"""On which side of a Hopf point its cycles are; the number is the sign of Re c, NaN where there is no c."""
+"""Stored numbers and words of the criticality: the sign of Re c; NaN if c is not known."""
 
 
 def side(name: str, decided_by: str, along: str) -> Variable:
-    """On which side cycles are born; decided_by: the number whose sign within its error says so."""
+    """Variable for the criticality of Hopf points; decided_by: name of the number whose sign decides."""
     meaning = (
-        "on which side cycles are born: supercritical, where the pair grows, and stable unless other modes "
-        f"grow; subcritical; undecided, where the sign of {decided_by} is within its error"
+        "supercritical: cycles exist where the pair is unstable, and are stable unless other modes are "
+        "unstable; subcritical: cycles exist where the pair is stable; "
+        f"undecided: the sign of {decided_by} is within its error"
     )
     return Variable(name, "<f8", nan, "1", meaning, (along,), SIDES)
 
 
 NORMAL_FORM = (
     real("crossing_frequency_error", ANGULAR, "estimate of the absolute error of crossing_frequency", ALONG),
-    real("growth_slope_real", SLOPE, "d(growth rate)/dF of the pair at the crossing", ALONG),
-    real("growth_slope_imag", SLOPE, "d(frequency)/dF of the pair at the crossing", ALONG),
-    real("growth_slope_error", "1", "estimate of the error of the complex slope, relative to it", ALONG),
-    real("landau_real", LANDAU, "real part of the Landau coefficient c, for the tip's y = Re Z", ALONG),
+    real("growth_slope_real", SLOPE, "d(growth rate)/dF of the pair at the Hopf point", ALONG),
+    real("growth_slope_imag", SLOPE, "d(angular frequency)/dF of the pair at the Hopf point", ALONG),
+    real("growth_slope_error", "1", "estimate of the relative error of the complex slope dw/dF", ALONG),
+    real("landau_real", LANDAU, "real part of the Landau coefficient c, for tip y = Re Z", ALONG),
     real("landau_imag", LANDAU, "imaginary part of the Landau coefficient c", ALONG),
-    real("landau_error", "1", "estimate of the error of the complex c, relative to it", ALONG),
+    real("landau_error", "1", "estimate of the relative error of the complex c", ALONG),
     real(
         "amplitude_coefficient",
         "L",
-        "a: largest tip y of the cycles near by is |a| sqrt(|F - F_H|/F_H); below 0: cycles at F < F_H",
+        "coefficient a: to leading order the largest tip y of the cycles is |a| sqrt(|F - F_H|/F_H); "
+        "a < 0: cycles at F < F_H",
         ALONG,
     ),
     real(
@@ -49,7 +54,8 @@ NORMAL_FORM = (
     real(
         "frequency_slope",
         SLOPE,
-        "b: frequency of the cycles near by is that of the crossing + b (F - F_H)",
+        "coefficient b: to leading order the angular frequency of the cycles is that of the Hopf point "
+        "+ b (F - F_H)",
         ALONG,
     ),
     real("frequency_slope_error", "1", "estimate of the relative error of frequency_slope", ALONG),
@@ -58,17 +64,17 @@ NORMAL_FORM = (
     Variable("order", "<i2", 0, "1", "polynomial order used", (ALONG,)),
 )
 
-INCREASES = {"crossings": CROSSINGS, "certify": ANEW}
+INCREASES = {"crossings": CROSSINGS, "certify": NEEDS_NEW_SOLVE}
 
 
 def layout(config: dict[str, Any]) -> Layout:
-    """The layout that a resolved config asks for."""
-    search = [v for v in search_variables("F", "crossing_F") if v.name not in OF_NO_HOPF_POINT]
+    """Layout of the file of a resolved config."""
+    search = [v for v in search_variables("F", "crossing_F") if v.name not in ABSENT_FROM_HOPF_SEARCH]
     names = [v.name for v in search]
     after = names.index("unstable_after") + 1
     ends = (
-        real("F_end", FORCE, "F up to which was searched"),
-        whole("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
+        real("F_end", FORCE, "largest F of the search"),
+        integer("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
     )
     variables = (*search[:after], *NORMAL_FORM, *ends, *search[after:])
     parameters = all_but("F", NONLINEAR_PARAMETERS)

@@ -1,19 +1,24 @@
-"""What the file of the task modes holds."""
+"""Layout of the task modes: eigenvalues, modes, adjoint modes, condition numbers and transient growth."""
 
 from typing import Any
 
 from .spectrum import EACH_MODE, EACH_POINT, VECTORS, complex_pair
-from .variables import ANEW, Layout, real
+from .variables import NEEDS_NEW_SOLVE, Layout, real
 
 MODE_FIELDS = (
     *VECTORS,
-    *complex_pair("h2", "1", "the eigenmode's shear strain h2 = Y' - nu Theta, scaled as Y"),
-    *complex_pair("Pi", "1/L", "the eigenmode's bending strain Pi = Theta', scaled as Y"),
+    *complex_pair("h2", "1", "the eigenmode's shear strain h2 = Y' - nu Theta, with the scale of Y"),
+    *complex_pair("Pi", "1/L", "the eigenmode's bending strain Pi = Theta', with the scale of Y"),
     *complex_pair("adjoint_Y", "1", "the adjoint mode's deflection, scaled to adjoint_Y(1) = 1"),
-    *complex_pair("adjoint_Theta", "1", "the adjoint mode's angle, scaled as adjoint_Y"),
+    *complex_pair("adjoint_Theta", "1", "the adjoint mode's angle, with the scale of adjoint_Y"),
 )
 MODE_NUMBERS = (
-    real("mode_error", "1", "largest error of the mode's fields, each in units of its largest value", "mode"),
+    real(
+        "mode_error",
+        "1",
+        "largest error of the mode's fields, each relative to the largest value of its field",
+        "mode",
+    ),
     real("pairing_real", "1", "real part of the product of the adjoint mode and the mode", "mode"),
     real("pairing_imag", "1", "imaginary part of the product of the adjoint mode and the mode", "mode"),
     real("condition", "1", "condition number of the eigenvalue in the norm of the dissipation", "mode"),
@@ -27,11 +32,16 @@ GROWTH = (
     real("growth_error", "1", "relative error of transient_growth"),
 )
 
-INCREASES = {"modes": ANEW, "nodes": ANEW, "growth": ANEW, "certify": ANEW}
+INCREASES = {
+    "modes": NEEDS_NEW_SOLVE,
+    "nodes": NEEDS_NEW_SOLVE,
+    "growth": NEEDS_NEW_SOLVE,
+    "certify": NEEDS_NEW_SOLVE,
+}
 
 
 def layout(config: dict[str, Any]) -> Layout:
-    """The layout that a resolved config asks for; what non-normality does only where asked for."""
+    """Layout of the file of a resolved config; transient growth only if the config asks for it."""
     options = config["modes"]
     growth = GROWTH if options["growth"] else ()
     variables = EACH_MODE + MODE_FIELDS + MODE_NUMBERS + growth + EACH_POINT

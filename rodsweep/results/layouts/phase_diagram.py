@@ -1,4 +1,4 @@
-"""What the file of the task phase_diagram holds: its rows, and the boundaries followed through them."""
+"""Layout of the task phase_diagram: its rows, and the stability boundaries followed through them."""
 
 from typing import Any
 
@@ -7,7 +7,7 @@ from .branch import SPECIAL_KINDS
 from .criticality import LANDAU, SLOPE, side
 from .spectrum import UNSTABLE_COUNT
 from .thresholds import CROSSINGS, search_variables
-from .variables import ANEW, ANGULAR, BESIDE, Layout, Variable, real, whole, word
+from .variables import ANGULAR, NEEDS_NEW_SOLVE, NEEDS_NO_SOLVE, Layout, Variable, integer, real, word
 
 CLASSES = (
     (-1, "missing"),
@@ -17,11 +17,11 @@ CLASSES = (
     (3, "undecided"),
     (4, "crushed"),
 )
-"""What the rod does at a point of a phase diagram."""
+"""Behaviour of the rod at a point of a phase diagram."""
 BAUTIN_ENDS = ("none", "range_end", "plane_edge", "not_found", "list_full", "closed")
-"""Why a curve of generalised Hopf points ends; the place in this list is what the file stores."""
+"""Reasons for the end of a curve of generalised Hopf points; the file stores the place in this list."""
 CURVE_KINDS = ((0, "double"), (1, "hopf"))
-"""What lies on a curve: double real eigenvalues, where oscillations set in or end, or Hopf points."""
+"""Kinds of boundary curves: double real eigenvalues, where oscillations set in or end, or Hopf points."""
 
 STABLE_STATES = (
     (-1, "missing"),
@@ -32,24 +32,31 @@ STABLE_STATES = (
     (4, "undecided"),
     (5, "crushed"),
 )
-"""Which states of the rod are stable at a point of a phase diagram with cycles."""
-CYCLE_SPECIAL, MOST_SPECIAL = "cycle_special", 64
-"""Dimension of the special points of a row's branches, and how many are kept."""
+"""Stable states of the rod at a point of a phase diagram with cycles."""
+CYCLE_SPECIAL = "cycle_special"
+"""Dimension of the special points of the branches of a row."""
+MAX_CYCLE_SPECIAL = 64
+"""Largest number of special points that are stored for a row; cycle_special_count counts all of them."""
 
 CYCLE_CURVE_ENDS = {
     "none": "the curve goes on",
-    "edge": "it leaves the diagram",
-    "crushed": "F comes within 1e-3 of k1, relative",
-    "hopf": "the cycles vanish: of folds at a generalised Hopf point, Re c = 0, of torus points where two "
-    "Hopf points meet",
+    "edge": "the curve leaves the diagram",
+    "crushed": "F comes within a relative distance of 1e-3 of k1",
+    "hopf": "the amplitude of the cycles vanishes: for folds at a generalised Hopf point, Re c = 0; for "
+    "torus points where two Hopf points meet",
     "left_the_model": "h1 reaches 0 somewhere on the cycle",
     "resonance": "the two multipliers meet on the real axis",
-    "closed": "it comes back to its first point",
+    "closed": "the curve returns to its first point",
     "not_followed": "no further point was found",
 }
-"""Where a curve of folds of cycles or torus points ends; the place in this list is what the file stores."""
+"""Ends of a curve of folds of cycles or of torus points; the file stores the place in this list."""
 
-INCREASES = {"crossings": CROSSINGS, "certify": ANEW, "curves": BESIDE, "cycles": ANEW}
+INCREASES = {
+    "crossings": CROSSINGS,
+    "certify": NEEDS_NEW_SOLVE,
+    "curves": NEEDS_NO_SOLVE,
+    "cycles": NEEDS_NEW_SOLVE,
+}
 
 
 def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
@@ -61,7 +68,7 @@ def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables of the file that all rows together give, whatever the options ask of them."""
+    """Variables that all rows together give, with or without the options that ask for them."""
     (line, row), _ = plane_of(config)
     variables = curve_variables(line, row) | criticality_variables(line, row)
     variables |= cycle_curve_variables(line, row)
@@ -71,80 +78,84 @@ def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]
 
 
 def layout(config: dict[str, Any]) -> Layout:
-    """The layout that a resolved config asks for: rows, each a line of values of one parameter."""
+    """Layout of the file of a resolved config: rows, each a line of values of one parameter."""
     options = config["phase_diagram"]
     (line, _), sizes = plane_of(config)
     variables: tuple[Variable, ...] = (
-        word("class", "what the rod does", CLASSES, line),
-        whole("unstable_count", UNSTABLE_COUNT.long_name, line),
+        word("class", "behaviour of the rod", CLASSES, line),
+        integer("unstable_count", UNSTABLE_COUNT.long_name, line),
         *search_variables(line, "crossing_at"),
     )
     extents = {line: sizes[line], "crossing": options["crossings"]}
     if options["cycles"]:
         variables += cycle_variables(line)
-        extents[CYCLE_SPECIAL] = MOST_SPECIAL
+        extents[CYCLE_SPECIAL] = MAX_CYCLE_SPECIAL
     return Layout(variables, extents, all_but(line), needs_all_points=options["curves"])
 
 
 def cycle_variables(line: str) -> tuple[Variable, ...]:
-    """What `phase_diagram.cycles` adds to every row: its stable states and special points of its cycles."""
-    unit, what = PARAMETERS[line].unit, "what happens on a branch of cycles there"
-    at, error = f"{line} at the special point", f"estimate of the absolute error of cycle_special_{line}"
+    """Variables that `phase_diagram.cycles` adds to every row: stable states, special points of cycles."""
+    unit = PARAMETERS[line].unit
+    at = "at the special point"
+    error = f"estimate of the absolute error of cycle_special_{line}"
+    amplitude = f"largest y of the tip {at}; 0 at a Hopf point"
     return (
-        word("stable_states", "which states are stable", STABLE_STATES, line),
-        whole("cycle_special_count", "special points of the branches of the row, stored or not"),
-        word("cycle_special_kind", what, SPECIAL_KINDS, CYCLE_SPECIAL),
-        real(f"cycle_special_{line}", unit, at, CYCLE_SPECIAL),
+        word("stable_states", "stable states of the rod", STABLE_STATES, line),
+        integer("cycle_special_count", "number of special points of the branches of the row, stored or not"),
+        word("cycle_special_kind", "kind of the special point of a branch", SPECIAL_KINDS, CYCLE_SPECIAL),
+        real(f"cycle_special_{line}", unit, f"{line} {at}", CYCLE_SPECIAL),
         real("cycle_special_error", unit, error, CYCLE_SPECIAL),
-        real("cycle_special_period", "tau2", "period of the cycle there", CYCLE_SPECIAL),
-        real("cycle_special_tip_y_max", "L", "largest y of the tip there; 0 at a Hopf point", CYCLE_SPECIAL),
+        real("cycle_special_period", "tau2", f"period of the cycle {at}", CYCLE_SPECIAL),
+        real("cycle_special_tip_y_max", "L", amplitude, CYCLE_SPECIAL),
     )
 
 
 def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
-    """What `phase_diagram.cycles` adds when all rows are done, by name: curves of folds and torus points."""
+    """Variables that `phase_diagram.cycles` adds from all rows, by name: curves of folds and torus points."""
     along = "cycle_curve_point"
     force = PARAMETERS[line].unit
-    what, end = "what happens to the cycles on the curve: fold or torus", "why the curve ends at the point"
+    kind = "kind of the special points on the curve: fold or torus"
+    end = "reason for the end of the curve at the point"
     error = f"estimate of the absolute error of cycle_curve_{line} on the curve"
     variables = (
-        whole("cycle_curve_number", "number of the curve of special points of cycles, from 1", along),
-        word("cycle_curve_kind", what, SPECIAL_KINDS, along),
+        integer("cycle_curve_number", "number of the curve of special points of cycles, from 1", along),
+        word("cycle_curve_kind", kind, SPECIAL_KINDS, along),
         real(f"cycle_curve_{line}", force, f"{line} on the curve", along),
         real(f"cycle_curve_{row}", PARAMETERS[row].unit, f"{row} on the curve", along),
         real("cycle_curve_error", force, error, along),
         real("cycle_curve_period", "tau2", "period of the cycle on the curve", along),
-        real("cycle_curve_tip_y_max", "L", "largest y of the tip; 0 where the cycles vanish", along),
+        real("cycle_curve_tip_y_max", "L", "largest y of the tip; 0 where the amplitude vanishes", along),
         word("cycle_curve_end", end, CYCLE_CURVE_ENDS, along),
         real("cycle_curve_agreement", "1", f"largest distance of a fold or torus point of a row from its "
              f"curve, in units of the axis of {line}"),
-        whole("cycle_curves_untraced", "folds and torus points of rows through which no curve was followed"),
+        integer("cycle_curves_untraced", "number of folds and torus points of rows without a curve"),
     )  # fmt: skip
     return {variable.name: variable for variable in variables}
 
 
 def curve_variables(line: str, row: str) -> dict[str, Variable]:
-    """What is added to a phase diagram when all rows are done, by name: its boundaries and their folds."""
+    """Variables of a phase diagram from all rows, by name: its boundary curves and their folds."""
     along = (line, row)
-    kind = "what lies on the curve: a double real eigenvalue, or a Hopf point"
-    units, force = {name: PARAMETERS[name].unit for name in along}, PARAMETERS["F"].unit
+    kind = "kind of the points on the curve: double real eigenvalues, or Hopf points"
+    units = {name: PARAMETERS[name].unit for name in along}
+    force = PARAMETERS["F"].unit
     error = "estimate of the error of fold_"
     variables = (
-        whole("curve_number", "number of the curve, from 1", "curve_point"),
+        integer("curve_number", "number of the curve, from 1", "curve_point"),
         word("curve_kind", kind, CURVE_KINDS, "curve_point"),
         *(real(f"curve_{name}", units[name], f"{name} on the curve", "curve_point") for name in along),
         real("curve_frequency", ANGULAR, "angular frequency of the modes on the curve", "curve_point"),
         real("curve_growth_rate", "1/tau2", "growth rate of the modes on the curve", "curve_point"),
-        whole("fold_curve", "number of the curve on which the fold lies", "fold"),
+        integer("fold_curve", "number of the curve on which the fold lies", "fold"),
         word("fold_kind", kind, CURVE_KINDS, "fold"),
-        word("fold_of", "parameter that is extremal on the curve at the fold", along, "fold"),
+        word("fold_of", "parameter that has an extremum along the curve at the fold", along, "fold"),
         *(real(f"fold_{name}", units[name], f"{name} at the fold", "fold") for name in along),
         *(real(f"fold_{name}_error", units[name], f"{error}{name}", "fold") for name in along),
         real("fold_frequency", ANGULAR, "angular frequency of the modes at the fold", "fold"),
         real("fold_growth_rate", "1/tau2", "growth rate of the modes at the fold", "fold"),
-        real("curve_agreement", "1", f"largest distance of a crossing on a row from its curve, over {line}"),
-        whole("curves_untraced", "crossings on rows through which no curve could be followed"),
-        real("filament_F_hopf", force, "F at which the filament (k1, k2 = inf, gamma3 = 0) flutters, Fc"),
+        real("curve_agreement", "1", f"largest distance of a crossing from its curve, relative to {line}"),
+        integer("curves_untraced", "number of crossings on rows without a curve"),
+        real("filament_F_hopf", force, "Fc: F at which the filament (k1, k2 = inf, gamma3 = 0) flutters"),
         real("partial_beam_k1", force, "4 Fc: k1 at the fold of the partial beam (k2 = inf, gamma3 = 0)"),
         real("partial_beam_F", force, "2 Fc: F at the fold of the partial beam"),
     )  # fmt: skip
@@ -152,38 +163,53 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
 
 
 def criticality_variables(line: str, row: str) -> dict[str, Variable]:
-    """What `phase_diagram.criticality` adds, by name: the sign of Re c on Hopf curves, and its zeros."""
+    """Variables that `phase_diagram.criticality` adds, by name: sign of Re c on Hopf curves, its zeros."""
     along = (line, row)
     units = {name: PARAMETERS[name].unit for name in along}
     error = "estimate of the error of bautin_"
     variables = (
         side("curve_criticality", "Re c", "curve_point"),
         real("curve_gamma1", PARAMETERS["gamma1"].unit, "axial drag of curve_criticality and bautin_*"),
-        whole("bautin_curve", "number of the curve on which the generalised Hopf point lies", "bautin"),
-        whole("bautin_curve_point", "curve_point, from 1, behind which it lies on the curve", "bautin"),
+        integer("bautin_curve", "number of the curve on which the generalised Hopf point lies", "bautin"),
+        integer(
+            "bautin_curve_point",
+            "number, from 1, of the curve_point before the generalised Hopf point",
+            "bautin",
+        ),
         *(real(f"bautin_{name}", units[name], f"{name} where Re c = 0", "bautin") for name in along),
         *(real(f"bautin_{name}_error", units[name], f"{error}{name}", "bautin") for name in along),
-        real("bautin_frequency", ANGULAR, "angular frequency of the pair there", "bautin"),
-        real("bautin_growth_slope_real", SLOPE, "d(growth rate)/dF of the pair there", "bautin"),
-        real("bautin_growth_slope_imag", SLOPE, "d(frequency)/dF of the pair there", "bautin"),
-        real("bautin_landau_imag", LANDAU, "imaginary part of the Landau coefficient c there", "bautin"),
-        whole("bautin_unlocated", "changes of sign along Hopf curves whose place could not be found"),
+        real(
+            "bautin_frequency",
+            ANGULAR,
+            "angular frequency of the pair at the generalised Hopf point",
+            "bautin",
+        ),
+        real("bautin_growth_slope_real", SLOPE, "d(growth rate)/dF of the pair", "bautin"),
+        real("bautin_growth_slope_imag", SLOPE, "d(angular frequency)/dF of the pair", "bautin"),
+        real("bautin_landau_imag", LANDAU, "imaginary part of the Landau coefficient c", "bautin"),
+        integer(
+            "bautin_unlocated", "number of sign changes of Re c along Hopf curves that could not be located"
+        ),
     )
     return {variable.name: variable for variable in variables}
 
 
 def bautin_curve_variables(line: str, row: str, third: str) -> dict[str, Variable]:
-    """What `phase_diagram.bautin_along` adds, by name: generalised Hopf points as curves over a third one."""
-    names, at = (line, row, third), "bautin_step"
+    """Variables that `phase_diagram.bautin_along` adds, by name: curves of generalised Hopf points.
+
+    third: the parameter along which the curves are followed, besides the two of the diagram.
+    """
+    names = (line, row, third)
+    at = "bautin_step"
     unit = {name: PARAMETERS[name].unit for name in names}
     error = "estimate of the error of bautin_along_"
-    why = "at the first and last point of a curve why it ends there"
+    why = "reason for the end of the curve, at its first and last point"
     variables = (
-        whole("bautin_along_curve", "number of the curve of generalised Hopf points, from 1", at),
+        integer("bautin_along_curve", "number of the curve of generalised Hopf points, from 1", at),
         *(real(f"bautin_along_{name}", unit[name], f"{name} where Re c = 0", at) for name in names),
         *(real(f"bautin_along_{name}_error", unit[name], f"{error}{name}", at) for name in names),
-        real("bautin_along_frequency", ANGULAR, "angular frequency of the pair there", at),
-        real("bautin_along_landau_imag", LANDAU, "imaginary part of the Landau coefficient c there", at),
+        real("bautin_along_frequency", ANGULAR, "angular frequency of the pair", at),
+        real("bautin_along_landau_imag", LANDAU, "imaginary part of the Landau coefficient c", at),
         word("bautin_along_end", why, BAUTIN_ENDS, at),
     )
     return {variable.name: variable for variable in variables}

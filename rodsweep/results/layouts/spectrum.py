@@ -1,4 +1,7 @@
-"""What the file of the task spectrum holds: leading eigenvalues and their modes, as that of modes does."""
+"""Layout of the task spectrum: leading eigenvalues and, if the config asks for them, eigenmodes.
+
+The task modes shares these variables.
+"""
 
 from math import nan
 from typing import Any
@@ -6,33 +9,33 @@ from typing import Any
 from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
 from .thresholds import CROSSING_KINDS
 from .variables import (
-    ANEW,
     ANGULAR,
-    BESIDE,
     MESH,
+    NEEDS_NEW_SOLVE,
+    NEEDS_NO_SOLVE,
     SECONDS,
     STATUS,
     Layout,
     Variable,
+    boolean,
+    integer,
     real,
-    truth,
-    whole,
     word,
 )
 
 
 def complex_pair(name: str, units: str, long_name: str) -> tuple[Variable, Variable]:
-    """Real and imaginary part of a field of every mode."""
+    """Variables for the real and the imaginary part of a field of every mode."""
     return (
         real(f"{name}_real", units, f"real part of {long_name}", "mode", "u"),
         real(f"{name}_imag", units, f"imaginary part of {long_name}", "mode", "u"),
     )
 
 
-UNSTABLE_COUNT = whole("unstable_count", "number of modes with positive growth rate; -1: not known")
+UNSTABLE_COUNT = integer("unstable_count", "number of modes with positive growth rate; -1: not known")
 EACH_MODE = (
     real("growth_rate", "1/tau2", "real part of the transverse eigenvalue", "mode"),
-    real("frequency", ANGULAR, "angular frequency of the mode, imaginary part of its eigenvalue", "mode"),
+    real("frequency", ANGULAR, "angular frequency of the mode, imaginary part of the eigenvalue", "mode"),
     real(
         "error_estimate",
         "1/tau2",
@@ -40,25 +43,34 @@ EACH_MODE = (
         "mode",
     ),
 )
-CERTIFIED = truth("certified", "whether the winding number of D proves that no leading mode is missing")
+CERTIFIED = boolean("certified", "whether the winding number of D proves the list of leading modes complete")
 EACH_POINT = (UNSTABLE_COUNT, CERTIFIED, *MESH, SECONDS, STATUS)
 EACH_FOLLOWED_POINT = (
     UNSTABLE_COUNT,
     CERTIFIED,
-    Variable("elements", "<i2", 0, "1", "spectral elements used; 0: followed"),
-    Variable("order", "<i2", 0, "1", "polynomial order used; 0: followed"),
-    Variable("seconds", "<f4", nan, "s", "time spent on the point, or its share of that of neighbours"),
+    Variable(
+        "elements", "<i2", 0, "1", "number of spectral elements; 0: eigenvalues followed from a neighbour"
+    ),
+    Variable(
+        "order", "<i2", 0, "1", "polynomial order of the elements; 0: eigenvalues followed from a neighbour"
+    ),
+    Variable(
+        "seconds", "<f4", nan, "s", "time spent on the point, or its share of the time of a stretch of points"
+    ),
     STATUS,
 )
-"""Of the task spectrum, whose points may be followed along a grid."""
+"""Variables of a point of the task spectrum, where eigenvalues may be followed from point to point."""
 VECTORS = (
     *complex_pair("Y", "1", "the eigenmode's deflection, scaled to Y(1) = 1"),
-    *complex_pair("Theta", "1", "the eigenmode's angle, scaled as Y"),
+    *complex_pair("Theta", "1", "the eigenmode's angle, with the scale of Y"),
 )
 
 
 def longitudinal(gamma1: float, *along: str) -> Variable:
-    """The longitudinal rates, which depend on k1 only; along: k1, or all points where k1 is no axis."""
+    """Variable for the longitudinal rates, which depend on k1 only.
+
+    along: dimension k1, or the dimension of all points if k1 is no axis.
+    """
     return real(
         "longitudinal_rate",
         "1/tau2",
@@ -73,7 +85,7 @@ CHANGE = "change"
 FORCE_CHANGES = (
     word(
         "change_kind",
-        "what changes there as F grows",
+        "kind of the change as F grows",
         ((CROSSING_KINDS.index(kind), kind) for kind in ("none", "onset", "hopf", "restabilization")),
         CHANGE,
     ),
@@ -82,28 +94,28 @@ FORCE_CHANGES = (
     real("change_growth_rate", "1/tau2", "growth rate of the modes that change", CHANGE),
     real("change_frequency", ANGULAR, "angular frequency of the modes that change", CHANGE),
 )
-"""Where rods start to oscillate, become unstable or stable again: located once all points are there."""
+"""Forces at which rods start to oscillate, become unstable or stable again; located after the last point."""
 
 INCREASES = {
-    "modes": ANEW,
-    "method": ANEW,
-    "certify": ANEW,
-    "vectors": ANEW,
-    "nodes": ANEW,
-    "follow": ANEW,
-    "longitudinal": BESIDE,
+    "modes": NEEDS_NEW_SOLVE,
+    "method": NEEDS_NEW_SOLVE,
+    "certify": NEEDS_NEW_SOLVE,
+    "vectors": NEEDS_NEW_SOLVE,
+    "nodes": NEEDS_NEW_SOLVE,
+    "follow": NEEDS_NEW_SOLVE,
+    "longitudinal": NEEDS_NO_SOLVE,
 }
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables of the file that are no variables of a point."""
+    """Variables of the file besides the variables of its points."""
     gamma1 = config["parameters"].get("gamma1")
     rates = () if gamma1 is None else (longitudinal(float(gamma1), "k1" if is_grid else "point"),)
     return (*rates, *FORCE_CHANGES)
 
 
 def layout(config: dict[str, Any]) -> Layout:
-    """The layout that a resolved config asks for; vectors only where asked for."""
+    """Layout of the file of a resolved config; eigenmodes only if the config asks for them."""
     options = config["spectrum"]
     extents = {"mode": options["modes"]}
     if not options["vectors"]:

@@ -1,73 +1,90 @@
-"""What the file of the task thresholds holds, and of crossings along a line that of phase_diagram too."""
+"""Layout of the task thresholds, and variables of the crossings along a line, which other tasks share."""
 
 from typing import Any
 
 from ...model.parameters import PARAMETERS, all_but
-from .variables import ANEW, ANGULAR, SECONDS, STATUS, Increase, Layout, Variable, real, truth, whole, word
+from .variables import (
+    ANGULAR,
+    NEEDS_NEW_SOLVE,
+    SECONDS,
+    STATUS,
+    Increase,
+    Layout,
+    Variable,
+    boolean,
+    integer,
+    real,
+    word,
+)
 
 FORCE = PARAMETERS["F"].unit
 THRESHOLDS = (
-    real("F_onset", FORCE, "smallest F at which two real leading eigenvalues meet and become a pair"),
+    real("F_onset", FORCE, "smallest F at which two real leading eigenvalues merge into a complex pair"),
     real("onset_growth_rate", "1/tau2", "growth rate of the double eigenvalue at F_onset"),
     real("F_hopf", FORCE, "smallest F at which a pair becomes unstable"),
     real("hopf_frequency", ANGULAR, "angular frequency of the pair at F_hopf"),
     real("F_restabilization", FORCE, "smallest F at which the last unstable pair becomes stable again"),
     real("restabilization_frequency", ANGULAR, "angular frequency of the pair at F_restabilization"),
-    real("F_end", FORCE, "F up to which was searched"),
-    whole("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
+    real("F_end", FORCE, "largest F of the search"),
+    integer("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
 )
 
 CROSSING_MEANINGS = {
-    "none": "no crossing: the list is longer than what was found",
-    "onset": "two real leading eigenvalues meet and become a pair: oscillations set in",
+    "none": "no crossing: the list has more room than crossings",
+    "onset": "two real leading eigenvalues merge into a complex pair: oscillations set in",
     "hopf": "a pair becomes unstable",
-    "hopf_reverse": "an unstable pair becomes stable, and others stay unstable",
+    "hopf_reverse": "an unstable pair becomes stable, and other modes stay unstable",
     "restabilization": "the last unstable pair becomes stable",
-    "real_again": "the leading pair meets on the real axis and becomes two real eigenvalues",
-    "real_leads": "a real eigenvalue overtakes the leading pair, without meeting it",
-    "pair_leads": "a pair overtakes the leading real eigenvalue, without meeting it",
+    "real_again": "the leading pair meets on the real axis and splits into two real eigenvalues",
+    "real_leads": "a real eigenvalue overtakes the leading pair in growth rate",
+    "pair_leads": "a complex pair overtakes the leading real eigenvalue in growth rate",
 }
-"""What happens at a crossing, as the parameter grows."""
+"""Kinds of crossings and their meanings, as the parameter grows."""
 CROSSING_KINDS = tuple(CROSSING_MEANINGS)
-"""What happens at a crossing; the place in this list is what the file stores."""
+"""Kinds of crossings; the file stores the place in this list."""
 
 
 def crossing_variables(line: str, at: str) -> tuple[Variable, ...]:
-    """The crossings along `line`; `at` names the variable of their places."""
+    """Variables of the crossings along `line`; at: name of the variable for their position."""
     units = PARAMETERS[line].unit
     return (
         real(at, units, f"{line} at the crossing", "crossing"),
-        word("crossing_kind", "what changes at the crossing", CROSSING_KINDS, "crossing"),
+        word("crossing_kind", "kind of the crossing", CROSSING_KINDS, "crossing"),
         real("crossing_frequency", ANGULAR, "angular frequency of the modes that cross", "crossing"),
         real("crossing_growth_rate", "1/tau2", "growth rate of the modes that cross", "crossing"),
         real("crossing_error", units, f"estimate of the absolute error of {at}", "crossing"),
-        whole("unstable_after", "number of modes with positive growth rate beyond the crossing", "crossing"),
+        integer(
+            "unstable_after", "number of modes with positive growth rate beyond the crossing", "crossing"
+        ),
     )
 
 
 def search_variables(line: str, at: str) -> tuple[Variable, ...]:
-    """What a search along `line` found, how sure that is and what it cost; `at` names a crossing's place."""
+    """Variables of a search along `line`: its crossings, their completeness and the cost.
+
+    at: name of the variable for the position of a crossing.
+    """
     units = PARAMETERS[line].unit
-    undecided = f"of a range of {line} in which it is undecided whether a window opens and closes"
+    undecided = f"of a range of {line} in which a window of flutter may open and close undecided"
     return (
-        whole("crossing_count", "number of crossings found, stored or not"),
+        integer("crossing_count", "number of crossings found, stored or not"),
         *crossing_variables(line, at),
         real("open_from", units, f"start {undecided}"),
         real("open_to", units, f"end {undecided}"),
-        truth("certified", "whether it is proved that no crossing is missing"),
-        whole("boxes", "evaluations of D over a box"),
-        whole("solves", "eigenproblems solved"),
+        boolean("certified", "whether the list of crossings is proved complete"),
+        integer("boxes", "number of evaluations of D over a box"),
+        integer("solves", "number of eigenproblems solved"),
         SECONDS,
         STATUS,
     )
 
 
 CROSSINGS = Increase(lambda records, before: records["crossing_count"] <= before)
-"""A list of crossings that has room for all that were found needs no longer one."""
-INCREASES = {"crossings": CROSSINGS, "certify": ANEW}
+"""Increase of the length of the list of crossings; a list with room left is complete already."""
+INCREASES = {"crossings": CROSSINGS, "certify": NEEDS_NEW_SOLVE}
 
 
 def layout(config: dict[str, Any]) -> Layout:
-    """The layout that a resolved config asks for."""
+    """Layout of the file of a resolved config."""
     variables = THRESHOLDS + search_variables("F", "crossing_F")
     return Layout(variables, {"crossing": config["thresholds"]["crossings"]}, all_but("F"))

@@ -1,1 +1,1 @@
-"""What a run keeps beside its file until its points are in it: journals, checkpoints, the lock."""
+"""Files that a run keeps beside its result file until it ends: journals, checkpoints and the lock."""

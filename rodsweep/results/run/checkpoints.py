@@ -1,7 +1,7 @@
-"""What a run keeps beside its journals of work that is not done: states of chains, results of units.
+"""Checkpoints of unfinished work beside the journals: states of chains, results of units.
 
-A small file each, replaced whole, recognised by its fingerprint and its checksum. A file that is torn, or
-another run's, counts as none: the chain then starts again, the unit is solved again.
+Each is a small file, replaced as a whole and recognised by fingerprint and checksum. A torn or foreign file
+is ignored: its chain starts again, its unit is solved again.
 """
 
 import io
@@ -15,25 +15,31 @@ import numpy as np
 
 from .journal import drop_files
 
-CHECKPOINTS, UNIT_RESULTS = "chain-*", "unit-*"
-"""All checkpoints, or results of units, of a directory, also those that a kill left half written."""
-CHECKPOINT_HEAD, RESULT_HEAD = b"rodsweep checkpoint 5\n", b"rodsweep unit 1\n"
-"""The number grows when a state, a unit or its result means something else: older ones then are none."""
+CHECKPOINTS = "chain-*"
+"""Pattern of the names of checkpoints, also of those that a kill left unfinished."""
+UNIT_RESULTS = "unit-*"
+"""Pattern of the names of results of units, also of those that a kill left unfinished."""
+CHECKPOINT_HEAD = b"rodsweep checkpoint 5\n"
+"""First line of a checkpoint; its number grows when a state changes its meaning. Checkpoints with another
+number are ignored."""
+RESULT_HEAD = b"rodsweep unit 1\n"
+"""First line of the result of a unit; its number grows when a unit or its result changes its meaning."""
 CHECKSUM_BYTES = 4
+"""Length of the checksum at the end of a file, in bytes."""
 Arrays = dict[str, np.ndarray]
 STATE = "state_"
 """Prefix of the names of a state's arrays."""
 
 
 class HasArrays(Protocol):
-    """A state of a chain."""
+    """State of a chain."""
 
     def arrays(self) -> Arrays:
-        """All of it as named arrays, of any shapes."""
+        """The whole state as named arrays of any shape."""
 
 
 class KeptArrays:
-    """Numbered sets of arrays of one kind in a run's journal directory."""
+    """Numbered sets of arrays of one kind in the journal directory of a run."""
 
     pattern: ClassVar[str]
 
@@ -42,19 +48,19 @@ class KeptArrays:
         self.header = head + fingerprint.encode() + b"\n"
 
     def put(self, number: int, arrays: Arrays) -> None:
-        """Keeps arrays instead of those that were kept under the number."""
+        """Stores arrays under a number; replaces earlier arrays of this number."""
         stream = io.BytesIO()
         np.savez(stream, **arrays)
         content = self.header + stream.getvalue()
         path = self._path(number)
-        self.directory.mkdir(parents=True, exist_ok=True)  # it may have been moved or deleted meanwhile
-        # Ranks of a run that was killed live on for a moment and must not share our file.
+        self.directory.mkdir(parents=True, exist_ok=True)  # the directory may have been moved or deleted
+        # Ranks of a killed run live on for a moment and must not write to the same file.
         copy = path.with_name(f"{path.name}-{os.getpid()}-{os.urandom(4).hex()}")
         copy.write_bytes(content + _checksum(content))
         os.replace(copy, path)
 
     def get(self, number: int) -> Arrays | None:
-        """The arrays under a number; None where there is no whole file of this run."""
+        """Arrays under a number; None without an intact file of this run."""
         if not self._path(number).is_file():
             return None
         data = self._path(number).read_bytes()
@@ -69,22 +75,22 @@ class KeptArrays:
 
 
 class Checkpoints(KeptArrays):
-    """Where each unfinished chain of points stands: the state from which its next point starts."""
+    """Checkpoint of each unfinished chain of points: the state from which its next point starts."""
 
     pattern = CHECKPOINTS
 
     def __init__(self, directory: Path, fingerprint: str, state_of: Callable[[Arrays], HasArrays]):
-        """state_of: a state from the arrays, of any shapes, that its `arrays` gave."""
+        """state_of: makes a state from the arrays, of any shape, that its method `arrays` returned."""
         super().__init__(directory, fingerprint, CHECKPOINT_HEAD)
         self._state_of = state_of
 
     def write(self, chain: int, index: int, state: HasArrays | None) -> None:
-        """Keeps the state from which the neighbour of point `index` starts, or that there is none."""
+        """Stores the state from which the point after `index` starts; None for a cold start."""
         parts = state.arrays() if state is not None else {}
         self.put(chain, {"index": np.array(index)} | {STATE + name: part for name, part in parts.items()})
 
     def read(self, chain: int) -> tuple[int, HasArrays | None] | None:
-        """(index, state) as written last, None where there is no whole checkpoint of this run."""
+        """(index, state) of the last checkpoint; None without an intact checkpoint of this run."""
         arrays = self.get(chain)
         if arrays is None:
             return None
@@ -93,12 +99,12 @@ class Checkpoints(KeptArrays):
         return index, self._state_of(parts) if parts else None
 
     def remove(self, chain: int) -> None:
-        """Forgets a chain that is done."""
+        """Deletes the checkpoint of a finished chain."""
         self._path(chain).unlink(missing_ok=True)
 
 
 class UnitResults(KeptArrays):
-    """The results of a run's units, which all points together make up."""
+    """Results of the finished units of a run, where points are computed from all units together."""
 
     pattern = UNIT_RESULTS
 
@@ -106,17 +112,17 @@ class UnitResults(KeptArrays):
         super().__init__(directory, fingerprint, RESULT_HEAD)
 
     def write(self, unit: int, arrays: Arrays) -> None:
-        """Keeps the result of a unit."""
+        """Stores the result of a unit."""
         self.put(unit, arrays)
 
     def read(self) -> dict[int, Arrays]:
-        """The results of all units that are there whole, by unit."""
+        """Results of all units with an intact file, by unit."""
         names = (path.name.removeprefix("unit-") for path in self.directory.glob(UNIT_RESULTS))
         found = {int(name): self.get(int(name)) for name in names if name.isdecimal()}
         return {unit: arrays for unit, arrays in found.items() if arrays is not None}
 
     def drop(self) -> None:
-        """Removes all results."""
+        """Deletes all results."""
         drop_files(self.directory, UNIT_RESULTS)
 
 

@@ -1,4 +1,4 @@
-"""One run at a time on a result file: a lock that the system gives back when its holder dies."""
+"""Lock of a result file, which admits one run at a time; the system releases it when its holder dies."""
 
 import fcntl
 import os
@@ -9,14 +9,14 @@ from pathlib import Path
 from ...errors import InputError
 
 LOCK_PATIENCE = 5.0
-"""Seconds to wait for the lock: ranks whose launcher was killed live on for a moment."""
+"""Seconds to wait for the lock. Ranks of a launcher that was killed live on for a moment."""
 
 
 class Lock:
-    """The lock on a result file, kept in its journal directory, which it makes and removes again."""
+    """Lock on a result file, stored in its journal directory, which the lock creates and removes."""
 
     def __init__(self, directory: Path, path: Path):
-        """Takes the lock; InputError if another run keeps it."""
+        """Takes the lock; raises InputError if another run holds it."""
         self.directory = directory
         patience = time.monotonic() + LOCK_PATIENCE
         while True:
@@ -25,10 +25,10 @@ class Lock:
             except FileExistsError:
                 if os.path.lexists(directory):
                     raise
-                continue  # it was there, and a run that ended just now took it away
+                continue  # a run that ended just now has removed the directory
             try:
                 self.handle = os.open(directory / "lock", os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
-            except FileNotFoundError:  # a run that ended just now took the directory away
+            except FileNotFoundError:  # a run that ended just now has removed the directory
                 continue
             try:
                 fcntl.flock(self.handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -43,14 +43,14 @@ class Lock:
                     f"{path} is being written by another run; wait for it, or choose another file with "
                     "-o (several ranks that each say this were started without MPI between them)"
                 ) from None
-            os.close(self.handle)  # the run that ended just now took this lock file away: take a new one
+            os.close(self.handle)  # the run that ended just now has removed this lock file: take a new one
 
     def release(self) -> None:
-        """Gives the lock back and removes the directory where nothing is left in it."""
+        """Releases the lock and removes the directory if it is empty."""
         own = self.directory / "lock"
-        with suppress(OSError):  # it was moved or deleted
+        with suppress(OSError):  # the lock file was moved or deleted
             if os.path.samestat(os.stat(own), os.fstat(self.handle)):
                 own.unlink()
-        with suppress(OSError):  # it is not empty, or a link that the user has made
+        with suppress(OSError):  # the directory is not empty, or is a link made by the user
             self.directory.rmdir()
         os.close(self.handle)

@@ -51,7 +51,7 @@ class Points:
 
     @property
     def moved(self) -> tuple[str, ...]:
-        """The parameter that varies along each axis; empty where an axis varies several parameters or none."""
+        """The parameter that varies along each axis; empty where an axis varies several or none."""
         return self.names if self.is_grid else tuple(map(moved_by, self.over))
 
     @property

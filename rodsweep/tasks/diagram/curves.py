@@ -10,7 +10,7 @@ from ...config.values import Axis
 from ...model.parameters import CRUSHING
 from ...model.rod import Rod
 from ...results.file.view import View
-from ...results.layouts.phase_diagram import MOST_SPECIAL
+from ...results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
 from ...results.layouts.variables import Filled
 from .cycles import row_specials, unstored_specials, with_hopf_ends
 from .records import bautin_curve_record, criticality_record, curve_record, cycle_curve_record
@@ -152,7 +152,7 @@ class DiagramCurves:
 
         if number not in self.special:
             request = self.task.row_request()
-            return special_of(row_branches(self.task.rod(number), request, MOST_SPECIAL, self.workspace))
+            return special_of(row_branches(self.task.rod(number), request, MAX_CYCLE_SPECIAL, self.workspace))
         return self.special[number]
 
     def _criticality(self, plane: "Plane", found: "Boundaries[BoundaryCurve]") -> "list[CurveCriticality]":

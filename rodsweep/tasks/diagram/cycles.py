@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...results.file.view import View
-from ...results.layouts.phase_diagram import CYCLE_SPECIAL, MOST_SPECIAL, cycle_variables
+from ...results.layouts.phase_diagram import CYCLE_SPECIAL, MAX_CYCLE_SPECIAL, cycle_variables
 from ...results.layouts.variables import listed, recorded
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
     variables = [v for v in cycle_variables(line) if v.extra == (CYCLE_SPECIAL,)]
     at = {f"cycle_special_{line}": "at"}
     rows = [recorded(variables, point, prefix="cycle_special_", names=at) for point in result.special]
-    values: dict[str, Any] = listed(variables, rows, MOST_SPECIAL)
+    values: dict[str, Any] = listed(variables, rows, MAX_CYCLE_SPECIAL)
     values |= {"cycle_special_count": len(result.special), "stable_states": result.stable_states}
     return values | {"seconds": result.seconds, "status": int(result.status)}
 

@@ -14,7 +14,7 @@ from ....model.arm.quantities import ALL_QUANTITIES, ARM_UNITS, RELATIVE, SCALE_
 from ....model.units import compact, written_in
 from ....results.file.view import View
 from ....results.layouts import LAYOUTS
-from ....results.layouts.arm import HERTZ, twins_of
+from ....results.layouts.arm import HERTZ, si_variables_of
 from ....results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...hopf_points import Located
 from ...tables.rows import quantities_at_points
@@ -109,7 +109,7 @@ def arm_lines(view: View, done: np.ndarray) -> list[str]:
     if not view.quantities:
         return []
     config = json.loads(view.attributes["config_resolved"])
-    twins = twins_of(LAYOUTS[view.task](config), config)
+    twins = si_variables_of(LAYOUTS[view.task](config), config)
     shown = {
         own: v
         for own, v in twins.items()

@@ -1,1 +1,1 @@
-"""Files combined: merged, joined and extended, and which configs ask for the same results."""
+"""Combination of files: merging, joining and extension, and comparison of the configs of two files."""

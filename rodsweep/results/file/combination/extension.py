@@ -1,8 +1,8 @@
-"""A larger config over a stored file: whether it contains the file's, and which stored points stay.
+"""Extension of a stored file to a larger config: whether it is possible, and which stored points stay.
 
-A point stays only if a run of the whole larger config would give it to the last bit: its parameters are the
-same bits, it has everything that is asked for, and so are all points before it in a chain, or all points of
-its stretch.
+A stored point stays only if a run of the whole larger config would give it to the last bit. Its parameters
+must be the same bits, and it must have every result that the larger config asks for. The same must hold for
+all previous points of its chain, or for all points of its stretch.
 """
 
 from collections.abc import Iterator
@@ -26,24 +26,25 @@ from ..points import stored_points
 from ..validation import Header
 from .identity import config_difference
 
-SAME = 4 * np.finfo(float).eps
-"""Relative distance of two values of an axis that rounding alone sets apart."""
+SAME_VALUE = 4 * np.finfo(float).eps
+"""Largest relative difference of two values on an axis that counts as rounding."""
 
 Indices = NDArray[np.int64]
+"""Flat indices of points, or places on an axis, (n,); -1 for no place."""
 
 
 @dataclass(frozen=True, slots=True)
 class Places:
-    """Where the stored points are among the new ones: of each dimension, or of a list."""
+    """Places of the stored points among the new points: on each axis of a grid, or in a list."""
 
     shape: tuple[int, ...]
-    """That of the stored points."""
+    """Shape of the stored points."""
     new_shape: tuple[int, ...]
     places: tuple[Indices, ...]
-    """The new place of every stored value of a dimension, -1 where its points are computed anew."""
+    """New place of every stored value on an axis, -1 if its points are computed again."""
 
     def __call__(self, index: Indices) -> Indices:
-        """New flat indices of stored ones, both (n,); -1 where a point is computed anew."""
+        """New flat indices of stored flat indices, both (n,); -1 for points that are computed again."""
         each = [place[i] for place, i in zip(self.places, np.unravel_index(index, self.shape), strict=True)]
         stays = np.min(each, axis=0) >= 0
         new = np.ravel_multi_index([np.maximum(place, 0) for place in each], self.new_shape)
@@ -52,19 +53,19 @@ class Places:
 
 @dataclass(frozen=True, slots=True)
 class Extension:
-    """The points of a stored file that stay in the file of a larger config."""
+    """Points of a stored file that stay in the file of a larger config."""
 
     path: Path
     old: Layout
     new: Layout
     places: Places
     grown: tuple[tuple[Increase, Any], ...]
-    """What is newly asked of every point, each with what was asked before."""
+    """(increased option, its former value) for every option that asks for more of each point."""
     nothing_stays: bool
-    """Whether every stored point is computed anew."""
+    """Whether every stored point is computed again."""
 
     def kept(self) -> Iterator[np.ndarray]:
-        """Records, (n,) at a time in the new layout, of the points that stay."""
+        """Yields records, (n,) in the new layout, of the points that stay."""
         if self.nothing_stays:
             return
         for records in stored_points(self.path, self.old):
@@ -76,7 +77,7 @@ class Extension:
                 yield self._converted(records[stays], index[stays])
 
     def _converted(self, records: np.ndarray, index: Indices) -> np.ndarray:
-        """Records of the new layout; what the old one has less of is filled up."""
+        """Records in the new layout; values that the old layout lacks are filled."""
         found = np.empty(len(records), self.new.record)
         found["index"] = index
         for variable in self.new.variables:
@@ -90,11 +91,12 @@ class Extension:
 
 
 def extension_of(header: Header, points: Points, plan: Plan) -> Extension:
-    """The extension of a stored file, of these points, to a larger plan.
+    """Extension of a stored file with these points to a larger plan.
 
-    InputError, which names the difference, unless the plan contains all that the file was made for.
+    Raises InputError, which names the difference, if the plan lacks anything that the file was made for.
     """
-    theirs, ours = config_of(header.config).meaning, config_of(plan.config).meaning
+    theirs = config_of(header.config).meaning
+    ours = config_of(plan.config).meaning
     task = theirs["task"]
     _refuse(header, config_difference(task, ours["task"], "task"))
     line_grew = False
@@ -121,7 +123,7 @@ def extension_of(header: Header, points: Points, plan: Plan) -> Extension:
 
 
 def _refuse(header: Header, difference: str) -> None:
-    """InputError where there is a difference that no extension can bridge."""
+    """Raises InputError if there is a difference, which no extension can bridge."""
     if difference:
         raise InputError(
             f"{header.path} cannot be extended to this config ({difference}); choose another file with -o, "
@@ -130,7 +132,7 @@ def _refuse(header: Header, difference: str) -> None:
 
 
 def _places(header: Header, old: Points, plan: Plan) -> Places:
-    """Where the stored points are among those of the plan; InputError if one is not among them."""
+    """Places of the stored points in the plan; raises InputError if a stored point is not in the plan."""
     new = plan.points
     if tuple(old.axes) != tuple(new.axes) or old.names != new.names:
         kinds = [
@@ -152,36 +154,43 @@ def _places(header: Header, old: Points, plan: Plan) -> Places:
 
 
 def _places_on_axis(header: Header, name: str, old: Array, new: Array) -> Indices:
-    """Of every old value its place on the new axis, (n,), or -1 where rounding has moved it."""
+    """New place of every old value on an axis, (n,), or -1 where rounding has changed the value.
+
+    Raises InputError for an old value that is not on the new axis.
+    """
     right = np.searchsorted(new, old).clip(max=len(new) - 1)
     left = (right - 1).clip(min=0)
     with np.errstate(invalid="ignore"):
         nearest = np.where(np.abs(new[left] - old) < np.abs(new[right] - old), left, right)
         apart = np.abs(new[nearest] - old)
-        near = (new[nearest] == old) | (np.isfinite(apart) & (apart <= SAME * np.abs(old)))
+        near = (new[nearest] == old) | (np.isfinite(apart) & (apart <= SAME_VALUE * np.abs(old)))
     if not near.all():
         _refuse(header, f"parameters.{name} = {old[~near][0]:.15g} is in the file and not in the config")
     return np.where(new[nearest] == old, nearest, -1).astype(np.int64)
 
 
 def _same_from_the_start(places: Indices, count: int, upward: bool) -> Indices:
-    """The places of a chain's points, (n,), as long as all points before are the same; else -1."""
+    """Places of the points of a chain, (n,), up to the first point that is not the same; -1 from there on."""
     ahead = places if upward else np.where(places < 0, -1, count - 1 - places)[::-1]
     stays = np.logical_and.accumulate(ahead == np.arange(len(ahead)))
     return np.where(stays if upward else stays[::-1], places, -1)
 
 
 def _same_stretches(places: Indices, count: int) -> NDArray[np.bool_]:
-    """Whether each old point of a line, (n,), is in a stretch of the same points on an axis of that size."""
+    """Whether the stretch of each old point of a line, (n,), has the same points on the new axis.
+
+    count: number of values on the new axis.
+    """
     at = np.arange(len(places))
     first = at // STRETCH_POINTS * STRETCH_POINTS
-    whole = np.minimum(first + STRETCH_POINTS, len(places)) == np.minimum(first + STRETCH_POINTS, count)
+    same_length = np.minimum(first + STRETCH_POINTS, len(places)) == np.minimum(first + STRETCH_POINTS, count)
     moved = np.logical_or.reduceat(places != at, np.arange(0, len(places), STRETCH_POINTS))
-    return whole & ~moved[at // STRETCH_POINTS]
+    return same_length & ~moved[at // STRETCH_POINTS]
 
 
 def _places_in_list(header: Header, old: Points, new: Points) -> Indices:
-    """Of every old point its place in the new list, (n,)."""
+    """New place of every old point in the list, (n,); raises InputError for a point that is not listed."""
+    # Adding 0.0 turns -0.0 into 0.0, so that equal rows have equal bytes.
     rows = [np.column_stack(points.columns) + 0.0 for points in (new, old)]
     known: dict[bytes, int] = {}
     for i, row in enumerate(rows[0]):

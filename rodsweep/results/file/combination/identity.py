@@ -1,7 +1,7 @@
-"""Which results two configs share: what makes them ask for the same, and how it is said where they do not.
+"""Identity of configs: whether two configs ask for the same results, and the difference in words if not.
 
-Compared is what a config means. How an axis is written, the title, the name of a list of points and options
-that nothing uses make no other config.
+Configs are compared by their meaning. The notation of an axis, the title, the name of a list of points, and
+unused options do not count.
 """
 
 import json
@@ -18,13 +18,13 @@ from ....config.document.reading import config_of
 from ....config.values import Axis
 
 LONGEST_VALUE = 80
-"""Characters of a config's value in a sentence."""
+"""Largest number of characters of a config's value in a sentence."""
 
 
 def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
-    """What two files must share for the one to continue the other: of a resolved config and its points.
+    """Fingerprint of a resolved config and its points; a file can continue another only if they agree.
 
-    columns: the `identity` of the points, each (n,). ValueError for a config of no use.
+    columns: the `identity` of the points, each (n,). Raises ValueError for an invalid config.
     """
     asked = config_of(config)
     meant = {"meaning": asked.meaning, "grid": not asked.parameters.is_list}
@@ -33,12 +33,14 @@ def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
     digest = sha256(json.dumps(meant, sort_keys=True).encode())
     for column in columns:
         digest.update(len(column).to_bytes(8, "little"))
-        digest.update(np.ascontiguousarray(column + 0.0).tobytes())  # -0.0 becomes 0.0, which it equals
+        digest.update(
+            np.ascontiguousarray(column + 0.0).tobytes()
+        )  # -0.0 becomes 0.0, so that equal values have equal bytes
     return digest.hexdigest()
 
 
 def change_between(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
-    """How two resolved configs differ that do not ask for the same points, in words."""
+    """Difference, in words, of two resolved configs with different fingerprints."""
     if theirs["task"] != ours["task"]:
         return config_difference(theirs["task"], ours["task"], "task")
     configs = config_of(theirs), config_of(ours)
@@ -58,7 +60,7 @@ def change_between(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
 
 
 def _kind(parameters: Axes) -> str:
-    """What kind of points a config has, in words."""
+    """Kind of the points of a config, in words."""
     if parameters.over:
         return f"a grid over {' and '.join(parameters.over)}"
     return "a list of points" if parameters.is_list else "a grid"
@@ -71,9 +73,9 @@ def _same_axis(first: Axis, second: Axis) -> bool:
 def config_difference(
     theirs: Any, ours: Any, key: str = "", places: tuple[str, str] = ("the file", "the config")
 ) -> str:
-    """The first key in which two resolved configs differ, with both values; empty if none does.
+    """First key in which two resolved configs differ, with both values; empty if they are equal.
 
-    places: where the two are.
+    places: names of the two sources in the sentence.
     """
     if isinstance(theirs, dict) and isinstance(ours, dict):
         for name in [*ours, *(n for n in theirs if n not in ours)]:
@@ -92,7 +94,7 @@ def config_difference(
 
 
 def _list_difference(theirs: list[Any], ours: list[Any], places: tuple[str, str]) -> str:
-    """How two lists differ that are too long to be shown: their lengths, and the first value that differs."""
+    """Difference of two lists that are too long to show: their lengths, and the first different value."""
     sizes = f"{len(theirs)} values in {places[0]} and {len(ours)} in {places[1]}"
     pairs = enumerate(zip_longest(theirs, ours), 1)
     number, values = next((i, pair) for i, pair in pairs if pair[0] != pair[1])

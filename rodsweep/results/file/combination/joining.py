@@ -1,7 +1,7 @@
-"""Files of one task whose points belong together: their grids as one larger grid, their lists as one list.
+"""Joining of files of one task with different points: grids into one larger grid, lists into one list.
 
-Only whole grids are made, so nothing is missing afterwards that none of the files was made for. A point that
-several files have must be the same in all.
+The joined grid must be complete, so that no point is missing that no file was made for. A point that several
+files contain must have the same values in all of them.
 """
 
 from collections.abc import Callable, Sequence
@@ -24,32 +24,32 @@ from ..creation import Plan
 from ..points import parameters_of, points_at, stored_points, write_points
 from ..provenance import LONGEST_ATTRIBUTE, kernels_of
 from ..validation import Header
-from .extension import SAME, Places
+from .extension import SAME_VALUE, Places
 from .identity import config_difference
 
 OF_ONE_FILE = (
     "program", "format", "fingerprint", "config_resolved", "coordinates", "finished", "snapshot", SEAL,
 )  # fmt: skip
-"""Attributes that a joined file does not take over."""
+"""Attributes that a joined file does not inherit."""
 ROUNDING_FACTOR = 1e3
-"""In units of the accuracy asked for: how far numbers that differ by rounding may lie apart."""
+"""Largest difference that counts as rounding, in units of the accuracy asked for."""
 
 Planner = Callable[[Config, Points], Plan]
-"""Makes the plan of a config on given points, without attributes and flags."""
+"""Function that makes the plan of a config for given points, without attributes and flags."""
 
 
 @dataclass(frozen=True, slots=True)
-class Joint:
-    """The plan of the joined file, and where in it the points of each file are."""
+class JoinedFile:
+    """Plan of the joined file, and the places of the points of each source in it."""
 
     plan: Plan
     sources: Sequence[Header]
     places: Sequence[Places]
 
     def write(self, path: Path) -> list[Header]:
-        """Writes the points of all files into one of the plan; returns the files that gave some.
+        """Writes the points of all sources into a file of the plan; returns the sources that gave points.
 
-        InputError where two files disagree.
+        Raises InputError if two sources disagree about a point.
         """
         owner = np.full(self.plan.points.count, -1, np.int32)
         for number, (source, places) in enumerate(zip(self.sources, self.places, strict=True)):
@@ -62,7 +62,7 @@ class Joint:
         return [self.sources[number] for number in np.unique(owner[owner >= 0])]
 
     def _compare(self, path: Path, records: np.ndarray, owner: np.ndarray, number: int) -> None:
-        """InputError where records, (n,), are not what the file has of the same points."""
+        """Raises InputError if records, (n,), differ from the stored points by more than rounding."""
         if not len(records):
             return
         stored = points_at(path, records["index"], self.plan.layout)
@@ -79,30 +79,30 @@ class Joint:
                     raise InputError(f"{both} disagree about the point {where}: their {name} differ")
 
     def _is_rounding(self, name: str, first: Any, second: Any, sources: tuple[Header, Header]) -> bool:
-        """Whether two values differ as those of two BLAS kernels may, or of points with other neighbours."""
+        """Whether two values differ by rounding only, from other BLAS kernels or other neighbours in a stretch."""
         kernels = {kernel for source in sources for kernel in kernels_of(source.attributes)}
         if (len(kernels) < 2 and not self.plan.stretches) or name == "status":
             return False
         if np.asarray(first).dtype.kind != "f" or name.endswith(("error", "error_estimate")):
             return True
-        most = ROUNDING_FACTOR * float(self.plan.config["accuracy"])
+        tolerance = ROUNDING_FACTOR * float(self.plan.config["accuracy"])
         scale = np.nanmax(np.abs([first, second]), initial=0.0)
-        return bool(np.allclose(first, second, rtol=most, atol=most * scale, equal_nan=True))
+        return bool(np.allclose(first, second, rtol=tolerance, atol=tolerance * scale, equal_nan=True))
 
 
 def _place(points: Points, index: int) -> str:
-    """The parameters of a point, in words."""
+    """Parameters of a point, in words."""
     return ", ".join(f"{name} = {value:.15g}" for name, value in points.values(index).items())
 
 
 def _equal(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Of which points, (n,), two variables, (n, ...), are the same to the last bit, or both not a number."""
+    """Whether two variables, (n, ...), have equal bits or are both NaN, at each point, (n,)."""
     same = (first == second) | (np.isnan(first) & np.isnan(second))
     return same.reshape(len(same), -1).all(axis=1)
 
 
-def joint_of(sources: Sequence[Header], planner: Planner) -> Joint:
-    """How files of different points become one; InputError, which says why, where they do not."""
+def joined_file_of(sources: Sequence[Header], planner: Planner) -> JoinedFile:
+    """Joined file of sources with different points; raises InputError if they cannot be joined."""
     first, *others = sources
     meant = config_of(first.config).meaning
     grids = [parameters_of(source.path, source.layout) for source in sources]
@@ -127,15 +127,15 @@ def joint_of(sources: Sequence[Header], planner: Planner) -> Joint:
     config = _joined_config(first, meant, points)
     plan = planner(config, points)
     _refuse_broken_chains(sources, grids, plan)
-    return Joint(_with_attributes(plan, first, config), sources, places)
+    return JoinedFile(_with_attributes(plan, first, config), sources, places)
 
 
 def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[Places]]:
-    """The grid of all values of every axis, and where each grid is in it."""
+    """(grid of all values on every axis, places of each grid in it)."""
     axes = []
     for name in grids[0].names:
         axis = np.unique(np.concatenate([grid.by_name[name] for grid in grids]))
-        close = np.flatnonzero(np.diff(axis) <= SAME * np.abs(axis[:-1]))
+        close = np.flatnonzero(np.diff(axis) <= SAME_VALUE * np.abs(axis[:-1]))
         if len(close):
             values = " and ".join(repr(float(value)) for value in axis[close[0] : close[0] + 2])
             raise InputError(f"the files have {name} = {values}, which only rounding sets apart")
@@ -157,7 +157,7 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[Places]]:
 
 
 def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[Places]]:
-    """The points of all lists, each once, one list after the other; and where each list is in it."""
+    """(points of all lists, each once and one list after another; places of each list in it)."""
     known: dict[bytes, int] = {}
     rows = [np.column_stack(points.columns) + 0.0 for points in lists]
     places = [np.array([known.setdefault(row.tobytes(), len(known)) for row in each]) for each in rows]
@@ -170,7 +170,7 @@ def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[Places]]:
 
 
 def _joined_config(first: Header, meant: dict[str, Any], points: Points) -> Config:
-    """The config of the first file with the axes of all; options as they are meant, whatever the axes are."""
+    """Config of the first file with the axes of the joined points; options are stored by their meaning."""
     task = first.config["task"]
     parameters = dict(first.config["parameters"])
     if points.is_grid:
@@ -181,7 +181,7 @@ def _joined_config(first: Header, meant: dict[str, Any], points: Points) -> Conf
 
 
 def _axis(own: Axis, values: Array) -> Axis:
-    """An axis of these values as it is written in short: as a range if it is one to the last bit."""
+    """Axis of these values in its shortest notation: a range if it gives the same bits, else a list."""
     if np.array_equal(own.array(), values):
         return own
     if len(values) > 2 and np.isfinite(values).all():
@@ -195,7 +195,7 @@ def _axis(own: Axis, values: Array) -> Axis:
 
 
 def _refuse_broken_chains(sources: Sequence[Header], grids: Sequence[Points], plan: Plan) -> None:
-    """InputError where chains of the joined file would be pieced together of those of several."""
+    """Raises InputError if chains of the joined file would consist of pieces from several files."""
     if not plan.chains:
         return
     name = plan.points.names[plan.chains.axis]
@@ -208,7 +208,7 @@ def _refuse_broken_chains(sources: Sequence[Header], grids: Sequence[Points], pl
 
 
 def _with_attributes(plan: Plan, first: Header, config: Config) -> Plan:
-    """The plan with what the first file says of itself, and the text of the joined config."""
+    """The plan with the attributes and status flags of the first file, and the text of the joined config."""
     text = text_of(config)
     resolved = canonical(config)
     if max(len(text), len(str(resolved))) > LONGEST_ATTRIBUTE:

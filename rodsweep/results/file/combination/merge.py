@@ -1,7 +1,7 @@
-"""Shards of a run put together, or files whose grids make up a larger one: all their points in one file.
+"""Merging: all points of the shards of a run, or of files that make up a larger grid, in one file.
 
-Streamed a block of points at a time, so that memory does not grow with the files; the new file
-appears whole, by a rename.
+Points are streamed a block at a time, so that memory does not grow with the files. The new file appears
+complete, by a rename.
 """
 
 import os
@@ -20,43 +20,44 @@ from ..exchange import Exchange, disk_refusals
 from ..points import missing_ranges, parameters_of, points_to_add, write_points
 from ..provenance import KERNELS, kernels_sentence, merged_history, now
 from ..validation import Header, read_header
-from .joining import Joint, Planner, joint_of
+from .joining import JoinedFile, Planner, joined_file_of
 
 
 @dataclass(frozen=True, slots=True)
-class Merged:
-    """What came of a merge: points in the file, those still missing, whether nothing else is, and by what."""
+class MergeResult:
+    """Number of points in the merged file and of missing points, and whether the file is finished."""
 
     points: int
     missing: int
     finished: bool
     kernels: str
-    """What is to be said of the BLAS kernels that computed the points, where they are several; else empty."""
+    """Warning about the BLAS kernels that computed the points; empty for a single kernel."""
 
 
-def merge(output: Path, paths: Sequence[Path], planner: Planner) -> Merged:
-    """Writes `output` from all points of the result files `paths`, parts of one grid or list, or several.
+def merge(output: Path, paths: Sequence[Path], planner: Planner) -> MergeResult:
+    """Writes `output` from all points of the result files `paths`: parts of one grid or list, or several.
 
-    An existing `output` is the first of them. Of a point given twice the first stays; where the files are of
-    different grids, both must be the same. InputError if a file is no result, was made for something else or
-    has points in its journal, or if the grids make up no larger one; EnvironmentLacks where the disk refuses.
+    An existing `output` is the first source. Of two values of a point the first stays; in files of different
+    grids both must agree. Raises InputError if a file is no result, was made for another config, or has
+    points in its journal, or if the grids do not make up a larger one. Raises EnvironmentLacks if the disk
+    fails.
     """
     sources = _opened(paths)
     with disk_refusals(output):
         exchange = Exchange(output)
     try:
         with disk_refusals(output, lambda: "; the shards are untouched"):
-            if output.exists():  # it may have appeared while another run had the lock
+            if output.exists():  # the file may have appeared while another run held the lock
                 sources = _opened([output, *(path for path in paths if not os.path.samefile(output, path))])
             if all(_is_continued(sources[0], source) for source in sources):
                 return _merge(exchange, sources, planner)
-            return _join(exchange, joint_of(sources, planner))
+            return _join(exchange, joined_file_of(sources, planner))
     finally:
         exchange.close()
 
 
-def _merge(exchange: Exchange, sources: Sequence[Header], planner: Planner) -> Merged:
-    """Exchanges the file for the first source with the points that the others add."""
+def _merge(exchange: Exchange, sources: Sequence[Header], planner: Planner) -> MergeResult:
+    """Replaces the output by the first source with the points that the other sources add."""
     first = sources[0]
     plan = planner(config_of(first.config), parameters_of(first.path, first.layout))
     with exchange.replacing(first.path) as copy:
@@ -67,16 +68,16 @@ def _merge(exchange: Exchange, sources: Sequence[Header], planner: Planner) -> M
         return _finished(copy, plan, gave)
 
 
-def _join(exchange: Exchange, joint: Joint) -> Merged:
-    """Exchanges the file for one with the points of all files."""
+def _join(exchange: Exchange, joint: JoinedFile) -> MergeResult:
+    """Replaces the output by a joined file with the points of all sources."""
     with exchange.replacing(None) as copy:
         create_file(copy, joint.plan)
         gave = joint.write(copy)
         return _finished(copy, joint.plan, gave or joint.sources[:1])
 
 
-def _finished(copy: Path, plan: Plan, gave: Sequence[Header]) -> Merged:
-    """Notes in the merged file by whom its points were computed; a whole one gets what they all give."""
+def _finished(copy: Path, plan: Plan, gave: Sequence[Header]) -> MergeResult:
+    """Stores the history of the points in the merged file, and completes a file without missing points."""
     left = missing_ranges(copy)
     finished = not left and not plan.layout.needs_all_points
     history = merged_history([source.attributes for source in gave])
@@ -86,11 +87,11 @@ def _finished(copy: Path, plan: Plan, gave: Sequence[Header]) -> Merged:
             file.attrs["finished"] = now()
         file.attrs.update(history)
         points = file["status"].size
-    return Merged(points - total(left), total(left), finished, kernels_sentence(history[KERNELS]))
+    return MergeResult(points - total(left), total(left), finished, kernels_sentence(history[KERNELS]))
 
 
 def _opened(paths: Sequence[Path]) -> list[Header]:
-    """The files, each with all of its points in it; else InputError."""
+    """Headers of the sources; raises InputError for a file with points in its journal."""
     files = []
     for path in paths:
         files.append(read_header(path))
@@ -102,7 +103,7 @@ def _opened(paths: Sequence[Path]) -> list[Header]:
 
 
 def _is_continued(first: Header, other: Header) -> bool:
-    """Whether two files were made for the same; InputError if yet their variables are not the same."""
+    """Whether two files have the same fingerprint; raises InputError if their layouts differ nevertheless."""
     if first.fingerprint != other.fingerprint:
         return False
     if (first.layout.record, first.points) != (other.layout.record, other.points):
