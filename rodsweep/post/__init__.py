@@ -1,1 +1,1 @@
-"""From result files to summaries and figures. The only importer of matplotlib; knows no solver."""
+"""Summaries and figures from result files. The only importer of matplotlib; knows no solver."""

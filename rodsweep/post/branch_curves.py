@@ -1,8 +1,8 @@
-"""Branches of cycles from a file of the task branch: curves and their stability, and ranges of the parameter.
+"""Branches of cycles in a file of the task branch: curves, their stability, and ranges of the parameter.
 
-A branch is a curve through its cycles and its special points in their order. Where multipliers cross the
-circle there is a special point: a cycle with one on the circle within its error is as stable as those between
-the same special points that have none, if these are of one kind.
+A branch is a curve through its cycles and its special points in their order. Where multipliers cross the unit
+circle the branch has a special point. A cycle whose multiplier is on the circle within its error therefore
+has the stability of the other cycles between the same two special points, if these agree.
 """
 
 from collections.abc import Iterable
@@ -20,14 +20,15 @@ from ..results.layouts.branch import END_REASONS, SPECIAL_KINDS
 
 HOPF, FOLD, END = (SPECIAL_KINDS.index(kind) for kind in ("hopf", "fold", "end"))
 SAME_PLACE = 1e-9
-"""Relative distance of the ends of two ranges below which they are one."""
+"""Largest relative distance between two ranges that are joined."""
 
 Range = tuple[float, float]
+"""(smallest, largest) value of the parameter."""
 
 
 @dataclass(frozen=True, slots=True)
-class SpecialOfBranch:
-    """A special point as the file has it."""
+class StoredSpecialPoint:
+    """Special point of a branch as the file stores it."""
 
     kind: str
     at: float
@@ -43,10 +44,12 @@ class SpecialOfBranch:
 
 
 @dataclass(frozen=True, slots=True)
-class CurveOfCycles:
-    """A branch. at, y, period: at its vertices in order, (n,); cycles: which of these are stored ones, (n,).
+class StoredBranch:
+    """Branch of cycles through n vertices: stored cycles and special points.
 
-    stable: of the pieces between, (n - 1,): 1 stable, 0 unstable, -1 not known.
+    at, y, period: parameter, largest tip y and period at the vertices, (n,). cycles: whether a vertex is a
+    stored cycle, (n,). stable: stability of the pieces between the vertices, (n - 1,): 1 stable, 0 unstable,
+    -1 unknown.
     """
 
     at: Array
@@ -54,22 +57,23 @@ class CurveOfCycles:
     period: Array
     stable: NDArray[np.integer]
     cycles: NDArray[np.bool_]
-    special: tuple[SpecialOfBranch, ...]
+    special: tuple[StoredSpecialPoint, ...]
 
     @property
     def stable_ranges(self) -> list[Range]:
-        """The values of the parameter that have a stable cycle of the branch."""
+        """Ranges of the parameter in which a cycle of the branch is stable."""
         pieces = np.flatnonzero(self.stable == 1)
         return union((min(self.at[i : i + 2]), max(self.at[i : i + 2])) for i in pieces)
 
-    def beside_hopf_points(self) -> list[tuple[Array, Array, NDArray[np.integer]]]:
-        """From each Hopf point of known a to where the branch first turns back: |at/at_H - 1|, y/|a|, stable.
+    def near_hopf_points(self) -> list[tuple[Array, Array, NDArray[np.integer]]]:
+        """The branch from each Hopf point with known a to its first fold: (|at/at_H - 1|, y/|a|, stability).
 
-        Of the shapes (n,), (n,) and (n - 1,), n > 1; the Hopf point itself, at 0, is left out.
+        Shapes (n,), (n,) and (n - 1,), n > 1; the Hopf point itself, at distance 0, is left out.
         """
         found = []
         for special, order in ((self.special[0], slice(None)), (self.special[-1], slice(None, None, -1))):
-            a, y = special.amplitude_coefficient, self.y[order]
+            a = special.amplitude_coefficient
+            y = self.y[order]
             if special.kind != "hopf" or y[0] != 0 or not np.isfinite(a) or a == 0:
                 continue
             away = np.sign(a) * (self.at[order] / special.at - 1)
@@ -81,30 +85,31 @@ class CurveOfCycles:
 
 
 def followed_parameter(view: View) -> str:
-    """The parameter along which branches are followed."""
+    """Parameter along which the branches of a file are followed."""
     names = {str(name) for name in view.variables}
     return next(name for name in LINEAR_PARAMETERS if f"branch_{name}" in names)
 
 
-def branches_not_told(view: View, rod: int) -> int:
-    """How many branches of a rod have special points for which the list has no room."""
+def count_incomplete_branches(view: View, rod: int) -> int:
+    """Number of branches of a rod whose special points do not fit into the stored list."""
     v = view.of_point(rod)
-    return max(int(v["branch_count"]), 0) - _told(v)
+    return max(int(v["branch_count"]), 0) - _count_complete(v)
 
 
-def _told(v: dict[str, Array]) -> int:
-    """The number of branches of a rod, the first ones, whose special points are all in the list."""
+def _count_complete(v: dict[str, Array]) -> int:
+    """Number of branches of a rod, the first ones, whose special points are all stored."""
     listed = v["special_branch"][v["special_kind"] > 0]
     if len(listed) >= v["special_count"]:
         return max(int(v["branch_count"]), 0)
     return int(listed.max(initial=1)) - 1
 
 
-def curves_of(view: View, rod: int) -> list[CurveOfCycles]:
-    """The branches of a rod, by its place among all points, whose special points are all in the list."""
-    along, v = followed_parameter(view), view.of_point(rod)
+def curves_of(view: View, rod: int) -> list[StoredBranch]:
+    """Branches of a rod whose special points are all stored; rod: its place among all points."""
+    along = followed_parameter(view)
+    v = view.of_point(rod)
     curves = []
-    for number in range(1, _told(v) + 1):
+    for number in range(1, _count_complete(v) + 1):
         cycles = np.flatnonzero(v["branch"] == number)
         special = np.flatnonzero(v["special_branch"] == number)
         before = special[v["special_point"][special] == 0]
@@ -121,14 +126,16 @@ def curves_of(view: View, rod: int) -> list[CurveOfCycles]:
         at, y, period = np.array(values, dtype=float).reshape(-1, 3).T
         counts = [int(v["unstable_multipliers"][i]) if is_cycle else None for is_cycle, i in order]
         is_cycle = np.array([cycle for cycle, _ in order], dtype=bool)
-        stable, specials = stability_of_pieces(counts), _specials(v, special)
-        curves.append(CurveOfCycles(at, y, period, stable, is_cycle, specials))
+        stable = stability_of_pieces(counts)
+        curves.append(StoredBranch(at, y, period, stable, is_cycle, _special_points(v, special)))
     return curves
 
 
 def stability_of_pieces(counts: list[int | None]) -> NDArray[np.integer]:
-    """Of the pieces between n vertices, (n - 1,), by the counts of unstable multipliers at these: -1 where
-    undecided, None at special points."""
+    """Stability of the pieces between n vertices, (n - 1,): 1 stable, 0 unstable, -1 unknown.
+
+    counts: number of unstable multipliers at each vertex, -1 if undecided, None at a special point.
+    """
     stable = [-1] * (len(counts) - 1)
     special = [i for i, count in enumerate(counts) if count is None]
     for start, end in pairwise([0, *special, len(counts) - 1]):
@@ -140,9 +147,10 @@ def stability_of_pieces(counts: list[int | None]) -> NDArray[np.integer]:
     return np.array(stable, dtype=int)
 
 
-def _specials(v: dict[str, Array], places: Iterable[int]) -> tuple[SpecialOfBranch, ...]:
+def _special_points(v: dict[str, Array], places: Iterable[int]) -> tuple[StoredSpecialPoint, ...]:
+    """Special points at some places of the stored list."""
     return tuple(
-        SpecialOfBranch(
+        StoredSpecialPoint(
             SPECIAL_KINDS[int(v["special_kind"][i])],
             float(v["special_at"][i]),
             float(v["special_error"][i]),
@@ -160,9 +168,12 @@ def _specials(v: dict[str, Array], places: Iterable[int]) -> tuple[SpecialOfBran
 
 
 def straight_ranges(view: View, rod: int, ends: Range) -> tuple[list[Range], list[Range]]:
-    """(where the straight rod is stable, where it is not) between the ends of a range, if all is told."""
+    """(ranges in which the straight rod is stable, ranges in which it is unstable) between two ends.
+
+    Both are empty if the special points of some branch are not stored.
+    """
     v = view.of_point(rod)
-    if branches_not_told(view, rod):
+    if count_incomplete_branches(view, rod):
         return [], []
     hopf = v["special_kind"] == HOPF
     at, first = np.unique(v["special_at"][hopf], return_index=True)
@@ -178,7 +189,7 @@ def straight_ranges(view: View, rod: int, ends: Range) -> tuple[list[Range], lis
 
 
 def union(ranges: Iterable[Range]) -> list[Range]:
-    """Ranges that touch or overlap, as one each, in increasing order."""
+    """Union of ranges, in increasing order; ranges that touch or overlap are joined."""
     found: list[Range] = []
     for low, high in sorted((float(a), float(b)) for a, b in ranges):
         if found and low <= found[-1][1] * (1 + SAME_PLACE):
@@ -188,7 +199,7 @@ def union(ranges: Iterable[Range]) -> list[Range]:
     return found
 
 
-def both(some: list[Range], others: list[Range]) -> list[Range]:
-    """What two lists of ranges have in common."""
-    common = [(max(a, c), min(b, d)) for a, b in some for c, d in others]
+def intersection(first: list[Range], second: list[Range]) -> list[Range]:
+    """Intersection of two unions of ranges."""
+    common = [(max(a, c), min(b, d)) for a, b in first for c, d in second]
     return [(low, high) for low, high in common if high > low * (1 + SAME_PLACE)]

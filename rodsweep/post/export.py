@@ -1,4 +1,4 @@
-"""A table of a result as CSV: a row an item, words where the file has numbers, nothing for nothing."""
+"""Export of a table as CSV: one row for each item, words for flags, empty cells for missing values."""
 
 import csv
 import os
@@ -13,17 +13,17 @@ from ..wording import counted
 from .tables import Table, Tables
 
 SEPARATORS = {".csv": ",", ".tsv": "\t"}
-"""What stands between columns, by the ending of the file's name."""
+"""Separator of the columns, by the suffix of the file."""
 ROWS_AT_ONCE = 4096
-"""Rows that are in memory as text."""
+"""Number of rows that are converted to text at once, which bounds the memory."""
 
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What is written of a result: which table, which of its columns, and how.
+    """Request for the export of a table.
 
-    table: by default the one that has the columns, or the first of the task; columns: by default all; units:
-    whether the headings have units; replace: whether a file that is there is written over.
+    table: by default the table that has the columns, or the first table of the task. columns: by default all.
+    units: whether headings have units. replace: whether an existing file is overwritten.
     """
 
     table: str | None = None
@@ -33,7 +33,7 @@ class Request:
 
 
 def export(view: View, output: Path, request: Request) -> str:
-    """Writes a table of a result; returns what was written, as a sentence. InputError for a bad name."""
+    """Writes a table of a result; returns a sentence about it. Raises InputError for a bad name."""
     if output.is_dir() or output.suffix not in SEPARATORS:
         endings = "; ".join((".csv has commas between columns", ".tsv tabs"))
         raise InputError(f"--output {output}: the name must end in .csv or .tsv ({endings})")
@@ -51,7 +51,7 @@ def export(view: View, output: Path, request: Request) -> str:
 
 
 def _write(table: Table, separator: str, units: bool, stream: TextIO) -> None:
-    """Writes a table, some rows at a time."""
+    """Writes a table, ROWS_AT_ONCE rows at a time."""
     lines = csv.writer(stream, delimiter=separator, lineterminator="\n")
     lines.writerow(f"{c.name} [{c.unit}]" if units and c.unit != "1" else c.name for c in table.columns)
     for start in range(0, table.rows, ROWS_AT_ONCE):
@@ -60,7 +60,7 @@ def _write(table: Table, separator: str, units: bool, stream: TextIO) -> None:
 
 
 def _sentence(table: Table, view: View) -> str:
-    """What was written, which points are not in it, and what else there is."""
+    """Sentence on what was written, points without rows, and other tables."""
     text = f"{counted(table.rows, 'row')} of {table.name} in {counted(len(table.columns), 'column')}"
     if table.empty_points:
         points = counted(view.variables["status"].size, "point")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rodsweep.post.branch_curves import CurveOfCycles
+from rodsweep.post.branch_curves import StoredBranch
 from rodsweep.post.figures.smooth_branch import corners_of, through_cycles
 
 
@@ -18,7 +18,7 @@ def branch_of(u, second_maximum):
 def curve_through(u, second_maximum):
     at, y, period = branch_of(u, second_maximum)
     pieces = np.ones(len(u) - 1, dtype=int)
-    return CurveOfCycles(at, y, period, pieces, np.ones(len(u), dtype=bool), ())
+    return StoredBranch(at, y, period, pieces, np.ones(len(u), dtype=bool), ())
 
 
 def farthest(u, second_maximum):
@@ -63,7 +63,7 @@ def test_a_branch_of_one_maximum_has_no_corner(count):
 def test_a_corner_may_lie_behind_the_second_cycle_from_a_hopf_point():
     u = np.linspace(0, 1, 9)
     at, y, period = 30 + 170 * u, np.maximum(u, 4 * u - 0.48), np.exp(-u)
-    curve = CurveOfCycles(at, y, period, np.ones(8, dtype=int), np.ones(9, dtype=bool), ())
+    curve = StoredBranch(at, y, period, np.ones(8, dtype=int), np.ones(9, dtype=bool), ())
     places = np.column_stack([at, y, np.log(period)])
     (corner,) = corners_of(places, np.ptp(places, axis=0)).items()
     assert corner[0] == 1
@@ -84,7 +84,7 @@ def test_steps_that_grow_at_a_bend_make_no_waves():
 
     fine = np.linspace(at[0], at[-1], 2001)
     pieces = np.ones(len(at) - 1, dtype=int)
-    curve = CurveOfCycles(at, 0.1 - 1e-4 * (at - 91) ** 2 / 3, np.exp(log_period(at)), pieces, pieces > 0, ())
+    curve = StoredBranch(at, 0.1 - 1e-4 * (at - 91) ** 2 / 3, np.exp(log_period(at)), pieces, pieces > 0, ())
     x, _, period, _ = through_cycles(curve)
     off = np.interp(fine, x, np.log(period)) - log_period(fine)
     assert np.abs(off).max() < 4e-3 * np.ptp(log_period(at))

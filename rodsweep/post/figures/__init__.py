@@ -1,4 +1,4 @@
-"""Figures of result files: one module per task, and `draw`, which writes the figure of any of them."""
+"""Figures of result files: one module per task, and `draw`, which writes the figure of any task."""
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
@@ -35,32 +35,33 @@ FIGURES: dict[str, Callable[[FigureRequest], str]] = {
     "criticality": draw_criticality,
     "branch": draw_branch,
 }
-"""How each task draws, which the first file names: writes the figure and returns what it shows."""
+"""Function of each task that writes its figure and returns a description of it."""
 
 
 PLAIN = Look()
-LACKING = {"missing": "are not computed", "failed": "failed"}
-"""Statuses of points that no figure shows, and what is said of their number."""
+"""Default appearance of figures."""
+OMITTED = {"missing": "are not computed", "failed": "failed"}
+"""Statuses of points that no figure shows, with words for their number."""
 
 
 def _styled(look: Look) -> AbstractContextManager[None]:
-    """The settings of all figures, and the user's above them; InputError for a style that there is not."""
+    """Context with the settings of all figures and the user's; raises InputError for an unknown style."""
     ours = STYLE if look.width is None else PRINT_STYLE
     if look.style is None:
         return matplotlib.rc_context(ours)
     try:
         if look.style not in matplotlib.style.library:
-            Path(look.style).read_text(encoding="utf-8")  # matplotlib logs what is no text
+            Path(look.style).read_text(encoding="utf-8")  # matplotlib only logs a file that is no text
         own = matplotlib.style.library.get(look.style) or rc_params_from_file(
             look.style, use_default_template=False
         )
-    except (OSError, ValueError):  # no such file, or one that is no text
+    except (OSError, ValueError):  # the file does not exist, or is no text
         raise InputError(f"{look.style} is neither a style of matplotlib's nor a style file") from None
     return matplotlib.rc_context(ours | dict(own))
 
 
 class Choices(TypedDict, total=False):
-    """What is drawn of a file: `roots` of spectra, `what` of several figures, `points` numbered from 1."""
+    """Choice of the content: `roots` of spectra, `what` of several figures, `points` numbered from 1."""
 
     roots: str | None
     what: str | None
@@ -68,7 +69,7 @@ class Choices(TypedDict, total=False):
 
 
 def _drawn(request: FigureRequest) -> str:
-    """Writes the figure and returns what it shows: of an arm over its quantities, or as of a rod."""
+    """Writes the figure and returns its description; an arm has a map over its own quantities."""
     if can_draw(request):
         return draw_arm_map(request)
     listed = replace(request, views=[view.listed for view in request.views])
@@ -84,10 +85,10 @@ def draw(
     keep: Callable[[Figure], None] | None = None,
     **choices: Unpack[Choices],
 ) -> str:
-    """Draws the figure of a file, or of several, into `output`; returns a sentence about it.
+    """Draws the figure of one or several files into `output`; returns a sentence about it.
 
-    shapes: solves cycles whose shapes a file lacks. keep: takes the figure instead of a file. Raises
-    InputError where there is nothing that a figure could show.
+    shapes: solves cycles whose shapes the file lacks. keep: receives the figure instead of a file. Raises
+    InputError if the files hold nothing that the figure can show.
     """
     views = [views] if isinstance(views, View) else views
     if look.width and choices.get("what") == "animation":
@@ -103,18 +104,18 @@ def draw(
             shown = _drawn(request)
         except OSError as error:
             raise EnvironmentLacks(f"{output} cannot be written: {error.strerror or error}") from error
-        except RuntimeError as error:  # of programs that a style asks for, as LaTeX
+        except RuntimeError as error:  # from a program that a style uses, such as LaTeX
             raise EnvironmentLacks(f"the figure cannot be drawn: {str(error).splitlines()[0]}") from error
-        except (ValueError, ArithmeticError, MemoryError) as error:  # what another program wrote into it
+        except (ValueError, ArithmeticError, MemoryError) as error:  # numbers that another program wrote
             raise InputError(
                 f"{views[0].path} holds numbers that no figure can show ({str(error)[:100]})"
             ) from error
-    return f"wrote {output}: {shown}{_lacking(views)}"
+    return f"wrote {output}: {shown}{_omitted_points(views)}"
 
 
-def _lacking(views: Sequence[View]) -> str:
-    """What is said of points of which there is nothing to draw."""
+def _omitted_points(views: Sequence[View]) -> str:
+    """Clause on the points without anything to draw; empty if there is none."""
     words = np.concatenate([outcomes(view) for view in views])
-    told = (f"{np.count_nonzero(words == word)} {said}" for word, said in LACKING.items() if word in words)
-    lacking = " and ".join(told)
-    return f"; of {words.size} points {lacking}" if lacking else ""
+    counts = (f"{np.count_nonzero(words == word)} {text}" for word, text in OMITTED.items() if word in words)
+    omitted = " and ".join(counts)
+    return f"; of {words.size} points {omitted}" if omitted else ""

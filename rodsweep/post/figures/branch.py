@@ -1,6 +1,6 @@
-"""The bifurcation diagram of a rod: its cycles over the parameter that is followed, stable and unstable.
+"""Bifurcation diagram of a rod: its stable and unstable cycles over the followed parameter.
 
-Below, how their amplitude grows from the Hopf points beside what the normal form predicts.
+A further panel compares the amplitudes near Hopf points with the prediction of the normal form.
 """
 
 from collections.abc import Sequence
@@ -16,9 +16,9 @@ from ...results.file.view import View
 from ...results.layouts.variables import MISSING
 from ...wording import counted, has_or_have, some_of
 from ..branch_curves import (
-    CurveOfCycles,
     Range,
-    branches_not_told,
+    StoredBranch,
+    count_incomplete_branches,
     curves_of,
     followed_parameter,
     straight_ranges,
@@ -30,7 +30,7 @@ from .request import FigureRequest
 from .smooth_branch import through_cycles
 
 LINES = {1: ("-", "stable"), 0: ("--", "unstable"), -1: (":", "not known")}
-"""Line and word of a piece of a curve, by its stability."""
+"""Line style and legend entry of a piece of a branch, by its stability."""
 MARKS = {
     "hopf": ("o", "Hopf point"),
     "fold": ("s", "fold"),
@@ -41,15 +41,18 @@ MARKS = {
     "no_cycle_found": ("x", "no further cycle found"),
     "list_full": ("|", "last cycle stored"),
 }
-"""Marker and words of a special point, by its kind or, of an end, the reason; other ends are not marked."""
-PREDICTED, PREDICTED_WORD = (0, (4, 1, 1, 1)), "by the normal form"
-"""Line and word of the amplitude that it predicts next to every Hopf point."""
+"""Marker and legend entry of a special point, by its kind or, for an end, its reason; other ends have no
+marker."""
+PREDICTED = (0, (4, 1, 1, 1))
+"""Line style of the amplitude that the normal form predicts near a Hopf point."""
+PREDICTED_WORD = "by the normal form"
+"""Legend entry of the predicted amplitude."""
 COLOURS = (style.FIRST, style.SECOND, "#6A3D9A", "#2E7D32", "#8D6E63", "#00838F", "#C2185B", "#9E9D24")
-"""Of the branches of one rod, or of several rods, one after another."""
+"""Colours of the branches of one rod, or of several rods, in their order."""
 
 
 def draw_branch(request: FigureRequest) -> str:
-    """The largest tip y and the period over the parameter that is followed, of a rod or of several."""
+    """Draws the largest tip y and the period over the followed parameter, for one rod or several."""
     view = request.only_view()
     branches = [curves_of(view, rod) for rod in range(view.variables["status"].size)]
     beating = [rod for rod, own in enumerate(branches) if any(curve.cycles.any() for curve in own)]
@@ -59,7 +62,7 @@ def draw_branch(request: FigureRequest) -> str:
     alone = len(branches) == 1
     colours = COLOURS if alone else [COLOURS[k] for k, rod in enumerate(drawn) for _ in branches[rod]]
     along = followed_parameter(view)
-    beside = any(curve.beside_hopf_points() for curve in curves)
+    beside = any(curve.near_hopf_points() for curve in curves)
     figure = Figure(figsize=(5.6, 7.6 if beside else 5.6), layout="constrained")
     upper, lower, *third = figure.subplots(2 + beside, 1)
     lower.sharex(upper)
@@ -76,9 +79,9 @@ def draw_branch(request: FigureRequest) -> str:
     upper.set_ylabel("largest $y/L$ of the tip")
     lower.set(ylabel=r"period$/\tau_2$", xlabel=style.LABELS[along], yscale="log")
     for axes in third:
-        marked["predicted"] = _beside_prediction(axes, curves, colours, along)
-    there = {int(s) for curve in curves for s in curve.stable} | {1, 0}
-    handles = [Line2D([], [], color="k", ls=LINES[s][0], label=LINES[s][1]) for s in sorted(there)[::-1]]
+        marked["predicted"] = _compare_prediction(axes, curves, colours, along)
+    shown = {int(s) for curve in curves for s in curve.stable} | {1, 0}
+    handles = [Line2D([], [], color="k", ls=LINES[s][0], label=LINES[s][1]) for s in sorted(shown)[::-1]]
     shared, own = points_told_apart(view, [rod + 1 for rod in drawn])
     handles += [
         Line2D([], [], color=c, lw=2, label=text) for c, text in zip(COLOURS, own, strict=False) if text
@@ -91,8 +94,8 @@ def draw_branch(request: FigureRequest) -> str:
 
 
 def _left_out(view: View, drawn: list[int], beating: list[int]) -> str:
-    """What is said of branches and rods that are not drawn."""
-    hidden = sum(branches_not_told(view, rod) for rod in range(view.variables["status"].size))
+    """Clause on branches and rods that are not drawn."""
+    hidden = sum(count_incomplete_branches(view, rod) for rod in range(view.variables["status"].size))
     more = f"; {hidden} more have special points that are not stored" if hidden else ""
     missing = int((view.variables["status"] == MISSING).sum())
     rods = view.variables["status"].size - missing
@@ -105,8 +108,8 @@ def _left_out(view: View, drawn: list[int], beating: list[int]) -> str:
     )
 
 
-def _shown(view: View, rod: int, curves: list[CurveOfCycles]) -> Range:
-    """The range in which the straight rod is drawn: not where it is crushed, nor beyond all cycles."""
+def _shown(view: View, rod: int, curves: list[StoredBranch]) -> Range:
+    """Range in which the straight rod is drawn: where it is not crushed, and not far beyond all cycles."""
     low, high = ends_of(view)
     high = min(high, 1.1 * max(float(np.nanmax(curve.at)) for curve in curves))
     force, stiffness = CRUSHING
@@ -116,8 +119,8 @@ def _shown(view: View, rod: int, curves: list[CurveOfCycles]) -> Range:
     return (max(low, columns[force]) if followed_parameter(view) == stiffness else low), high
 
 
-def _draw(upper: Axes, lower: Axes, curve: CurveOfCycles, colour: str) -> None:
-    """A branch in both panels."""
+def _draw(upper: Axes, lower: Axes, curve: StoredBranch, colour: str) -> None:
+    """Draws a branch in both panels."""
     at, y, period, stable = through_cycles(curve)
     _pieces(upper, at, y, stable, colour)
     _pieces(lower, at, period, stable, colour)
@@ -126,7 +129,7 @@ def _draw(upper: Axes, lower: Axes, curve: CurveOfCycles, colour: str) -> None:
 def _pieces(
     axes: Axes, x: np.ndarray, y: np.ndarray, stable: np.ndarray, colour: str, marker: str = ""
 ) -> None:
-    """A curve, x and y of the shape (n,), each run of pieces of one stability, (n - 1,), with its line."""
+    """Draws a curve, x and y of shape (n,), with a line style for each stability of its pieces, (n - 1,)."""
     changes = np.flatnonzero(np.diff(stable)) + 1
     for run in np.split(np.arange(len(stable)), changes):
         if len(run):
@@ -135,8 +138,8 @@ def _pieces(
             axes.plot(x[vertices], y[vertices], ls=line, marker=marker, color=colour, lw=1.4)
 
 
-def _mark(upper: Axes, lower: Axes, curve: CurveOfCycles, marked: dict[str, Line2D]) -> None:
-    """Marks the special points of a curve; what the legend says of them, by kind, goes into `marked`."""
+def _mark(upper: Axes, lower: Axes, curve: StoredBranch, marked: dict[str, Line2D]) -> None:
+    """Marks the special points of a branch; adds legend entries, by kind, to `marked`."""
     for special in curve.special:
         kind = special.reason if special.kind == "end" else special.kind
         if kind not in MARKS:
@@ -147,14 +150,14 @@ def _mark(upper: Axes, lower: Axes, curve: CurveOfCycles, marked: dict[str, Line
         marked.setdefault(kind, drawn)
 
 
-def _beside_prediction(axes: Axes, curves: list[CurveOfCycles], colours: Sequence[str], along: str) -> Line2D:
-    """The cycles next to the Hopf points in units of a, and what the normal form says: one line for all.
+def _compare_prediction(axes: Axes, curves: list[StoredBranch], colours: Sequence[str], along: str) -> Line2D:
+    """Draws the cycles near Hopf points in units of a, and the law of the normal form, the same for all.
 
-    Up to where a branch turns back: beyond, its cycles are no longer those that the law speaks of.
+    A branch is drawn to its first fold: the law does not describe cycles beyond it.
     """
     nearest, farthest = [], []
     for number, curve in enumerate(curves):
-        for at, y, stable in curve.beside_hopf_points():
+        for at, y, stable in curve.near_hopf_points():
             _pieces(axes, at, y, stable, colours[number % len(colours)], marker=".")
             nearest.append(float(at[0]))
             farthest.append(float(at[-1]))

@@ -1,4 +1,4 @@
-"""On which side of its Hopf points a rod's cycles are born, and how fast they grow: a map, or a line."""
+"""Criticality of a rod's Hopf points and amplitude of the cycles near them: a map, or lines."""
 
 from math import floor, log10
 
@@ -31,13 +31,13 @@ CLASSES = (
     ("subcritical", style.SECOND),
     ("undecided", "0.4"),
 )
-"""What a rod's first Hopf point is, and its colour: told apart by all, and in grey."""
-FEW = 0.1
-"""Share of the Hopf points whose |Re c| is on the linear part of an axis that has both signs."""
+"""Words and colours for a rod's first Hopf point; the colours differ for colour-blind readers and in grey."""
+LINEAR_FRACTION = 0.1
+"""Fraction of the Hopf points whose |Re c| lies on the linear part of the symmetric logarithmic axis."""
 
 
 def draw_criticality(request: FigureRequest) -> str:
-    """First Hopf points over two parameters; a and Re c of all over one; else the cycles predicted."""
+    """Maps the first Hopf points over two parameters; draws a and Re c over one; else predicted cycles."""
     view = request.only_view()
     style.need(view, np.isfinite(view.variables["criticality"]).any(), "Hopf point with a normal form")
     varied = varied_parameters(view)
@@ -51,14 +51,16 @@ def draw_criticality(request: FigureRequest) -> str:
 
 
 def _along(view: View, name: str) -> Figure:
-    """a above Re c against one parameter, each Hopf point marked by its criticality."""
+    """Figure of a above Re c over one parameter, each Hopf point marked by its criticality."""
     x = view.point_columns[name]
     keep = np.isfinite(x)
     figure = Figure(figsize=(5.6, 5.4), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True)
     side, a, c = (view.by_point(key)[keep] for key in ("criticality", "amplitude_coefficient", "landau_real"))
     style.need(view, np.isfinite(c).any(), f"Hopf point with a finite {name}")
-    lower.set_yscale("symlog", linthresh=10.0 ** floor(log10(float(np.nanquantile(np.abs(c), FEW)))))
+    lower.set_yscale(
+        "symlog", linthresh=10.0 ** floor(log10(float(np.nanquantile(np.abs(c), LINEAR_FRACTION))))
+    )
     for axes, values in ((upper, a), (lower, c)):
         handles = _mark(axes, x[keep], values, side)
         axes.axhline(0, color="0.6", lw=0.8, zorder=0)
@@ -71,21 +73,21 @@ def _along(view: View, name: str) -> Figure:
 
 
 def _mark(axes: Axes, x: Array, values: Array, side: Array) -> list[Line2D]:
-    """Marks every Hopf point, x of the shape (rods,), the others (rods, crossings); what the legend says."""
+    """Marks Hopf points, x of shape (rods,), values and side (rods, crossings); returns legend entries."""
     across = np.broadcast_to(x[:, None], values.shape)
     handles = []
     for number, (word, colour, marker) in MARKS.items():
-        there = side == number
-        if there.any():
-            (drawn,) = axes.plot(across[there], values[there], marker, color=colour, ms=3.5, label=word)
+        chosen = side == number
+        if chosen.any():
+            (drawn,) = axes.plot(across[chosen], values[chosen], marker, color=colour, ms=3.5, label=word)
             handles.append(drawn)
     return handles
 
 
 def _map(view: View, points: PointMap, narrow: bool) -> Figure:
-    """The criticality of the first Hopf points, and how fast their cycles grow.
+    """Maps of the criticality of the first Hopf points and of their amplitude coefficients.
 
-    narrow: whether the two maps have no room beside each other.
+    narrow: whether the two maps lie one above the other.
     """
     side = view.by_point("criticality")[points.at]
     a = np.abs(view.by_point("amplitude_coefficient")[:, 0][points.at])
@@ -99,14 +101,15 @@ def _map(view: View, points: PointMap, narrow: bool) -> Figure:
     style.colour_cells(panels[1], edges, a, "amplitude coefficient $|a|/L$")
     panels[1].set_facecolor(CLASSES[0][1])
     label_maps(panels, points)
-    there = [Patch(facecolor=c, label=word) for i, (word, c) in enumerate(CLASSES) if (classes == i).any()]
-    style.legend_below(figure, there, columns=3)
+    entries = [Patch(facecolor=c, label=word) for i, (word, c) in enumerate(CLASSES) if (classes == i).any()]
+    style.legend_below(figure, entries, columns=3)
     figure.suptitle(style.heading(view, style.parameter_text(points.shared)))
     return figure
 
 
 def _classes(side: Array) -> Array:
-    """The place in CLASSES of every rod from the criticality of its Hopf points, (ny, nx, crossings)."""
-    first, later = side[..., 0], (side[..., 1:] == 1).any(axis=-1)
+    """Place in CLASSES of every rod from the criticality of its Hopf points, (ny, nx, crossings)."""
+    first = side[..., 0]
+    later = (side[..., 1:] == 1).any(axis=-1)
     classes = np.select([first == -1, first == 1, first == 0], [1.0, 3.0, 4.0], 0.0)
     return np.where((first == -1) & later, 2.0, classes)

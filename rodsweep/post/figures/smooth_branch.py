@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline, barycentric_interpolate
 
 from ...arrays import Array
-from ..branch_curves import CurveOfCycles
+from ..branch_curves import StoredBranch
 
 MIRRORED = 3
 """Cycles beside a Hopf point whose mirror images continue the branch beyond the point."""
@@ -38,7 +38,7 @@ PIECES = 12
 """Straight pieces drawn between two cycles."""
 
 
-def through_cycles(curve: CurveOfCycles) -> tuple[Array, Array, Array, NDArray[np.integer]]:
+def through_cycles(curve: StoredBranch) -> tuple[Array, Array, Array, NDArray[np.integer]]:
     """(parameter, y, period, stable) of the drawn branch, (n,), the last (n - 1,): smooth between corners.
 
     A branch has a corner where another maximum of y(t) becomes the largest.

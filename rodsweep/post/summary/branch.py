@@ -9,12 +9,12 @@ import numpy as np
 from ...results.file.view import View
 from ...wording import counted, is_or_are, some_of
 from ..branch_curves import (
-    CurveOfCycles,
     Range,
-    both,
-    branches_not_told,
+    StoredBranch,
+    count_incomplete_branches,
     curves_of,
     followed_parameter,
+    intersection,
     straight_ranges,
     union,
 )
@@ -59,7 +59,7 @@ def branch_summary(view: View, done: np.ndarray) -> Told:
 def _one_rod(view: View, rod: int) -> Iterator[str]:
     """Every branch of the one rod of a file, with its special points to their errors."""
     along, curves, v = followed_parameter(view), curves_of(view, rod), view.variables
-    hidden = branches_not_told(view, rod)
+    hidden = count_incomplete_branches(view, rod)
     if hidden:
         yield f"{some_of(hidden, hidden + len(curves), 'branch')} {is_or_are(hidden)} not told: {FULL}"
     elif v["branch_count"].max() < 0:
@@ -94,7 +94,7 @@ def _one_rod(view: View, rod: int) -> Iterator[str]:
             yield f"{TWO_CYCLES}: {along} = {listed(pairs, errors_of(curves))}"
 
 
-def _ends(curve: CurveOfCycles, along: str) -> str:
+def _ends(curve: StoredBranch, along: str) -> str:
     """From where to where a branch leads."""
     first, last = curve.special[0], curve.special[-1]
     start = f"from the Hopf point at {along} = {to_error(first.at, first.error)}"
@@ -114,16 +114,16 @@ def _ends(curve: CurveOfCycles, along: str) -> str:
 def coexistence(view: View, rod: int) -> list[Range]:
     """The ranges of the parameter in which a rod has stable cycles on a branch and is stable at rest."""
     stable = union(piece for curve in curves_of(view, rod) for piece in curve.stable_ranges)
-    return both(stable, straight_ranges(view, rod, ends_of(view))[0])
+    return intersection(stable, straight_ranges(view, rod, ends_of(view))[0])
 
 
 def two_cycles(view: View, rod: int) -> list[Range]:
     """The ranges of the parameter in which a rod has stable cycles on two branches."""
     pairs = combinations([curve.stable_ranges for curve in curves_of(view, rod)], 2)
-    return union(piece for one, other in pairs for piece in both(one, other))
+    return union(piece for one, other in pairs for piece in intersection(one, other))
 
 
-def errors_of(curves: Iterable[CurveOfCycles]) -> dict[float, float]:
+def errors_of(curves: Iterable[StoredBranch]) -> dict[float, float]:
     """The absolute errors of the special points of branches, by their places."""
     return {float(special.at): special.error for curve in curves for special in curve.special}
 
@@ -183,7 +183,7 @@ def _stopped(view: View, rods: np.ndarray) -> Iterator[str]:
 
 def _coexistence(view: View, rods: np.ndarray) -> Iterator[str]:
     """The rods that have two stable states somewhere, some by name."""
-    told = [int(rod) for rod in rods if not branches_not_told(view, int(rod))]
+    told = [int(rod) for rod in rods if not count_incomplete_branches(view, int(rod))]
     if len(told) < len(rods):
         yield f"not told of {counted(len(rods) - len(told), 'rod')}: {FULL}"
     yield from _rods_with(view, told, BESIDE_STRAIGHT, coexistence)

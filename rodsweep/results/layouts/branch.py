@@ -70,7 +70,7 @@ def followed_variables(along: str) -> tuple[Variable, ...]:
         real("multiplier", "1", "modulus of the largest nontrivial Floquet multiplier", ALONG),
         integer(
             "unstable_multipliers",
-            "number of Floquet multipliers outside the unit circle; 0: stable; -1: undecided within the error",
+            "number of Floquet multipliers outside the unit circle; 0: stable; -1: undecided within error",
             ALONG,
         ),
         *(real(name, "1", f"estimate of {error}, at branch_{along}", ALONG) for name, error in ERRORS),
@@ -102,7 +102,7 @@ def special_variables(along: str) -> tuple[Variable, ...]:
         integer("special_branch", "number of the branch, from 1", SPECIAL),
         integer(
             "special_point",
-            "number, from 1, of the branch_point before the special point; 0: before the branch's first cycle",
+            "number, from 1, of the branch_point before the special point; 0: before the first of its branch",
             SPECIAL,
         ),
         word("special_reason", "reason for the end of the branch", END_REASONS, SPECIAL),

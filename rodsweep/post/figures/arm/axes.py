@@ -1,7 +1,7 @@
-"""A second scale in SI units beside a follower force, in the figures of an arm.
+"""A second scale in SI units beside the axis of a follower force, in figures of an arm.
 
-Where the section of the file's arm is one, F is a pressure or a force at the tip in some unit: a linear or
-logarithmic axis of F gets a second scale opposite.
+If the file has a single arm, F corresponds to one pressure or force at the tip, so that a linear or
+logarithmic axis of F gets a second scale on the opposite side.
 """
 
 from collections.abc import Sequence
@@ -17,14 +17,15 @@ from ....results.file.view import View
 from ..style import CRITICAL_FORCE, LABELS
 
 SCALABLE = ("linear", "log")
-"""Scales whose opposite matplotlib draws at the right places."""
-MOST_TICKS = 5
+"""Scales for which matplotlib places the ticks of the opposite axis correctly."""
+MAX_TICKS = 5
+"""Largest number of intervals between ticks of the second scale."""
 LOAD_WORDS = {"pressure": "pressure on the tip", "force": "force at the tip"}
-"""What a follower force is told in."""
+"""Words for a follower force in the label of the second scale."""
 
 
 def add_si_scales(figure: Figure, views: Sequence[View]) -> None:
-    """Adds them to every axis of a follower force; none where the files have no arm, or several."""
+    """Adds an SI scale to every axis of a follower force, if the files have one and the same arm."""
     load = "force" if all("force" in view.quantities for view in views) else "pressure"
     given = [view.quantities.get(SCALE_OF[load]) for view in views]
     units = {float(unit) for values in given if values is not None for unit in np.ravel(values)}
@@ -39,7 +40,7 @@ def add_si_scales(figure: Figure, views: Sequence[View]) -> None:
 
 
 def _outermost(axes: Axes, which: str) -> Axes:
-    """The panel farthest from the label of an axis, of those in a line that share it."""
+    """The panel farthest from the label of an axis, among panels in a line that share the axis."""
     shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
     place = axes.get_subplotspec()
     panels = [other for other in shared.get_siblings(axes) if other.get_subplotspec() is not None]
@@ -53,12 +54,14 @@ def _outermost(axes: Axes, which: str) -> Axes:
 
 
 def _add(axes: Axes, which: str, unit: float, load: str) -> None:
-    """A scale opposite to an axis, whose numbers are the axis' times `unit`."""
-    symbol, word = UNITS[load][0], LOAD_WORDS[load]
+    """Adds a scale opposite to an axis; its numbers are those of the axis times `unit`."""
+    symbol = UNITS[load][0]
+    word = LOAD_WORDS[load]
     largest = unit * max(map(abs, getattr(axes, f"get_{which}lim")()))
     power = 3 * int(np.floor(np.log10(largest) / 3)) if largest > 0 else 0
     power = int(np.clip(power, min(EngFormatter.ENG_PREFIXES), max(EngFormatter.ENG_PREFIXES)))
-    unit, symbol = unit * 10.0**-power, EngFormatter.ENG_PREFIXES[power] + symbol
+    unit *= 10.0**-power
+    symbol = EngFormatter.ENG_PREFIXES[power] + symbol
     functions = partial(np.multiply, unit), partial(np.multiply, 1 / unit)
     if which == "x":
         second = axes.secondary_xaxis("top", functions=functions)
@@ -66,4 +69,4 @@ def _add(axes: Axes, which: str, unit: float, load: str) -> None:
     else:
         second = axes.secondary_yaxis("right", functions=functions)
         second.set_ylabel(f"{word} ({symbol})")
-    getattr(second, f"{which}axis").set_major_locator(MaxNLocator(MOST_TICKS))
+    getattr(second, f"{which}axis").set_major_locator(MaxNLocator(MAX_TICKS))

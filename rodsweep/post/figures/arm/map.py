@@ -1,7 +1,7 @@
-"""Results over an arm's own quantities, in the units that were typed: lines over one, maps over two.
+"""Results over an arm's own quantities, in the units typed by the user: lines over one, maps over two.
 
-The points of the file are the centres of cells. Where the model does not apply, or no rod covers the arm, a
-cell is hatched.
+The points of the file are the centres of cells. A cell is hatched if the model does not apply there, and grey
+if no rod covers the arm.
 """
 
 from collections.abc import Sequence
@@ -30,7 +30,7 @@ from .panels import PANELS, Panel
 from .quantities import in_typed, quantity_text
 
 MAPS = ("map", "maps")
-"""What may be asked for of a task that has several figures."""
+"""Names of this figure for tasks that have several figures."""
 HATCHES: tuple[tuple[str, int, str, dict[str, Any]], ...] = (
     ("model_applies", Validity.doubtful, "model doubtful", {"fc": "none", "hatch": "..."}),
     ("model_applies", Validity.does_not_apply, "model does not apply", {"fc": "none", "hatch": "////"}),
@@ -39,25 +39,26 @@ HATCHES: tuple[tuple[str, int, str, dict[str, Any]], ...] = (
     ("status", NO_FLUTTER, "no flutter", {"fc": "0.75", "hatch": ""}),
     ("status", NO_WALL, "no wall", {"fc": "0.45", "hatch": ""}),
 )
-"""Which cells are covered: the variable, its value, what the legend says, and how; later ones lie above."""
+"""Covered cells: (variable, its value, legend entry, look); later entries lie above earlier ones."""
 DRAG = "drag"
-BAND = 0.25
-"""Opacity of the band between the least and the largest number over the drags."""
-WITHOUT: dict[str, Any] = {"fc": "#E8EDF2"}
-HATCHING = "0.35"
+BAND_OPACITY = 0.25
+"""Opacity of the band between the smallest and the largest number over the drags."""
+EMPTY_LOOK: dict[str, Any] = {"fc": "#E8EDF2"}
+"""Look of cells whose rod has no number, such as a rod without flutter."""
+HATCH_COLOUR = "0.35"
 
 
 def draw_arm_map(request: FigureRequest) -> str:
-    """The main numbers of a task over the axes of an arm: two panels, of lines or of maps."""
+    """Draws the main numbers of a task over the axes of an arm: two panels, of lines or of maps."""
     view = replace(request, what=None).only_view()
     long = [name for name in view.over if len(view.variables[name]) > 1] or list(view.over[:1])
-    if DRAG in long and long[1:]:  # drawn as a band, or of one drag
+    if DRAG in long and long[1:]:  # drawn as a band, or for the likeliest drag
         long.remove(DRAG)
     axes = sorted(long, key=lambda name: -len(view.variables[name]))[:2]
     x = next(name for name in view.over if name in axes)
     y = next((name for name in view.over if name in axes and name != x), "")
     first = {name: 0 for name in view.over if name not in axes}
-    if DRAG in first:  # the likeliest is the first of those that are there
+    if DRAG in first:  # drags are numbered from the likeliest
         first[DRAG] = int(np.argmin(view.variables[DRAG]))
     place = tuple(first.get(name, slice(None)) for name in view.over)
     panels = PANELS[view.task](view)
@@ -72,7 +73,7 @@ def draw_arm_map(request: FigureRequest) -> str:
     covers = [
         _cover(subplot, view, panel, (x, y), place) for subplot, panel in zip(drawn, panels, strict=True)
     ]
-    style.legend_below(figure, [*_once(handles), *covers[0]], columns=3)
+    style.legend_below(figure, [*_unique_entries(handles), *covers[0]], columns=3)
     banded = [DRAG] if not y and DRAG in first else []
     figure.suptitle(style.heading(view, _fixed(view, axes + banded)))
     return request.write(
@@ -80,13 +81,13 @@ def draw_arm_map(request: FigureRequest) -> str:
     )
 
 
-def _once(handles: Sequence[Artist]) -> list[Artist]:
-    """Entries of a legend, of those that say the same the first."""
+def _unique_entries(handles: Sequence[Artist]) -> list[Artist]:
+    """Entries of a legend without repetitions; of equal labels the first entry stays."""
     return list({str(handle.get_label()): handle for handle in reversed(handles)}.values())[::-1]
 
 
 def can_draw(request: FigureRequest) -> bool:
-    """Whether a figure is one over an arm's quantities: of its tasks, and nothing else is asked for."""
+    """Whether the figure is one over an arm's quantities: the task has one, and no other is asked for."""
     view = request.views[0]
     chosen = request.what not in (None, *MAPS) or request.points or request.roots
     return bool(view.over) and view.task in PANELS and not chosen
@@ -102,24 +103,24 @@ def _axis(view: View, name: str) -> tuple[Array, str]:
 
 
 def _panels(count: int, narrow: bool, maps: bool) -> tuple[Figure, list[Axes]]:
-    """Panels side by side, or one above the other."""
+    """Figure with panels side by side for maps, or one above the other."""
     across = maps and not narrow
     size = (4.8 * count, 4.4) if across else (4.6, 2.9 * count)
-    apart = ConstrainedLayoutEngine(wspace=0.06 if across else 0.0)  # a bar's label is that of its own panel
+    apart = ConstrainedLayoutEngine(wspace=0.06 if across else 0.0)  # room for the label of a colour bar
     figure = Figure(figsize=size, layout=apart)
     shape = (1, count) if across else (count, 1)
     return figure, list(figure.subplots(*shape, sharex=True, sharey=maps, squeeze=False).ravel())
 
 
 def _map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], place: Any) -> list[Artist]:
-    """A panel as colours over two axes; returns what the legend says of its line."""
+    """Draws a panel as colours over two axes; returns its legend entries."""
     (x, x_label), (y, y_label) = (_axis(view, name) for name in names)
     values = np.ma.masked_invalid(panel.values[place].T)
     style.colour_cells(axes, (cell_edges(x), cell_edges(y)), panel.values[place].T, panel.label)
     handles: list[Artist] = []
-    if panel.turns and values.min() < 0 < values.max():
+    if panel.zero_label and values.min() < 0 < values.max():
         axes.contour(x, y, values, [0.0], colors="k", linewidths=1.4)
-        handles.append(Line2D([], [], color="k", lw=1.4, label=panel.turns))
+        handles.append(Line2D([], [], color="k", lw=1.4, label=panel.zero_label))
     style.scale(axes, "x", x)
     style.scale(axes, "y", y)
     subplot = axes.get_subplotspec()
@@ -131,7 +132,7 @@ def _map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], place: An
 
 
 def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[Artist]:
-    """A panel as lines over one axis; returns what the legend says of them."""
+    """Draws a panel as lines over one axis; returns its legend entries."""
     x, label = _axis(view, name)
     colours = (style.SECOND, style.FIRST, style.THIRD)
     handles: list[Artist] = []
@@ -147,26 +148,28 @@ def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[
     subplot = axes.get_subplotspec()
     if subplot is None or subplot.is_last_row():
         axes.set_xlabel(label)
-    axes.set_ylabel(panel.of_lines if sum(isinstance(each, Line2D) for each in handles) > 1 else panel.label)
+    axes.set_ylabel(
+        panel.lines_label if sum(isinstance(each, Line2D) for each in handles) > 1 else panel.label
+    )
     return handles
 
 
 def _band(axes: Axes, view: View, x: str, values: Array, place: Any, colour: str) -> list[Artist]:
-    """The band of a number, on the grid of points, over the drags of the file; returns its legend entry.
+    """Draws the range of a number over the drags of the file as a band; returns its legend entry.
 
-    Where some of the drags have no number it is drawn from those that have one.
+    values: on the grid of points. Drags without a number are left out.
     """
     if DRAG not in view.over or x == DRAG or len(view.variables[DRAG]) < 2:
         return []
     drag = view.over.index(DRAG)
     whole = np.moveaxis(values, drag, -1)[tuple(each for i, each in enumerate(place) if i != drag)]
     low, high = (extreme.reduce(whole, axis=-1) for extreme in (np.fmin, np.fmax))
-    axes.fill_between(_axis(view, x)[0], low, high, color=colour, alpha=BAND, lw=0, zorder=1)
-    return [Patch(color="0.3", alpha=BAND, lw=0, label=f"range of drag (line: {_drag_of(view)})")]
+    axes.fill_between(_axis(view, x)[0], low, high, color=colour, alpha=BAND_OPACITY, lw=0, zorder=1)
+    return [Patch(color="0.3", alpha=BAND_OPACITY, lw=0, label=f"range of drag (line: {_drag_of(view)})")]
 
 
 def _drag_of(view: View) -> str:
-    """The drag that is drawn as a line, in words."""
+    """Name of the drag that is drawn as a line."""
     return DRAGS[int(view.variables[DRAG].min())].replace("_", " ")
 
 
@@ -174,33 +177,35 @@ def _cover(axes: Axes, view: View, panel: Panel, names: tuple[str, str], place: 
     """Hatches cells in which the model does not apply, or no rod covers the arm; returns legend entries."""
     x, y = names
     rods = view.variables["status"][place] < NOT_SLENDER
-    empty = [(rods & np.isnan(panel.values[place]), panel.without, WITHOUT)] if y else []
+    empty = [(rods & np.isnan(panel.values[place]), panel.empty_label, EMPTY_LOOK)] if y else []
     across = cell_edges(_axis(view, x)[0])
     limits = axes.get_ylim()
     up = cell_edges(_axis(view, y)[0]) if y else np.array(limits)
     handles: list[Artist] = []
-    for variable, value, says, look in HATCHES:
+    for variable, value, label, look in HATCHES:
         there = view.variables[variable][place] == value
-        empty.append((there if variable == "status" else there & rods, says, look))
-    for there, says, look in empty:
+        empty.append((there if variable == "status" else there & rods, label, look))
+    for there, label, look in empty:
         for i, j in np.argwhere(there if y else there[:, None]):
             corner = across[[i, i + 1]], up[[j, j + 1]]
-            axes.fill_between(corner[0], *corner[1], ec=HATCHING, lw=0, zorder=3 if y else 0, **look)
+            axes.fill_between(corner[0], *corner[1], ec=HATCH_COLOUR, lw=0, zorder=3 if y else 0, **look)
         if there.any():
-            handles.append(Patch(label=says, ec=HATCHING, lw=0.5, **look))
+            handles.append(Patch(label=label, ec=HATCH_COLOUR, lw=0.5, **look))
     axes.set_xlim(across[0], across[-1])
     axes.set_ylim(up[0], up[-1]) if y else axes.set_ylim(limits)
     return handles
 
 
 def _fixed(view: View, drawn: list[str]) -> str:
-    """The quantities that are not along an axis of the figure, with their values."""
-    told = []
+    """Quantities that are not along an axis of the figure, with their values."""
+    texts = []
     for name, values in view.quantities.items():
         if name in drawn or name in ARM_UNITS:
             continue
-        if np.size(values) > 1 and name not in view.over:  # as the load that one relative to flutter is
+        if (
+            np.size(values) > 1 and name not in view.over
+        ):  # varies with other quantities, as a load relative to flutter
             continue
         more = f" (of {len(values)} values)" if np.size(values) > 1 else ""
-        told.append(quantity_text(view, name, float(np.min(values))) + more)
-    return ", ".join(told)
+        texts.append(quantity_text(view, name, float(np.min(values))) + more)
+    return ", ".join(texts)

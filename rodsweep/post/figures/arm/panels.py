@@ -1,4 +1,4 @@
-"""The numbers of each task that are drawn over an arm's own quantities, in the units that were typed."""
+"""Numbers of each task that are drawn over an arm's quantities, in the units typed by the user."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -12,23 +12,24 @@ from .quantities import in_typed
 
 @dataclass(frozen=True, slots=True)
 class Panel:
-    """A number at every point in some unit.
+    """A number at every point, with its label and unit.
 
-    lines: what is drawn of it over one axis, by what the legend says, where that is more than the values.
-    turns: what the legend says of the line of a map where the number is 0; empty where it has none.
+    lines: lines drawn over a single axis, by legend entry, if there are more than the values. zero_label:
+    legend entry of the contour of a map on which the number is 0; empty for no contour.
     """
 
     label: str
     values: Array
     lines: Mapping[str, Array] = field(default_factory=dict)
-    turns: str = ""
-    of_lines: str = ""
-    """The label where several lines are drawn, if it is another one."""
-    without: str = "nothing computed"
-    """What the legend says of arms that have no number."""
+    zero_label: str = ""
+    lines_label: str = ""
+    """Label of the axis if several lines are drawn."""
+    empty_label: str = "nothing computed"
+    """Legend entry for arms without a number."""
 
 
 def _of_thresholds(view: View) -> list[Panel]:
+    # A threshold pressure is shown in the unit in which the user typed Young's modulus.
     load, si, typed = ("force", "N", "force") if "force" in view.quantities else ("pressure", "Pa", "young")
     lines = {}
     for event in ("hopf", "onset", "restabilization"):
@@ -36,19 +37,23 @@ def _of_thresholds(view: View) -> list[Panel]:
     flutter = lines[EVENTS["hopf"]]
     return [
         Panel(
-            f"{load} at flutter ({unit})", flutter, lines, of_lines=f"{load} ({unit})", without="no flutter"
+            f"{load} at flutter ({unit})",
+            flutter,
+            lines,
+            lines_label=f"{load} ({unit})",
+            empty_label="no flutter",
         ),
-        Panel("frequency at flutter (Hz)", view.variables["frequency_hopf_hz"], without="no flutter"),
+        Panel("frequency at flutter (Hz)", view.variables["frequency_hopf_hz"], empty_label="no flutter"),
     ]
 
 
 EVENTS = {"hopf": "flutter", "onset": "onset of oscillations", "restabilization": "return"}
-"""What thresholds are called."""
+"""Words for thresholds."""
 
 
 def _of_modes(view: View) -> list[Panel]:
     return [
-        Panel("growth rate (1/s)", view.variables["growth_rate_si"][..., 0], turns="growth rate 0"),
+        Panel("growth rate (1/s)", view.variables["growth_rate_si"][..., 0], zero_label="growth rate 0"),
         Panel("frequency (Hz)", np.abs(view.variables["frequency_hz"][..., 0])),
     ]
 
@@ -56,8 +61,8 @@ def _of_modes(view: View) -> list[Panel]:
 def _of_cycles(view: View) -> list[Panel]:
     amplitude, unit = in_typed(view, "length", view.variables["tip_y_max_si"])
     return [
-        Panel("frequency (Hz)", view.variables["frequency_hz"], without="no cycle"),
-        Panel(f"largest deflection of the tip ({unit})", amplitude, without="no cycle"),
+        Panel("frequency (Hz)", view.variables["frequency_hz"], empty_label="no cycle"),
+        Panel(f"largest deflection of the tip ({unit})", amplitude, empty_label="no cycle"),
     ]
 
 
@@ -67,4 +72,4 @@ PANELS: dict[str, Callable[[View], list[Panel]]] = {
     "modes": _of_modes,
     "limit_cycle": _of_cycles,
 }
-"""What is drawn of each task; other tasks are drawn as lists of points."""
+"""Panels of each task; other tasks are drawn as lists of points."""

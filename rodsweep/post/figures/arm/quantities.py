@@ -1,4 +1,4 @@
-"""An arm's quantities as figures name them: in words, in the units in which they were typed."""
+"""An arm's quantities in figures: their names as words, and values in the units typed by the user."""
 
 from math import isclose
 from typing import Any
@@ -14,31 +14,32 @@ from ....model.units import written_in
 from ....results.file.view import View
 from ...summary.arm.arm import word
 
-TOGETHER = "\N{NO-BREAK SPACE}"
-"""Between a number and its unit, which no line of a figure parts."""
+NO_BREAK = "\N{NO-BREAK SPACE}"
+"""Space between a number and its unit, at which no line of a figure breaks."""
 
 SAME_NUMBER = 1e-9
-"""Relative distance within which a parameter is that of the arm, made once more from its quantities."""
+"""Largest relative difference between a stored parameter and the same parameter computed from the arm
+again."""
 
 
 def in_typed(view: View, name: str, values: Array, si: str = "") -> tuple[Array, str]:
-    """(values of a quantity, of any shape, in the unit in which it was typed, that unit)."""
+    """(values of a quantity, of any shape, in the unit typed by the user; this unit)."""
     si = si or ALL_QUANTITIES[name].unit
     unit = view.typed.get(name, si)
     return (values, "") if si == "1" else (values * written_in(1.0, unit, si), unit)
 
 
 def quantity_text(view: View, name: str, value: float) -> str:
-    """A quantity with its value as it was typed: `length 12 cm`."""
+    """A quantity with its value in the unit typed by the user: `length 12 cm`."""
     if name == "drag":
-        return f"{name}{TOGETHER}{DRAGS[int(value)].replace('_', TOGETHER)}"
+        return f"{name}{NO_BREAK}{DRAGS[int(value)].replace('_', NO_BREAK)}"
     shown, unit = in_typed(view, name, np.array([value]))
-    unit = unit.replace("^3", "$^3$").replace("*", " ").replace(" ", TOGETHER)
-    return f"{word(name)}{TOGETHER}{shown[0]:.4g}{TOGETHER}{unit}".rstrip(TOGETHER)
+    unit = unit.replace("^3", "$^3$").replace("*", " ").replace(" ", NO_BREAK)
+    return f"{word(name)}{NO_BREAK}{shown[0]:.4g}{NO_BREAK}{unit}".rstrip(NO_BREAK)
 
 
 def given_quantities(view: View) -> list[str]:
-    """The quantities that make the arm of a file; its units of time, force and pressure follow from them."""
+    """Names of the quantities that define the arm of a file, without units that follow from them."""
     return [name for name in view.quantities if name not in (*ARM_UNITS, *RELATIVE)]
 
 
@@ -47,14 +48,14 @@ def at_point(view: View, name: str, number: int) -> float:
     values = np.asarray(view.variables[name])
     if values.size == 1:
         return float(values.ravel()[0])
-    if view.is_grid:  # along the one parameter that it moves
+    if view.is_grid:  # the quantity lies along the parameter that it changes
         shape = view.variables["status"].shape
         return float(values[np.unravel_index(number - 1, shape)[view.parameters.index(ALONG[name])]])
     return float(values.ravel()[number - 1])
 
 
 def replaced(view: View, number: int) -> dict[str, float]:
-    """The parameters at a point, numbered from 1, that were given beside the arm instead of its own."""
+    """Parameters at a point, numbered from 1, that the config gives instead of the arm's own."""
     given: dict[str, Any] = {name: at_point(view, name, number) for name in given_quantities(view)}
     if "drag" in given:
         given["drag"] = DRAGS[int(given["drag"])]

@@ -1,4 +1,4 @@
-"""Where the model does not apply to an arm, in the figures of a rod: hatched along F, and told above them."""
+"""Validity of the model in figures of a rod: hatched cells where it does not apply, and a note."""
 
 from collections.abc import Sequence
 
@@ -12,11 +12,12 @@ from ....results.file.view import View
 from ..cycle.point_map import cell_edges
 from ..style import LABELS
 
-HATCH, HATCHING = "////", "0.6"
+HATCH = "////"
+HATCH_COLOUR = "0.6"
 
 
 def add_validity(figure: Figure, views: Sequence[View]) -> None:
-    """Hatches what it can of a figure of arms, and says above it where the model does not apply."""
+    """Hatches a figure of arms if its axes allow, and adds a note where the model does not apply."""
     outside = [_outside(view) for view in views if "model_applies" in view.variables]
     number, count = (sum(map(each, outside)) for each in (np.count_nonzero, np.size))
     if not number:
@@ -30,16 +31,17 @@ def add_validity(figure: Figure, views: Sequence[View]) -> None:
 
 
 def _outside(view: View) -> np.ndarray:
+    """Mask of the points at which the model does not apply."""
     return np.asarray(view.variables["model_applies"] == Validity.does_not_apply)
 
 
 def _varied(view: View) -> list[str]:
-    """The parameters of a grid's points that have several values; the rows of a diagram have one."""
+    """Parameters of a grid that have several values; empty for a list, and for the rows of a diagram."""
     return [name for name in view.parameters if len(view.axes[name]) > 1] if view.is_grid else []
 
 
 def _hatch(figure: Figure, view: View, along: list[str], outside: np.ndarray) -> bool:
-    """Hatches the cells over one parameter, or over two; whether any panel has such axes."""
+    """Hatches cells over one or two parameters; returns whether any panel has such axes."""
     cells = np.squeeze(outside)
     edges = [cell_edges(view.axes[name]) for name in along]
     done = False
@@ -56,29 +58,35 @@ def _hatch(figure: Figure, view: View, along: list[str], outside: np.ndarray) ->
 
 
 def _label(axes: Axes, which: str) -> str:
-    """The label of an axis, or of one that is shared with it."""
+    """Label of an axis, or of an axis that is shared with it."""
     shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
     labels = [getattr(each, f"get_{which}label")() for each in (axes, *shared.get_siblings(axes))]
     return next(filter(None, labels), "")
 
 
 def _spans(axes: Axes, which: str, edges: Array, there: np.ndarray) -> None:
-    """Hatches the cells of an axis, across the panel."""
+    """Hatches cells of an axis, across the panel."""
     limits = axes.get_xlim() if which == "x" else axes.get_ylim()
     hatch = axes.axvspan if which == "x" else axes.axhspan
     low, high = sorted(limits)
     for i in np.flatnonzero(there):
         left, right = np.clip(edges[[i, i + 1]], low, high)
-        hatch(left, right, fc="none", ec=HATCHING, hatch=HATCH, lw=0, zorder=0 if which == "x" else 3)
+        hatch(left, right, fc="none", ec=HATCH_COLOUR, hatch=HATCH, lw=0, zorder=0 if which == "x" else 3)
     axes.set(**{f"{which}lim": limits})
 
 
 def _cells(axes: Axes, edges: list[Array], there: np.ndarray) -> None:
-    """Hatches the cells of a map, (nx, ny)."""
+    """Hatches cells of a map, (nx, ny)."""
     limits = axes.get_xlim(), axes.get_ylim()
     for i, j in np.argwhere(there):
         axes.fill_between(
-            edges[0][[i, i + 1]], *edges[1][[j, j + 1]], fc="none", ec=HATCHING, hatch=HATCH, lw=0, zorder=3
+            edges[0][[i, i + 1]],
+            *edges[1][[j, j + 1]],
+            fc="none",
+            ec=HATCH_COLOUR,
+            hatch=HATCH,
+            lw=0,
+            zorder=3,
         )
     axes.set_xlim(limits[0])
     axes.set_ylim(limits[1])

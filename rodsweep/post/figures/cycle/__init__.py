@@ -1,1 +1,1 @@
-"""The figures of limit cycles: portraits, amplitudes along an axis, energy over a period, the animation."""
+"""Figures of limit cycles: portraits, amplitudes over a parameter, energy over a period, animation."""

@@ -1,4 +1,4 @@
-"""The beating arm in motion: a GIF, or an MP4 where ffmpeg is installed."""
+"""Animation of the beating arm: a GIF, or an MP4 if ffmpeg is installed."""
 
 from collections.abc import Sequence
 from math import floor, log10
@@ -18,22 +18,23 @@ from .portrait import clamp, force_arrow, frame, tip_path
 from .selection import SHAPES, Selection, StoredCycle, chosen_cycles
 
 FILMS = (".gif", ".mp4")
+"""Suffixes of animations."""
 PERIOD_SECONDS = 2.4
-"""Time on the screen of one period."""
+"""Duration of one period on the screen, in s."""
 FEWEST_SHAPES = 8
-"""Frames below which nothing seems to move."""
+"""Least number of frames in a period; with fewer the motion is not recognisable."""
 GHOSTS = 6
-"""Earlier shapes that fade away behind the arm."""
-DIGITS_OF_TIME = 3
-"""Of the period, which the running time has too."""
-ROOM_FOR_TIME = 0.08
-"""Height of the running time in a panel, below all that the arm and its force reach."""
-GHOSTS_BACK = 0.2
-"""How far back in periods the last of them is."""
+"""Number of earlier shapes that fade behind the arm."""
+TIME_DIGITS = 3
+"""Number of digits of the period; the running time has the same decimals."""
+TIME_HEIGHT = 0.08
+"""Height reserved for the running time, as a fraction of the panel, below the arm and its force."""
+OLDEST_GHOST = 0.2
+"""Age of the oldest ghost, in periods."""
 
 
 def write_animation(view: View, points: Sequence[int], output: Path) -> str:
-    """One period of up to three cycles side by side, each in its own time; returns what it shows."""
+    """Writes one period of up to three cycles side by side, each in its own time; returns a description."""
     selection = chosen_cycles(view, points, SHAPES)
     cycles = selection.cycles
     frames = len(cycles[0].values["shape_x"])
@@ -53,7 +54,7 @@ def write_animation(view: View, points: Sequence[int], output: Path) -> str:
 
 
 def first_frame(selection: Selection) -> tuple[Figure, list["MovingArm"]]:
-    """The figure of a film, laid out for good, with its arms at the beginning of their periods."""
+    """Figure of an animation in its final layout, with the arms at the start of their periods."""
     cycles = selection.cycles
     figure = Figure(figsize=(2.7 * len(cycles) + 0.9, 4.4), layout="constrained")
     panels = figure.subplots(1, len(cycles), squeeze=False, sharey=True)[0]
@@ -61,17 +62,17 @@ def first_frame(selection: Selection) -> tuple[Figure, list["MovingArm"]]:
     panels[0].set_ylabel(cycles[0].units.along("y"))
     arms = [MovingArm(axes, cycle) for axes, cycle in zip(panels, cycles, strict=True)]
     frame(panels, cycles)
-    low, high = panels[0].get_ylim()  # which all panels share
-    panels[0].set_ylim(low - ROOM_FOR_TIME * (high - low), high)
+    low, high = panels[0].get_ylim()  # shared by all panels
+    panels[0].set_ylim(low - TIME_HEIGHT * (high - low), high)
     for arm in arms:
         arm.show(0)
     fit(figure)
-    figure.set_layout_engine("none")  # laid out once: nothing else may move
+    figure.set_layout_engine("none")  # a new layout for each frame would move the panels
     return figure, arms
 
 
 def _writer(output: Path, rate: int) -> AbstractMovieWriter:
-    """The writer for the file's suffix; EnvironmentLacks where the machine has none."""
+    """Writer for the suffix of the file; raises EnvironmentLacks if ffmpeg is needed and missing."""
     if output.suffix == ".gif":
         return PillowWriter(fps=rate)
     if not matplotlib.animation.writers.is_available("ffmpeg"):
@@ -80,10 +81,11 @@ def _writer(output: Path, rate: int) -> AbstractMovieWriter:
 
 
 class MovingArm:
-    """One arm in its panel."""
+    """An arm in its panel."""
 
     def __init__(self, axes: Axes, cycle: StoredCycle) -> None:
-        self.axes, self.cycle = axes, cycle
+        self.axes = axes
+        self.cycle = cycle
         self.frames = len(cycle.values["shape_x"])
         tip_path(axes, cycle)
         clamp(axes, cycle.units.length)
@@ -98,7 +100,7 @@ class MovingArm:
     def show(self, k: int) -> None:
         """Moves the arm to its k-th shape."""
         shapes = [self.cycle.values[name] for name in SHAPES]
-        back = np.linspace(GHOSTS_BACK * self.frames, 0, GHOSTS, endpoint=False).round().astype(int)
+        back = np.linspace(OLDEST_GHOST * self.frames, 0, GHOSTS, endpoint=False).round().astype(int)
         for ghost, steps in zip(self.ghosts, back, strict=True):
             ghost.set_data(shapes[0][k - steps], shapes[1][k - steps])
         x, y, theta = (values[k] for values in shapes)
@@ -106,6 +108,6 @@ class MovingArm:
         self.arrow.remove()
         self.arrow = force_arrow(self.axes, x, y, theta, SECOND, self.cycle.units.length)
         time = self.cycle.period * k / self.frames
-        decimals = max(0, DIGITS_OF_TIME - 1 - floor(log10(self.cycle.period)))
+        decimals = max(0, TIME_DIGITS - 1 - floor(log10(self.cycle.period)))
         unit = self.cycle.units.names[1]
         self.text.set_text(f"$t$ = {time:.{decimals}f} {unit} = {k / self.frames:.2f} $T$")

@@ -1,4 +1,4 @@
-"""The energy of the beating arm over a cycle: what the force puts in, the fluid takes and the rod stores."""
+"""Energy of the beating arm over a cycle: power of the force, dissipation and stored elastic energy."""
 
 from collections.abc import Sequence
 
@@ -10,18 +10,18 @@ from matplotlib.ticker import MaxNLocator
 from ....results.file.view import View
 from ...summary.errors import power_error
 from ...summary.ranges import rounded
-from ..arm.quantities import TOGETHER
+from ..arm.quantities import NO_BREAK
 from ..style import FIRST, SECOND, THIRD, legend_below
 from .selection import ENERGIES, StoredCycle, chosen_cycles, in_tex
 
 RATE_MARKS = 24
-"""Times at which the derivative of U is marked on the difference of injection and dissipation."""
+"""Number of times at which dU/dt is marked on the curve of injection minus dissipation."""
 
 
 def draw_energy(view: View, points: Sequence[int], narrow: bool = False) -> tuple[Figure, str]:
-    """A column for each cycle: the energy U, injection and dissipation, and dU/dt as their difference.
+    """Draws a column for each cycle: the energy U, injection and dissipation, their difference and dU/dt.
 
-    The marks are the derivative of the stored U: an independent number that must lie on the line. narrow:
+    The marks are derivatives of the stored U, which are independent of the curve and must lie on it. narrow:
     whether the columns have little room.
     """
     selection = chosen_cycles(view, points, ENERGIES)
@@ -44,17 +44,17 @@ def draw_energy(view: View, points: Sequence[int], narrow: bool = False) -> tupl
 
 
 def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
-    """(the mean power of the force to its error, the imbalance), in the units of the panels."""
+    """(mean power of the force with the digits of its error, energy imbalance), in units of the panels."""
     v = {name: float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance")}
     error = power_error(cycle.values)
     mean = in_tex(rounded(v["injection_mean"], abs(v["injection_mean"]) * float(error)))
     unit = cycle.units.names[3]
-    power = f"mean power ${mean}$" + (f"{TOGETHER}{unit}" if unit else "")
+    power = f"mean power ${mean}$" + (f"{NO_BREAK}{unit}" if unit else "")
     return power, f"imbalance {v['energy_imbalance']:.1e}"
 
 
 def _budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
-    """The three panels of a cycle."""
+    """Draws the three panels of a cycle."""
     from ....discretization.elements.periodic import derivative, resampled  # compiled code
 
     top, middle, bottom = column

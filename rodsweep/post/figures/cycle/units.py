@@ -11,7 +11,7 @@ from ....arrays import Array
 from ....model.units import compact, written_in
 from ....results.file.view import View
 from ...tables.rows import quantities_at_points
-from ..arm.quantities import TOGETHER
+from ..arm.quantities import NO_BREAK
 
 LENGTHS = ("shape_x", "shape_y", "tip_x", "tip_y", "transient_x", "transient_y")
 LENGTHS_OF_CYCLES = ("tip_x_min", "tip_x_max", "tip_y_max")
@@ -85,7 +85,7 @@ class CycleUnits:
 
     def told_time(self, time: float) -> str:
         """A time in SI as text: `53.91 s`."""
-        return f"{time:.4g}{TOGETHER}{self.names[1]}"
+        return f"{time:.4g}{NO_BREAK}{self.names[1]}"
 
     def drawn(self, values: dict[str, Array]) -> dict[str, Array]:
         """Variables of a point, each of any shape, in these units."""

@@ -12,7 +12,7 @@ from ....arrays import Array, Complex
 from ....results.file.view import View
 from ....sweep.points.lines import lines_over
 from ...hopf_points import Bracket, Located, StoredChanges
-from ..arm.quantities import TOGETHER
+from ..arm.quantities import NO_BREAK
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, fixed_text, heading, legend_below, scale
 from .eigenvalues import spread
 
@@ -156,7 +156,7 @@ def _point_along(axes: Axes, w: Complex, colour: str) -> None:
 def threshold_text(threshold: Located) -> str:
     """What a threshold is called, and its force."""
     word, _ = THRESHOLD_LOOKS[threshold.kind]
-    return f"{word} ={TOGETHER}{threshold.position:#.{THRESHOLD_DIGITS}g}"
+    return f"{word} ={NO_BREAK}{threshold.position:#.{THRESHOLD_DIGITS}g}"
 
 
 def edge_of_flutter(change: Located | Bracket) -> float:

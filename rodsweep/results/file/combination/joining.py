@@ -79,7 +79,7 @@ class JoinedFile:
                     raise InputError(f"{both} disagree about the point {where}: their {name} differ")
 
     def _is_rounding(self, name: str, first: Any, second: Any, sources: tuple[Header, Header]) -> bool:
-        """Whether two values differ by rounding only, from other BLAS kernels or other neighbours in a stretch."""
+        """Whether two values differ by rounding only: other BLAS kernels, or neighbours in stretches."""
         kernels = {kernel for source in sources for kernel in kernels_of(source.attributes)}
         if (len(kernels) < 2 and not self.plan.stretches) or name == "status":
             return False

@@ -1,4 +1,4 @@
-"""Cycles over a parameter: amplitudes of the tip, as in the paper's Fig. 6, the period and the power."""
+"""Cycles over a parameter: amplitudes of the tip as in the paper's Fig. 6, period and power."""
 
 import json
 from collections.abc import Sequence
@@ -23,17 +23,17 @@ from .hopf_marks import draw_laws, mark_hopf_points
 BRANCH_LOOKS = tuple(
     zip((FIRST, SECOND, THIRD, "#CC79A7", "#56B4E9", "#000000"), ("o", "s", "^", "D", "v", "P"), strict=True)
 )
-"""Colour, of Okabe and Ito, and marker of each branch."""
-LEAST_FOR_ARROW = 4
-"""Points of a line that has an arrow."""
+"""Colour, from Okabe and Ito's palette, and marker of each branch."""
+MIN_ARROW_POINTS = 4
+"""Least number of points of a line that gets an arrow."""
 UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 3}
-"""Open markers, on those of the branch, for cycles that nothing stays on."""
+"""Open markers, over those of the branch, for unstable cycles."""
 
 
 def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure, str]:
-    """Half the reach of the tip's x, its largest y, the period and the power against F.
+    """Draws half the range of the tip's x, its largest y, the period and the power over F.
 
-    A straight arm has the amplitude 0 and no period. narrow: whether the panels are below each other.
+    A straight arm has amplitude 0 and no period. narrow: whether the panels lie one above the other.
     """
     first = views[0]
     name = abscissa(first)
@@ -75,11 +75,14 @@ def _draw_branches(
     texts: Sequence[str],
     words: dict[Path, tuple[str, bool | None]],
 ) -> list[Line2D]:
-    """All branches in both panels; returns what the legend says: texts of each, words of each file."""
-    handles, lost = [], set[str]()
+    """Draws all branches in all panels; returns legend entries with a text for each branch and file."""
+    handles = []
+    lost = set[str]()
     for branch, text, (colour, marker) in zip(branches, texts, BRANCH_LOOKS, strict=False):
         look: dict[str, Any] = {"color": colour, "marker": marker, "lw": 1.2, "ms": 3.5}
-        if branch.view is not branches[0].view:  # open, larger markers leave an earlier file's to be seen
+        if (
+            branch.view is not branches[0].view
+        ):  # open, larger markers leave the markers of the first file visible
             look |= {"mfc": "none", "ms": 6.5, "ls": "--"}
         word, upward = words[branch.view.path]
         handles.append(Line2D([], [], label=", ".join(filter(None, (word, text))), **look))
@@ -95,9 +98,9 @@ def _draw_branches(
 
 
 def _file_words(views: Sequence[View], name: str) -> dict[Path, tuple[str, bool | None]]:
-    """What the legend calls each of several files, and whether its chains go upwards where that is said.
+    """Legend text of each of several files, and whether its chains go upward; None if files differ otherwise.
 
-    Files that were followed along the axis in both directions are told apart by these, others by their names.
+    Files followed along the axis in both directions are distinguished by direction, other files by name.
     """
     if len(views) == 1:
         return {views[0].path: ("", None)}
@@ -119,10 +122,10 @@ def _file_words(views: Sequence[View], name: str) -> dict[Path, tuple[str, bool 
 
 
 def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: bool, colour: str) -> None:
-    """An arrow beside each line, the way it was followed."""
+    """Draws an arrow on each line in the direction in which it was followed."""
     for axes, values in zip(panels, branch.measures, strict=True):
         known = np.flatnonzero(np.isfinite(values))
-        if len(known) < LEAST_FOR_ARROW:
+        if len(known) < MIN_ARROW_POINTS:
             continue
         ends = known[len(known) * 3 // 4 - 1], known[len(known) * 3 // 4]
         here, there = ends if upward else ends[::-1]
@@ -136,7 +139,7 @@ def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: boo
 
 
 def _names(branches: Sequence[AmplitudeBranch], name: str) -> tuple[str, list[str]]:
-    """(what all branches over a parameter share, what tells each from the others); of an arm in its units."""
+    """(parameters that all branches share, parameters of each branch), for an arm in its own units."""
     view = branches[0].view
     if branches[0].units.in_si and all(branch.view is view for branch in branches):
         along = {name, *(quantity for quantity, moved in MOVES.items() if moved == name)}
@@ -145,7 +148,7 @@ def _names(branches: Sequence[AmplitudeBranch], name: str) -> tuple[str, list[st
 
 
 def _label(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> None:
-    """Axes and their labels: 0, of straight arms, is drawn, and a little below it shown."""
+    """Sets limits and labels of the axes; amplitude 0, of straight arms, lies above the lower edge."""
     for axes, label in zip(panels, labels, strict=True):
         height = axes.dataLim.y1 if np.isfinite(axes.dataLim.y1) and axes.dataLim.y1 > 0 else 1.0
         axes.set_ylim(-0.04 * height, 1.1 * height)
@@ -157,7 +160,7 @@ def _label(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> None:
 
 
 def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, look: dict[str, Any]) -> set[str]:
-    """A branch in both panels, unstable cycles open; returns what became of points without an amplitude."""
+    """Draws a branch in all panels, unstable cycles open; returns words for points without an amplitude."""
     unstable = branch.words == "unstable"
     lost: set[str] = set()
     for axes, values in zip(panels, branch.measures, strict=True):
@@ -169,7 +172,7 @@ def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, look: dict[str
 
 
 def _mark_unknown(axes: Axes, branch: AmplitudeBranch, colour: str) -> set[str]:
-    """Marks at the top where no amplitude is known; returns what became of those points."""
+    """Marks points without an amplitude at the top; returns words for their statuses."""
     lost = ~np.isin(branch.words, (*CYCLE_WORDS, "straight", "missing"))
     for x in branch.x[lost]:
         axes.plot(x, 1.0, "x", color=colour, ms=5, clip_on=False, transform=axes.get_xaxis_transform())

@@ -1,4 +1,4 @@
-"""The cycles of a file as branches over one parameter: amplitudes of the tip, periods, powers."""
+"""Cycles of a file as branches over one parameter: amplitudes of the tip, periods and powers."""
 
 from dataclasses import dataclass
 
@@ -17,11 +17,11 @@ from .square_root import SquareRootLaw, square_root_laws
 
 @dataclass(frozen=True, slots=True)
 class AmplitudeBranch:
-    """Points in the order of the file that differ in one parameter only; amplitudes NaN where unknown.
+    """Points that differ in one parameter only, in the order of the file; amplitudes are NaN where unknown.
 
-    parameters: the other ones, by name; power: of the force, the mean over a period; units: of all of
-    these; words: of the status; all arrays have the shape (points,); hopf: the Hopf points along the
-    branch, none where it is not over F.
+    parameters: the other parameters, by name. power: mean power of the force over a period. units: of all
+    these. words: words of the status. hopf: Hopf points along the branch, empty if it is not over F. All
+    arrays have the shape (points,).
     """
 
     view: View
@@ -35,27 +35,27 @@ class AmplitudeBranch:
     hopf: list[Located]
     units: CycleUnits
     first: int
-    """The number of its first point in the file, from 1."""
+    """Number of its first point in the file, from 1."""
 
     @property
     def measures(self) -> tuple[Array, ...]:
-        """What each panel shows, in the order of the panels."""
+        """Quantity of each panel, in the order of the panels."""
         return self.amplitude_x, self.amplitude_y, self.period, self.power
 
     @property
     def laws(self) -> list[SquareRootLaw]:
-        """The square-root laws that the largest y follows next to the Hopf points."""
+        """Square-root laws of the largest y near the Hopf points."""
         return square_root_laws(self.x, self.amplitude_y, self.hopf)
 
     def broken_at_onset(self, values: Array) -> tuple[Array, Array]:
-        """(x, values) with a gap between a straight arm and a beating one: a line would invent a slope."""
+        """(x, values) with a gap where the rod starts to beat, because a line would suggest a slope."""
         straight = self.words == "straight"
         change = np.flatnonzero(straight[1:] != straight[:-1]) + 1
         return np.insert(self.x, change, np.nan), np.insert(values, change, np.nan)
 
 
 def abscissa(view: View) -> str:
-    """The parameter against which is drawn: F, or the one with most values where F is fixed."""
+    """Parameter of the horizontal axis: F, or the parameter with most values if F is fixed."""
     sizes = {name: len(np.unique(column)) for name, column in view.point_columns.items()}
     name = "F" if sizes["F"] > 1 else max(sizes, key=sizes.__getitem__)
     if sizes[name] < 2:
@@ -64,9 +64,11 @@ def abscissa(view: View) -> str:
 
 
 def branches_of(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[AmplitudeBranch]:
-    """The file's points, one branch for each combination of the parameters other than `name`."""
-    words, v = outcomes(view), view.variables
-    straight, cycle = words == "straight", np.isin(words, CYCLE_WORDS)
+    """Branches of a file, one for each combination of the parameters other than `name`."""
+    words = outcomes(view)
+    v = view.variables
+    straight = words == "straight"
+    cycle = np.isin(words, CYCLE_WORDS)
     reach = (v["tip_x_max"] - v["tip_x_min"]).ravel() / 2
     along_x, along_y = (
         units.length * np.where(straight, 0.0, np.where(cycle, values, np.nan))
@@ -78,7 +80,8 @@ def branches_of(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[
     stored = StoredChanges(view, "F")
     for line in lines_over(view.point_columns, name):
         changes = stored.on(line) if name == "F" else []
-        at, hopf = line.at, [change for change in changes if isinstance(change, Located) and change.is_hopf]
+        at = line.at
+        hopf = [change for change in changes if isinstance(change, Located) and change.is_hopf]
         branches.append(
             AmplitudeBranch(
                 view=view,

@@ -1,4 +1,4 @@
-"""The lines of Hopf points over two parameters, from the growth rates and Hopf points that a file holds."""
+"""Lines of Hopf points over two parameters, from the growth rates and Hopf points in a file."""
 
 from collections.abc import Iterator
 
@@ -14,10 +14,10 @@ from ..point_map import PointMap, in_its_scale
 
 
 def hopf_lines(points: PointMap, view: View) -> list[Array]:
-    """The contours on which the leading growth rate is 0, each of shape (2, n): x, y.
+    """Contours of zero leading growth rate, each of shape (2, n): x, y.
 
-    Rows are linear between their points and zeros, and between rows the growth rate is linear in the scale of
-    y: so a contour passes through the Hopf points of every row, which the task has located.
+    The growth rate is interpolated linearly along each row, between points and Hopf points, and between rows
+    in the scale of y. A contour therefore passes through the located Hopf points of every row.
     """
     (x, x_back), (y, y_back) = (in_its_scale(values) for values in (points.x, points.y))
     to_scale = np.log if is_logarithmic(points.x) else np.asarray
@@ -36,7 +36,7 @@ def hopf_lines(points: PointMap, view: View) -> list[Array]:
 
 
 def _hopf_points(points: PointMap, view: View) -> Iterator[Array]:
-    """The Hopf points of every row of a map, each row's of shape (n,)."""
+    """Yields the Hopf points of each row of a map, (n,)."""
     name, other = points.names
     stored = StoredChanges(view, name)
     for value, at in zip(points.y, points.at, strict=True):

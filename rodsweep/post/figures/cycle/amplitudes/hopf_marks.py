@@ -1,4 +1,4 @@
-"""What a figure over F shows of Hopf points: where they lie, and the square-root law of amplitudes there."""
+"""Hopf points in a figure over F: their positions, and the square-root law of the amplitudes near them."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -13,21 +13,25 @@ from .square_root import SquareRootLaw
 
 HOPF_SYMBOL = rf"{SYMBOLS['F']}_{{**}}"
 HOPF_WORDS = {"hopf": f"${HOPF_SYMBOL}$", "restabilization": "restabilization"}
-"""What the legend calls a Hopf point above which the rod is unstable, and one above which it is stable."""
+"""Legend entries of Hopf points at which the rod becomes unstable, and stable again, as F grows."""
 HOPF_DIGITS = 6
-"""To which a Hopf point is written in a legend."""
+"""Number of digits of a Hopf point in a legend."""
 DOTTED: dict[str, Any] = {"ls": ":", "lw": 1.1}
-SHARED_GREY, LAW_GREY = "0.3", "0.45"
+SHARED_GREY = "0.3"
+"""Colour of a Hopf point that several branches share."""
+LAW_GREY = "0.45"
+"""Colour of a square-root law."""
 COEFFICIENT_DIGITS = 3
-"""To which a coefficient is written at most."""
-MOST_COEFFICIENTS = 3
-"""Coefficients of square-root laws that one line of a legend can hold."""
+"""Largest number of digits of a coefficient in a legend."""
+MAX_COEFFICIENTS = 3
+"""Largest number of coefficients in one legend entry; more are given as a range."""
 
 
 def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[Located, str]]) -> list[Line2D]:
-    """A vertical dotted line at each Hopf point in its branch's colour; returns what the legend says.
+    """Draws a vertical dotted line at each Hopf point in the colour of its branch; returns legend entries.
 
-    One that several branches share is drawn once, in grey; where a kind has one position the legend names it.
+    A Hopf point that several branches share is drawn once, in grey. If all Hopf points of a kind have one
+    position, the legend gives it.
     """
     handles = []
     for kind, word in HOPF_WORDS.items():
@@ -56,9 +60,9 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[Located, str]
 
 
 def draw_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str = "") -> list[Line2D]:
-    """The square-root laws as dashed curves; returns what the legend says: formula and coefficients.
+    """Draws the square-root laws as dashed curves; returns legend entries with formula and coefficients.
 
-    unit: of the coefficients, empty where that is L.
+    unit: unit of the coefficients; empty if it is L.
     """
     handles = []
     for above in (True, False):
@@ -75,10 +79,10 @@ def draw_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str = "") -> list
 
 
 def _coefficients(laws: Sequence[SquareRootLaw]) -> str:
-    """Those of the laws that differ in what is written, or their range where they are many."""
+    """Distinct coefficients of the laws as text, or their range if there are many."""
     ordered = sorted(laws, key=lambda law: law.coefficient)
     each = {law: rounded(law.coefficient, law.error, COEFFICIENT_DIGITS) for law in laws}
     texts = list(dict.fromkeys(each.values()))
-    if len(texts) > MOST_COEFFICIENTS:
+    if len(texts) > MAX_COEFFICIENTS:
         return f"{each[ordered[0]]} to {each[ordered[-1]]}"
     return ", ".join(texts)
