@@ -10,7 +10,7 @@ import numpy as np
 from rods import rod_of
 
 import rodsweep as rs
-from rodsweep.post.branch_curves import both, curves_of, straight_ranges, union
+from rodsweep.post.branch_curves import curves_of, intersection, straight_ranges, union
 from rodsweep.post.summary.branch import ends_of
 
 from .page import NUMBER, as_stated, counts, range_as_stated, ranges, read, with_error
@@ -172,13 +172,13 @@ def _ranges_line(page, line, true):
 def _beside(fine, rod):
     """Where stable cycles are beside a stable straight rod."""
     stable = union(piece for curve in curves_of(fine, rod) for piece in curve.stable_ranges)
-    return both(stable, straight_ranges(fine, rod, ends_of(fine))[0])
+    return intersection(stable, straight_ranges(fine, rod, ends_of(fine))[0])
 
 
 def _pairs(curves):
     ranges_ = [curve.stable_ranges for curve in curves]
     return union(
-        piece for i in range(len(ranges_)) for j in range(i) for piece in both(ranges_[i], ranges_[j])
+        piece for i in range(len(ranges_)) for j in range(i) for piece in intersection(ranges_[i], ranges_[j])
     )
 
 

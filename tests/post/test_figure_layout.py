@@ -19,7 +19,7 @@ from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.animation import first_frame
 from rodsweep.post.figures.cycle.selection import chosen_cycles
 from rodsweep.post.figures.layout.fitting import WORDS, break_lines, fit
-from rodsweep.post.figures.layout.ticks import labels_in_sight
+from rodsweep.post.figures.layout.ticks import visible_labels
 from rodsweep.post.figures.request import Look
 from rodsweep.post.figures.style import STYLE
 
@@ -66,7 +66,7 @@ def texts_of(figure):
             found += [text for text in axes.get_children() if isinstance(text, Text)]
             found += axes.get_legend().get_texts() if axes.get_legend() else []
             for axis in (axes.xaxis, axes.yaxis):
-                found += [axis.label, axis.get_offset_text(), *labels_in_sight(axis)]
+                found += [axis.label, axis.get_offset_text(), *visible_labels(axis)]
     seen = [text for text in found if text.get_visible() and text.get_text().strip()]
     boxes = {(text.get_text(), tuple(text.get_window_extent().extents.round())): text for text in seen}
     return [(name, text.get_window_extent()) for (name, _), text in boxes.items()]

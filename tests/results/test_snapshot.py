@@ -121,7 +121,7 @@ def test_file_that_never_stays_is_given_up(tmp_path):
     path = tmp_path / "a.h5"
     path.write_bytes(b"")
     journal_directory(path).mkdir()
-    with pytest.raises(EnvironmentLacks, match="again and again"):
+    with pytest.raises(EnvironmentLacks, match="keeps replacing it"):
         unfolded(path, lambda: path.write_bytes(path.read_bytes() + b" "))
 
 

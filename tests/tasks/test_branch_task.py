@@ -13,7 +13,7 @@ from test_paper import run, stated
 import rodsweep as rs
 from rodsweep.api.dataset import view_of
 from rodsweep.model.rod import Rod
-from rodsweep.post.branch_curves import both, curves_of, stability_of_pieces, straight_ranges, union
+from rodsweep.post.branch_curves import curves_of, intersection, stability_of_pieces, straight_ranges, union
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.smooth_branch import through_cycles
 from rodsweep.post.summary import branch as summary
@@ -134,8 +134,8 @@ def test_undecided_cycles_are_as_stable_as_others_between_the_same_special_point
 
 def test_ranges_are_joined_and_intersected():
     assert union([(3, 4), (0, 1), (1, 2)]) == [(0, 2), (3, 4)]
-    assert both([(0, 2), (3, 4)], [(1, 3.5)]) == [(1, 2), (3, 3.5)]
-    assert both([(0, 1)], [(1, 2)]) == []
+    assert intersection([(0, 2), (3, 4)], [(1, 3.5)]) == [(1, 2), (3, 3.5)]
+    assert intersection([(0, 1)], [(1, 2)]) == []
 
 
 @pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])

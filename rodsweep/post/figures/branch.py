@@ -25,7 +25,7 @@ from ..branch_curves import (
 )
 from ..summary.branch import ends_of
 from . import style
-from .cycle.selection import points_told_apart
+from .cycle.selection import shared_and_own_of_points
 from .request import FigureRequest
 from .smooth_branch import through_cycles
 
@@ -56,7 +56,7 @@ def draw_branch(request: FigureRequest) -> str:
     view = request.only_view()
     branches = [curves_of(view, rod) for rod in range(view.variables["status"].size)]
     beating = [rod for rod, own in enumerate(branches) if any(curve.cycles.any() for curve in own)]
-    style.need(view, beating, "branch with cycles")
+    style.require(view, beating, "branch with cycles")
     drawn = beating[: len(COLOURS)]
     curves = [curve for rod in drawn for curve in branches[rod]]
     alone = len(branches) == 1
@@ -82,7 +82,7 @@ def draw_branch(request: FigureRequest) -> str:
         marked["predicted"] = _compare_prediction(axes, curves, colours, along)
     shown = {int(s) for curve in curves for s in curve.stable} | {1, 0}
     handles = [Line2D([], [], color="k", ls=LINES[s][0], label=LINES[s][1]) for s in sorted(shown)[::-1]]
-    shared, own = points_told_apart(view, [rod + 1 for rod in drawn])
+    shared, own = shared_and_own_of_points(view, [rod + 1 for rod in drawn])
     handles += [
         Line2D([], [], color=c, lw=2, label=text) for c, text in zip(COLOURS, own, strict=False) if text
     ]

@@ -39,7 +39,7 @@ LINEAR_FRACTION = 0.1
 def draw_criticality(request: FigureRequest) -> str:
     """Maps the first Hopf points over two parameters; draws a and Re c over one; else predicted cycles."""
     view = request.only_view()
-    style.need(view, np.isfinite(view.variables["criticality"]).any(), "Hopf point with a normal form")
+    style.require(view, np.isfinite(view.variables["criticality"]).any(), "Hopf point with a normal form")
     varied = varied_parameters(view)
     if len(varied) == 1 and np.isfinite(np.unique(view.point_columns[varied[0]])).sum() > 1:
         return request.write(_along(view, varied[0]), f"the normal forms of Hopf points along {varied[0]}")
@@ -57,7 +57,7 @@ def _along(view: View, name: str) -> Figure:
     figure = Figure(figsize=(5.6, 5.4), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True)
     side, a, c = (view.by_point(key)[keep] for key in ("criticality", "amplitude_coefficient", "landau_real"))
-    style.need(view, np.isfinite(c).any(), f"Hopf point with a finite {name}")
+    style.require(view, np.isfinite(c).any(), f"Hopf point with a finite {name}")
     lower.set_yscale(
         "symlog", linthresh=10.0 ** floor(log10(float(np.nanquantile(np.abs(c), LINEAR_FRACTION))))
     )
@@ -91,7 +91,7 @@ def _map(view: View, points: PointMap, narrow: bool) -> Figure:
     """
     side = view.by_point("criticality")[points.at]
     a = np.abs(view.by_point("amplitude_coefficient")[:, 0][points.at])
-    style.need(view, np.isfinite(a).any(), "first Hopf point with a normal form")
+    style.require(view, np.isfinite(a).any(), "first Hopf point with a normal form")
     figure, panels = map_panels(2, narrow)
     edges = cell_edges(points.x), cell_edges(points.y)
     classes = _classes(side)

@@ -1,4 +1,4 @@
-"""Which figure of limit cycles is drawn: what the user names, or else what the file's content suggests."""
+"""Figures of limit cycles: the figure that the user names, or that suits the content of the file."""
 
 import numpy as np
 
@@ -11,22 +11,23 @@ from .cycle.energy import draw_energy
 from .cycle.maps import draw_maps
 from .cycle.point_map import is_map, point_map, varied_parameters
 from .cycle.portrait import draw_portrait
-from .cycle.selection import ENERGIES, MOST_CYCLES, SHAPES, TRACE, chosen_cycles, outcomes
+from .cycle.selection import ENERGIES, MAX_CYCLES, SHAPES, TRACE, chosen_cycles, outcomes
 from .cycle.transient import draw_transients
 from .layout.fitting import MAP_ASPECT, STRIP_ASPECT
 from .request import KINDS_OF_TASK, FigureRequest
 
 ALL_POINTS = {"amplitude": "amplitudes", "maps": "maps"}
-"""Figures that show every point of a file."""
+"""Figures that show every point of a file, with their names in a sentence."""
 NEEDS = {"cycle": SHAPES, "animation": SHAPES, "energy": ENERGIES}
-"""What a figure draws of a cycle."""
-OF_POINTS = {"cycle": draw_portrait, "energy": draw_energy, "transient": draw_transients}
-"""Figures that show a few points, those that are chosen or the first."""
+"""Variables of a cycle that a figure needs."""
+FEW_POINT_FIGURES = {"cycle": draw_portrait, "energy": draw_energy, "transient": draw_transients}
+"""Functions of the figures that show a few points, chosen by the user or the first ones."""
 
 
 def draw_limit_cycle(request: FigureRequest) -> str:
-    """Draws one file, or the amplitudes of several; InputError where the choices do not fit."""
-    points, name = request.points, figure_name(request)
+    """Draws one file, or the amplitudes of several files; raises InputError if the choices do not fit."""
+    points = request.points
+    name = figure_name(request)
     view = _with_needs(request, name)
     if name == "animation":
         request.check_output(*FILMS)
@@ -38,21 +39,22 @@ def draw_limit_cycle(request: FigureRequest) -> str:
         return request.write(*draw_amplitude(request.views, request.look.narrow))
     if name == "maps":
         return request.write(*draw_maps(view, request.look.narrow), MAP_ASPECT)
-    return request.write(*OF_POINTS[name](view, points, request.look.narrow), STRIP_ASPECT)
+    return request.write(*FEW_POINT_FIGURES[name](view, points, request.look.narrow), STRIP_ASPECT)
 
 
 def _with_needs(request: FigureRequest, name: str) -> View:
-    """The file with what the figure needs of its cycles: solved, where that is possible, if not stored."""
-    view, needs = request.views[0], NEEDS.get(name, ())
-    if request.shapes is None or all(need in view.variables for need in needs):
+    """The file with the variables that the figure needs; missing ones are solved if possible."""
+    view = request.views[0]
+    needs = NEEDS.get(name, ())
+    if request.shapes is None or all(variable in view.variables for variable in needs):
         return view
     numbers = request.points or [int(index) + 1 for index in np.flatnonzero(outcomes(view) == "cycle")]
-    chosen_cycles(view, request.points, ())  # refuses points that have no cycle
-    return request.shapes(view, numbers[:MOST_CYCLES])
+    chosen_cycles(view, request.points, ())  # refuses points without a cycle
+    return request.shapes(view, numbers[:MAX_CYCLES])
 
 
 def figure_name(request: FigureRequest) -> str:
-    """What --what names, or what the files suggest; InputError where the choices do not fit."""
+    """Name of the figure from --what or the files; raises InputError if the choices do not fit."""
     first, *others = request.views
     for view in others:
         if view.task != first.task:
@@ -68,15 +70,19 @@ def figure_name(request: FigureRequest) -> str:
 
 
 def _suggested(request: FigureRequest) -> str:
-    """A film for its suffix; shapes or transients of few points; maps of many lines; else amplitudes."""
+    """Name of the figure that suits the request.
+
+    An animation for its suffix; shapes or transients of few points; maps of many lines; otherwise amplitudes.
+    """
     first, *others = request.views
     if request.output.suffix in FILMS:
         return "animation"
     if others:
         return "amplitude"
-    beats, chosen = outcomes(first) == "cycle", [number - 1 for number in request.points]
-    few_cycles = len(chosen) > 0 or beats.sum() <= MOST_CYCLES
-    few_points = len(chosen) > 0 or beats.size <= MOST_CYCLES
+    beats = outcomes(first) == "cycle"
+    chosen = [number - 1 for number in request.points]
+    few_cycles = len(chosen) > 0 or beats.sum() <= MAX_CYCLES
+    few_points = len(chosen) > 0 or beats.size <= MAX_CYCLES
     shaped = SHAPES[0] in first.variables
     drawable = shaped and beats.any() and beats[[n for n in chosen if 0 <= n < beats.size]].all()
     if few_points and TRACE[0] in first.variables and not drawable:
@@ -85,12 +91,12 @@ def _suggested(request: FigureRequest) -> str:
         return "cycle"
     if _has_many_lines(first):
         return "maps"
-    many = beats.size > MOST_CYCLES and len(varied_parameters(first)) > 0
+    many = beats.size > MAX_CYCLES and len(varied_parameters(first)) > 0
     return "amplitude" if many or "F" in varied_parameters(first) else "cycle"
 
 
 def _has_many_lines(view: View) -> bool:
-    """Whether the points form a map of more lines than the figure of amplitudes has room for."""
+    """Whether the points form a map with more lines than the figure of amplitudes can show."""
     if not is_map(view):
         return False
     points = point_map(view)

@@ -1,4 +1,4 @@
-"""Lists of points as figures take them: as a grid where they make up one, else point after point."""
+"""Lists of points in figures: as a grid if they form one, else point after point."""
 
 from dataclasses import replace
 
@@ -11,15 +11,15 @@ from ...model.units import compact
 from ...results.file.view import View
 
 BESIDE_POINTS = ("mode", "u", "crossing")
-"""Coordinates of other dimensions, which may be as long as the list."""
+"""Coordinates of other dimensions, which may have the same length as the list."""
 FEW_POINTS = 12
-"""Points of a list whose places along an axis are all labelled."""
+"""Largest number of points of a list that are all labelled on an axis."""
 
 
 def as_grid(view: View) -> View:
-    """The grid that the points of a list make up, in whatever order; the view itself where they make up none.
+    """The grid formed by the points of a list in any order; the view itself if they form none.
 
-    That is one of one or two parameters, each combination once, or a single point.
+    The grid has at most two varied parameters, with each combination once.
     """
     if view.is_grid:
         return view
@@ -43,15 +43,15 @@ def as_grid(view: View) -> View:
 
 
 def shared_parameters(view: View) -> dict[str, float]:
-    """The parameters that all points share, with their values."""
+    """Parameters that all points share, with their values."""
     columns = view.point_columns
     return {name: float(column[0]) for name, column in columns.items() if len(np.unique(column)) == 1}
 
 
 def number_points(axes: Axes, view: View, count: int) -> None:
-    """Makes an axis that of the points of a list, from 1, half a place free at both ends.
+    """Labels an axis with the numbers of the points of a list, from 1, with margins at both ends.
 
-    Of an arm it tells the quantities that vary, in SI units: of each point, where they are few.
+    For an arm the label has the varied quantities, in SI units; a short list has them for each point.
     """
     axes.set_xlim(0.5, count + 0.5)
     axes.xaxis.set_major_locator(MaxNLocator(min(count, FEW_POINTS), integer=True, min_n_ticks=1))
@@ -66,12 +66,12 @@ def number_points(axes: Axes, view: View, count: int) -> None:
 
 
 def _varied_quantities(view: View) -> list[tuple[str, list[str]]]:
-    """(name with unit, value at each point) of an arm's quantities with several values, the slowest first."""
-    told = []
+    """(name with unit, value at each point) of an arm's quantities with several values."""
+    described = []
     for name, values in view.quantities.items():
         if name not in ARM_UNITS and np.ndim(values) and len(np.unique(values)) > 1:
             unit = ALL_QUANTITIES[name].unit.replace("1", "")
             factor, unit = compact(float(np.abs(values).max()), unit) if unit else (1.0, "")
             heading = f"{name} ({unit})" if unit else f"{name}'s ratio"
-            told.append((heading, [f"{factor * value:.4g}" for value in values]))
-    return told
+            described.append((heading, [f"{factor * value:.4g}" for value in values]))
+    return described

@@ -1,4 +1,4 @@
-"""The leading mode, its deformations and its adjoint, as the paper's Figs. 7 to 9."""
+"""The leading mode, its deformations and its adjoint, as in the paper's Figs. 7 to 9."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -7,26 +7,27 @@ from matplotlib.lines import Line2D
 
 from ...results.file.view import View
 from .request import FigureRequest
-from .style import FIRST, SECOND, heading, legend_below, need, number, parameter_text
+from .style import FIRST, SECOND, heading, legend_below, number, parameter_text, require
 
-MOST_RODS = 4
-"""Points for which one figure has room; one whose panels are below each other has room for one."""
+MAX_RODS = 4
+"""Largest number of points in one figure; a narrow figure shows one point."""
 PANELS = (
     ("mode", (("Y", r"$Y_1$"), ("Theta", r"$\Theta_1$"))),
     ("deformations", (("h2", r"$h_2$"), ("Pi", r"$\Pi$"))),
     ("adjoint mode", (("adjoint_Y", r"$Y_1^\dagger$"), ("adjoint_Theta", r"$\Theta_1^\dagger$"))),
 )
+"""(title, ((field, label), (field, label))) of each panel of a point."""
 
 
 def draw_modes(request: FigureRequest) -> str:
-    """A row of panels for each point: the leading mode, its deformations, its adjoint."""
+    """Draws a row of panels for each point: the leading mode, its deformations and its adjoint."""
     view = request.only_view()
     v = view.variables
     growth = v["growth_rate"][..., 0].ravel()
     points = np.flatnonzero(np.isfinite(growth))
-    need(view, points.size, "computed point")
+    require(view, points.size, "computed point")
     narrow = request.look.narrow
-    drawn = points[: 1 if narrow else MOST_RODS]
+    drawn = points[: 1 if narrow else MAX_RODS]
     rows, columns = (len(drawn) * len(PANELS), 1) if narrow else (len(drawn), len(PANELS))
     size = (4.6, 2.4 * rows + 0.4) if narrow else (10.0, 2.8 * rows + 0.4)
     figure = Figure(figsize=size, layout="constrained")
@@ -49,14 +50,14 @@ def draw_modes(request: FigureRequest) -> str:
 
 
 def _parts(view: View, points: np.ndarray) -> list[Line2D]:
-    """What the legend says of solid and dotted lines; points: of the drawn ones, shape (n,)."""
+    """Legend entries for solid and dotted lines; points: indices of the drawn points, shape (n,)."""
     oscillates = view.by_point("frequency")[points, 0].any()
     looks = (("real part", "-"), ("imaginary part", ":"))[: 1 + bool(oscillates)]
     return [Line2D([], [], color="0.3", lw=1.5, ls=style, label=word) for word, style in looks]
 
 
 def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], ...]) -> None:
-    """Two fields of a point's leading mode against u, each on its own axis, with a common zero."""
+    """Draws two fields of a point's leading mode over u, each with its own axis and a common zero."""
     u = view.variables["u"]
     both = panel, panel.twinx()
     spans = []
@@ -79,7 +80,7 @@ def _panel(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], .
 
 
 def _where(view: View, point: int) -> tuple[str, str]:
-    """The parameters of a point, and its leading eigenvalue."""
+    """(parameters of a point, its leading eigenvalue), as text."""
     at = {name: values[point] for name, values in view.point_columns.items()}
     w = [float(view.by_point(name)[point, 0]) for name in ("growth_rate", "frequency")]
     imaginary = rf" + {number(w[1])}\,\mathrm{{i}}" if w[1] else ""

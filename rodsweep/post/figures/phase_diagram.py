@@ -1,4 +1,4 @@
-"""Phase diagrams, as the paper's Fig. 4: what the rod does over two parameters, with the boundaries."""
+"""Phase diagrams, as in the paper's Fig. 4: behaviour of the rod over two parameters, with its boundaries."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -22,7 +22,7 @@ from .stability.class_bars import BAR_ASPECT, CLASS_COLOURS, classes_behind_cros
 from .stability.diagram_curves import draw_curves, draw_cycle_curves, mark_cycles_on_rows
 from .stability.regions import PIXELS, ClassedPlaces, DrawnPlane, coloured
 from .stability.row_classes import class_along_row
-from .style import LABELS, SYMBOLS, heading, is_logarithmic, legend_below, need, parameter_text, scale
+from .style import LABELS, SYMBOLS, heading, is_logarithmic, legend_below, parameter_text, require, scale
 from .style import number as number_text
 
 STATE_COLOURS = {
@@ -34,12 +34,12 @@ STATE_COLOURS = {
     "undecided": CLASS_COLOURS["undecided"],
     "crushed": CLASS_COLOURS["crushed"],
 }
-"""Of the stable states: where both are, the colour lies between those of the two."""
+"""Colours of the stable states; where both states are stable the colour lies between theirs."""
 
 
 @dataclass(frozen=True, slots=True)
 class Palette:
-    """What a map shows: a variable of words, its words with their numbers, and their colours."""
+    """Content of a map: a variable of words, its numbers and words, and the colours of the words."""
 
     variable: str
     words: tuple[tuple[int, str], ...]
@@ -47,7 +47,7 @@ class Palette:
 
     @property
     def colours_of_numbers(self) -> dict[str, Any]:
-        """How a table of numbers is coloured."""
+        """Arguments for matplotlib that colour a table of numbers."""
         numbers = [number for number, _ in self.words]
         return {
             "cmap": ListedColormap([self.colours[word] for _, word in self.words]),
@@ -56,14 +56,15 @@ class Palette:
 
     @property
     def crushed(self) -> int:
+        """Number of the word `crushed`."""
         return next(number for number, word in self.words if word == "crushed")
 
     def patches(self, table: Array) -> list[Patch]:
-        """What the legend says of the words that are in a table, (rows, columns)."""
-        there = (word for number, word in self.words if (table == number).any())
+        """Legend entries for the words in a table, (rows, columns)."""
+        shown = (word for number, word in self.words if (table == number).any())
         return [
             Patch(facecolor=self.colours[word], edgecolor="0.5", lw=0.5, label=LEGEND.get(word, word))
-            for word in there
+            for word in shown
         ]
 
 
@@ -73,21 +74,24 @@ LEGEND = {
     "both": "both stable",
     "neither_known": "no stable state known",
 }
-"""Words of the stable states; the others speak for themselves."""
+"""Legend entries of the stable states; other words are their own entries."""
 MOTIONS = Palette("class", CLASSES, CLASS_COLOURS)
+"""Palette of the behaviour of the straight rod."""
 STATES = Palette("stable_states", STABLE_STATES, STATE_COLOURS)
+"""Palette of the stable states."""
 BESIDE_CRUSHING = 1 - np.linspace(0, 3e-3, 7)
-"""F/k1 that no colour passes: curves of cycles end where F is within 1e-3 of k1, and bound regions there."""
+"""Values of F/k1 at which barriers separate colours. Curves of cycles end where F is within 1e-3 of k1, so
+that the barriers close the regions between them."""
 
 
 def draw_phase_diagram(request: FigureRequest) -> str:
-    """The class of every point, the boundaries where they were traced, and their folds."""
+    """Draws the class of every point, the boundary curves and their folds."""
     view = request.only_view()
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
     row = next((name for name in view.parameters if len(view.axes[name]) > 1), view.parameters[0])
     palette = STATES if STATES.variable in view.variables else MOTIONS
     values = view.variables[palette.variable]
-    need(view, (values >= 0).any(), "computed row")
+    require(view, (values >= 0).any(), "computed row")
     x, y = view.variables[line], view.axes[row]
     keep = np.isfinite(y)
     if keep.sum() < 2:
@@ -120,17 +124,17 @@ def draw_phase_diagram(request: FigureRequest) -> str:
 
 
 def _fixed(view: View, line: str, row: str) -> str:
-    """The parameters that are fixed, with their values; gamma1 where cycles are told of."""
-    told = {name: values[0] for name, values in view.axes.items() if name not in (line, row)}
+    """Fixed parameters with their values; gamma1 only if the figure shows cycles."""
+    fixed = {name: values[0] for name, values in view.axes.items() if name not in (line, row)}
     if "curve_gamma1" in view.variables:
-        told["gamma1"] = float(view.variables["curve_gamma1"])
+        fixed["gamma1"] = float(view.variables["curve_gamma1"])
     elif "gamma1" in view.attributes or ("stable_states" in view.variables and not view.quantities):
-        told["gamma1"] = float(view.attributes.get("gamma1", DEFAULTS["gamma1"]))
-    return parameter_text(told)
+        fixed["gamma1"] = float(view.attributes.get("gamma1", DEFAULTS["gamma1"]))
+    return parameter_text(fixed)
 
 
 def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
-    """Covers rods that the force x crushes, x > y, and draws the edge x = y; returns it for the legend."""
+    """Covers the region x > y, where the force x crushes the rod, and draws its edge; returns the edge."""
     if x[-1] <= y[0]:
         return []
     ends = np.linspace(max(x[0], y[0]), min(x[-1], y[-1]), 1000)
@@ -141,7 +145,7 @@ def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
 
 
 def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
-    """A bar for each row, where they are too few, or at infinity, to make a plane."""
+    """Figure with a bar for each row; used if the rows are too few, or at infinity, to form a plane."""
     x, y = view.variables[line], view.axes[row]
     figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")
     axes = figure.subplots()
@@ -162,15 +166,15 @@ def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
 
 
 def _class_of_pixels(view: View, palette: Palette, line: str, row: str, table: Array) -> Array:
-    """What the rod does at every pixel of the plane, bounded by the file's curves, as if none was crushed.
+    """Behaviour of the rod at every pixel of the plane, bounded by the file's curves, ignoring crushing.
 
-    table: the classes of the computed points, (rows with a finite value, columns).
+    table: classes of the computed points, (rows with a finite value, columns).
     """
     y = view.axes[row]
     plane = DrawnPlane(view.variables[line], y[np.isfinite(y)])
     columns, rows = np.meshgrid(plane.x, plane.y)
-    there = (table != palette.crushed) | ((line, row) != CRUSHING)
-    computed = ClassedPlaces(plane.unit(columns[there], rows[there]), table[there])
+    known = (table != palette.crushed) | ((line, row) != CRUSHING)
+    computed = ClassedPlaces(plane.unit(columns[known], rows[known]), table[known])
     further = ClassedPlaces(np.zeros((0, 2)), np.zeros(0, int))
     if palette is MOTIONS:
         x, at, found = classes_behind_crossings(view, row)
@@ -188,7 +192,7 @@ def _class_of_pixels(view: View, palette: Palette, line: str, row: str, table: A
 
 
 def _each_curve(view: View, kind: str, double: bool) -> list[Array]:
-    """Which points are of each curve; double: whether curves of double eigenvalues are among them."""
+    """Mask of the points of each curve; double: whether curves of double eigenvalues are included."""
     number = view.variables[f"{kind}_number"]
     counts = number if double or kind != "curve" else np.where(view.variables["curve_kind"] == 1, number, 0)
     return [number == one for one in np.unique(counts[counts > 0])]

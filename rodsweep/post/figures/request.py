@@ -1,4 +1,4 @@
-"""What a figure is asked for: the common interface of the modules that each draw the figures of a task."""
+"""Request for a figure: the common interface of the modules that draw the figures of each task."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -11,64 +11,68 @@ from ...model.units import in_si
 from ...results.file.view import View
 from .arm.axes import add_si_scales
 from .arm.validity import add_validity
-from .layout.fitting import LEAST_ASPECT, fit
+from .layout.fitting import MIN_ASPECT, fit
 
 Shapes = Callable[[View, Sequence[int]], View]
-"""A file with the shapes of the cycles of some points, numbered from 1."""
+"""Function from a file and points, numbered from 1, to the file with the shapes of their cycles."""
 Drawing = Figure
-"""What a figure is to those who draw into it: matplotlib's own class."""
+"""Figure as seen by functions that draw into it: matplotlib's own class."""
 WIDTHS = {"single": 3.375, "double": 7.0}
-"""Of a journal's columns, in inches."""
+"""Widths of the columns of a journal, in inches."""
 ROOTS = ("rightmost", "smallest", "all")
-"""Which roots a line of spectra shows: two that are followed, or all that are stored."""
+"""Choices of the roots in a line of spectra: one of two that are followed, or all stored roots."""
 KINDS_OF_TASK = {
     "limit_cycle": ("cycle", "amplitude", "maps", "energy", "transient", "animation"),
     "thresholds": ("lines", "map"),
 }
-"""Which figures there are of a task that has several."""
+"""Kinds of figures of each task that has several."""
 KINDS = tuple(kind for kinds in KINDS_OF_TASK.values() for kind in kinds)
+"""Kinds of figures of all tasks."""
 HEIGHT_POWER = 0.5
-"""Of the ratio of the widths, by which a figure gets lower: panels get narrower, their text does not."""
+"""Exponent of the ratio of widths by which the height shrinks; below 1, because the text keeps its size."""
 INCH = 0.0254
-"""Metres."""
+"""Length of an inch, in metres."""
 NARROW = 5.0
-"""Inches below which panels have no room beside each other."""
-NARROWEST, WIDEST = 2.5, 20.0
-"""Inches that a figure may be wide: below, its labels are wider than its panels."""
+"""Width, in inches, below which panels lie one above the other."""
+NARROWEST = 2.5
+"""Smallest width of a figure, in inches; in a narrower figure labels are wider than panels."""
+WIDEST = 20.0
+"""Largest width of a figure, in inches."""
 
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """How a figure looks, whatever it shows.
+    """Appearance of a figure, whatever it shows.
 
-    title: whether it has that of the config; width: one of WIDTHS or a length with its unit, None: what the
-    figure needs; style: a style of matplotlib's, by name or file. Raises InputError for another width.
+    title: whether the figure has the title of the config. width: one of WIDTHS, or a length with its unit;
+    None for the width that the figure needs. style: a style of matplotlib, by name or file. Raises InputError
+    for any other width.
     """
 
     title: bool = False
     width: str | None = None
     style: str | None = None
     inches: float | None = field(init=False)
-    """The width, None where it is that which the figure needs."""
+    """The width in inches; None for the width that the figure needs."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "inches", None if self.width is None else _inches(self.width))
 
     @property
     def narrow(self) -> bool:
-        """Whether panels have no room beside each other."""
+        """Whether panels lie one above the other."""
         return self.inches is not None and self.inches < NARROW
 
-    def fit(self, figure: Figure, least_aspect: float = LEAST_ASPECT) -> None:
-        """Gives a figure its width, and makes all that is in it fit."""
+    def fit(self, figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
+        """Gives a figure its width, and fits its content."""
         if self.inches is not None:
             across, down = figure.get_size_inches()
             figure.set_size_inches(self.inches, down * min(1.0, self.inches / across) ** HEIGHT_POWER)
-        fit(figure, least_aspect)
+        fit(figure, min_aspect)
 
 
 def _inches(width: str) -> float:
-    """A width as `--width` takes it, in inches; InputError for what no page has room for."""
+    """A width given by the user, in inches; raises InputError if no page has room for it."""
     if width in WIDTHS:
         return WIDTHS[width]
     refusal = f"width = {width!r} is not allowed; choose {', '.join(WIDTHS)}, or a length as '89 mm'"
@@ -83,7 +87,7 @@ def _inches(width: str) -> float:
 
 @dataclass(frozen=True, slots=True)
 class FigureRequest:
-    """The files to draw, the file to write, and what the user chose: the options of `rodsweep plot`."""
+    """Files to draw, the file to write, and the choices of the user: the options of `rodsweep plot`."""
 
     views: Sequence[View]
     output: Path
@@ -91,21 +95,21 @@ class FigureRequest:
     what: str | None = None
     points: Sequence[int] = ()
     taken: bool = False
-    """Whether the file to write is there already and is no figure."""
+    """Whether the output is a file to draw, or exists and is no regular file."""
     look: Look = Look()
     shapes: Shapes | None = None
     """Solves cycles whose shapes a file lacks."""
     keep: Callable[[Figure], None] | None = None
-    """Takes the figure, laid out, instead of a file."""
+    """Receives the finished figure instead of a file."""
 
     def only_view(self, *kinds: str) -> View:
-        """The file, for tasks that draw one, know no --point, and of --what the kinds; else InputError."""
+        """The single file to draw; InputError for several files, points, or a --what outside `kinds`."""
         self.refuse_choices(self.views[0], kinds)
         self.check_output()
         return self.views[0]
 
     def refuse_choices(self, view: View, kinds: Sequence[str] = ()) -> None:
-        """InputError if anything is asked for that the task of `view` does not offer."""
+        """Raises InputError for any choice that the task of `view` does not offer."""
         self.refuse_points(view, kinds)
         if self.views[1:]:
             raise InputError(
@@ -113,7 +117,7 @@ class FigureRequest:
             )
 
     def refuse_points(self, view: View, kinds: Sequence[str] = ()) -> None:
-        """InputError for points, or a figure that is none of the kinds, which the task of `view` lacks."""
+        """Raises InputError for points, or a figure outside `kinds`, which the task of `view` lacks."""
         if self.points:
             raise InputError(f"{view.path}: --point is for results of limit_cycle, and this is {view.task}")
         if self.what and self.what not in kinds:
@@ -123,22 +127,24 @@ class FigureRequest:
             )
 
     def check_output(self, *suffixes: str) -> None:
-        """InputError unless a figure with one of the suffixes, by default an image's, can have the name."""
+        """Raises InputError unless the output has one of the suffixes, by default an image's, and is free."""
         suffixes = suffixes or (".png", ".pdf", ".svg")
         if self.output.suffix not in suffixes:
             raise InputError(f"--output {self.output}: the name must end in {', '.join(suffixes)}")
         if self.taken:
             raise InputError(f"--output {self.output} is not a name for a figure; choose another")
 
-    def write(self, figure: Figure, shown: str, least_aspect: float = LEAST_ASPECT) -> str:
-        """Writes the figure, with SI units where the rod is an arm; returns what it shows.
+    def write(self, figure: Figure, shown: str, min_aspect: float = MIN_ASPECT) -> str:
+        """Writes the figure, with SI scales if the rod is an arm; returns `shown`.
 
-        least_aspect: height of its panels in units of their width, below which it grows.
+        min_aspect: smallest height of its panels, in units of their width.
         """
         add_si_scales(figure, self.views)
-        if not any(view.over for view in self.views):  # whose own figures tell it
+        if not any(
+            view.over for view in self.views
+        ):  # figures over an arm's quantities show the validity themselves
             add_validity(figure, self.views)
-        self.look.fit(figure, least_aspect)
+        self.look.fit(figure, min_aspect)
         if self.keep is None:
             figure.savefig(self.output)
         else:

@@ -1,4 +1,4 @@
-"""A section of a grid or of a list: the points that have chosen values of some parameters."""
+"""Sections of a grid or a list: the points with chosen values of some parameters."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -15,16 +15,17 @@ from ...model.units import in_si
 from ...results.file.view import View
 from .lists import BESIDE_POINTS
 
-SAME_VALUE = 1e-6
-"""Relative distance within which a value that is typed is one of the file's, which has all its digits."""
-MOST_NAMED = 8
-"""Values that a refusal names."""
+TYPED_TOLERANCE = 1e-6
+"""Largest relative difference between a typed value and the value in the file, which has all digits."""
+MAX_NAMED = 8
+"""Largest number of values that a refusal lists."""
 
 
 def section(view: View, at: Mapping[str, float | str]) -> View:
-    """The points of a file with these values of parameters, or with these quantities of an arm.
+    """Points of a file with these values of parameters, or of an arm's quantities.
 
-    Quantities are numbers in SI, or text with a unit. InputError, with the values there are, for others.
+    Quantities are numbers in SI units, or text with a unit. Raises InputError, with the values in the file,
+    if no point has the chosen value.
     """
     for name, value in at.items():
         view = _cut(view, name, _number(name, value))
@@ -32,7 +33,7 @@ def section(view: View, at: Mapping[str, float | str]) -> View:
 
 
 def _number(name: str, value: float | str) -> float:
-    """A value as a number, in SI where it is a quantity."""
+    """A value as a number, in SI units for a quantity; raises InputError for anything else."""
     if name == "drag" and value in DRAGS:
         return float(DRAGS.index(str(value)))
     try:
@@ -46,6 +47,7 @@ def _number(name: str, value: float | str) -> float:
 
 
 def _cut(view: View, name: str, value: float) -> View:
+    """Points at one value of a parameter or quantity; raises InputError if there is none."""
     listed = {} if view.is_grid else {n: v for n, v in view.quantities.items() if np.ndim(v)}
     axes = view.over or (*view.parameters, *listed)
     if name not in axes:
@@ -55,45 +57,46 @@ def _cut(view: View, name: str, value: float) -> View:
         followed = f"; {name} is no axis of points in this file" if name in NONLINEAR_PARAMETERS else ""
         raise InputError(f"--at {name}={value:.15g}: {view.path} has no such axis{followed}; {hint}")
     values = view.variables[name]
-    there = np.isclose(values, value, rtol=SAME_VALUE, atol=0.0)
-    if not there.any():
+    chosen = np.isclose(values, value, rtol=TYPED_TOLERANCE, atol=0.0)
+    if not chosen.any():
         unique = np.unique(values)
-        named = [f"{one:.15g}" for one in unique[:MOST_NAMED]]
-        more = f", ... {unique[-1]:.15g}" if len(unique) > MOST_NAMED else ""
+        named = [f"{one:.15g}" for one in unique[:MAX_NAMED]]
+        more = f", ... {unique[-1]:.15g}" if len(unique) > MAX_NAMED else ""
         raise InputError(
             f"--at {name}={value:.15g}: {view.path} has no point there; it has {name} = "
             f"{', '.join(named)}{more}"
         )
-    return _grid_at(view, name, there) if view.is_grid or view.over else _list_at(view, there)
+    return _grid_at(view, name, chosen) if view.is_grid or view.over else _list_at(view, chosen)
 
 
-def _grid_at(view: View, name: str, there: np.ndarray) -> View:
-    """A grid with the places of one axis, a mask of its shape."""
+def _grid_at(view: View, name: str, chosen: np.ndarray) -> View:
+    """A grid restricted to the chosen places of one axis, a mask of its shape."""
     names = view.over or view.parameters
-    shape, axis = view.variables["status"].shape, names.index(name)
+    shape = view.variables["status"].shape
+    axis = names.index(name)
     along = {name, *(quantity for quantity, moved in ALONG.items() if moved == name)}
     variables = {}
     for key, data in view.variables.items():
         if key in along and np.ndim(data):
-            variables[key] = data[there]
+            variables[key] = data[chosen]
         elif data.shape[: len(shape)] == shape and key not in (*names, *BESIDE_POINTS):
-            variables[key] = np.compress(there, data, axis=axis)
+            variables[key] = np.compress(chosen, data, axis=axis)
         else:
             variables[key] = data
     return replace(view, variables=variables)
 
 
-def _list_at(view: View, there: np.ndarray) -> View:
-    """A list with some of its points, a mask."""
+def _list_at(view: View, chosen: np.ndarray) -> View:
+    """A list restricted to the chosen points, a mask."""
     variables = {
-        key: data[there] if data.shape[:1] == there.shape and key not in BESIDE_POINTS else data
+        key: data[chosen] if data.shape[:1] == chosen.shape and key not in BESIDE_POINTS else data
         for key, data in view.variables.items()
     }
     return replace(view, variables=variables)
 
 
 def choices_of(given: Mapping[str, float | str]) -> dict[str, float | str]:
-    """Values by parameter as Python gives them; InputError where one is neither a number nor text."""
+    """Values by parameter, given in Python; raises InputError for a value that is neither number nor text."""
     try:
         return {str(n): value if isinstance(value, str) else float(value) for n, value in given.items()}
     except (AttributeError, TypeError, ValueError):

@@ -23,10 +23,10 @@ POWERS = (1.0, 0.5)
 """Powers of chords whose sums are tried as variable of the curve. The length (1) is best on most branches,
 the sum of roots (0.5) where the steps grow at a bend."""
 SLOPE_CYCLES = 5
-"""Cycles of the polynomial that gives the curve its slope at the middle cycle."""
+"""Number of cycles in the polynomial that gives the curve its slope at the middle cycle."""
 CORNER_CYCLES = 4
-"""Cycles on each side of a corner whose cubics locate the corner; fewer at an end of the branch."""
-LEAST_ANGLE = 0.25
+"""Number of cycles on each side of a corner whose cubics locate the corner; fewer at an end of the branch."""
+MIN_ANGLE = 0.25
 """Smallest jump of slope that is drawn as a corner, in units of the steepest chord beside the corner. A
 smaller jump moves the curve by a few per cent of the chord at most."""
 ANGLE_RATIO = 3.0
@@ -35,7 +35,7 @@ At a sharp bend that the cycles do not resolve all three jumps are alike."""
 COINCIDENT = 1e-9
 """Rounding, in units of the branch's extent (of distances) and of a step (of imaginary parts of roots)."""
 PIECES = 12
-"""Straight pieces drawn between two cycles."""
+"""Number of straight pieces drawn between two cycles."""
 
 
 def through_cycles(curve: StoredBranch) -> tuple[Array, Array, Array, NDArray[np.integer]]:
@@ -97,11 +97,7 @@ def corners_of(own: Array, extent: Array) -> dict[int, Array]:
         for root in rises[1].roots():
             angles = [float(rise.deriv()(root.real)) for rise in rises]
             is_between = abs(root.imag) < COINCIDENT and 0 < root.real < 1
-            if (
-                is_between
-                and angles[1] > LEAST_ANGLE
-                and angles[1] > ANGLE_RATIO * max(map(abs, angles[::2]))
-            ):
+            if is_between and angles[1] > MIN_ANGLE and angles[1] > ANGLE_RATIO * max(map(abs, angles[::2])):
                 place = barycentric_interpolate(x, own[window], root.real)
                 place[1] = barycentric_interpolate(x[x < 0.5], own[window][x < 0.5, 1], root.real)
                 found[i] = angles[1], place

@@ -15,13 +15,13 @@ from .request import FigureRequest
 from .sections import section
 from .spectra.eigenvalues import draw_eigenvalues, draw_list_of_spectra
 from .spectra.line import FOLLOWED_ROOTS, draw_line, roots_to_follow
-from .spectra.panels import MOST_PANELS, draw_panels
-from .style import LABELS, fixed_text, heading, long_axes, need, scale
+from .spectra.panels import MAX_PANELS, draw_panels
+from .style import LABELS, fixed_text, heading, long_axes, require, scale
 
 MAP_COLOURS = "PuOr_r"
 SHADES_A_SIDE = 40
 """Colours of a map on each side of zero growth."""
-MOST_LINES = 6
+MAX_LINES = 6
 """Values of a parameter up to which each has a panel of its own; beyond, a map interpolates between them."""
 SMALLEST_SHADE = 1e-4
 """Growth rate in units of the largest below which colours are linear in it."""
@@ -35,14 +35,14 @@ def draw_spectrum(request: FigureRequest) -> str:
     if len(request.views) > 1:
         return _several(request)
     view = as_grid(request.only_view())
-    need(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
+    require(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
     if view.variables["status"].size == 1:
         return request.write(draw_eigenvalues(view), "the stored eigenvalues in the complex plane")
     if not view.is_grid:
         return request.write(draw_list_of_spectra(view), "the stored eigenvalues of every point")
     long = long_axes(view)
     few = min(long, key=lambda name: len(view.axes[name]))
-    if len(long) > 1 and len(view.axes[few]) <= MOST_LINES:
+    if len(long) > 1 and len(view.axes[few]) <= MAX_LINES:
         return _lines(view, few, request)
     view = without_infinite(view)
     long = long_axes(view)
@@ -65,8 +65,8 @@ def _several(request: FigureRequest) -> str:
     """A panel for each file; InputError unless all are lines of spectra."""
     request.refuse_points(request.views[0])
     request.check_output()
-    if len(request.views) > MOST_PANELS:
-        raise InputError(f"{len(request.views)} files are given, and one figure has room for {MOST_PANELS}")
+    if len(request.views) > MAX_PANELS:
+        raise InputError(f"{len(request.views)} files are given, and one figure has room for {MAX_PANELS}")
     views = [_line_of(view, request) for view in request.views]
     roots = roots_to_follow(views, request.roots)
     figure = draw_panels(views, roots, request.look.narrow)
@@ -81,7 +81,7 @@ def _line_of(given: View, request: FigureRequest) -> View:
             f"{given.path} is of the task {given.task}; only lines of spectra make one figure together"
         )
     view = as_grid(given)
-    need(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
+    require(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
     view = without_infinite(view) if view.is_grid else view
     if not view.is_grid or sum(len(values) > 1 for values in view.axes.values()) != 1:
         raise InputError(

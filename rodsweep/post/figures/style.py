@@ -27,7 +27,7 @@ DECADE = 10
 FEW_DECADES, IN_ONE_DECADE = 50, 6
 """Ratio of the ends of a logarithmic axis below which 1, 2 and 5 of each decade are labelled, and below which
 more are, since only one or two of these may be in sight."""
-LEAST_POWER, PLAIN_BELOW = 2, 4
+MIN_POWER, PLAIN_BELOW = 2, 4
 """From which exponent on powers of ten are written as such; below which other numbers are written out."""
 STYLE = {
     "font.size": 10,
@@ -70,9 +70,9 @@ def number(value: float, digits: int = 6) -> str:
         return "0"
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
     power, factor = int(exponent), float(mantissa)
-    if abs(factor) == 1 and abs(power) >= LEAST_POWER:
+    if abs(factor) == 1 and abs(power) >= MIN_POWER:
         return f"{'-' * (factor < 0)}10^{{{power}}}"
-    if -LEAST_POWER <= power < min(PLAIN_BELOW, digits):
+    if -MIN_POWER <= power < min(PLAIN_BELOW, digits):
         return f"{value:.{digits}g}"
     return rf"{factor:g}\times10^{{{power}}}"
 
@@ -98,7 +98,7 @@ def long_axes(view: View) -> list[str]:
     return long
 
 
-def need(view: View, there: object, what: str) -> None:
+def require(view: View, there: object, what: str) -> None:
     """InputError unless something is there that could be drawn."""
     if not there:
         raise InputError(f"{view.path} holds no {what} that could be drawn")
@@ -133,7 +133,7 @@ def label_few_decades(axis: Axis, low: float, high: float) -> None:
     if high < FEW_DECADES * low:
         subs = (1, 2, 5) if high > IN_ONE_DECADE * low else (1, 1.5, 2, 3, 4, 6, 8)
         axis.set_major_locator(LogLocator(subs=subs))
-        written_out = low >= 10.0**-LEAST_POWER and high < 10.0 ** (PLAIN_BELOW + 1)
+        written_out = low >= 10.0**-MIN_POWER and high < 10.0 ** (PLAIN_BELOW + 1)
         axis.set_major_formatter(
             FuncFormatter(lambda value, _: f"{value:g}" if written_out else f"${number(value)}$")
         )

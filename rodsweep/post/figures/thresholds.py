@@ -9,11 +9,11 @@ from ...results.file.view import View
 from . import style
 from .cycle.maps import label_maps, map_panels
 from .cycle.point_map import cell_edges, point_map
-from .layout.fitting import LEAST_ASPECT, MAP_ASPECT
+from .layout.fitting import MAP_ASPECT, MIN_ASPECT
 from .lists import as_grid
 from .request import FigureRequest
 from .stability.class_bars import BAR_ASPECT, draw_class_bars
-from .stability.threshold_lines import CRITICAL_FORCES, MOST_LINES, draw_all_lines, draw_lines_of_some
+from .stability.threshold_lines import CRITICAL_FORCES, MAX_LINES, draw_all_lines, draw_lines_of_some
 
 NO_THRESHOLD = "#DDDDDD"
 """Colour of rods without the threshold."""
@@ -35,12 +35,12 @@ def draw_thresholds(request: FigureRequest) -> str:
             raise InputError(
                 f"{view.path}: --what {request.what} needs rods that vary in one parameter or two; remove it"
             )
-        least_aspect = BAR_ASPECT if view.variables["status"].size == 1 else LEAST_ASPECT
-        return request.write(draw_class_bars(view), "what each rod does over F", least_aspect)
+        min_aspect = BAR_ASPECT if view.variables["status"].size == 1 else MIN_ASPECT
+        return request.write(draw_class_bars(view), "what each rod does over F", min_aspect)
     long = style.long_axes(view)
     there = [name for name, *_ in CRITICAL_FORCES if np.isfinite(view.variables[name]).any()]
-    style.need(view, there, "threshold")
-    few = min(len(view.axes[name]) for name in long) <= MOST_LINES
+    style.require(view, there, "threshold")
+    few = min(len(view.axes[name]) for name in long) <= MAX_LINES
     if request.what == "map" or (len(long) == 2 and not few and request.what != "lines"):
         figure, left_out = _map(view, there, request.look.narrow)
         return request.write(figure, f"critical forces over {' and '.join(long)}{left_out}", MAP_ASPECT)
@@ -65,7 +65,7 @@ def _map(view: View, names: list[str], narrow: bool) -> tuple[Figure, str]:
         panels, [force for force in CRITICAL_FORCES if force[0] in names], strict=True
     ):
         values = view.variables[name].ravel()[points.at]
-        style.need(view, np.isfinite(values).any(), f"{name} of rods with finite parameters")
+        style.require(view, np.isfinite(values).any(), f"{name} of rods with finite parameters")
         style.colour_cells(axes, (cell_edges(points.x), cell_edges(points.y)), values, f"{word} in $k_3/L^2$")
         axes.set_facecolor(NO_THRESHOLD)
         lacking |= bool(np.isnan(values).any())

@@ -38,7 +38,7 @@ EXTREMA = ("tip_x_min", "tip_x_max", "tip_y_min", "tip_theta_max", "least_stretc
 BETWEEN_NODES = 1e-3
 """How much less h1 may be between nodes than at them, in units of how far it is from 1."""
 POWERS = ("injection_mean", "injection_rms", "dissipation_mean", "dissipation_rms")
-LEAST_KNOWN = 0.5
+MIN_KNOWN = 0.5
 """Relative error from which not one digit of a time is known."""
 OF_THE_STRAIGHT_ROD = ("linear_growth_rate", "linear_frequency")
 
@@ -78,7 +78,7 @@ def is_known(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     values = np.asarray(v[name])
     if name != "transient_time" or "growth_error" not in v:
         return np.ones(values.shape, bool)
-    return (values == 0) | ~(errors_of(v, name) >= LEAST_KNOWN * values)
+    return (values == 0) | ~(errors_of(v, name) >= MIN_KNOWN * values)
 
 
 def span_of(v: Mapping[str, np.ndarray], name: str, there: np.ndarray) -> str:

@@ -9,17 +9,17 @@ from math import ceil, floor, isfinite, isnan, log10
 
 import numpy as np
 
-MOST_DIGITS_SHOWN = 15
+MAX_DIGITS_SHOWN = 15
 """Digits of a number whose error says that all are known."""
 DIGITS_OF_RANGE = 6
 """Digits of the ends of a range, where their errors leave so many."""
 DIGITS_OF_END = 9
 """Digits of the end of a range that is one number, such as a fold."""
-PLAIN = range(-4, MOST_DIGITS_SHOWN)
+PLAIN = range(-4, MAX_DIGITS_SHOWN)
 """Decimal exponents of numbers that are written without an exponent."""
 UNDER = 1e-9
 """Relative excess over a digit that rounding makes, and which does not raise an error to the next digit."""
-LEAST_ERROR = 1e-300
+MIN_ERROR = 1e-300
 """Errors below are written as they are: no number has so small a unit."""
 NONE = "none"
 
@@ -67,13 +67,13 @@ def to_error(value: float, error: float) -> str:
 
 def stated_error(value: float, error: float) -> tuple[str, float]:
     """(a number to the first digit that its error reaches, its error with that of rounding the number)."""
-    text = _rounded(value, error / 10, MOST_DIGITS_SHOWN)
+    text = _rounded(value, error / 10, MAX_DIGITS_SHOWN)
     return text, error + abs(float(text) - value)
 
 
 def error_text(error: float) -> str:
     """An error to one digit, rounded up."""
-    if not error > LEAST_ERROR:
+    if not error > MIN_ERROR:
         return f"{error:.0e}"
     unit = 10.0 ** floor(log10(error))
     return f"{ceil(error / unit * (1 - UNDER)) * unit:.0e}"
@@ -91,7 +91,7 @@ def _rounded(value: float, error: float, most: int) -> str:
     size = floor(log10(abs(value)))
     last = floor(log10(error)) if error > 0 and isfinite(error) else size - most
     digits = min(max(size - last, 1), most)
-    if most < MOST_DIGITS_SHOWN and digits == most:
+    if most < MAX_DIGITS_SHOWN and digits == most:
         return f"{value:.{most}g}"
     short = f"{value:.{digits - 1}e}"
     return f"{float(short):.{max(digits - 1 - size, 0)}f}" if size in PLAIN else short

@@ -21,7 +21,7 @@ FILMS = (".gif", ".mp4")
 """Suffixes of animations."""
 PERIOD_SECONDS = 2.4
 """Duration of one period on the screen, in s."""
-FEWEST_SHAPES = 8
+MIN_SHAPES = 8
 """Least number of frames in a period; with fewer the motion is not recognisable."""
 GHOSTS = 6
 """Number of earlier shapes that fade behind the arm."""
@@ -38,7 +38,7 @@ def write_animation(view: View, points: Sequence[int], output: Path) -> str:
     selection = chosen_cycles(view, points, SHAPES)
     cycles = selection.cycles
     frames = len(cycles[0].values["shape_x"])
-    if frames < FEWEST_SHAPES:
+    if frames < MIN_SHAPES:
         raise InputError(
             f"{view.path} holds {frames} shapes of a cycle, too few for an animation; "
             "run with limit_cycle.shapes: 48"

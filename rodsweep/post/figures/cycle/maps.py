@@ -1,6 +1,6 @@
-"""Maps over two parameters: the cycle's period, the tip's largest y, what else became of the rod, and F**.
+"""Maps of limit cycles over two parameters: period, largest y of the tip, other outcomes, and Hopf points.
 
-The points of the file are the centres of the cells; nothing is interpolated but the line of Hopf points.
+The points of the file are the centres of the cells. Only the line of Hopf points is interpolated.
 """
 
 from collections.abc import Sequence
@@ -25,14 +25,14 @@ from ..style import (
     colour_cells,
     heading,
     legend_below,
-    need,
     parameter_text,
+    require,
     scale,
 )
 from .amplitudes.hopf_lines import hopf_lines
 from .amplitudes.hopf_marks import HOPF_SYMBOL
 from .point_map import PointMap, cell_edges, point_map
-from .selection import CYCLE_WORDS, arms_told_apart, outcomes
+from .selection import CYCLE_WORDS, outcomes, shared_and_own_of_arms
 from .units import units_over
 
 STATUS_LOOKS = {
@@ -43,32 +43,34 @@ STATUS_LOOKS = {
     "failed": ("#6E6E6E", "xxxx"),
     "torus": ("#D9CBBF", "++++"),
 }
-"""Colour and hatching of cells without a cycle: greys, which the maps of colours do not have."""
-FURTHER_LOOKS = (("#BFA893", "----"), ("#8F7A68", "oooo"))
-"""Of statuses beyond these, in the order in which they are met."""
-PANEL = 250
-"""Points of print across a panel."""
-MARKER = 1.0, 4.0
-"""Least and largest size in points of the open marker of an unstable cycle; between them, half a cell."""
-HATCHING = "0.25"
-ONE_ROW = 6
-"""Entries of a legend that one row can hold."""
+"""Colour and hatching of cells without a cycle: greys, which the colour maps do not contain."""
+OTHER_LOOKS = (("#BFA893", "----"), ("#8F7A68", "oooo"))
+"""Looks of other statuses, in the order in which they appear."""
+PANEL_POINTS = 250
+"""Width of a panel, in points of print."""
+MARKER_SIZES = 1.0, 4.0
+"""Smallest and largest size, in points, of the open marker of an unstable cycle; it takes half a cell if it
+can."""
+HATCH_COLOUR = "0.25"
+ROW_ENTRIES = 6
+"""Largest number of legend entries in one row."""
 QUANTITIES = (
     ("period", "viridis", True),
     ("tip_y_max", "plasma", False),
 )
-"""Variable and colours of each panel, and whether those are logarithmic over more than a decade."""
+"""(variable, colour map, whether its colours are logarithmic if the values span more than a decade) by
+panel."""
 
 
 def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
-    """Period and largest y of the tip, with the line of Hopf points over both.
+    """Draws the period and the largest y of the tip, each with the line of Hopf points.
 
-    narrow: whether the panels have no room beside each other.
+    narrow: whether the panels lie one above the other.
     """
     points = point_map(view)
     words = outcomes(view)[points.at]
     cycles = np.isin(words, CYCLE_WORDS)
-    need(view, cycles.any(), "cycle")
+    require(view, cycles.any(), "cycle")
     figure, panels = map_panels(2, narrow)
     lines = hopf_lines(points, view)
     (units,) = units_over([view], [points.at.ravel()])
@@ -83,31 +85,33 @@ def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
         handles += _mark_unstable(axes, points, words == "unstable")
     label_maps(panels, points)
     if handles:
-        rows = -(-len(handles) // ONE_ROW)
+        rows = -(-len(handles) // ROW_ENTRIES)
         legend_below(figure, handles, columns=-(-len(handles) // rows))
     figure.suptitle(heading(view, _shared(view, points, units.in_si)))
     return figure, f"period and amplitude over {' and '.join(points.names)}{points.left_out}"
 
 
 def _shared(view: View, points: PointMap, in_si: bool) -> str:
-    """What all points share: the parameters, or an arm's quantities; in_si: whether there is an arm."""
+    """Parameters that all points share, or quantities if the rod is an arm (in_si)."""
     if not in_si:
         return parameter_text(points.shared)
     along = {quantity for quantity, moved in MOVES.items() if moved in points.names}
     numbers = [int(points.at[0, 0]) + 1, int(points.at[-1, -1]) + 1]
-    return arms_told_apart(view, numbers, {*points.names, *along})[0]
+    return shared_and_own_of_arms(view, numbers, {*points.names, *along})[0]
 
 
 def map_panels(count: int, narrow: bool) -> tuple[Figure, list[Axes]]:
-    """A figure with panels that share their axes: side by side, or if narrow one above the other."""
-    apart = ConstrainedLayoutEngine(wspace=0.0 if narrow else 0.06)  # the first bar's label is its own
+    """Figure with panels that share their axes: side by side, or if narrow one above the other."""
+    apart = ConstrainedLayoutEngine(
+        wspace=0.0 if narrow else 0.06
+    )  # room for the label of the first colour bar
     figure = Figure(figsize=(4.2, 3.2 * count) if narrow else (4.8 * count, 4.5), layout=apart)
     shape = (count, 1) if narrow else (1, count)
     return figure, list(figure.subplots(*shape, sharex=True, sharey=True, squeeze=False).ravel())
 
 
 def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
-    """Scales and labels of panels that share their axes: each once where they are in a row or a column."""
+    """Sets scales and labels of panels that share their axes; inner panels get no labels."""
     for axes in panels:
         scale(axes, "x", points.x)
         scale(axes, "y", points.y)
@@ -119,48 +123,48 @@ def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
 
 
 def _draw_statuses(axes: Axes, points: PointMap, words: NDArray[np.str_]) -> list[Artist]:
-    """Fills the cells that have no cycle, each status in its own way; returns what the legend says."""
-    further = cycle(FURTHER_LOOKS)
+    """Fills the cells without a cycle with the look of their status; returns legend entries."""
+    further = cycle(OTHER_LOOKS)
     handles: list[Artist] = []
     for word in dict.fromkeys([*STATUS_LOOKS, *np.unique(words).tolist()]):
-        there = words == word
-        if word in CYCLE_WORDS or not there.any():
+        cells = words == word
+        if word in CYCLE_WORDS or not cells.any():
             continue
         colour, hatch = STATUS_LOOKS.get(word) or next(further)
-        look: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": HATCHING}
-        for row, (bottom, top) in zip(there, _pairs(cell_edges(points.y)), strict=True):
+        look: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": HATCH_COLOUR}
+        for row, (bottom, top) in zip(cells, _pairs(cell_edges(points.y)), strict=True):
             axes.broken_barh(_runs(row, cell_edges(points.x)), (bottom, top - bottom), lw=0, **look)
         handles.append(Patch(label=word.replace("_", " "), lw=0.5, **look))
     return handles
 
 
-def _mark_unstable(axes: Axes, points: PointMap, there: NDArray[np.bool_]) -> list[Artist]:
-    """An open marker in the cells of unstable cycles, as for amplitudes; returns what the legend says."""
-    if not there.any():
+def _mark_unstable(axes: Axes, points: PointMap, unstable: NDArray[np.bool_]) -> list[Artist]:
+    """Marks the cells of unstable cycles with an open marker; returns the legend entry."""
+    if not unstable.any():
         return []
-    look: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": HATCHING, "ls": "", "mew": 0.6}
-    row, column = np.nonzero(there)
-    size = float(np.clip(PANEL / max(there.shape) / 2, *MARKER))
+    look: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": HATCH_COLOUR, "ls": "", "mew": 0.6}
+    row, column = np.nonzero(unstable)
+    size = float(np.clip(PANEL_POINTS / max(unstable.shape) / 2, *MARKER_SIZES))
     axes.plot(points.x[column], points.y[row], ms=size, **look)
-    return [Line2D([], [], label="unstable cycle", ms=MARKER[1], **look)]
+    return [Line2D([], [], label="unstable cycle", ms=MARKER_SIZES[1], **look)]
 
 
 def _pairs(values: Array) -> list[tuple[float, float]]:
-    """Each of the values, shape (n,), with the next."""
+    """Each value, shape (n,), with the next."""
     return list(zip(values[:-1].tolist(), values[1:].tolist(), strict=True))
 
 
-def _runs(there: NDArray[np.bool_], edges: Array) -> list[tuple[float, float]]:
-    """(left, width) of each run of neighbouring cells of a row."""
-    steps = np.diff(np.concatenate(([0], there.astype(int), [0])))
+def _runs(chosen: NDArray[np.bool_], edges: Array) -> list[tuple[float, float]]:
+    """(left, width) of each run of neighbouring chosen cells in a row."""
+    steps = np.diff(np.concatenate(([0], chosen.astype(int), [0])))
     starts, ends = edges[np.flatnonzero(steps > 0)], edges[np.flatnonzero(steps < 0)]
     return list(zip(starts.tolist(), (ends - starts).tolist(), strict=True))
 
 
 def _draw_hopf_lines(axes: Axes, points: PointMap, lines: Sequence[Array]) -> list[Artist]:
-    """Where the leading growth rate is 0, lines of shape (2, n): x, y; returns what the legend says.
+    """Draws lines of zero leading growth rate, (2, n): x, y; returns the legend entry.
 
-    That is where the rod starts to beat, or stops: no eigenvalue passes through 0, for D(0) = 1.
+    Every zero growth rate is a Hopf point: no eigenvalue passes through 0, because D(0) = 1.
     """
     look: dict[str, Any] = {"color": "k", "lw": 1.4}
     halo = [withStroke(linewidth=3.0, foreground="white")]

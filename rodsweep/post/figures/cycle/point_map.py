@@ -1,4 +1,4 @@
-"""The points of a file as a map over two parameters: its axes with their cells, and where each point lies."""
+"""Points of a file as a map over two parameters: axes, cells, and the place of each point."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,31 +14,31 @@ from ..style import is_logarithmic
 
 @dataclass(frozen=True, slots=True)
 class PointMap:
-    """Points over two parameters that form a grid."""
+    """Points that form a grid over two parameters."""
 
     names: tuple[str, str]
-    """The parameters, the horizontal one first."""
+    """The parameters; the first is horizontal."""
     x: Array
-    """Values of the first, increasing, shape (nx,)."""
+    """Values of the first parameter, increasing, shape (nx,)."""
     y: Array
-    """Values of the second, increasing, shape (ny,)."""
+    """Values of the second parameter, increasing, shape (ny,)."""
     at: NDArray[np.intp]
-    """Index of the point in each place, shape (ny, nx)."""
+    """Index of the point in each place of the grid, shape (ny, nx)."""
     shared: dict[str, float]
-    """The parameters that do not vary."""
+    """Parameters that all points share."""
     left_out: str
-    """What the message says of values that have no place on an axis; empty where there are none."""
+    """Clause of the message on values without a place on an axis; empty if there is none."""
 
 
 def varied_parameters(view: View) -> list[str]:
-    """The parameters that take several values."""
+    """Parameters that take several values."""
     return [name for name, column in view.point_columns.items() if len(np.unique(column)) > 1]
 
 
 def point_map(view: View) -> PointMap:
-    """The file's points as a map; InputError unless two parameters vary and each combination is there once.
+    """Points of a file as a map; raises InputError unless they form a full grid over two parameters.
 
-    A value inf has no place on an axis and is left out.
+    The value inf has no place on an axis and is left out.
     """
     varied = varied_parameters(view)
     if len(varied) != 2:
@@ -53,9 +53,9 @@ def point_map(view: View) -> PointMap:
             "where every combination is there once"
         )
     finite = np.isfinite(x), np.isfinite(y)
-    if min(np.count_nonzero(there) for there in finite) < 2:
+    if min(np.count_nonzero(is_finite) for is_finite in finite) < 2:
         raise InputError(f"{view.path} has fewer than two finite values of {varied[0]} or {varied[1]} to map")
-    without = [name for name, there in zip(varied, finite, strict=True) if not there.all()]
+    without = [name for name, is_finite in zip(varied, finite, strict=True) if not is_finite.all()]
     left_out = f"; {' and '.join(without)} = inf has no place on an axis and is left out" if without else ""
     shared = {name: float(values[0]) for name, values in columns.items() if name not in varied}
     return PointMap(
@@ -64,7 +64,7 @@ def point_map(view: View) -> PointMap:
 
 
 def is_map(view: View) -> bool:
-    """Whether the file's points form a map over two parameters."""
+    """Whether the points of a file form a map over two parameters."""
     try:
         point_map(view)
     except InputError:
@@ -73,7 +73,7 @@ def is_map(view: View) -> bool:
 
 
 def _varying(names: list[str]) -> str:
-    """How many parameters vary, which is not two, and what to do about it."""
+    """Clause on the varied parameters, which are not two, with the remedy."""
     if not names:
         return "none varies"
     if names[1:]:
@@ -82,12 +82,12 @@ def _varying(names: list[str]) -> str:
 
 
 def in_its_scale(values: Array) -> tuple[Array, Callable[[Array], Array]]:
-    """Values of an axis, shape (n,), as their scale places them, and the way back."""
+    """(values of an axis, shape (n,), on its linear or logarithmic scale, inverse function)."""
     return (np.log(values), np.exp) if is_logarithmic(values) else (values, np.asarray)
 
 
 def cell_edges(values: Array) -> Array:
-    """The edges of cells about increasing values, shape (n,), half-way in their scale; shape (n + 1,)."""
+    """Edges, (n + 1,), of cells around increasing values, (n,), half-way between them on their scale."""
     centres, back = in_its_scale(values)
     inner = (centres[1:] + centres[:-1]) / 2
     return back(np.concatenate(([2 * centres[0] - inner[0]], inner, [2 * centres[-1] - inner[-1]])))

@@ -1,7 +1,7 @@
-"""The beating arm, as the paper's Fig. 5: shapes through the cycle with the force, and the tip in time.
+"""Portrait of the beating arm, as in the paper's Fig. 5: shapes through the cycle, and the tip in time.
 
-The tip is drawn from the start on where that is stored, so that the beating is seen to emerge, else over two
-periods.
+The motion of the tip is drawn from its start if the file has it, so that it shows how the cycle emerges;
+otherwise over two periods.
 """
 
 from collections.abc import Sequence
@@ -24,32 +24,38 @@ from ..style import FIRST, SECOND
 from .selection import SHAPES, StoredCycle, chosen_cycles
 from .transient import draw_emergence, label_time, label_tip
 
-MOST_SHAPES = 12
-"""Shapes of one cycle that can still be told apart."""
+MAX_SHAPES = 12
+"""Largest number of shapes of one cycle that a reader can distinguish."""
 ARROW = 0.14
-"""Length of the force's arrow in L."""
-WALL_DEPTH, WALL_HALF = 0.05, 0.13
-"""Thickness and half the height of the wall in L."""
+"""Length of the arrow of the force, in L."""
+WALL_DEPTH = 0.05
+"""Thickness of the wall, in L."""
+WALL_HALF = 0.13
+"""Half the height of the wall, in L."""
 MARGIN = 0.04
-"""Free room around shapes and arrows in L."""
+"""Margin around shapes and arrows, in L."""
 TIP_PERIODS = 2
-"""How long the tip is followed, in periods of the slowest cycle."""
+"""Duration of the drawn motion of the tip, in periods of the slowest cycle."""
 FEW_SAMPLES = 48
-"""Below this number the samples themselves are marked on the curve through them."""
-SHAPES_WIDTH, TIP_HEIGHT = 3.2, 1.0
-"""Inches of a panel with shapes, across, and of one of the tip below it, down."""
+"""With fewer samples than this number, the samples are marked on the curve."""
+SHAPES_WIDTH = 3.2
+"""Width of a panel with shapes, in inches."""
+TIP_HEIGHT = 1.0
+"""Height of a panel with the motion of the tip, in inches."""
 PADDING = 0.1
-"""Inches beside panels: the layout misjudges the labels of panels of one scale by half of it."""
-TEXTS, NARROW_TEXTS = 1.4, 2.0
-"""Inches of labels and headings above and below the panels; on a narrow page the bar of times too."""
+"""Space beside panels, in inches. The layout misjudges labels of panels with equal scales by half of it."""
+TEXT_HEIGHT = 1.4
+"""Height of labels and headings above and below the panels, in inches."""
+NARROW_TEXT_HEIGHT = 2.0
+"""The same height on a narrow page, where the colour bar lies below the panels."""
 LIGHTEST = 0.14
-"""The part of the colour map left out: yellow that does not show on white."""
+"""Fraction of the colour map that is left out: yellow, which is invisible on white."""
 
 
 def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tuple[Figure, str]:
-    """A column for each cycle: the shapes, later ones darker, above x and y of the tip against time.
+    """Draws a column for each cycle: shapes, later ones darker, above x and y of the tip over time.
 
-    narrow: whether panels have no room beside each other.
+    narrow: whether the page has no room for panels side by side.
     """
     selection = chosen_cycles(view, points, SHAPES)
     cycles = selection.cycles
@@ -57,7 +63,7 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
     emerging = all(cycle.has_trace for cycle in cycles)
     end = TIP_PERIODS * max(c.period for c in cycles)
     drawn, step = drawn_shapes(len(cycles[0].values["shape_x"]))
-    # Light to dark, in steps that the colour-blind see.
+    # Light to dark, so that colour-blind readers see the order.
     colours = ListedColormap(matplotlib.colormaps["viridis_r"](np.linspace(LIGHTEST, 1, len(drawn))))
     for axes, (upper, lower), cycle in zip(shapes, tips, cycles, strict=True):
         tip_path(axes, cycle)
@@ -84,9 +90,10 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
 def _panels(
     cycles: Sequence[StoredCycle], narrow: bool
 ) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
-    """(figure, a panel for each cycle's shapes, two for its tip: beside those of one, or below).
+    """(figure, a panel for the shapes of each cycle, two panels for its tip).
 
-    The shapes have the height that they need at the width that they have, so that no blank is left above.
+    The panels of the tip lie beside the shapes of a single cycle, and below otherwise. The panels with shapes
+    have the aspect ratio of their content, so that no blank space remains.
     """
     count = len(cycles)
     (left, right), (low, high) = region(cycles)
@@ -98,7 +105,7 @@ def _panels(
         table["x"].sharex(table["y"])
         return figure, [table["shapes"]], [(table["x"], table["y"])]
     shapes = SHAPES_WIDTH * (high - low) / (right - left)
-    beside = NARROW_TEXTS if narrow else TEXTS
+    beside = NARROW_TEXT_HEIGHT if narrow else TEXT_HEIGHT
     size = SHAPES_WIDTH * count + 1.2, shapes + 2 * TIP_HEIGHT + beside
     figure = Figure(figsize=size, layout=ConstrainedLayoutEngine(w_pad=PADDING))
     heights = (shapes, TIP_HEIGHT, TIP_HEIGHT)
@@ -109,13 +116,13 @@ def _panels(
 
 
 def drawn_shapes(stored: int) -> tuple[range, float]:
-    """(which of the stored shapes are drawn, the time from one to the next in periods): equal steps."""
-    stride = -(-stored // MOST_SHAPES)
+    """(indices of the drawn shapes, time between two of them in periods); the steps are equal."""
+    stride = -(-stored // MAX_SHAPES)
     return range(0, stored, stride), stride / stored
 
 
 def _phase_bar(figure: Figure, panels: list[Axes], colours: ListedColormap, step: float, below: bool) -> None:
-    """The times of the shapes beside their colours, or below; `step` is the time between two in periods."""
+    """Colour bar with the times of the shapes; step: time between two shapes, in periods."""
     n = colours.N
     norm = BoundaryNorm((np.arange(n + 1) - 0.5) * step, n)
     ticks = [k * step for k in range(0, n, max(1, n // 4))]
@@ -132,7 +139,7 @@ def _phase_bar(figure: Figure, panels: list[Axes], colours: ListedColormap, step
 
 
 def tip_path(axes: Axes, cycle: StoredCycle) -> None:
-    """The closed path of the tip."""
+    """Draws the closed path of the tip."""
     from ....discretization.elements.periodic import resampled  # compiled code, which few figures need
 
     phase = np.linspace(0, 1, 401, dtype=np.float64)
@@ -140,7 +147,7 @@ def tip_path(axes: Axes, cycle: StoredCycle) -> None:
 
 
 def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, length: float) -> Quiver:
-    """The force, along -e1 = -(cos theta, sin theta) of the tip, as an arrow that presses on the tip.
+    """Draws the follower force, along -e1 = -(cos theta, sin theta) at the tip, as an arrow toward the tip.
 
     length: L in the units of x and y.
     """
@@ -153,15 +160,16 @@ def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, lengt
 
 
 def clamp(axes: Axes, length: float) -> None:
-    """The wall that holds the rod at u = 0; length: L in the units of the axes."""
-    depth, half = WALL_DEPTH * length, WALL_HALF * length
+    """Draws the wall that clamps the rod at u = 0; length: L in the units of the axes."""
+    depth = WALL_DEPTH * length
+    half = WALL_HALF * length
     wall = Rectangle((-depth, -half), depth, 2 * half, fc="white", ec="0.3", hatch="/////", lw=0)
     axes.add_patch(wall)
     axes.plot([0, 0], [-half, half], color="k", lw=1.4, zorder=5)
 
 
 def frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
-    """The same region in all panels, with one length for x and y."""
+    """Shows the same region in all panels, with equal scales for x and y."""
     along_x, along_y = region(cycles)
     for axes in panels:
         axes.set_aspect("equal")
@@ -169,10 +177,12 @@ def frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
 
 
 def region(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[float, float]]:
-    """(from and to in x, the same in y) of every shape and arrow, in the unit of length of the cycles."""
+    """((left, right), (low, high)) of all shapes and arrows, in the cycles' unit of length."""
     longest = max(cycle.units.length for cycle in cycles)
-    wall, margin = -WALL_DEPTH * longest, MARGIN * longest
-    along_x, along_y = [np.array([wall])], []
+    wall = -WALL_DEPTH * longest
+    margin = MARGIN * longest
+    along_x = [np.array([wall])]
+    along_y = []
     for cycle in cycles:
         x, y, theta = (cycle.values[name] for name in SHAPES)
         arrow = ARROW * cycle.units.length
@@ -186,7 +196,7 @@ def region(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[fl
 
 
 def _tip(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
-    """x and y of the tip against time, and also in the paper's tau1 where there is one."""
+    """Draws x and y of the tip over time, with a second axis in tau1 if the rod has this time scale."""
     from ....discretization.elements.periodic import resampled  # compiled code, which few figures need
 
     time = np.linspace(0, end, 801, dtype=np.float64)

@@ -1,4 +1,4 @@
-"""The tip from the start on, as on the right of the paper's Fig. 5: how the beating emerges, or does not."""
+"""Motion of the tip from its start, as on the right of the paper's Fig. 5: emergence or decay of beating."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -13,13 +13,13 @@ from .selection import CYCLE_WORDS, TRACE, StoredCycle, chosen_traces
 from .units import CycleUnits
 
 LEVEL: dict[str, Any] = {"color": "0.55", "lw": 0.8, "ls": (0, (4, 2)), "zorder": 1}
-"""The look of the extrema of the cycle that the motion comes to."""
+"""Line style of the extrema of the cycle that the motion approaches."""
 
 
 def draw_transients(view: View, points: Sequence[int], narrow: bool = False) -> tuple[Figure, str]:
-    """A column for each point, cycle or not: x and y of the tip against time, and the cycle's extrema.
+    """Draws a column for each point, with or without a cycle: x and y of the tip, and the cycle's extrema.
 
-    narrow: whether the columns have no room for the words about extrema.
+    narrow: whether the titles leave out the explanation of the extrema.
     """
     selection = chosen_traces(view, points)
     count = len(selection.cycles)
@@ -39,7 +39,7 @@ def draw_transients(view: View, points: Sequence[int], narrow: bool = False) -> 
 
 
 def draw_emergence(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
-    """x and y of the tip from the start on, with the extrema of the cycle where there is one."""
+    """Draws x and y of the tip from the start, with the extrema of the cycle if there is one."""
     time, *tip = (cycle.values[name] for name in TRACE)
     v = cycle.values
     levels = (("tip_x_min", 1), ("tip_x_max", 1)), (("tip_y_max", 1), ("tip_y_max", -1))
@@ -52,13 +52,13 @@ def draw_emergence(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
 
 
 def label_tip(upper: Axes, lower: Axes, units: CycleUnits) -> None:
-    """What the two panels show, in the colours of their lines."""
+    """Labels the two panels, in the colours of their lines."""
     upper.set_ylabel("tip " + units.along("x"), color=FIRST)
     lower.set_ylabel("tip " + units.along("y"), color=SECOND)
 
 
 def label_time(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
-    """The time in the cycle's unit below, and in the paper's tau1 above where there is one."""
+    """Labels the time in the cycle's unit below, and in tau1 above if the rod has this time scale."""
     tau1 = cycle.tau1
     upper.tick_params(labelbottom=False)
     lower.axhline(0, color="0.8", lw=0.6, zorder=0)

@@ -1,4 +1,4 @@
-"""The units in which figures of cycles are drawn: the paper's, or those of an arm in SI."""
+"""Units of figures of cycles: those of the paper, or SI units for an arm."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,25 +14,31 @@ from ...tables.rows import quantities_at_points
 from ..arm.quantities import NO_BREAK
 
 LENGTHS = ("shape_x", "shape_y", "tip_x", "tip_y", "transient_x", "transient_y")
+"""Variables that are lengths along a period, a shape or a transient."""
 LENGTHS_OF_CYCLES = ("tip_x_min", "tip_x_max", "tip_y_max")
+"""Variables that are lengths of a whole cycle."""
 TIMES = ("period", "transient_time")
+"""Variables that are times."""
 ENERGIES = ("energy",)
+"""Variables that are energies."""
 POWERS = ("injection", "dissipation", "injection_mean", "dissipation_mean")
+"""Variables that are powers."""
 SHORT_PERIOD = 0.1
-"""Seconds; the time of a faster cycle has a prefix, as ms. One of hours stays in s."""
+"""Period, in s, below which times have a prefix such as ms; long times stay in seconds."""
 Factor = Any
-"""A number, or an array of one for each point."""
+"""A number, or an array with a number for each point."""
 SI = ("m", "s", "J", "W")
-NEEDED = ("length", "tau2", "force_scale")
+"""SI units of length, time, energy and power."""
+REQUIRED = ("length", "tau2", "force_scale")
 """Quantities of an arm from which its units follow."""
 
 
 @dataclass(frozen=True, slots=True)
 class CycleUnits:
-    """What the figure's axes are called, and its units in those of the rod at a point; by default the rod's.
+    """Units and labels of a figure; by default the dimensionless units of the rod.
 
-    length: L in the unit of length that is drawn; time: tau2; energy: k3/L; power: k3/(L tau2); of several
-    points each (points,).
+    length: L in the drawn unit of length; time: tau2; energy: k3/L; power: k3/(L tau2). For several points
+    each is an array, (points,).
     """
 
     length: Factor = 1.0
@@ -41,20 +47,20 @@ class CycleUnits:
     power: Factor = 1.0
     in_si: bool = False
     names: tuple[str, str, str, str] = ("L", r"$\tau_2$", "", "")
-    """Units of length, time, energy and power."""
+    """Names of the units of length, time, energy and power."""
 
     def along(self, axis: str) -> str:
-        """The label of a length along x or y."""
+        """Label of a length along x or y."""
         return f"${axis}$ ({self.names[0]})" if self.in_si else f"${axis}/L$"
 
     @property
     def time_label(self) -> str:
-        """The label of the time."""
+        """Label of the time."""
         return f"time $t$ ({self.names[1]})" if self.in_si else r"time $t/\tau_2$"
 
     @property
     def labels_over(self) -> tuple[str, str, str, str]:
-        """Labels of cycles over a parameter: half the reach of the tip's x, its largest y, period, power."""
+        """Labels over a parameter: half the range of the tip's x, its largest y, period and power."""
         if self.in_si:
             length, time, _, power = self.names
             return (
@@ -72,7 +78,7 @@ class CycleUnits:
 
     @property
     def budget_labels(self) -> tuple[str, str, str]:
-        """The labels of energy, power, and the rate of the energy."""
+        """Labels of energy, power and rate of energy."""
         if self.in_si:
             _, _, energy, power = self.names
             return f"energy $U$\n({energy})", f"power\n({power})", rf"$\dot U$ ({power})"
@@ -80,11 +86,11 @@ class CycleUnits:
 
     @property
     def power_of_rate(self) -> float:
-        """The unit of energy over that of time, in the unit of power."""
+        """Unit of energy divided by the unit of time, in units of power."""
         return self.power * self.time / self.energy
 
-    def told_time(self, time: float) -> str:
-        """A time in SI as text: `53.91 s`."""
+    def time_text(self, time: float) -> str:
+        """A time in SI units as text: `53.91 s`."""
         return f"{time:.4g}{NO_BREAK}{self.names[1]}"
 
     def drawn(self, values: dict[str, Array]) -> dict[str, Array]:
@@ -99,10 +105,11 @@ class CycleUnits:
 
 
 PLAIN_UNITS = CycleUnits()
+"""Dimensionless units."""
 
 
 def units_of(view: View, numbers: Sequence[int]) -> list[CycleUnits]:
-    """The units at points numbered from 1, with the same names at all; the rod's own where it is no arm."""
+    """Units at points numbered from 1, with the same names at all points; dimensionless without an arm."""
     at = np.array(numbers, int) - 1
     (units,) = units_over([view], [at])
     if not units.in_si:
@@ -115,15 +122,15 @@ def units_of(view: View, numbers: Sequence[int]) -> list[CycleUnits]:
 
 
 def units_over(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> list[CycleUnits]:
-    """The units of points of each file, by their places among all: factors (n,), the same names in all files.
+    """Units of the points of each file, by their indices: factors (n,), the same names in all files.
 
-    The rod's own where one of the files has no arm.
+    Dimensionless if one of the files has no arm.
     """
-    if not all(name in view.quantities for view in views for name in NEEDED):
+    if not all(name in view.quantities for view in views for name in REQUIRED):
         return [PLAIN_UNITS] * len(views)
     lengths, times, forces = (
         [quantities_at_points(view)[name][places] for view, places in zip(views, at, strict=True)]
-        for name in NEEDED
+        for name in REQUIRED
     )
     powers = [force * length / time for force, length, time in zip(forces, lengths, times, strict=True)]
     energies = [force * length for force, length in zip(forces, lengths, strict=True)]
@@ -142,5 +149,5 @@ def units_over(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> list[C
 
 
 def _largest(view: View, name: str, at: NDArray[np.int64], factors: Array) -> float:
-    """The largest modulus of a variable at points, by their places, times factors (n,); 0 without one."""
+    """Largest modulus of a variable at points, by index, times factors (n,); 0 without a finite value."""
     return float(np.nanmax(np.abs(view.variables[name].ravel()[at]) * factors, initial=0.0))

@@ -1,1 +1,1 @@
-"""The layout of a figure: texts that fit beside each other, and ticks."""
+"""Layout of a figure: texts that do not overlap, and ticks."""

@@ -1,6 +1,6 @@
-"""Fits a drawn figure to its page: lines of text, columns of legends, heights of panels.
+"""Fitting of a figure to its page: breaks lines of text, and adapts columns of legends and heights of panels.
 
-Sizes are measured on the laid out figure; the layout itself is matplotlib's constrained layout.
+Sizes are measured on the figure after matplotlib's constrained layout.
 """
 
 import re
@@ -15,65 +15,66 @@ from matplotlib.text import Text
 
 from .ticks import thin_ticks
 
-LEAST_ASPECT = 0.45
-"""Height of a panel in units of its width below which the figure grows: a curve needs as much to be read."""
+MIN_ASPECT = 0.45
+"""Smallest height of a panel, in units of its width; a flatter panel makes the figure grow, to keep curves
+legible."""
 MAP_ASPECT = 0.7
-"""The same of a map, in which a slope is as worth seeing along either axis."""
+"""Smallest aspect ratio of a map, whose slopes matter along both axes."""
 STRIP_ASPECT = 0.25
-"""The same of a curve in time, which is long and low, and goes with others."""
+"""Smallest aspect ratio of a curve in time, which is long and low and shares a figure with other panels."""
 TALLEST = 9.5
-"""Height in inches beyond which no figure grows: that of a page between its margins."""
-MOST_PASSES = 6
-"""Layouts until all fits: each change of the figure moves what was measured before."""
-LEAST_HEIGHT = 0.45
-"""Inches of a panel below which the labels of two ticks have no room above each other."""
+"""Largest height of a figure, in inches: the height of a page between its margins."""
+MAX_PASSES = 6
+"""Largest number of layouts. Each change of the figure moves texts that were measured before."""
+MIN_HEIGHT = 0.45
+"""Smallest height of a panel, in inches, at which the labels of two ticks fit above each other."""
 SPARE = 4.0
-"""Inches by which a figure is higher while its text is measured, so that its panels do not vanish."""
+"""Additional height, in inches, while texts are measured, so that panels do not vanish."""
 SLACK = 1.03
-"""By how much more than its height a panel of one scale gets: where height and width both just suffice, the
-layout goes back and forth between them."""
+"""Additional factor on the height of a panel with equal scales. If height and width both just suffice, the
+layout alternates between them."""
 MARGIN = 0.04
-"""Inches between text and the edge of the figure."""
+"""Margin between text and the edge of the figure, in inches."""
 WORDS = re.compile(r"(?:\\.|\$(?:\\.|[^$\\])*\$|[^\s$]|\xa0)+")
-"""Words of a text; mathematics between dollars is part of its word, with the blanks in it, and a no-break
-space holds a number and its unit together."""
+"""Words of a text. Mathematics between dollars belongs to its word, with its blanks; a no-break space joins a
+number and its unit."""
 
 
-def fit(figure: Figure, least_aspect: float = LEAST_ASPECT) -> None:
-    """Lays a figure out so that nothing is cut, over anything else, or flatter than `least_aspect`.
+def fit(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
+    """Lays a figure out so that nothing is cut or overlaps, and no panel is flatter than `min_aspect`.
 
-    The figure keeps its width, and its height where that suffices.
+    The figure keeps its width, and its height if the content fits.
     """
     width, height = figure.get_size_inches()
     figure.set_size_inches(width, height + SPARE)
-    for _ in range(MOST_PASSES):
+    for _ in range(MAX_PASSES):
         _lay_out(figure)
         changes = [_fit_legends(figure), _break_texts(figure), thin_ticks(figure)]
         if not any(changes):
             break
-    spare = _spare_height(figure, least_aspect)
+    spare = _spare_height(figure, min_aspect)
     figure.set_size_inches(width, max(height, min(height + SPARE - spare, TALLEST)))
-    for _ in range(MOST_PASSES):
+    for _ in range(MAX_PASSES):
         _lay_out(figure)
         if not thin_ticks(figure):
             break
 
 
 def _lay_out(figure: Figure) -> None:
-    """Places panels and legends, and draws nothing else: what is drawn in them is not measured."""
+    """Places panels and legends, without drawing the content of panels, which is not measured."""
     canvas = figure.canvas
     if not isinstance(canvas, FigureCanvasAgg):
-        canvas = FigureCanvasAgg(figure)  # without it each text makes one that measures it
+        canvas = FigureCanvasAgg(figure)  # otherwise each text creates a canvas to measure itself
     if engine := figure.get_layout_engine():
         engine.execute(figure)
     for legend in figure.legends:
-        legend.draw(canvas.get_renderer())  # which places its entries
+        legend.draw(canvas.get_renderer())  # drawing places the entries
 
 
 def break_lines(text: Text, room: float, upright: bool = False) -> bool:
-    """Breaks the lines of a text at blanks so that none is longer than `room` pixels; whether that did.
+    """Breaks lines of a text at blanks so that none exceeds `room` pixels; returns whether the text changed.
 
-    upright: whether its lines go up the page.
+    upright: whether the text is rotated by 90 degrees.
     """
 
     def length() -> float:
@@ -100,8 +101,9 @@ def break_lines(text: Text, room: float, upright: bool = False) -> bool:
 
 
 def _break_texts(figure: Figure) -> bool:
-    """Breaks headings and the labels of axes where they are longer than the room that they have."""
-    margin, width = MARGIN * figure.dpi, figure.bbox.width
+    """Breaks headings and axis labels that are longer than their room; returns whether any changed."""
+    margin = MARGIN * figure.dpi
+    width = figure.bbox.width
     changed = [break_lines(heading, width - 2 * margin) for heading in figure.texts]
     for axes in figure.axes:
         box = axes.get_window_extent()
@@ -121,13 +123,13 @@ def _break_texts(figure: Figure) -> bool:
 
 
 def _rows(axes: Axes) -> int:
-    """Rows of the grid of panels of which the axes are one, one that spans several counted as one."""
+    """Number of rows in the grid of a panel, in units of the rows that the panel spans."""
     place = axes.get_subplotspec()
     return 1 if place is None else ceil(place.get_gridspec().nrows / len(place.rowspan))
 
 
 def _pitch(axes: Axes, figure: Figure) -> float:
-    """Pixels from the middle of a panel to that of the next beside it; the figure's width without one."""
+    """Pixels between the middles of a panel and its nearest neighbour; the figure's width without one."""
     place = axes.get_subplotspec()
     if place is None:
         return float(figure.bbox.width)
@@ -141,13 +143,14 @@ def _pitch(axes: Axes, figure: Figure) -> float:
 
 
 def _fit_legends(figure: Figure) -> bool:
-    """Gives legends that are wider than the figure fewer columns, and breaks entries too long for one."""
+    """Reduces the columns of wide legends and breaks long entries; returns whether any changed."""
     room = figure.bbox.width - 2 * MARGIN * figure.dpi
     changed = False
     for given in list(figure.legends):
         legend = given
         while legend.get_window_extent().width > room and _columns(legend) > 1:
-            legend, changed = _with_columns(figure, legend, _columns(legend) - 1), True
+            legend = _with_columns(figure, legend, _columns(legend) - 1)
+            changed = True
         texts = legend.get_texts()
         if legend.get_window_extent().width > room:
             beside = legend.get_window_extent().width - max(text.get_window_extent().width for text in texts)
@@ -156,11 +159,12 @@ def _fit_legends(figure: Figure) -> bool:
 
 
 def _columns(legend: Legend) -> int:
+    """Number of columns of a legend."""
     return len({round(text.get_window_extent().x0) for text in legend.get_texts()})
 
 
 def _with_columns(figure: Figure, legend: Legend, columns: int) -> Legend:
-    """The legend of a figure anew, with another number of columns."""
+    """Replaces a legend by one with another number of columns."""
     texts = [text.get_text() for text in legend.get_texts()]
     handles = [handle for handle in legend.legend_handles if handle is not None]
     legend.remove()
@@ -170,13 +174,13 @@ def _with_columns(figure: Figure, legend: Legend, columns: int) -> Legend:
 
 
 def _shape(axes: Axes) -> float:
-    """Height over width of a panel whose x and y have one scale, which its data fix; 0 of any other."""
+    """Height divided by width of a panel with equal scales, which its data determine; 0 for other panels."""
     scale = axes.get_aspect()
     return 0.0 if scale == "auto" else float(axes.get_data_ratio() * scale)
 
 
-def _spare_height(figure: Figure, least_aspect: float) -> float:
-    """By how much the figure can get lower, in inches, until a panel has the least height for its width."""
+def _spare_height(figure: Figure, min_aspect: float) -> float:
+    """Height, in inches, by which the figure can shrink until a panel has its smallest height."""
     width, height = figure.get_size_inches()
     spare = [height]
     for axes in figure.axes:
@@ -187,7 +191,7 @@ def _spare_height(figure: Figure, least_aspect: float) -> float:
         ratios = np.asarray(place.get_gridspec().get_height_ratios())
         part = ratios[place.rowspan.start : place.rowspan.stop].sum() / ratios.sum()
         label = axes.yaxis.label.get_window_extent().height / figure.dpi
-        shape = max(least_aspect, SLACK * _shape(axes))
-        least = max(shape * room.width * width, label + MARGIN, LEAST_HEIGHT)
+        shape = max(min_aspect, SLACK * _shape(axes))
+        least = max(shape * room.width * width, label + MARGIN, MIN_HEIGHT)
         spare.append((room.height * height - least) / part)
     return min(spare)

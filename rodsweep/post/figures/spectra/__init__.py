@@ -1,1 +1,1 @@
-"""Figures of spectra along one parameter: a line of them, several lines side by side."""
+"""Figures of spectra over one parameter: a line of spectra, or several lines side by side."""

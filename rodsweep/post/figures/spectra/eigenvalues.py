@@ -7,17 +7,17 @@ from matplotlib.lines import Line2D
 
 from ....results.file.view import View
 from ..lists import number_points, shared_parameters
-from ..style import FIRST, SECOND, heading, legend_below, need, parameter_text
+from ..style import FIRST, SECOND, heading, legend_below, parameter_text, require
 
 SPREAD = 100.0
 """Largest eigenvalue in units of the smallest from which on their axes are logarithmic but near 0."""
-LEAST_OF_LARGEST = 1e-6
+MIN_OF_LARGEST = 1e-6
 """In units of the largest eigenvalue: what is nearer to 0 is not spread out."""
 FEW = 0.1
 """Share of the numbers that is on the linear part of such an axis."""
 LOOKS = {True: (SECOND, "s", "growing mode"), False: (FIRST, "o", "decaying mode")}
 """Colour, marker and word of modes, by whether they grow."""
-MOST_NUMBERED = 8
+MAX_NUMBERED = 8
 """Modes whose numbers have room beside their marks."""
 
 
@@ -25,12 +25,12 @@ def draw_eigenvalues(view: View) -> Figure:
     """The stored eigenvalues of the only point in the complex plane, numbered as in the file."""
     modes = len(view.variables["mode"])
     growth, frequency = (view.variables[name].reshape(modes) for name in ("growth_rate", "frequency"))
-    need(view, np.isfinite(growth).any(), "computed point")
+    require(view, np.isfinite(growth).any(), "computed point")
     figure = Figure(figsize=(5.2, 4.0), layout="constrained")
     axes = figure.subplots()
     handles = _mark(axes, growth, frequency, growth > 0)
     spread(axes, growth, frequency)
-    for place in range(min(modes, MOST_NUMBERED)):
+    for place in range(min(modes, MAX_NUMBERED)):
         if np.isfinite(growth[place]):
             at = growth[place], frequency[place]
             axes.annotate(str(place + 1), at, (5, 5), textcoords="offset points", size=8)
@@ -75,5 +75,5 @@ def spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
     for set_scale, values in ((axes.set_xscale, x), (axes.set_yscale, y)):
         sizes = np.abs(values[np.isfinite(values) & (values != 0)]) if values is not None else np.zeros(0)
         if sizes.size and sizes.max() > SPREAD * sizes.min():
-            smallest = max(float(np.quantile(sizes, FEW)), sizes.max() * LEAST_OF_LARGEST)
+            smallest = max(float(np.quantile(sizes, FEW)), sizes.max() * MIN_OF_LARGEST)
             set_scale("symlog", linthresh=10 ** np.floor(np.log10(smallest)))

@@ -11,7 +11,7 @@ from ....results.file.view import View
 from ..style import fixed_text, heading, legend_below, long_axes
 from .line import FOLLOWED_ROOTS, THRESHOLD_LINE, THRESHOLD_LOOKS, draw_roots, mark_thresholds, threshold_text
 
-MOST_PANELS = 12
+MAX_PANELS = 12
 """Files for which a page has room."""
 PANEL_HEIGHT = {1: 2.1, 2: 2.6}
 """Inches, by the number of columns."""

@@ -16,7 +16,7 @@ from ....results.layouts.phase_diagram import CLASSES
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import plural
 from ..lists import number_points, shared_parameters
-from ..style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, need, parameter_text
+from ..style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, parameter_text, require
 
 CLASS_COLOURS = {
     "missing": "white",
@@ -56,7 +56,7 @@ def draw_class_bars(view: View) -> Figure:
     """A horizontal bar for one rod, upright ones side by side for a list, in its order."""
     count = view.variables["status"].size
     v = {name: view.variables[name] for name in ("F_end", "crossing_kind")}
-    need(view, np.isfinite(v["F_end"]).any(), "computed rod")
+    require(view, np.isfinite(v["F_end"]).any(), "computed rod")
     figure = Figure(figsize=(5.8, 2.2 if count == 1 else 4.0), layout="constrained")
     axes = figure.subplots()
     seen = set[str]()

@@ -7,7 +7,7 @@ from matplotlib.lines import Line2D
 from ....arrays import Array
 from ....results.file.view import View
 from .. import style
-from ..cycle.selection import points_told_apart
+from ..cycle.selection import shared_and_own_of_points
 
 NEAR = 0.1
 """|F/F_H - 1| up to which a prediction is drawn: beyond, cycles depart from the law."""
@@ -23,11 +23,11 @@ def draw_predictions(view: View) -> tuple[Figure, str]:
     """The amplitude predicted beside every Hopf point over F, of the first rods; what that shows."""
     kinds, F, a = map(view.by_point, ("criticality", "crossing_F", "amplitude_coefficient"))
     there = np.flatnonzero((np.isfinite(kinds) & np.isfinite(a)).any(axis=1))
-    style.need(view, there.size, "Hopf point with a normal form")
+    style.require(view, there.size, "Hopf point with a normal form")
     drawn = there[: len(COLOURS)]
     figure = Figure(figsize=(5.6, 3.8), layout="constrained")
     axes = figure.subplots()
-    shared, own = points_told_apart(view, [int(rod) + 1 for rod in drawn])
+    shared, own = shared_and_own_of_points(view, [int(rod) + 1 for rod in drawn])
     for rod, colour in zip(drawn, COLOURS, strict=False):
         for kind, at, size in zip(kinds[rod], F[rod], a[rod], strict=True):
             if np.isfinite(kind) and np.isfinite(size):

@@ -20,7 +20,7 @@ CRITICAL_FORCES = (
 """Variable and words of each threshold; the colour of a line among those of one rod; its marker and line."""
 LINE_STYLES = ("-", "--", ":")
 """For the values of the other parameter for which lines are drawn in one panel."""
-MOST_LINES = 6
+MAX_LINES = 6
 """Values of the other parameter whose lines can be told apart by their colours."""
 DARKEST, LIGHTEST = 0.0, 0.85
 """Part of the map of colours that shows on white."""
@@ -37,7 +37,7 @@ def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, 
     figure = Figure(figsize=(5.6, 4.2), layout="constrained")
     axes = figure.subplots()
     table = _table(view, along, other)
-    style.need(view, np.isfinite(_abscissa(view, along)).sum() > 1, f"two finite values of {along}")
+    style.require(view, np.isfinite(_abscissa(view, along)).sum() > 1, f"two finite values of {along}")
     shades = matplotlib.colormaps["viridis"](np.linspace(DARKEST, LIGHTEST, len(table)))
     handles = []
     for values, shade in zip(table, shades, strict=True):

@@ -14,8 +14,8 @@ from .....config.arm.axes import MOVES
 from .....config.limit_cycle import LONGEST
 from .....errors import InputError
 from .....results.file.view import View
-from ...style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, need, plain, scale
-from ..selection import CYCLE_WORDS, arms_told_apart, told_apart
+from ...style import FIRST, LABELS, SECOND, SYMBOLS, THIRD, heading, legend_below, plain, require, scale
+from ..selection import CYCLE_WORDS, shared_and_own, shared_and_own_of_arms
 from ..units import units_over
 from .branches import AmplitudeBranch, abscissa, branches_of
 from .hopf_marks import draw_laws, mark_hopf_points
@@ -47,7 +47,7 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
             f"it has room for {len(BRANCH_LOOKS)}: choose by --at k1=150, or draw two parameters, each"
             " combination once, as maps (--what maps)"
         )
-    need(first, any(np.isfinite(branch.amplitude_y).any() for branch in branches), "amplitude")
+    require(first, any(np.isfinite(branch.amplitude_y).any() for branch in branches), "amplitude")
     figure = Figure(figsize=(4.4, 8.4) if narrow else (8.6, 5.6), layout="constrained")
     panels = figure.subplots(*((4, 1) if narrow else (2, 2)), sharex=True).T.ravel()
     shared, own = _names(branches, name)
@@ -143,8 +143,8 @@ def _names(branches: Sequence[AmplitudeBranch], name: str) -> tuple[str, list[st
     view = branches[0].view
     if branches[0].units.in_si and all(branch.view is view for branch in branches):
         along = {name, *(quantity for quantity, moved in MOVES.items() if moved == name)}
-        return arms_told_apart(view, [branch.first for branch in branches], along)
-    return told_apart([branch.parameters for branch in branches])
+        return shared_and_own_of_arms(view, [branch.first for branch in branches], along)
+    return shared_and_own([branch.parameters for branch in branches])
 
 
 def _label(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> None:

@@ -20,7 +20,7 @@ LARGEST_DEPARTURE = 0.2
 """Largest relative difference between an amplitude and the law over the range in which the law is drawn."""
 SAFETY = 2.0
 """Error of a coefficient, in units of its change when one more cycle is used."""
-LEAST_ERRORS_AWAY = 100
+MIN_ERRORS_AWAY = 100
 """Least distance of a cycle from F**, in errors of F**, so that the distance is known to a percent."""
 
 
@@ -67,7 +67,7 @@ def _law(F: Array, amplitude: Array, point: Located, side: int) -> SquareRootLaw
     order = np.lexsort((np.where(amplitude > 0, amplitude, np.inf), distance))
     distance, first = np.unique(distance[order], return_index=True)
     size = amplitude[order][first]
-    there = distance > LEAST_ERRORS_AWAY * point.error / abs(point.position)
+    there = distance > MIN_ERRORS_AWAY * point.error / abs(point.position)
     distance, size = distance[there], size[there]
     gap = np.flatnonzero(~(size > 0))  # another branch begins behind a gap
     distance, size = distance[: gap[0] if gap.size else None], size[: gap[0] if gap.size else None]
