@@ -1,7 +1,7 @@
-"""Where the straight rod changes along a line of points of a file: located, or between two points.
+"""Changes of the straight rod along a line of points of a file: located, or bracketed by two points.
 
-The task has located the changes and stored them. Nothing is solved here, and nothing is interpolated: a
-change that no solver has located lies between two points, and no more is said.
+The task has located the changes and stored them. Nothing is solved or interpolated here: a change that no
+solver has located is only known to lie between two points.
 """
 
 from collections.abc import Mapping
@@ -18,39 +18,40 @@ from ..results.layouts.thresholds import CROSSING_KINDS
 from ..sweep.points.lines import ParameterLine
 
 SAME_PLACE = 1e-9
-"""Relative distance below which a point of a file lies on a Hopf point: the growth rate there is rounding."""
+"""Relative distance below which a point of a file lies on a Hopf point, so that its growth rate is rounding
+error."""
 STABILITY_CHANGES = {("hopf", 2), ("restabilization", 0)}
-"""Kinds of Hopf points at which the straight rod changes its stability, with the number of modes that grow
-beyond; at all others further modes join those that grow, or leave them."""
+"""(kind, number of growing modes beyond) of Hopf points at which the stability of the straight rod changes.
+At other Hopf points further modes become unstable or stable."""
 
 
 @dataclass(frozen=True, slots=True)
-class Located:
-    """A change at a place along a parameter, with an estimate of its error, in its unit.
+class LocatedChange:
+    """Change of the straight rod at a position along a parameter, with an error estimate in its unit.
 
-    kind: `hopf` where a pair crosses the imaginary axis and the rod is unstable above, `restabilization`
-    where it is stable above; `onset` where two real eigenvalues become a pair and the rod stays stable.
+    kind: `hopf` if a pair crosses the imaginary axis and the rod is unstable above; `restabilization` if it
+    is stable above; `onset` if two real eigenvalues merge into a pair and the rod stays stable.
     """
 
     position: float
     error: float
     kind: str
     frequency: float = nan
-    """Of the modes that cross, in 1/tau2; nan where it is not known, and of an onset."""
+    """Frequency of the modes that cross, in 1/tau2; NaN if unknown, and for an onset."""
 
     @property
     def is_hopf(self) -> bool:
-        """Whether the straight rod changes its stability there."""
+        """Whether the straight rod changes its stability."""
         return self.kind != "onset"
 
-    def agrees(self, other: "Located") -> bool:
-        """Whether the two may be one: of a kind, and within their errors."""
+    def agrees(self, other: "LocatedChange") -> bool:
+        """Whether two changes may be the same: of one kind, and at one position within their errors."""
         return self.kind == other.kind and abs(self.position - other.position) <= self.error + other.error
 
 
 @dataclass(frozen=True, slots=True)
-class Bracket:
-    """Two neighbouring points of a line between which the straight rod changes its stability, somewhere."""
+class BracketedChange:
+    """Two neighbouring points of a line between which the straight rod changes its stability."""
 
     low: float
     high: float
@@ -58,78 +59,81 @@ class Bracket:
     """`hopf` or `restabilization`."""
 
 
-def place_of(change: Located | Bracket) -> float:
-    """By which changes along a line are ordered."""
-    return change.position if isinstance(change, Located) else change.low
+def place_of(change: LocatedChange | BracketedChange) -> float:
+    """Position by which changes along a line are ordered."""
+    return change.position if isinstance(change, LocatedChange) else change.low
 
 
 class StoredChanges:
-    """The changes of the straight rod that a file holds of its lines over a parameter.
+    """Changes of the straight rod that a file stores for its lines over a parameter.
 
-    Of spectra and modes these are changes over F, with onsets of oscillation; of limit cycles Hopf points
-    along any parameter. Both lie between the points of lines.
+    Files of spectra and modes have changes over F, with onsets of oscillation; files of limit cycles have
+    Hopf points along any parameter. Both lie between points of lines.
     """
 
     def __init__(self, view: View, name: str):
-        v, points = view.variables, view.variables["status"].size
+        v = view.variables
+        points = v["status"].size
         growth = "linear_growth_rate" if "linear_growth_rate" in v else "growth_rate"
         self.growth = v[growth].reshape(points, -1)[:, 0]
         self.others = all_but(name)
-        self.by_rod: dict[tuple[float, ...], list[Located]] = {}
-        if "hopf_along" in v:  # which a user may have dropped from a Dataset
+        self.by_rod: dict[tuple[float, ...], list[LocatedChange]] = {}
+        if "hopf_along" in v:  # a user may have dropped the variable from a Dataset
             self._read(v, name, "hopf", v["hopf_along"] == HOPF_ALONG.index(name))
         if "change_kind" in v and name == "F":
             self._read(v, name, "change", np.ones(len(v["change_kind"]), bool))
 
     def _read(self, v: Mapping[str, np.ndarray], name: str, prefix: str, along: NDArray[np.bool_]) -> None:
-        """Reads what stands `along` the parameter, of variables with a prefix."""
+        """Reads the changes selected by `along` from variables with a prefix."""
         rods = np.stack([v[f"{prefix}_{other}"] for other in self.others], axis=-1)
         at, error, frequency, kind = (
             v[f"{prefix}_{field}"] for field in (name, "error", "frequency", "kind")
         )
         after = v["hopf_unstable_after"] if prefix == "hopf" else None
         for i in np.flatnonzero(along):
-            place, word = float(at[i]), CROSSING_KINDS[int(kind[i])]
+            place = float(at[i])
+            word = CROSSING_KINDS[int(kind[i])]
             if word == "onset":
-                point = Located(place, float(error[i]) * (abs(place) or 1.0), word)
+                point = LocatedChange(place, float(error[i]) * (abs(place) or 1.0), word)
             elif after is None or (word, int(after[i])) in STABILITY_CHANGES:
-                point = Located(place, float(error[i]) * (abs(place) or 1.0), word, float(frequency[i]))
+                point = LocatedChange(place, float(error[i]) * (abs(place) or 1.0), word, float(frequency[i]))
             else:
                 continue
             self.by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)
 
-    def up_to(self, line: ParameterLine) -> list[Located | Bracket]:
-        """The changes on a line and at smaller values, as far as these were searched."""
+    def up_to(self, line: ParameterLine) -> list[LocatedChange | BracketedChange]:
+        """Changes on a line and at smaller values of the parameter, as far as the search reached."""
         return sorted({*self.on(line), *self._stored(line, -inf)}, key=place_of)
 
-    def _stored(self, line: ParameterLine, low: float) -> list[Located]:
-        """The stored changes from a value up to the last of a line."""
+    def _stored(self, line: ParameterLine, low: float) -> list[LocatedChange]:
+        """Stored changes from a value to the last point of a line."""
         rod = tuple(line.parameters[other] for other in self.others)
         high = line.x.max(initial=-inf)
         return [point for point in self.by_rod.get(rod, []) if _within(point, low, high)]
 
-    def on(self, line: ParameterLine) -> list[Located | Bracket]:
-        """The changes on a line in increasing order.
+    def on(self, line: ParameterLine) -> list[LocatedChange | BracketedChange]:
+        """Changes on a line, in increasing order.
 
-        Where the stored growth rates of two neighbours differ in sign and no stored change between them
-        explains it, as where a search failed, the change is only known to lie between the two.
+        If the growth rates of two neighbours differ in sign and no stored change explains the difference,
+        because the search failed, the change is only known to lie between them.
         """
         if not len(line.x):
             return []
         stored = self._stored(line, line.x.min())
-        found: list[Located | Bracket] = [*stored]
+        found: list[LocatedChange | BracketedChange] = [*stored]
         changes = [point for point in stored if point.is_hopf]
         known = np.flatnonzero(np.isfinite(self.growth[line.at]))
         ordered = known[np.argsort(line.x[known], kind="stable")]
-        x, grows = line.x[ordered], self.growth[line.at[ordered]] > 0
+        x = line.x[ordered]
+        grows = self.growth[line.at[ordered]] > 0
         for i in np.flatnonzero(grows[1:] != grows[:-1]):
             low, high = float(x[i]), float(x[i + 1])
             if sum(_within(point, low, high) for point in changes) % 2 == 0:
-                found.append(Bracket(low, high, "hopf" if grows[i + 1] else "restabilization"))
+                found.append(BracketedChange(low, high, "hopf" if grows[i + 1] else "restabilization"))
         return sorted(found, key=place_of)
 
 
-def _within(point: Located, low: float, high: float) -> bool:
+def _within(point: LocatedChange, low: float, high: float) -> bool:
     """Whether a change lies between two values, or on one of them within rounding."""
     margin = max(point.error, SAME_PLACE * abs(point.position))
     return bool(low - margin <= point.position <= high + margin)

@@ -1,4 +1,4 @@
-"""Which curves of a phase diagram bound the stable rods: at all others further modes begin to grow."""
+"""Curves of a phase diagram that bound the region of stable rods, as opposed to curves of further modes."""
 
 import numpy as np
 
@@ -9,9 +9,9 @@ from .hopf_points import STABILITY_CHANGES
 
 
 def bounds_stability(view: View, line: str, row: str) -> dict[int, bool]:
-    """Of every curve of Hopf points, by its number, whether changes of stability of the rows lie on it.
+    """Whether changes of stability of rows lie on each curve of Hopf points, by the curve's number.
 
-    A change belongs to the curve that passes nearest to it along its row, in units of the axis.
+    A change belongs to the curve nearest to it along its row.
     """
     v = view.variables
     numbers = np.unique(v["curve_number"][v["curve_kind"] == 1]).astype(int).tolist()
@@ -28,18 +28,19 @@ def bounds_stability(view: View, line: str, row: str) -> dict[int, bool]:
     for place, i in zip(*np.nonzero(np.isfinite(at)), strict=True):
         kind = CROSSING_KINDS[int(kinds[place, i])]
         if numbers and (kind, int(after[place, i])) in STABILITY_CHANGES and np.isfinite(rows[place]):
-            here = float(at[place, i]), float(rows[place])
-            away = {n: _distance(x, y, *here) for n, (x, y) in paths.items()}
-            found[min(away, key=away.__getitem__)] = True
+            position = float(at[place, i]), float(rows[place])
+            distances = {n: _distance(x, y, *position) for n, (x, y) in paths.items()}
+            found[min(distances, key=distances.__getitem__)] = True
     return found
 
 
 def _distance(x: Array, y: Array, at: float, height: float) -> float:
-    """How far along a row at a height a place lies from a curve with the vertices x, y, (n,)."""
-    low, high = np.minimum(y[:-1], y[1:]), np.maximum(y[:-1], y[1:])
+    """Distance along a row, at a height, between a position and a curve with vertices x, y, (n,)."""
+    low = np.minimum(y[:-1], y[1:])
+    high = np.maximum(y[:-1], y[1:])
     pieces = np.flatnonzero((low <= height) & (height <= high))
     if not len(pieces):
         return float("inf")
     rise = np.where(y[pieces + 1] != y[pieces], y[pieces + 1] - y[pieces], 1.0)
-    meets = x[pieces] + (height - y[pieces]) / rise * (x[pieces + 1] - x[pieces])
-    return float(np.abs(meets - at).min())
+    crossings = x[pieces] + (height - y[pieces]) / rise * (x[pieces + 1] - x[pieces])
+    return float(np.abs(crossings - at).min())

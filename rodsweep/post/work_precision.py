@@ -1,4 +1,4 @@
-"""Errors of methods against their time, as the benchmarks measure them."""
+"""Figure of the errors of methods over their time, as measured by the benchmarks."""
 
 from math import ceil, sqrt
 from pathlib import Path
@@ -15,21 +15,23 @@ from ..results.file.measurements import Table
 from .figures.style import FIRST, SECOND, STYLE, THIRD
 
 GROUP_COLOURS = (FIRST, SECOND, THIRD, "black", "0.55")
-"""Of the groups, in the order in which they appear; the first group is drawn thick."""
+"""Colours of the groups, in order of appearance; the first group is drawn thick."""
 METHOD_MARKERS = ("o", "s", "^", "D", "v", "P", "X")
-"""Of the methods of one group."""
+"""Markers of the methods of one group."""
 WIDE_RATIO = 1e3
-"""Ratio of the times from which on only powers of ten have a label."""
+"""Ratio of the times above which only powers of ten have labels."""
 MIN_ERROR = 1e-17
-"""Relative errors are drawn from here up: an error of exactly zero has no logarithm."""
-PANEL_SIZE, PANEL_TITLE_WIDTH = 3.6, 36
-"""Of one panel, in inches, and of its title, in characters."""
+"""Smallest drawn relative error; an error of exactly zero has no logarithm."""
+PANEL_SIZE = 3.6
+"""Width and height of a panel, in inches."""
+PANEL_TITLE_WIDTH = 36
+"""Largest length of a line of its title, in characters."""
 
 
 def draw_work_precision(measured: Table, xlabel: str, target: float | None, output: Path) -> None:
-    """Writes the figure: a panel for each case, a curve for each method, the target as a line.
+    """Writes the figure: a panel for each case, a curve for each method, and the target as a line.
 
-    measured: columns case, method, group, seconds and error; what has no finite error is left out.
+    measured: columns case, method, group, seconds and error; rows without a finite error are left out.
     """
     columns = {name: np.array(measured[name]) for name in ("case", "method", "group", "seconds", "error")}
     cases, methods, groups, seconds, errors = (
@@ -67,7 +69,7 @@ def draw_work_precision(measured: Table, xlabel: str, target: float | None, outp
 
 
 def _looks(groups: dict[str, str]) -> dict[str, dict]:
-    """Colour by group, marker within it, for every method with its group."""
+    """Look of every method: colour by its group, marker within the group."""
     order = list(dict.fromkeys(groups.values()))
     looks = {}
     for method, group in groups.items():

@@ -383,7 +383,7 @@ def _monotony(view, page, kind, F):
     for line, match in read(
         page,
         rf"^F_{kind} rises with (1/)?(\w+) on NUMBER of NUMBER lines?"
-        r"(?:, falls on NUMBER)?(?:, does both on NUMBER)?",
+        r"(?:, falls on NUMBER)?(?:, rises and falls on NUMBER)?",
     ):
         axis = list(view.axes).index(match[2])
         along = np.moveaxis(F.reshape(shape), axis, -1).reshape(-1, shape[axis])
@@ -393,7 +393,7 @@ def _monotony(view, page, kind, F):
         told = [int(text or 0) for text in match.groups()[2:]]
         true = [rising, len(steps), falling, len(steps) - rising - falling]
         found.append((line, "" if told == true else f"it is {true}"))
-        for _, items in read(page, r"does both on \d+ \(([^)]*)\)", only=line):
+        for _, items in read(page, r"rises and falls on \d+ \(([^)]*)\)", only=line):
             for name, text in re.findall(rf"(\w+) = ({NUMBER})", items[1]):
                 found.append((line, near_one_of(text, view.axes[name])))
     return found
@@ -602,7 +602,7 @@ def _sizes(page, v, own):
     tips = [v[f"tip_{name}"] for name in ("x_min", "x_max", "theta_max")]
     found += ranges(page, "least x RANGE L, largest x RANGE L, largest theta RANGE rad", *tips)
     found += ranges(page, r"power of the force, mean: RANGE k3", v["injection_mean"])
-    rest = "^multiplier: RANGE; returns waited for: RANGE; least stretch: RANGE"
+    rest = "^multiplier: RANGE; periods integrated: RANGE; least stretch: RANGE"
     found += ranges(page, rest, v["multiplier"], own["periods"], v["least_stretch"])
     extrema = max(
         float(np.nanmax(np.abs(own[n] - v[n]) / v["tip_y_max"]))

@@ -18,10 +18,10 @@ from rodsweep.errors import InputError
 from rodsweep.post.figures import FIGURES, draw
 from rodsweep.post.figures.request import Look
 from rodsweep.post.figures.sections import section
-from rodsweep.post.figures.spectra.line import broken, followed_roots, mark_thresholds
+from rodsweep.post.figures.spectra.line import broken, mark_thresholds, select_roots
 from rodsweep.post.figures.stability.class_bars import CLASS_COLOURS
 from rodsweep.post.figures.stability.diagram_curves import mark_cycles_on_rows
-from rodsweep.post.figures.stability.regions import PIXELS, ClassedPlaces, coloured
+from rodsweep.post.figures.stability.regions import PIXELS, ClassifiedPoints, coloured
 from rodsweep.post.figures.stability.row_classes import class_along_row
 from rodsweep.post.figures.stability.threshold_lines import _alike
 from rodsweep.post.figures.style import INVERSE_DRAG, LABELS, number, scale
@@ -39,8 +39,8 @@ def test_every_task_has_a_summary_and_a_figure():
 def test_rightmost_and_smallest_roots_differ():
     growth = np.array([[5.0, 5.0, -1.0, -3.0]])
     frequency = np.array([[7.0, -7.0, 0.0, 0.0]])
-    assert followed_roots(growth, frequency, "rightmost").tolist() == [[5 + 7j, 5 - 7j]]
-    assert followed_roots(growth, frequency, "smallest").tolist() == [[-1 + 0j, -3 + 0j]]
+    assert select_roots(growth, frequency, "rightmost").tolist() == [[5 + 7j, 5 - 7j]]
+    assert select_roots(growth, frequency, "smallest").tolist() == [[-1 + 0j, -3 + 0j]]
 
 
 def test_line_is_broken_where_another_root_takes_over():
@@ -413,7 +413,7 @@ def test_phase_diagram_has_its_edge_as_a_line_marks_apart_and_a_legend_inside(co
 def test_classes_are_bounded_by_a_curve_however_few_points_are_computed():
     """Below the parabola y = x^2 class 1, above it class 2, from four points."""
     x = np.linspace(0, 1, 200)
-    places = ClassedPlaces(
+    places = ClassifiedPoints(
         np.array([[0.1, 0.9], [0.05, 0.1], [0.9, 0.1], [0.95, 0.8]]), np.array([2, 2, 1, 1])
     )
     table = coloured(places, places, [np.column_stack([x, x**2])])
@@ -425,8 +425,8 @@ def test_classes_are_bounded_by_a_curve_however_few_points_are_computed():
 
 def test_a_region_between_curves_without_a_computed_point_has_the_class_of_a_place_known_otherwise():
     rails = [np.array([[0.0, y], [1.0, y]]) for y in (0.5, 0.52)]
-    computed = ClassedPlaces(np.array([[0.5, 0.2], [0.5, 0.8]]), np.array([1, 2]))
-    further = ClassedPlaces(np.array([[0.3, 0.51]]), np.array([3]))
+    computed = ClassifiedPoints(np.array([[0.5, 0.2], [0.5, 0.8]]), np.array([1, 2]))
+    further = ClassifiedPoints(np.array([[0.3, 0.51]]), np.array([3]))
     assert coloured(computed, further, rails)[int(0.51 * PIXELS), ::100].tolist() == [3] * (PIXELS // 100)
 
 

@@ -8,7 +8,7 @@ from known_cycles import UNSTABLE, hopf_variables, make_view, store
 
 from rodsweep.post.figures.cycle.amplitudes.amplitude import draw_amplitude
 from rodsweep.post.figures.cycle.amplitudes.square_root import square_root_laws
-from rodsweep.post.hopf_points import Bracket, Located, StoredChanges
+from rodsweep.post.hopf_points import BracketedChange, LocatedChange, StoredChanges
 from rodsweep.post.summary.stability import stability_lines
 from rodsweep.sweep.points.lines import lines_over
 from rodsweep.tasks.protocol import alone
@@ -96,7 +96,7 @@ def test_a_window_of_flutter_has_a_hopf_point_at_each_end():
 def test_a_change_that_no_search_has_located_lies_between_two_points():
     view = swept((100,), constant)
     view.variables.update(hopf_variables("F", []))
-    assert changes_on(view) == [Bracket(27.0, 28.0, "hopf")]
+    assert changes_on(view) == [BracketedChange(27.0, 28.0, "hopf")]
     (line,), _ = stability_lines(view, "F", StoredChanges(view, "F").on)
     assert line == "F** (straight rod starts to beat): between 27 and 28"
 
@@ -118,7 +118,7 @@ def test_hopf_points_beyond_the_points_of_a_line_are_not_its_own():
     assert changes_on(view) == []
 
 
-THRESHOLD = Located(20.0, 1e-6, "hopf")
+THRESHOLD = LocatedChange(20.0, 1e-6, "hopf")
 
 
 def test_the_law_has_the_coefficient_to_which_the_cycles_tend_and_ends_where_they_leave_it():
@@ -135,7 +135,7 @@ def test_the_law_has_the_coefficient_to_which_the_cycles_tend_and_ends_where_the
 def test_cycles_that_shrink_towards_a_restabilization_have_a_law_below_it():
     F = np.array([18.0, 19, 19.5, 21])
     amplitude = np.r_[0.4 * np.sqrt((20 - F[:3]) / 20), 0]
-    (law,) = square_root_laws(F, amplitude, [Located(20.0, 1e-6, "restabilization")])
+    (law,) = square_root_laws(F, amplitude, [LocatedChange(20.0, 1e-6, "restabilization")])
     assert (law.coefficient, law.above, law.end) == (pytest.approx(0.4), False, 18)
 
 

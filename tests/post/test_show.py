@@ -8,7 +8,7 @@ import pytest
 from conftest import ROOT
 from shown import HOPF, STABLE_AGAIN, shown
 
-from rodsweep.post.hopf_points import Bracket, Located, StoredChanges
+from rodsweep.post.hopf_points import BracketedChange, LocatedChange, StoredChanges
 from rodsweep.post.summary.errors import errors_of, span_of
 from rodsweep.post.summary.ranges import to_error
 from rodsweep.post.summary.stability import stability_lines
@@ -43,7 +43,7 @@ def test_thresholds_between_grid_points_do_not_depend_on_the_grid(command, step,
     found = [
         change
         for change in StoredChanges(view, "F").on(line)
-        if isinstance(change, Located) and change.is_hopf
+        if isinstance(change, LocatedChange) and change.is_hopf
     ]
     assert [point.kind for point in found] == ["hopf", "restabilization"]
     for point, exact in zip(found, (HOPF, STABLE_AGAIN), strict=True):
@@ -79,7 +79,7 @@ def test_an_unfinished_file_says_between_which_forces_stability_changes(command)
         assert "change_F" not in view.variables
     view.variables["growth_rate"][:] = np.array([-1.0, -1, 1, 1]).reshape(-1, 1, 1, 1, 1)
     (line,) = lines_over(view.point_columns, "F")
-    assert StoredChanges(view, "F").on(line) == [Bracket(45, 60, "hopf")]
+    assert StoredChanges(view, "F").on(line) == [BracketedChange(45, 60, "hopf")]
     assert command("merge", "all.h5", "1.h5", "2.h5").returncode == 0
     assert "beat): 49.758004916" in command("show", "all.h5").stdout
 
@@ -92,7 +92,7 @@ def test_a_change_that_is_not_understood_is_a_bracket(command):
     located = make_job(command.directory / "c.yaml", ()).task.afterwards(view.variables)
     view = replace(view, variables=dict(view.variables) | {v.name: values for v, values in located})
     (line,) = lines_over(view.point_columns, "F")
-    assert StoredChanges(view, "F").on(line) == [Bracket(40, 60, "hopf")]
+    assert StoredChanges(view, "F").on(line) == [BracketedChange(40, 60, "hopf")]
     (told,), _ = stability_lines(view, "F", StoredChanges(view, "F").on)
     assert told == "F** (straight rod starts to beat): between 40 and 60"
 
@@ -210,7 +210,7 @@ def test_a_single_cycle_is_told_with_its_verdict(command):
     last_digit = 10.0 ** -(len(period[1]) - 2)
     assert float(period[1]) == pytest.approx(0.034450429, abs=last_digit)
     assert re.search(r"largest y of the tip: 0\.645\d* \(", told)
-    assert re.search(r"multiplier but the one that is 1: .*the cycle is stable", told)
+    assert re.search(r"largest nontrivial Floquet multiplier: .*the cycle is stable", told)
 
 
 def test_all_statuses_are_listed_on_request(command):

@@ -53,7 +53,7 @@ def test_show_of_many_rods_names_those_with_two_stable_states(command):
 
 
 def test_show_of_many_rods_tells_where_branches_end_and_where_two_have_stable_cycles(command):
-    """Told once each: a symmetry breaking lies on both branches that meet there."""
+    """SummaryLines once each: a symmetry breaking lies on both branches that meet there."""
     shown(command, CONFIG.format(k1="[100, 150]", stop=80))
     view = read_view(command.directory / "c.h5")
     (branch,) = curves_of(view, 1)
@@ -209,7 +209,7 @@ def test_branches_without_room_for_their_special_points_are_told_of_and_not_draw
     done = command("show", "c.h5")
     assert done.returncode == 0, done.stderr
     told = " ".join(done.stdout.split())
-    assert "not told of 1 rod: they have more special points than the list holds" in told
+    assert "not known for 1 rod: they have more special points than the list holds" in told
     assert "stable cycles beside a stable straight rod at 0 of 1 rod" in told
     view = read_view(command.directory / "c.h5")
     assert [len(curves_of(view, rod)) for rod in (0, 1)] == [0, 0]
@@ -217,7 +217,7 @@ def test_branches_without_room_for_their_special_points_are_told_of_and_not_draw
     assert straight_ranges(view, 1, (0.0, 200.0)) == ([], [])
     command.write("d.yaml", CONFIG.format(k1=150, stop=200).replace("stop:", "special: 2, stop:"))
     command.solved("d.yaml")
-    assert "1 of 1 branch is not told" in " ".join(command("show", "d.h5").stdout.split())
+    assert "1 of 1 branch is not shown" in " ".join(command("show", "d.h5").stdout.split())
     assert "holds no branch with cycles" in " ".join(command("plot", "d.h5").stderr.split())
 
 
@@ -226,7 +226,7 @@ def test_those_whose_special_points_are_stored_are_told_and_drawn_before_others(
     command.write("c.yaml", config + "branch: {special: 3, stop: 90}\n")
     assert "1 list_full" in command("run", "c.yaml").stdout
     told = " ".join(command("show", "c.h5").stdout.split())
-    assert "1 of 2 branches is not told" in told
+    assert "1 of 2 branches is not shown" in told
     assert "branch 1, from the Hopf point at F = 27.427194126" in told
     assert "beside a stable straight rod" not in told
     drawn = " ".join(command("plot", "c.h5", "-o", "c.png").stdout.split())

@@ -18,9 +18,9 @@ from ...results.layouts import lacks_curves
 from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
-from .stability.class_bars import BAR_ASPECT, CLASS_COLOURS, classes_behind_crossings
+from .stability.class_bars import BAR_ASPECT, CLASS_COLOURS, classes_between_crossings
 from .stability.diagram_curves import draw_curves, draw_cycle_curves, mark_cycles_on_rows
-from .stability.regions import PIXELS, ClassedPlaces, DrawnPlane, coloured
+from .stability.regions import PIXELS, ClassifiedPoints, DrawnPlane, coloured
 from .stability.row_classes import class_along_row
 from .style import LABELS, SYMBOLS, heading, is_logarithmic, legend_below, parameter_text, require, scale
 from .style import number as number_text
@@ -174,11 +174,11 @@ def _class_of_pixels(view: View, palette: Palette, line: str, row: str, table: A
     plane = DrawnPlane(view.variables[line], y[np.isfinite(y)])
     columns, rows = np.meshgrid(plane.x, plane.y)
     known = (table != palette.crushed) | ((line, row) != CRUSHING)
-    computed = ClassedPlaces(plane.unit(columns[known], rows[known]), table[known])
-    further = ClassedPlaces(np.zeros((0, 2)), np.zeros(0, int))
+    computed = ClassifiedPoints(plane.unit(columns[known], rows[known]), table[known])
+    further = ClassifiedPoints(np.zeros((0, 2)), np.zeros(0, int))
     if palette is MOTIONS:
-        x, at, found = classes_behind_crossings(view, row)
-        further = ClassedPlaces(plane.unit(x, at), found)
+        x, at, found = classes_between_crossings(view, row)
+        further = ClassifiedPoints(plane.unit(x, at), found)
     curves = [
         plane.unit(view.variables[f"{kind}_{line}"][one], view.variables[f"{kind}_{row}"][one])
         for kind in ("curve", "cycle_curve")

@@ -1,4 +1,4 @@
-"""Figures of the task spectrum: lines of spectra as in the paper's Fig. 2, a map over two axes, or points."""
+"""Figures of the task spectrum: lines of spectra as in the paper's Fig. 2, a map, or single spectra."""
 
 from dataclasses import replace
 
@@ -19,16 +19,16 @@ from .spectra.panels import MAX_PANELS, draw_panels
 from .style import LABELS, fixed_text, heading, long_axes, require, scale
 
 MAP_COLOURS = "PuOr_r"
-SHADES_A_SIDE = 40
-"""Colours of a map on each side of zero growth."""
-MAX_LINES = 6
-"""Values of a parameter up to which each has a panel of its own; beyond, a map interpolates between them."""
+SHADES_PER_SIGN = 40
+"""Number of colours of a map on each side of zero growth."""
+MAX_LINE_PANELS = 6
+"""Largest number of values of a parameter that get a panel each; for more values a map interpolates."""
 SMALLEST_SHADE = 1e-4
-"""Growth rate in units of the largest below which colours are linear in it."""
+"""Growth rate, in units of the largest, below which the colour scale is linear."""
 
 
 def draw_spectrum(request: FigureRequest) -> str:
-    """A line or a map, as the file has one long axis or two; else the eigenvalues of each point.
+    """Draws a line or a map, depending on the number of long axes; otherwise the eigenvalues of each point.
 
     The lines of several files are drawn side by side.
     """
@@ -42,7 +42,7 @@ def draw_spectrum(request: FigureRequest) -> str:
         return request.write(draw_list_of_spectra(view), "the stored eigenvalues of every point")
     long = long_axes(view)
     few = min(long, key=lambda name: len(view.axes[name]))
-    if len(long) > 1 and len(view.axes[few]) <= MAX_LINES:
+    if len(long) > 1 and len(view.axes[few]) <= MAX_LINE_PANELS:
         return _lines(view, few, request)
     view = without_infinite(view)
     long = long_axes(view)
@@ -53,7 +53,7 @@ def draw_spectrum(request: FigureRequest) -> str:
 
 
 def _lines(view: View, few: str, request: FigureRequest) -> str:
-    """A panel for each value of a parameter with few of them: a map would show what is not known between."""
+    """Draws a panel for each value of a parameter with few values; a map between them would mislead."""
     lines = [without_infinite(section(view, {few: float(value)})) for value in view.axes[few]]
     views = [line for line in lines if np.isfinite(line.variables["growth_rate"]).any()]
     roots = roots_to_follow(views, request.roots)
@@ -62,7 +62,7 @@ def _lines(view: View, few: str, request: FigureRequest) -> str:
 
 
 def _several(request: FigureRequest) -> str:
-    """A panel for each file; InputError unless all are lines of spectra."""
+    """Draws a panel for each file; raises InputError unless every file is a line of spectra."""
     request.refuse_points(request.views[0])
     request.check_output()
     if len(request.views) > MAX_PANELS:
@@ -75,7 +75,7 @@ def _several(request: FigureRequest) -> str:
 
 
 def _line_of(given: View, request: FigureRequest) -> View:
-    """A file of several that are drawn side by side; InputError unless it is a line of spectra."""
+    """One of several files to draw; raises InputError unless it is a line of spectra."""
     if given.task != request.views[0].task:
         raise InputError(
             f"{given.path} is of the task {given.task}; only lines of spectra make one figure together"
@@ -92,7 +92,7 @@ def _line_of(given: View, request: FigureRequest) -> View:
 
 
 def without_infinite(view: View) -> View:
-    """The view without axis values that are inf, which no axis of a figure has a place for."""
+    """The view without values of axes that are inf, which have no place on an axis."""
     variables = dict(view.variables)
     for place, (name, values) in enumerate(view.axes.items()):
         finite = np.isfinite(values)
@@ -106,6 +106,7 @@ def without_infinite(view: View) -> View:
 
 
 def _map(view: View, names: list[str]) -> Figure:
+    """Map of the leading growth rate over two parameters."""
     horizontal, vertical = names
     growth = view.variables["growth_rate"][..., 0].squeeze()
     x, y = view.axes[horizontal], view.axes[vertical]
@@ -114,9 +115,9 @@ def _map(view: View, names: list[str]) -> Figure:
     reach = float(np.nanmax(np.abs(growth)))
     linear = max(1.0, reach * SMALLEST_SHADE)
     norm = matplotlib.colors.SymLogNorm(linear, vmin=-reach, vmax=reach)
-    # Filled contours, of which zero is one: the line of zero growth and the colours cannot disagree.
-    shades = norm.inverse(np.linspace(0.0, 1.0, 2 * SHADES_A_SIDE + 1))
-    shades[[0, SHADES_A_SIDE, -1]] = np.nextafter(-reach, -np.inf), 0.0, np.nextafter(reach, np.inf)
+    # Zero is a level of the filled contours, so that the line of zero growth and the colours agree.
+    shades = norm.inverse(np.linspace(0.0, 1.0, 2 * SHADES_PER_SIGN + 1))
+    shades[[0, SHADES_PER_SIGN, -1]] = np.nextafter(-reach, -np.inf), 0.0, np.nextafter(reach, np.inf)
     drawn = np.ma.masked_invalid(growth.T)
     axes.contourf(x, y, drawn, shades, norm=norm, cmap=MAP_COLOURS, zorder=-1)
     axes.set_rasterization_zorder(0)

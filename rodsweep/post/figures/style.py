@@ -1,4 +1,4 @@
-"""What all figures share: symbols, labels, colours, titles, how an axis is scaled, what cannot be drawn."""
+"""Common style of figures: symbols, labels, colours and titles, scales of axes, and refusals."""
 
 from collections.abc import Mapping
 from math import isinf
@@ -16,19 +16,27 @@ from ...model.parameters import PARAMETERS
 from ...results.file.view import View
 
 SYMBOLS = {name: parameter.symbol for name, parameter in PARAMETERS.items()}
+"""Symbols of parameters in TeX."""
 LABELS = {name: f"{p.meaning} ${p.symbol}$" for name, p in PARAMETERS.items()}
-"""What is along an axis. The tilde makes a symbol dimensionless: it has no unit."""
+"""Labels of axes. The tilde marks a dimensionless symbol, which has no unit."""
 CRITICAL_FORCE = f"critical force ${SYMBOLS['F']}$"
 INVERSE_DRAG = rf"inverse rotational drag $1/{SYMBOLS['gamma3']}$"
-FIRST, SECOND, THIRD = "#0072B2", "#D55E00", "#009E73"
-"""Blue, vermilion and green of Okabe and Ito: told apart by the colour-blind."""
+FIRST = "#0072B2"
+"""Blue of Okabe and Ito's palette, whose colours are distinct for colour-blind readers."""
+SECOND = "#D55E00"
+"""Vermilion of the same palette."""
+THIRD = "#009E73"
+"""Green of the same palette."""
 DECADE = 10
 """Ratio of the largest to the smallest value of a map above which its colours are logarithmic."""
-FEW_DECADES, IN_ONE_DECADE = 50, 6
-"""Ratio of the ends of a logarithmic axis below which 1, 2 and 5 of each decade are labelled, and below which
-more are, since only one or two of these may be in sight."""
-MIN_POWER, PLAIN_BELOW = 2, 4
-"""From which exponent on powers of ten are written as such; below which other numbers are written out."""
+FEW_DECADES = 50
+"""Ratio of the ends of a logarithmic axis below which 1, 2 and 5 of each decade have labels."""
+IN_ONE_DECADE = 6
+"""Ratio of the ends below which more numbers have labels, because few of 1, 2 and 5 may be visible."""
+MIN_POWER = 2
+"""Smallest exponent of a power of ten that is written as a power."""
+PLAIN_BELOW = 4
+"""Exponent of ten below which other numbers are written without a power of ten."""
 STYLE = {
     "font.size": 10,
     "axes.titlesize": 9,
@@ -39,37 +47,40 @@ STYLE = {
     "axes.spines.right": False,
     "hatch.linewidth": 0.6,
     "savefig.dpi": 300,
-    # Journals refuse Type 3, matplotlib's own choice.
+    # Journals refuse fonts of Type 3, matplotlib's default.
     "pdf.fonttype": 42,
     "ps.fonttype": 42,
 }
+"""Settings of matplotlib for all figures."""
 
 
-OF_TYPE = ("font.size", "axes.titlesize", "axes.labelsize", "figure.titlesize", "legend.fontsize",
+FONT_SIZES = ("font.size", "axes.titlesize", "axes.labelsize", "figure.titlesize", "legend.fontsize",
            "xtick.labelsize", "ytick.labelsize")  # fmt: skip
-PRINT_STYLE = STYLE | dict.fromkeys(OF_TYPE, 8)
-"""Of a figure with the width of a column: all of its type has 8 points."""
+"""Settings of font sizes."""
+PRINT_STYLE = STYLE | dict.fromkeys(FONT_SIZES, 8)
+"""Settings for a figure in print, all of whose text has 8 points."""
 
 
 def plain(text: object) -> str:
-    """A user's text, in which a dollar is a dollar and not mathematics."""
+    """A user's text for matplotlib, in which a dollar does not start mathematics."""
     return str(text).replace("$", r"\$")
 
 
 def heading(view: View, *lines: str) -> str:
-    """The title of a user's file above other lines."""
+    """Title of the file, given by the user, above further lines."""
     title = " ".join(plain(view.attributes.get("title", "")).split())
     return "\n".join(filter(None, (title, *lines)))
 
 
 def number(value: float, digits: int = 6) -> str:
-    """A number in TeX without its dollars: 1e4 is 10^4, 2.5e-4 is 2.5 x 10^-4, and 200 stays 200."""
+    """A number in TeX without dollars: 1e4 is 10^4, 2.5e-4 is 2.5 x 10^-4, and 200 stays 200."""
     if isinf(value):
         return r"\infty" if value > 0 else r"-\infty"
     if value == 0:
         return "0"
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
-    power, factor = int(exponent), float(mantissa)
+    power = int(exponent)
+    factor = float(mantissa)
     if abs(factor) == 1 and abs(power) >= MIN_POWER:
         return f"{'-' * (factor < 0)}10^{{{power}}}"
     if -MIN_POWER <= power < min(PLAIN_BELOW, digits):
@@ -78,17 +89,17 @@ def number(value: float, digits: int = 6) -> str:
 
 
 def parameter_text(parameters: Mapping[str, float], digits: int = 6) -> str:
-    """Parameters and their values, in one line."""
+    """Parameters with their values, on one line."""
     return ", ".join(f"${SYMBOLS[name]} = {number(value, digits)}$" for name, value in parameters.items())
 
 
 def fixed_text(view: View, *drawn: str) -> str:
-    """The parameters that are not along an axis of the figure, with their values."""
+    """Parameters that are not along an axis of the figure, with their values."""
     return parameter_text({name: values[0] for name, values in view.axes.items() if name not in drawn})
 
 
 def long_axes(view: View) -> list[str]:
-    """The parameters of a grid that take several values; InputError unless they are one or two."""
+    """Parameters of a grid with several values; raises InputError unless there are one or two."""
     long = [name for name, values in view.axes.items() if len(values) > 1]
     if not 1 <= len(long) <= 2:
         raise InputError(
@@ -98,19 +109,19 @@ def long_axes(view: View) -> list[str]:
     return long
 
 
-def require(view: View, there: object, what: str) -> None:
-    """InputError unless something is there that could be drawn."""
-    if not there:
+def require(view: View, available: object, what: str) -> None:
+    """Raises InputError, which names the missing `what`, unless anything is available to draw."""
+    if not available:
         raise InputError(f"{view.path} holds no {what} that could be drawn")
 
 
 def legend_below(figure: Figure, handles: list[Any], columns: int) -> None:
-    """The legend of a whole figure, below its panels."""
+    """Draws the legend of a whole figure, below its panels."""
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False)
 
 
 def is_logarithmic(values: np.ndarray) -> bool:
-    """Whether an axis, shape (n,), is meant in ratios: by equal ratios, no equal steps, or decades."""
+    """Whether an axis, shape (n,), has equal ratios without equal steps, or spans more than a decade."""
     if len(values) < 2 or values[0] <= 0 or not np.isfinite(values).all():
         return False
     steps, ratios = np.diff(values), values[1:] / values[:-1]
@@ -121,7 +132,7 @@ def is_logarithmic(values: np.ndarray) -> bool:
 
 
 def scale(axes: Axes, which: Literal["x", "y"], values: np.ndarray) -> None:
-    """Makes an axis logarithmic where its values, shape (n,), are, with labels that do not meet."""
+    """Makes an axis logarithmic if its values, shape (n,), are, with labels that do not overlap."""
     if not is_logarithmic(values):
         return
     axes.set(**{f"{which}scale": "log"})
@@ -129,7 +140,7 @@ def scale(axes: Axes, which: Literal["x", "y"], values: np.ndarray) -> None:
 
 
 def label_few_decades(axis: Axis, low: float, high: float) -> None:
-    """Labels 1, 2 and 5 of each decade of a logarithmic axis that spans few: all written out, or none."""
+    """Labels 1, 2 and 5 of each decade of a short logarithmic axis, all as plain numbers or all as powers."""
     if high < FEW_DECADES * low:
         subs = (1, 2, 5) if high > IN_ONE_DECADE * low else (1, 1.5, 2, 3, 4, 6, 8)
         axis.set_major_locator(LogLocator(subs=subs))
@@ -148,15 +159,17 @@ def colour_cells(
     colours: str = "viridis",
     ratios: bool = True,
 ) -> None:
-    """Cells in the colours of their values, (ny, nx), nan where there is none, and a bar that has a label.
+    """Draws cells in colours of their values, (ny, nx), NaN for no value, with a labelled colour bar.
 
-    ratios: whether the colours are logarithmic over more than a decade.
+    ratios: whether the colours are logarithmic if the values span more than a decade.
     """
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
     if ratios and high > DECADE * low > 0:
         norm: Normalize = LogNorm(low, high)
     else:
-        norm = Normalize(low, high if high != low or low else 1.0)  # no bar of zeros reaches below zero
+        norm = Normalize(
+            low, high if high != low or low else 1.0
+        )  # equal zeros would give a scale below zero
     drawn = np.ma.masked_invalid(values)
     mesh = axes.pcolormesh(*edges, drawn, norm=norm, cmap=colours, rasterized=True)
     bar = axes.figure.colorbar(mesh, ax=axes, label=label)

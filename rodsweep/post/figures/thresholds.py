@@ -1,4 +1,4 @@
-"""Critical forces against parameters: lines, a map over two of them, or bars of single rods."""
+"""Critical forces over parameters: lines, a map over two parameters, or bars of single rods."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -18,11 +18,11 @@ from .stability.threshold_lines import CRITICAL_FORCES, MAX_LINES, draw_all_line
 NO_THRESHOLD = "#DDDDDD"
 """Colour of rods without the threshold."""
 SEARCH_DIGITS = 4
-"""To which the end of the search is written."""
+"""Number of digits of the largest searched force."""
 
 
 def draw_thresholds(request: FigureRequest) -> str:
-    """The first thresholds over one parameter or two; else a bar of classes for each rod."""
+    """Draws the first thresholds over one or two parameters; otherwise a bar of classes for each rod."""
     given = request.only_view("lines", "map")
     view = as_grid(given)
     if not view.is_grid or view.variables["status"].size == 1:
@@ -38,11 +38,11 @@ def draw_thresholds(request: FigureRequest) -> str:
         min_aspect = BAR_ASPECT if view.variables["status"].size == 1 else MIN_ASPECT
         return request.write(draw_class_bars(view), "what each rod does over F", min_aspect)
     long = style.long_axes(view)
-    there = [name for name, *_ in CRITICAL_FORCES if np.isfinite(view.variables[name]).any()]
-    style.require(view, there, "threshold")
+    found = [name for name, *_ in CRITICAL_FORCES if np.isfinite(view.variables[name]).any()]
+    style.require(view, found, "threshold")
     few = min(len(view.axes[name]) for name in long) <= MAX_LINES
     if request.what == "map" or (len(long) == 2 and not few and request.what != "lines"):
-        figure, left_out = _map(view, there, request.look.narrow)
+        figure, left_out = _map(view, found, request.look.narrow)
         return request.write(figure, f"critical forces over {' and '.join(long)}{left_out}", MAP_ASPECT)
     if len(long) == 1 or few:
         return request.write(*draw_all_lines(view, long, searched(view)))
@@ -50,14 +50,14 @@ def draw_thresholds(request: FigureRequest) -> str:
 
 
 def searched(view: View) -> str:
-    """Up to which force thresholds were sought: a curve that is missing may lie beyond."""
+    """Range of forces in which thresholds were sought; a missing threshold may lie beyond."""
     ends = view.variables["F_end"]
     low, high = (style.number(float(end(ends)), SEARCH_DIGITS) for end in (np.nanmin, np.nanmax))
     return rf"searched up to $\tilde F = {low}$" + (f" to ${high}$" if low != high else "")
 
 
 def _map(view: View, names: list[str], narrow: bool) -> tuple[Figure, str]:
-    """(a panel in colours for each threshold, what is said of values without a place) over two parameters."""
+    """(figure with a map for each threshold over two parameters, clause on values without a place)."""
     points = point_map(view)
     figure, panels = map_panels(len(names), narrow)
     lacking = False

@@ -1,4 +1,4 @@
-"""What `rodsweep show` prints: the answer, how far it is to be trusted, all else, and the bookkeeping."""
+"""Summary printed by `rodsweep show`: the answer, its reliability, all other results, and the provenance."""
 
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -26,10 +26,10 @@ from .modes import modes_summary
 from .phase_diagram import phase_diagram_summary
 from .ranges import span
 from .spectrum import spectrum_summary
+from .summary_lines import SummaryLines
 from .thresholds import thresholds_summary
-from .told import Told
 
-SUMMARIES: dict[str, Callable[[View, np.ndarray], Told]] = {
+SUMMARIES: dict[str, Callable[[View, np.ndarray], SummaryLines]] = {
     "spectrum": spectrum_summary,
     "thresholds": thresholds_summary,
     "phase_diagram": phase_diagram_summary,
@@ -38,32 +38,35 @@ SUMMARIES: dict[str, Callable[[View, np.ndarray], Told]] = {
     "criticality": criticality_summary,
     "branch": branch_summary,
 }
-"""What each task has to tell of its computed points, from (view, which points are computed)."""
+"""Function of each task from (view, mask of its computed points) to the lines of the summary."""
 NOUNS = {"thresholds": "rod", "criticality": "rod", "branch": "rod", "phase_diagram": "row"}
-"""What a point of a file is called, where it is not one of a force."""
+"""Name of a point of each task, where it is not "point"."""
 
 
 def show_summary(view: View, every_status: bool = False) -> None:
-    """Prints a summary of a result file; `every_status` lists those of no point, too.
+    """Prints a summary of a result file; every_status: whether statuses of no point are listed as well.
 
-    First the answer in words, of an arm in its units too; then what is needed to trust it, what else the file
-    says, and last by what it was computed.
+    The answer comes first, for an arm in its own units as well. Then follow the reliability of the answer,
+    other results, and last the provenance.
     """
-    view, console = view.listed, Console(highlight=False, markup=False)
-    a, status = view.attributes, view.variables["status"]
-    done, noun = status != MISSING, NOUNS.get(view.task, "point")
+    view = view.listed
+    console = Console(highlight=False, markup=False)
+    a = view.attributes
+    status = view.variables["status"]
+    done = status != MISSING
+    noun = NOUNS.get(view.task, "point")
     rods = done & (status < NOT_SLENDER)
-    nothing = Told([] if done.any() else [f"no {noun} is computed yet"])
-    told = SUMMARIES[view.task](view, rods) if rods.any() else nothing
+    nothing = SummaryLines([] if done.any() else [f"no {noun} is computed yet"])
+    summary = SUMMARIES[view.task](view, rods) if rods.any() else nothing
     console.print(f"{printable(str(view.path))}: {a.get('title', '')}, task {view.task}", soft_wrap=True)
-    for line in _answer(view, done, told):
+    for line in _answer(view, done, summary):
         console.print(line, soft_wrap=True)
     console.print()
-    for line in [*_unfinished(view, int((~done).sum()), noun), *told.trust]:
+    for line in [*_unfinished(view, int((~done).sum()), noun), *summary.trust]:
         console.print(line, soft_wrap=True)
     console.print(_table(("status", plural(noun), "meaning"), _statuses(view, status, every_status)))
     console.print()
-    for line in told.details:
+    for line in summary.details:
         console.print(line, soft_wrap=True)
     console.print(_table(("parameter", "values", "from", "to", "unit"), _axes(view)))
     console.print()
@@ -71,16 +74,16 @@ def show_summary(view: View, every_status: bool = False) -> None:
         console.print(line, soft_wrap=True)
 
 
-def _answer(view: View, done: np.ndarray, told: Told) -> list[str]:
-    """The answer; of an arm in its own units, then without dimension."""
+def _answer(view: View, done: np.ndarray, summary: SummaryLines) -> list[str]:
+    """Lines of the answer; for an arm first in its own units, then dimensionless."""
     if not view.quantities or not done.any():
-        return [*told.answer]
-    lines = [*arm_answer(view, done), *told.of_arm, *arm_lines(view, done)]
-    return [*lines, "", "the rods without dimension:", *told.answer] if told.answer else lines
+        return [*summary.answer]
+    lines = [*arm_answer(view, done), *summary.of_arm, *arm_lines(view, done)]
+    return [*lines, "", "the rods without dimension:", *summary.answer] if summary.answer else lines
 
 
 def _unfinished(view: View, missing: int, noun: str) -> list[str]:
-    """What is not in the file yet."""
+    """Lines about points and curves that are not in the file yet."""
     lines = []
     if missing and (shard := view.attributes.get("shard")):
         lines.append(
@@ -105,7 +108,7 @@ def _unfinished(view: View, missing: int, noun: str) -> list[str]:
 
 
 def _times(view: View, done: np.ndarray, noun: str) -> list[str]:
-    """How long the points took; none where none is computed."""
+    """Lines about the time that the points took; empty without a computed point."""
     if not done.any():
         return []
     seconds = view.variables["seconds"][done]
@@ -118,7 +121,7 @@ def _times(view: View, done: np.ndarray, noun: str) -> list[str]:
 
 
 def _origin(a: dict[str, Any]) -> list[str]:
-    """When and by what a file was computed."""
+    """Lines about the time, the versions and the BLAS kernels of the computation."""
     return [
         f"computed {_when(a)}; rodsweep {a.get('rodsweep_version')}, PETSc {a.get('petsc_version')}, "
         f"SLEPc {a.get('slepc_version')}, commit {str(a.get('git_commit'))[:12]}",
@@ -127,7 +130,7 @@ def _origin(a: dict[str, Any]) -> list[str]:
 
 
 def _when(a: dict[str, Any]) -> str:
-    """From when to when a file was computed; of a shard, that the run of its own part has come to its end."""
+    """Period in which a file was computed; for a shard, also whether its run is complete."""
     if "started" not in a:
         return "not finished yet"
     if "finished" in a:
@@ -137,13 +140,14 @@ def _when(a: dict[str, Any]) -> str:
 
 
 def _ranks(a: dict[str, Any], noun: str) -> list[str]:
-    """What the ranks of the last run did: how much of the time they solved, and how many points."""
+    """Lines about the ranks of the last run: their busy time and their numbers of points."""
     if RANK_SHARES[0] not in a:
         return []
     points, busy, idle = (np.atleast_1d(a[name]) for name in RANK_SHARES)
     share = 100 * busy / np.maximum(busy + idle, 1e-9)
     least = int(share.argmin())
-    ranks, hosts = counted(int(a["ranks"]), "rank"), counted(len(str(a["hosts"]).split()), "host")
+    ranks = counted(int(a["ranks"]), "rank")
+    hosts = counted(len(str(a["hosts"]).split()), "host")
     text = f"last run: {ranks} on {hosts}, {counted(int(points.sum()), noun)}"
     text += f"; shard {a['shard']}" if a.get("shard") else ""
     text += f"; stopped by {a['stopped']}" if a.get("stopped") else ""
@@ -156,6 +160,7 @@ def _ranks(a: dict[str, Any], noun: str) -> list[str]:
 
 
 def _table(headings: Iterable[str], rows: Iterable[tuple[str, ...]]) -> Table:
+    """Table without borders."""
     table = Table(*headings, box=None, pad_edge=False)
     for row in rows:
         table.add_row(*map(Text, row))
@@ -163,7 +168,7 @@ def _table(headings: Iterable[str], rows: Iterable[tuple[str, ...]]) -> Table:
 
 
 def _axes(view: View) -> Iterable[tuple[str, ...]]:
-    """(name, different values, from, to, unit) of an arm's quantities, as typed, and of every parameter."""
+    """Yields (name, number of values, from, to, unit) of an arm's quantities and of every parameter."""
     for name, values in view.quantities.items():
         si = ALL_QUANTITIES[name].unit
         unit = view.typed.get(name, si)
@@ -173,13 +178,15 @@ def _axes(view: View) -> Iterable[tuple[str, ...]]:
 
 
 def _extent(values: np.ndarray) -> tuple[str, str, str]:
-    """How many different values there are, of any shape, the smallest and the largest; NaN is none."""
-    there = {f"{value:.12g}" for value in values[~np.isnan(values)]}  # scales differ by rounding only
-    ends = sorted(map(float, there))
+    """(number of different values, smallest, largest) of values of any shape, as text; NaN does not count."""
+    # Twelve digits, because values computed from an arm may differ by rounding.
+    different = {f"{value:.12g}" for value in values[~np.isnan(values)]}
+    ends = sorted(map(float, different))
     return (str(len(ends)), f"{ends[0]:.6g}", f"{ends[-1]:.6g}") if ends else ("0", "", "")
 
 
 def _statuses(view: View, status: np.ndarray, every: bool) -> Iterable[tuple[str, ...]]:
+    """Yields (status, number of points, meaning); every: whether statuses of no point are included."""
     lines = str(view.attributes.get("status_sentences", "")).splitlines()
     sentences = dict(line.split(": ", 1) for line in lines if ": " in line) | {"missing": "not computed yet"}
     found = dict(zip(*(a.tolist() for a in np.unique(status, return_counts=True)), strict=True))

@@ -1,4 +1,4 @@
-"""What `rodsweep show` says of branches of cycles: where they lead and change, where two states coexist."""
+"""Branches of cycles in `rodsweep show`: their ends and special points, and ranges with two stable states."""
 
 import json
 from collections.abc import Callable, Iterable, Iterator
@@ -20,20 +20,21 @@ from ..branch_curves import (
 )
 from .errors import span_of
 from .ranges import listed, rounded, span, to_error
-from .told import Told, at_point
+from .summary_lines import SummaryLines, at_point
 
 NAMED_RODS = 8
-"""Rods whose coexistence is named."""
+"""Largest number of rods that are listed one by one."""
 FULL = "they have more special points than the list holds; raise branch.special"
-BESIDE_STRAIGHT, TWO_CYCLES = "stable cycles beside a stable straight rod", "stable cycles of two branches"
-"""What the two stable states of a rod are."""
+"""Cause and remedy of branches that are not shown."""
+BESIDE_STRAIGHT = "stable cycles beside a stable straight rod"
+TWO_CYCLES = "stable cycles of two branches"
 SPECIAL_WORDS = {
     "fold": "fold",
     "torus": "torus point",
     "symmetry_breaking": "symmetry breaking",
     "period_doubling": "period doubling",
 }
-"""What changes on a branch is called; Hopf points and ends are told apart from these."""
+"""Words for special points at which a branch changes; Hopf points and ends have their own sentences."""
 ENDS = {
     "left_the_model": "where h1 = 0",
     "range_end": "the end of the range",
@@ -42,33 +43,40 @@ ENDS = {
     "list_full": "the last cycle that is stored",
     "none": "an end",
 }
+"""Words for the end of a branch, by its reason."""
 
 
-def branch_summary(view: View, done: np.ndarray) -> Told:
-    """The task's sentences about the points that are `done`, a mask of the points' shape."""
+def branch_summary(view: View, done: np.ndarray) -> SummaryLines:
+    """Lines of the summary about the points that are `done`, a mask of their shape."""
     if done.size == 1:
-        return Told(list(_one_rod(view, 0)), [_searched(view, done)])
-    v, rods = view.variables, np.flatnonzero(done.ravel())
+        return SummaryLines(list(_one_rod(view, 0)), [_searched(view, done)])
+    v = view.variables
+    rods = np.flatnonzero(done.ravel())
     counts = v["branch_count"][done]
     branches = counted(int(counts.clip(min=0).sum()), "branch")
     cycles = counted(int(v["point_count"][done].clip(min=0).sum()), "cycle")
     line = f"{branches} at {some_of((counts > 0).sum(), len(rods), 'rod')}, {cycles}{_sizes(view, done)}"
-    return Told([line, *_specials(view, rods), *_coexistence(view, rods)], [_searched(view, done)])
+    return SummaryLines(
+        [line, *_special_lines(view, rods), *_coexistence(view, rods)], [_searched(view, done)]
+    )
 
 
 def _one_rod(view: View, rod: int) -> Iterator[str]:
-    """Every branch of the one rod of a file, with its special points to their errors."""
-    along, curves, v = followed_parameter(view), curves_of(view, rod), view.variables
+    """Yields lines about every branch of the single rod of a file, with the errors of its special points."""
+    along = followed_parameter(view)
+    curves = curves_of(view, rod)
+    v = view.variables
     hidden = count_incomplete_branches(view, rod)
     if hidden:
-        yield f"{some_of(hidden, hidden + len(curves), 'branch')} {is_or_are(hidden)} not told: {FULL}"
+        yield f"{some_of(hidden, hidden + len(curves), 'branch')} {is_or_are(hidden)} not shown: {FULL}"
     elif v["branch_count"].max() < 0:
-        yield "nothing is known of its branches"
+        yield "its branches are not known"
     elif not curves:
-        yield f"no Hopf point in the range of {along}: no branch is born there"
+        yield f"no Hopf point in the range of {along}, so that no branch begins there"
     for number, curve in enumerate(curves, 1):
         cycles = curve.cycles
-        sizes, errors = curve.y[cycles], v["amplitude_error"].ravel()[v["branch"].ravel() == number]
+        sizes = curve.y[cycles]
+        errors = v["amplitude_error"].ravel()[v["branch"].ravel() == number]
         extent = f"{along} = {span(curve.at[cycles])}, largest tip y {span(sizes, errors * sizes)} L"
         yield f"branch {number}, {_ends(curve, along)}: {counted(int(cycles.sum()), 'cycle')}, {extent}"
         for special in curve.special:
@@ -76,7 +84,8 @@ def _one_rod(view: View, rod: int) -> Iterator[str]:
                 continue
             if special in (curve.special[0], curve.special[-1]) and special.kind == "symmetry_breaking":
                 continue
-            at, kind = to_error(special.at, special.error), special.kind.replace("_", " ")
+            at = to_error(special.at, special.error)
+            kind = special.kind.replace("_", " ")
             kind += f", where branch {special.meets} meets it," * (special.meets > 0)
             period = to_error(special.period, special.period * special.period_error)
             y = to_error(special.tip_y_max, special.tip_y_max * special.tip_y_max_error)
@@ -95,47 +104,48 @@ def _one_rod(view: View, rod: int) -> Iterator[str]:
 
 
 def _ends(curve: StoredBranch, along: str) -> str:
-    """From where to where a branch leads."""
-    first, last = curve.special[0], curve.special[-1]
+    """Start and end of a branch, as text."""
+    first = curve.special[0]
+    last = curve.special[-1]
     start = f"from the Hopf point at {along} = {to_error(first.at, first.error)}"
     if first.kind == "symmetry_breaking":
         where = f"{along} = {to_error(first.at, first.error)}"
         start = f"without mirror symmetry, from branch {first.meets} at {where}"
-    there = f"{along} = {to_error(last.at, last.error)}"
+    end = f"{along} = {to_error(last.at, last.error)}"
     if last.kind == "hopf":
-        return f"{start} to that at {there}"
+        return f"{start} to that at {end}"
     if last.kind == "symmetry_breaking":
-        return f"{start} to branch {last.meets} at {there}"
+        return f"{start} to branch {last.meets} at {end}"
     if last.kind == "left_the_model":
-        return f"{start} to where h1 = 0, {there}"
+        return f"{start} to where h1 = 0, {end}"
     return f"{start} to {ENDS[last.reason]}, {along} = {rounded(last.at, last.error)}"
 
 
 def coexistence(view: View, rod: int) -> list[Range]:
-    """The ranges of the parameter in which a rod has stable cycles on a branch and is stable at rest."""
+    """Ranges of the parameter in which both a cycle on a branch and the straight rod are stable."""
     stable = union(piece for curve in curves_of(view, rod) for piece in curve.stable_ranges)
     return intersection(stable, straight_ranges(view, rod, ends_of(view))[0])
 
 
 def two_cycles(view: View, rod: int) -> list[Range]:
-    """The ranges of the parameter in which a rod has stable cycles on two branches."""
+    """Ranges of the parameter in which cycles on two branches are stable."""
     pairs = combinations([curve.stable_ranges for curve in curves_of(view, rod)], 2)
     return union(piece for one, other in pairs for piece in intersection(one, other))
 
 
 def errors_of(curves: Iterable[StoredBranch]) -> dict[float, float]:
-    """The absolute errors of the special points of branches, by their places."""
+    """Absolute errors of the special points of branches, by their positions."""
     return {float(special.at): special.error for curve in curves for special in curve.special}
 
 
 def ends_of(view: View) -> Range:
-    """The range of the parameter that is followed."""
+    """(start, stop) of the followed parameter."""
     options = json.loads(view.attributes["config_resolved"])["branch"]
     return float(options["start"]), float(options["stop"])
 
 
 def _sizes(view: View, done: np.ndarray) -> str:
-    """The period and the size of all cycles of the points that are `done`; nothing where there are none."""
+    """Clause on the period and the amplitude of all cycles of the points that are `done`; may be empty."""
     v = view.variables
     if not np.isfinite(v["period"][done]).any():
         return ""
@@ -143,16 +153,16 @@ def _sizes(view: View, done: np.ndarray) -> str:
     return f": period {period} tau2, largest tip y {y} L"
 
 
-def _specials(view: View, rods: np.ndarray) -> Iterator[str]:
-    """How many special points of each kind there are, and where; where branches lead that end at no other."""
+def _special_lines(view: View, rods: np.ndarray) -> Iterator[str]:
+    """Yields lines about the special points of each kind, and about ends of branches."""
     along = followed_parameter(view)
     found: dict[str, list[tuple[float, float]]] = {word: [] for word in (*SPECIAL_WORDS, *ENDS)}
     for rod in rods:
         for number, curve in enumerate(curves_of(view, int(rod)), 1):
             for special in curve.special:
                 kind = special.reason if special.kind == "end" else special.kind
-                told_before = 0 < special.meets < number  # by the other branch that meets it
-                if kind in found and not told_before:
+                is_counted = 0 < special.meets < number  # with the other branch at this point
+                if kind in found and not is_counted:
                     found[kind].append((special.at, special.error))
     for kind, located in found.items():
         if not located:
@@ -167,7 +177,7 @@ def _specials(view: View, rods: np.ndarray) -> Iterator[str]:
 
 
 def _stopped(view: View, rods: np.ndarray) -> Iterator[str]:
-    """The rods with a branch that could not be followed to its end, some by name."""
+    """Yields lines about branches that could not be followed to their end, some with their rod."""
     along = followed_parameter(view)
     ends = [
         (int(rod), number, curve.special[-1])
@@ -182,19 +192,19 @@ def _stopped(view: View, rods: np.ndarray) -> Iterator[str]:
 
 
 def _coexistence(view: View, rods: np.ndarray) -> Iterator[str]:
-    """The rods that have two stable states somewhere, some by name."""
-    told = [int(rod) for rod in rods if not count_incomplete_branches(view, int(rod))]
-    if len(told) < len(rods):
-        yield f"not told of {counted(len(rods) - len(told), 'rod')}: {FULL}"
-    yield from _rods_with(view, told, BESIDE_STRAIGHT, coexistence)
-    if any(two_cycles(view, rod) for rod in told):
-        yield from _rods_with(view, told, TWO_CYCLES, two_cycles)
+    """Yields lines about rods with two stable states, some with their parameters."""
+    complete = [int(rod) for rod in rods if not count_incomplete_branches(view, int(rod))]
+    if len(complete) < len(rods):
+        yield f"not known for {counted(len(rods) - len(complete), 'rod')}: {FULL}"
+    yield from _rods_with(view, complete, BESIDE_STRAIGHT, coexistence)
+    if any(two_cycles(view, rod) for rod in complete):
+        yield from _rods_with(view, complete, TWO_CYCLES, two_cycles)
 
 
 def _rods_with(
     view: View, rods: list[int], words: str, ranges_of: Callable[[View, int], list[Range]]
 ) -> Iterator[str]:
-    """At how many rods something is, and in which ranges of the parameter, of some by name."""
+    """Yields the number of rods with a property, and its ranges of the parameter for some rods."""
     along = followed_parameter(view)
     having = [(rod, ranges) for rod in rods if (ranges := ranges_of(view, rod))]
     yield f"{words} at {some_of(len(having), len(rods), 'rod')}"
@@ -206,9 +216,10 @@ def _rods_with(
 
 
 def _searched(view: View, done: np.ndarray) -> str:
-    """How far was followed, and what is known to be complete."""
-    v, (start, stop) = view.variables, ends_of(view)
-    along, proved = followed_parameter(view), some_of(v["certified"][done].sum(), done.sum(), "rod")
+    """Line on the followed range and the completeness of the branches."""
+    start, stop = ends_of(view)
+    along = followed_parameter(view)
+    proved = some_of(view.variables["certified"][done].sum(), done.sum(), "rod")
     return (
         f"followed in {along} from {start:g} to {stop:g}; that no Hopf point is missing is proved at "
         f"{proved}; cycles that lie on no branch from a Hopf point are not found"

@@ -1,4 +1,4 @@
-"""What `rodsweep show` says of Hopf points and the cycles born there: on which side, how large, how sure."""
+"""Hopf points in `rodsweep show`: criticality, coefficients of the normal form, and their errors."""
 
 from collections.abc import Iterator, Mapping
 
@@ -9,31 +9,32 @@ from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, some_of
 from .arm.arm import crossings_of_arm
 from .ranges import rounded, span, to_error
+from .summary_lines import SummaryLines, in_brackets, region
 from .thresholds import not_stored
-from .told import Told, in_brackets, region
 
 SIDES = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
-"""What a Hopf point is called, by its criticality."""
+"""Words for the criticality of a Hopf point."""
 NAMED_RODS = 8
-"""Rods with subcritical Hopf points that are named."""
+"""Largest number of rods with subcritical Hopf points that are listed."""
 
 
-def criticality_summary(view: View, done: np.ndarray) -> Told:
-    """The task's sentences about the points that are `done`, a mask of the points' shape."""
+def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
+    """Lines of the summary about the points that are `done`, a mask of their shape."""
     v = view.variables
     if done.size == 1:
-        none = "nothing is known of its Hopf points"
+        none = "its Hopf points are not known"
         if v["crossing_count"].max() >= 0:
             none = f"no Hopf point up to F = {span(v['F_end'])}"
         lines = list(_hopf_lines(view)) or [none]
-        return Told(lines, [_searched(view, done)], of_arm=crossings_of_arm(view))
+        return SummaryLines(lines, [_searched(view, done)], of_arm=crossings_of_arm(view))
     side = v["criticality"][done]
-    first, known = side[:, 0], np.isfinite(side)
+    first = side[:, 0]
+    known = np.isfinite(side)
     with_hopf = v["crossing_count"] > 0
     where = in_brackets(region(view, done & with_hopf)) if (done & with_hopf).any() else ""
     lines = [f"Hopf points at {some_of(with_hopf[done].sum(), done.sum(), 'rod')}{where}"]
     if not known.any():
-        return Told(lines, [_searched(view, done)])
+        return SummaryLines(lines, [_searched(view, done)])
     a, b = (_relative(v, name, done) for name in ("amplitude_coefficient", "frequency_slope"))
     F = span(v["crossing_F"][done][:, 0], v["crossing_error"][done][:, 0])
     lines += [
@@ -47,17 +48,17 @@ def criticality_summary(view: View, done: np.ndarray) -> Told:
         f"{_worst(v['frequency_slope_error'][done])}",
     ]
     every = f"all Hopf points: {_counts(side)}; a = {span(*a)} L, b = {span(*b)} L^2/(k3 tau2)"
-    return Told(lines, trust, [every])
+    return SummaryLines(lines, trust, [every])
 
 
 def _relative(v: Mapping[str, np.ndarray], name: str, done: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A coefficient of all Hopf points and its absolute error, each (points, crossings)."""
+    """(coefficient of all Hopf points, its absolute error), each (points, crossings)."""
     values = v[name][done]
     return values, np.abs(values) * v[f"{name}_error"][done]
 
 
 def _hopf_lines(view: View) -> Iterator[str]:
-    """Every Hopf point of the one rod of a file, each number to its error."""
+    """Yields lines about every Hopf point of the single rod of a file, each number with its error."""
     v = {name: view.variables[name].ravel() for name in view.variables}
     for i in np.flatnonzero(v["crossing_kind"] > 0):
         F = to_error(v["crossing_F"][i], v["crossing_error"][i])
@@ -78,7 +79,8 @@ def _hopf_lines(view: View) -> Iterator[str]:
         ):
             value = complex(v[f"{name}_real"][i], v[f"{name}_imag"][i])
             error = abs(value) * v[f"{name}_error"][i]
-            real, imaginary = to_error(value.real, error), to_error(value.imag, error)
+            real = to_error(value.real, error)
+            imaginary = to_error(value.imag, error)
             yield f"  Re {symbol} = {real}, Im {symbol} = {imaginary} {unit}"
         for name, symbol, unit in (
             ("amplitude_coefficient", "a", "L"),
@@ -89,7 +91,7 @@ def _hopf_lines(view: View) -> Iterator[str]:
 
 
 def _words(v: dict[str, np.ndarray], i: int) -> str:
-    """What is born at the i-th Hopf point of the one rod: on which side of it, and whether it is stable."""
+    """Clause on the cycles at the i-th Hopf point of the single rod: their side and their stability."""
     side = int(v["criticality"][i])
     if side == 0:
         return "the sign of Re c is within its error"
@@ -107,7 +109,7 @@ def _words(v: dict[str, np.ndarray], i: int) -> str:
 
 
 def _subcritical_lines(view: View) -> Iterator[str]:
-    """The rods with subcritical Hopf points, some by name: those before the others where the first one is."""
+    """Yields lines about rods with subcritical Hopf points; rods whose first is subcritical come first."""
     side = view.by_point("criticality")
     rods = np.flatnonzero((side == 1).any(axis=-1))
     rods = rods[np.argsort(side[rods, 0] != 1, kind="stable")]
@@ -127,15 +129,16 @@ def _subcritical_lines(view: View) -> Iterator[str]:
 
 
 def _counts(side: np.ndarray) -> str:
-    """How many Hopf points are of each criticality."""
+    """Number of Hopf points of each criticality, as text."""
     counts = {word: int((side == value).sum()) for value, word in SIDES.items()}
     return ", ".join(f"{count} {word}" for word, count in counts.items() if count) or "none known"
 
 
 def _searched(view: View, done: np.ndarray) -> str:
-    """How far was searched, and whether all is found."""
+    """Line on the searched range and the completeness of the Hopf points."""
     v = view.variables
-    certified, rods = int(v["certified"][done].sum()), int(done.sum())
+    certified = int(v["certified"][done].sum())
+    rods = int(done.sum())
     hidden = int(v["crossing_count"][done].clip(min=0).sum() - (v["crossing_kind"][done] > 0).sum())
     return (
         f"searched up to F = {span(v['F_end'][done])}; that no Hopf point is missing is proved at "
@@ -144,6 +147,6 @@ def _searched(view: View, done: np.ndarray) -> str:
 
 
 def _worst(values: np.ndarray) -> str:
-    """The largest of the values that there are."""
+    """Largest known value, as text."""
     known = values[~np.isnan(values)]
     return f"{known.max():.1e}" if known.size else "not known"

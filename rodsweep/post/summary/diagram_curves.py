@@ -1,4 +1,4 @@
-"""What `rodsweep show` says of the curves of a diagram: their folds, ends and generalised Hopf points."""
+"""Curves of a diagram in `rodsweep show`: folds, ends and generalised Hopf points."""
 
 import numpy as np
 
@@ -19,11 +19,13 @@ CURVE_END_WORDS = {
     "closed": "closed curve",
     "not_followed": "no further point found",
 }
+"""Words for the end of a curve of special points of cycles."""
 
 
 def curve_lines(view: View, line: str, row: str) -> list[str]:
-    """Special places of the curves along the rows' parameter `line` and the parameter `row` across them."""
-    v, lines = view.variables, fold_lines(view, line, row)
+    """Lines about the curves; line: the parameter along the rows, row: the parameter across them."""
+    v = view.variables
+    lines = fold_lines(view, line, row)
     if "curve_criticality" in v:
         lines += bautin_lines(view, line, row)
     if "bautin_along_curve" in v:
@@ -34,8 +36,9 @@ def curve_lines(view: View, line: str, row: str) -> list[str]:
 
 
 def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
-    """The curves of folds and torus points of cycles, and where they end."""
-    v, lines = view.variables, []
+    """Lines about curves of folds and torus points of cycles, with their ends."""
+    v = view.variables
+    lines = []
     for number in np.unique(v["cycle_curve_number"]):
         on = np.flatnonzero(v["cycle_curve_number"] == number)
         kind = SPECIAL_KINDS[int(v["cycle_curve_kind"][on[0]])]
@@ -53,7 +56,7 @@ def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
 
 
 def agreement_lines(view: View, line: str) -> list[str]:
-    """How the curves agree with the rows."""
+    """Lines about the agreement of curves with the crossings on rows."""
     v = view.variables
     hopf = len(np.unique(v["curve_number"][v["curve_kind"] == 1]))
     double = len(np.unique(v["curve_number"])) - hopf
@@ -63,10 +66,8 @@ def agreement_lines(view: View, line: str) -> list[str]:
         f"{within} of them, over {line}; {_on_none(int(v['curves_untraced']))}"
     ]
     if "cycle_curve_number" in v and (len(v["cycle_curve_number"]) or v["cycle_curves_untraced"]):
-        curves, within = (
-            len(np.unique(v["cycle_curve_number"])),
-            error_text(float(v["cycle_curve_agreement"])),
-        )
+        curves = len(np.unique(v["cycle_curve_number"]))
+        within = error_text(float(v["cycle_curve_agreement"]))
         lines.append(
             f"curves of cycles: {curves}; folds and torus points of rows lie within {within} of "
             f"them, over {line}; {_on_none(int(v['cycle_curves_untraced']))}"
@@ -75,13 +76,14 @@ def agreement_lines(view: View, line: str) -> list[str]:
 
 
 def _on_none(count: int) -> str:
-    """How many points of rows lie on no curve."""
+    """Clause on the number of points of rows that lie on no curve."""
     return f"{count} lies on none" if count == 1 else f"{count} lie on none"
 
 
 def fold_lines(view: View, line: str, row: str) -> list[str]:
-    """Where curves turn back, and where that of the partial beam does."""
-    v, lines = view.variables, []
+    """Lines about folds of curves, and about the fold in the limit of the partial beam."""
+    v = view.variables
+    lines = []
     for i, (kind, of) in enumerate(zip(v["fold_kind"], v["fold_of"], strict=True)):
         what = "Hopf points" if kind else "double eigenvalues"
         where = _place(view, "fold", i, (row, line))
@@ -95,7 +97,7 @@ def fold_lines(view: View, line: str, row: str) -> list[str]:
 
 
 def _place(view: View, what: str, i: int, names: tuple[str, str]) -> str:
-    """The i-th fold or generalised Hopf point with its errors."""
+    """Position of the i-th fold or generalised Hopf point, with its errors."""
     v = view.variables
     return ", ".join(
         f"{name} = {to_error(v[f'{what}_{name}'][i], v[f'{what}_{name}_error'][i])}" for name in names
@@ -103,7 +105,7 @@ def _place(view: View, what: str, i: int, names: tuple[str, str]) -> str:
 
 
 def criticality_lines(view: View) -> list[str]:
-    """On which side of the Hopf curves cycles are born."""
+    """Line about the criticality of the points of Hopf curves."""
     v = view.variables
     side = v["curve_criticality"][v["curve_kind"] == 1]
     kinds = {
@@ -112,16 +114,16 @@ def criticality_lines(view: View) -> list[str]:
         "undecided": side == 0,
         "without a normal form": np.isnan(side),
     }
-    told = [f"{int(there.sum())} {word}" for word, there in kinds.items() if there.any()]
+    counts = [f"{int(mask.sum())} {word}" for word, mask in kinds.items() if mask.any()]
     points = counted(len(side), "point")
     return [
         f"criticality, gamma1 = {float(v['curve_gamma1']):g}: of {points} of the Hopf curves "
-        f"{', '.join(told) or 'none'}"
+        f"{', '.join(counts) or 'none'}"
     ]
 
 
 def bautin_lines(view: View, line: str, row: str) -> list[str]:
-    """The generalised Hopf points, where the side on which cycles are born changes."""
+    """Lines about generalised Hopf points, at which the criticality changes."""
     v = view.variables
     lines = [
         f"generalised Hopf point (Re c = 0) on curve {int(v['bautin_curve'][i])}: "
@@ -130,13 +132,14 @@ def bautin_lines(view: View, line: str, row: str) -> list[str]:
     ]
     if unlocated := int(v["bautin_unlocated"]):
         changes = counted(unlocated, "change")
-        lines.append(f"{changes} of criticality seen whose place could not be found")
+        lines.append(f"{changes} of criticality could not be located")
     return lines
 
 
 def bautin_curve_lines(view: View) -> list[str]:
-    """Where the curves of generalised Hopf points over a third parameter lead, and why they end."""
-    v, lines = view.variables, []
+    """Lines about curves of generalised Hopf points over a third parameter, with reasons for their ends."""
+    v = view.variables
+    lines = []
     names = [name for name in LINEAR_PARAMETERS if f"bautin_along_{name}" in v]
     for number in np.unique(v["bautin_along_curve"]):
         on = v["bautin_along_curve"] == number

@@ -1,4 +1,4 @@
-"""The absolute error of every variable that has one, so that no more digits are told than are known."""
+"""Absolute errors of variables, which limit the number of digits in a summary."""
 
 from collections.abc import Mapping
 
@@ -7,7 +7,7 @@ import numpy as np
 from .ranges import span
 
 EIGENVALUE = 1e-9
-"""Relative error of the eigenvalue of a straight rod beside a cycle: what its solver is asked for."""
+"""Relative error of the eigenvalue of the straight rod in results of limit cycles: its solver's tolerance."""
 RELATIVE = {
     "period": "period_error",
     "frequency": "period_error",
@@ -21,7 +21,7 @@ RELATIVE = {
     "condition": "condition_error",
     "transient_growth": "growth_error",
 }
-"""Variables whose error is stored relative to them."""
+"""Variables with a stored relative error, and the name of the error."""
 ABSOLUTE = {
     "growth_rate": "error_estimate",
     "frequency": "error_estimate",
@@ -32,34 +32,37 @@ ABSOLUTE = {
     "crossing_at": "crossing_error",
     "crossing_frequency": "crossing_frequency_error",
 }
-"""Variables whose error is stored in their unit; `frequency` is one of these where there is no period."""
+"""Variables with a stored absolute error, and its name; for `frequency` only in files without a period."""
 EXTREMA = ("tip_x_min", "tip_x_max", "tip_y_min", "tip_theta_max", "least_stretch")
 """Variables of a cycle whose error is stored in units of tip_y_max."""
 BETWEEN_NODES = 1e-3
-"""How much less h1 may be between nodes than at them, in units of how far it is from 1."""
+"""Largest dip of h1 between nodes below its value at nodes, in units of its distance from 1."""
 POWERS = ("injection_mean", "injection_rms", "dissipation_mean", "dissipation_rms")
+"""Powers, whose error follows from those of amplitude, period and energy balance."""
 MIN_KNOWN = 0.5
-"""Relative error from which not one digit of a time is known."""
-OF_THE_STRAIGHT_ROD = ("linear_growth_rate", "linear_frequency")
+"""Relative error of a time from which on none of its digits is known."""
+STRAIGHT_EIGENVALUE = ("linear_growth_rate", "linear_frequency")
+"""Variables with the eigenvalue of the straight rod."""
 
 
 def errors_of(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
-    """The absolute errors of a variable of a file, of its shape: 0 where it is known to all digits."""
-    with np.errstate(invalid="ignore"):  # inf, whose error is 0
+    """Absolute errors of a variable of a file, of its shape; 0 if all digits are known."""
+    with np.errstate(invalid="ignore"):  # an infinite value times the error 0
         return _errors(v, name)
 
 
 def _errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
+    """Absolute errors of a variable, which may warn at infinite values."""
     values = np.abs(v[name])
-    if name in OF_THE_STRAIGHT_ROD:
-        return EIGENVALUE * np.hypot(*(v[part] for part in OF_THE_STRAIGHT_ROD))
+    if name in STRAIGHT_EIGENVALUE:
+        return EIGENVALUE * np.hypot(*(v[part] for part in STRAIGHT_EIGENVALUE))
     if name in POWERS and "amplitude_error" in v:
         return values * power_error(v, fluctuation=name.endswith("rms"))
     if name in EXTREMA and "extrema_error" in v:
         beside = BETWEEN_NODES * np.abs(1 - v[name]) if name == "least_stretch" else 0.0
         return v["extrema_error"] * v["tip_y_max"] + beside
     if name == "transient_time" and "growth_error" in v:
-        # Next to its flat maximum the growth falls quadratically, down to 1 at t = 0.
+        # The growth is quadratic near its maximum, and is 1 at t = 0.
         rise = np.maximum(1 - 1 / v["transient_growth"], np.finfo(float).tiny)
         return values * np.sqrt(v["growth_error"] / rise)
     if RELATIVE.get(name, "") in v:
@@ -68,20 +71,20 @@ def _errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
 
 
 def power_error(v: Mapping[str, np.ndarray], fluctuation: bool = False) -> np.ndarray:
-    """Relative error of a power of a cycle, of any shape: its mean goes with the amplitude's square."""
+    """Relative error of a power of a cycle, of any shape; the mean power grows with the squared amplitude."""
     mean = 2 * v["amplitude_error"] + v["period_error"] + np.abs(v["energy_imbalance"])
     return mean + 2 * v["extrema_error"] if fluctuation else mean
 
 
 def is_known(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
-    """Where a variable is known at all, a mask of its shape: a maximum hardly above 1 may be anywhere."""
+    """Mask of known values of a variable: the time of a maximum that barely exceeds 1 is unknown."""
     values = np.asarray(v[name])
     if name != "transient_time" or "growth_error" not in v:
         return np.ones(values.shape, bool)
     return (values == 0) | ~(errors_of(v, name) >= MIN_KNOWN * values)
 
 
-def span_of(v: Mapping[str, np.ndarray], name: str, there: np.ndarray) -> str:
-    """The range of a variable over the points that are `there`, a mask of their shape, as far as known."""
-    there = there & is_known(v, name) if name == "transient_time" else there
-    return span(v[name][there], errors_of(v, name)[there])
+def span_of(v: Mapping[str, np.ndarray], name: str, mask: np.ndarray) -> str:
+    """Range of the known values of a variable over points, a mask of their shape."""
+    chosen = mask & is_known(v, name) if name == "transient_time" else mask
+    return span(v[name][chosen], errors_of(v, name)[chosen])

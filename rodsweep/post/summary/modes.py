@@ -1,4 +1,4 @@
-"""What `rodsweep show` says of modes: stability, non-normality and accuracy."""
+"""Modes in `rodsweep show`: stability, non-normality and accuracy."""
 
 import numpy as np
 
@@ -15,11 +15,11 @@ from .spectrum import (
     threshold_lines,
     unknowns_lines,
 )
-from .told import Told
+from .summary_lines import SummaryLines
 
 
-def modes_summary(view: View, done: np.ndarray) -> Told:
-    """The task's sentences about the points that are `done`, a mask of the points' shape."""
+def modes_summary(view: View, done: np.ndarray) -> SummaryLines:
+    """Lines of the summary about the points that are `done`, a mask of their shape."""
     unknowns = unknowns_lines(view, done)
     if done.size == 1:
         answer, trust, details, of_arm = eigenvalue_lines(view), [], unknowns, list[str]()
@@ -31,13 +31,14 @@ def modes_summary(view: View, done: np.ndarray) -> Told:
     errors = view.variables["mode_error"][done]
     if np.isfinite(errors).any():
         trust.append(f"error of the modes, relative: worst {np.nanmax(errors):.1e}")
-    return Told([*answer, *growth_lines(view, done)], trust, details, of_arm)
+    return SummaryLines([*answer, *growth_lines(view, done)], trust, details, of_arm)
 
 
 def growth_lines(view: View, done: np.ndarray) -> list[str]:
-    """How far the modes are from being normal, and what that makes of small motions; done: (points,)."""
+    """Lines about non-normality of the modes and transient growth of small motions; done: (points,)."""
     v = view.variables
-    condition, error = v["condition"][done][:, 0], errors_of(v, "condition")[done][:, 0]
+    condition = v["condition"][done][:, 0]
+    error = errors_of(v, "condition")[done][:, 0]
     lines = [f"condition of the leading eigenvalue: {span(condition, error)}"]
     if "transient_growth" not in v:
         return lines

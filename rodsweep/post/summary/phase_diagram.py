@@ -1,4 +1,4 @@
-"""What `rodsweep show` says of a phase diagram: how much of the plane each class takes."""
+"""Phase diagrams in `rodsweep show`: shares of the classes in the plane, and changes on the rows."""
 
 import numpy as np
 
@@ -11,24 +11,26 @@ from ...wording import counted, some_of
 from .arm.arm import loads_at
 from .diagram_curves import agreement_lines, criticality_lines, curve_lines
 from .ranges import span
+from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines
-from .told import Told
 
 FLUTTER = next(value for value, word in CLASSES if word == "flutter")
+"""Number of the class flutter."""
 BOTH = next(value for value, word in STABLE_STATES if word == "both")
+"""Number of the stable states where straight rod and cycle are both stable."""
 CHANGES_OF_CYCLES = {
     "fold": "folds of cycles",
     "torus": "torus points of cycles",
     "symmetry_breaking": "cycles lose their symmetry",
     "left_the_model": "cycles leave the model (h1 = 0)",
 }
-"""What is told of the special points of rows, by their kind."""
+"""Words for special points of rows, by their kind."""
 SHARP = 1e-8
-"""Resolution of a boundary, in units of the parameter, for which the uniform grid is counted."""
+"""Resolution of a boundary, in units of the parameter, of the uniform grid that is compared."""
 
 
-def phase_diagram_summary(view: View, done: np.ndarray) -> Told:
-    """The task's sentences about the rows that are `done`, a mask of the rows' shape."""
+def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
+    """Lines of the summary about the rows that are `done`, a mask of their shape."""
     v = view.variables
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
     row = next(name for name in view.parameters if len(view.axes[name]) > 1)
@@ -42,19 +44,21 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> Told:
         trust += agreement_lines(view, line)
     if "curve_criticality" in v:
         details += criticality_lines(view)
-    return Told(answer, trust, details, crossings_of_arms(view, done))
+    return SummaryLines(answer, trust, details, crossings_of_arms(view, done))
 
 
 def count_lines(found: np.ndarray) -> list[str]:
-    """How many places of the grid are of each class; `found` has those of all, of any shape."""
+    """Line on the number of grid points of each class; found: classes of the points, of any shape."""
     counts = [f"{int((found == value).sum())} {word}" for value, word in CLASSES if (found == value).any()]
     return [f"of {counted(found.size, 'place')} on the rows: {', '.join(counts)}"]
 
 
 def saving_line(view: View, done: np.ndarray, line: str) -> str:
-    """What the rows cost in all, beside a uniform grid; done: which rows are there, of the shape of rows."""
-    v, rows = view.variables, int(done.sum())
-    solves, boxes = int(v["solves"][done].sum()), int(v["boxes"][done].sum())
+    """Line on the cost of the rows compared with a uniform grid; done: mask of the computed rows."""
+    v = view.variables
+    rows = int(done.sum())
+    solves = int(v["solves"][done].sum())
+    boxes = int(v["boxes"][done].sum())
     uniform = float(np.ptp(v[line])) / SHARP * rows
     return (
         f"in all {counted(solves, 'eigenproblem')} and {counted(boxes, 'evaluation')} of D; a uniform grid "
@@ -64,22 +68,25 @@ def saving_line(view: View, done: np.ndarray, line: str) -> str:
 
 
 def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
-    """Over which part of the grid each state is stable, on which rows both are, and where cycles change.
+    """Lines about the share of the grid in which each state is stable, and about changes of cycles.
 
     done: a mask of the rows' shape.
     """
-    v, of_row = view.variables, view.point_columns[row].reshape(done.shape)
-    states, kinds, at = v["stable_states"], v["cycle_special_kind"], v[f"cycle_special_{line}"]
+    v = view.variables
+    of_row = view.point_columns[row].reshape(done.shape)
+    states = v["stable_states"]
+    kinds = v["cycle_special_kind"]
+    at = v[f"cycle_special_{line}"]
     found = states[done]
     shares = ((100 * float((found == value).mean()), word) for value, word in STABLE_STATES)
-    told = ", ".join(f"{share:.1f} % {word.replace('_', ' ')}" for share, word in shares if share)
-    lines = [f"stable states, of the grid: {told}"]
+    parts = ", ".join(f"{share:.1f} % {word.replace('_', ' ')}" for share, word in shares if share)
+    lines = [f"stable states, of the grid: {parts}"]
     both = (states == BOTH) & done[..., np.newaxis]
     places = np.broadcast_to(v[line], both.shape)[both]
     found_on = {"straight rod and cycle both stable": (both.any(axis=-1), places)}
     for kind, words in CHANGES_OF_CYCLES.items():
-        there = (kinds == SPECIAL_KINDS.index(kind)) & done[..., np.newaxis]
-        found_on[words] = there.any(axis=-1), at[there]
+        of_kind = (kinds == SPECIAL_KINDS.index(kind)) & done[..., np.newaxis]
+        found_on[words] = of_kind.any(axis=-1), at[of_kind]
     for words, (rows, where) in found_on.items():
         if rows.any():
             lines.append(
@@ -90,13 +97,13 @@ def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
 
 
 def share_lines(found: np.ndarray) -> list[str]:
-    """How much of the grid each class takes; `found` has the classes of its points, of any shape."""
+    """Line on the share of the grid of each class; found: classes of the points, of any shape."""
     shares = ((100 * float((found == value).mean()), word) for value, word in CLASSES)
     return [f"of the grid: {', '.join(f'{share:.1f} % {word}' for share, word in shares if share)}"]
 
 
 def start_lines(view: View, done: np.ndarray, line: str) -> list[str]:
-    """What rows do where they begin, unless all are monotone; done: which rows are there, (rows,)."""
+    """Line on the classes at the start of the rows, unless all are monotone; done: a mask, (rows,)."""
     start = view.variables["class"][done][:, 0]
     words = [f"{word} on {int((start == n).sum())}" for n, word in CLASSES if (start == n).any()]
     if words == [f"monotone on {len(start)}"]:
@@ -106,15 +113,16 @@ def start_lines(view: View, done: np.ndarray, line: str) -> list[str]:
 
 
 def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
-    """What changes on the rows that are `done`, a mask of their shape: on how many, where, and where not."""
-    v, of_row = view.variables, view.point_columns[row].reshape(done.shape)
+    """Lines about the changes on the rows that are `done`, a mask of their shape."""
+    v = view.variables
+    of_row = view.point_columns[row].reshape(done.shape)
     lines = start_lines(view, done, line)
     for number, word in enumerate(CROSSING_KINDS):
-        there = (v["crossing_kind"] == number) & done[..., np.newaxis]
-        on_row = there.any(axis=-1)
+        of_kind = (v["crossing_kind"] == number) & done[..., np.newaxis]
+        on_row = of_kind.any(axis=-1)
         if number and on_row.any():
-            first = there & (there.cumsum(axis=-1) == 1)
-            again = there & ~first
+            first = of_kind & (of_kind.cumsum(axis=-1) == 1)
+            again = of_kind & ~first
             at, later = (span(v["crossing_at"][one], v["crossing_error"][one]) for one in (first, again))
             text = f"{word}: on {some_of(on_row.sum(), done.sum(), 'row')}, {line} = {at}"
             text += f", {row} = {span(of_row[on_row])}"
@@ -129,14 +137,15 @@ def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
 
 
 def crossings_of_arms(view: View, done: np.ndarray) -> list[str]:
-    """What changes along F on rows, in the units of an arm; done: a mask of the rows' shape."""
+    """Lines about the changes along F on rows, in the units of an arm; done: a mask of the rows' shape."""
     if not view.quantities or "F" in view.parameters:
         return []
-    v, lines = view.variables, []
+    v = view.variables
+    lines = []
     for number, word in enumerate(CROSSING_KINDS):
-        there = (v["crossing_kind"] == number) & done[..., np.newaxis]
-        if number and there.any():
-            forces = v["crossing_at"][there]
-            rows = some_of(there.any(axis=-1).sum(), done.sum(), "row")
+        of_kind = (v["crossing_kind"] == number) & done[..., np.newaxis]
+        if number and of_kind.any():
+            forces = v["crossing_at"][of_kind]
+            rows = some_of(of_kind.any(axis=-1).sum(), done.sum(), "row")
             lines.append(f"{word}: on {rows}, at {loads_at(view, forces, np.zeros(len(forces), int))}")
     return lines

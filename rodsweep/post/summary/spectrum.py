@@ -1,4 +1,4 @@
-"""What `rodsweep show` says of spectra: stability, accuracy and cost."""
+"""Spectra in `rodsweep show`: stability, accuracy and cost."""
 
 import numpy as np
 
@@ -7,23 +7,23 @@ from ...wording import counted, some_of
 from ..hopf_points import StoredChanges
 from .ranges import span, to_error
 from .stability import stability_lines
-from .told import Told, in_brackets, region
+from .summary_lines import SummaryLines, in_brackets, region
 
 HOW_FOUND = (
     "zeros of the characteristic determinant D(i eta; F), and double ones for F*, where the leading "
     "eigenvalue changes so between two forces of the file; `task: thresholds` proves that none is missing"
 )
-"""What the forces are that `threshold_lines` tells."""
+"""Explanation of the forces in `threshold_lines`."""
 PROOFS = {True: "proved by a winding number", False: "not proved"}
-"""What is said of the number of unstable modes at a single point."""
+"""Words for the proof of the number of unstable modes at a single point."""
 
 
-def spectrum_summary(view: View, done: np.ndarray) -> Told:
-    """The task's sentences about the points that are `done`, a mask of the points' shape."""
+def spectrum_summary(view: View, done: np.ndarray) -> SummaryLines:
+    """Lines of the summary about the points that are `done`, a mask of their shape."""
     if done.size == 1:
-        return Told(eigenvalue_lines(view), details=unknowns_lines(view, done))
+        return SummaryLines(eigenvalue_lines(view), details=unknowns_lines(view, done))
     lines, how, of_arm = threshold_lines(view)
-    return Told(
+    return SummaryLines(
         [stable_line(view, done), *lines],
         [*error_lines(view, done), stability_line(view, done), *how],
         [leading_line(view, done), *unknowns_lines(view, done)],
@@ -32,19 +32,19 @@ def spectrum_summary(view: View, done: np.ndarray) -> Told:
 
 
 def stable_line(view: View, done: np.ndarray) -> str:
-    """At how many of the points that are `done`, a mask of their shape, the rod is stable, and where."""
+    """Line on the stability of the straight rod at the points that are `done`, a mask of their shape."""
     unstable = view.variables["unstable_count"]
     masks = {"stable": unstable == 0, "unstable": unstable > 0, "not known": unstable < 0}
-    there = {word: done & mask for word, mask in masks.items() if (done & mask).any()}
+    found = {word: done & mask for word, mask in masks.items() if (done & mask).any()}
     whole = counted(int(done.sum()), "point")
-    if len(there) == 1:
-        return f"straight rod: {next(iter(there))} at all {whole}"
-    told = (f"{word} at {int(mask.sum())}{in_brackets(region(view, mask))}" for word, mask in there.items())
-    return f"straight rod, of {whole}: {', '.join(told)}"
+    if len(found) == 1:
+        return f"straight rod: {next(iter(found))} at all {whole}"
+    counts = (f"{word} at {int(mask.sum())}{in_brackets(region(view, mask))}" for word, mask in found.items())
+    return f"straight rod, of {whole}: {', '.join(counts)}"
 
 
 def leading_line(view: View, done: np.ndarray) -> str:
-    """The leading eigenvalue over the points that are `done`, a mask of their shape."""
+    """Line on the leading eigenvalue at the points that are `done`, a mask of their shape."""
     v = view.variables
     rate, frequency = (
         span(v[name][done][:, 0], v["error_estimate"][done][:, 0]) for name in ("growth_rate", "frequency")
@@ -53,13 +53,16 @@ def leading_line(view: View, done: np.ndarray) -> str:
 
 
 def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
-    """(where the rod changes along F; how that was found; the first of an arm), empty where F is no axis."""
+    """(lines about changes along F, line on their computation, lines in an arm's units).
+
+    All are empty if F is no axis.
+    """
     lines, of_arm = stability_lines(view, "F", StoredChanges(view, "F").on)
     return lines, [f"thresholds: {HOW_FOUND}"] if lines else [], of_arm
 
 
 def eigenvalue_lines(view: View) -> list[str]:
-    """The eigenvalues of the one point of a file, with their errors, and how many of them are unstable."""
+    """Lines about the eigenvalues of the single point of a file, with errors, and its unstable modes."""
     v = view.variables
     columns = (v[name].ravel() for name in ("growth_rate", "frequency", "error_estimate"))
     lines = [
@@ -68,13 +71,14 @@ def eigenvalue_lines(view: View) -> list[str]:
         for number, (growth, frequency, error) in enumerate(zip(*columns, strict=True), 1)
         if np.isfinite(growth)
     ]
-    unstable, proof = int(v["unstable_count"].max()), PROOFS[bool(v["certified"].all())]
+    unstable = int(v["unstable_count"].max())
+    proof = PROOFS[bool(v["certified"].all())]
     count = f"unstable modes: {unstable}, {proof}" if unstable >= 0 else "unstable modes: not known"
     return [count, *lines]
 
 
 def error_lines(view: View, done: np.ndarray) -> list[str]:
-    """How accurate the eigenvalues are; `done` has the points' shape."""
+    """Line on the errors of the eigenvalues; done: a mask of the points' shape."""
     v = view.variables
     size = np.hypot(v["growth_rate"][done], v["frequency"][done])
     relative = v["error_estimate"][done] / size
@@ -84,20 +88,19 @@ def error_lines(view: View, done: np.ndarray) -> list[str]:
 
 
 def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
-    """On how many unknowns the points that are `done`, a mask of their shape, were solved."""
+    """Line on the unknowns of the mesh at the points that are `done`, a mask of their shape."""
     v = view.variables
     unknowns = 3 * v["elements"][done].astype(int) * v["order"][done]
     if (followed := int((unknowns == 0).sum())) == unknowns.size:
-        return [
-            "every point was followed from the first one of its stretch, whose modes a mesh gave, or failed"
-        ]
+        return ["eigenvalues of every point were followed from the first point of its stretch, or it failed"]
     without = f"; none at {followed} that were followed or failed" if followed else ""
     return [f"unknowns a point: {span(unknowns[unknowns > 0])}{without}"]
 
 
 def stability_line(view: View, done: np.ndarray) -> str:
-    """How many points are certified, and how many unstable modes there are; `done` has the points' shape."""
-    unstable, points = view.variables["unstable_count"][done], int(done.sum())
+    """Line on the number of unstable modes and its proof; done: a mask of the points' shape."""
+    unstable = view.variables["unstable_count"][done]
+    points = int(done.sum())
     certified = int(view.variables["certified"][done].sum())
     text = f"number of unstable modes: at most {max(int(unstable.max()), 0)}, proved at "
     text += some_of(certified, points, "point")

@@ -1,4 +1,4 @@
-"""What `rodsweep show` says of where the straight rod becomes unstable along a parameter, or stable again."""
+"""Stability of the straight rod along a parameter in `rodsweep show`: its thresholds."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -7,62 +7,64 @@ import numpy as np
 from ...results.file.view import View
 from ...sweep.points.lines import ParameterLine, lines_over
 from ...wording import counted, some_of
-from ..hopf_points import Bracket, Located
+from ..hopf_points import BracketedChange, LocatedChange
 from .arm.arm import thresholds_of_arm
 from .ranges import error_text, stated_error
 
 FEW_LINES = 3
-"""Lines whose thresholds are named one by one."""
+"""Largest number of lines whose thresholds are listed one by one."""
 OVER_FORCE = {
     "onset": "F* (straight rod starts to oscillate)",
     "hopf": "F** (straight rod starts to beat)",
     "restabilization": "restabilization (straight rod is stable again)",
 }
-"""What a threshold is called along F, by its kind."""
+"""Words for a threshold along F, by its kind."""
 OVER_OTHERS = {
     "hopf": "the straight rod starts to beat, as {name} grows, at {name}",
     "restabilization": "the straight rod is stable again, as {name} grows, at {name}",
 }
-"""What a change of stability is called along another parameter."""
+"""Words for a change of stability along another parameter, by its kind."""
 
-Threshold = Located | Bracket
+Threshold = LocatedChange | BracketedChange
+"""A threshold: located, or bracketed by two points."""
 
 
 def stability_lines(
     view: View, name: str, found_on: Callable[[ParameterLine], Sequence[Threshold]]
 ) -> tuple[list[str], list[str]]:
-    """Where the straight rod changes along a parameter, a sentence for each kind of threshold.
+    """(line for each kind of threshold along a parameter, the same along F in an arm's own units).
 
-    None where the parameter is no axis. Then the same of an arm along F, in its own units.
-
-    found_on: gives the thresholds on a line over the parameter.
+    Empty if the parameter is no axis. found_on: function that finds the thresholds on a line over the
+    parameter.
     """
     column = view.point_columns[name]
     if len(np.unique(column[np.isfinite(column)])) < 2:
         return [], []
     lines = list(lines_over(view.point_columns, name))
-    names, along = names_of(lines), [found_on(line) for line in lines]
-    texts, of_arm = list[str](), list[str]()
+    names = names_of(lines)
+    along = [found_on(line) for line in lines]
+    texts = list[str]()
+    of_arm = list[str]()
     for kind, words in (OVER_FORCE if name == "F" else OVER_OTHERS).items():
         of_kind = [[point for point in points if point.kind == kind] for points in along]
         if found := {i: points for i, points in enumerate(of_kind) if points}:
             texts.append(f"{words.format(name=name)}: {_positions(found, names, name)}")
             every = [(point, lines[i].at) for i, points in found.items() for point in points]
-            located = [(point, at) for point, at in every if isinstance(point, Located)]
+            located = [(point, at) for point, at in every if isinstance(point, LocatedChange)]
             of_arm += thresholds_of_arm(view, kind, located) if name == "F" else []
     return texts, of_arm
 
 
 def names_of(lines: Sequence[ParameterLine]) -> list[str]:
-    """What tells each line from the others, in words; empty for a single line."""
+    """Parameters that distinguish each line, as text; empty for a single line."""
     varied = [n for n in lines[0].parameters if len({line.parameters[n] for line in lines}) > 1]
     return [", ".join(f"{name} = {line.parameters[name]:.6g}" for name in varied) for line in lines]
 
 
 def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: str) -> str:
-    """The thresholds on those of the named lines that have any: one by one where few, else their range."""
+    """Thresholds on the named lines that have some: one by one for a few lines, else their range."""
     points = [point for line in found.values() for point in line]
-    located = [point for point in points if isinstance(point, Located)]
+    located = [point for point in points if isinstance(point, LocatedChange)]
     stated = [stated_error(point.position, point.error)[1] for point in located]
     error = f" (+- {error_text(max(stated))})" if stated else ""
     some = f", on {some_of(len(found), len(names), 'line')} over {along}" if len(found) < len(names) else ""
@@ -71,11 +73,12 @@ def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: st
         beats = f", frequency {frequency:.6g} rad/tau2" if np.isfinite(frequency) else ""
         return _text(located[0]) + error + some + beats
     if len(found) <= FEW_LINES:
-        texts = (_together(found[i], names[i]) for i in found)
+        texts = (_thresholds_of_line(found[i], names[i]) for i in found)
         return f"{', '.join(texts)}{error}"
     if not located:
-        ends = [(point.low, point.high) for point in points if isinstance(point, Bracket)]
-        low, high = min(low for low, _ in ends), max(high for _, high in ends)
+        ends = [(point.low, point.high) for point in points if isinstance(point, BracketedChange)]
+        low = min(low for low, _ in ends)
+        high = max(high for _, high in ends)
         return f"between {low:.6g} and {high:.6g}{some}"
     first = min(located, key=lambda point: point.position)
     last = max(located, key=lambda point: point.position)
@@ -84,13 +87,13 @@ def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: st
     return f"{_text(first)} to {_text(last)}{error}{some}{more}"
 
 
-def _together(points: Sequence[Threshold], name: str) -> str:
-    """The thresholds of a line, and which line it is."""
+def _thresholds_of_line(points: Sequence[Threshold], name: str) -> str:
+    """Thresholds of a line, with the parameters of the line."""
     return " for ".join(filter(None, (" and ".join(map(_text, points)), name)))
 
 
 def _text(threshold: Threshold) -> str:
-    """Where a threshold lies, to the first digit that its error reaches, or between which points."""
-    if isinstance(threshold, Bracket):
+    """Position of a threshold to the first digit that its error reaches, or the points that bracket it."""
+    if isinstance(threshold, BracketedChange):
         return f"between {threshold.low:.6g} and {threshold.high:.6g}"
     return stated_error(threshold.position, threshold.error)[0]

@@ -1,4 +1,4 @@
-"""Results as tables with one row an item: what `rodsweep export` writes, and Python's DataFrames."""
+"""Results as tables with one row for each item, for `rodsweep export` and for DataFrames in Python."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from .rows import Rows, item_rows, line_columns, list_columns, point_columns, si
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A table: its name, its columns with equal numbers of rows, and how many points have no row in it."""
+    """A table: its name, columns of equal length, and the number of points without a row."""
 
     name: str
     columns: tuple[Column, ...]
@@ -28,34 +28,35 @@ class Table:
 
     @property
     def rows(self) -> int:
+        """Number of rows."""
         return len(self.columns[0].values)
 
 
 @dataclass(frozen=True)
 class Tables:
-    """All tables of a result; each is made when it is asked for."""
+    """All tables of a result, each made on request."""
 
     view: View
 
     def __post_init__(self) -> None:
-        """A grid over an arm's quantities is a list of its points, as any table."""
+        """Turns a grid over an arm's quantities into the list of its points."""
         object.__setattr__(self, "view", self.view.listed)
 
     @cached_property
     def contents(self) -> Contents:
-        """Names and variables of the result's tables."""
+        """Names and variables of the tables of the result."""
         return contents_of(self.view)
 
     def table(self, name: str | None = None, columns: Sequence[str] = ()) -> Table:
-        """A table by its name, the one that has the columns, or the first of the task.
+        """A table, by its name or by its columns; by default the first table of the task.
 
-        columns: names of those that are wanted, in their order; by default all, and of the points of a list
-        only parameters, quantities and status. InputError for a name that there is not.
+        columns: names of the columns, in their order; by default all, but of the points of a list only
+        parameters, quantities and status. Raises InputError for an unknown name.
         """
         name = chosen(self.view, self.contents, name, tuple(columns))
         points, found = self._rows(name)
         beside = [] if points is None else list(point_columns(self.view, self.contents.of_points, points))
-        if name == GRID:  # whose first column is a parameter: in the order of parameters, as everywhere
+        if name == GRID:  # its first column is a parameter, which takes its place among the other parameters
             before = list(PARAMETERS)[: list(PARAMETERS).index(found[0].name)]
             beside.insert(sum(column.name in before for column in beside), found.pop(0))
         by_name = {column.name: column for column in (*beside, *found)}
@@ -68,11 +69,11 @@ class Tables:
         return Table(name, tuple(by_name[each] for each in columns), empty, others)
 
     def items(self, name: str) -> tuple[Column, ...]:
-        """The columns of a list without those of its points."""
+        """Columns of a list without those of its points."""
         return tuple(self._rows(name)[1])
 
     def _rows(self, name: str) -> tuple[NDArray[np.int64] | None, list[Column]]:
-        """(the point of every row of a table, None where rows have none; the columns of its items)."""
+        """(point of every row of a table, or None if rows have none; columns of its items)."""
         if name == POINTS:
             return np.arange(self.view.variables["status"].size), []
         if name == BRANCHES:
@@ -81,7 +82,9 @@ class Tables:
         return None if name in self.contents.joint else rows[0], columns
 
     def _list(self, name: str) -> tuple[Rows, list[Column]]:
-        joint, variables = name in self.contents.joint, self.contents.lists[name]
+        """(rows of a list, its columns, in SI units as well)."""
+        joint = name in self.contents.joint
+        variables = self.contents.lists[name]
         rows = item_rows(self.view, variables, joint)
         columns = list(list_columns(self.view, variables, rows, joint))
         columns += line_columns(self.view, rows) if name == GRID else ()
@@ -89,8 +92,9 @@ class Tables:
         return rows, [*columns, *si_columns(self.view, variables, columns, points)]
 
     def _branches(self) -> tuple[NDArray[np.int64], list[Column]]:
-        """The cycles of branches with the special points between them."""
-        (cycles, of_cycles), (special, of_special) = self._list("cycles"), self._list("special_points")
+        """(point of every row, columns) of the cycles of branches with special points between them."""
+        cycles, of_cycles = self._list("cycles")
+        special, of_special = self._list("special_points")
         points, of_cycle, at_special = merged_rows(self.view, cycles, special)
         along = followed_parameter(self.view)
         return points, merged_columns(of_cycles, of_special, of_cycle, at_special, along)

@@ -1,4 +1,4 @@
-"""The table of a branch: its cycles in order, and between them the special points, marked in a column."""
+"""Table of branches: cycles in their order, with special points between them, marked in a column."""
 
 from dataclasses import replace
 
@@ -12,9 +12,9 @@ from .rows import Rows
 
 
 def merged_rows(view: View, cycles: Rows, special: Rows) -> tuple[NDArray, NDArray, NDArray]:
-    """Order of the table: (point, row of the cycles or -1, row of the special points or -1), each (rows,).
+    """Rows of the table: (point, row of the cycles or -1, row of the special points or -1), each (rows,).
 
-    A special point comes behind the cycle behind which it lies, or before the first of its branch.
+    A special point follows the cycle before it on the branch, or precedes the first cycle of the branch.
     """
     shape = view.variables["status"].size
     branch = np.concatenate([_of(view, "branch", shape, cycles), _of(view, "special_branch", shape, special)])
@@ -23,35 +23,37 @@ def merged_rows(view: View, cycles: Rows, special: Rows) -> tuple[NDArray, NDArr
     kind = np.repeat([0, 1], [len(cycles[0]), len(special[0])])
     order = np.lexsort((np.concatenate([cycles[1], special[1]]), kind, place, branch, point))
     row = np.concatenate([np.arange(len(cycles[0])), np.arange(len(special[0]))])
-    of_cycle, of_special = np.where(kind == 0, row, -1), np.where(kind == 1, row, -1)
+    of_cycle = np.where(kind == 0, row, -1)
+    of_special = np.where(kind == 1, row, -1)
     return point[order], of_cycle[order], of_special[order]
 
 
 def merged_columns(
     cycles: list[Column], special: list[Column], of_cycle: NDArray, of_special: NDArray, along: str
 ) -> list[Column]:
-    """Columns of the cycles with the values of special points in between, and last what happens at these.
+    """Columns of the cycles, with values of the special points between them, and the kind of special point.
 
-    of_cycle, of_special: rows of the columns, (rows,), -1 where a row is no cycle or no special point.
+    of_cycle, of_special: rows of the columns, (rows,), -1 in a row without a cycle or a special point.
     """
     named = {column.name: column for column in special}
     merged = []
     for column in cycles:
-        values, twin = column.rows(of_cycle), named.get(_special_of(column.name, along))
-        if twin is not None:
-            values = _filled(values, twin.rows(of_special))
+        values = column.rows(of_cycle)
+        counterpart = named.get(_special_of(column.name, along))
+        if counterpart is not None:
+            values = _filled(values, counterpart.rows(of_special))
         merged.append(values)
     return [*merged, named["special_kind"].rows(of_special)]
 
 
 def _filled(values: Column, others: Column) -> Column:
-    """Column `values` with its missing values taken from `others`."""
+    """Column `values`, with missing values taken from `others`."""
     both = np.where(values.absent, others.values, values.values)
     return replace(values, values=both, absent=values.absent & others.absent)
 
 
 def _special_of(name: str, along: str) -> str:
-    """The name that a variable of cycles has at special points."""
+    """Name of a variable of cycles at special points."""
     if name == f"branch_{along}":
         return "special_at"
     if along == "F" and name in {f"branch_{load}" for load in LOADS}:
@@ -60,5 +62,5 @@ def _special_of(name: str, along: str) -> str:
 
 
 def _of(view: View, name: str, count: int, rows: Rows) -> NDArray:
-    """A variable at the items of a list, (rows,)."""
+    """Values of a variable at the items of a list, (rows,)."""
     return view.variables[name].reshape(count, -1)[rows]

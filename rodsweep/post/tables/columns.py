@@ -1,6 +1,6 @@
-"""Columns of a table: numbers or words with their unit, and where there is none of them.
+"""Columns of a table: numbers or words with their unit, and a mask of missing values.
 
-A file has room for a fixed number of items and fills what is not needed; a column knows no fill.
+A file has room for a fixed number of items and fills unused places; a column has no fill values.
 """
 
 from collections.abc import Mapping
@@ -12,18 +12,18 @@ from numpy.typing import NDArray
 from ...results.layouts.variables import NOT_KNOWN, SECONDS, Variable
 
 NO_WORD = ("none", "missing")
-"""Flag words that mark an unused place of a list."""
-TRUTHS = {0: "false", 1: "true"}
+"""Words that mark an unused place of a list."""
+BOOLEAN_TEXTS = {0: "false", 1: "true"}
 """Text of boolean values in CSV."""
 ERROR_DIGITS = 3
-"""Significant digits of an error or a time: estimates have no more."""
+"""Number of digits of an error or a time, which are estimates."""
 ROUNDING = 4 * np.finfo(float).eps
 """Largest relative rounding error of a coordinate after a conversion of units or in a range."""
 
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A column: name, unit, meaning, values (rows,), and which rows have none, (rows,)."""
+    """A column: name, unit, meaning, values (rows,), and a mask of missing values, (rows,)."""
 
     name: str
     unit: str
@@ -35,25 +35,26 @@ class Column:
     given: bool = False
     """Whether the values are input coordinates, not results."""
     is_boolean: bool = False
-    """Whether the values say yes or no."""
+    """Whether the values are 1 for yes and 0 for no."""
 
     @property
     def is_estimate(self) -> bool:
-        """Whether the values are estimates: errors, or times that a machine took."""
+        """Whether the values are estimates: errors, or computing times."""
         return "error" in self.name or self.name == SECONDS.name
 
     def rows(self, which: NDArray[np.int64] | slice) -> "Column":
-        """Some rows of the column, in the order of their indices; -1 is a row without a value."""
+        """Some rows of the column, in the order of their indices; index -1 gives a missing value."""
         if isinstance(which, slice):
             return replace(self, values=self.values[which], absent=self.absent[which])
         nothing = np.zeros(1, self.values.dtype)
-        values, absent = np.append(self.values, nothing)[which], np.append(self.absent, True)[which]
+        values = np.append(self.values, nothing)[which]
+        absent = np.append(self.absent, True)[which]
         return replace(self, values=values, absent=absent)
 
     def text(self) -> list[str]:
-        """The values as CSV has them: words, or the shortest decimal number that reads back the same."""
+        """Values as text for CSV: words, or the shortest decimal number that reads back as the same value."""
         if self.is_boolean:
-            texts = [TRUTHS[int(value)] for value in self.values]
+            texts = [BOOLEAN_TEXTS[int(value)] for value in self.values]
         elif self.words:
             texts = [self.words.get(int(v), "") for v in np.nan_to_num(self.values)]
         elif self.values.dtype.kind == "f":
@@ -63,7 +64,7 @@ class Column:
         return ["" if none else text for text, none in zip(texts, self.absent, strict=True)]
 
     def _numbers(self) -> list[str]:
-        """Real numbers as text: errors and times rounded, coordinates without what rounding added."""
+        """Real numbers as text: errors and times rounded, coordinates without rounding errors."""
         if self.is_estimate:
             return [f"{value:.{ERROR_DIGITS}g}" for value in self.values]
         values = self.values + self.values.dtype.type(0)  # no -0
@@ -76,7 +77,7 @@ class Column:
 
 
 def column_of(variable: Variable, values: NDArray, words: Mapping[int, str] | None = None) -> Column:
-    """The column of a variable, whose values have the shape (rows,). words: by value, if not its own."""
+    """Column of a variable with values of shape (rows,); words: by value, if not those of the variable."""
     known = dict(variable.flags) if words is None else words
     return Column(
         variable.name,
@@ -90,12 +91,12 @@ def column_of(variable: Variable, values: NDArray, words: Mapping[int, str] | No
 
 
 def coordinate(name: str, unit: str, meaning: str, values: NDArray) -> Column:
-    """The column of a coordinate, (rows,), NaN in rows of arms that no rod covers."""
+    """Column of a coordinate, (rows,); it is missing (NaN) for arms that no rod covers."""
     return Column(name, unit, meaning, values, np.isnan(values.astype(float)), given=True)
 
 
 def _typed(value: float, text: str) -> str:
-    """The text of a coordinate, or a shorter one that rounding has changed: 2500 of 2500.0000000000005."""
+    """Text of a coordinate without rounding error, if this is much shorter: 2500 for 2500.0000000000005."""
     if not np.isfinite(value):
         return text
     short = f"{value:.15g}"
@@ -114,5 +115,5 @@ def absent_in(variable: Variable, values: NDArray) -> NDArray[np.bool_]:
 
 
 def tells_of_items(variable: Variable) -> bool:
-    """Whether a value of a variable shows that there is an item: not where its fill is a count or a no."""
+    """Whether a value of a variable shows that an item exists; fill values that are valid values do not."""
     return variable.dtype.startswith("<f") or bool(variable.flags) or variable.fill == -1

@@ -1,7 +1,7 @@
-"""Which tables a result has: its points, and one for each of its lists, found from the dimensions.
+"""Tables of a result: its points, and a table for each of its lists, found from the dimensions.
 
-A table has a row for each item that was found, and the columns of its point beside it: its parameters and
-its status. `grid` is a diagram's grid, whose rows are points of the file.
+A table has a row for each item, with the parameters and the status of its point. `grid` is the grid of a
+phase diagram, in which each point of the file is a row of the diagram.
 """
 
 import json
@@ -15,6 +15,7 @@ from ...results.layouts import beside_points, layout_of
 from ...results.layouts.variables import Variable
 
 THERE_ARE = "there are"
+"""Words of a refusal before the known names."""
 POINTS, GRID, BRANCHES = "points", "grid", "branches"
 PARTS_OF_BRANCHES = {"cycles", "special_points"}
 """Tables that the table `branches` merges."""
@@ -38,7 +39,7 @@ NAMES = {
     ("shape", "u"): "shapes",
     ("transient",): "motion",
 }
-"""Names of tables by the dimensions of what they hold, beside those of the points."""
+"""Names of tables, by their dimensions besides those of the points."""
 FIRST = {
     "spectrum": "modes",
     "modes": "modes",
@@ -53,10 +54,10 @@ FIRST = {
 
 @dataclass(frozen=True, slots=True)
 class Contents:
-    """The variables of a result, by the table that holds them.
+    """Variables of a result, by table.
 
-    of_points: `points` has those of a point, which all tables of its lists may have beside their own;
-    joint: names of the tables that all points together give, in which no row has a point.
+    of_points: variables of a point, for `points` and as further columns of other tables. joint: names of
+    tables that all points together give, whose rows have no point.
     """
 
     of_points: tuple[Variable, ...]
@@ -70,12 +71,12 @@ class Contents:
         return (POINTS, *branches, *self.lists)
 
     def dimensions(self, table: str) -> tuple[str, ...]:
-        """The dimensions of a table beside those of the points."""
+        """Dimensions of a table besides those of the points."""
         return self.lists[table][0].extra if table in self.lists else ()
 
 
 def contents_of(view: View) -> Contents:
-    """The tables of a result."""
+    """Tables of a result and their variables."""
     config = json.loads(view.attributes["config_resolved"])
     own: list[Variable] = []
     lists: dict[str, list[Variable]] = {}
@@ -98,12 +99,15 @@ def contents_of(view: View) -> Contents:
 
 
 def name_of(dimensions: tuple[str, ...]) -> str:
-    """The name of the table with these dimensions beside those of the points."""
+    """Name of the table with these dimensions besides those of the points."""
     return GRID if dimensions[0] in PARAMETERS else NAMES[dimensions]
 
 
 def chosen(view: View, contents: Contents, table: str | None, columns: tuple[str, ...]) -> str:
-    """The table that is asked for: by name, by its columns, or the first of the task; else InputError."""
+    """Name of the table asked for: by name, by its columns, or the first of the task.
+
+    Raises InputError for an unknown name, and for columns of two tables.
+    """
     if table is not None:
         if table not in contents.tables:
             raise InputError(
@@ -128,7 +132,7 @@ def chosen(view: View, contents: Contents, table: str | None, columns: tuple[str
 
 
 def refuse_unknown(path: object, columns: tuple[str, ...], known: tuple[str, ...], table: str) -> None:
-    """InputError for the first column that a table, any where none is named, has not, or that comes twice."""
+    """Raises InputError for the first column that is unknown or named twice; table: may be empty."""
     for place, name in enumerate(columns):
         if name not in known:
             what = f"the table {table} has" if table else "its tables have"

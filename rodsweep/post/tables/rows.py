@@ -1,4 +1,4 @@
-"""Rows of the tables of a result: one for each item that was found, with the coordinates of its point."""
+"""Rows of the tables of a result: one for each item, with the coordinates of its point."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -15,27 +15,27 @@ from ...results.layouts.variables import DIMENSIONS, MISSING, STATUS, Variable
 from .columns import Column, absent_in, column_of, coordinate, tells_of_items
 
 Rows = tuple[NDArray[np.int64], ...]
-"""The point of every row, then its place along each dimension of the list, each (rows,)."""
+"""Point of every row, then its place along each dimension of the list, each (rows,)."""
 
 
 def item_rows(view: View, variables: Sequence[Variable], joint: bool) -> Rows:
-    """The rows of a list: its items at every point, or at none where all points together give them.
+    """Rows of a list: its items at every point; joint: whether the items belong to all points together.
 
-    An item is there if one of its variables has a value.
+    An item exists if one of its variables has a value.
     """
     points = 1 if joint else view.variables["status"].size
-    there: NDArray[np.bool_] = np.zeros((), bool)
+    exists: NDArray[np.bool_] = np.zeros((), bool)
     for variable in variables:
         if tells_of_items(variable) and (_is_of_points(view, variable) or joint):
             values = view.variables[variable.name]
             inner = len(variable.extra)
             values = values.reshape(points, *values.shape[values.ndim - inner :])
-            there = there | ~absent_in(variable, values)
-    return np.nonzero(there)
+            exists = exists | ~absent_in(variable, values)
+    return np.nonzero(exists)
 
 
 def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]) -> Iterator[Column]:
-    """Columns of the points of rows, (rows,): parameters, an arm's quantities, their own variables."""
+    """Yields columns of the points of rows, (rows,): parameters, an arm's quantities, own variables."""
     for name, values in view.point_columns.items():
         yield coordinate(name, *DIMENSIONS[name], values[points])
     for name, values in quantities_at_points(view).items():
@@ -51,7 +51,7 @@ def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]
 
 
 def list_columns(view: View, variables: Sequence[Variable], rows: Rows, joint: bool) -> Iterator[Column]:
-    """What belongs to the items of a list: their places, then their variables."""
+    """Yields columns of the items of a list: their places, then their variables."""
     names = variables[0].extra
     for name, places in zip(names, rows[1:], strict=True):
         yield coordinate(name, *DIMENSIONS[name], view.variables[name][places])
@@ -62,7 +62,7 @@ def list_columns(view: View, variables: Sequence[Variable], rows: Rows, joint: b
         elif _is_of_points(view, variable):
             inner = values.shape[values.ndim - len(names) :]
             yield column_of(variable, values.reshape(-1, *inner)[rows])
-        else:  # of one parameter of the points, or of each point, stored once
+        else:  # the variable depends on one parameter, or on the point, and is stored once
             along = variable.extra[0]
             place = rows[0] if along == "point" else _places(view, along)[rows[0]]
             yield column_of(variable, values[place, *rows[1:]])
@@ -71,9 +71,9 @@ def list_columns(view: View, variables: Sequence[Variable], rows: Rows, joint: b
 def si_columns(
     view: View, variables: Sequence[Variable], columns: Sequence[Column], points: NDArray[np.int64] | None
 ) -> Iterator[Column]:
-    """What an arm's file tells once of a list, in SI units too.
+    """Yields SI columns for the variables of a list that an arm's file stores without dimension only.
 
-    points: of the rows, (rows,); None where rows have none, which are then of one arm or left out.
+    points: of the rows, (rows,); None if rows have no point, for which all points must have the same arm.
     """
     if not view.quantities:
         return
@@ -85,42 +85,43 @@ def si_columns(
     by_name = {column.name: column for column in columns}
     for declared in variables:
         column = by_name[declared.name]
-        # At a crossing along a row of forces lies a force.
+        # The position of a crossing along a row over F is a force.
         is_force = declared.name == "crossing_at" and "F" not in view.parameters
         variable = replace(declared, name="crossing_F") if is_force else declared
         si = si_unit_of(variable, "force" in view.quantities)
         known = {*si.factors, *si.divisors} <= at.keys()
         if si.unit and known and si_name_of(variable.name, si.unit) not in view.variables:
-            twin, values = converted(variable, column.values, at)
-            yield replace(column_of(twin, values), absent=column.absent)
+            si_variable, values = converted(variable, column.values, at)
+            yield replace(column_of(si_variable, values), absent=column.absent)
 
 
 def line_columns(view: View, rows: Rows) -> Iterator[Column]:
-    """The quantities of an arm along the rows of a diagram, as the pressure of F."""
+    """Yields quantities of an arm along the rows of a diagram, such as the pressure for F."""
     for name, values in view.quantities.items():
         if values.size > 1 and view.is_grid and ALONG.get(name, "") not in view.parameters:
             yield quantity_column(name, values[rows[1]])
 
 
 def quantity_column(name: str, values: NDArray) -> Column:
-    """The column of a quantity of an arm, whose values have the shape (rows,)."""
+    """Column of a quantity of an arm with values of shape (rows,)."""
     column = coordinate(name, *ALL_QUANTITIES[name][:2], values)
     return replace(column, words=dict(enumerate(DRAGS))) if name == "drag" else column
 
 
 def _is_of_points(view: View, variable: Variable) -> bool:
-    """Whether a variable of a list has the dimensions of the points, which its declaration leaves out."""
+    """Whether a variable of a list has the dimensions of the points, which its declaration omits."""
     return variable.extra[0] not in ("point", *view.parameters)
 
 
 def _places(view: View, parameter: str) -> NDArray[np.int64]:
-    """The place of every point along the axis of a parameter, (points,)."""
+    """Place of every point along the axis of a parameter, (points,)."""
     return np.searchsorted(view.axes[parameter], view.point_columns[parameter])
 
 
 def quantities_at_points(view: View) -> dict[str, NDArray]:
-    """The quantities of an arm at every point, each (points,); those along a row of a diagram left out."""
-    count, found = view.variables["status"].size, {}
+    """Quantities of an arm at every point, each (points,), without quantities along a row of a diagram."""
+    count = view.variables["status"].size
+    found = {}
     for name, values in view.quantities.items():
         along = ALONG.get(name, "")
         if values.size == 1 or not view.is_grid:

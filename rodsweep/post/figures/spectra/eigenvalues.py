@@ -1,4 +1,4 @@
-"""Spectra without an axis: the eigenvalues of one point in their plane, and those of a list's points."""
+"""Spectra without an axis: eigenvalues of one point in the complex plane, or those of a list of points."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,19 +10,19 @@ from ..lists import number_points, shared_parameters
 from ..style import FIRST, SECOND, heading, legend_below, parameter_text, require
 
 SPREAD = 100.0
-"""Largest eigenvalue in units of the smallest from which on their axes are logarithmic but near 0."""
-MIN_OF_LARGEST = 1e-6
-"""In units of the largest eigenvalue: what is nearer to 0 is not spread out."""
-FEW = 0.1
-"""Share of the numbers that is on the linear part of such an axis."""
+"""Ratio of the largest to the smallest eigenvalue above which axes are symmetric logarithmic."""
+SMALLEST_SHOWN = 1e-6
+"""Size, in units of the largest eigenvalue, below which all eigenvalues lie on the linear part of an axis."""
+LINEAR_FRACTION = 0.1
+"""Fraction of the numbers on the linear part of a symmetric logarithmic axis."""
 LOOKS = {True: (SECOND, "s", "growing mode"), False: (FIRST, "o", "decaying mode")}
 """Colour, marker and word of modes, by whether they grow."""
 MAX_NUMBERED = 8
-"""Modes whose numbers have room beside their marks."""
+"""Largest number of modes that get a number beside their mark."""
 
 
 def draw_eigenvalues(view: View) -> Figure:
-    """The stored eigenvalues of the only point in the complex plane, numbered as in the file."""
+    """Figure of the stored eigenvalues of the only point in the complex plane, with their numbers."""
     modes = len(view.variables["mode"])
     growth, frequency = (view.variables[name].reshape(modes) for name in ("growth_rate", "frequency"))
     require(view, np.isfinite(growth).any(), "computed point")
@@ -44,8 +44,9 @@ def draw_eigenvalues(view: View) -> Figure:
 
 
 def draw_list_of_spectra(view: View) -> Figure:
-    """Growth rates and frequencies of every point of a list, in its order: nothing joins its points."""
-    growth, frequency = view.variables["growth_rate"], view.variables["frequency"]
+    """Figure of growth rates and frequencies of every point of a list, in its order, without lines."""
+    growth = view.variables["growth_rate"]
+    frequency = view.variables["frequency"]
     figure = Figure(figsize=(5.2, 5.4), layout="constrained")
     panels = figure.subplots(2, 1, sharex=True)
     number = np.broadcast_to(np.arange(1, len(growth) + 1)[:, None], growth.shape)
@@ -61,19 +62,19 @@ def draw_list_of_spectra(view: View) -> Figure:
 
 
 def _mark(axes: Axes, x: np.ndarray, y: np.ndarray, grows: np.ndarray) -> list[Line2D]:
-    """A mark at each (x, y), all arrays of one shape; returns what the legend says of those there are."""
+    """Marks each (x, y), arrays of equal shape; returns legend entries of growing and decaying modes."""
     handles = []
     for kind, (colour, marker, word) in LOOKS.items():
-        there = (grows == kind) & np.isfinite(y)
-        if there.any():
-            handles += axes.plot(x[there], y[there], marker, color=colour, mfc="none", ms=4.5, label=word)
+        chosen = (grows == kind) & np.isfinite(y)
+        if chosen.any():
+            handles += axes.plot(x[chosen], y[chosen], marker, color=colour, mfc="none", ms=4.5, label=word)
     return handles
 
 
 def spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
-    """Makes those axes logarithmic but near 0 whose numbers, of any shape, are of very different size."""
+    """Makes an axis symmetric logarithmic if its numbers, of any shape, differ much in size."""
     for set_scale, values in ((axes.set_xscale, x), (axes.set_yscale, y)):
         sizes = np.abs(values[np.isfinite(values) & (values != 0)]) if values is not None else np.zeros(0)
         if sizes.size and sizes.max() > SPREAD * sizes.min():
-            smallest = max(float(np.quantile(sizes, FEW)), sizes.max() * MIN_OF_LARGEST)
+            smallest = max(float(np.quantile(sizes, LINEAR_FRACTION)), sizes.max() * SMALLEST_SHOWN)
             set_scale("symlog", linthresh=10 ** np.floor(np.log10(smallest)))

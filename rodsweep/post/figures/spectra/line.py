@@ -1,4 +1,4 @@
-"""Spectra along one parameter: two roots and their paths in the complex plane, as the paper's Fig. 2."""
+"""Spectra over one parameter: two roots, and their paths in the complex plane, as in the paper's Fig. 2."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -11,7 +11,7 @@ from matplotlib.ticker import NullLocator, SymmetricalLogLocator
 from ....arrays import Array, Complex
 from ....results.file.view import View
 from ....sweep.points.lines import lines_over
-from ...hopf_points import Bracket, Located, StoredChanges
+from ...hopf_points import BracketedChange, LocatedChange, StoredChanges
 from ..arm.quantities import NO_BREAK
 from ..style import FIRST, LABELS, SECOND, SYMBOLS, fixed_text, heading, legend_below, scale
 from .eigenvalues import spread
@@ -21,27 +21,28 @@ FOLLOWED_ROOTS = {
     "smallest": "of the stored roots, the two smallest in magnitude",
     "all": "all stored roots",
 }
+"""Descriptions of the choices of roots."""
 FOLLOWED = 2
-"""Roots of a line that are followed."""
+"""Number of roots that are followed along a line."""
 LARGE = 10.0
-"""Largest root in units of the median one from which on the axis of the roots is logarithmic but near 0."""
+"""Ratio of the largest to the median root above which the axis of roots is logarithmic except near 0."""
 THRESHOLD_DIGITS = 6
-"""To which thresholds are written beside their marks."""
+"""Number of digits of thresholds in the legend."""
 THRESHOLD_LOOKS = {
     "onset": (rf"${SYMBOLS['F']}_*$", ":"),
     "hopf": (rf"${SYMBOLS['F']}_{{**}}$", "--"),
     "restabilization": ("restabilization", "--"),
 }
-"""What a threshold is called, and the style of its line."""
+"""Name and line style of each kind of threshold."""
 THRESHOLD_LINE: dict[str, Any] = {"color": "0.3", "lw": 0.9}
 SHADE: dict[str, Any] = {"color": "0.92", "lw": 0, "zorder": 0}
-"""Where the rod is unstable."""
+"""Look of the range in which the rod is unstable."""
 
 
-def followed_roots(growth: np.ndarray, frequency: np.ndarray, roots: str) -> np.ndarray:
-    """Two roots of each point, complex, shape (points, 2), or all stored ones, shape (points, modes).
+def select_roots(growth: np.ndarray, frequency: np.ndarray, roots: str) -> np.ndarray:
+    """Two roots of each point, complex, shape (points, 2), or all stored roots, shape (points, modes).
 
-    Of a pair the positive frequency is first; two real roots are ordered as `roots` says.
+    In a pair the positive frequency comes first; two real roots are ordered as `roots` requires.
     """
     w = growth + 1j * frequency
     if roots == "all":
@@ -53,7 +54,7 @@ def followed_roots(growth: np.ndarray, frequency: np.ndarray, roots: str) -> np.
 
 
 def broken(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(x, w) with a gap of NaN where the followed roots change places with others between two points."""
+    """(x, w) with a gap of NaN where the followed roots are exchanged for other roots between two points."""
     step = np.abs(np.diff(w, axis=0)).max(axis=1)
     size = np.abs(w).max(axis=1)
     around = np.array([np.median(step[max(0, i - 3) : i + 4]) for i in range(len(step))])
@@ -62,9 +63,10 @@ def broken(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def roots_to_follow(views: Sequence[View], asked: str | None) -> str:
-    """Which roots are followed along lines of spectra, if none are asked for: those that break less often.
+    """Choice of the roots along lines of spectra: the user's, or the choice with fewer gaps.
 
-    The smallest, as the paper does, where both break alike; all where a file holds one.
+    If both have equally many gaps, the smallest roots are followed, as in the paper; all roots if a file
+    stores only one.
     """
     if any(len(view.variables["mode"]) < FOLLOWED for view in views):
         return "all"
@@ -79,12 +81,12 @@ def roots_to_follow(views: Sequence[View], asked: str | None) -> str:
 
 
 def _followed(view: View, roots: str) -> Complex:
-    """The roots that are shown of every point of a line, (points, 2), or of all that are stored."""
-    return followed_roots(view.by_point("growth_rate"), view.by_point("frequency"), roots)
+    """Roots shown for every point of a line, (points, 2), or all stored roots."""
+    return select_roots(view.by_point("growth_rate"), view.by_point("frequency"), roots)
 
 
 def _scatter_all(axes: Axes, x: Array, w: Complex, label: str) -> None:
-    """All roots, (n, modes), in the complex plane, coloured by the parameter, (n,)."""
+    """Draws all roots, (n, modes), in the complex plane, coloured by the parameter, (n,)."""
     across = np.broadcast_to(x[:, None], w.shape)
     dots = axes.scatter(w.real.ravel(), w.imag.ravel(), s=6, c=across.ravel(), cmap="viridis_r")
     spread(axes, w.real, w.imag)
@@ -92,7 +94,7 @@ def _scatter_all(axes: Axes, x: Array, w: Complex, label: str) -> None:
 
 
 def draw_line(view: View, name: str, roots: str) -> Figure:
-    """Two roots over a parameter, and below their paths in the complex plane."""
+    """Figure of two roots over a parameter, and of their paths in the complex plane."""
     figure = Figure(figsize=(5.2, 6.6), layout="constrained")
     top, bottom = figure.subplots(2, 1)
     w = draw_roots(top, view, name, roots)
@@ -111,12 +113,14 @@ def draw_line(view: View, name: str, roots: str) -> Figure:
 
 
 def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
-    """Draws two roots over a parameter, (n, 2), NaN where they break, or all; returns them."""
+    """Draws two roots over a parameter, (n, 2), NaN in gaps, or all roots; returns them."""
     x = view.axes[name]
     w = _followed(view, roots)
     if roots != "all":
         x_broken, w = broken(x, w)
-        for i, (colour, width) in enumerate(((FIRST, 3.0), (SECOND, 1.2))):  # the thin one on the thick
+        for i, (colour, width) in enumerate(
+            ((FIRST, 3.0), (SECOND, 1.2))
+        ):  # thin on thick, so that both show where they coincide
             look: dict[str, Any] = {"color": colour, "lw": width}
             axes.plot(x_broken, w[:, i].real, label=rf"$\mathrm{{Re}}\,\omega_{i + 1}$", **look)
             axes.plot(x_broken, w[:, i].imag, ":", label=rf"$\mathrm{{Im}}\,\omega_{i + 1}$", **look)
@@ -133,14 +137,14 @@ def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
     sizes = np.abs(w[np.isfinite(w)])
     if sizes.max(initial=0.0) > LARGE * np.median(sizes):
         least_tick = 10 ** np.floor(np.log10(np.median(sizes) / 10))
-        axes.set_yscale("asinh", linear_width=least_tick / 3)  # smooth where it turns linear, unlike symlog
+        axes.set_yscale("asinh", linear_width=least_tick / 3)  # asinh is smooth between linear and log
         axes.yaxis.set_major_locator(SymmetricalLogLocator(base=10, linthresh=least_tick))
         axes.yaxis.set_minor_locator(NullLocator())
     return w
 
 
 def _point_along(axes: Axes, w: Complex, colour: str) -> None:
-    """An arrow half way along the longest piece of a root's path, (n,), the way that it goes."""
+    """Draws an arrow half-way along the longest piece of a root's path, (n,), in its direction."""
     pieces = np.split(w, np.flatnonzero(~np.isfinite(w)))
     path = max((piece[np.isfinite(piece)] for piece in pieces), key=len)
     ranges = max(np.ptp(path.real), 1e-300), max(np.ptp(path.imag), 1e-300)
@@ -153,25 +157,26 @@ def _point_along(axes: Axes, w: Complex, colour: str) -> None:
     axes.annotate("", xy=end, xytext=start, arrowprops=arrow)
 
 
-def threshold_text(threshold: Located) -> str:
-    """What a threshold is called, and its force."""
+def threshold_text(threshold: LocatedChange) -> str:
+    """Name and force of a threshold."""
     word, _ = THRESHOLD_LOOKS[threshold.kind]
     return f"{word} ={NO_BREAK}{threshold.position:#.{THRESHOLD_DIGITS}g}"
 
 
-def edge_of_flutter(change: Located | Bracket) -> float:
-    """The force to which the rod is known to be unstable beside a change of its stability."""
-    if isinstance(change, Located):
+def edge_of_flutter(change: LocatedChange | BracketedChange) -> float:
+    """Force at the edge of the range in which the rod is known to be unstable, at a change of stability."""
+    if isinstance(change, LocatedChange):
         return change.position
     return change.high if change.kind == "hopf" else change.low
 
 
-def mark_thresholds(axes: Axes, view: View, name: str) -> list[Located]:
-    """Shades where the rod is unstable, over F up to the thresholds, which get a line; returns these.
+def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedChange]:
+    """Shades the range in which the rod is unstable, and draws lines at thresholds over F; returns these.
 
-    Thresholds are the first force from which the rod oscillates, and those where its stability changes.
+    Thresholds are the first force at which the rod oscillates, and forces at which its stability changes.
     """
-    x, unstable = view.axes[name], view.variables["unstable_count"].reshape(-1) > 0
+    x = view.axes[name]
+    unstable = view.variables["unstable_count"].reshape(-1) > 0
     if name != "F":
         if unstable.any():
             across = axes.get_xaxis_transform()
@@ -179,7 +184,7 @@ def mark_thresholds(axes: Axes, view: View, name: str) -> list[Located]:
         return []
     (line,) = lines_over(view.point_columns, name)
     found = StoredChanges(view, name).on(line)
-    thresholds = [threshold for threshold in found if isinstance(threshold, Located)]
+    thresholds = [threshold for threshold in found if isinstance(threshold, LocatedChange)]
     for threshold in thresholds:
         _, style = THRESHOLD_LOOKS[threshold.kind]
         axes.axvline(threshold.position, ls=style, label=threshold_text(threshold), **THRESHOLD_LINE)

@@ -1,4 +1,4 @@
-"""Lines of spectra of several files, a panel each, as the whole of the paper's Fig. 2."""
+"""Lines of spectra of several files, one panel each, as in the whole of the paper's Fig. 2."""
 
 from collections.abc import Sequence
 from string import ascii_lowercase
@@ -12,22 +12,22 @@ from ..style import fixed_text, heading, legend_below, long_axes
 from .line import FOLLOWED_ROOTS, THRESHOLD_LINE, THRESHOLD_LOOKS, draw_roots, mark_thresholds, threshold_text
 
 MAX_PANELS = 12
-"""Files for which a page has room."""
+"""Largest number of panels on a page."""
 PANEL_HEIGHT = {1: 2.1, 2: 2.6}
-"""Inches, by the number of columns."""
+"""Height of a panel, in inches, by the number of columns."""
 FIGURE_WIDTH = {1: 3.375, 2: 7.0}
-"""Inches, by the number of columns."""
+"""Width of the figure, in inches, by the number of columns."""
 
 THRESHOLD_WORDS = {
     "onset": "onset of oscillation",
     "hopf": "change of stability",
     "restabilization": "change of stability",
 }
-"""What the common legend calls the lines at thresholds; the headings have their names and forces."""
+"""Entries of the common legend for lines at thresholds; the panel titles have names and forces."""
 
 
 def draw_panels(views: Sequence[View], roots: str, narrow: bool) -> Figure:
-    """The two roots that are followed of each file, one below the other if narrow, with a common legend."""
+    """Figure of the followed roots of each file, in one column if narrow, with a common legend."""
     columns = 1 if narrow else 2
     rows = -(-len(views) // columns)
     size = FIGURE_WIDTH[columns], PANEL_HEIGHT[columns] * rows + 0.8
@@ -42,7 +42,8 @@ def draw_panels(views: Sequence[View], roots: str, narrow: bool) -> Figure:
             handles.setdefault(label, handle)
         for threshold in thresholds:
             handles.pop(threshold_text(threshold), None)
-            word, (_, style) = THRESHOLD_WORDS[threshold.kind], THRESHOLD_LOOKS[threshold.kind]
+            word = THRESHOLD_WORDS[threshold.kind]
+            _, style = THRESHOLD_LOOKS[threshold.kind]
             handles[word] = Line2D([], [], ls=style, label=word, **THRESHOLD_LINE)
         text = heading(view, fixed_text(view, name), ", ".join(map(threshold_text, thresholds)))
         panel.set_title(f"({letter})  {text}", loc="left")

@@ -1,4 +1,4 @@
-"""What single rods do over F: a bar of classes for each, with its thresholds marked."""
+"""Behaviour of single rods over F: a bar of classes for each rod, with its thresholds."""
 
 from collections.abc import Iterator
 from itertools import pairwise
@@ -26,7 +26,8 @@ CLASS_COLOURS = {
     "undecided": "#666666",
     "crushed": "#BBBBBB",
 }
-"""Light to dark blue for stable rods and orange for unstable ones: told apart by all, and in grey."""
+"""Colours of classes: light to dark blue for stable rods, orange for unstable ones, distinct in grey as
+well."""
 STABLE_CLASS = {
     "onset": "oscillatory",
     "restabilization": "oscillatory",
@@ -34,26 +35,26 @@ STABLE_CLASS = {
     "real_leads": "monotone",
     "pair_leads": "oscillatory",
 }
-"""What a rod does beyond a crossing where no mode grows, by the kind of the crossing."""
+"""Class of a stable rod beyond a crossing, by the kind of the crossing."""
 LATER = "later"
-"""Hopf points at which the rod is unstable already, and further modes begin to grow."""
+"""Kind of a Hopf point at which the rod is unstable already and a further pair becomes unstable."""
 MARKS = {
     "onset": (FIRST, "o", rf"onset ${SYMBOLS['F']}_*$"),
     "hopf": (SECOND, "s", rf"Hopf ${SYMBOLS['F']}_{{**}}$"),
     LATER: (SECOND, "D", "further Hopf point"),
     "restabilization": (THIRD, "^", "restabilization"),
 }
-"""Colour, marker and word of the crossings that are marked."""
+"""Colour, marker and word of the marked crossings."""
 FILL = 0.8
-"""Part of its place that the bar of a rod takes."""
+"""Width of the bar of a rod, as a fraction of its place."""
 BAR_ASPECT = 0.12
-"""Height of the panel with one bar in units of its width."""
+"""Height of a panel with one bar, in units of its width."""
 DIGITS = 6
-"""To which the thresholds of a single rod are written."""
+"""Number of digits of the thresholds of a single rod."""
 
 
 def draw_class_bars(view: View) -> Figure:
-    """A horizontal bar for one rod, upright ones side by side for a list, in its order."""
+    """Figure of a horizontal bar for one rod, or of upright bars side by side for a list of rods."""
     count = view.variables["status"].size
     v = {name: view.variables[name] for name in ("F_end", "crossing_kind")}
     require(view, np.isfinite(v["F_end"]).any(), "computed rod")
@@ -81,25 +82,26 @@ def draw_class_bars(view: View) -> Figure:
 
 
 def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str]]:
-    """(F from, F to, class) of a rod from F = 0, where all modes are real, to the end of the search."""
+    """Yields (F from, F to, class) of a rod, from F = 0 with real eigenvalues to the end of the search."""
     kinds, F, after = (view.by_point(name)[rod] for name in ("crossing_kind", "crossing_F", "unstable_after"))
     end = float(view.variables["F_end"].ravel()[rod])
     found = int(view.variables["crossing_count"].ravel()[rod])
-    start, word = 0.0, "monotone"
+    start = 0.0
+    word = "monotone"
     for place in np.flatnonzero(kinds > 0):
         yield start, float(F[place]), word
         start = float(F[place])
-        word = _class_behind(int(kinds[place]), int(after[place]))
-    if found > np.count_nonzero(kinds > 0):  # more than the file has room for
+        word = _class_beyond(int(kinds[place]), int(after[place]))
+    if found > np.count_nonzero(kinds > 0):  # the file has no room for all crossings
         word = "undecided"
     if np.isfinite(end):
         yield start, end, word
 
 
-def classes_behind_crossings(view: View, row: str) -> tuple[Array, Array, NDArray[np.intp]]:
-    """(value along the line, value of the row, number of the class) half way between crossings of a diagram.
+def classes_between_crossings(view: View, row: str) -> tuple[Array, Array, NDArray[np.intp]]:
+    """(value along the row, value of the row, class) half-way between neighbouring crossings of a diagram.
 
-    They are known however close two crossings are. Rows at infinity are left out.
+    These classes are known however close two crossings are. Rows at infinity are left out.
     """
     numbers = {word: number for number, word in CLASSES}
     kinds, after, at = map(view.by_point, ("crossing_kind", "unstable_after", "crossing_at"))
@@ -108,21 +110,21 @@ def classes_behind_crossings(view: View, row: str) -> tuple[Array, Array, NDArra
     for place in np.flatnonzero(np.isfinite(values)):
         known = np.flatnonzero(kinds[place] > 0)
         for this, following in pairwise(known):
-            word = _class_behind(int(kinds[place, this]), int(after[place, this]))
+            word = _class_beyond(int(kinds[place, this]), int(after[place, this]))
             middle = (at[place, this] + at[place, following]) / 2
             found.append((float(middle), float(values[place]), numbers[word]))
     x, y, classes = np.array(found, dtype=float).reshape(-1, 3).T
     return x, y, classes.astype(np.intp)
 
 
-def _class_behind(kind: int, unstable: int) -> str:
-    """What a rod does behind a crossing of a kind, with so many unstable modes there, -1 where not known."""
+def _class_beyond(kind: int, unstable: int) -> str:
+    """Class of a rod beyond a crossing, from its number of unstable modes there, -1 if unknown."""
     stable = STABLE_CLASS.get(CROSSING_KINDS[kind], "undecided")
     return "flutter" if unstable > 0 else stable if unstable == 0 else "undecided"
 
 
 def _bar(axes: Axes, view: View, rod: int, upright: bool) -> set[str]:
-    """Draws the bar of a rod; returns the classes that it has."""
+    """Draws the bar of a rod; returns its classes."""
     pieces = list(classes_over_force(view, rod))
     from_, to = (view.variables[name].ravel()[rod] for name in ("open_from", "open_to"))
     if np.isfinite(from_):
@@ -136,7 +138,7 @@ def _bar(axes: Axes, view: View, rod: int, upright: bool) -> set[str]:
 
 
 def _mark(axes: Axes, view: View, upright: bool) -> list[Line2D]:
-    """Marks the thresholds; returns what the legend says of them, with the numbers of a single rod."""
+    """Marks the thresholds; returns legend entries, for a single rod with the forces."""
     kinds, F, after = map(view.by_point, ("crossing_kind", "crossing_F", "unstable_after"))
     hopf = kinds == CROSSING_KINDS.index("hopf")
     chosen = {kind: kinds == CROSSING_KINDS.index(kind) for kind in MARKS if kind != LATER}

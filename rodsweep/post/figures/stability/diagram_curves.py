@@ -1,4 +1,4 @@
-"""The curves of a phase diagram and the special points on them, and what the legend says of both."""
+"""Curves of a phase diagram and the special points on them, with their legend."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,53 +14,54 @@ from ..style import SYMBOLS, THIRD
 from ..style import number as number_text
 
 CURVE_LOOKS = {1: ("Hopf points", 1.4, "-"), 0: ("double eigenvalue", 1.0, "--")}
-"""Legend, width and style of a curve, by its kind in the file."""
+"""Legend entry, width and style of a curve, by its kind in the file."""
 CURVE_NAMES = {1: (r"$\tilde F_{**}$", 0.85), 0: (r"$\tilde F_*$", 0.12)}
-"""What stands beside the longest curve of a kind, and where on the part of it that is in sight."""
+"""Symbol beside the longest curve of a kind, and its place as a fraction of the visible length."""
 SIDE_LOOKS = {
     -1: ("supercritical Hopf points", 1.4, "-"),
     1: ("subcritical Hopf points", 1.4, "--"),
     0: ("Hopf points, side undecided", 0.6, "-"),
 }
-"""Of the parts of Hopf curves, where the file tells on which side cycles are born; by Re c's sign."""
+"""Legend entry, width and style of parts of Hopf curves, by the sign of Re c."""
 CYCLE_MARKS = {
     "fold": ("folds of cycles on rows", "s"),
     "torus": ("torus points on rows", "D"),
     "symmetry_breaking": ("symmetry breakings", "^"),
     "period_doubling": ("period doublings", "v"),
 }
-"""Legend and marker of special points of cycles on rows through which no curve goes, by kind."""
+"""Legend entry and marker, by kind, of special points of cycles on rows that lie on no curve."""
 ON_CURVE = 1e-3
-"""Distance of a point of a row from a curve through it, in units of the axis, that chords make."""
+"""Largest distance of a point of a row from its curve, in units of the axis; chords of the curve are as far
+off."""
 CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", THIRD)}
-"""Legend and colour of the curves of special points of cycles, by kind."""
+"""Legend entry and colour of curves of special points of cycles, by kind."""
 SAME_PLACE = 1e-6
-"""Relative distance of places that are one: a place of a curve lies on its own chord but for rounding."""
+"""Relative rounding error of a point of a curve on its own chord."""
 NAME_SIZE = 8
-"""Points of type of a curve's name."""
+"""Type size of a curve's symbol, in points."""
 BESIDE_SIDES = "double eigenvalue", 1.0, ":"
-"""Of double eigenvalues beside them, because dashed then means subcritical."""
+"""Look of double eigenvalues if Hopf curves show their criticality, for which dashed means subcritical."""
 
 
 def draw_curves(axes: Axes, view: View, line: str, row: str, states: bool) -> list[Line2D]:
-    """Draws the boundaries and folds; returns what the legend says of them.
+    """Draws the boundary curves and their folds; returns legend entries.
 
-    states: whether stable states are shown, which only Hopf points bound.
+    states: whether the diagram shows stable states, which are bounded by Hopf points only.
     """
     v = view.variables
     sides = "curve_criticality" in v
     handles = _sides(axes, view, line, row) if sides else []
     looks = {0: BESIDE_SIDES} if sides else CURVE_LOOKS
     for number, (word, width, style) in looks.items():
-        there = v["curve_kind"] == number
+        of_kind = v["curve_kind"] == number
         if states and number == 0:
             continue
-        curves = [v["curve_number"] == curve for curve in np.unique(v["curve_number"][there])]
+        curves = [v["curve_number"] == curve for curve in np.unique(v["curve_number"][of_kind])]
         for one in curves:
             axes.plot(v[f"curve_{line}"][one], v[f"curve_{row}"][one], style, color="k", lw=width)
-        if there.any():
+        if of_kind.any():
             handles.append(Line2D([], [], color="k", lw=width, ls=style, label=word))
-        if there.any() and not sides:
+        if of_kind.any() and not sides:
             named = boundaries_to_name(view, number, line, row)
             paths = [np.column_stack([v[f"curve_{n}"][one] for n in (line, row)]) for one in named]
             if paths and "F" in (line, row):
@@ -72,9 +73,9 @@ def draw_curves(axes: Axes, view: View, line: str, row: str, states: bool) -> li
 
 
 def boundaries_to_name(view: View, kind: int, line: str, row: str) -> list[NDArray[np.bool_]]:
-    """The curves that a symbol may stand beside, each as a mask of the curves' points, (curve_point,).
+    """Curves that get a symbol, each as a mask of the curves' points, (curve_point,).
 
-    F** is where the straight rod becomes unstable: not at Hopf points of further modes.
+    F** is the boundary of stability of the straight rod, which Hopf points of further modes are not.
     """
     v = view.variables
     numbers = np.unique(v["curve_number"][v["curve_kind"] == kind])
@@ -83,16 +84,16 @@ def boundaries_to_name(view: View, kind: int, line: str, row: str) -> list[NDArr
 
 
 def force_of_plane(view: View, line: str, row: str) -> str:
-    """The force at which a plane lies that has none, behind the symbol of a critical one; else nothing."""
+    """Force of a plane without a force axis, as text behind a symbol; empty for other planes."""
     return "" if "F" in (line, row) else f" = {float(view.axes['F'][0]):g}"
 
 
 def _points(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
-    """Marks the folds of Hopf curves and the partial beam's; returns what the legend says of them."""
+    """Marks the folds of Hopf curves and of the partial beam; returns legend entries."""
     v = view.variables
     handles = []
     for i in range(len(v["fold"])):
-        if v["fold_kind"][i] == 1 and v["fold_of"][i] == 1:  # where a window of flutter closes
+        if v["fold_kind"][i] == 1 and v["fold_of"][i] == 1:  # a window of flutter closes at this fold
             F, k = v[f"fold_{line}"][i], v[f"fold_{row}"][i]
             axes.plot(F, k, "ko", ms=4)
             label = rf"fold ${SYMBOLS[line]} = {F:.6g}$, ${SYMBOLS[row]} = {k:.6g}$"
@@ -109,47 +110,52 @@ def _points(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
 
 
 def _holds(values: Array, at: float) -> bool:
-    """Whether a place lies between the ends of an axis, (n,)."""
+    """Whether a value lies within an axis, (n,)."""
     return bool(values[0] <= at <= values[-1])
 
 
 def draw_cycle_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
-    """Draws the curves of folds and torus points of cycles; returns what the legend says of them."""
-    v, handles = view.variables, []
+    """Draws the curves of folds and torus points of cycles; returns legend entries."""
+    v = view.variables
+    handles = []
     for kind, (word, colour) in CYCLE_CURVES.items():
-        there = v["cycle_curve_kind"] == SPECIAL_KINDS.index(kind)
-        for curve in np.unique(v["cycle_curve_number"][there]):
+        of_kind = v["cycle_curve_kind"] == SPECIAL_KINDS.index(kind)
+        for curve in np.unique(v["cycle_curve_number"][of_kind]):
             one = v["cycle_curve_number"] == curve
             points = v[f"cycle_curve_{line}"][one], v[f"cycle_curve_{row}"][one]
             axes.plot(*points, color=colour, lw=1.8, zorder=1.9)  # below marks and Hopf curves
-        if there.any():
+        if of_kind.any():
             handles.append(Line2D([], [], color=colour, lw=1.8, label=word))
     return handles
 
 
 def mark_cycles_on_rows(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
-    """Marks special points of cycles on rows through which no curve goes; what the legend says of them."""
+    """Marks special points of cycles on rows that lie on no curve; returns legend entries."""
     handles: list[Line2D] = []
     values = view.point_columns[row]
     kinds, at = (view.by_point(f"cycle_special_{name}") for name in ("kind", line))
     for kind, (word, marker) in CYCLE_MARKS.items():
         rows, places = np.nonzero(kinds == SPECIAL_KINDS.index(kind))
-        there = ~_on_curves(view, SPECIAL_KINDS.index(kind), line, row, at[rows, places], values[rows])
-        x, y = at[rows, places][there], values[rows][there]
-        if there.any():
+        alone = ~_on_curves(view, SPECIAL_KINDS.index(kind), line, row, at[rows, places], values[rows])
+        x = at[rows, places][alone]
+        y = values[rows][alone]
+        if alone.any():
             handles += axes.plot(x, y, marker, color="k", mfc="white", ms=3.5, mew=0.8, label=word)
     return handles
 
 
 def _on_curves(view: View, kind: int, line: str, row: str, x: Array, y: Array) -> NDArray[np.bool_]:
-    """Which special points of a kind, x along a row at y, (n,), lie on a curve of their kind."""
-    v, near = view.variables, np.zeros(len(x), dtype=bool)
+    """Whether special points of a kind, x along a row at y, (n,), lie on a curve of their kind."""
+    v = view.variables
+    near = np.zeros(len(x), dtype=bool)
     if "cycle_curve_number" not in v:
         return near
     for curve in np.unique(v["cycle_curve_number"][v["cycle_curve_kind"] == kind]):
         on = v["cycle_curve_number"] == curve
-        along, across = v[f"cycle_curve_{line}"][on], v[f"cycle_curve_{row}"][on]
-        before, after = across[:-1, None] - y, across[1:, None] - y
+        along = v[f"cycle_curve_{line}"][on]
+        across = v[f"cycle_curve_{row}"][on]
+        before = across[:-1, None] - y
+        after = across[1:, None] - y
         share = np.divide(before, before - after, out=np.zeros_like(before), where=before != after)
         places = along[:-1, None] + share * np.diff(along)[:, None]
         off = np.where(before * after <= 0, np.abs(places - x), np.inf)
@@ -158,7 +164,7 @@ def _on_curves(view: View, kind: int, line: str, row: str, x: Array, y: Array) -
 
 
 def _sides(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
-    """Draws Hopf curves by the side on which cycles are born, and where it changes; returns the legend."""
+    """Draws Hopf curves by their criticality, with generalised Hopf points; returns legend entries."""
     v = view.variables
     used = set()
     for curve in np.unique(v["curve_number"][v["curve_kind"] == 1]):
@@ -179,8 +185,9 @@ def _sides(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
 
 
 def _bautin_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
-    """Draws the ways of the generalised Hopf points over a third parameter; returns the legend."""
-    v, drawn = view.variables, []
+    """Draws the curves of generalised Hopf points over a third parameter; returns legend entries."""
+    v = view.variables
+    drawn = []
     third = next(n for n in LINEAR_PARAMETERS if f"bautin_along_{n}" in v and n not in (line, row))
     for number in np.unique(v["bautin_along_curve"]):
         on = v["bautin_along_curve"] == number
@@ -193,7 +200,7 @@ def _bautin_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
 
 
 def parts_of_one_side(view: View, curve: int, line: str, row: str) -> list[tuple[int, np.ndarray]]:
-    """The parts of a Hopf curve between generalised Hopf points: (-1, 1 or 0 undecided, points (n, 2))."""
+    """Parts of a Hopf curve between generalised Hopf points: (sign of Re c or 0 undecided, points (n, 2))."""
     v = view.variables
     rows = np.flatnonzero(v["curve_number"] == curve)
     on = np.flatnonzero(v["bautin_curve"] == curve)
@@ -201,7 +208,7 @@ def parts_of_one_side(view: View, curve: int, line: str, row: str) -> list[tuple
     columns = [np.insert(v[f"curve_{name}"][rows], places, v[f"bautin_{name}"][on]) for name in (line, row)]
     points = np.column_stack(columns)
     side = np.insert(np.nan_to_num(v["curve_criticality"][rows]), places, 0)
-    # The sides of a piece are those of its ends; a point within the error of a change takes its neighbour's.
+    # A piece has the sign of its ends; a point with an undecided sign takes that of its neighbour.
     ends = side[:-1], side[1:]
     pieces = np.where(ends[0] * ends[1] < 0, 0, np.sign(ends[0] + ends[1])).astype(int)
     cuts = [0, *(np.flatnonzero(np.diff(pieces)) + 1), len(pieces)]
@@ -209,10 +216,7 @@ def parts_of_one_side(view: View, curve: int, line: str, row: str) -> list[tuple
 
 
 def _first_over_force(paths: list[Array], force: int) -> list[Array]:
-    """The parts of curves, (n, 2) each, that come first over F, which is the column `force`.
-
-    Points elsewhere are left out.
-    """
+    """Parts of curves, (n, 2) each, at which no other curve has a smaller F; force: the column of F."""
     starts, ends = (
         np.concatenate([path[piece] for path in paths]) for piece in (slice(None, -1), slice(1, None))
     )
@@ -221,15 +225,16 @@ def _first_over_force(paths: list[Array], force: int) -> list[Array]:
     for path in paths:
         y = path[:, 1 - force, None]
         share = (y - y0) / np.where(y1 == y0, np.inf, y1 - y0)
-        there = (np.minimum(y0, y1) <= y) & (y <= np.maximum(y0, y1))
-        at = np.where(there, starts[:, force] + share * (ends[:, force] - starts[:, force]), np.inf)
+        crosses = (np.minimum(y0, y1) <= y) & (y <= np.maximum(y0, y1))
+        at = np.where(crosses, starts[:, force] + share * (ends[:, force] - starts[:, force]), np.inf)
         parts.append(path[path[:, force] <= at.min(axis=1, initial=np.inf) * (1 + SAME_PLACE)])
     return parts
 
 
 def _name_longest(axes: Axes, paths: list[Array], name: str, share: float) -> None:
-    """Writes a name beside the curve, (points, 2), that is longest in sight, at a share of its length."""
-    lengths, seen = [], []
+    """Writes a symbol beside the curve, (points, 2), of the greatest visible length, at a share of it."""
+    lengths = []
+    seen = []
     for path in paths:
         places = axes.transAxes.inverted().transform(axes.transData.transform(path))
         inside = ((places >= 0) & (places <= 1)).all(axis=1)

@@ -1,4 +1,4 @@
-"""The cycles that normal forms predict next to the Hopf points of rods: y = |a| sqrt(|F/F_H - 1|)."""
+"""Cycles predicted by normal forms near the Hopf points of rods: y = |a| sqrt(|F/F_H - 1|)."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -9,22 +9,22 @@ from ....results.file.view import View
 from .. import style
 from ..cycle.selection import shared_and_own_of_points
 
-NEAR = 0.1
-"""|F/F_H - 1| up to which a prediction is drawn: beyond, cycles depart from the law."""
+FARTHEST_DRAWN = 0.1
+"""Largest |F/F_H - 1| of a drawn prediction; farther away cycles depart from the leading-order law."""
 LINES = {-1: ("-", "supercritical"), 1: ("--", "subcritical"), 0: (":", "side undecided")}
-"""Line and word of the cycles of a Hopf point, by its criticality."""
+"""Line style and word of the cycles of a Hopf point, by its criticality."""
 COLOURS = (style.FIRST, style.SECOND, style.THIRD, "#CC79A7", "#56B4E9", "#000000")
-"""Of the rods, one after another."""
-POINTS_OF_PREDICTION = 60
-"""Places at which a curve is drawn, close together where it is steep."""
+"""Colours of the rods, in their order."""
+PREDICTION_POINTS = 60
+"""Number of points of a drawn prediction, dense near the Hopf point, where the curve is steep."""
 
 
 def draw_predictions(view: View) -> tuple[Figure, str]:
-    """The amplitude predicted beside every Hopf point over F, of the first rods; what that shows."""
+    """Figure of the predicted amplitudes near every Hopf point, for the first rods; and its description."""
     kinds, F, a = map(view.by_point, ("criticality", "crossing_F", "amplitude_coefficient"))
-    there = np.flatnonzero((np.isfinite(kinds) & np.isfinite(a)).any(axis=1))
-    style.require(view, there.size, "Hopf point with a normal form")
-    drawn = there[: len(COLOURS)]
+    having = np.flatnonzero((np.isfinite(kinds) & np.isfinite(a)).any(axis=1))
+    style.require(view, having.size, "Hopf point with a normal form")
+    drawn = having[: len(COLOURS)]
     figure = Figure(figsize=(5.6, 3.8), layout="constrained")
     axes = figure.subplots()
     shared, own = shared_and_own_of_points(view, [int(rod) + 1 for rod in drawn])
@@ -46,12 +46,17 @@ def draw_predictions(view: View) -> tuple[Figure, str]:
     style.legend_below(figure, handles, columns=3)
     figure.suptitle(style.heading(view, shared))
     left_out = (
-        f", of the first {len(drawn)} of {there.size} rods that have some" if len(drawn) < there.size else ""
+        f", of the first {len(drawn)} of {having.size} rods with Hopf points"
+        if len(drawn) < having.size
+        else ""
     )
-    return figure, f"the cycles that normal forms predict within {NEAR:.0%} of every Hopf point{left_out}"
+    return (
+        figure,
+        f"the cycles that normal forms predict within {FARTHEST_DRAWN:.0%} of every Hopf point{left_out}",
+    )
 
 
 def _law(at: float, a: float) -> tuple[Array, Array]:
-    """(F, largest y) next to a Hopf point, where its cycles are: above it for a > 0, below for a < 0."""
-    distance = NEAR * np.linspace(0, 1, POINTS_OF_PREDICTION) ** 2
+    """(F, largest y) on the side of a Hopf point with cycles: above it for a > 0, below it for a < 0."""
+    distance = FARTHEST_DRAWN * np.linspace(0, 1, PREDICTION_POINTS) ** 2
     return at * (1 + np.sign(a) * distance), abs(a) * np.sqrt(distance)

@@ -1,4 +1,4 @@
-"""Regions of a plane that curves bound: a pixel takes its class from points of its own region."""
+"""Regions of a plane bounded by curves: each pixel takes its class from points of its own region."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,25 +13,25 @@ from ....arrays import Array
 from ..style import is_logarithmic
 
 PIXELS = 900
-"""Pixels along either axis: at 183 mm a fifth of a millimetre, half as much as the line that is drawn over a
-boundary."""
-STEP = 0.4
-"""Pixels from a place to the next where a curve is drawn into the plane: below one it has no gap."""
+"""Number of pixels along either axis. In a figure of 183 mm a pixel has a fifth of a millimetre, half the
+width of the line drawn over a boundary."""
+CURVE_STEP = 0.4
+"""Distance, in pixels, of points at which a curve is drawn; with less than 1 the curve has no gap."""
 
 
 @dataclass(frozen=True, slots=True)
 class DrawnPlane:
-    """A rectangle of two parameters from the first value of each to the last, in the scales of their axes."""
+    """Rectangle of two parameters, from first to last value of each, with the scales of their axes."""
 
     x: Array
     y: Array
 
     def unit(self, x: Array, y: Array) -> Array:
-        """Places, both of the shape (n,), as fractions of the axes, (n, 2): 0 and 1 are the edges."""
+        """Points, both (n,), as fractions of the axes, (n, 2): 0 and 1 are the edges."""
         columns = []
         for values, axis in ((x, self.x), (y, self.y)):
             if is_logarithmic(axis):
-                with np.errstate(all="ignore"):  # a curve may leave the plane through 0
+                with np.errstate(all="ignore"):  # outside the plane a curve may reach 0
                     columns.append(np.log(values / axis[0]) / np.log(axis[-1] / axis[0]))
             else:
                 columns.append((values - axis[0]) / (axis[-1] - axis[0]))
@@ -39,24 +39,24 @@ class DrawnPlane:
 
 
 @dataclass(frozen=True, slots=True)
-class ClassedPlaces:
-    """Places whose class is known, (n, 2), as fractions of the axes, and their classes, (n,)."""
+class ClassifiedPoints:
+    """Points with a known class, (n, 2), as fractions of the axes, and their classes, (n,)."""
 
     at: Array
     classes: NDArray[Any]
 
-    def within(self, regions: NDArray[Any]) -> tuple["ClassedPlaces", NDArray[Any]]:
-        """(those that lie in the plane, the region of each), by the region of every pixel."""
+    def within(self, regions: NDArray[Any]) -> tuple["ClassifiedPoints", NDArray[Any]]:
+        """(points in the plane, region of each of them), from the region of every pixel."""
         inside = ((self.at >= 0) & (self.at <= 1)).all(axis=1)
         at = self.at[inside]
-        return ClassedPlaces(at, self.classes[inside]), regions[tuple(_pixels(at).T)]
+        return ClassifiedPoints(at, self.classes[inside]), regions[tuple(_pixels(at).T)]
 
 
-def coloured(computed: ClassedPlaces, further: ClassedPlaces, curves: Sequence[Array]) -> NDArray[Any]:
-    """The class of each pixel, (PIXELS, PIXELS), lowest row first: that of the nearest point of its region.
+def coloured(computed: ClassifiedPoints, further: ClassifiedPoints, curves: Sequence[Array]) -> NDArray[Any]:
+    """Class of each pixel, (PIXELS, PIXELS), lowest row first: the class of the nearest point of its region.
 
-    further: places for regions in which no point was computed; curves: the boundaries, each (m, 2), in
-    fractions of the axes. A region without any place takes the class of the nearest computed point.
+    further: points for regions without a computed point. curves: boundaries, (m, 2) each, as fractions of the
+    axes. A region without any point takes the class of the nearest computed point.
     """
     walls = np.zeros((PIXELS, PIXELS), bool)
     for curve in curves:
@@ -80,7 +80,7 @@ def coloured(computed: ClassedPlaces, further: ClassedPlaces, curves: Sequence[A
 
 
 def _nearest(pixels: tuple[NDArray[Any], ...], places: Array, classes: NDArray[Any]) -> NDArray[Any]:
-    """The class of the point that is nearest to each pixel, (rows, columns) of the shape (n,) each."""
+    """Class of the point nearest to each pixel; pixels: (rows, columns), (n,) each."""
     if (classes == classes[0]).all():
         return classes[0]
     centres = (np.column_stack(pixels[::-1]) + 0.5) / PIXELS
@@ -88,26 +88,26 @@ def _nearest(pixels: tuple[NDArray[Any], ...], places: Array, classes: NDArray[A
 
 
 def _pixels(places: Array) -> NDArray[np.intp]:
-    """(row, column) of the pixels in which places lie, (n, 2)."""
+    """(row, column) of the pixels that contain points, (n, 2)."""
     return np.clip(places[:, ::-1] * PIXELS, 0, PIXELS - 1).astype(np.intp)
 
 
 def _dense(curve: Array) -> Array:
-    """The part of a curve, (n, 2), that lies in the plane, at places less than a pixel apart.
+    """Part of a curve, (n, 2), in the plane, at points less than a pixel apart.
 
-    Each piece is cut at the edges of the plane first: what lies outside may be a thousand times as long.
+    Each piece is first cut at the edges of the plane, because its outer part may be a thousand times as long.
     """
     curve = curve[np.isfinite(curve).all(axis=1)]
-    edge = 0.5 / PIXELS  # an end on the edge may lie outside by rounding
+    edge = 0.5 / PIXELS  # rounding may move an end on the edge outside
     steps = np.diff(curve, axis=0)
-    with np.errstate(all="ignore"):  # along an axis a piece may not move, and is between its edges or is not
+    with np.errstate(all="ignore"):  # a piece parallel to an axis gives infinities, which are right
         crossed = np.stack([(bound - curve[:-1]) / steps for bound in (-edge, 1 + edge)])
     enters = np.maximum(crossed.min(axis=0).max(axis=1), 0)
     leaves = np.minimum(crossed.max(axis=0).min(axis=1), 1)
     pieces = [curve[:1]]
     for i in np.flatnonzero(enters <= leaves):
         share = leaves[i] - enters[i]
-        count = int(share * np.abs(steps[i]).max() * PIXELS / STEP) + 1
+        count = int(share * np.abs(steps[i]).max() * PIXELS / CURVE_STEP) + 1
         pieces.append(curve[i] + steps[i] * np.linspace(enters[i], leaves[i], count + 1)[:, None])
     places = np.concatenate(pieces)
     return places[((places > -edge) & (places < 1 + edge)).all(axis=1)]

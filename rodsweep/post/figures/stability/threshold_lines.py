@@ -1,4 +1,4 @@
-"""The first thresholds of rods as lines over a parameter, for all values of another one or for some."""
+"""First thresholds of rods as lines over a parameter, for all values of a second parameter or for some."""
 
 from typing import Any
 
@@ -17,21 +17,23 @@ CRITICAL_FORCES = (
     ("F_hopf", r"Hopf $\tilde F_{**}$", style.SECOND, "s", "-"),
     ("F_restabilization", "restabilization", style.THIRD, "^", "--"),
 )
-"""Variable and words of each threshold; the colour of a line among those of one rod; its marker and line."""
+"""Variable, word, colour for lines of one rod, marker and line style of each threshold."""
 LINE_STYLES = ("-", "--", ":")
-"""For the values of the other parameter for which lines are drawn in one panel."""
+"""Line styles for the values of the second parameter in one panel."""
 MAX_LINES = 6
-"""Values of the other parameter whose lines can be told apart by their colours."""
-DARKEST, LIGHTEST = 0.0, 0.85
-"""Part of the map of colours that shows on white."""
-UNSEEN = 0.01
-"""Distance of two lines, in units of the largest force, below which one of them is drawn."""
+"""Largest number of values of the second parameter whose lines have distinct colours."""
+DARKEST = 0.0
+"""Start of the used part of the colour map."""
+LIGHTEST = 0.85
+"""End of the used part of the colour map; lighter colours are invisible on white."""
+INDISTINCT = 0.01
+"""Distance of two lines, in units of the largest force, below which only one of them is drawn."""
 HEADROOM = 1.05
-"""Height of the axis of forces in units of the largest force."""
+"""Upper limit of the axis of forces, in units of the largest force."""
 
 
 def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, str]:
-    """Lines over the longer of at most two parameters, for every value of the shorter; what they show."""
+    """Figure of lines over the longer axis, for every value of the shorter one; and its description."""
     along = max(long, key=lambda name: np.count_nonzero(np.isfinite(view.axes[name])))
     other = next((name for name in long if name != along), None)
     figure = Figure(figsize=(5.6, 4.2), layout="constrained")
@@ -61,7 +63,7 @@ def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, 
 
 
 def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str) -> tuple[Figure, str]:
-    """As the paper's Fig. 3: a panel for each of two parameters, lines for some values of the other."""
+    """Figure as the paper's Fig. 3: a panel over each of two parameters, for some values of the other."""
     rows, columns = (2, 1) if narrow else (1, 2)
     figure = Figure(figsize=(4.6 * columns + 0.4, 4.0 * rows), layout="constrained")
     panels = figure.subplots(rows, columns, sharey=True, squeeze=False).ravel()
@@ -71,27 +73,27 @@ def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str)
         drawn.append(f"{count} of {len(view.axes[other])} values of {other}")
         if narrow or panel is panels[0]:
             panel.set_ylabel(style.CRITICAL_FORCE)
-    there = [
+    handles = [
         Line2D([], [], color=colour, marker=marker, ms=3, lw=1.2, label=word)
         for name, word, colour, marker, _ in CRITICAL_FORCES
         if np.isfinite(view.variables[name]).any()
     ]
-    style.legend_below(figure, there, columns=3)
+    style.legend_below(figure, handles, columns=3)
     figure.suptitle(style.heading(view, style.fixed_text(view, *long), searched))
-    said = f"critical forces against {' and '.join(long)}, lines for {' and '.join(drawn)} (--what map: all)"
-    return figure, said + _left_out(view, long)
+    shown = f"critical forces against {' and '.join(long)}, lines for {' and '.join(drawn)} (--what map: all)"
+    return figure, shown + _left_out(view, long)
 
 
 def _some_lines(panel: Axes, view: View, along: str, other: str) -> int:
-    """Lines over one parameter, for the values of the other that differ most; returns of how many values."""
+    """Draws lines over one parameter for the most different values of the other; returns their number."""
     table = _table(view, along, other)
     some = _far_apart(table)
     for line, alike in zip(LINE_STYLES, _alike({at: table[at] for at in some}), strict=False):
         for forces, (_, _, colour, marker, _) in zip(table[alike[0]], CRITICAL_FORCES, strict=True):
             look = {"color": colour, "marker": marker, "ms": 2, "lw": 1.2, "ls": line}
             _plot(panel, _abscissa(view, along), forces, look)
-        said = ", ".join(style.number(float(view.axes[other][at]), 3) for at in alike)
-        text = f"${style.SYMBOLS[other]} = {said}$" + (" (one line)" if len(alike) > 1 else "")
+        values = ", ".join(style.number(float(view.axes[other][at]), 3) for at in alike)
+        text = f"${style.SYMBOLS[other]} = {values}$" + (" (one line)" if len(alike) > 1 else "")
         panel.plot([], [], line, color="0.3", label=text)
     _label(panel, view, along, _table(view, along, other)[some])
     panel.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0))
@@ -99,7 +101,7 @@ def _some_lines(panel: Axes, view: View, along: str, other: str) -> int:
 
 
 def _table(view: View, along: str, other: str | None) -> Array:
-    """The three forces, (values of the other parameter or 1, 3, values along)."""
+    """The three critical forces, (values of the other parameter or 1, 3, values along)."""
     names = list(view.axes)
     kept = [names.index(name) for name in (other, along) if name]
     rest = tuple(place for place in range(len(names)) if place not in kept)
@@ -112,19 +114,19 @@ def _table(view: View, along: str, other: str | None) -> Array:
 
 
 def _abscissa(view: View, along: str) -> Array:
-    """What is along the axis: the parameter, or 1/gamma3 as in the paper."""
+    """Values along the axis: of the parameter, or 1/gamma3 as in the paper."""
     values = view.axes[along]
     return 1 / values if along == "gamma3" else values
 
 
 def _plot(axes: Axes, x: Array, forces: Array, look: dict) -> None:
-    """A line through the forces that are known, (n,), with gaps where one is not."""
+    """Draws a line through the known forces, (n,), with gaps at unknown ones."""
     place = np.isfinite(x)
     axes.plot(x[place], forces[place], **look)
 
 
 def _label(axes: Axes, view: View, along: str, table: Array) -> None:
-    """Scale and label of the axis, and one of forces from 0 to above the largest."""
+    """Sets scale and label of the horizontal axis, and limits of the axis of forces, which starts at 0."""
     x = _abscissa(view, along)
     style.scale(axes, "x", np.sort(x[np.isfinite(x)]))
     axes.set_xlabel(style.INVERSE_DRAG if along == "gamma3" else style.LABELS[along])
@@ -133,17 +135,17 @@ def _label(axes: Axes, view: View, along: str, table: Array) -> None:
 
 
 def _kinds(table: Array) -> list[Line2D]:
-    """What the legend says of the thresholds that there are, (values, 3, values along)."""
-    there = np.isfinite(table).any(axis=(0, 2))
+    """Legend entries of the thresholds in a table, (values, 3, values along)."""
+    shown = np.isfinite(table).any(axis=(0, 2))
     return [
         Line2D([], [], color="0.3", marker=marker, ls=line, ms=3, lw=1.2, label=word)
-        for known, (_, word, _, marker, line) in zip(there, CRITICAL_FORCES, strict=True)
+        for known, (_, word, _, marker, line) in zip(shown, CRITICAL_FORCES, strict=True)
         if known
     ]
 
 
 def _left_out(view: View, names: list[str]) -> str:
-    """What is said of values that have no place on an axis."""
+    """Clause on values without a place on an axis; empty if there is none."""
     left_out = [
         f"{name} = {value:g}"
         for name in names
@@ -153,7 +155,7 @@ def _left_out(view: View, names: list[str]) -> str:
 
 
 def _far_apart(table: Array) -> list[int]:
-    """Of the numbers of lines, (lines, 3, n), the first, the last, and the one that lies most between."""
+    """Numbers of the first and the last line, and the one nearest to half their height; (lines, 3, n)."""
     last = len(table) - 1
     if last < 2:
         return list(range(len(table)))
@@ -164,14 +166,14 @@ def _far_apart(table: Array) -> list[int]:
 
 
 def _alike(lines: dict[int, Array]) -> list[list[int]]:
-    """The numbers of lines, (3, points) each, in groups of those that cannot be told apart."""
+    """Groups of lines, by number, that are indistinct in the figure; lines: (3, points) each."""
     size = max(float(np.nanmax(values, initial=0.0)) for values in lines.values())
     groups: list[list[int]] = []
     for number, values in lines.items():
         for group in groups:
             other = lines[group[0]]
             same = np.isnan(values) == np.isnan(other)
-            if same.all() and np.nanmax(np.abs(values - other), initial=0.0) < UNSEEN * size:
+            if same.all() and np.nanmax(np.abs(values - other), initial=0.0) < INDISTINCT * size:
                 group.append(number)
                 break
         else:

@@ -1,6 +1,6 @@
-"""What `rodsweep show` says first of an arm: whether the model applies, and when and how fast it beats.
+"""First lines of `rodsweep show` for an arm: whether the model applies, and when and how fast the arm beats.
 
-In the units in which the arm was typed, frequencies in Hz.
+Numbers are in the units typed by the user, frequencies in Hz.
 """
 
 from collections.abc import Callable, Mapping
@@ -19,29 +19,30 @@ from .arm import errors_in_si, load_of, own_unit, region_of_arms
 from .drag_range import arms_of_drags, drag_lines
 
 DIGITS = 3
-"""Digits of an answer, where its error leaves so many."""
+"""Largest number of digits in an answer; a larger error leaves fewer."""
 OTHER_PLANE = (
     "the motion is in the plane of the height; where that is above the width, the arm flutters first in the "
     "other plane, at a lower load: exchange width and height to see it"
 )
+"""Warning about a rectangular section that is higher than wide."""
 
 
 def arm_answer(view: View, done: np.ndarray) -> list[str]:
-    """Lines about the points that are `done`, a mask of their shape; none without an arm."""
+    """Lines about the points that are `done`, a mask of their shape; empty without an arm."""
     return [*plane_lines(view.quantities), *_applied(view, done)] if view.quantities else []
 
 
 def plane_lines(quantities: Mapping[str, np.ndarray]) -> list[str]:
-    """What is said of rectangles of which one gives way first in the plane that is not computed; else none.
+    """Warning if some rectangular section flutters first in the plane that is not computed; else empty.
 
-    quantities: those of an arm in SI, each a number or (n,).
+    quantities: of an arm, in SI units, each a number or (n,).
     """
     height, width = (np.asarray(quantities.get(name, np.nan)) for name in ("height", "width"))
     return [OTHER_PLANE] if np.max(height) > np.min(width) else []
 
 
 def _applied(view: View, done: np.ndarray) -> list[str]:
-    """Lines about points, with whether the model applies to them."""
+    """Lines about points, with the validity of the model."""
     rods = done & (view.variables["status"] < NOT_SLENDER)
     if not rods.any():
         return ["no rod covers any of these arms"] if done.any() else []
@@ -57,30 +58,33 @@ def _applied(view: View, done: np.ndarray) -> list[str]:
 
 
 def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str:
-    """Whether the model applies at points, and what it leaves out there.
+    """Sentence on the validity of the model at points, with its largest neglected effect.
 
-    validity: the variables of VALIDITY, (n,); when: they are judged so.
+    validity: the variables of VALIDITY, (n,). when: condition under which they hold, as a clause.
     """
     applies, effect, excess = (validity[variable.name] for variable in VALIDITY)
     worst = Validity(int(applies.max()))
     if worst == Validity.applies:
         return f"the model applies{' at all points' * (len(applies) > 1)}{when}"
-    there = applies == worst
-    some = f" at {some_of(int(there.sum()), len(applies), 'point')}"
-    at = "" if len(applies) == 1 else f" at all {len(applies)} points" if there.all() else some
+    affected = applies == worst
+    at = f" at {some_of(int(affected.sum()), len(applies), 'point')}"
+    if affected.all():
+        at = "" if len(applies) == 1 else f" at all {len(applies)} points"
     verb = "does not apply" if worst == Validity.does_not_apply else "is doubtful"
-    place = int(np.flatnonzero(there)[np.argmax(excess[there])])
-    name, size = EFFECTS[int(effect[place])].replace("_", " "), f"{excess[place]:.2g}"
-    return f"the model {verb}{at}{when}: {name} is {'up to ' * int(there.sum() > 1)}{size} times its limit"
+    place = int(np.flatnonzero(affected)[np.argmax(excess[affected])])
+    name = EFFECTS[int(effect[place])].replace("_", " ")
+    size = f"{'up to ' * int(affected.sum() > 1)}{excess[place]:.2g}"
+    return f"the model {verb}{at}{when}: {name} is {size} times its limit"
 
 
 def spanned(view: View, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0) -> str:
-    """The range of values in an SI unit, of any shape, in the arm's own unit.
+    """Range of values in an SI unit, of any shape, in the arm's own unit.
 
-    errors: absolute ones, of the same shape; three digits are told where they are known.
+    errors: absolute errors of the same shape, or 0; they limit the number of digits.
     """
-    there = np.isfinite(values)
-    finite, known = values[there], np.broadcast_to(errors, values.shape)[there]
+    is_finite = np.isfinite(values)
+    finite = values[is_finite]
+    known = np.broadcast_to(errors, values.shape)[is_finite]
     factor, unit = own_unit(view, si, float(np.abs(finite).max()))
     ends = (int(finite.argmin()), int(finite.argmax()))
     low, high = (rounded(factor * float(finite[i]), factor * float(known[i]), DIGITS) for i in ends)
@@ -88,25 +92,28 @@ def spanned(view: View, values: np.ndarray, si: str, errors: np.ndarray | float 
 
 
 def load_spanned(view: View, loads: np.ndarray) -> str:
-    """The range of loads in SI, (n,), as the load of the arm is told."""
+    """Range of loads in SI units, (n,), in the unit of the arm's load."""
     return spanned(view, loads, "N" if "force" in view.quantities else "Pa")
 
 
 def _of_thresholds(view: View, rods: np.ndarray) -> list[str]:
-    load, v = load_of(view), view.variables
+    """Lines about the loads at which arms flutter, oscillate and are stable again."""
+    load = load_of(view)
+    v = view.variables
     hopf, end, rate = (v[name][rods] for name in (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz"))
     lines = [*_flutter(view, hopf, end, rate), *_where(view, rods, hopf)]
-    onset, back = v[f"{load}_onset"][rods], v[f"{load}_restabilization"][rods]
+    onset = v[f"{load}_onset"][rods]
+    back = v[f"{load}_restabilization"][rods]
     if len(hopf) > 1 and np.isfinite(onset).any():
         lines.append(f"a disturbance swings as it dies away from {load_spanned(view, onset)} on")
     if len(hopf) > 1 and np.isfinite(back).any():
-        there = some_of(int(np.isfinite(back).sum()), len(back), "point")
-        lines.append(f"is straight again at {there}, from {load_spanned(view, back)} on")
+        points = some_of(int(np.isfinite(back).sum()), len(back), "point")
+        lines.append(f"is straight again at {points}, from {load_spanned(view, back)} on")
     return lines
 
 
 def _where(view: View, rods: np.ndarray, loads: np.ndarray) -> list[str]:
-    """Which arms flutter at the least and at the largest of loads in SI, (n,), and what drag does."""
+    """Lines about the arms with the smallest and the largest of loads in SI units, (n,), and about drag."""
     if np.isfinite(loads).sum() < 2:
         return []
     places = np.flatnonzero(rods)
@@ -121,6 +128,7 @@ def _where(view: View, rods: np.ndarray, loads: np.ndarray) -> list[str]:
 
 
 def _of_crossings(view: View, rods: np.ndarray) -> list[str]:
+    """Lines about the loads and frequencies of first Hopf points."""
     v = view.variables
     first = _first_hopf(view, rods)
     load = load_of(view)
@@ -130,49 +138,53 @@ def _of_crossings(view: View, rods: np.ndarray) -> list[str]:
 
 
 def _flutter(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarray) -> list[str]:
-    """Lines about loads at which points flutter, up to where was searched, and frequencies there, (n,)."""
-    there = np.isfinite(hopf)
+    """Lines about loads at flutter, ends of the search, and frequencies at flutter, (n,) each."""
+    flutters = np.isfinite(hopf)
     searched = f"up to {load_spanned(view, end)}" if np.isfinite(end).any() else ""
-    if not there.any():
+    if not flutters.any():
         return [f"does not flutter {searched}".rstrip()]
-    of = f" at {int(there.sum())} of {len(hopf)} points" if not there.all() else ""
+    of = f" at {int(flutters.sum())} of {len(hopf)} points" if not flutters.all() else ""
     lines = [f"flutters{of} from {load_spanned(view, hopf)}; beats at {spanned(view, frequency, 'Hz')}"]
-    if not there.all():
-        lines.append(f"does not flutter at {int((~there).sum())} of {len(hopf)} points {searched}".rstrip())
+    if not flutters.all():
+        stable = f"does not flutter at {int((~flutters).sum())} of {len(hopf)} points {searched}"
+        lines.append(stable.rstrip())
     return lines
 
 
 def _of_cycles(view: View, rods: np.ndarray) -> list[str]:
+    """Lines about the frequency and the amplitude of cycles."""
     names = {"frequency_hz": "frequency", "tip_y_max_si": "tip_y_max"}
     v = {name: view.variables[name][rods] for name in names}
     errors = {name: errors_in_si(view.variables, own, name)[rods] for name, own in names.items()}
-    there = np.isfinite(v["frequency_hz"])
-    if not there.any():
+    beats = np.isfinite(v["frequency_hz"])
+    if not beats.any():
         return ["does not beat"]
-    of = f" at {int(there.sum())} of {len(there)} points" if len(there) > 1 else ""
+    of = f" at {int(beats.sum())} of {len(beats)} points" if len(beats) > 1 else ""
     wide = spanned(view, v["tip_y_max_si"], "m", errors["tip_y_max_si"])
     rate = spanned(view, v["frequency_hz"], "Hz", errors["frequency_hz"])
-    beats = f"beats{of} at {rate}, its tip by {wide} to either side"
+    motion = f"beats{of} at {rate}, its tip by {wide} to either side"
     known = {"frequency": "frequency_hz", "reach of the tip": "tip_y_max_si", "power": "injection_mean_si"}
     numbers = {name: np.where(rods, view.variables[key], np.nan).ravel() for name, key in known.items()}
-    return [beats, *_decided(view, rods), *drag_lines(view, numbers)]
+    return [motion, *_decided(view, rods), *drag_lines(view, numbers)]
 
 
 def _decided(view: View, rods: np.ndarray) -> list[str]:
-    """At how many arms and loads drag decides whether there is a cycle; none where none was varied."""
+    """Line on the number of arms and loads for which drag decides whether there is a cycle; may be empty."""
     arms = arms_of_drags(view)
     if arms is None:
         return []
     beats = np.isfinite(view.variables["frequency_hz"]).ravel()
     of_arms = [beats[(arms == arm) & rods.ravel()] for arm in np.unique(arms[rods.ravel()])]
-    always, never = sum(each.all() for each in of_arms), sum(not each.any() for each in of_arms)
+    always = sum(each.all() for each in of_arms)
+    never = sum(not each.any() for each in of_arms)
     some = len(of_arms) - always - never
-    told = {"with every drag": always, "with part of the range of drag": some, "with none": never}
-    counts = ", ".join(f"{words} at {count}" for words, count in told.items() if count)
+    numbers = {"with every drag": always, "with part of the range of drag": some, "with none": never}
+    counts = ", ".join(f"{words} at {count}" for words, count in numbers.items() if count)
     return [f"of {counted(len(of_arms), 'combination')} of arm and load: beats {counts}"]
 
 
 def _of_modes(view: View, rods: np.ndarray) -> list[str]:
+    """Line about the stability of arms and the frequency of their leading modes."""
     unstable = view.variables["unstable_count"][rods] > 0
     if not unstable.any():
         return ["stays straight"]
@@ -182,6 +194,7 @@ def _of_modes(view: View, rods: np.ndarray) -> list[str]:
 
 
 def _of_branches(view: View, rods: np.ndarray) -> list[str]:
+    """Line about loads and frequencies of the cycles on branches."""
     loads = view.variables[f"branch_{load_of(view)}"][rods]
     if not np.isfinite(loads).any():
         return ["does not beat"]
@@ -191,9 +204,11 @@ def _of_branches(view: View, rods: np.ndarray) -> list[str]:
 
 
 def _of_diagram(view: View, rods: np.ndarray) -> list[str]:
-    if "F" in view.parameters:  # the rows cross another parameter
+    """Lines about the loads and frequencies of the first Hopf points on rows over F."""
+    if "F" in view.parameters:  # the rows are over another parameter
         return []
-    first, v = _first_hopf(view, rods), view.variables
+    first = _first_hopf(view, rods)
+    v = view.variables
     scale = SCALE_OF[load_of(view)]
     loads = _at(v["crossing_at"][rods], first) * np.broadcast_to(v[scale], rods.shape)[rods]
     last = np.minimum(v["F"][-1], view.point_columns["k1"].reshape(rods.shape)[rods])
@@ -202,13 +217,13 @@ def _of_diagram(view: View, rods: np.ndarray) -> list[str]:
 
 
 def _first_hopf(view: View, rods: np.ndarray) -> np.ndarray:
-    """The place of the first Hopf point among the crossings of each point, (n,); -1 without one."""
+    """Place of the first Hopf point among the crossings of each point, (n,); -1 without a Hopf point."""
     hopf = view.variables["crossing_kind"][rods] == CROSSING_KINDS.index("hopf")
     return np.where(hopf.any(axis=-1), np.argmax(hopf, axis=-1), -1)
 
 
 def _at(values: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Of tables, (n, crossings), the value at a place of each, (n,); nan at place -1."""
+    """Values at one place of each row of a table, (n, crossings), as (n,); NaN for place -1."""
     return np.where(places < 0, np.nan, values[np.arange(len(places)), np.maximum(places, 0)])
 
 
@@ -221,4 +236,4 @@ ANSWERS: dict[str, Callable[[View, np.ndarray], list[str]]] = {
     "branch": _of_branches,
     "phase_diagram": _of_diagram,
 }
-"""What each task has to say, from (view, which points have a rod and are computed)."""
+"""Function of each task from (view, mask of computed points with a rod) to the lines of its answer."""

@@ -1,6 +1,7 @@
-"""What `rodsweep show` says of an arm in its own units: quantities, the numbers of every task, thresholds.
+"""An arm in its own units in `rodsweep show`: quantities, results of every task, and thresholds.
 
-Loads and lengths are told in the unit that was typed, frequencies in Hz, all powers of an answer in one unit.
+Loads and lengths are in the units typed by the user, frequencies in Hz, and all powers of an answer in one
+unit.
 """
 
 import json
@@ -16,40 +17,40 @@ from ....results.file.view import View
 from ....results.layouts import LAYOUTS
 from ....results.layouts.arm import HERTZ, si_variables_of
 from ....results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
-from ...hopf_points import Located
+from ...hopf_points import LocatedChange
 from ...tables.rows import quantities_at_points
 from ..errors import errors_of, is_known
 from ..ranges import rounded, span
 
 WIDTH = 80
-"""Columns of a line in SI units."""
-ITEMS_FEW = 4
-"""Values of a table of one rod that are told one by one."""
+"""Width of lines in SI units, in characters."""
+FEW_ITEMS = 4
+"""Largest number of values of a table that are listed one by one for a single rod."""
 TYPED_AS = {"m": ("length",), "Pa": ("pressure", "young"), "N": ("force",)}
-"""The quantities in whose unit others of their kind are told, where they were typed in one."""
+"""Quantities whose typed unit is used for all numbers with this SI unit; the first typed quantity decides."""
 PREFIXED = ("J", "W")
-"""Units that are told with a prefix, as mW."""
+"""Units that get a prefix, such as mW."""
 SHORT_TIME = 0.1
-"""Seconds below which times are told in ms."""
+"""Time, in s, below which times are given in ms or smaller units."""
 DIGITS = 3
-"""Digits of a quantity that says where something is."""
+"""Number of digits of a quantity that identifies a point."""
 WORDS = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
-"""What quantities are called, where that is not their name."""
-OF_THRESHOLDS = {
+"""Words for quantities whose name is not one."""
+THRESHOLD_SENTENCES = {
     "hopf": "flutters at {load}{rate}",
     "restabilization": "is straight again from {load} on",
     "onset": "a disturbance swings as it dies away from {load} on",
 }
-"""What is said of the loads at which the straight arm changes, by their kind."""
+"""Sentences on the loads at which the straight arm changes, by kind of change."""
 
 
 def word(name: str) -> str:
-    """A quantity in words."""
+    """Name of a quantity in words."""
     return WORDS.get(name, name.replace("_", " "))
 
 
 def own_unit(view: View, si: str, largest: float) -> tuple[float, str]:
-    """(factor, unit) in which numbers in an SI unit up to `largest` are told."""
+    """(factor, unit) for numbers in an SI unit that are at most `largest`."""
     typed = next((view.typed[name] for name in TYPED_AS.get(si, ()) if name in view.typed), si)
     if typed != si:
         return written_in(1.0, typed, si), typed
@@ -59,37 +60,40 @@ def own_unit(view: View, si: str, largest: float) -> tuple[float, str]:
 
 
 def in_own_unit(view: View, values: np.ndarray, si: str) -> str:
-    """The range of numbers in an SI unit, of any shape, in the arm's own."""
+    """Range of numbers in an SI unit, of any shape, in the arm's own unit."""
     factor, unit = own_unit(view, si, _largest(values))
     return f"{span(factor * values)} {unit}"
 
 
 def _largest(values: np.ndarray) -> float:
-    """The largest modulus of the finite values, 0 without one."""
+    """Largest modulus of the finite values; 0 without a finite value."""
     finite = np.abs(values[np.isfinite(values)])
     return float(finite.max()) if finite.size else 0.0
 
 
 def given_columns(view: View) -> dict[str, np.ndarray]:
-    """The quantities of an arm that differ among the points of a file, at every point, each (points,)."""
+    """Quantities of an arm that vary among the points of a file, at every point, each (points,)."""
     columns = quantities_at_points(view)
     given = {name: column for name, column in columns.items() if name not in ARM_UNITS}
     return {name: column for name, column in given.items() if len(np.unique(column[~np.isnan(column)])) > 1}
 
 
-def region_of_arms(view: View, there: np.ndarray) -> str:
-    """The ranges of the quantities that differ among points, a mask of their shape; empty for one arm."""
-    told = (quantity_range(view, name, column, there.ravel()) for name, column in given_columns(view).items())
-    return ", ".join(filter(None, told))
+def region_of_arms(view: View, mask: np.ndarray) -> str:
+    """Ranges of the varied quantities over points, a mask of their shape; empty for a single arm."""
+    ranges = (
+        quantity_range(view, name, column, mask.ravel()) for name, column in given_columns(view).items()
+    )
+    return ", ".join(filter(None, ranges))
 
 
 def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray) -> str:
-    """The range of a quantity, (points,), over chosen points, a mask; empty where they have all drags."""
+    """Range of a quantity, (points,), over chosen points, a mask; empty if they have all drags."""
     values = column[chosen]
     if name == "drag":
         names = [DRAGS[int(place)] for place in np.unique(values)]
         return "" if len(names) == len(np.unique(column)) else f"drag {' and '.join(names)}".replace("_", " ")
-    unit, si = _unit(view, name), ALL_QUANTITIES[name].unit
+    unit = _unit(view, name)
+    si = ALL_QUANTITIES[name].unit
     factor = written_in(1.0, unit, si) if unit else 1.0
     ends = [float(f"{factor * end:.{DIGITS}g}") for end in (values.min(), values.max())]
     extent = " to ".join(f"{end:.{DIGITS + 1}g}" for end in sorted(set(ends)))
@@ -99,20 +103,20 @@ def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray
 
 
 def _unit(view: View, name: str) -> str:
-    """The unit of a quantity as it is told; empty of a ratio."""
+    """Unit of a quantity in the summary; empty for a ratio."""
     si = ALL_QUANTITIES[name].unit
     return "" if si == "1" else view.typed.get(name, own_unit(view, si, 1.0)[1])
 
 
 def arm_lines(view: View, done: np.ndarray) -> list[str]:
-    """The ranges of what is stored in SI units, over the points that are `done`, a mask of their shape."""
+    """Ranges of the variables stored in SI units, over the points that are `done`, a mask of their shape."""
     if not view.quantities:
         return []
     config = json.loads(view.attributes["config_resolved"])
-    twins = si_variables_of(LAYOUTS[view.task](config), config)
+    si_variables = si_variables_of(LAYOUTS[view.task](config), config)
     shown = {
         own: v
-        for own, v in twins.items()
+        for own, v in si_variables.items()
         if "error" not in v.name and (not v.extra or (done.size == 1 and v.extra != ("crossing",)))
     }
     known = {own: is_known(view.variables, own)[done] for own in shown}
@@ -121,34 +125,35 @@ def arm_lines(view: View, done: np.ndarray) -> list[str]:
     largest: dict[str, float] = {}
     for own, column in values.items():
         largest[shown[own].units] = max(largest.get(shown[own].units, 0.0), _largest(column))
-    told = []
+    items = []
     for own, column in values.items():
         variable = shown[own]
         factor, unit = own_unit(view, variable.units, largest[variable.units])
         errors = errors_in_si(view.variables, own, variable.name)[done]
         numbers = _numbers(factor * column, factor * errors)
-        told.append(f"{variable.name.removesuffix('_si').removesuffix('_hz')} = {numbers} {unit}")
+        items.append(f"{variable.name.removesuffix('_si').removesuffix('_hz')} = {numbers} {unit}")
     return (
-        ["in the arm's units:", *wrapped("; ".join(item.replace(" ", "\xa0") for item in told))]
-        if told
+        ["in the arm's units:", *wrapped("; ".join(item.replace(" ", "\xa0") for item in items))]
+        if items
         else []
     )
 
 
 def _numbers(values: np.ndarray, errors: np.ndarray) -> str:
-    """Values as words: one by one where they are a few of a table, else their range.
+    """Values as text: one by one for a few values of a table, else their range.
 
-    errors: absolute ones, of the same shape, which leave out digits that are not known.
+    errors: absolute errors of the same shape, which limit the number of digits.
     """
-    there = np.isfinite(values)
-    finite, known = values[there], errors[there]
-    if values.ndim > 1 and 1 < finite.size <= ITEMS_FEW:
+    is_finite = np.isfinite(values)
+    finite = values[is_finite]
+    known = errors[is_finite]
+    if values.ndim > 1 and 1 < finite.size <= FEW_ITEMS:
         return ", ".join(map(rounded, finite, np.nan_to_num(known)))
     return span(finite, known)
 
 
 def wrapped(text: str) -> list[str]:
-    """A text in lines of at most WIDTH columns, indented, that do not break at its hard spaces."""
+    """A text in indented lines of at most WIDTH characters, which do not break at no-break spaces."""
     lines = textwrap.wrap(
         text,
         WIDTH,
@@ -160,29 +165,30 @@ def wrapped(text: str) -> list[str]:
     return [line.replace("\xa0", " ") for line in lines]
 
 
-def errors_in_si(v: Mapping[str, np.ndarray], own: str, twin: str) -> np.ndarray:
-    """The absolute errors of what stands under the name `twin` in an SI unit too, in it, of its shape."""
+def errors_in_si(v: Mapping[str, np.ndarray], own: str, si_name: str) -> np.ndarray:
+    """Absolute errors of the SI variable `si_name` of the variable `own`, in SI units and of its shape."""
     known = np.isfinite(v[own]) & (v[own] != 0)
-    scale = np.divide(v[twin], v[own], out=np.zeros_like(v[twin]), where=known)
+    scale = np.divide(v[si_name], v[own], out=np.zeros_like(v[si_name]), where=known)
     return np.asarray(np.abs(scale) * errors_of(v, own))
 
 
 def load_of(view: View) -> str:
-    """What a follower force is told in."""
+    """Kind of load that a follower force corresponds to: force or pressure."""
     return "force" if "force" in view.quantities else "pressure"
 
 
 def loads_at(view: View, F: np.ndarray, points: np.ndarray) -> str:
-    """Follower forces F, (n,), at points of a file with an arm, (n,) indices, as its load in its own unit."""
+    """Follower forces F, (n,), at points of an arm's file, (n,) indices, as loads in their own unit."""
     load = load_of(view)
     return in_own_unit(view, F * _at(view.quantities[SCALE_OF[load]], points), UNITS[load][0])
 
 
 def crossings_of_arm(view: View) -> list[str]:
-    """Every crossing of the one rod of a file as load and frequency; none without arm."""
+    """Line for every crossing of the single rod of a file, with load and frequency; empty without an arm."""
     if not view.quantities:
         return []
-    v, rod = view.variables, np.zeros(1, int)
+    v = view.variables
+    rod = np.zeros(1, int)
     kinds, forces, frequencies = (v[f"crossing_{name}"].ravel() for name in ("kind", "F", "frequency"))
     lines = []
     for i in np.flatnonzero(kinds > 0):
@@ -194,8 +200,11 @@ def crossings_of_arm(view: View) -> list[str]:
     return lines
 
 
-def thresholds_of_arm(view: View, kind: str, found: Sequence[tuple[Located, np.ndarray]]) -> list[str]:
-    """Thresholds of a kind with the points of their lines, (points,), in own units; none without arm."""
+def thresholds_of_arm(view: View, kind: str, found: Sequence[tuple[LocatedChange, np.ndarray]]) -> list[str]:
+    """Line about thresholds of a kind in the arm's units; empty without an arm.
+
+    found: each threshold with the points of its line, (points,).
+    """
     if not view.quantities or not found:
         return []
     points = np.concatenate([points for _, points in found])
@@ -205,14 +214,14 @@ def thresholds_of_arm(view: View, kind: str, found: Sequence[tuple[Located, np.n
     rate = ""
     if np.isfinite(frequency).any():
         rate = f", where it begins to beat at {_in_hertz(view, frequency, points)}"
-    return [OF_THRESHOLDS[kind].format(load=load, rate=rate)]
+    return [THRESHOLD_SENTENCES[kind].format(load=load, rate=rate)]
 
 
 def _in_hertz(view: View, frequency: np.ndarray, points: np.ndarray) -> str:
-    """Angular frequencies in rad/tau2, (n,), at points of a file with an arm, (n,) indices, in Hz."""
+    """Angular frequencies in rad/tau2, (n,), at points of an arm's file, (n,) indices, as text in Hz."""
     return in_own_unit(view, frequency / (2 * np.pi * _at(view.quantities["tau2"], points)), HERTZ)
 
 
 def _at(values: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """A quantity at points of a file, shape () where all share it."""
+    """Quantity at points of a file; a quantity of shape () is that of all points."""
     return values[points] if values.ndim else values

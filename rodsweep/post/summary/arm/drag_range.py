@@ -1,4 +1,4 @@
-"""How far the numbers of one arm differ over the drags of its range."""
+"""Variation of the results of one arm over the drags of its range."""
 
 from collections.abc import Mapping
 
@@ -9,21 +9,27 @@ from .arm import given_columns
 
 
 def drag_lines(view: View, numbers: Mapping[str, np.ndarray]) -> list[str]:
-    """How far numbers at the points of a file, each (points,), by name, differ over the drags of an arm."""
+    """Line on the variation of numbers, each (points,), by name, over the drags of an arm; may be empty."""
     arms = arms_of_drags(view)
     if arms is None:
         return []
-    drags, several = len(np.unique(given_columns(view)["drag"])), len(np.unique(arms)) > 1
-    told = []
+    drags = len(np.unique(given_columns(view)["drag"]))
+    several = len(np.unique(arms)) > 1
+    variations = []
     for name, values in numbers.items():
         spread = _largest_spread(values, arms)
         if np.isfinite(spread):
-            told.append(f"{name} by {'up to ' * several}{_factor(spread)}")
-    return [f"over {drags} drags of its range one arm varies: {', '.join(told)}"] if told else []
+            variations.append(f"{name} by {'up to ' * several}{_factor(spread)}")
+    if not variations:
+        return []
+    return [f"over {drags} drags of its range one arm varies: {', '.join(variations)}"]
 
 
 def arms_of_drags(view: View) -> np.ndarray | None:
-    """A number for each point, (points,), equal where only the drag differs; None where it does not."""
+    """Number of the arm at each point, (points,), equal where only the drag differs; or None.
+
+    None if the drag is not varied.
+    """
     columns = given_columns(view)
     if columns.pop("drag", None) is None:
         return None
@@ -33,15 +39,15 @@ def arms_of_drags(view: View) -> np.ndarray | None:
 
 
 def _largest_spread(values: np.ndarray, arms: np.ndarray) -> float:
-    """Largest over least value of an arm, the most of all arms; nan where no arm has two values."""
+    """Largest ratio, over all arms, of largest to smallest value of an arm; NaN if no arm has two values."""
     spreads = [np.nan]
     for arm in np.unique(arms):
-        there = values[(arms == arm) & np.isfinite(values)]
-        if len(there) > 1 and there.min() > 0:
-            spreads.append(float(there.max() / there.min()))
+        own = values[(arms == arm) & np.isfinite(values)]
+        if len(own) > 1 and own.min() > 0:
+            spreads.append(float(own.max() / own.min()))
     return float(np.nanmax(spreads)) if len(spreads) > 1 else np.nan
 
 
 def _factor(spread: float) -> str:
-    """A ratio in percent, or as a factor."""
+    """A ratio as text: below 2 as an increase in percent, else as a factor."""
     return f"{100 * (spread - 1):.2g} %" if spread < 2 else f"a factor of {spread:.3g}"

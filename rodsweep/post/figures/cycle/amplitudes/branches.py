@@ -9,7 +9,7 @@ from .....arrays import Array
 from .....errors import InputError
 from .....results.file.view import View
 from .....sweep.points.lines import lines_over
-from ....hopf_points import Located, StoredChanges
+from ....hopf_points import LocatedChange, StoredChanges
 from ..selection import CYCLE_WORDS, outcomes
 from ..units import PLAIN_UNITS, CycleUnits
 from .square_root import SquareRootLaw, square_root_laws
@@ -32,7 +32,7 @@ class AmplitudeBranch:
     period: Array
     power: Array
     words: NDArray[np.str_]
-    hopf: list[Located]
+    hopf: list[LocatedChange]
     units: CycleUnits
     first: int
     """Number of its first point in the file, from 1."""
@@ -81,7 +81,7 @@ def branches_of(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[
     for line in lines_over(view.point_columns, name):
         changes = stored.on(line) if name == "F" else []
         at = line.at
-        hopf = [change for change in changes if isinstance(change, Located) and change.is_hopf]
+        hopf = [change for change in changes if isinstance(change, LocatedChange) and change.is_hopf]
         branches.append(
             AmplitudeBranch(
                 view=view,

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from .....arrays import Array
 from .....results.file.view import View
 from .....sweep.points.lines import ParameterLine
-from ....hopf_points import Located, StoredChanges
+from ....hopf_points import LocatedChange, StoredChanges
 from ...style import is_logarithmic
 from ..point_map import PointMap, in_its_scale
 
@@ -41,5 +41,5 @@ def _hopf_points(points: PointMap, view: View) -> Iterator[Array]:
     stored = StoredChanges(view, name)
     for value, at in zip(points.y, points.at, strict=True):
         row = ParameterLine(name, points.shared | {other: float(value)}, points.x, at)
-        located = (change for change in stored.on(row) if isinstance(change, Located))
+        located = (change for change in stored.on(row) if isinstance(change, LocatedChange))
         yield np.array([change.position for change in located if change.is_hopf])

@@ -6,7 +6,7 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from ....hopf_points import Located
+from ....hopf_points import LocatedChange
 from ....summary.ranges import rounded
 from ...style import SYMBOLS
 from .square_root import SquareRootLaw
@@ -27,7 +27,7 @@ MAX_COEFFICIENTS = 3
 """Largest number of coefficients in one legend entry; more are given as a range."""
 
 
-def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[Located, str]]) -> list[Line2D]:
+def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedChange, str]]) -> list[Line2D]:
     """Draws a vertical dotted line at each Hopf point in the colour of its branch; returns legend entries.
 
     A Hopf point that several branches share is drawn once, in grey. If all Hopf points of a kind have one
@@ -36,7 +36,7 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[Located, str]
     handles = []
     for kind, word in HOPF_WORDS.items():
         own = [mark for mark in marks if mark[0].kind == kind]
-        places: list[tuple[Located, set[str]]] = []
+        places: list[tuple[LocatedChange, set[str]]] = []
         for point, colour in own:
             same = next((colours for other, colours in places if other.agrees(point)), None)
             if same is None:

@@ -11,7 +11,7 @@ from math import sqrt
 import numpy as np
 
 from .....arrays import Array
-from ....hopf_points import Located
+from ....hopf_points import LocatedChange
 
 FARTHEST_FITTED = 0.1
 """Largest |F - F**|/|F**| of a cycle that is used for the coefficient; farther cycles obey higher-order
@@ -47,7 +47,7 @@ class SquareRootLaw:
         return F, self.coefficient * np.sqrt(np.abs(F - self.hopf) / abs(self.hopf))
 
 
-def square_root_laws(F: Array, amplitude: Array, points: Sequence[Located]) -> list[SquareRootLaw]:
+def square_root_laws(F: Array, amplitude: Array, points: Sequence[LocatedChange]) -> list[SquareRootLaw]:
     """Laws that the amplitudes follow, at most one on each side of a Hopf point.
 
     F, amplitude: shape (n,), in any order; amplitude is NaN or 0 where there is no cycle.
@@ -56,7 +56,7 @@ def square_root_laws(F: Array, amplitude: Array, points: Sequence[Located]) -> l
     return [law for law in laws if law]
 
 
-def _law(F: Array, amplitude: Array, point: Located, side: int) -> SquareRootLaw | None:
+def _law(F: Array, amplitude: Array, point: LocatedChange, side: int) -> SquareRootLaw | None:
     """The law above (side 1) or below (-1) the Hopf point; None if the amplitudes follow none.
 
     amplitude^2/distance is linear in the distance to leading order. Its value at distance 0 is extrapolated

@@ -1,4 +1,4 @@
-"""What a task's module tells of its results, in the order in which `rodsweep show` prints it."""
+"""Lines of the summary of a task, in the order in which `rodsweep show` prints them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,11 +10,11 @@ from .ranges import span
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
-    """Sentences of one result.
+class SummaryLines:
+    """Sentences about one result.
 
-    answer: what was asked for, in words; trust: how far that is accurate, complete and proved; details: all
-    else that the file says of it; of_arm: of the answer of an arm what is told in its own units.
+    answer: the results asked for. trust: their accuracy and proved completeness. details: other results.
+    of_arm: parts of the answer in the units of an arm.
     """
 
     answer: Sequence[str]
@@ -24,28 +24,29 @@ class Told:
 
 
 def varied(view: View) -> dict[str, np.ndarray]:
-    """The parameters that differ among the points of a file, at every point, each (points,)."""
+    """Parameters that differ among the points of a file, at every point, each (points,)."""
     return {name: column for name, column in view.point_columns.items() if len(np.unique(column)) > 1}
 
 
-def region(view: View, there: np.ndarray) -> str:
-    """The ranges of the varied parameters over some points, a mask of their shape; empty for a single rod."""
-    columns, chosen = varied(view), there.ravel()
+def region(view: View, mask: np.ndarray) -> str:
+    """Ranges of the varied parameters over points, a mask of their shape; empty for a single rod."""
+    columns = varied(view)
+    chosen = mask.ravel()
     return ", ".join(f"{name} = {_extent(column[chosen])}" for name, column in columns.items())
 
 
 def _extent(values: np.ndarray) -> str:
-    """The range of values of a parameter, which may be inf."""
+    """Range of values of a parameter, which may be inf."""
     if np.isfinite(values).all():
         return span(values)
     return " and ".join(filter(None, (span(values) if np.isfinite(values).any() else "", "inf")))
 
 
 def at_point(view: View, index: int) -> str:
-    """The varied parameters at a point of the file, by its place among all."""
+    """Varied parameters at a point of the file, by its index."""
     return ", ".join(f"{name} = {column[index]:.6g}" for name, column in varied(view).items())
 
 
 def in_brackets(text: str) -> str:
-    """A text in brackets behind another; nothing where it is empty."""
+    """A text in brackets, to follow another text; an empty text stays empty."""
     return f" ({text})" if text else ""
