@@ -35,7 +35,7 @@ CERTIFICATE_MS = 0.15
 FIRST_POINTS = 2.0
 """Cost of the first point of a stretch, in units of a point solved alone."""
 FOLLOWED_MS = 0.006
-"""Time of every point of a stretch that is followed from its neighbour, in ms."""
+"""Time of every point of a stretch followed from its neighbour, in ms."""
 LINE_MS = 24.0
 """Time of a search for crossings along one parameter, in ms: mean over 72 rods, some of which take four times
 as long."""
@@ -57,9 +57,9 @@ over 24 rods."""
 GROWTH_MS = 20.0
 """Time of the transient growth of a rod, in ms: mean over the same rods."""
 CYCLE_SECONDS = 0.1
-"""Time of a limit cycle that starts from the leading mode: about that of the benchmark."""
+"""Time of a limit cycle starting from the leading mode: about that of the benchmark."""
 CHAINED_CYCLE_SECONDS = 0.01
-"""Time of a limit cycle that starts from its neighbour: about that of the benchmark."""
+"""Time of a limit cycle starting from its neighbour: about that of the benchmark."""
 MARCHED_CYCLE_SECONDS = 0.25
 """Time of a limit cycle by time integration alone to 1e-5: mean over 40 rods."""
 BRANCH_SECONDS = 0.004

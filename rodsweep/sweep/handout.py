@@ -107,7 +107,7 @@ class Handout:
         return first, end
 
     def stop(self) -> None:
-        """Drops all units that are not handed out; a later run solves them."""
+        """Drops all units not handed out; a later run solves them."""
         with self.change:
             self.stopped = True
             self.todo.clear()

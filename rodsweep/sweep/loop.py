@@ -19,13 +19,13 @@ from .stop import StopRequest
 from .team import Team
 
 Indices = int | NDArray[np.int64]
-"""Index of one point, or indices of points that are stored together, shape (n,)."""
+"""Index of one point, or indices of points stored together, shape (n,)."""
 
 
 class Solve(Protocol):
     """Function from a unit to its points; yields (index, result) for each point, or for a whole stretch.
 
-    A unit is a point, a chain of points that are yielded one by one, or a stretch of points yielded at once.
+    A unit is a point, a chain of points yielded one by one, or a stretch of points yielded at once.
     """
 
     def __call__(self, unit: int, /) -> Iterable[tuple[Indices, Any]]: ...
@@ -127,7 +127,7 @@ class _Rank:
         return Share(self.points, busy, time.monotonic() - started - busy, self.ended)
 
     def _solved_up_to(self, chunk: IndexRange) -> int:
-        """Solves units of a chunk; returns the first unit that is not solved.
+        """Solves units of a chunk; returns the first unit not solved.
 
         The rest of the chunk is left undone after a stop request, or if the chunk takes too long.
         """

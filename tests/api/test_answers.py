@@ -201,7 +201,7 @@ def test_table_of_a_sweep_is_that_of_the_file(command, monkeypatch):
     exact = [name for name in here if "error" not in name]
     pd.testing.assert_frame_equal(read[exact], here[exact], check_dtype=False, check_exact=True)
     assert here.attrs["units"]["crossing_F"] == "k3/L^2"
-    assert here.attrs["meanings"]["crossing_kind"] == "what changes at the crossing"
+    assert here.attrs["meanings"]["crossing_kind"] == "kind of the crossing"
     assert rs.table(data, columns=["k1", "F_hopf"]).shape == (2, 2)
     assert set(rs.table(data, columns=["F_hopf", "crossing_F"]).F_hopf) == set(data.F_hopf.values.ravel())
 

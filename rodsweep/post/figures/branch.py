@@ -94,7 +94,7 @@ def draw_branch(request: FigureRequest) -> str:
 
 
 def _left_out(view: View, drawn: list[int], beating: list[int]) -> str:
-    """Clause on branches and rods that are not drawn."""
+    """Clause on branches and rods not drawn."""
     hidden = sum(count_incomplete_branches(view, rod) for rod in range(view.variables["status"].size))
     more = f"; {hidden} more have special points that are not stored" if hidden else ""
     missing = int((view.variables["status"] == MISSING).sum())

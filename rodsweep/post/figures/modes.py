@@ -10,7 +10,7 @@ from .request import FigureRequest
 from .style import FIRST, SECOND, heading, legend_below, number, parameter_text, require
 
 MAX_RODS = 4
-"""Largest number of points in one figure; a narrow figure shows one point."""
+"""Largest number of points in a single figure; a narrow figure shows one point."""
 PANELS = (
     ("mode", (("Y", r"$Y_1$"), ("Theta", r"$\Theta_1$"))),
     ("deformations", (("h2", r"$h_2$"), ("Pi", r"$\Pi$"))),

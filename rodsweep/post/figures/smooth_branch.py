@@ -27,8 +27,8 @@ SLOPE_CYCLES = 5
 CORNER_CYCLES = 4
 """Number of cycles on each side of a corner whose cubics locate the corner; fewer at an end of the branch."""
 MIN_ANGLE = 0.25
-"""Smallest jump of slope that is drawn as a corner, in units of the steepest chord beside the corner. A
-smaller jump moves the curve by a few per cent of the chord at most."""
+"""Smallest jump of slope drawn as a corner, in units of the steepest chord beside the corner. A smaller jump
+moves the curve by a few per cent of the chord at most."""
 ANGLE_RATIO = 3.0
 """Smallest ratio of the jump of slope in y to those of parameter and period, which are smooth at a corner.
 At a sharp bend that the cycles do not resolve all three jumps are alike."""

@@ -34,7 +34,7 @@ FEW_DECADES = 50
 IN_ONE_DECADE = 6
 """Ratio of the ends below which more numbers have labels, because few of 1, 2 and 5 may be visible."""
 MIN_POWER = 2
-"""Smallest exponent of a power of ten that is written as a power."""
+"""Smallest exponent of a power of ten written as a power."""
 PLAIN_BELOW = 4
 """Exponent of ten below which other numbers are written without a power of ten."""
 STYLE = {

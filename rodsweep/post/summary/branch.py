@@ -23,9 +23,9 @@ from .ranges import listed, rounded, span, to_error
 from .summary_lines import SummaryLines, at_point
 
 NAMED_RODS = 8
-"""Largest number of rods that are listed one by one."""
+"""Largest number of rods listed one by one."""
 FULL = "they have more special points than the list holds; raise branch.special"
-"""Cause and remedy of branches that are not shown."""
+"""Cause and remedy of branches not shown."""
 BESIDE_STRAIGHT = "stable cycles beside a stable straight rod"
 TWO_CYCLES = "stable cycles of two branches"
 SPECIAL_WORDS = {

@@ -54,7 +54,7 @@ def count_lines(found: np.ndarray) -> list[str]:
 
 
 def saving_line(view: View, done: np.ndarray, line: str) -> str:
-    """Line on the cost of the rows compared with a uniform grid; done: mask of the computed rows."""
+    """Line on the cost of the rows compared with a uniform grid; done: a mask of the rows' shape."""
     v = view.variables
     rows = int(done.sum())
     solves = int(v["solves"][done].sum())

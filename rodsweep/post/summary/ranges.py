@@ -16,11 +16,11 @@ RANGE_DIGITS = 6
 END_DIGITS = 9
 """Largest number of digits of the end of a range that is a single number, such as a fold."""
 PLAIN = range(-4, MAX_DIGITS)
-"""Decimal exponents of numbers that are written without an exponent."""
+"""Decimal exponents of numbers written without an exponent."""
 ROUNDING_EXCESS = 1e-9
 """Relative excess of an error over a digit that is rounding, and does not raise the digit."""
 MIN_ERROR = 1e-300
-"""Smallest error that is rounded up to a digit; for smaller errors the unit of the digit would underflow."""
+"""Smallest error rounded up to a digit; for smaller errors the unit of the digit would underflow."""
 NONE = "none"
 """Text for a missing number or range."""
 

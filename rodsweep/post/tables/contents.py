@@ -99,7 +99,7 @@ def contents_of(view: View) -> Contents:
 
 
 def name_of(dimensions: tuple[str, ...]) -> str:
-    """Name of the table with these dimensions besides those of the points."""
+    """Name of the table with the given dimensions besides those of the points."""
     return GRID if dimensions[0] in PARAMETERS else NAMES[dimensions]
 
 

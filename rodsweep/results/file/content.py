@@ -19,7 +19,7 @@ from ...config.values import named
 SEAL = "seal"
 """Name of the attribute with the digests."""
 USER_PREFIX = "user_"
-"""Prefix of the names of variables and attributes that belong to the user."""
+"""Prefix of the names of variables and attributes of the user."""
 DIGITS = 16
 """Number of hexadecimal digits of a digest: one change in 2^64 goes unnoticed."""
 BOOKKEEPING = frozenset(

@@ -41,7 +41,7 @@ class Plan:
     chains: Chains | None = None
     """Chains of points; None if no point starts from another."""
     stretches: Stretches | None = None
-    """Stretches of points that are solved at once; None if every point is solved alone."""
+    """Stretches of points solved at once; None if every point is solved alone."""
     afterwards: Callable[[Mapping[str, Any]], tuple[Filled, ...]] = lambda values: ()
     """Variables computed from the variables of all points, by name; called when no point is missing."""
 

@@ -39,7 +39,7 @@ def statuses(path: Path, at_once: int | None = None) -> Iterator[tuple[int, np.n
 
 
 def missing_ranges(path: Path) -> list[IndexRange]:
-    """Ranges of flat indices of points that are not computed yet, in order."""
+    """Ranges of flat indices of points not computed yet, in order."""
     ranges: list[IndexRange] = []
     for start, status in statuses(path):
         edges = start + np.flatnonzero(np.diff(status == MISSING, prepend=False, append=False))
@@ -59,7 +59,7 @@ def points_to_add(path: Path, other: Path, layout: Layout) -> Iterator[np.ndarra
 
 
 def stored_points(path: Path, layout: Layout) -> Iterator[np.ndarray]:
-    """Yields records, (n,), of all computed points of a file with this layout."""
+    """Yields records, (n,), of all computed points of a file with the given layout."""
     blocks = statuses(path, _at_once(layout))
     yield from _read(path, layout, ((first, status != MISSING) for first, status in blocks))
 
@@ -86,7 +86,7 @@ def _read(path: Path, layout: Layout, blocks: Iterable[tuple[int, np.ndarray]]) 
 
 
 def points_at(path: Path, index: np.ndarray, layout: Layout) -> np.ndarray:
-    """Records, (n,), of a file with this layout at flat indices, (n,)."""
+    """Records, (n,), of a file with the given layout at flat indices, (n,)."""
     records = np.empty(len(index), layout.record)
     records["index"] = index
     offsets = _offsets(path, layout)
@@ -100,7 +100,7 @@ def points_at(path: Path, index: np.ndarray, layout: Layout) -> np.ndarray:
 
 
 def parameters_of(path: Path, layout: Layout) -> Points:
-    """All points of a file with this layout, computed or not."""
+    """All points of a file with the given layout, computed or not."""
     with h5py.File(path, "r") as file:
         return points_in(file, layout)
 

@@ -24,7 +24,7 @@ KERNELS = "blas_kernels"
 """Attribute with the BLAS kernels that computed the points of a file in all its runs, one kernel a line,
 named by `rodsweep.solve.backend.blas_kernel`."""
 KERNEL_NOT_RECORDED = "unknown"
-"""Kernel of points that were written by an earlier version, which did not record kernels."""
+"""Kernel of points written by an earlier version, which did not record kernels."""
 
 
 def now() -> str:
@@ -92,7 +92,7 @@ def merged_history(several: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 @cache
 def git_commit() -> str:
-    """Commit of the checkout that contains this code, marked if files were changed; or unknown."""
+    """Commit of the checkout containing this code, marked if files were changed; or unknown."""
     root = Path(__file__).resolve().parents[3]
     if not (root / ".git").exists():
         return "unknown"

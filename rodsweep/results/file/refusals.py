@@ -39,7 +39,7 @@ def header_in_the_way(path: Path, plan: Plan, journals: Path) -> Header:
 
 
 def refuse_other(header: Header, plan: Plan, journals: Path) -> None:
-    """Refuses a file that was made for another config than the plan's."""
+    """Refuses a file made for another config than the plan's."""
     change = change_between(header.config, plan.config)
     ways = _ways_out(plan, journals)
     try:

@@ -21,7 +21,7 @@ from .content import SEAL, digests_of
 FRAME_HEAD = b"\nrodsweep seal 2 "
 """First bytes of the checksum, behind HDF5's end of the file."""
 FORMER_HEAD = b"\nrodsweep seal 1 "
-"""First bytes of the checksum in files of format 4 and before, which are refused by their format."""
+"""First bytes of the checksum in files of format 4 and before, refused by their format."""
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 """First bytes of every HDF5 file."""
 END_AT = {0: 40, 1: 44, 2: 28, 3: 28}

@@ -43,7 +43,7 @@ BEFORE = "before-*.h5"
 """Copies, beside the journals, of the file before an extension that is not complete yet."""
 
 Additions = Callable[[h5py.File], Sequence[Filled]]
-"""Function from the open file to complete variables that are added to it."""
+"""Function from the open file to complete variables added to it."""
 
 
 def no_additions(file: h5py.File) -> Sequence[Filled]:
@@ -153,7 +153,7 @@ class Store:
             return dict(file.attrs)
 
     def missing(self) -> list[IndexRange]:
-        """Ranges of flat indices of points that are not computed yet, in order."""
+        """Ranges of flat indices of points not computed yet, in order."""
         with reading(self.path):
             return missing_ranges(self.path)
 
@@ -196,7 +196,7 @@ class Store:
         attributes: dict[str, Any],
         additions: Additions = no_additions,
     ) -> None:
-        """Writes blocks of points of this fingerprint into the file, and deletes their journals."""
+        """Writes blocks of points of the given fingerprint into the file, and deletes their journals."""
         with disk_refusals(self.path, self._kept):
             journals = journals_of(self.journals, fingerprint)
             first = next(blocks, None)

@@ -2,7 +2,7 @@
 
 A variable such as `period`, in tau2, has the SI variable `period_si`, in s; `frequency`, in rad/tau2, has
 `frequency_hz`, in cycles per second. The quantities of the arm, and the units tau2, force_scale and
-pressure_scale that follow from them, are coordinates: numbers, or along a parameter or `point`.
+pressure_scale following from them, are coordinates: numbers, or along a parameter or `point`.
 """
 
 from collections.abc import Iterable, Mapping
@@ -71,7 +71,7 @@ EVENT_FREQUENCIES = {f"{event}_frequency": f"frequency_{event}_hz" for event in 
 BRANCH_FORCES = ("special_at", "special_error")
 """Forces along the branches of an arm; its branches are followed in F only."""
 SI_DIMENSIONS = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))
-"""Extra dimensions of variables that are stored in SI units as well; longer tables are not stored twice."""
+"""Extra dimensions of variables stored in SI units as well; longer tables are not stored twice."""
 
 EFFECTS = ("inertia_of_the_arm", "inertia_of_the_fluid", "compression", "weight", "Reynolds_number")
 """Effects that the model neglects, named as in `rodsweep.model.arm.neglected` with underscores for blanks."""
@@ -113,7 +113,7 @@ def si_variables_of(layout: Layout, config: Mapping[str, Any]) -> dict[str, Vari
 
 
 def si_name_of(name: str, unit: str) -> str:
-    """Name of the SI variable of a variable; F becomes the kind of load that has this unit."""
+    """Name of the SI variable of a variable; F becomes the kind of load with this unit."""
     if name in EVENT_FREQUENCIES:
         return EVENT_FREQUENCIES[name]
     words = name.split("_")

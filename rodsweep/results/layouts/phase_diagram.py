@@ -36,7 +36,7 @@ STABLE_STATES = (
 CYCLE_SPECIAL = "cycle_special"
 """Dimension of the special points of the branches of a row."""
 MAX_CYCLE_SPECIAL = 64
-"""Largest number of special points that are stored for a row; cycle_special_count counts all of them."""
+"""Largest number of special points stored for a row; cycle_special_count counts all of them."""
 
 CYCLE_CURVE_ENDS = {
     "none": "the curve goes on",

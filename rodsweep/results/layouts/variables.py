@@ -27,14 +27,14 @@ pi/period. For an arm a second variable, whose name ends in `_hz`, has them in c
 
 DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
     "point": ("1", "row of the point list, from 1"),
-    "mode": ("1", "number of the mode, by descending growth rate; in a pair the positive frequency first"),
+    "mode": ("1", "order by descending growth rate; in a pair the positive frequency comes first"),
     "u": ("1", "material coordinate along the rod"),
-    "crossing": ("1", "number of the crossing, in increasing order of the varied parameter"),
-    "curve_point": ("1", "number of the point on all curves, one curve after another"),
+    "crossing": ("1", "order by increasing value of the varied parameter"),
+    "curve_point": ("1", "order along all curves, one curve after another"),
     "fold": ("1", "number of the fold, where a curve turns back"),
-    "branch_point": ("1", "number of the cycle on all branches of a rod, one branch after another"),
-    "special": ("1", "number of the special point on all branches of a rod, one branch after another"),
-    "cycle_special": ("1", "number of the special point on the branches of a row, one branch after another"),
+    "branch_point": ("1", "order along all branches of a rod, one branch after another"),
+    "special": ("1", "order along all branches of a rod, one branch after another"),
+    "cycle_special": ("1", "order along the branches of a row, one branch after another"),
     "cycle_curve_point": (
         "1",
         "number of the point on all curves of folds and torus points, one curve after another",
@@ -42,9 +42,9 @@ DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
     "bautin": ("1", "number of the generalised Hopf point, one Hopf curve after another"),
     "bautin_step": ("1", "number of the point on curves of generalised Hopf points, one curve after another"),
     "change": ("1", "number of the change on the lines over F between the points, one line after another"),
-    "hopf": ("1", "number of the Hopf point on the lines between the points, increasing on each line"),
+    "hopf": ("1", "order along the lines between the points, one line after another"),
     "harmonic": ("1", "multiple of the cycle's frequency"),
-    "multiplier_number": ("1", "number of the nontrivial Floquet multiplier, by descending modulus"),
+    "multiplier_number": ("1", "order by descending modulus, without the trivial Floquet multiplier"),
     "sample": ("1", "time in periods, from the instant at which y of the tip rises through its mean"),
     "shape": ("1", "time in periods, from the instant at which y of the tip rises through its mean"),
     "transient": ("1", "time since the start, in units of the last stored time of the motion"),
@@ -114,7 +114,7 @@ MESH = (
 def recorded(
     variables: Iterable[Variable], *outcomes: Any, prefix: str = "", names: Mapping[str, str] = NO_NAMES
 ) -> dict[str, Any]:
-    """Values of variables by name: each is a field of the first outcome that has this field.
+    """Values of variables by name: each is a field of the first outcome with this field.
 
     A field has the name of its variable without `prefix`, or the name given by `names`; x_real and x_imag are
     the parts of a complex field x. Raises AttributeError if no outcome has a field.
@@ -179,7 +179,7 @@ class Layout:
     over: tuple[str, ...] = ()
     """Dimensions of the points of a grid over an arm's quantities; empty otherwise."""
     needs_all_points: bool = False
-    """Whether the file also needs variables that are computed from all of its points."""
+    """Whether the file also needs variables computed from all of its points."""
 
     def dimensions(self, is_list: bool) -> tuple[str, ...]:
         """Names of the dimensions of the points; is_list: whether the points come from a list."""

@@ -110,7 +110,7 @@ def drop_files(directory: Path, pattern: str) -> None:
 
 
 def journals_of(directory: Path, fingerprint: str) -> list[Path]:
-    """Journals in a directory with points of this fingerprint."""
+    """Journals in a directory with points of the given fingerprint."""
     return [path for path in sorted(directory.glob(JOURNALS)) if _points_of(path) == _head(fingerprint)]
 
 
@@ -132,7 +132,7 @@ def set_aside(directory: Path, paths: Iterable[Path]) -> Path:
 
 
 def kept_sentence(directory: Path, fingerprint: str) -> str:
-    """Clause of a refusal: the journals with points of this fingerprint; empty without points."""
+    """Clause of a refusal: the journals with points of the given fingerprint; empty without points."""
     return f"; what is done is kept in {directory}" if journals_of(directory, fingerprint) else ""
 
 
@@ -142,7 +142,7 @@ def _head(fingerprint: str) -> bytes:
 
 
 def _points_of(path: Path) -> bytes:
-    """Head of a journal that has points; empty for any other file."""
+    """Head of a journal with points; empty for any other file."""
     if not path.is_file():
         return b""
     with path.open("rb") as file:

@@ -20,7 +20,7 @@ FlutterOf = Callable[[SlenderArm], float]
 def grid_of_arms(
     section: ArmSection, beside: Mapping[str, Array], names: tuple[str, ...], flutter: FlutterOf
 ) -> Points:
-    """Grid over the arm's quantities, and over those parameters of `beside` that have several values.
+    """Grid over the arm's quantities, and over those parameters of `beside` with several values.
 
     beside: values of parameters that replace the arm's, (n,). names: the parameters of the task. flutter:
     force of flutter, to which a load may be relative. Raises ValueError if no rod covers any point.

@@ -44,7 +44,7 @@ class ChainStates(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Chains:
-    """Chains of a grid of this shape along one axis, solved upward or downward."""
+    """Chains of a grid of the given shape along one axis, solved upward or downward."""
 
     shape: tuple[int, ...]
     axis: int
@@ -68,7 +68,7 @@ class Chains:
         return along if self.upward else along[::-1]
 
     def todo(self, missing: IndexSet) -> list[IndexRange]:
-        """Ranges of the chains that have missing points."""
+        """Ranges of the chains with missing points."""
         chains = (n for n in range(self.count) if missing[self.indices(n)].any())
         return joined((n, n + 1) for n in chains)
 

@@ -1,4 +1,4 @@
-"""Stretches: neighbouring points of a grid that are solved at once, cut from its lines along one axis.
+"""Stretches: neighbouring points of a grid solved at once, cut from its lines along one axis.
 
 The cuts follow from the grid alone, so that results depend neither on the number of ranks nor on points
 stored by an earlier run: a stretch with any missing point is solved again as a whole.
@@ -24,7 +24,7 @@ STRETCHES_AT_ONCE = 1 << 12
 
 @dataclass(frozen=True, slots=True)
 class StretchResult:
-    """Result of points that were solved at once.
+    """Result of points solved at once.
 
     values: every variable of the file, shape (n, ...). succeeded: whether each point succeeded, (n,).
     message: status name and message of a point that failed, by its place.

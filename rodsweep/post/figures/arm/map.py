@@ -30,7 +30,7 @@ from .panels import PANELS, Panel
 from .quantities import in_typed, quantity_text
 
 MAPS = ("map", "maps")
-"""Names of this figure for tasks that have several figures."""
+"""Names of this figure for tasks with several figures."""
 HATCHES: tuple[tuple[str, int, str, dict[str, Any]], ...] = (
     ("model_applies", Validity.doubtful, "model doubtful", {"fc": "none", "hatch": "..."}),
     ("model_applies", Validity.does_not_apply, "model does not apply", {"fc": "none", "hatch": "////"}),
@@ -169,7 +169,7 @@ def _band(axes: Axes, view: View, x: str, values: Array, place: Any, colour: str
 
 
 def _drag_of(view: View) -> str:
-    """Name of the drag that is drawn as a line."""
+    """Name of the drag drawn as a line."""
     return DRAGS[int(view.variables[DRAG].min())].replace("_", " ")
 
 

@@ -1,4 +1,4 @@
-"""Numbers of each task that are drawn over an arm's quantities, in the units typed by the user."""
+"""Numbers of each task drawn over an arm's quantities, in the units typed by the user."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field

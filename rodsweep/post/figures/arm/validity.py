@@ -36,7 +36,7 @@ def _outside(view: View) -> np.ndarray:
 
 
 def _varied(view: View) -> list[str]:
-    """Parameters of a grid that have several values; empty for a list, and for the rows of a diagram."""
+    """Parameters of a grid with several values; empty for a list, and for the rows of a diagram."""
     return [name for name in view.parameters if len(view.axes[name]) > 1] if view.is_grid else []
 
 
@@ -58,7 +58,7 @@ def _hatch(figure: Figure, view: View, along: list[str], outside: np.ndarray) ->
 
 
 def _label(axes: Axes, which: str) -> str:
-    """Label of an axis, or of an axis that is shared with it."""
+    """Label of an axis, or of an axis shared with it."""
     shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
     labels = [getattr(each, f"get_{which}label")() for each in (axes, *shared.get_siblings(axes))]
     return next(filter(None, labels), "")

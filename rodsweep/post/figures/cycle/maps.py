@@ -53,7 +53,7 @@ MARKER_SIZES = 1.0, 4.0
 can."""
 HATCH_COLOUR = "0.25"
 ROW_ENTRIES = 6
-"""Largest number of legend entries in one row."""
+"""Largest number of legend entries in a single row."""
 QUANTITIES = (
     ("period", "viridis", True),
     ("tip_y_max", "plasma", False),

@@ -49,7 +49,7 @@ TEXT_HEIGHT = 1.4
 NARROW_TEXT_HEIGHT = 2.0
 """The same height on a narrow page, where the colour bar lies below the panels."""
 LIGHTEST = 0.14
-"""Fraction of the colour map that is left out: yellow, which is invisible on white."""
+"""Fraction of the colour map left out: yellow, which is invisible on white."""
 
 
 def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tuple[Figure, str]:

@@ -19,9 +19,9 @@ from ..style import heading, parameter_text
 from .units import PLAIN_UNITS, REQUIRED, CycleUnits, units_of
 
 MAX_CYCLES = 3
-"""Largest number of cycles that fit side by side into one figure."""
+"""Largest number of cycles that fit side by side into a single figure."""
 CYCLE_WORDS = ("cycle", "unstable")
-"""Statuses of points that have a cycle, stable or unstable."""
+"""Statuses of points with a cycle, stable or unstable."""
 SHAPES = ("shape_x", "shape_y", "shape_theta")
 """Variables of the shapes over a period."""
 ENERGIES = ("energy", "injection", "dissipation")
@@ -102,7 +102,7 @@ class Selection:
     title: str
     """Title of the file, and the parameters that all cycles share."""
     left_out: str
-    """Clause of the message on cycles that have no room; empty if all are shown."""
+    """Clause of the message on cycles without room; empty if all are shown."""
 
 
 def outcomes(view: View) -> NDArray[np.str_]:

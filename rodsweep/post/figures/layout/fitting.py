@@ -25,7 +25,7 @@ STRIP_ASPECT = 0.25
 TALLEST = 9.5
 """Largest height of a figure, in inches: the height of a page between its margins."""
 MAX_PASSES = 6
-"""Largest number of layouts. Each change of the figure moves texts that were measured before."""
+"""Largest number of layouts. Each change of the figure moves texts measured before."""
 MIN_HEIGHT = 0.45
 """Smallest height of a panel, in inches, at which the labels of two ticks fit above each other."""
 SPARE = 4.0

@@ -23,7 +23,7 @@ FOLLOWED_ROOTS = {
 }
 """Descriptions of the choices of roots."""
 FOLLOWED = 2
-"""Number of roots that are followed along a line."""
+"""Number of roots followed along a line."""
 LARGE = 10.0
 """Ratio of the largest to the median root above which the axis of roots is logarithmic except near 0."""
 THRESHOLD_DIGITS = 6

@@ -46,7 +46,7 @@ BESIDE_SIDES = "double eigenvalue", 1.0, ":"
 def draw_curves(axes: Axes, view: View, line: str, row: str, states: bool) -> list[Line2D]:
     """Draws the boundary curves and their folds; returns legend entries.
 
-    states: whether the diagram shows stable states, which are bounded by Hopf points only.
+    states: whether the diagram shows stable states, bounded by Hopf points only.
     """
     v = view.variables
     sides = "curve_criticality" in v

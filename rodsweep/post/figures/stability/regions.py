@@ -88,7 +88,7 @@ def _nearest(pixels: tuple[NDArray[Any], ...], places: Array, classes: NDArray[A
 
 
 def _pixels(places: Array) -> NDArray[np.intp]:
-    """(row, column) of the pixels that contain points, (n, 2)."""
+    """(row, column) of the pixels containing points, (n, 2)."""
     return np.clip(places[:, ::-1] * PIXELS, 0, PIXELS - 1).astype(np.intp)
 
 

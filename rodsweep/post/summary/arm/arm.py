@@ -1,7 +1,7 @@
 """An arm in its own units in `rodsweep show`: quantities, results of every task, and thresholds.
 
-Loads and lengths are in the units typed by the user, frequencies in Hz, and all powers of an answer in one
-unit.
+Loads and lengths are in the units typed by the user, frequencies in Hz, and all powers of an answer in a
+single unit.
 """
 
 import json
@@ -25,7 +25,7 @@ from ..ranges import rounded, span
 WIDTH = 80
 """Width of lines in SI units, in characters."""
 FEW_ITEMS = 4
-"""Largest number of values of a table that are listed one by one for a single rod."""
+"""Largest number of values of a table listed one by one for a single rod."""
 TYPED_AS = {"m": ("length",), "Pa": ("pressure", "young"), "N": ("force",)}
 """Quantities whose typed unit is used for all numbers with this SI unit; the first typed quantity decides."""
 PREFIXED = ("J", "W")

@@ -44,7 +44,7 @@ class Places:
     """New place of every stored value on an axis, -1 if its points are computed again."""
 
     def __call__(self, index: Indices) -> Indices:
-        """New flat indices of stored flat indices, both (n,); -1 for points that are computed again."""
+        """New flat indices of stored flat indices, both (n,); -1 for points computed again."""
         each = [place[i] for place, i in zip(self.places, np.unravel_index(index, self.shape), strict=True)]
         stays = np.min(each, axis=0) >= 0
         new = np.ravel_multi_index([np.maximum(place, 0) for place in each], self.new_shape)
@@ -91,7 +91,7 @@ class Extension:
 
 
 def extension_of(header: Header, points: Points, plan: Plan) -> Extension:
-    """Extension of a stored file with these points to a larger plan.
+    """Extension of a stored file with the given points to a larger plan.
 
     Raises InputError, which names the difference, if the plan lacks anything that the file was made for.
     """
@@ -189,7 +189,7 @@ def _same_stretches(places: Indices, count: int) -> NDArray[np.bool_]:
 
 
 def _places_in_list(header: Header, old: Points, new: Points) -> Indices:
-    """New place of every old point in the list, (n,); raises InputError for a point that is not listed."""
+    """New place of every old point in the list, (n,); raises InputError for a point not listed."""
     # Adding 0.0 turns -0.0 into 0.0, so that equal rows have equal bytes.
     rows = [np.column_stack(points.columns) + 0.0 for points in (new, old)]
     known: dict[bytes, int] = {}

@@ -1,4 +1,4 @@
-"""Merging: all points of the shards of a run, or of files that make up a larger grid, in one file.
+"""Merging: all points of the shards of a run, or of files that make up a larger grid, in a single file.
 
 Points are streamed a block at a time, so that memory does not grow with the files. The new file appears
 complete, by a rename.

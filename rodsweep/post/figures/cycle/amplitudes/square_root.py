@@ -14,8 +14,7 @@ from .....arrays import Array
 from ....hopf_points import LocatedChange
 
 FARTHEST_FITTED = 0.1
-"""Largest |F - F**|/|F**| of a cycle that is used for the coefficient; farther cycles obey higher-order
-terms."""
+"""Largest |F - F**|/|F**| of a cycle used for the coefficient; farther cycles obey higher-order terms."""
 LARGEST_DEPARTURE = 0.2
 """Largest relative difference between an amplitude and the law over the range in which the law is drawn."""
 SAFETY = 2.0
