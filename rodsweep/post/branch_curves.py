@@ -1,6 +1,6 @@
 """Branches of cycles in a file of the task branch: curves, their stability, and ranges of the parameter.
 
-A branch is a curve through its cycles and its special points in their order. Where multipliers cross the unit
+A branch is a curve through its cycles and its special points in order. Where multipliers cross the unit
 circle the branch has a special point. A cycle whose multiplier is on the circle within its error therefore
 has the stability of the other cycles between the same two special points, if these agree.
 """

@@ -15,7 +15,7 @@ from .tables import Table, Tables
 SEPARATORS = {".csv": ",", ".tsv": "\t"}
 """Separator of the columns, by the suffix of the file."""
 ROWS_AT_ONCE = 4096
-"""Number of rows converted to text at once, which bounds the memory."""
+"""Number of rows converted to text at once, to bound the memory."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -127,7 +127,8 @@ class StoredChanges:
         x = line.x[ordered]
         grows = self.growth[line.at[ordered]] > 0
         for i in np.flatnonzero(grows[1:] != grows[:-1]):
-            low, high = float(x[i]), float(x[i + 1])
+            low = float(x[i])
+            high = float(x[i + 1])
             if sum(_within(point, low, high) for point in changes) % 2 == 0:
                 found.append(BracketedChange(low, high, "hopf" if grows[i + 1] else "restabilization"))
         return sorted(found, key=place_of)

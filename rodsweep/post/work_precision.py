@@ -17,7 +17,7 @@ from .figures.style import FIRST, SECOND, STYLE, THIRD
 GROUP_COLOURS = (FIRST, SECOND, THIRD, "black", "0.55")
 """Colours of the groups, in order of appearance; the first group is drawn thick."""
 METHOD_MARKERS = ("o", "s", "^", "D", "v", "P", "X")
-"""Markers of the methods of one group."""
+"""Markers of the methods of a single group."""
 WIDE_RATIO = 1e3
 """Ratio of the times above which only powers of ten have labels."""
 MIN_ERROR = 1e-17
@@ -69,7 +69,7 @@ def draw_work_precision(measured: Table, xlabel: str, target: float | None, outp
 
 
 def _looks(groups: dict[str, str]) -> dict[str, dict]:
-    """Look of every method: colour by its group, marker within the group."""
+    """Look of every method: colour by group, marker within the group."""
     order = list(dict.fromkeys(groups.values()))
     looks = {}
     for method, group in groups.items():

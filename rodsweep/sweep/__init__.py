@@ -1,11 +1,11 @@
-"""Sweeps over many points: their coordinates, their distribution over ranks, and the loop that solves them.
+"""Sweeps over many points: coordinates, distribution over ranks, and the loop that solves the points.
 
-This package is the only sender of MPI messages. It does not know HDF5: the caller passes a function that
+This package is the only sender of MPI messages. HDF5 is unknown here: the caller passes a function that
 stores finished points.
 
-For a user of `import rodsweep as rs`, `rs.sweep` is a function. Python binds the name of a package to the
-package, so the package itself is made callable; it passes the call on to `rodsweep.api.sweeping.sweep`, which
-describes the arguments.
+`rs.sweep`, after `import rodsweep as rs`, is a function. Python binds the name of a package to the package,
+and the package itself is therefore callable: a call goes on to `rodsweep.api.sweeping.sweep`, which describes
+the arguments.
 """
 
 import sys
@@ -19,7 +19,7 @@ class _CalledPackage(ModuleType):
 
     @property
     def __wrapped__(self) -> Any:
-        """The function itself; `help` and completion read its arguments here."""
+        """The function; `help` and completion read the arguments here."""
         return import_module("rodsweep.api.sweeping").sweep  # by name: `api` imports `sweep`, not the reverse
 
     def __call__(self, *words: Any, **keywords: Any) -> Any:

@@ -1,9 +1,9 @@
-"""How ranks claim chunks of units: the first rank from its own handout, the others by messages to the first.
+"""Claims of chunks of units: by the first rank from the handout, by further ranks through messages.
 
-The first rank computes like every rank. A thread of the first rank answers the requests of the others, so
-that they need not wait until its current solve ends. A solve may still delay this thread. Every rank
-therefore requests its next chunk when it begins a chunk, and gets it while plenty of units are left. A rank
-that receives a stop signal notifies the first rank, which notifies all; each rank stops after its current
+The first rank computes like every rank. A thread of the first rank answers requests meanwhile, and no rank
+needs to wait for the end of a solve on the first rank. A solve may still delay the thread. Every rank
+therefore requests the next chunk when it begins a chunk, and gets the chunk while plenty of units are left. A
+rank with a stop signal notifies the first rank, which notifies all ranks; each rank stops after the current
 point.
 """
 
@@ -28,18 +28,17 @@ solve of that rank."""
 RELIEVED_POLL_SECONDS = 5e-3
 """Seconds between two polls by the thread while the first rank itself answers between its points."""
 ASK_SECONDS = 1e-4
-"""First pause, in seconds, between two polls of a rank that waits for its next chunk."""
+"""First pause, in seconds, between two polls of a rank waiting for a chunk."""
 LONGEST_ASK_SECONDS = 1e-2
-"""Longest such pause, in seconds: an idle rank must not take processor time from ranks that solve."""
+"""Longest pause, in seconds: an idle rank must not take processor time from solving ranks."""
 ASK_GROWTH = 1.1
-"""Ratio of a pause to the previous pause; growth is slow, so that a wait of a millisecond is not
-prolonged."""
+"""Ratio of a pause to the previous pause. Slow growth prolongs a wait of a millisecond little."""
 WAIT_SECONDS = 0.05
-"""Seconds for which the idle first rank waits for a change of the handout before it polls for messages."""
+"""Seconds for which the idle first rank waits for a change of the handout before a poll for messages."""
 
 
 class FirstRankClaims:
-    """Claims of the first rank, with a thread that serves the other ranks."""
+    """Claims of the first rank, with a thread that serves all further ranks."""
 
     def __init__(
         self,
@@ -55,7 +54,7 @@ class FirstRankClaims:
         self.show = show
         self.waiting: deque[int] = deque()
         self.ahead: set[int] = set()
-        """Ranks that already have the answer to their next request."""
+        """Ranks with an answer in advance to the next request."""
         self.working = set(range(1, team.size))
         self.status = team.MPI.Status()
         self.places: dict[int, Whereabouts] = {}
@@ -98,10 +97,10 @@ class FirstRankClaims:
         return sum(place.share or 0.0 for place in list(self.places.values()))
 
     def between_points(self) -> None:
-        """Answers requests of other ranks; called between points.
+        """Answers requests of ranks; called between points.
 
         During a long point the thread answers. The thread alone would not be enough: a solve inside PETSc
-        keeps Python's lock, and the thread might get the lock only once a point for each of its steps.
+        keeps Python's lock, and the thread might get the lock only once a point for each step of the solve.
         """
         if self.thread is not None:
             self._serve()
@@ -117,7 +116,8 @@ class FirstRankClaims:
                 self.team.comm.send(self.stop.name, dest=rank, tag=STOP_TAG)
 
     def _serve(self) -> None:
-        comm, MPI = self.team.comm, self.team.MPI
+        comm = self.team.comm
+        MPI = self.team.MPI
         with self.serving:
             while comm.Iprobe(source=MPI.ANY_SOURCE, tag=STOP_TAG, status=self.status):
                 self.stop.take(comm.recv(source=self.status.Get_source(), tag=STOP_TAG))
@@ -133,7 +133,8 @@ class FirstRankClaims:
                     self.working.discard(rank)
 
     def _hear_places(self) -> None:
-        comm, MPI = self.team.comm, self.team.MPI
+        comm = self.team.comm
+        MPI = self.team.MPI
         while comm.Iprobe(source=MPI.ANY_SOURCE, tag=PLACE_TAG, status=self.status):
             rank = self.status.Get_source()
             self.places[rank] = comm.recv(source=rank, tag=PLACE_TAG)
@@ -141,7 +142,7 @@ class FirstRankClaims:
     def _hear(self, rank: int, report: Report) -> None:
         """Handles a report of a rank: answers a request ahead at once, and queues any other request.
 
-        A rank whose request ahead was answered already has its next chunk and is not queued.
+        After an answer in advance the rank has the next chunk already, and is not queued.
         """
         if report.ahead:
             if (chunk := self.handout.take_ahead(rank)) is not None:
@@ -167,7 +168,7 @@ class FirstRankClaims:
 
 
 class OtherRankClaims:
-    """Claims of every other rank, by messages to the first."""
+    """Claims of all ranks but the first, by messages to the first."""
 
     def __init__(self, team: Team, stop: StopRequest):
         self.comm = team.comm
@@ -175,7 +176,7 @@ class OtherRankClaims:
         self.stop_exchanged = False
 
     def claim(self, report: Report) -> IndexRange:
-        """The next chunk; waits until the first rank has sent it, and requests the chunk after it."""
+        """The next chunk; waits for the answer of the first rank, and requests the following chunk."""
         self.comm.send(report, dest=0, tag=REQUEST_TAG)
         # A blocking receive would spin and take the processor from the ranks that compute.
         pause = ASK_SECONDS
@@ -193,7 +194,7 @@ class OtherRankClaims:
         self.comm.send(place, dest=0, tag=PLACE_TAG)
 
     def between_points(self) -> None:
-        """Sends a stop request to the first rank, or receives a stop request from it; once in all."""
+        """Sends a stop request to the first rank, or receives a stop request from there; once in all."""
         if not self.stop_exchanged and self.comm.Iprobe(source=0, tag=STOP_TAG):
             self.stop.take(self.comm.recv(source=0, tag=STOP_TAG))
             self.stop_exchanged = True

@@ -1,6 +1,6 @@
-"""Cost of a sweep before it starts: time, and for spectra also memory and unknowns, from a sample of points.
+"""Cost of a sweep before the start: time, and for spectra memory and unknowns, from a sample of points.
 
-Times are of one core like that of docs/performance.md.
+Times are for a single core like the core of docs/performance.md.
 """
 
 import math
@@ -18,14 +18,14 @@ from .points.stretches import Stretches
 MAX_SAMPLE = 200
 """Largest number of points whose meshes are computed for an estimate."""
 HARDER_IF_LARGER = frozenset({"k1", "F"})
-"""Parameters whose largest value makes branches most expensive; for other parameters the smallest value
-does."""
+"""Parameters with which branches become more expensive; for all further parameters small values are
+expensive."""
 FIXED_MS = 0.03
 """Overhead of the solve of a spectrum, in ms, measured."""
 LINEAR_MS = 2.2e-3
-"""Time of its orthogonalisation, in ms per unknown, measured."""
+"""Time of the orthogonalisation, in ms per unknown, measured."""
 CUBIC_MS = 1.5e-7
-"""Time of its dense factorisation, in ms per cubed number of unknowns, measured."""
+"""Time of the dense factorisation, in ms per cubed number of unknowns, measured."""
 SPARSE_FROM = 300
 """Number of unknowns above which factorisations are sparse."""
 SPARSE_MS = 8e-3
@@ -35,31 +35,32 @@ CERTIFICATE_MS = 0.15
 FIRST_POINTS = 2.0
 """Cost of the first point of a stretch, in units of a point solved alone."""
 FOLLOWED_MS = 0.006
-"""Time of every point of a stretch followed from its neighbour, in ms."""
+"""Time of every point of a stretch, followed from a neighbour, in ms."""
 LINE_MS = 24.0
-"""Time of a search for crossings along one parameter, in ms: mean over 72 rods, some of which take four times
-as long."""
+"""Time of a search for crossings along one parameter, in ms: mean over 72 rods, of which a few take four
+times as long."""
 LINE_CERTIFICATE_MS = 16.0
-"""Time of the certificate of such a search, in ms: mean over the same rods."""
+"""Time of the certificate of a search, in ms: mean over the 72 rods."""
 HOPF_SEARCH_MS = 25.0
 """Time of a search for the Hopf points of a rod, in ms: mean over 90 rods."""
 HOPF_CERTIFICATE_MS = 3.0
-"""Time of the certificate of the Hopf points, in ms: mean over the same rods."""
+"""Time of the certificate of the Hopf points, in ms: mean over the 90 rods."""
 HOPF_POINTS_MS = 18.0
-"""Time of the normal forms of the two or three Hopf points of a rod, in ms: mean over the same rods."""
+"""Time of the normal forms of the two or three Hopf points of a rod, in ms: mean over the 90 rods."""
 TWO_MESHES = 8.0
-"""Time of a spectrum on two meshes, in units of one that begins on one mesh: mean over 800 rods."""
+"""Time of a spectrum on two meshes, in units of a spectrum that begins on a single mesh: mean over 800
+rods."""
 FINER_MESH = 4 / 3
 """Ratio of the unknowns of the second mesh to the unknowns of the first."""
 MODES_MS = 1.5
 """Time of the eigenvectors, in ms per squared number of modes, because the mesh grows with that number: mean
 over 24 rods."""
 GROWTH_MS = 20.0
-"""Time of the transient growth of a rod, in ms: mean over the same rods."""
+"""Time of the transient growth of a rod, in ms: mean over the 24 rods."""
 CYCLE_SECONDS = 0.1
-"""Time of a limit cycle starting from the leading mode: about that of the benchmark."""
+"""Time of a limit cycle starting from the leading mode, about as in the benchmark."""
 CHAINED_CYCLE_SECONDS = 0.01
-"""Time of a limit cycle starting from its neighbour: about that of the benchmark."""
+"""Time of a limit cycle starting from a neighbour, about as in the benchmark."""
 MARCHED_CYCLE_SECONDS = 0.25
 """Time of a limit cycle by time integration alone to 1e-5: mean over 40 rods."""
 BRANCH_SECONDS = 0.004
@@ -79,7 +80,7 @@ BASE_MEMORY = 200_000_000
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """Estimated cost of a sweep on one core like that of docs/performance.md."""
+    """Estimated cost of a sweep on a single core like the core of docs/performance.md."""
 
     seconds: float
     """Time of the whole sweep on one rank."""

@@ -1,8 +1,8 @@
 """Distribution of units, each a point or a chain of points: small chunks, sized by the pace of each rank.
 
-A rank whose chunk takes longer than planned gives back the rest of the chunk with its next request. No rank
-is dismissed while another rank may still give units back, so that all ranks finish within about one unit of
-each other. `rodsweep.sweep.claims` holds the messages.
+A rank with a slow chunk gives back the rest of the chunk with the next request. No rank is dismissed while
+another rank may still give units back, and all ranks finish within about one unit of each other.
+`rodsweep.sweep.claims` holds the messages.
 """
 
 import threading
@@ -18,11 +18,11 @@ CHUNK_SECONDS_A_RANK = 1e-3
 """Planned time of a chunk with many ranks, in s per rank. The first rank answers a request in 50 microseconds
 and so spends a twentieth of its time on answers."""
 GIVE_BACK_AFTER = 3.0
-"""A rank gives back the rest of its chunk after this time, in units of the planned time of the chunk."""
+"""Time after which a rank gives back the rest of a chunk, in units of the planned time of the chunk."""
 LARGEST_CHUNK = 1 << 16
 """Largest number of units in a chunk."""
 MIN_UNITS_AHEAD = 4
-"""A rank gets its next chunk ahead only if at least this number of units per rank is left."""
+"""Smallest number of units left, per rank, for a rank to get the next chunk in advance."""
 OVER: IndexRange = (0, 0)
 """Answer to a request once no work is left."""
 
@@ -34,12 +34,12 @@ def chunk_seconds(ranks: int) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """Report of a rank with its request for the next chunk.
+    """Report of a rank with a request for the next chunk.
 
-    done: units finished since its last report, in `seconds`. given_back: units of its chunk left undone.
-    points: points stored. ahead: the rank has only begun a chunk, and requests its next chunk ahead. stop:
-    name of the signal that asked the rank to stop, or empty; units given back after a stop are left for
-    another run. results: of finished units, by unit, where later units depend on them.
+    done: units finished since the last report, in `seconds`. given_back: units of the chunk left undone.
+    points: points stored. ahead: the rank has only begun a chunk, and requests the next chunk in advance.
+    stop: name of the stop signal of the rank, or empty; units given back after a stop are left for another
+    run. results: results of finished units, by unit, where later units depend on results.
     """
 
     done: int = 0
@@ -52,7 +52,7 @@ class Report:
 
 
 class Handout:
-    """Units still to do, held by the first rank; safe to use from its two threads."""
+    """Units still to do, on the first rank; safe to use from two threads."""
 
     def __init__(self, todo: list[IndexRange], ranks: int):
         self.todo = deque(todo)
@@ -90,7 +90,7 @@ class Handout:
             return None if self.held.total() and not self.stopped else OVER
 
     def take_ahead(self, rank: int) -> IndexRange | None:
-        """The next chunk for a rank that still works on a chunk; None if too few units are left."""
+        """The next chunk for a rank still at work on a chunk; None if too few units are left."""
         with self.change:
             return self._take(rank) if self.todo and self.left >= MIN_UNITS_AHEAD * self.ranks else None
 

@@ -10,11 +10,11 @@ from .stop import StopRequest
 POLL_SECONDS = 0.05
 """Seconds between two polls for messages and stop requests during a solve."""
 PLACE_SECONDS = 0.5
-"""Seconds after which a solve counts as long and reports its progress, and between two such reports."""
+"""Seconds after which a solve counts as long and progress is reported, and between two reports."""
 
 
 class Claims(Protocol):
-    """Communication of a rank with other ranks while it solves."""
+    """Communication between ranks during a solve."""
 
     def between_points(self) -> None: ...
 
@@ -22,7 +22,7 @@ class Claims(Protocol):
 
 
 class NoClaims:
-    """Claims of a rank that solves alone; `shown` receives the progress of a long solve."""
+    """Claims of a lone rank; `shown` receives the progress of a long solve."""
 
     def __init__(self, shown: Callable[[Whereabouts], object] | None = None):
         self.shown = shown
@@ -36,7 +36,7 @@ class NoClaims:
 
 
 class RankListener:
-    """Listener of the solves of a rank; each unit has its own."""
+    """Listener of the solves of a rank; every unit gets a new listener."""
 
     def __init__(self, claims: Claims, stop: StopRequest, name: Callable[[], str] = str):
         """name: describes the unit in words."""

@@ -19,13 +19,13 @@ from .stop import StopRequest
 from .team import Team
 
 Indices = int | NDArray[np.int64]
-"""Index of one point, or indices of points stored together, shape (n,)."""
+"""Index of a single point, or indices of points stored together, shape (n,)."""
 
 
 class Solve(Protocol):
     """Function from a unit to its points; yields (index, result) for each point, or for a whole stretch.
 
-    A unit is a point, a chain of points yielded one by one, or a stretch of points yielded at once.
+    A unit is a point, a chain of points yielded individually, or a stretch of points yielded at once.
     """
 
     def __call__(self, unit: int, /) -> Iterable[tuple[Indices, Any]]: ...
@@ -43,9 +43,9 @@ class ProgressSink(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """Work of one rank: number of points, and seconds spent on solving (busy) and on waiting (idle).
+    """Work of a rank: number of points, and seconds spent on solving (busy) and on waiting (idle).
 
-    ended: a stop request ended an unfinished solve; another run solves this unit again.
+    ended: a stop request ended an unfinished solve; a later run solves the unit again.
     """
 
     points: int
@@ -56,11 +56,11 @@ class Share:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Loop:
-    """Work of every rank on its units.
+    """Work of every rank on units.
 
-    prepare: runs before the first unit. keep: stores a point durably, on the rank that solved it, before the
-    next point begins. results: of the units stored since the last call, by unit, where later units depend on
-    them. name: describes a unit in words.
+    prepare: runs before the first unit. keep: stores a point durably, on the rank that solved the point,
+    before the next point begins. results: results of the units stored since the last call, by unit, where
+    later units depend on results. name: describes a unit in words.
     """
 
     solve: Solve
@@ -71,10 +71,10 @@ class Loop:
 
 
 def sweep(team: Team, todo: Handout, loop: Loop, shown: ProgressSink, stop: StopRequest) -> Share:
-    """Solves every unit of `todo`, which only the first rank knows; returns when all ranks have finished.
+    """Solves every unit of `todo`, known to the first rank only; returns when all ranks have finished.
 
-    An exception on one rank ends all ranks. After a stop request to any rank, each rank ends after its
-    current point, or within this point if it takes longer than `stop.GRACE` seconds.
+    An exception on any rank ends all ranks. After a stop request to any rank, each rank ends after the
+    current point, or within the point if more than `stop.GRACE` seconds are needed.
     """
     claims = FirstRankClaims(team, todo, stop, shown.place) if team.first else OtherRankClaims(team, stop)
     with suppress(Stopped), heard_by(RankListener(claims, stop)):
@@ -103,8 +103,9 @@ class _Rank:
         self.ended = False
 
     def share(self) -> Share:
-        """Solves chunk after chunk; returns the work of this rank once all ranks have finished."""
-        started, busy = time.monotonic(), 0.0
+        """Solves chunk after chunk; returns the work of the rank once all ranks have finished."""
+        started = time.monotonic()
+        busy = 0.0
         chunk = self.claims.claim(Report())
         while chunk != OVER:
             began = time.monotonic()

@@ -1,4 +1,4 @@
-"""Units chosen one by one on the first rank, where the results so far decide which units are solved next."""
+"""Units chosen individually on the first rank, because results decide which units are solved next."""
 
 from collections.abc import Mapping
 from typing import Any, Protocol
@@ -14,9 +14,9 @@ class UnitChooser(Protocol):
 
 
 class Pool(Handout):
-    """Units to solve next, held by the first rank; safe to use from its two threads.
+    """Units to solve next, on the first rank; safe to use from two threads.
 
-    results: by unit, at first those of an earlier run; reported results are added.
+    results: by unit, at first from an earlier run; reported results are added.
     """
 
     def __init__(self, work: UnitChooser, results: dict[int, Any], ranks: int):
@@ -24,12 +24,12 @@ class Pool(Handout):
         self.work = work
         self.results = results
         self.taken: dict[int, IndexRange] = {}
-        """Unit that each rank works on."""
+        """Unit in progress on each rank."""
         self._wanted: list[int] | None = None
 
     @property
     def open(self) -> list[int]:
-        """Chosen units on which no rank works."""
+        """Chosen units in progress on no rank."""
         if self._wanted is None:
             self._wanted = self.work.wanted(self.results)
         in_hand = {first for first, _ in self.taken.values()}

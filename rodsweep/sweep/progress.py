@@ -10,7 +10,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 from .remaining_time import Pace, in_words, rate_in_words
 
 FIRST_SECONDS = 1.0
-"""Seconds before progress is shown for the first time; a shorter sweep shows none."""
+"""Seconds before progress is shown for the first time; a shorter sweep shows no progress."""
 LINE_SECONDS = 10.0
 """Seconds between two lines in a log."""
 BAR_SECONDS = 0.1
@@ -47,8 +47,8 @@ class Silent:
 class ProgressReporter:
     """Shows the number of finished points, the rate, the remaining time and the progress of a long point.
 
-    total: number of all points; None if later units depend on results, so that it is not known. noun: name of
-    the counted objects.
+    total: number of all points; None if unknown, because later units depend on results. noun: name of the
+    counted objects.
     """
 
     def __init__(self, total: int | None, title: str, noun: str = "points", live: bool | None = None):

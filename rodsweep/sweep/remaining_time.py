@@ -1,10 +1,10 @@
-"""Remaining time of a sweep from the number of finished points over time, smoothed so that it does not jump.
+"""Remaining time of a sweep from the number of finished points over time, smoothed against jumps.
 
-Points differ in cost: the first point of a chain starts cold, others start from a neighbour, some are hard.
-The pace is therefore that of the latest half of the finished points, and never includes the first ones, which
-started cold. The reported time follows the estimate slowly, with a time constant that is a fraction of the
-time passed, and faster near the end. Where points are long, the work done of unfinished points counts as
-well. This module reads no clock: the caller passes all times.
+Points differ in cost: the first point of a chain starts cold, later points start from a neighbour, a few
+points are hard. The pace is therefore measured over the latest half of the finished points, and never
+includes the first points, which started cold. The reported time follows the estimate slowly, with a time
+constant proportional to the time passed, and faster near the end. With long points the work done of
+unfinished points counts as well. The module reads no clock: the caller passes all times.
 """
 
 from math import exp
@@ -65,8 +65,8 @@ class Pace:
     def _seconds_per_point(self, done: int, now: float, begun: float) -> float | None:
         """Time per point over the latest finished points, longer if the current point takes longer.
 
-        Before MIN_POINTS points are finished it follows from the work of unfinished points; None if that is
-        too little.
+        Before MIN_POINTS points are finished the time follows from the work of unfinished points, or is None
+        if the work is too little.
         """
         if not self.records or done < self.records[0][0] + MIN_POINTS:
             return now / (done + begun) if begun >= MIN_BEGUN else None
@@ -85,7 +85,7 @@ def in_words(seconds: float) -> str:
 
 
 def rate_in_words(done: int, seconds: float) -> str:
-    """Points per second, or time per point where it exceeds a second; empty before the first point."""
+    """Points per second, or time per point above one second; empty before the first point."""
     if not done or not seconds:
         return ""
     rate = done / seconds

@@ -1,6 +1,6 @@
 """Early stop of a run, requested by a scheduler's warning, a user's kill or Ctrl-C.
 
-A run stops between two points, or within a point that takes more than `GRACE` seconds longer.
+A run stops between two points, or within a point with more than `GRACE` seconds left.
 """
 
 import os
@@ -12,18 +12,17 @@ from types import FrameType
 STOP_SIGNALS = (signal.SIGTERM, signal.SIGUSR1, signal.SIGINT)
 """Signals that ask for a stop: `kill` or a scheduler's end, a scheduler's warning, and Ctrl-C."""
 GRACE = 0.3
-"""Time, in seconds, to finish the current point after a stop request. A point that needs longer is abandoned
-and solved again on resuming: a run has to end within two seconds, and Open MPI's launcher kills it after
-one."""
+"""Time, in seconds, to finish the current point after a stop request. A longer point is abandoned and solved
+again on resuming: a run has to end within two seconds, and Open MPI's launcher kills after one."""
 STOPPING_MESSAGE = b"\nstopping: all points that are done are kept (Ctrl-\\ ends at once)\n"
 """Message printed at once on Ctrl-C."""
 
 
 class StopRequest:
-    """Stop request to this process, with the name of its signal.
+    """Stop request to the process, with the name of the signal.
 
-    acknowledges: whether Ctrl-C is acknowledged on standard error. Under a launcher the ranks do not
-    acknowledge, because all of them would.
+    acknowledges: whether Ctrl-C is acknowledged on standard error. Under a launcher no rank acknowledges,
+    because all ranks would.
     """
 
     def __init__(self, acknowledges: bool = False) -> None:
@@ -36,7 +35,7 @@ class StopRequest:
 
     @property
     def is_due(self) -> bool:
-        """Whether the grace time is over, so that the current point has to be abandoned."""
+        """Whether the grace time is over and the current point has to be abandoned."""
         if not self.name:
             return False
         self._since = self._since or time.monotonic()
@@ -54,7 +53,7 @@ class StopRequest:
             signal.signal(number, signal.SIG_IGN)
 
     def take(self, name: str) -> None:
-        """Adopts a request received by another rank, by the name of its signal."""
+        """Adopts a request to another rank, by the name of the signal."""
         self.name = name
 
     def _note(self, number: int, _: FrameType | None) -> None:

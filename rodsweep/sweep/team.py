@@ -14,7 +14,7 @@ S = TypeVar("S")
 SHORTEST_PAUSE = 1e-4
 """First pause, in seconds, between two tests whether all ranks have arrived."""
 LONGEST_PAUSE = 1e-2
-"""Longest such pause, in seconds; pauses double until then."""
+"""Longest pause, in seconds; pauses double until then."""
 
 
 class Team:
@@ -40,7 +40,7 @@ class Team:
         return self.rank == 0
 
     def on_first(self, work: Callable[[], T]) -> T:
-        """Result of `work` on the first rank, returned on every rank; every rank raises its refusal."""
+        """Result of `work` on the first rank, returned on every rank; every rank raises a refusal."""
         outcome: Any = None
         if self.first:
             try:
@@ -56,7 +56,7 @@ class Team:
     def wait_for_all(self) -> None:
         """Waits for all ranks.
 
-        Unlike MPI's barrier the wait sleeps, which leaves the processor to ranks that still work.
+        Unlike MPI's barrier the wait sleeps, and leaves the processor to ranks still at work.
         """
         request = self.comm.Ibarrier()
         pause = SHORTEST_PAUSE
@@ -65,7 +65,7 @@ class Team:
             pause = min(2 * pause, LONGEST_PAUSE)
 
     def require_on_all_ranks(self, work: Callable[[], object]) -> None:
-        """Does `work` on every rank; if any rank refuses it, all ranks raise the same refusal."""
+        """Does `work` on every rank; all ranks raise the refusal of any rank."""
         refusal: Refusal | None = None
         try:
             work()
@@ -76,7 +76,7 @@ class Team:
             raise refusals[0].on_all_ranks()
 
     def gather(self, value: T) -> list[T] | None:
-        """Values of all ranks on the first rank; None on other ranks."""
+        """Values of all ranks on the first rank; None elsewhere."""
         self.wait_for_all()
         return self.comm.gather(value)
 
@@ -86,16 +86,16 @@ class Team:
         return self.comm.allgather(value)
 
     def in_order(self, items: Sequence[T], work: Callable[[T], S]) -> list[S]:
-        """Results of `work` for all items, in their order, on every rank; the ranks divide the items."""
+        """Results of `work` for all items, in order, on every rank; the ranks divide the items."""
         parts = self.exchange([work(item) for item in items[self.rank :: self.size]])
         return [parts[i % self.size][i // self.size] for i in range(len(items))]
 
     @contextmanager
     def aborting_together(self) -> Iterator[None]:
-        """An exception in this context on one rank ends all ranks, with its message and exit status.
+        """An exception in the context on any rank ends all ranks, with the rank's message and exit status.
 
-        The other ranks would wait for ever. With a single rank nobody waits, and a refusal that all ranks
-        share needs no abort: both exceptions propagate.
+        All other ranks would wait for ever. An exception propagates without abort if there is a single rank,
+        or if all ranks share the refusal.
         """
         try:
             yield

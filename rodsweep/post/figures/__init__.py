@@ -114,7 +114,7 @@ def draw(
 
 
 def _omitted_points(views: Sequence[View]) -> str:
-    """Clause on the points without anything to draw; empty if there is none."""
+    """Clause on the points without anything to draw, or an empty text."""
     words = np.concatenate([outcomes(view) for view in views])
     counts = (f"{np.count_nonzero(words == word)} {text}" for word, text in OMITTED.items() if word in words)
     omitted = " and ".join(counts)

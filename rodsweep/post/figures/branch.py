@@ -30,7 +30,7 @@ from .request import FigureRequest
 from .smooth_branch import through_cycles
 
 LINES = {1: ("-", "stable"), 0: ("--", "unstable"), -1: (":", "not known")}
-"""Line style and legend entry of a piece of a branch, by its stability."""
+"""Line style and legend entry of a piece of a branch, by stability."""
 MARKS = {
     "hopf": ("o", "Hopf point"),
     "fold": ("s", "fold"),
@@ -41,14 +41,14 @@ MARKS = {
     "no_cycle_found": ("x", "no further cycle found"),
     "list_full": ("|", "last cycle stored"),
 }
-"""Marker and legend entry of a special point, by its kind or, for an end, its reason; other ends have no
+"""Marker and legend entry of a special point, by kind or, for an end, its reason; other ends have no
 marker."""
 PREDICTED = (0, (4, 1, 1, 1))
 """Line style of the amplitude that the normal form predicts near a Hopf point."""
 PREDICTED_WORD = "by the normal form"
 """Legend entry of the predicted amplitude."""
 COLOURS = (style.FIRST, style.SECOND, "#6A3D9A", "#2E7D32", "#8D6E63", "#00838F", "#C2185B", "#9E9D24")
-"""Colours of the branches of one rod, or of several rods, in their order."""
+"""Colours of the branches of a single rod, or of several rods, in order."""
 
 
 def draw_branch(request: FigureRequest) -> str:
@@ -155,7 +155,8 @@ def _compare_prediction(axes: Axes, curves: list[StoredBranch], colours: Sequenc
 
     A branch is drawn to its first fold: the law does not describe cycles beyond it.
     """
-    nearest, farthest = [], []
+    nearest = []
+    farthest = []
     for number, curve in enumerate(curves):
         for at, y, stable in curve.near_hopf_points():
             _pieces(axes, at, y, stable, colours[number % len(colours)], marker=".")

@@ -23,7 +23,7 @@ MARKS = {
     1: ("subcritical", style.SECOND, "s"),
     0: ("undecided", "0.3", "x"),
 }
-"""Word, colour and marker of a Hopf point, by its criticality."""
+"""Word, colour and marker of a Hopf point, by criticality."""
 CLASSES = (
     ("no Hopf point with a normal form", "#DDDDDD"),
     ("supercritical", "#9CC3E4"),
@@ -51,7 +51,7 @@ def draw_criticality(request: FigureRequest) -> str:
 
 
 def _along(view: View, name: str) -> Figure:
-    """Figure of a above Re c over one parameter, each Hopf point marked by its criticality."""
+    """Figure of a above Re c over a parameter, each Hopf point marked by criticality."""
     x = view.point_columns[name]
     keep = np.isfinite(x)
     figure = Figure(figsize=(5.6, 5.4), layout="constrained")
@@ -87,7 +87,7 @@ def _mark(axes: Axes, x: Array, values: Array, side: Array) -> list[Line2D]:
 def _map(view: View, points: PointMap, narrow: bool) -> Figure:
     """Maps of the criticality of the first Hopf points and of their amplitude coefficients.
 
-    narrow: whether the two maps lie one above the other.
+    narrow: whether the two maps are stacked.
     """
     side = view.by_point("criticality")[points.at]
     a = np.abs(view.by_point("amplitude_coefficient")[:, 0][points.at])

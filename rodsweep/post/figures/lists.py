@@ -43,7 +43,7 @@ def as_grid(view: View) -> View:
 
 
 def shared_parameters(view: View) -> dict[str, float]:
-    """Parameters that all points share, with their values."""
+    """Parameters that all points share, with values."""
     columns = view.point_columns
     return {name: float(column[0]) for name, column in columns.items() if len(np.unique(column)) == 1}
 

@@ -92,7 +92,8 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     palette = STATES if STATES.variable in view.variables else MOTIONS
     values = view.variables[palette.variable]
     require(view, (values >= 0).any(), "computed row")
-    x, y = view.variables[line], view.axes[row]
+    x = view.variables[line]
+    y = view.axes[row]
     keep = np.isfinite(y)
     if keep.sum() < 2:
         rows = f", for each {row}" if len(y) > 1 else ""
@@ -124,7 +125,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
 
 
 def _fixed(view: View, line: str, row: str) -> str:
-    """Fixed parameters with their values; gamma1 only if the figure shows cycles."""
+    """Fixed parameters with values; gamma1 only if the figure shows cycles."""
     fixed = {name: values[0] for name, values in view.axes.items() if name not in (line, row)}
     if "curve_gamma1" in view.variables:
         fixed["gamma1"] = float(view.variables["curve_gamma1"])
@@ -146,7 +147,8 @@ def _draw_crushing(axes: Axes, x: Array, y: Array) -> list[Line2D]:
 
 def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
     """Figure with a bar for each row; used if the rows are too few, or at infinity, to form a plane."""
-    x, y = view.variables[line], view.axes[row]
+    x = view.variables[line]
+    y = view.axes[row]
     figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")
     axes = figure.subplots()
     share = np.linspace(0, 1, PIXELS + 1)

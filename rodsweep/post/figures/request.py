@@ -33,7 +33,7 @@ HEIGHT_POWER = 0.5
 INCH = 0.0254
 """Length of an inch, in metres."""
 NARROW = 5.0
-"""Width, in inches, below which panels lie one above the other."""
+"""Width, in inches, below which panels are stacked."""
 NARROWEST = 2.5
 """Smallest width of a figure, in inches; in a narrower figure labels are wider than panels."""
 WIDEST = 20.0
@@ -60,7 +60,7 @@ class Look:
 
     @property
     def narrow(self) -> bool:
-        """Whether panels lie one above the other."""
+        """Whether panels are stacked."""
         return self.inches is not None and self.inches < NARROW
 
     def fit(self, figure: Figure, min_aspect: float = MIN_ASPECT) -> None:

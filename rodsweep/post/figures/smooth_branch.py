@@ -48,7 +48,8 @@ def through_cycles(curve: StoredBranch) -> tuple[Array, Array, Array, NDArray[np
     extent[extent == 0] = 1.0
     # The end of the range is stored as a cycle and as a special point.
     moves = (np.abs(np.diff(places, axis=0)) > COINCIDENT * extent).any(axis=1)
-    own, stable = places[np.append(True, moves)], curve.stable[moves]
+    own = places[np.append(True, moves)]
+    stable = curve.stable[moves]
     if len(own) <= MIRRORED:
         return curve.at, curve.y, curve.period, curve.stable
     corners = corners_of(own, extent)

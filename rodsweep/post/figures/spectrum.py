@@ -109,7 +109,8 @@ def _map(view: View, names: list[str]) -> Figure:
     """Map of the leading growth rate over two parameters."""
     horizontal, vertical = names
     growth = view.variables["growth_rate"][..., 0].squeeze()
-    x, y = view.axes[horizontal], view.axes[vertical]
+    x = view.axes[horizontal]
+    y = view.axes[vertical]
     figure = Figure(figsize=(5.6, 4.4), layout="constrained")
     axes = figure.subplots()
     reach = float(np.nanmax(np.abs(growth)))

@@ -89,12 +89,12 @@ def number(value: float, digits: int = 6) -> str:
 
 
 def parameter_text(parameters: Mapping[str, float], digits: int = 6) -> str:
-    """Parameters with their values, on one line."""
+    """Parameters with values, on a single line."""
     return ", ".join(f"${SYMBOLS[name]} = {number(value, digits)}$" for name, value in parameters.items())
 
 
 def fixed_text(view: View, *drawn: str) -> str:
-    """Parameters that are not along an axis of the figure, with their values."""
+    """Parameters that are not along an axis of the figure, with values."""
     return parameter_text({name: values[0] for name, values in view.axes.items() if name not in drawn})
 
 
@@ -124,7 +124,8 @@ def is_logarithmic(values: np.ndarray) -> bool:
     """Whether an axis, shape (n,), has equal ratios without equal steps, or spans more than a decade."""
     if len(values) < 2 or values[0] <= 0 or not np.isfinite(values).all():
         return False
-    steps, ratios = np.diff(values), values[1:] / values[:-1]
+    steps = np.diff(values)
+    ratios = values[1:] / values[:-1]
     if len(values) > 2 and np.ptp(steps) <= 1e-6 * values[-1]:
         return False
     even = len(values) > 2 and np.ptp(ratios) < 1e-6 * ratios[0]
@@ -163,7 +164,8 @@ def colour_cells(
 
     ratios: whether the colours are logarithmic if the values span more than a decade.
     """
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    low = float(np.nanmin(values))
+    high = float(np.nanmax(values))
     if ratios and high > DECADE * low > 0:
         norm: Normalize = LogNorm(low, high)
     else:

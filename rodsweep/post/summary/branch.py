@@ -23,7 +23,7 @@ from .ranges import listed, rounded, span, to_error
 from .summary_lines import SummaryLines, at_point
 
 NAMED_RODS = 8
-"""Largest number of rods listed one by one."""
+"""Largest number of rods listed individually."""
 FULL = "they have more special points than the list holds; raise branch.special"
 """Cause and remedy of branches not shown."""
 BESIDE_STRAIGHT = "stable cycles beside a stable straight rod"
@@ -43,11 +43,11 @@ ENDS = {
     "list_full": "the last cycle that is stored",
     "none": "an end",
 }
-"""Words for the end of a branch, by its reason."""
+"""Words for the end of a branch, by reason."""
 
 
 def branch_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary about the points that are `done`, a mask of their shape."""
+    """Lines of the summary about the points in `done`, a mask of the points' shape."""
     if done.size == 1:
         return SummaryLines(list(_one_rod(view, 0)), [_searched(view, done)])
     v = view.variables
@@ -192,7 +192,7 @@ def _stopped(view: View, rods: np.ndarray) -> Iterator[str]:
 
 
 def _coexistence(view: View, rods: np.ndarray) -> Iterator[str]:
-    """Yields lines about rods with two stable states, some with their parameters."""
+    """Yields lines about rods with two stable states, some with parameters."""
     complete = [int(rod) for rod in rods if not count_incomplete_branches(view, int(rod))]
     if len(complete) < len(rods):
         yield f"not known for {counted(len(rods) - len(complete), 'rod')}: {FULL}"

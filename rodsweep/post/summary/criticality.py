@@ -19,7 +19,7 @@ NAMED_RODS = 8
 
 
 def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary about the points that are `done`, a mask of their shape."""
+    """Lines of the summary about the points in `done`, a mask of the points' shape."""
     v = view.variables
     if done.size == 1:
         none = "its Hopf points are not known"

@@ -20,7 +20,7 @@ OUTCOMES = {"cycle": "beats", "straight": "stays straight"}
 
 
 def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary about the points that are `done`, a mask of their shape."""
+    """Lines of the summary about the points in `done`, a mask of the points' shape."""
     v = view.variables
     values = {word: value for value, word in view.flags.items()}
     beats = done & (v["status"] == values.get("cycle"))
@@ -63,7 +63,7 @@ def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarra
 def _stability(view: View) -> tuple[list[str], list[str]]:
     """(lines about changes of the straight rod along F, the same in an arm's own units).
 
-    If F is no axis the lines are about the other parameters.
+    If F is no axis the lines are about the remaining parameters.
     """
     names = [name for name in LINEAR_PARAMETERS if name in varied(view)]
     lines = list[str]()

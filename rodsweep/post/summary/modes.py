@@ -19,10 +19,13 @@ from .summary_lines import SummaryLines
 
 
 def modes_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary about the points that are `done`, a mask of their shape."""
+    """Lines of the summary about the points in `done`, a mask of the points' shape."""
     unknowns = unknowns_lines(view, done)
     if done.size == 1:
-        answer, trust, details, of_arm = eigenvalue_lines(view), [], unknowns, list[str]()
+        answer = eigenvalue_lines(view)
+        trust = []
+        details = unknowns
+        of_arm = list[str]()
     else:
         lines, how, of_arm = threshold_lines(view)
         answer = [stable_line(view, done), *lines]

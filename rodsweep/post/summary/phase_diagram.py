@@ -24,13 +24,13 @@ CHANGES_OF_CYCLES = {
     "symmetry_breaking": "cycles lose their symmetry",
     "left_the_model": "cycles leave the model (h1 = 0)",
 }
-"""Words for special points of rows, by their kind."""
+"""Words for special points of rows, by kind."""
 SHARP = 1e-8
 """Resolution of a boundary, in units of the parameter, of the uniform grid that is compared."""
 
 
 def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary about the rows that are `done`, a mask of their shape."""
+    """Lines of the summary about the rows in `done`, a mask of the rows' shape."""
     v = view.variables
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
     row = next(name for name in view.parameters if len(view.axes[name]) > 1)

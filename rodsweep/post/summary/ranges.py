@@ -1,4 +1,4 @@
-"""Numbers with their errors, and ranges of numbers, as `rodsweep show` writes them.
+"""Numbers with errors, and ranges of numbers, as `rodsweep show` writes them.
 
 If a number has an error beside it, the true value lies within the error, which includes the rounding of the
 number. In a range, which has no errors, the error is at most half a unit of the last digit.

@@ -19,7 +19,7 @@ PROOFS = {True: "proved by a winding number", False: "not proved"}
 
 
 def spectrum_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary about the points that are `done`, a mask of their shape."""
+    """Lines of the summary about the points in `done`, a mask of the points' shape."""
     if done.size == 1:
         return SummaryLines(eigenvalue_lines(view), details=unknowns_lines(view, done))
     lines, how, of_arm = threshold_lines(view)
@@ -32,7 +32,7 @@ def spectrum_summary(view: View, done: np.ndarray) -> SummaryLines:
 
 
 def stable_line(view: View, done: np.ndarray) -> str:
-    """Line on the stability of the straight rod at the points that are `done`, a mask of their shape."""
+    """Line on the stability of the straight rod at the points in `done`, a mask of the points' shape."""
     unstable = view.variables["unstable_count"]
     masks = {"stable": unstable == 0, "unstable": unstable > 0, "not known": unstable < 0}
     found = {word: done & mask for word, mask in masks.items() if (done & mask).any()}
@@ -44,7 +44,7 @@ def stable_line(view: View, done: np.ndarray) -> str:
 
 
 def leading_line(view: View, done: np.ndarray) -> str:
-    """Line on the leading eigenvalue at the points that are `done`, a mask of their shape."""
+    """Line on the leading eigenvalue at the points in `done`, a mask of the points' shape."""
     v = view.variables
     rate, frequency = (
         span(v[name][done][:, 0], v["error_estimate"][done][:, 0]) for name in ("growth_rate", "frequency")
@@ -88,7 +88,7 @@ def error_lines(view: View, done: np.ndarray) -> list[str]:
 
 
 def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
-    """Line on the unknowns of the mesh at the points that are `done`, a mask of their shape."""
+    """Line on the unknowns of the mesh at the points in `done`, a mask of the points' shape."""
     v = view.variables
     unknowns = 3 * v["elements"][done].astype(int) * v["order"][done]
     if (followed := int((unknowns == 0).sum())) == unknowns.size:

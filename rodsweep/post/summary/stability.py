@@ -12,18 +12,18 @@ from .arm.arm import thresholds_of_arm
 from .ranges import error_text, stated_error
 
 FEW_LINES = 3
-"""Largest number of lines whose thresholds are listed one by one."""
+"""Largest number of lines whose thresholds are listed individually."""
 OVER_FORCE = {
     "onset": "F* (straight rod starts to oscillate)",
     "hopf": "F** (straight rod starts to beat)",
     "restabilization": "restabilization (straight rod is stable again)",
 }
-"""Words for a threshold along F, by its kind."""
+"""Words for a threshold along F, by kind."""
 OVER_OTHERS = {
     "hopf": "the straight rod starts to beat, as {name} grows, at {name}",
     "restabilization": "the straight rod is stable again, as {name} grows, at {name}",
 }
-"""Words for a change of stability along another parameter, by its kind."""
+"""Words for a change of stability along another parameter, by kind."""
 
 Threshold = LocatedChange | BracketedChange
 """A threshold: located, or bracketed by two points."""

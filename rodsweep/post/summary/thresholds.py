@@ -21,7 +21,7 @@ EVENTS = {
 
 
 def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Lines of the summary about the points that are `done`, a mask of their shape."""
+    """Lines of the summary about the points in `done`, a mask of the points' shape."""
     if done.size == 1:
         return SummaryLines(
             crossing_lines(view), trust_of_one(view), cost_lines(view, done), crossings_of_arm(view)

@@ -48,10 +48,10 @@ class Tables:
         return contents_of(self.view)
 
     def table(self, name: str | None = None, columns: Sequence[str] = ()) -> Table:
-        """A table, by its name or by its columns; by default the first table of the task.
+        """A table, by name or by its columns; by default the first table of the task.
 
-        columns: names of the columns, in their order; by default all, but of the points of a list only
-        parameters, quantities and status. Raises InputError for an unknown name.
+        columns: names of the columns, in order; by default all, but of the points of a list only parameters,
+        quantities and status. Raises InputError for an unknown name.
         """
         name = chosen(self.view, self.contents, name, tuple(columns))
         points, found = self._rows(name)

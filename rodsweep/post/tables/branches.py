@@ -1,4 +1,4 @@
-"""Table of branches: cycles in their order, with special points between them, marked in a column."""
+"""Table of branches: cycles in order, with special points between them, marked in a column."""
 
 from dataclasses import replace
 

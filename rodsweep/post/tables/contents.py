@@ -16,7 +16,9 @@ from ...results.layouts.variables import Variable
 
 THERE_ARE = "there are"
 """Words of a refusal before the known names."""
-POINTS, GRID, BRANCHES = "points", "grid", "branches"
+POINTS = "points"
+GRID = "grid"
+BRANCHES = "branches"
 PARTS_OF_BRANCHES = {"cycles", "special_points"}
 """Tables that the table `branches` merges."""
 NAMES = {

@@ -1,8 +1,8 @@
-"""Content of a result file as one digest of each variable and attribute, and refusal of foreign content.
+"""Content of a result file as a digest of each variable and attribute, and refusal of foreign content.
 
-A digest covers the meaning, not the storage: type, shape, dimensions, numbers and attributes of a variable.
-It stays the same if another program, such as xarray, writes the same content into a new file. Names that
-begin with `user_` belong to the user: they have no digest, and only `rs.open` reads them.
+A digest covers the meaning, not the storage: type, shape, dimensions, numbers and attributes of a variable. A
+file rewritten by another program, such as xarray, keeps the digests. Names that begin with `user_` belong to
+the user: the user's content has no digest, and only `rs.open` reads it.
 """
 
 import json
@@ -33,10 +33,10 @@ themselves."""
 NUMBERS = "iuf"
 """Kinds of NumPy types that variables of a result have."""
 BYTES_A_READ = 1 << 18
-"""Bytes read at once, which bounds the memory."""
+"""Bytes read at once, to bound the memory."""
 
 FILLED_WITH_NAN = ("_FillValue", "[nan]")
-"""Attribute that xarray adds when it writes a file; it changes nothing."""
+"""Attribute added by xarray on writing, without effect."""
 
 Digests = dict[str, dict[str, str]]
 """Digests by name, under the keys `attributes` and `variables`."""
@@ -75,7 +75,7 @@ def digests_of(file: h5py.File) -> Digests:
 
 
 def refuse_changed(file: h5py.File) -> None:
-    """Raises ValueError, as a clause, if the content of an open file differs from its sealed content."""
+    """Raises ValueError, as a clause, if the content of an open file differs from the sealed content."""
     if SEAL not in file.attrs:
         raise ValueError("its seal is gone")
     sealed = json.loads(file.attrs[SEAL])
@@ -124,9 +124,9 @@ def _dataset_digest(name: str, data: h5py.Dataset) -> str:
 
 
 def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
-    """Dimensions of a variable: itself for a coordinate, else the dimensions that its attributes refer to.
+    """Dimensions of a variable: itself for a coordinate, else the dimensions named by attributes.
 
-    HDF5's own functions for dimensions are not used, because they crash on damaged attributes.
+    HDF5's own functions for dimensions crash on damaged attributes, and are not used.
     """
     attributes = data.attrs
     changed = ValueError(f"the dimensions of {named(name, 40)} are not as rodsweep wrote them")
@@ -173,7 +173,7 @@ def _plain_attributes(attributes: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """Value of an attribute as a list for JSON. A number and a list of one number are the same for netCDF."""
+    """Value of an attribute as a list for JSON; for netCDF a number equals a list of a single number."""
     if isinstance(value, h5py.Empty):
         return [""]
     array = np.atleast_1d(value)

@@ -21,12 +21,12 @@ from .validation import FORMAT, PROGRAM
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Plan of a file: its points, its layout, and the config that it answers."""
+    """Plan of a file: the points, the layout, and the config to answer."""
 
     points: Points
     layout: Layout
     coordinates: dict[str, Array]
-    """Coordinates of extra dimensions that have some, such as u."""
+    """Coordinates of extra dimensions, such as u, where the default 1, 2, ... does not apply."""
     constants: Callable[[], tuple[Filled, ...]]
     """Variables known before any point is solved; called once, when a file is created."""
     config: dict[str, Any]
@@ -39,7 +39,7 @@ class Plan:
     """Quantities of an arm. They are coordinates of the points besides the parameters, or dimensions of the
     points."""
     chains: Chains | None = None
-    """Chains of points; None if no point starts from another."""
+    """Chains of points; None if every point starts cold."""
     stretches: Stretches | None = None
     """Stretches of points solved at once; None if every point is solved alone."""
     afterwards: Callable[[Mapping[str, Any]], tuple[Filled, ...]] = lambda values: ()
@@ -52,7 +52,7 @@ class Plan:
 
     @property
     def fingerprint(self) -> str:
-        """Fingerprint of config and points; a file can continue another only if both have the same."""
+        """Fingerprint of config and points; equal for files that can continue each other."""
         return fingerprint_of(self.config, self.points.identity)
 
 
@@ -114,7 +114,7 @@ def is_axis(variable: Variable) -> bool:
 
 
 def _write_scale(file: h5py.File, name: str, values: NDArray[Any], variable: Variable | None = None) -> None:
-    """Writes a dimension with its coordinate; variable: describes a dimension that is not in DIMENSIONS."""
+    """Writes a dimension with a coordinate; variable: describes a dimension outside DIMENSIONS."""
     data = file.create_dataset(name, data=values)
     data.make_scale(name)
     if variable is None:
@@ -130,7 +130,7 @@ def _name(data: h5py.Dataset, name: str) -> None:
 
 
 def _contiguous(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> h5py.Dataset:
-    """Contiguous dataset, allocated and filled on creation, so that its place in the file is final."""
+    """Contiguous dataset, allocated and filled on creation, at a final place in the file."""
     creation = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
     creation.set_layout(h5py.h5d.CONTIGUOUS)
     creation.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)

@@ -1,6 +1,6 @@
-"""Atomic exchange of a result file, under a lock that admits one run or merge at a time.
+"""Atomic exchange of a result file, under a lock for a single run or merge at a time.
 
-The new file is written beside the journals. It is sealed and synced to disk before it takes the name.
+The new file is written beside the journals, and sealed and synced to disk before the rename.
 """
 
 import os
@@ -15,7 +15,7 @@ from ..run.lock import Lock
 from .seal import seal
 
 Identity = tuple[int, ...]
-"""Numbers that change when a file is replaced or written to; empty if there is no file."""
+"""Numbers that change when a file is replaced or written to; empty without a file."""
 
 
 def identity(path: Path) -> Identity:
@@ -38,17 +38,17 @@ def disk_refusals(path: Path, kept: Callable[[], str] = str) -> Iterator[None]:
 
 
 class Exchange:
-    """Exclusive right to replace a result file, which need not exist yet, until it is closed."""
+    """Exclusive right to replace a result file, which need not exist yet."""
 
     def __init__(self, path: Path):
-        """Takes the lock; raises InputError if another run holds it."""
+        """Takes the lock; raises InputError if the lock is taken."""
         self.path = path
         self.journals = journal_directory(path)
         self.copy = self.journals / "next.h5"
         path.parent.mkdir(parents=True, exist_ok=True)
         self.lock = Lock(self.journals, path)
         self.left: Identity = ()
-        """Identity of the file when it was last checked or written by this exchange."""
+        """Identity of the file at the last check or exchange."""
 
     @contextmanager
     def replacing(self, source: Path | None) -> Iterator[Path]:

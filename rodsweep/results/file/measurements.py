@@ -12,7 +12,7 @@ Table = dict[str, Sequence[str] | Sequence[float]]
 """Columns of equal length, by name."""
 
 UNITS = {"seconds": "s", "error": "1"}
-"""Units of the columns that have one."""
+"""Units of columns."""
 
 
 def write_measurements(path: Path, tables: Mapping[str, Table], attributes: Mapping[str, str]) -> None:

@@ -1,8 +1,7 @@
 """Points of a closed result file, read and written at computed offsets: every variable is contiguous.
 
-HDF5 is not used, because its blocks follow the axes of a grid, and the first axis may have a single value.
-The file is not mapped into memory, because touched pages would count as memory of this process, finally the
-whole file.
+HDF5 is not used: HDF5's blocks follow the axes of a grid, and the first axis may have a single value. The
+file is not mapped into memory: touched pages would count as memory of the process, finally the whole file.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -21,7 +20,7 @@ from ..layouts.variables import MISSING, Layout
 POINTS_AT_ONCE = 1 << 16
 """Largest number of points in a block that is read at once."""
 BYTES_AT_ONCE = 1 << 26
-"""Largest size of such a block, in bytes, beyond which it has fewer points."""
+"""Largest size of a block, in bytes; large points make a block of fewer points."""
 
 
 def statuses(path: Path, at_once: int | None = None) -> Iterator[tuple[int, np.ndarray]]:
@@ -48,7 +47,7 @@ def missing_ranges(path: Path) -> list[IndexRange]:
 
 
 def points_to_add(path: Path, other: Path, layout: Layout) -> Iterator[np.ndarray]:
-    """Yields records, (n,), of points that the file `other` has and the file `path` lacks."""
+    """Yields records, (n,), of points present in the file `other` and missing in the file `path`."""
     at_once = _at_once(layout)
     pairs = zip(statuses(path, at_once), statuses(other, at_once), strict=True)
     yield from _read(

@@ -15,16 +15,16 @@ import numpy as np
 from ... import __version__
 
 MAX_RANK_SHARES = 10_000
-"""Largest number of ranks whose share of the work is stored, so that the attribute stays below 64 kB."""
+"""Largest number of ranks with a stored share of the work; more would exceed the 64 kB of an attribute."""
 LONGEST_ATTRIBUTE = 60_000
 """Largest number of characters of an attribute; HDF5 allows 64 kB."""
 RANK_SHARES = ("rank_points", "rank_busy_seconds", "rank_idle_seconds")
 """Attributes with the work of each rank of the last run."""
 KERNELS = "blas_kernels"
-"""Attribute with the BLAS kernels that computed the points of a file in all its runs, one kernel a line,
-named by `rodsweep.solve.backend.blas_kernel`."""
+"""Attribute with the BLAS kernels that computed the points of a file in all runs, a kernel a line, named by
+`rodsweep.solve.backend.blas_kernel`."""
 KERNEL_NOT_RECORDED = "unknown"
-"""Kernel of points written by an earlier version, which did not record kernels."""
+"""Kernel of points from an earlier version, which did not record kernels."""
 
 
 def now() -> str:
@@ -69,7 +69,7 @@ def kernels_sentence(attribute: str) -> str:
 
 
 def merged_history(several: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Attributes of a merged file about the computation of its points, from the attributes of its sources."""
+    """Attributes of a merged file about the computation of the points, from the attributes of the sources."""
     history: dict[str, Any] = {
         "shard": "",
         KERNELS: united_kernels(*map(kernels_of, several))[:LONGEST_ATTRIBUTE],

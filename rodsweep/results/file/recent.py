@@ -1,6 +1,6 @@
-"""Current state of a run: its file, and the points in its journals that are not in the file yet.
+"""Current state of a run: the file, and journalled points not yet in the file.
 
-Nothing is written, so that a running run is not disturbed and no lock is needed.
+Nothing is written: a running run is not disturbed, and no lock is needed.
 """
 
 import os
@@ -21,8 +21,8 @@ from .provenance import now
 from .validation import Header, is_ours, read_header, reading
 
 MAX_REREADS = 20
-"""Largest number of readings of a file that a run keeps replacing. Replacements are seconds apart, so that
-more of them point to a fault."""
+"""Largest number of readings of a changing file. Replacements by a run are seconds apart; more replacements
+point to a fault."""
 SNAPSHOT = "snapshot"
 """Attribute with the time of a snapshot, which marks a file as a snapshot."""
 
@@ -30,10 +30,10 @@ Found = TypeVar("Found")
 
 
 def unfolded(path: Path, read: Callable[[], Found]) -> Found:
-    """Result of `read`, which reads a file and its journals; repeated if a run folds journals in meanwhile.
+    """Result of `read`, which reads a file and journals; repeated if a run folds journals in meanwhile.
 
-    A fold replaces the file before it deletes the journals. If the file is the same before and after the
-    reading, no journal was deleted. Raises EnvironmentLacks if the file keeps changing.
+    A fold replaces the file before the journals are deleted. No journal was deleted if the file is the same
+    before and after the reading. Raises EnvironmentLacks if the file keeps changing.
     """
     for _ in range(MAX_REREADS):
         has_journals = journal_directory(path).is_dir()
@@ -58,13 +58,13 @@ def journalled_points(header: Header, status: np.ndarray) -> np.ndarray:
 
 
 def put_in(values: np.ndarray, name: str, records: np.ndarray) -> None:
-    """Writes records, (n,), of a variable into its values; these have the shape of the points and its own."""
+    """Writes records, (n,), of a variable into the values, of the shape of points and variable."""
     inner = records[name].shape[1:]
     values.reshape(-1, *inner)[records["index"]] = records[name]
 
 
 def take_snapshot(path: Path, output: Path) -> tuple[int, int]:
-    """Writes the points computed so far into a separate file; returns (points in it, all points).
+    """Writes the points computed so far into a separate file; returns (points computed, all points).
 
     Raises InputError if `path` is no result, or if `output` exists and is no snapshot. Raises
     EnvironmentLacks if the disk fails.

@@ -12,13 +12,13 @@ from .points import parameters_of
 from .validation import Header, IncompleteFile, read_header
 
 SPACE_FACTOR = 3
-"""Room that a run needs, in units of its file: for the file, the journals, and the copy that replaces it."""
+"""Room needed by a run, in units of the file: for the file, the journals, and the replacing copy."""
 SPACE_FIXED = 300_000
-"""Room that a run needs besides, in bytes, for attributes, coordinates and checkpoints."""
+"""Further room needed by a run, in bytes, for attributes, coordinates and checkpoints."""
 
 
 def require_room(path: Path, plan: Plan) -> None:
-    """Raises EnvironmentLacks unless the disk has room for the file, its journals and its copy."""
+    """Raises EnvironmentLacks unless the disk has room for the file, the journals and the copy."""
     size = SPACE_FACTOR * plan.points.count * (plan.layout.bytes_per_point + 12) + SPACE_FIXED
     free = shutil.disk_usage(path.parent).free
     if free < size:
@@ -39,7 +39,7 @@ def header_in_the_way(path: Path, plan: Plan, journals: Path) -> Header:
 
 
 def refuse_other(header: Header, plan: Plan, journals: Path) -> None:
-    """Refuses a file made for another config than the plan's."""
+    """Refuses a file made for a config different from the plan."""
     change = change_between(header.config, plan.config)
     ways = _ways_out(plan, journals)
     try:

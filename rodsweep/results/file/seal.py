@@ -1,10 +1,9 @@
-"""Seal of a result file in two parts: digests of its content, and a checksum of its HDF5 structures.
+"""Seal of a result file in two parts: digests of the content, and a checksum of the HDF5 structures.
 
-The attribute `seal` has a digest of every variable and attribute (`rodsweep.results.file.content`), which
-shows a change by any program. A checksum of HDF5's structures lies behind HDF5's own end of the file, where
-other programs do not see it. A flipped bit in the structures can make HDF5 loop for ever or crash, so that
-the checksum is compared before HDF5 reads the file. A program that changes the file by HDF5 removes the
-checksum.
+The attribute `seal` has a digest of every variable and attribute (`rodsweep.results.file.content`), and shows
+a change by any program. A checksum of HDF5's structures lies behind HDF5's own end of the file, invisible to
+other programs. A flipped bit in the structures can make HDF5 loop for ever or crash; the checksum is
+therefore compared before HDF5 reads the file. A program that changes the file by HDF5 removes the checksum.
 """
 
 import json
@@ -27,12 +26,12 @@ HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 END_AT = {0: 40, 1: 44, 2: 28, 3: 28}
 """Offset, by version of the superblock, of the eight bytes with HDF5's end of the file."""
 LONGEST_FRAME = 100_000
-"""Largest size, in bytes, of the checksum with the places of the numbers that it leaves out."""
+"""Largest size, in bytes, of the checksum with the places of the numbers left out."""
 BYTES_A_READ = 1 << 20
-"""Bytes read at once, which bounds the memory."""
+"""Bytes read at once, to bound the memory."""
 SMALL = 1 << 16
-"""Largest size, in bytes, of a variable whose numbers the checksum includes: axes, and all that every opening
-reads."""
+"""Largest size, in bytes, of a variable whose numbers the checksum includes: axes, and numbers read on every
+opening."""
 
 Piece = tuple[int, int]
 """(offset, size) in bytes."""
@@ -57,9 +56,9 @@ def seal(path: Path) -> None:
 
 
 def check_frame(path: Path) -> bool:
-    """Whether HDF5's structures agree with their checksum; False if another program has removed the checksum.
+    """Whether HDF5's structures agree with the checksum; False without checksum, after another program.
 
-    Raises BrokenSeal if they differ, or OSError. Takes a millisecond.
+    Raises BrokenSeal at a difference, or OSError. Takes a millisecond.
     """
     with path.open("rb") as stream:
         end = _end(stream)
@@ -111,7 +110,7 @@ def _between(pieces: list[Piece], end: int) -> Iterator[Piece]:
 
 
 def _checksum(stream: BinaryIO, pieces: Iterator[Piece]) -> int:
-    """CRC-32 of pieces of a file, one after another."""
+    """CRC-32 of pieces of a file, in sequence."""
     checksum = 0
     for start, size in pieces:
         stream.seek(start)

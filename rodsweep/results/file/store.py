@@ -1,9 +1,9 @@
 """Result file of a run: created complete at the start, replaced as a whole when points are folded in.
 
-The file is netCDF-4-compatible HDF5. It is only ever replaced by a rename, so that it opens at any instant.
-Ranks write finished points to journals beside it (`rodsweep.results.run.journal`). Journals are folded in at
-the end of a run, or at the start of the next run if a run was killed. A journal is recognised by the
-fingerprint of its points, whatever happened to the file; foreign journals are moved away, never deleted.
+The file is netCDF-4-compatible HDF5, is only ever replaced by a rename, and therefore opens at any instant.
+Ranks write finished points to journals beside the file (`rodsweep.results.run.journal`). Journals are folded
+in at the end of a run, or at the start of the next run after a kill. A journal is recognised by the
+fingerprint of the points, even without a file; foreign journals are moved away, never deleted.
 """
 
 import json
@@ -52,18 +52,18 @@ def no_additions(file: h5py.File) -> Sequence[Filled]:
 
 
 class Store:
-    """Result file of one run. Only the first rank has a store, and a file has one run at a time."""
+    """Result file of one run. Only the first rank has a store, and a file has a single run at a time."""
 
     def __init__(self, path: Path, plan: Plan, fresh: bool = False, extend: bool = False):
-        """Opens the file of a plan or creates it; raises InputError if the file belongs to another plan.
+        """Opens the file of a plan or creates the file; raises InputError for a file of another plan.
 
-        fresh: replaces a result of any plan. extend: extends the file of a smaller config to the plan, with
-        the points that stay.
+        fresh: replaces a result of any plan. extend: extends the file of a smaller config to the plan, and
+        keeps the points that stay.
         """
         self.path = path
         self.plan = plan
         self.notes: list[str] = []
-        """Notes for the user about points that are computed again, journals, and a file that was moved."""
+        """Notes for the user about points to compute again, journals, and a moved file."""
         with disk_refusals(path, self._kept):
             self.exchange = Exchange(path)
             self.journals = self.exchange.journals
@@ -136,12 +136,12 @@ class Store:
         return copy
 
     def _set_aside(self, paths: Sequence[Path], what: str) -> None:
-        """Moves files away that a later run could use and this run does not."""
+        """Moves files away that a later run could use."""
         if paths:
             self.notes.append(f"{what} are kept in {set_aside(self.journals, paths)}")
 
     def _new_title(self) -> dict[str, Any]:
-        """Attributes to change if the config has another title than the file; empty otherwise."""
+        """Attributes to change if config and file differ in title; empty otherwise."""
         names = {name: self.plan.attributes.get(name, "") for name in ("title", "config")}
         if names["title"] == self.attributes().get("title", ""):
             return {}
@@ -173,7 +173,7 @@ class Store:
                 drop_files(self.journals, pattern)
 
     def _restore_if_gone(self) -> None:
-        """Creates the file again if it was moved or deleted; EnvironmentLacks if another file is there."""
+        """Creates a moved or deleted file again; raises EnvironmentLacks if another file took the place."""
         if identity(self.path) == self.exchange.left:
             return
         if not self.path.exists():
@@ -196,7 +196,7 @@ class Store:
         attributes: dict[str, Any],
         additions: Additions = no_additions,
     ) -> None:
-        """Writes blocks of points of the given fingerprint into the file, and deletes their journals."""
+        """Writes blocks of points of the given fingerprint into the file, and deletes the journals."""
         with disk_refusals(self.path, self._kept):
             journals = journals_of(self.journals, fingerprint)
             first = next(blocks, None)

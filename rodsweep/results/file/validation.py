@@ -1,4 +1,4 @@
-"""Validation: whether a file is a complete rodsweep result, which config it answers, and refusals if not."""
+"""Validation: whether a file is a complete rodsweep result, the config of the file, and refusals."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -23,8 +23,8 @@ from .seal import HDF5_SIGNATURE, check_frame
 PROGRAM = "rodsweep"
 """Value of the attribute `program` of result files."""
 FORMAT = 8
-"""Value of the attribute `format` of result files. It grows when a variable is added or changes its meaning,
-and files of any other format are refused. Format 5 was the first with sealed content; 6 introduced
+"""Value of the attribute `format` of result files. The format grows when a variable is added or changes in
+meaning; files of any other format are refused. Format 5 was the first with sealed content; 6 introduced
 frequencies in Hz, counts from 1, the Hopf points of the lines of limit cycles, and grids over an arm's
 quantities."""
 CONFIGS = (".yaml", ".yml")
@@ -36,7 +36,7 @@ DAMAGES = (OSError, LookupError, ValueError, TypeError, RuntimeError, OverflowEr
 
 
 class IncompleteFile(InputError):
-    """Refusal of a file that is no result, or that was damaged or changed."""
+    """Refusal of a file that is no result, or is damaged or changed."""
 
 
 @contextmanager
@@ -49,7 +49,7 @@ def reading(path: Path) -> Iterator[None]:
 
 
 def reason_of(error: Exception) -> str:
-    """Message of a library about a file, on one line."""
+    """Message of a library about a file, on a single line."""
     text = getattr(error, "strerror", None) or str(error) or type(error).__name__
     text = "".join(c if c.isprintable() else " " for c in text)
     return text if len(text) <= LONGEST_REASON else text[: LONGEST_REASON - 3] + "..."
@@ -68,11 +68,11 @@ class Header:
 
 
 def open_whole(path: Path, values: bool = True) -> tuple[h5py.File, Header]:
-    """The open file and its header: the only entry to a result, for reading, continuing and merging.
+    """The open file and the header: the only entry to a result, for reading, continuing and merging.
 
     values: whether the numbers are compared with the seal as well, which takes a second for each GB.
-    Otherwise only the structures around the large variables are, unless another program has written the file.
-    Raises InputError unless the file is a complete result with the content that rodsweep wrote.
+    Otherwise only the structures around the large variables are compared, unless another program has written
+    the file. Raises InputError unless the file is a complete result with the content written by rodsweep.
     """
     refuse_absent(path)
     if path.suffix in CONFIGS:
@@ -88,7 +88,7 @@ def open_whole(path: Path, values: bool = True) -> tuple[h5py.File, Header]:
 
 
 def read_header(path: Path) -> Header:
-    """Header of a file; raises InputError unless it is a complete result, its numbers included."""
+    """Header of a file; raises InputError unless the file is a complete result, including the numbers."""
     file, header = open_whole(path)
     file.close()
     return header
@@ -145,7 +145,7 @@ def _refuse_other_format(path: Path, attributes: Mapping[str, Any]) -> None:
 
 
 def refuse_misfit(file: h5py.File, layout: Layout) -> None:
-    """Raises one of DAMAGES unless every variable of the layout has its type and shape and is contiguous."""
+    """Raises one of DAMAGES unless every variable of the layout is contiguous, of right type and shape."""
     shape = tuple(len(file[name]) for name in layout.dimensions(is_list="point" in file))
     expected = {v.name: (shape + layout.inner(v), np.dtype(v.dtype)) for v in layout.variables}
     expected |= {name: ((extent,), file[name].dtype) for name, extent in layout.extents.items()}

@@ -16,8 +16,8 @@ from .recent import journalled_points, put_in, unfolded
 from .validation import cleaned, open_whole, reading, refuse_absent
 
 LARGEST_CHECKED = 10**9
-"""Largest size, in bytes, of a file whose numbers are compared with the seal before it is shown. Of a larger
-file only HDF5's structures are checked, because the numbers take a second for each GB."""
+"""Largest size, in bytes, of a file whose numbers are compared with the seal before use. Of a larger file
+only HDF5's structures are checked, because the numbers take a second for each GB."""
 
 
 class Variables(Mapping[str, np.ndarray]):
@@ -25,7 +25,9 @@ class Variables(Mapping[str, np.ndarray]):
 
     def __init__(self, path: Path, file: h5py.File, recent: np.ndarray):
         """recent: records, (n,), of points that are still in the journals."""
-        self.path, self.file, self.recent = path, file, recent
+        self.path = path
+        self.file = file
+        self.recent = recent
         self.read: dict[str, np.ndarray] = {}
 
     def __getitem__(self, name: str) -> np.ndarray:
@@ -60,7 +62,7 @@ class View:
     flags: dict[int, str]
     """Values of `status` and their words."""
     journalled: int
-    """Number of points that are still in the journals, of a run that goes on or was interrupted."""
+    """Number of points still in the journals of a running or interrupted run."""
     over: tuple[str, ...] = ()
     """Dimensions of a grid over an arm's quantities."""
     typed: dict[str, str] = field(default_factory=dict)
@@ -92,7 +94,7 @@ class View:
 
     @property
     def listed(self) -> "View":
-        """A grid over an arm's quantities as the list of its points; for other points the view itself."""
+        """A grid over an arm's quantities as the list of points; for all other points the view itself."""
         if not self.over:
             return self
         shape = self.variables["status"].shape
@@ -101,7 +103,7 @@ class View:
         return replace(self, variables=found, over=())
 
     def _listed(self, name: str, shape: tuple[int, ...]) -> np.ndarray:
-        """A variable along the list of points if it has the axes of their grid, else unchanged."""
+        """A variable along the list of points, if along the axes of a grid; else unchanged."""
         values = self.variables[name]
         if name in self.over:
             along = [-1 if axis == name else 1 for axis in self.over]
@@ -115,7 +117,7 @@ class View:
         return values.reshape(-1, *values.shape[self.variables["status"].ndim :])
 
     def of_point(self, index: int) -> dict[str, np.ndarray]:
-        """Variables of the point at a flat index, each in its shape at one point."""
+        """Variables of the point at a flat index, each in its shape at a point."""
         shape = self.variables["status"].shape
         names = (name for name, values in self.variables.items() if values.shape[: len(shape)] == shape)
         return {name: self.by_point(name)[index] for name in names}

@@ -1,4 +1,4 @@
-"""Layouts: the variables in the file of each task, and `layout_of`, which finds them from a config."""
+"""Layouts: the variables in the file of each task, and `layout_of`, which finds the layout of a config."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -20,9 +20,9 @@ MODULES = {
 LAYOUTS: dict[str, Callable[[dict[str, Any]], Layout]] = {
     task: module.layout for task, module in MODULES.items()
 }
-"""Function of each task from its resolved config to its layout."""
+"""Function of each task from a resolved config to the layout."""
 INCREASES: dict[str, dict[str, Increase]] = {task: module.INCREASES for task, module in MODULES.items()}
-"""Options of each task that ask for more of a point. A changed value of any other option makes a different
+"""Options of each task that ask for more of a point. A change of any further option makes a different
 file."""
 
 BESIDE_POINTS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
@@ -44,16 +44,16 @@ def layout_of(config: dict[str, Any]) -> Layout:
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables that the file of a resolved config may hold besides its points.
+    """Variables that the file of a resolved config may hold besides the points.
 
-    Their `extra` has all of their dimensions.
+    `extra` has all dimensions of a variable.
     """
     found = BESIDE_POINTS.get(config["task"])
     return found(config, is_grid) if found else ()
 
 
 def lacks_curves(attributes: Mapping[str, Any]) -> bool:
-    """Whether the file with these attributes still lacks curves that need all of its points."""
+    """Whether the file with the given attributes still lacks curves computed from all points."""
     if "finished" in attributes or "config_resolved" not in attributes:
         return False
     return layout_of(json.loads(attributes["config_resolved"])).needs_all_points

@@ -1,8 +1,8 @@
-"""Variables in the file of an arm besides those of a rod: its quantities, and results in SI units.
+"""Variables in the file of an arm besides the variables of a rod: quantities, and results in SI units.
 
 A variable such as `period`, in tau2, has the SI variable `period_si`, in s; `frequency`, in rad/tau2, has
-`frequency_hz`, in cycles per second. The quantities of the arm, and the units tau2, force_scale and
-pressure_scale following from them, are coordinates: numbers, or along a parameter or `point`.
+`frequency_hz`, in cycles per second. The quantities of the arm, and the derived units tau2, force_scale and
+pressure_scale, are coordinates: numbers, or along a parameter or `point`.
 """
 
 from collections.abc import Iterable, Mapping
@@ -35,9 +35,9 @@ HERTZ = "Hz"
 
 
 class SIUnit(NamedTuple):
-    """SI unit of results: one dimensionless unit is the product of `factors` divided by that of `divisors`.
+    """SI unit of results: a dimensionless unit is the product of `factors` divided by all `divisors`.
 
-    Dimensionless frequencies are angular, so that their conversion to Hz contains 2 pi.
+    Dimensionless frequencies are angular; the conversion to Hz contains 2 pi.
     """
 
     unit: str = ""
@@ -51,7 +51,7 @@ class SIUnit(NamedTuple):
 
 
 NO_UNIT = SIUnit()
-"""For variables without an SI unit."""
+"""Unit of variables without an SI unit."""
 SI_UNITS = {
     "tau2": SIUnit("s", ("tau2",)),
     "1/tau2": SIUnit("1/s", (), ("tau2",)),
@@ -67,7 +67,7 @@ pressure."""
 LOAD_OF_UNIT = {each.unit: load for load, each in FORCE_UNITS.items()}
 """Kind of load by its SI unit."""
 EVENT_FREQUENCIES = {f"{event}_frequency": f"frequency_{event}_hz" for event in ("hopf", "restabilization")}
-"""Names in Hz of the frequencies at thresholds; they match names such as `pressure_hopf` for F_hopf."""
+"""Names in Hz of the frequencies at thresholds, in the pattern of `pressure_hopf` for F_hopf."""
 BRANCH_FORCES = ("special_at", "special_error")
 """Forces along the branches of an arm; its branches are followed in F only."""
 SI_DIMENSIONS = ((), ("mode",), ("crossing",), ("branch_point",), ("special",))
@@ -133,12 +133,12 @@ def _meaning(variable: Variable, unit: str) -> str:
 
 
 def _stored_si_unit(variable: Variable, as_force: bool) -> SIUnit:
-    """SI unit in which a variable is stored as well; NO_UNIT if it is stored without dimension only."""
+    """SI unit in which a variable is stored as well; NO_UNIT for dimensionless storage only."""
     return si_unit_of(variable, as_force) if variable.extra in SI_DIMENSIONS else NO_UNIT
 
 
 def si_unit_of(variable: Variable, as_force: bool) -> SIUnit:
-    """SI unit of any variable; NO_UNIT if it has none."""
+    """SI unit of any variable, or NO_UNIT."""
     if variable.dtype != "<f8":
         return NO_UNIT
     if variable.units == PARAMETERS["F"].unit and (
@@ -229,7 +229,7 @@ def in_si(
 ) -> dict[str, Any]:
     """SI variables of one or several points.
 
-    record: dimensionless variables, of one point, or (n, ...). index: index of the point, or (n,).
+    record: dimensionless variables, of a single point, or (n, ...). index: index of the point, or (n,).
     quantities: the arm's quantities, each of shape () or (points,).
     """
     found = {}
@@ -238,7 +238,8 @@ def in_si(
         if si.unit:
             used = {name: quantities[name] for name in (*si.factors, *si.divisors)}
             here = {name: array[index] if np.ndim(array) else array for name, array in used.items()}
-            value, scale = np.asarray(record[variable.name]), si.scale(here)
+            value = np.asarray(record[variable.name])
+            scale = si.scale(here)
             shape = scale.shape + (1,) * (value.ndim - scale.ndim)
             found[si_name_of(variable.name, si.unit)] = value * scale.reshape(shape)
     return found

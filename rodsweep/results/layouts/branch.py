@@ -31,7 +31,7 @@ SPECIAL_MEANINGS = {
     "end": "the branch ends here for the reason in special_reason",
     "period_doubling": "a multiplier of a cycle without the symmetry is -1; cycles of twice the period begin",
 }
-"""Kinds of special points and their meanings; the file stores the place of the kind in this list."""
+"""Kinds of special points with meanings; the file stores the place in the list."""
 SPECIAL_KINDS = tuple(SPECIAL_MEANINGS)
 """Kinds of special points, in the order of their stored numbers."""
 END_REASONS = ("none", "range_end", "crushed", "no_cycle_found", "list_full")
@@ -47,7 +47,7 @@ ERRORS = (
 
 
 def followed_variables(along: str) -> tuple[Variable, ...]:
-    """Variables of the cycles of all branches, one branch after another."""
+    """Variables of the cycles of all branches, branch by branch."""
     unit = PARAMETERS[along].unit
     return (
         integer("branch", "number of the branch, from 1", ALONG),
@@ -78,7 +78,7 @@ def followed_variables(along: str) -> tuple[Variable, ...]:
 
 
 def special_variables(along: str) -> tuple[Variable, ...]:
-    """Variables of the special points of all branches, one branch after another."""
+    """Variables of the special points of all branches, branch by branch."""
     unit = PARAMETERS[along].unit
     return (
         word("special_kind", "kind of the special point", SPECIAL_KINDS, SPECIAL),

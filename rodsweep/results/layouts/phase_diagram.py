@@ -1,4 +1,4 @@
-"""Layout of the task phase_diagram: its rows, and the stability boundaries followed through them."""
+"""Layout of the task phase_diagram: rows, and stability boundaries followed through the rows."""
 
 from typing import Any
 
@@ -68,7 +68,7 @@ def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
 
 
 def beside_points(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables that all rows together give, with or without the options that ask for them."""
+    """Variables given by all rows together, with or without the options that ask for variables."""
     (line, row), _ = plane_of(config)
     variables = curve_variables(line, row) | criticality_variables(line, row)
     variables |= cycle_curve_variables(line, row)
@@ -134,7 +134,7 @@ def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
 
 
 def curve_variables(line: str, row: str) -> dict[str, Variable]:
-    """Variables of a phase diagram from all rows, by name: its boundary curves and their folds."""
+    """Variables of a phase diagram from all rows, by name: boundary curves and folds."""
     along = (line, row)
     kind = "kind of the points on the curve: double real eigenvalues, or Hopf points"
     units = {name: PARAMETERS[name].unit for name in along}
@@ -163,7 +163,7 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
 
 
 def criticality_variables(line: str, row: str) -> dict[str, Variable]:
-    """Variables that `phase_diagram.criticality` adds, by name: sign of Re c on Hopf curves, its zeros."""
+    """Variables that `phase_diagram.criticality` adds, by name: sign of Re c on Hopf curves, and zeros."""
     along = (line, row)
     units = {name: PARAMETERS[name].unit for name in along}
     error = "estimate of the error of bautin_"
@@ -197,7 +197,7 @@ def criticality_variables(line: str, row: str) -> dict[str, Variable]:
 def bautin_curve_variables(line: str, row: str, third: str) -> dict[str, Variable]:
     """Variables that `phase_diagram.bautin_along` adds, by name: curves of generalised Hopf points.
 
-    third: the parameter along which the curves are followed, besides the two of the diagram.
+    third: the parameter along the curves, besides the two of the diagram.
     """
     names = (line, row, third)
     at = "bautin_step"

@@ -1,6 +1,6 @@
-"""Layout of the task spectrum: leading eigenvalues and, if the config asks for them, eigenmodes.
+"""Layout of the task spectrum: leading eigenvalues and, on request, eigenmodes.
 
-The task modes shares these variables.
+The task modes shares the variables.
 """
 
 from math import nan

@@ -1,4 +1,4 @@
-"""Layout of the task thresholds, and variables of the crossings along a line, which other tasks share."""
+"""Layout of the task thresholds, and variables of the crossings along a line, shared with further tasks."""
 
 from typing import Any
 
@@ -60,12 +60,12 @@ def crossing_variables(line: str, at: str) -> tuple[Variable, ...]:
 
 
 def search_variables(line: str, at: str) -> tuple[Variable, ...]:
-    """Variables of a search along `line`: its crossings, their completeness and the cost.
+    """Variables of a search along `line`: crossings, completeness and cost.
 
     at: name of the variable for the position of a crossing.
     """
     units = PARAMETERS[line].unit
-    undecided = f"of a range of {line} in which a window of flutter may open and close undecided"
+    undecided = f"of a range of {line} that may contain a window of flutter too narrow to decide"
     return (
         integer("crossing_count", "number of crossings found, stored or not"),
         *crossing_variables(line, at),

@@ -1,4 +1,4 @@
-"""Variables of a result file, with their types, dimensions, units and long names.
+"""Variables of a result file, with types, dimensions, units and long names.
 
 The same table makes the HDF5 datasets and the records of the journal; `rodsweep.results.layouts` has the
 table of every task.
@@ -17,32 +17,32 @@ from ...model.parameters import LINEAR_PARAMETERS, PARAMETERS
 NO_NAMES: Mapping[str, str] = {}
 """Default of `recorded`: fields have the names of their variables."""
 TYPED = "typed_unit"
-"""Attribute of a variable with the unit in which the user typed its values."""
+"""Attribute of a variable with the unit in which the user typed the values."""
 MISSING = -1
 """Status of a point that has not been computed."""
 
 ANGULAR = "rad/tau2"
 """Unit of every dimensionless frequency. Frequencies are angular: the imaginary part of an eigenvalue, or 2
-pi/period. For an arm a second variable, whose name ends in `_hz`, has them in cycles per second."""
+pi/period. For an arm a second variable, with a name ending in `_hz`, has cycles per second."""
 
 DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
     "point": ("1", "row of the point list, from 1"),
     "mode": ("1", "order by descending growth rate; in a pair the positive frequency comes first"),
     "u": ("1", "material coordinate along the rod"),
     "crossing": ("1", "order by increasing value of the varied parameter"),
-    "curve_point": ("1", "order along all curves, one curve after another"),
+    "curve_point": ("1", "order along all curves, curve by curve"),
     "fold": ("1", "number of the fold, where a curve turns back"),
-    "branch_point": ("1", "order along all branches of a rod, one branch after another"),
-    "special": ("1", "order along all branches of a rod, one branch after another"),
-    "cycle_special": ("1", "order along the branches of a row, one branch after another"),
+    "branch_point": ("1", "order along all branches of a rod, branch by branch"),
+    "special": ("1", "order along all branches of a rod, branch by branch"),
+    "cycle_special": ("1", "order along the branches of a row, branch by branch"),
     "cycle_curve_point": (
         "1",
-        "number of the point on all curves of folds and torus points, one curve after another",
+        "number of the point on all curves of folds and torus points, curve by curve",
     ),
-    "bautin": ("1", "number of the generalised Hopf point, one Hopf curve after another"),
-    "bautin_step": ("1", "number of the point on curves of generalised Hopf points, one curve after another"),
-    "change": ("1", "number of the change on the lines over F between the points, one line after another"),
-    "hopf": ("1", "order along the lines between the points, one line after another"),
+    "bautin": ("1", "number of the generalised Hopf point, Hopf curve by Hopf curve"),
+    "bautin_step": ("1", "number of the point on curves of generalised Hopf points, curve by curve"),
+    "change": ("1", "number of the change on the lines over F between the points, line by line"),
+    "hopf": ("1", "order along the lines between the points, line by line"),
     "harmonic": ("1", "multiple of the cycle's frequency"),
     "multiplier_number": ("1", "order by descending modulus, without the trivial Floquet multiplier"),
     "sample": ("1", "time in periods, from the instant at which y of the tip rises through its mean"),
@@ -54,7 +54,7 @@ DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """One result variable; its shape is the shape of the points followed by its `extra` dimensions."""
+    """A result variable; the shape is the shape of the points followed by the `extra` dimensions."""
 
     name: str
     dtype: str
@@ -90,7 +90,7 @@ def integer(name: str, long_name: str, *extra: str) -> Variable:
 def word(name: str, long_name: str, words: Iterable[str | tuple[int, str]], *extra: str) -> Variable:
     """Variable that stands for a word: by the word's place in a list, or by given numbers.
 
-    The fill value is -1 if -1 is one of the numbers, for a missing value; else 0, the first word of a list.
+    The fill value is -1 if a word has the number -1, for a missing value; else 0, the first word of a list.
     """
     flags = tuple(each if isinstance(each, tuple) else (place, each) for place, each in enumerate(words))
     fill = -1 if any(value == -1 for value, _ in flags) else 0
@@ -143,13 +143,13 @@ def listed(
 
 @dataclass(frozen=True, slots=True)
 class Increase:
-    """Option whose larger value asks for more of every point, and has no other effect."""
+    """Option whose larger value asks for more of every point, without further effect."""
 
     has: Callable[[np.ndarray, Any], NDArray[np.bool_]]
     """Function from stored records, (n,), and the stored value of the option to whether each is complete,
     (n,)."""
     values: tuple[Any, ...] = ()
-    """Values of the option, of which later ones ask for more; empty for numbers and booleans."""
+    """Values of the option, in increasing order; empty for numbers and booleans."""
 
     def is_more(self, before: Any, now: Any) -> bool:
         """Whether the value `now` asks for more than the value `before`."""
@@ -164,12 +164,12 @@ NEEDS_NO_SOLVE = Increase(lambda records, before: np.ones(len(records), bool))
 """Increase for which no point must be solved again, because the addition is computed besides the points."""
 
 Filled = tuple[Variable, NDArray[Any]]
-"""A complete variable with its values; `extra` names all of its dimensions."""
+"""A complete variable with values; `extra` names all dimensions."""
 
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """Variables of one file and their dimensions."""
+    """Variables of a file, with dimensions."""
 
     variables: tuple[Variable, ...]
     extents: dict[str, int]
@@ -187,20 +187,20 @@ class Layout:
 
     @property
     def record(self) -> np.dtype:
-        """Type of one point as a flat record: its index, then every variable."""
+        """Type of a single point as a flat record: the index, then every variable."""
         fields: list[Any] = [(v.name, v.dtype, self.inner(v)) for v in self.variables]
         return np.dtype([("index", "<i8"), *fields])
 
     @property
     def bytes_per_point(self) -> int:
-        """Size of all variables at one point, in bytes, even if it exceeds the limit of a record."""
+        """Size of all variables at a point, in bytes, even if it exceeds the limit of a record."""
         return sum(np.dtype(v.dtype).itemsize * prod(self.inner(v)) for v in self.variables)
 
     @property
     def empty_point(self) -> dict[str, NDArray[Any]]:
-        """Fill values of every variable of a point, each in its shape at one point."""
+        """Fill values of every variable of a point, each in its shape at a point."""
         return {v.name: np.full(self.inner(v), v.fill, v.dtype) for v in self.variables}
 
     def inner(self, variable: Variable) -> tuple[int, ...]:
-        """Shape of a variable at one point."""
+        """Shape of a variable at a point."""
         return tuple(self.extents[d] for d in variable.extra)

@@ -1,1 +1,1 @@
-"""Files that a run keeps beside its result file until it ends: journals, checkpoints and the lock."""
+"""Files beside the result file of an unfinished run: journals, checkpoints and the lock."""

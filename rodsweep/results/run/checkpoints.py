@@ -1,7 +1,7 @@
 """Checkpoints of unfinished work beside the journals: states of chains, results of units.
 
-Each is a small file, replaced as a whole and recognised by fingerprint and checksum. A torn or foreign file
-is ignored: its chain starts again, its unit is solved again.
+Each checkpoint is a small file, replaced as a whole and recognised by fingerprint and checksum. A torn or
+foreign file is ignored: the chain starts again, the unit is solved again.
 """
 
 import io
@@ -16,14 +16,14 @@ import numpy as np
 from .journal import drop_files
 
 CHECKPOINTS = "chain-*"
-"""Pattern of the names of checkpoints, also of those that a kill left unfinished."""
+"""Pattern of the names of checkpoints, unfinished files after a kill included."""
 UNIT_RESULTS = "unit-*"
-"""Pattern of the names of results of units, also of those that a kill left unfinished."""
+"""Pattern of the names of results of units, unfinished files after a kill included."""
 CHECKPOINT_HEAD = b"rodsweep checkpoint 5\n"
-"""First line of a checkpoint; its number grows when a state changes its meaning. Checkpoints with another
+"""First line of a checkpoint; the number grows when a state changes in meaning. Checkpoints with another
 number are ignored."""
 RESULT_HEAD = b"rodsweep unit 1\n"
-"""First line of the result of a unit; its number grows when a unit or its result changes its meaning."""
+"""First line of the result of a unit; the number grows when units or results change in meaning."""
 CHECKSUM_BYTES = 4
 """Length of the checksum at the end of a file, in bytes."""
 Arrays = dict[str, np.ndarray]
@@ -60,11 +60,12 @@ class KeptArrays:
         os.replace(copy, path)
 
     def get(self, number: int) -> Arrays | None:
-        """Arrays under a number; None without an intact file of this run."""
+        """Arrays under a number; None without an intact file of the run."""
         if not self._path(number).is_file():
             return None
         data = self._path(number).read_bytes()
-        content, checksum = data[:-CHECKSUM_BYTES], data[-CHECKSUM_BYTES:]
+        content = data[:-CHECKSUM_BYTES]
+        checksum = data[-CHECKSUM_BYTES:]
         if not content.startswith(self.header) or _checksum(content) != checksum:
             return None
         with np.load(io.BytesIO(content[len(self.header) :]), allow_pickle=False) as arrays:
@@ -75,12 +76,12 @@ class KeptArrays:
 
 
 class Checkpoints(KeptArrays):
-    """Checkpoint of each unfinished chain of points: the state from which its next point starts."""
+    """Checkpoint of each unfinished chain of points: the start state of the next point."""
 
     pattern = CHECKPOINTS
 
     def __init__(self, directory: Path, fingerprint: str, state_of: Callable[[Arrays], HasArrays]):
-        """state_of: makes a state from the arrays, of any shape, that its method `arrays` returned."""
+        """state_of: makes a state from the arrays, of any shape, of the state's method `arrays`."""
         super().__init__(directory, fingerprint, CHECKPOINT_HEAD)
         self._state_of = state_of
 

@@ -1,8 +1,8 @@
-"""Journals: finished points on disk at once, in one append-only file per rank beside the result file.
+"""Journals: finished points on disk at once, in an append-only file per rank beside the result file.
 
-The records of a point, or of a stretch of points solved at once, are written by a single call, so that a kill
-at any instant loses only the points in progress. Every record carries a checksum, by which a torn tail is
-recognised and dropped.
+The records of a point, or of a stretch of points solved at once, are written by a single call. A kill at any
+instant therefore loses only the points in progress. Every record carries a checksum, which reveals a torn
+tail.
 """
 
 import os
@@ -20,7 +20,7 @@ JOURNALS = "rank-*"
 JOURNAL_HEAD = b"rodsweep journal 1\n"
 """First line of a journal; the second line is its fingerprint."""
 BYTES_A_BLOCK = 1 << 18
-"""Bytes read at once, which bounds the memory."""
+"""Bytes read at once, to bound the memory."""
 LONGEST_HEAD = 200
 """Largest length of each of the two first lines of a journal, in bytes."""
 
@@ -81,7 +81,7 @@ class Journal:
             return False
 
     def _create(self) -> None:
-        """Creates the file, under a name that no other file has had."""
+        """Creates the file, under a new name."""
         self.directory.mkdir(parents=True, exist_ok=True)
         self.path = self.directory / f"{self.name}-{os.urandom(4).hex()}"
         self.handle = os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_APPEND, 0o644)
@@ -121,7 +121,7 @@ def other_journals(directory: Path, fingerprint: str) -> list[Path]:
 
 
 def set_aside(directory: Path, paths: Iterable[Path]) -> Path:
-    """Moves files from a journal directory into a new directory beside it, which is returned."""
+    """Moves files from a journal directory into a new directory, which is returned."""
     number = 1
     while os.path.lexists(kept := directory.with_name(f"{directory.name}-{number}")):
         number += 1

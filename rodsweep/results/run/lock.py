@@ -1,4 +1,4 @@
-"""Lock of a result file, which admits one run at a time; the system releases it when its holder dies."""
+"""Lock of a result file for a single run at a time; the system releases the lock of a dead process."""
 
 import fcntl
 import os
@@ -13,10 +13,10 @@ LOCK_PATIENCE = 5.0
 
 
 class Lock:
-    """Lock on a result file, stored in its journal directory, which the lock creates and removes."""
+    """Lock on a result file, in the journal directory, which the lock creates and removes."""
 
     def __init__(self, directory: Path, path: Path):
-        """Takes the lock; raises InputError if another run holds it."""
+        """Takes the lock; raises InputError if the lock is taken."""
         self.directory = directory
         patience = time.monotonic() + LOCK_PATIENCE
         while True:

@@ -1,4 +1,4 @@
-"""Grid over the quantities of an arm: each point has its own parameters, or a status but no rod."""
+"""Grid over the quantities of an arm: each point has a rod of own parameters, or a status but no rod."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -14,16 +14,16 @@ from ...model.parameters import NONLINEAR_PARAMETERS, all_but
 from .points import Points
 
 FlutterOf = Callable[[SlenderArm], float]
-"""Function from an arm to the F at which it first flutters with the likeliest drag; inf without flutter."""
+"""Function from an arm to the F of first flutter with the likeliest drag; inf without flutter."""
 
 
 def grid_of_arms(
     section: ArmSection, beside: Mapping[str, Array], names: tuple[str, ...], flutter: FlutterOf
 ) -> Points:
-    """Grid over the arm's quantities, and over those parameters of `beside` with several values.
+    """Grid over the arm's quantities, and over parameters of `beside` with several values.
 
-    beside: values of parameters that replace the arm's, (n,). names: the parameters of the task. flutter:
-    force of flutter, to which a load may be relative. Raises ValueError if no rod covers any point.
+    beside: values of parameters, (n,), in place of the arm's. names: the parameters of the task. flutter:
+    force of flutter, for relative loads. Raises ValueError if no rod covers any point.
     """
     arms, statuses = zip(*(_arm_or_status(section, values) for values in section.sections()), strict=True)
     loads = section.given[section.load_axis].array() if section.load_axis else np.zeros(1)
@@ -57,7 +57,7 @@ def grid_of_arms(
 
 
 def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:
-    """(arm of a section without load, status); the arm is None if no rod covers it."""
+    """(arm of a section without load, status); the arm is None without a rod."""
     try:
         return section.made(values), SLENDER
     except UncoveredArm as error:

@@ -1,7 +1,7 @@
-"""Chains: points of a grid along one of its axes, each of which starts from the state of the previous point.
+"""Chains: points of a grid along an axis, where each point starts from the state of the previous point.
 
-One rank solves a whole chain, point after point. The start state of the next point is stored after each
-point, so that a chain that was killed resumes after its last point and gives the same numbers.
+A rank solves a whole chain, point after point. The start state of the next point is stored after each point.
+A killed chain therefore resumes after the last point and gives the same numbers.
 """
 
 import math
@@ -27,13 +27,13 @@ class ChainState(Protocol):
 
 
 State = ChainState | None
-"""State of the previous point in the chain from which a point starts; None for a cold start."""
+"""State of the previous point of the chain; None for a cold start."""
 ChainStep = Callable[[int, Any], tuple[Any, Any]]
-"""Function from a point's index and start state to its outcome and the start state of its neighbour."""
+"""Function from a point's index and start state to the outcome and the neighbour's start state."""
 
 
 class ChainStates(Protocol):
-    """Checkpoints: for each unfinished chain, the index of its last point and the state after that point."""
+    """Checkpoints: for each unfinished chain, the index of the last point and the state after that point."""
 
     def write(self, chain: int, index: int, state: State) -> None: ...
 
@@ -57,7 +57,7 @@ class Chains:
 
     @property
     def count(self) -> int:
-        """Number of chains. They are numbered in row-major order of the other axes."""
+        """Number of chains, numbered in row-major order of the remaining axes."""
         return math.prod(self.shape) // self.length
 
     def indices(self, chain: int) -> NDArray[np.int64]:
@@ -84,7 +84,7 @@ class ChainedWork:
 
 @dataclass(frozen=True, slots=True)
 class ChainSolver:
-    """Solves the chains of a run; only their `missing` points are stored."""
+    """Solves the chains of a run; only `missing` points are stored."""
 
     work: ChainedWork
     missing: IndexSet
@@ -92,10 +92,10 @@ class ChainSolver:
     stop: StopRequest
 
     def __call__(self, chain: int) -> Iterator[tuple[int, Any]]:
-        """Yields the missing points of a chain, each with its outcome; fewer after a stop request.
+        """Yields the missing points of a chain, each with an outcome; fewer after a stop request.
 
-        The state is stored after the point. A kill between both then costs one point, which is solved again;
-        in the reverse order a kill could lose the point for good.
+        The state is stored after the point. A kill in between then costs a point, which is solved again; in
+        the reverse order a kill could lose the point for good.
         """
         order = list(map(int, self.work.chains.indices(chain)))
         first, state = self._resume(chain, order)
@@ -112,7 +112,7 @@ class ChainSolver:
     def _resume(self, chain: int, order: list[int]) -> tuple[int, State]:
         """(place in the chain, state) from which to resume.
 
-        A checkpoint is used if no point before it is missing; otherwise the chain starts again.
+        A checkpoint is valid if no earlier point is missing; otherwise the chain starts again.
         """
         found = self.checkpoints.read(chain)
         if found is None or found[0] not in order:

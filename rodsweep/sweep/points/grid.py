@@ -1,4 +1,4 @@
-"""Points of a sweep from its config; values that the model does not allow are refused."""
+"""Points of a sweep from a config; values outside the model are refused."""
 
 import math
 from collections.abc import Iterable
@@ -26,7 +26,7 @@ def grid_size(config: Config) -> int:
 
 
 def points_of(config: Config, directory: Path) -> Points:
-    """Points of the sweep of a config; raises InputError for any value that the model does not allow."""
+    """Points of the sweep of a config; raises InputError for any value outside the model."""
     parameters = config.parameters
     for name, value in parameters.numbers.items():
         refuse_outside(PARAMETERS[name].allowed, name, (value,))
@@ -48,9 +48,9 @@ def points_of(config: Config, directory: Path) -> Points:
 
 
 def _partly_crushed(axes: dict[str, Array]) -> NDArray[np.int8] | None:
-    """Codes of `covered`, (points,), for a grid of parameters that an arm's load crushes in part.
+    """Codes of `covered`, (points,), for a grid of parameters with some points crushed by an arm's load.
 
-    None if all points are crushed or none, and for grids of more than MOST_POINTS points.
+    None if all points are crushed or no point is, and for grids of more than MOST_POINTS points.
     """
     count = math.prod(map(len, axes.values()))
     if not set(CRUSHING) <= axes.keys() or axes["F"].max() < axes["k1"].min() or count > MOST_POINTS:
@@ -62,7 +62,7 @@ def _partly_crushed(axes: dict[str, Array]) -> NDArray[np.int8] | None:
 
 
 def _first_flutter(arm: SlenderArm) -> float:
-    """F at which an arm first flutters in any plane; inf without flutter. Imports its solver only here."""
+    """F at which an arm first flutters in any plane; inf without flutter. Imports the solver on demand."""
     from ...verdict.relative import first_flutter
 
     return first_flutter(arm)
@@ -71,7 +71,7 @@ def _first_flutter(arm: SlenderArm) -> float:
 def refuse_outside(
     allowed: Range, name: str, values: Iterable[float], where: str = "", why: str = ""
 ) -> None:
-    """Raises InputError for the first value of a parameter that is not allowed.
+    """Raises InputError for the first forbidden value of a parameter.
 
     where, why: continue the sentence of the error.
     """
@@ -83,7 +83,7 @@ def refuse_outside(
 
 
 def refuse_axes(axes: dict[str, Array], into_crushed: bool = False) -> None:
-    """Raises InputError for a value on an axis, each (n,), that is not allowed, and for crushed rods.
+    """Raises InputError for a forbidden value on an axis, each (n,), and for crushed rods.
 
     into_crushed: whether the grid may contain crushed rods, as long as not all are crushed.
     """

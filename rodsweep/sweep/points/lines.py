@@ -27,7 +27,8 @@ def lines_over(columns: Mapping[str, Array], name: str) -> Iterator[ParameterLin
 
     columns: every parameter at every point, (points,).
     """
-    x, others = columns[name], [other for other in columns if other != name]
+    x = columns[name]
+    others = [other for other in columns if other != name]
     table = np.stack([columns[other] for other in others], axis=-1)
     _, first, line = np.unique(table, axis=0, return_index=True, return_inverse=True)
     by_line = np.argsort(line.ravel(), kind="stable")

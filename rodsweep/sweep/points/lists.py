@@ -22,10 +22,9 @@ memory."""
 
 
 def read_points(path: Path, names: tuple[str, ...]) -> tuple[Array, ...]:
-    """Columns `names`, each (n,), of a CSV file whose header has these names in any order.
+    """Columns `names`, each (n,), of a CSV file with the names as header, in any order.
 
-    Raises InputError for a file that cannot be read, has another header, no point, or a value that no rod
-    has.
+    Raises InputError for an unreadable file, a wrong header, no point, or an impossible rod.
     """
     try:
         if path.exists() and not path.is_file():  # opening a pipe would wait for its other end
@@ -52,7 +51,7 @@ def read_points(path: Path, names: tuple[str, ...]) -> tuple[Array, ...]:
 
 
 def _header_fault(header: list[str]) -> str:
-    """Fault of a header as a phrase. A line that is no header is not quoted: the file may be of any kind."""
+    """Fault of a header as a phrase. A line without names is not quoted: the file may be of any kind."""
     if set(header) & set(PARAMETERS) and all(cell.isidentifier() for cell in header):
         return f"the header is {short(','.join(header))}"
     return "the first line names no parameter"
@@ -67,9 +66,9 @@ def _lines(file: TextIO, path: Path) -> Iterator[str]:
 
 
 def _row(row: list[str], header: list[str], where: str) -> list[float]:
-    """Numbers of one line of the file.
+    """Numbers of a line of the file.
 
-    Raises InputError for a cell that is no number, and for a rod that the model does not allow.
+    Raises InputError for a cell without a number, and for an impossible rod.
     """
     if len(row) != len(header):
         raise InputError(f"{where}: {len(row)} values, where the header names {len(header)}")

@@ -1,6 +1,6 @@
 """Points of a sweep by flat index: a grid of parameters, a grid over an arm's quantities, or a list.
 
-The points are never expanded into rods all at once, so that a grid takes the memory of its axes only.
+Rods are made on demand: a grid takes the memory of the axes only.
 """
 
 import math
@@ -15,8 +15,8 @@ from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 
 NEUTRAL = {name: parameter.neutral for name, parameter in PARAMETERS.items()}
-"""Values for parameters without a column. Any rod that is admissible with some value is admissible with
-these."""
+"""Values of parameters without a column. A combination impossible with neutral values is impossible with
+any."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class Points:
     over: dict[str, Array] = field(default_factory=dict)
     """Axes of a grid over an arm's quantities, in SI units."""
     units: dict[str, Array] = field(default_factory=dict)
-    """Units of length, time and so on that the arm defines at every point of such a grid, (points,)."""
+    """Units of length, time and so on of the arm at every point of a grid over quantities, (points,)."""
     covered: NDArray[np.int8] | None = None
     """Codes of `rodsweep.config.arm.axes`: whether a rod covers each point of an arm, (points,)."""
 
@@ -51,7 +51,7 @@ class Points:
 
     @property
     def moved(self) -> tuple[str, ...]:
-        """The parameter that varies along each axis; empty where an axis varies several or none."""
+        """The parameter that varies along each axis; empty for several parameters or no parameter."""
         return self.names if self.is_grid else tuple(map(moved_by, self.over))
 
     @property

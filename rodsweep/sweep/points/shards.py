@@ -1,4 +1,4 @@
-"""Shards: parts of a sweep, each solved by a separate run into its own file."""
+"""Shards: parts of a sweep, each solved by a separate run into a separate file."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -40,7 +40,7 @@ class Shard:
 
 
 def shard_of(text: str) -> Shard:
-    """Shard of a text such as "2/8"; raises InputError for any other form."""
+    """Shard of a text such as "2/8"; raises InputError for any wrong form."""
     number, _, of = text.partition("/")
     if number.isdecimal() and of.isdecimal() and len(text) < 20 and 1 <= int(number) <= int(of):
         return Shard(int(number), int(of))

@@ -1,7 +1,7 @@
-"""Stretches: neighbouring points of a grid solved at once, cut from its lines along one axis.
+"""Stretches: neighbouring points of a grid solved at once, cut from lines along an axis.
 
-The cuts follow from the grid alone, so that results depend neither on the number of ranks nor on points
-stored by an earlier run: a stretch with any missing point is solved again as a whole.
+The cuts follow from the grid alone. Results therefore depend neither on the number of ranks nor on points of
+an earlier run: a stretch with any missing point is solved again as a whole.
 """
 
 import math
@@ -17,9 +17,9 @@ from .ranges import IndexRange, IndexSet, joined, total
 STRETCH_POINTS = 64
 """Largest number of points in a stretch."""
 SHORTEST_AXIS = 8
-"""Least number of values on an axis. On a shorter axis neighbours are too far apart to help each other."""
+"""Least number of values on an axis; on a shorter axis neighbours are too far apart to help."""
 STRETCHES_AT_ONCE = 1 << 12
-"""Number of stretches whose points are tested in one array operation, which bounds the memory."""
+"""Number of stretches tested in a single array operation, to bound the memory."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +27,7 @@ class StretchResult:
     """Result of points solved at once.
 
     values: every variable of the file, shape (n, ...). succeeded: whether each point succeeded, (n,).
-    message: status name and message of a point that failed, by its place.
+    message: status name and message of a failed point, by place.
     """
 
     values: dict[str, NDArray]
@@ -35,7 +35,7 @@ class StretchResult:
     message: Callable[[int], str]
 
     def at(self, places: NDArray[np.int64]) -> dict[str, NDArray]:
-        """Variables of some of the points, by their places, (places,)."""
+        """Variables of selected points, by place, (places,)."""
         return {name: column[places] for name, column in self.values.items()}
 
 
@@ -59,8 +59,8 @@ class Stretches:
     def count(self) -> int:
         """Number of stretches.
 
-        They are numbered by their place on the line first, then in row-major order of the other axes, so that
-        consecutive stretches are neighbours in the file.
+        Stretches are numbered first by place on the line, then in row-major order of the remaining axes.
+        Consecutive stretches are therefore neighbours in the file.
         """
         return self.lines * -(-self.shape[self.axis] // STRETCH_POINTS)
 
@@ -106,9 +106,9 @@ class Stretches:
 
 
 def stretches_along_longest_axis(shape: tuple[int, ...], moved: Sequence[str]) -> Stretches | None:
-    """Stretches of a grid along the first of its longest axes; None if every usable axis is too short.
+    """Stretches of a grid along the first of the longest axes; None if every usable axis is too short.
 
-    moved: the parameter that varies along each axis; empty for an axis that varies several, which is not
+    moved: the parameter that varies along each axis; empty for an axis of several parameters, which is not
     usable.
     """
     able = [axis for axis, name in enumerate(moved) if name]
@@ -118,14 +118,14 @@ def stretches_along_longest_axis(shape: tuple[int, ...], moved: Sequence[str]) -
 
 @dataclass(frozen=True, slots=True)
 class StretchSolver:
-    """Solves the stretches of a run; only their `missing` points are stored."""
+    """Solves the stretches of a run; only `missing` points are stored."""
 
     stretches: Stretches
     solve_stretch: SolveStretch
     missing: IndexSet
 
     def __call__(self, stretch: int) -> Iterator[tuple[NDArray[np.int64], Any]]:
-        """Yields (flat indices of the missing points, `StretchResult` of these points), once."""
+        """Yields (flat indices of the missing points, `StretchResult` of the missing points), once."""
         indices = self.stretches.indices(stretch)
         result = self.solve_stretch(indices)
         places = np.flatnonzero(self.missing[indices])

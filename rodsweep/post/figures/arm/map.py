@@ -103,7 +103,7 @@ def _axis(view: View, name: str) -> tuple[Array, str]:
 
 
 def _panels(count: int, narrow: bool, maps: bool) -> tuple[Figure, list[Axes]]:
-    """Figure with panels side by side for maps, or one above the other."""
+    """Figure with panels side by side for maps, or stacked."""
     across = maps and not narrow
     size = (4.8 * count, 4.4) if across else (4.6, 2.9 * count)
     apart = ConstrainedLayoutEngine(wspace=0.06 if across else 0.0)  # room for the label of a colour bar
@@ -113,7 +113,7 @@ def _panels(count: int, narrow: bool, maps: bool) -> tuple[Figure, list[Axes]]:
 
 
 def _map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], place: Any) -> list[Artist]:
-    """Draws a panel as colours over two axes; returns its legend entries."""
+    """Draws a panel as colours over two axes; returns legend entries."""
     (x, x_label), (y, y_label) = (_axis(view, name) for name in names)
     values = np.ma.masked_invalid(panel.values[place].T)
     style.colour_cells(axes, (cell_edges(x), cell_edges(y)), panel.values[place].T, panel.label)
@@ -132,7 +132,7 @@ def _map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], place: An
 
 
 def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[Artist]:
-    """Draws a panel as lines over one axis; returns its legend entries."""
+    """Draws a panel as lines over an axis; returns legend entries."""
     x, label = _axis(view, name)
     colours = (style.SECOND, style.FIRST, style.THIRD)
     handles: list[Artist] = []
@@ -155,7 +155,7 @@ def _lines(axes: Axes, panel: Panel, view: View, name: str, place: Any) -> list[
 
 
 def _band(axes: Axes, view: View, x: str, values: Array, place: Any, colour: str) -> list[Artist]:
-    """Draws the range of a number over the drags of the file as a band; returns its legend entry.
+    """Draws the range of a number over the drags of the file as a band; returns the legend entry.
 
     values: on the grid of points. Drags without a number are left out.
     """
@@ -197,7 +197,7 @@ def _cover(axes: Axes, view: View, panel: Panel, names: tuple[str, str], place: 
 
 
 def _fixed(view: View, drawn: list[str]) -> str:
-    """Quantities that are not along an axis of the figure, with their values."""
+    """Quantities that are not along an axis of the figure, with values."""
     texts = []
     for name, values in view.quantities.items():
         if name in drawn or name in ARM_UNITS:

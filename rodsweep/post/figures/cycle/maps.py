@@ -65,7 +65,7 @@ panel."""
 def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
     """Draws the period and the largest y of the tip, each with the line of Hopf points.
 
-    narrow: whether the panels lie one above the other.
+    narrow: whether the panels are stacked.
     """
     points = point_map(view)
     words = outcomes(view)[points.at]
@@ -101,7 +101,7 @@ def _shared(view: View, points: PointMap, in_si: bool) -> str:
 
 
 def map_panels(count: int, narrow: bool) -> tuple[Figure, list[Axes]]:
-    """Figure with panels that share their axes: side by side, or if narrow one above the other."""
+    """Figure with panels that share their axes: side by side, or if narrow stacked."""
     apart = ConstrainedLayoutEngine(
         wspace=0.0 if narrow else 0.06
     )  # room for the label of the first colour bar
@@ -157,7 +157,8 @@ def _pairs(values: Array) -> list[tuple[float, float]]:
 def _runs(chosen: NDArray[np.bool_], edges: Array) -> list[tuple[float, float]]:
     """(left, width) of each run of neighbouring chosen cells in a row."""
     steps = np.diff(np.concatenate(([0], chosen.astype(int), [0])))
-    starts, ends = edges[np.flatnonzero(steps > 0)], edges[np.flatnonzero(steps < 0)]
+    starts = edges[np.flatnonzero(steps > 0)]
+    ends = edges[np.flatnonzero(steps < 0)]
     return list(zip(starts.tolist(), (ends - starts).tolist(), strict=True))
 
 

@@ -27,7 +27,7 @@ class PointMap:
     shared: dict[str, float]
     """Parameters that all points share."""
     left_out: str
-    """Clause of the message on values without a place on an axis; empty if there is none."""
+    """Clause of the message on values without a place on an axis, or an empty text."""
 
 
 def varied_parameters(view: View) -> list[str]:

@@ -25,7 +25,7 @@ from .selection import SHAPES, StoredCycle, chosen_cycles
 from .transient import draw_emergence, label_time, label_tip
 
 MAX_SHAPES = 12
-"""Largest number of shapes of one cycle that a reader can distinguish."""
+"""Largest number of shapes of a single cycle that a reader can distinguish."""
 ARROW = 0.14
 """Length of the arrow of the force, in L."""
 WALL_DEPTH = 0.05

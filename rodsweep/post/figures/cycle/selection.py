@@ -84,7 +84,7 @@ class StoredCycle:
         return TRACE[0] in self.values and bool(np.isfinite(self.values[TRACE[0]]).all())
 
     def heading(self, *lines: str) -> str:
-        """Title of a panel: the label, if there is one, above further lines about the cycle."""
+        """Title of a panel: the label, if any, above further lines about the cycle."""
         return "\n".join(filter(None, (self.label, *lines)))
 
 
@@ -184,7 +184,7 @@ def _refuse_bad_points(view: View, points: Sequence[int]) -> None:
 
 
 def _values(view: View, number: int) -> dict[str, Array]:
-    """Variables of a point, each in its shape at one point."""
+    """Variables of a point, each in its shape at a point."""
     of_point = view.of_point(number - 1).items()
     return {name: values for name, values in of_point if name not in (*view.parameters, "point")}
 

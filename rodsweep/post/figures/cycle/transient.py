@@ -39,7 +39,7 @@ def draw_transients(view: View, points: Sequence[int], narrow: bool = False) -> 
 
 
 def draw_emergence(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
-    """Draws x and y of the tip from the start, with the extrema of the cycle if there is one."""
+    """Draws x and y of the tip from the start, with the extrema of the cycle if any."""
     time, *tip = (cycle.values[name] for name in TRACE)
     v = cycle.values
     levels = (("tip_x_min", 1), ("tip_x_max", 1)), (("tip_y_max", 1), ("tip_y_max", -1))

@@ -16,7 +16,7 @@ from matplotlib.text import Text
 from .ticks import thin_ticks
 
 MIN_ASPECT = 0.45
-"""Smallest height of a panel, in units of its width; a flatter panel makes the figure grow, to keep curves
+"""Smallest height of a panel, in units of the width; a flatter panel makes the figure grow, to keep curves
 legible."""
 MAP_ASPECT = 0.7
 """Smallest aspect ratio of a map, whose slopes matter along both axes."""

@@ -8,7 +8,7 @@ from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, Symmetrical
 BLANK = 0.25
 """Smallest space between neighbouring tick labels, in units of their height."""
 SEEN = 1e-9
-"""Rounding tolerance for ticks at the end of an axis, as a fraction of its length."""
+"""Rounding tolerance for ticks at the end of an axis, as a fraction of the length."""
 
 
 def thin_ticks(figure: Figure) -> bool:
@@ -38,7 +38,8 @@ def _thin(axis: Axis, way: int) -> bool:
         return False
     locator = axis.get_major_locator()
     if isinstance(locator, FixedLocator):
-        ticks, texts = axis.get_majorticklocs(), [label.get_text() for label in axis.get_majorticklabels()]
+        ticks = axis.get_majorticklocs()
+        texts = [label.get_text() for label in axis.get_majorticklabels()]
         axis.set_ticks(ticks[::2], texts[::2])
         return True
     if isinstance(locator, LogLocator):

@@ -1,1 +1,1 @@
-"""Figures of spectra over one parameter: a line of spectra, or several lines side by side."""
+"""Figures of spectra over a parameter: a line of spectra, or several lines side by side."""

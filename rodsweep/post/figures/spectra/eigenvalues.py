@@ -1,4 +1,4 @@
-"""Spectra without an axis: eigenvalues of one point in the complex plane, or those of a list of points."""
+"""Spectra without an axis: eigenvalues of a single point in the complex plane, or those of a list of points."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -44,7 +44,7 @@ def draw_eigenvalues(view: View) -> Figure:
 
 
 def draw_list_of_spectra(view: View) -> Figure:
-    """Figure of growth rates and frequencies of every point of a list, in its order, without lines."""
+    """Figure of growth rates and frequencies of every point of a list, in order, without lines."""
     growth = view.variables["growth_rate"]
     frequency = view.variables["frequency"]
     figure = Figure(figsize=(5.2, 5.4), layout="constrained")

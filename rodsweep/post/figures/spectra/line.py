@@ -1,4 +1,4 @@
-"""Spectra over one parameter: two roots, and their paths in the complex plane, as in the paper's Fig. 2."""
+"""Spectra over a parameter: two roots, and their paths in the complex plane, as in the paper's Fig. 2."""
 
 from collections.abc import Sequence
 from typing import Any

@@ -1,4 +1,4 @@
-"""Lines of spectra of several files, one panel each, as in the whole of the paper's Fig. 2."""
+"""Lines of spectra of several files, a panel each, as in the whole of the paper's Fig. 2."""
 
 from collections.abc import Sequence
 from string import ascii_lowercase

@@ -46,9 +46,9 @@ MARKS = {
 }
 """Colour, marker and word of the marked crossings."""
 FILL = 0.8
-"""Width of the bar of a rod, as a fraction of its place."""
+"""Width of the bar of a rod, as a fraction of the place."""
 BAR_ASPECT = 0.12
-"""Height of a panel with one bar, in units of its width."""
+"""Height of a panel with one bar, in units of the width."""
 DIGITS = 6
 """Number of digits of the thresholds of a single rod."""
 

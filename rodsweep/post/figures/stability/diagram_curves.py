@@ -1,4 +1,4 @@
-"""Curves of a phase diagram and the special points on them, with their legend."""
+"""Curves of a phase diagram and the special points on them, with legend."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,7 +14,7 @@ from ..style import SYMBOLS, THIRD
 from ..style import number as number_text
 
 CURVE_LOOKS = {1: ("Hopf points", 1.4, "-"), 0: ("double eigenvalue", 1.0, "--")}
-"""Legend entry, width and style of a curve, by its kind in the file."""
+"""Legend entry, width and style of a curve, by kind in the file."""
 CURVE_NAMES = {1: (r"$\tilde F_{**}$", 0.85), 0: (r"$\tilde F_*$", 0.12)}
 """Symbol beside the longest curve of a kind, and its place as a fraction of the visible length."""
 SIDE_LOOKS = {
@@ -94,12 +94,14 @@ def _points(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
     handles = []
     for i in range(len(v["fold"])):
         if v["fold_kind"][i] == 1 and v["fold_of"][i] == 1:  # a window of flutter closes at this fold
-            F, k = v[f"fold_{line}"][i], v[f"fold_{row}"][i]
+            F = v[f"fold_{line}"][i]
+            k = v[f"fold_{row}"][i]
             axes.plot(F, k, "ko", ms=4)
             label = rf"fold ${SYMBOLS[line]} = {F:.6g}$, ${SYMBOLS[row]} = {k:.6g}$"
             handles.append(Line2D([], [], color="k", marker="o", ls="", ms=4, label=label))
     if "partial_beam_k1" in v:
-        F, k = float(v["partial_beam_F"]), float(v["partial_beam_k1"])
+        F = float(v["partial_beam_F"])
+        k = float(v["partial_beam_k1"])
         x, y = (F, k) if line == "F" else (k, F)
         if not (_holds(v[line], x) and _holds(view.axes[row], y)):
             return handles
@@ -164,7 +166,7 @@ def _on_curves(view: View, kind: int, line: str, row: str, x: Array, y: Array) -
 
 
 def _sides(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
-    """Draws Hopf curves by their criticality, with generalised Hopf points; returns legend entries."""
+    """Draws Hopf curves by criticality, with generalised Hopf points; returns legend entries."""
     v = view.variables
     used = set()
     for curve in np.unique(v["curve_number"][v["curve_kind"] == 1]):
@@ -178,7 +180,8 @@ def _sides(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
         if side in used
     ]
     for i in range(len(v["bautin_curve"])):
-        x, y = v[f"bautin_{line}"][i], v[f"bautin_{row}"][i]
+        x = v[f"bautin_{line}"][i]
+        y = v[f"bautin_{row}"][i]
         label = rf"Re $c$ = 0: ${SYMBOLS[line]}$ = {x:.6g}, ${SYMBOLS[row]}$ = {y:.6g}"
         handles += axes.plot(x, y, "kD", mfc="white", ls="", ms=5, label=label)
     return handles + (_bautin_curves(axes, view, line, row) if "bautin_along_curve" in v else [])
@@ -220,7 +223,8 @@ def _first_over_force(paths: list[Array], force: int) -> list[Array]:
     starts, ends = (
         np.concatenate([path[piece] for path in paths]) for piece in (slice(None, -1), slice(1, None))
     )
-    y0, y1 = starts[:, 1 - force], ends[:, 1 - force]
+    y0 = starts[:, 1 - force]
+    y1 = ends[:, 1 - force]
     parts = []
     for path in paths:
         y = path[:, 1 - force, None]

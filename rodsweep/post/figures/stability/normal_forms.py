@@ -12,15 +12,15 @@ from ..cycle.selection import shared_and_own_of_points
 FARTHEST_DRAWN = 0.1
 """Largest |F/F_H - 1| of a drawn prediction; farther away cycles depart from the leading-order law."""
 LINES = {-1: ("-", "supercritical"), 1: ("--", "subcritical"), 0: (":", "side undecided")}
-"""Line style and word of the cycles of a Hopf point, by its criticality."""
+"""Line style and word of the cycles of a Hopf point, by criticality."""
 COLOURS = (style.FIRST, style.SECOND, style.THIRD, "#CC79A7", "#56B4E9", "#000000")
-"""Colours of the rods, in their order."""
+"""Colours of the rods, in order."""
 PREDICTION_POINTS = 60
 """Number of points of a drawn prediction, dense near the Hopf point, where the curve is steep."""
 
 
 def draw_predictions(view: View) -> tuple[Figure, str]:
-    """Figure of the predicted amplitudes near every Hopf point, for the first rods; and its description."""
+    """Figure of the predicted amplitudes near every Hopf point, for the first rods; and a description."""
     kinds, F, a = map(view.by_point, ("criticality", "crossing_F", "amplitude_coefficient"))
     having = np.flatnonzero((np.isfinite(kinds) & np.isfinite(a)).any(axis=1))
     style.require(view, having.size, "Hopf point with a normal form")

@@ -58,7 +58,8 @@ def _changes(view: View, variable: str, line: str, place: int) -> Array:
         name: view.variables[name].reshape(view.variables["status"].size, -1)[place]
         for name in _names(view, line)
     }
-    at, kinds = v["crossing_at"], v["crossing_kind"]
+    at = v["crossing_at"]
+    kinds = v["crossing_kind"]
     if variable == "class":
         found = [at[kinds > 0]]
     else:

@@ -17,7 +17,7 @@ CRITICAL_FORCES = (
     ("F_hopf", r"Hopf $\tilde F_{**}$", style.SECOND, "s", "-"),
     ("F_restabilization", "restabilization", style.THIRD, "^", "--"),
 )
-"""Variable, word, colour for lines of one rod, marker and line style of each threshold."""
+"""Variable, word, colour for lines of a single rod, marker and line style of each threshold."""
 LINE_STYLES = ("-", "--", ":")
 """Line styles for the values of the second parameter in one panel."""
 MAX_LINES = 6
@@ -33,7 +33,7 @@ HEADROOM = 1.05
 
 
 def draw_all_lines(view: View, long: list[str], searched: str) -> tuple[Figure, str]:
-    """Figure of lines over the longer axis, for every value of the shorter one; and its description."""
+    """Figure of lines over the longer axis, for every value of the shorter one; and a description."""
     along = max(long, key=lambda name: np.count_nonzero(np.isfinite(view.axes[name])))
     other = next((name for name in long if name != along), None)
     figure = Figure(figsize=(5.6, 4.2), layout="constrained")
@@ -85,7 +85,7 @@ def draw_lines_of_some(view: View, long: list[str], narrow: bool, searched: str)
 
 
 def _some_lines(panel: Axes, view: View, along: str, other: str) -> int:
-    """Draws lines over one parameter for the most different values of the other; returns their number."""
+    """Draws lines over a parameter for the most different values of the other; returns their number."""
     table = _table(view, along, other)
     some = _far_apart(table)
     for line, alike in zip(LINE_STYLES, _alike({at: table[at] for at in some}), strict=False):
@@ -145,7 +145,7 @@ def _kinds(table: Array) -> list[Line2D]:
 
 
 def _left_out(view: View, names: list[str]) -> str:
-    """Clause on values without a place on an axis; empty if there is none."""
+    """Clause on values without a place on an axis, or an empty text."""
     left_out = [
         f"{name} = {value:g}"
         for name in names

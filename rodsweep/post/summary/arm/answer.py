@@ -28,7 +28,7 @@ OTHER_PLANE = (
 
 
 def arm_answer(view: View, done: np.ndarray) -> list[str]:
-    """Lines about the points that are `done`, a mask of their shape; empty without an arm."""
+    """Lines about the points in `done`, a mask of the points' shape; empty without an arm."""
     return [*plane_lines(view.quantities), *_applied(view, done)] if view.quantities else []
 
 

@@ -25,7 +25,7 @@ from ..ranges import rounded, span
 WIDTH = 80
 """Width of lines in SI units, in characters."""
 FEW_ITEMS = 4
-"""Largest number of values of a table listed one by one for a single rod."""
+"""Largest number of values of a table listed individually for a single rod."""
 TYPED_AS = {"m": ("length",), "Pa": ("pressure", "young"), "N": ("force",)}
 """Quantities whose typed unit is used for all numbers with this SI unit; the first typed quantity decides."""
 PREFIXED = ("J", "W")
@@ -109,7 +109,7 @@ def _unit(view: View, name: str) -> str:
 
 
 def arm_lines(view: View, done: np.ndarray) -> list[str]:
-    """Ranges of the variables stored in SI units, over the points that are `done`, a mask of their shape."""
+    """Ranges of the variables stored in SI units, over the points in `done`, a mask of the points' shape."""
     if not view.quantities:
         return []
     config = json.loads(view.attributes["config_resolved"])

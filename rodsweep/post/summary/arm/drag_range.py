@@ -1,4 +1,4 @@
-"""Variation of the results of one arm over the drags of its range."""
+"""Variation of the results of a single arm over the drags of its range."""
 
 from collections.abc import Mapping
 

@@ -1,8 +1,8 @@
-"""Extension of a stored file to a larger config: whether it is possible, and which stored points stay.
+"""Extension of a stored file to a larger config: whether possible, and which stored points stay.
 
-A stored point stays only if a run of the whole larger config would give it to the last bit. Its parameters
-must be the same bits, and it must have every result that the larger config asks for. The same must hold for
-all previous points of its chain, or for all points of its stretch.
+A stored point stays only if a run of the whole larger config would give the same bits. The parameters must be
+the same bits, and every result asked for must be present. The same must hold for all previous points of a
+chain, or for all points of a stretch.
 """
 
 from collections.abc import Iterator
@@ -60,7 +60,7 @@ class Extension:
     new: Layout
     places: Places
     grown: tuple[tuple[Increase, Any], ...]
-    """(increased option, its former value) for every option that asks for more of each point."""
+    """(option, former value) for every increased option."""
     nothing_stays: bool
     """Whether every stored point is computed again."""
 
@@ -93,7 +93,7 @@ class Extension:
 def extension_of(header: Header, points: Points, plan: Plan) -> Extension:
     """Extension of a stored file with the given points to a larger plan.
 
-    Raises InputError, which names the difference, if the plan lacks anything that the file was made for.
+    Raises InputError, naming the difference, if the plan lacks anything that the file was made for.
     """
     theirs = config_of(header.config).meaning
     ours = config_of(plan.config).meaning
@@ -123,7 +123,7 @@ def extension_of(header: Header, points: Points, plan: Plan) -> Extension:
 
 
 def _refuse(header: Header, difference: str) -> None:
-    """Raises InputError if there is a difference, which no extension can bridge."""
+    """Raises InputError for a difference, which no extension can bridge."""
     if difference:
         raise InputError(
             f"{header.path} cannot be extended to this config ({difference}); choose another file with -o, "
@@ -147,7 +147,8 @@ def _places(header: Header, old: Points, plan: Plan) -> Places:
         axis = plan.chains.axis
         places[axis] = _same_from_the_start(places[axis], new.shape[axis], plan.chains.upward)
     if plan.stretches:
-        axis, before = plan.stretches.axis, stretches_along_longest_axis(old.shape, old.moved)
+        axis = plan.stretches.axis
+        before = stretches_along_longest_axis(old.shape, old.moved)
         same = _same_stretches(places[axis], new.shape[axis])
         places[axis] = np.where(same & (before is not None and before.axis == axis), places[axis], -1)
     return Places(old.shape, new.shape, tuple(places))
@@ -170,7 +171,7 @@ def _places_on_axis(header: Header, name: str, old: Array, new: Array) -> Indice
 
 
 def _same_from_the_start(places: Indices, count: int, upward: bool) -> Indices:
-    """Places of the points of a chain, (n,), up to the first point that is not the same; -1 from there on."""
+    """Places of the points of a chain, (n,), up to the first changed point; -1 from there on."""
     ahead = places if upward else np.where(places < 0, -1, count - 1 - places)[::-1]
     stays = np.logical_and.accumulate(ahead == np.arange(len(ahead)))
     return np.where(stays if upward else stays[::-1], places, -1)

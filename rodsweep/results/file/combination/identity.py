@@ -1,7 +1,7 @@
-"""Identity of configs: whether two configs ask for the same results, and the difference in words if not.
+"""Identity of configs: whether two configs ask for the same results, and the difference in words.
 
-Configs are compared by their meaning. The notation of an axis, the title, the name of a list of points, and
-unused options do not count.
+Configs are compared by meaning. The notation of an axis, the title, the name of a list of points, and unused
+options do not count.
 """
 
 import json
@@ -18,11 +18,11 @@ from ....config.document.reading import config_of
 from ....config.values import Axis
 
 LONGEST_VALUE = 80
-"""Largest number of characters of a config's value in a sentence."""
+"""Largest number of characters of a value in a sentence."""
 
 
 def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
-    """Fingerprint of a resolved config and its points; a file can continue another only if they agree.
+    """Fingerprint of a resolved config and the points; equal for files that can continue each other.
 
     columns: the `identity` of the points, each (n,). Raises ValueError for an invalid config.
     """
@@ -73,7 +73,7 @@ def _same_axis(first: Axis, second: Axis) -> bool:
 def config_difference(
     theirs: Any, ours: Any, key: str = "", places: tuple[str, str] = ("the file", "the config")
 ) -> str:
-    """First key in which two resolved configs differ, with both values; empty if they are equal.
+    """First key in which two resolved configs differ, with both values; empty for equal configs.
 
     places: names of the two sources in the sentence.
     """

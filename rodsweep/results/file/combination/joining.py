@@ -1,7 +1,7 @@
-"""Joining of files of one task with different points: grids into one larger grid, lists into one list.
+"""Joining of files of a task with different points: grids into a larger grid, lists into a longer list.
 
-The joined grid must be complete, so that no point is missing that no file was made for. A point that several
-files contain must have the same values in all of them.
+The joined grid must be complete: every point was asked for by some file. A point present in several files
+must have the same values in all files.
 """
 
 from collections.abc import Callable, Sequence
@@ -40,7 +40,7 @@ Planner = Callable[[Config, Points], Plan]
 
 @dataclass(frozen=True, slots=True)
 class JoinedFile:
-    """Plan of the joined file, and the places of the points of each source in it."""
+    """Plan of the joined file, and the places of the points of each source."""
 
     plan: Plan
     sources: Sequence[Header]
@@ -157,7 +157,7 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[Places]]:
 
 
 def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[Places]]:
-    """(points of all lists, each once and one list after another; places of each list in it)."""
+    """(points of all lists, each point once, list by list; places of each list in the joined list)."""
     known: dict[bytes, int] = {}
     rows = [np.column_stack(points.columns) + 0.0 for points in lists]
     places = [np.array([known.setdefault(row.tobytes(), len(known)) for row in each]) for each in rows]
@@ -181,13 +181,14 @@ def _joined_config(first: Header, meant: dict[str, Any], points: Points) -> Conf
 
 
 def _axis(own: Axis, values: Array) -> Axis:
-    """Axis of these values in its shortest notation: a range if it gives the same bits, else a list."""
+    """Axis of given values in the shortest notation: a range if the bits are equal, else a list."""
     if np.array_equal(own.array(), values):
         return own
     if len(values) > 2 and np.isfinite(values).all():
         spacings: tuple[Literal["linear", "log"], ...] = ("linear", "log") if values[0] > 0 else ("linear",)
         for spacing in spacings:
-            start, stop = float(values[0]), float(values[-1])
+            start = float(values[0])
+            stop = float(values[-1])
             axis = Axis(start=start, stop=stop, num=len(values), spacing=spacing)
             if np.array_equal(axis.array(), values):
                 return axis

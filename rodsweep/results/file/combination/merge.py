@@ -1,7 +1,6 @@
-"""Merging: all points of the shards of a run, or of files that make up a larger grid, in a single file.
+"""Merging: all points of the shards of a run, or of the parts of a larger grid, in a single file.
 
-Points are streamed a block at a time, so that memory does not grow with the files. The new file appears
-complete, by a rename.
+Points are streamed a block at a time, in constant memory. The new file appears complete, by a rename.
 """
 
 import os
@@ -35,11 +34,11 @@ class MergeResult:
 
 
 def merge(output: Path, paths: Sequence[Path], planner: Planner) -> MergeResult:
-    """Writes `output` from all points of the result files `paths`: parts of one grid or list, or several.
+    """Writes `output` from all points of the result files `paths`: parts of a grid or list, or several grids.
 
-    An existing `output` is the first source. Of two values of a point the first stays; in files of different
-    grids both must agree. Raises InputError if a file is no result, was made for another config, or has
-    points in its journal, or if the grids do not make up a larger one. Raises EnvironmentLacks if the disk
+    An existing `output` is the first source. Of two values of a point the first stays; files of different
+    grids must agree. Raises InputError for a file that is no result, was made for another config, or has
+    points in a journal, and for grids that do not make up a larger grid. Raises EnvironmentLacks if the disk
     fails.
     """
     sources = _opened(paths)
@@ -57,7 +56,7 @@ def merge(output: Path, paths: Sequence[Path], planner: Planner) -> MergeResult:
 
 
 def _merge(exchange: Exchange, sources: Sequence[Header], planner: Planner) -> MergeResult:
-    """Replaces the output by the first source with the points that the other sources add."""
+    """Replaces the output by the first source with the additional points of all sources."""
     first = sources[0]
     plan = planner(config_of(first.config), parameters_of(first.path, first.layout))
     with exchange.replacing(first.path) as copy:
@@ -103,7 +102,7 @@ def _opened(paths: Sequence[Path]) -> list[Header]:
 
 
 def _is_continued(first: Header, other: Header) -> bool:
-    """Whether two files have the same fingerprint; raises InputError if their layouts differ nevertheless."""
+    """Whether two files have the same fingerprint; raises InputError if only the layouts differ."""
     if first.fingerprint != other.fingerprint:
         return False
     if (first.layout.record, first.points) != (other.layout.record, other.points):

@@ -33,7 +33,7 @@ UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 
 def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure, str]:
     """Draws half the range of the tip's x, its largest y, the period and the power over F.
 
-    A straight arm has amplitude 0 and no period. narrow: whether the panels lie one above the other.
+    A straight arm has amplitude 0 and no period. narrow: whether the panels are stacked.
     """
     first = views[0]
     name = abscissa(first)

@@ -1,4 +1,4 @@
-"""Cycles of a file as branches over one parameter: amplitudes of the tip, periods and powers."""
+"""Cycles of a file as branches over a parameter: amplitudes of the tip, periods and powers."""
 
 from dataclasses import dataclass
 
@@ -19,7 +19,7 @@ from .square_root import SquareRootLaw, square_root_laws
 class AmplitudeBranch:
     """Points that differ in one parameter only, in the order of the file; amplitudes are NaN where unknown.
 
-    parameters: the other parameters, by name. power: mean power of the force over a period. units: of all
+    parameters: the remaining parameters, by name. power: mean power of the force over a period. units: of all
     these. words: words of the status. hopf: Hopf points along the branch, empty if it is not over F. All
     arrays have the shape (points,).
     """
@@ -35,7 +35,7 @@ class AmplitudeBranch:
     hopf: list[LocatedChange]
     units: CycleUnits
     first: int
-    """Number of its first point in the file, from 1."""
+    """Number of the first point in the file, from 1."""
 
     @property
     def measures(self) -> tuple[Array, ...]:

@@ -18,7 +18,7 @@ FARTHEST_FITTED = 0.1
 LARGEST_DEPARTURE = 0.2
 """Largest relative difference between an amplitude and the law over the range in which the law is drawn."""
 SAFETY = 2.0
-"""Error of a coefficient, in units of its change when one more cycle is used."""
+"""Error of a coefficient, in units of the change when one more cycle is used."""
 MIN_ERRORS_AWAY = 100
 """Least distance of a cycle from F**, in errors of F**, so that the distance is known to a percent."""
 
@@ -66,10 +66,12 @@ def _law(F: Array, amplitude: Array, point: LocatedChange, side: int) -> SquareR
     order = np.lexsort((np.where(amplitude > 0, amplitude, np.inf), distance))
     distance, first = np.unique(distance[order], return_index=True)
     size = amplitude[order][first]
-    there = distance > MIN_ERRORS_AWAY * point.error / abs(point.position)
-    distance, size = distance[there], size[there]
+    is_certain = distance > MIN_ERRORS_AWAY * point.error / abs(point.position)
+    distance = distance[is_certain]
+    size = size[is_certain]
     gap = np.flatnonzero(~(size > 0))  # another branch begins behind a gap
-    distance, size = distance[: gap[0] if gap.size else None], size[: gap[0] if gap.size else None]
+    distance = distance[: gap[0] if gap.size else None]
+    size = size[: gap[0] if gap.size else None]
     if len(size) < 2 or distance[1] > FARTHEST_FITTED:
         return None
     q = size[:2] ** 2 / distance[:2]
