@@ -1,8 +1,8 @@
-"""Branches of cycles in a file of the task branch: curves, their stability, and ranges of the parameter.
+"""Branches of cycles in a file of the task branch: curves, stability, and ranges of the parameter.
 
-A branch is a curve through its cycles and its special points in order. Where multipliers cross the unit
-circle the branch has a special point. A cycle whose multiplier is on the circle within its error therefore
-has the stability of the other cycles between the same two special points, if these agree.
+A branch is a curve through cycles and special points. At a crossing of the unit circle by multipliers the
+branch has a special point. A cycle with a multiplier on the circle, within the error, therefore has the
+stability of all cycles between the same two special points, if equal.
 """
 
 from collections.abc import Iterable
@@ -97,7 +97,7 @@ def count_incomplete_branches(view: View, rod: int) -> int:
 
 
 def _count_complete(v: dict[str, Array]) -> int:
-    """Number of branches of a rod, the first ones, whose special points are all stored."""
+    """Number of branches of a rod, the first branches, with all special points stored."""
     listed = v["special_branch"][v["special_kind"] > 0]
     if len(listed) >= v["special_count"]:
         return max(int(v["branch_count"]), 0)
@@ -105,7 +105,7 @@ def _count_complete(v: dict[str, Array]) -> int:
 
 
 def curves_of(view: View, rod: int) -> list[StoredBranch]:
-    """Branches of a rod whose special points are all stored; rod: its place among all points."""
+    """Branches of a rod with all special points stored; rod: place among all points."""
     along = followed_parameter(view)
     v = view.of_point(rod)
     curves = []
@@ -168,7 +168,7 @@ def _special_points(v: dict[str, Array], places: Iterable[int]) -> tuple[StoredS
 
 
 def straight_ranges(view: View, rod: int, ends: Range) -> tuple[list[Range], list[Range]]:
-    """(ranges in which the straight rod is stable, ranges in which it is unstable) between two ends.
+    """(ranges of the stable straight rod, ranges of the unstable straight rod) between two ends.
 
     Both are empty if the special points of some branch are not stored.
     """

@@ -60,7 +60,7 @@ def _write(table: Table, separator: str, units: bool, stream: TextIO) -> None:
 
 
 def _sentence(table: Table, view: View) -> str:
-    """Sentence on what was written, points without rows, and other tables."""
+    """Sentence on the written table, points without rows, and further tables."""
     text = f"{counted(table.rows, 'row')} of {table.name} in {counted(len(table.columns), 'column')}"
     if table.empty_points:
         points = counted(view.variables["status"].size, "point")

@@ -1,7 +1,7 @@
 """Changes of the straight rod along a line of points of a file: located, or bracketed by two points.
 
-The task has located the changes and stored them. Nothing is solved or interpolated here: a change that no
-solver has located is only known to lie between two points.
+The task has located the changes and stored them. Nothing is solved or interpolated here: a change not located
+by a solver is only known to lie between two points.
 """
 
 from collections.abc import Mapping
@@ -18,7 +18,7 @@ from ..results.layouts.thresholds import CROSSING_KINDS
 from ..sweep.points.lines import ParameterLine
 
 SAME_PLACE = 1e-9
-"""Relative distance below which a point of a file lies on a Hopf point, so that its growth rate is rounding
+"""Relative distance below which a point of a file lies on a Hopf point; the growth rate is then rounding
 error."""
 STABILITY_CHANGES = {("hopf", 2), ("restabilization", 0)}
 """(kind, number of growing modes beyond) of Hopf points at which the stability of the straight rod changes.
@@ -45,13 +45,13 @@ class LocatedChange:
         return self.kind != "onset"
 
     def agrees(self, other: "LocatedChange") -> bool:
-        """Whether two changes may be the same: of one kind, and at one position within their errors."""
+        """Whether two changes may be the same: equal in kind, and in position within the errors."""
         return self.kind == other.kind and abs(self.position - other.position) <= self.error + other.error
 
 
 @dataclass(frozen=True, slots=True)
 class BracketedChange:
-    """Two neighbouring points of a line between which the straight rod changes its stability."""
+    """Two neighbouring points of a line with a change of stability of the straight rod in between."""
 
     low: float
     high: float
@@ -65,7 +65,7 @@ def place_of(change: LocatedChange | BracketedChange) -> float:
 
 
 class StoredChanges:
-    """Changes of the straight rod that a file stores for its lines over a parameter.
+    """Changes of the straight rod along lines over a parameter, as stored in a file.
 
     Files of spectra and modes have changes over F, with onsets of oscillation; files of limit cycles have
     Hopf points along any parameter. Both lie between points of lines.
@@ -135,6 +135,6 @@ class StoredChanges:
 
 
 def _within(point: LocatedChange, low: float, high: float) -> bool:
-    """Whether a change lies between two values, or on one of them within rounding."""
+    """Whether a change lies between two values, or on a value within rounding."""
     margin = max(point.error, SAME_PLACE * abs(point.position))
     return bool(low - margin <= point.position <= high + margin)

@@ -1,4 +1,4 @@
-"""Figures of result files: one module per task, and `draw`, which writes the figure of any task."""
+"""Figures of result files: a module per task, and `draw`, which writes the figure of any task."""
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
@@ -35,13 +35,13 @@ FIGURES: dict[str, Callable[[FigureRequest], str]] = {
     "criticality": draw_criticality,
     "branch": draw_branch,
 }
-"""Function of each task that writes its figure and returns a description of it."""
+"""Function of each task that writes the figure and returns a description."""
 
 
 PLAIN = Look()
 """Default appearance of figures."""
 OMITTED = {"missing": "are not computed", "failed": "failed"}
-"""Statuses of points that no figure shows, with words for their number."""
+"""Statuses of points absent from all figures, with words for the number."""
 
 
 def _styled(look: Look) -> AbstractContextManager[None]:
@@ -69,7 +69,7 @@ class Choices(TypedDict, total=False):
 
 
 def _drawn(request: FigureRequest) -> str:
-    """Writes the figure and returns its description; an arm has a map over its own quantities."""
+    """Writes the figure and returns a description; an arm has a map over the arm's quantities."""
     if can_draw(request):
         return draw_arm_map(request)
     listed = replace(request, views=[view.listed for view in request.views])
@@ -85,10 +85,10 @@ def draw(
     keep: Callable[[Figure], None] | None = None,
     **choices: Unpack[Choices],
 ) -> str:
-    """Draws the figure of one or several files into `output`; returns a sentence about it.
+    """Draws the figure of a file, or of several files, into `output`; returns a sentence.
 
-    shapes: solves cycles whose shapes the file lacks. keep: receives the figure instead of a file. Raises
-    InputError if the files hold nothing that the figure can show.
+    shapes: solves cycles without stored shapes. keep: receives the figure instead of a file. Raises
+    InputError if the files hold nothing to show.
     """
     views = [views] if isinstance(views, View) else views
     if look.width and choices.get("what") == "animation":

@@ -41,7 +41,7 @@ MARKS = {
     "no_cycle_found": ("x", "no further cycle found"),
     "list_full": ("|", "last cycle stored"),
 }
-"""Marker and legend entry of a special point, by kind or, for an end, its reason; other ends have no
+"""Marker and legend entry of a special point, by kind or, for an end, by reason; further ends have no
 marker."""
 PREDICTED = (0, (4, 1, 1, 1))
 """Line style of the amplitude that the normal form predicts near a Hopf point."""
@@ -151,9 +151,9 @@ def _mark(upper: Axes, lower: Axes, curve: StoredBranch, marked: dict[str, Line2
 
 
 def _compare_prediction(axes: Axes, curves: list[StoredBranch], colours: Sequence[str], along: str) -> Line2D:
-    """Draws the cycles near Hopf points in units of a, and the law of the normal form, the same for all.
+    """Draws the cycles near Hopf points in units of a, and the common law of the normal form.
 
-    A branch is drawn to its first fold: the law does not describe cycles beyond it.
+    A branch is drawn to the first fold: the law does not describe cycles beyond.
     """
     nearest = []
     farthest = []

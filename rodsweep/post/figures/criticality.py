@@ -85,7 +85,7 @@ def _mark(axes: Axes, x: Array, values: Array, side: Array) -> list[Line2D]:
 
 
 def _map(view: View, points: PointMap, narrow: bool) -> Figure:
-    """Maps of the criticality of the first Hopf points and of their amplitude coefficients.
+    """Maps of the criticality of the first Hopf points and of the amplitude coefficients.
 
     narrow: whether the two maps are stacked.
     """

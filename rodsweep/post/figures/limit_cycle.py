@@ -1,4 +1,4 @@
-"""Figures of limit cycles: the figure that the user names, or that suits the content of the file."""
+"""Figures of limit cycles: the figure named by the user, or suited to the content of the file."""
 
 import numpy as np
 
@@ -17,11 +17,11 @@ from .layout.fitting import MAP_ASPECT, STRIP_ASPECT
 from .request import KINDS_OF_TASK, FigureRequest
 
 ALL_POINTS = {"amplitude": "amplitudes", "maps": "maps"}
-"""Figures that show every point of a file, with their names in a sentence."""
+"""Figures that show every point of a file, with names in a sentence."""
 NEEDS = {"cycle": SHAPES, "animation": SHAPES, "energy": ENERGIES}
 """Variables of a cycle that a figure needs."""
 FEW_POINT_FIGURES = {"cycle": draw_portrait, "energy": draw_energy, "transient": draw_transients}
-"""Functions of the figures that show a few points, chosen by the user or the first ones."""
+"""Functions of the figures of a few points, chosen by the user or the first points."""
 
 
 def draw_limit_cycle(request: FigureRequest) -> str:
@@ -43,7 +43,7 @@ def draw_limit_cycle(request: FigureRequest) -> str:
 
 
 def _with_needs(request: FigureRequest, name: str) -> View:
-    """The file with the variables that the figure needs; missing ones are solved if possible."""
+    """The file with the variables needed by the figure; missing variables are solved if possible."""
     view = request.views[0]
     needs = NEEDS.get(name, ())
     if request.shapes is None or all(variable in view.variables for variable in needs):

@@ -1,4 +1,4 @@
-"""Lists of points in figures: as a grid if they form one, else point after point."""
+"""Lists of points in figures: as a grid if possible, else point after point."""
 
 from dataclasses import replace
 
@@ -11,13 +11,13 @@ from ...model.units import compact
 from ...results.file.view import View
 
 BESIDE_POINTS = ("mode", "u", "crossing")
-"""Coordinates of other dimensions, which may have the same length as the list."""
+"""Coordinates of further dimensions, possibly as long as the list."""
 FEW_POINTS = 12
 """Largest number of points of a list that are all labelled on an axis."""
 
 
 def as_grid(view: View) -> View:
-    """The grid formed by the points of a list in any order; the view itself if they form none.
+    """The grid formed by the points of a list in any order; the view itself without such a grid.
 
     The grid has at most two varied parameters, with each combination once.
     """
@@ -43,7 +43,7 @@ def as_grid(view: View) -> View:
 
 
 def shared_parameters(view: View) -> dict[str, float]:
-    """Parameters that all points share, with values."""
+    """Common parameters of all points, with values."""
     columns = view.point_columns
     return {name: float(column[0]) for name, column in columns.items() if len(np.unique(column)) == 1}
 

@@ -1,4 +1,4 @@
-"""The leading mode, its deformations and its adjoint, as in the paper's Figs. 7 to 9."""
+"""The leading mode, the deformations and the adjoint, as in the paper's Figs. 7 to 9."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -20,7 +20,7 @@ PANELS = (
 
 
 def draw_modes(request: FigureRequest) -> str:
-    """Draws a row of panels for each point: the leading mode, its deformations and its adjoint."""
+    """Draws a row of panels for each point: the leading mode, the deformations and the adjoint."""
     view = request.only_view()
     v = view.variables
     growth = v["growth_rate"][..., 0].ravel()

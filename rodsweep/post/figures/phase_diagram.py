@@ -74,14 +74,14 @@ LEGEND = {
     "both": "both stable",
     "neither_known": "no stable state known",
 }
-"""Legend entries of the stable states; other words are their own entries."""
+"""Legend entries of the stable states; unlisted words are entries as they stand."""
 MOTIONS = Palette("class", CLASSES, CLASS_COLOURS)
 """Palette of the behaviour of the straight rod."""
 STATES = Palette("stable_states", STABLE_STATES, STATE_COLOURS)
 """Palette of the stable states."""
 BESIDE_CRUSHING = 1 - np.linspace(0, 3e-3, 7)
-"""Values of F/k1 at which barriers separate colours. Curves of cycles end where F is within 1e-3 of k1, so
-that the barriers close the regions between them."""
+"""Values of F/k1 at which barriers separate colours. Curves of cycles end where F is within 1e-3 of k1; the
+barriers close the regions between the curves."""
 
 
 def draw_phase_diagram(request: FigureRequest) -> str:

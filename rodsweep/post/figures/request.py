@@ -16,7 +16,7 @@ from .layout.fitting import MIN_ASPECT, fit
 Shapes = Callable[[View, Sequence[int]], View]
 """Function from a file and points, numbered from 1, to the file with the shapes of their cycles."""
 Drawing = Figure
-"""Figure as seen by functions that draw into it: matplotlib's own class."""
+"""Figure in functions that draw into a figure: matplotlib's own class."""
 WIDTHS = {"single": 3.375, "double": 7.0}
 """Widths of the columns of a journal, in inches."""
 ROOTS = ("rightmost", "smallest", "all")
@@ -29,7 +29,7 @@ KINDS_OF_TASK = {
 KINDS = tuple(kind for kinds in KINDS_OF_TASK.values() for kind in kinds)
 """Kinds of figures of all tasks."""
 HEIGHT_POWER = 0.5
-"""Exponent of the ratio of widths by which the height shrinks; below 1, because the text keeps its size."""
+"""Exponent of the ratio of widths by which the height shrinks; below 1, because the text keeps the size."""
 INCH = 0.0254
 """Length of an inch, in metres."""
 NARROW = 5.0
@@ -42,10 +42,10 @@ WIDEST = 20.0
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """Appearance of a figure, whatever it shows.
+    """Appearance of a figure, independent of the content.
 
-    title: whether the figure has the title of the config. width: one of WIDTHS, or a length with its unit;
-    None for the width that the figure needs. style: a style of matplotlib, by name or file. Raises InputError
+    title: whether the figure has the title of the config. width: a name from WIDTHS, or a length with a unit;
+    None for the natural width of the figure. style: a style of matplotlib, by name or file. Raises InputError
     for any other width.
     """
 
@@ -53,7 +53,7 @@ class Look:
     width: str | None = None
     style: str | None = None
     inches: float | None = field(init=False)
-    """The width in inches; None for the width that the figure needs."""
+    """The width in inches; None for the natural width of the figure."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "inches", None if self.width is None else _inches(self.width))
@@ -64,7 +64,7 @@ class Look:
         return self.inches is not None and self.inches < NARROW
 
     def fit(self, figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
-        """Gives a figure its width, and fits its content."""
+        """Gives a figure the width, and fits the content."""
         if self.inches is not None:
             across, down = figure.get_size_inches()
             figure.set_size_inches(self.inches, down * min(1.0, self.inches / across) ** HEIGHT_POWER)

@@ -47,7 +47,7 @@ def _number(name: str, value: float | str) -> float:
 
 
 def _cut(view: View, name: str, value: float) -> View:
-    """Points at one value of a parameter or quantity; raises InputError if there is none."""
+    """Points at a value of a parameter or quantity; raises InputError if no point has the value."""
     listed = {} if view.is_grid else {n: v for n, v in view.quantities.items() if np.ndim(v)}
     axes = view.over or (*view.parameters, *listed)
     if name not in axes:
@@ -70,7 +70,7 @@ def _cut(view: View, name: str, value: float) -> View:
 
 
 def _grid_at(view: View, name: str, chosen: np.ndarray) -> View:
-    """A grid restricted to the chosen places of one axis, a mask of its shape."""
+    """A grid restricted to the chosen places of an axis, a mask of the axis."""
     names = view.over or view.parameters
     shape = view.variables["status"].shape
     axis = names.index(name)

@@ -1,4 +1,4 @@
-"""A branch as it is drawn: a curve through its stored cycles that is smooth between its corners."""
+"""A drawn branch: a curve through the stored cycles, smooth between corners."""
 
 from itertools import pairwise
 
@@ -23,15 +23,15 @@ POWERS = (1.0, 0.5)
 """Powers of chords whose sums are tried as variable of the curve. The length (1) is best on most branches,
 the sum of roots (0.5) where the steps grow at a bend."""
 SLOPE_CYCLES = 5
-"""Number of cycles in the polynomial that gives the curve its slope at the middle cycle."""
+"""Number of cycles in the polynomial for the slope of the curve at the middle cycle."""
 CORNER_CYCLES = 4
 """Number of cycles on each side of a corner whose cubics locate the corner; fewer at an end of the branch."""
 MIN_ANGLE = 0.25
 """Smallest jump of slope drawn as a corner, in units of the steepest chord beside the corner. A smaller jump
 moves the curve by a few per cent of the chord at most."""
 ANGLE_RATIO = 3.0
-"""Smallest ratio of the jump of slope in y to those of parameter and period, which are smooth at a corner.
-At a sharp bend that the cycles do not resolve all three jumps are alike."""
+"""Smallest ratio of the jump of slope in y to the jumps in parameter and period, which are smooth at a
+corner. At a sharp bend that the cycles do not resolve all three jumps are alike."""
 COINCIDENT = 1e-9
 """Rounding, in units of the branch's extent (of distances) and of a step (of imaginary parts of roots)."""
 PIECES = 12
@@ -65,8 +65,8 @@ def through_cycles(curve: StoredBranch) -> tuple[Array, Array, Array, NDArray[np
 def _smooth(own: Array, extent: Array) -> Array:
     """Vertices of a smooth curve through cycles, both (n, 3), with PIECES pieces between two cycles.
 
-    At a Hopf point a branch is its own mirror image, y to -y: beyond it the cycles are mirrored, so that the
-    curve has the square root there.
+    At a Hopf point a branch is symmetric under the change from y to -y. The cycles are therefore mirrored
+    beyond the point, which gives the curve the square root.
     """
     before, behind = (some * IMAGE for some in (own[MIRRORED:0:-1], own[-2 : -MIRRORED - 2 : -1]))
     first = len(before) if own[0, 1] == 0 else 0

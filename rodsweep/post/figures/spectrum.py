@@ -75,7 +75,7 @@ def _several(request: FigureRequest) -> str:
 
 
 def _line_of(given: View, request: FigureRequest) -> View:
-    """One of several files to draw; raises InputError unless it is a line of spectra."""
+    """A file of several to draw; raises InputError unless the file is a line of spectra."""
     if given.task != request.views[0].task:
         raise InputError(
             f"{given.path} is of the task {given.task}; only lines of spectra make one figure together"
@@ -92,7 +92,7 @@ def _line_of(given: View, request: FigureRequest) -> View:
 
 
 def without_infinite(view: View) -> View:
-    """The view without values of axes that are inf, which have no place on an axis."""
+    """The view without infinite values of axes, which have no place in a figure."""
     variables = dict(view.variables)
     for place, (name, values) in enumerate(view.axes.items()):
         finite = np.isfinite(values)

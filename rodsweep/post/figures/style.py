@@ -36,7 +36,7 @@ IN_ONE_DECADE = 6
 MIN_POWER = 2
 """Smallest exponent of a power of ten written as a power."""
 PLAIN_BELOW = 4
-"""Exponent of ten below which other numbers are written without a power of ten."""
+"""Exponent of ten below which numbers are written without a power of ten."""
 STYLE = {
     "font.size": 10,
     "axes.titlesize": 9,
@@ -89,17 +89,17 @@ def number(value: float, digits: int = 6) -> str:
 
 
 def parameter_text(parameters: Mapping[str, float], digits: int = 6) -> str:
-    """Parameters with values, on a single line."""
+    """Parameters with values, as a line of text."""
     return ", ".join(f"${SYMBOLS[name]} = {number(value, digits)}$" for name, value in parameters.items())
 
 
 def fixed_text(view: View, *drawn: str) -> str:
-    """Parameters that are not along an axis of the figure, with values."""
+    """Parameters away from the axes of the figure, with values."""
     return parameter_text({name: values[0] for name, values in view.axes.items() if name not in drawn})
 
 
 def long_axes(view: View) -> list[str]:
-    """Parameters of a grid with several values; raises InputError unless there are one or two."""
+    """Parameters of a grid with several values; raises InputError unless one or two are found."""
     long = [name for name, values in view.axes.items() if len(values) > 1]
     if not 1 <= len(long) <= 2:
         raise InputError(
@@ -110,7 +110,7 @@ def long_axes(view: View) -> list[str]:
 
 
 def require(view: View, available: object, what: str) -> None:
-    """Raises InputError, which names the missing `what`, unless anything is available to draw."""
+    """Raises InputError, naming the missing `what`, unless anything is available to draw."""
     if not available:
         raise InputError(f"{view.path} holds no {what} that could be drawn")
 
@@ -133,7 +133,7 @@ def is_logarithmic(values: np.ndarray) -> bool:
 
 
 def scale(axes: Axes, which: Literal["x", "y"], values: np.ndarray) -> None:
-    """Makes an axis logarithmic if its values, shape (n,), are, with labels that do not overlap."""
+    """Makes an axis logarithmic for logarithmic values, shape (n,), with labels that do not overlap."""
     if not is_logarithmic(values):
         return
     axes.set(**{f"{which}scale": "log"})

@@ -1,4 +1,4 @@
-"""Summary printed by `rodsweep show`: the answer, its reliability, all other results, and the provenance."""
+"""Summary printed by `rodsweep show`: the answer, the reliability, further results, and the provenance."""
 
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -46,8 +46,8 @@ NOUNS = {"thresholds": "rod", "criticality": "rod", "branch": "rod", "phase_diag
 def show_summary(view: View, every_status: bool = False) -> None:
     """Prints a summary of a result file; every_status: whether statuses of no point are listed as well.
 
-    The answer comes first, for an arm in its own units as well. Then follow the reliability of the answer,
-    other results, and last the provenance.
+    The answer comes first, for an arm also in the arm's units. Then follow the reliability of the answer,
+    further results, and last the provenance.
     """
     view = view.listed
     console = Console(highlight=False, markup=False)
@@ -130,7 +130,7 @@ def _origin(a: dict[str, Any]) -> list[str]:
 
 
 def _when(a: dict[str, Any]) -> str:
-    """Period in which a file was computed; for a shard, also whether its run is complete."""
+    """Period in which a file was computed; for a shard, also whether the run is complete."""
     if "started" not in a:
         return "not finished yet"
     if "finished" in a:
@@ -140,7 +140,7 @@ def _when(a: dict[str, Any]) -> str:
 
 
 def _ranks(a: dict[str, Any], noun: str) -> list[str]:
-    """Lines about the ranks of the last run: their busy time and their numbers of points."""
+    """Lines about the ranks of the last run: busy time and numbers of points."""
     if RANK_SHARES[0] not in a:
         return []
     points, busy, idle = (np.atleast_1d(a[name]) for name in RANK_SHARES)

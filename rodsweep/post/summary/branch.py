@@ -34,7 +34,7 @@ SPECIAL_WORDS = {
     "symmetry_breaking": "symmetry breaking",
     "period_doubling": "period doubling",
 }
-"""Words for special points at which a branch changes; Hopf points and ends have their own sentences."""
+"""Words for special points at which a branch changes; Hopf points and ends have separate sentences."""
 ENDS = {
     "left_the_model": "where h1 = 0",
     "range_end": "the end of the range",
@@ -122,7 +122,7 @@ def _ends(curve: StoredBranch, along: str) -> str:
 
 
 def coexistence(view: View, rod: int) -> list[Range]:
-    """Ranges of the parameter in which both a cycle on a branch and the straight rod are stable."""
+    """Ranges of the parameter with a stable cycle on a branch and a stable straight rod."""
     stable = union(piece for curve in curves_of(view, rod) for piece in curve.stable_ranges)
     return intersection(stable, straight_ranges(view, rod, ends_of(view))[0])
 
@@ -177,7 +177,7 @@ def _special_lines(view: View, rods: np.ndarray) -> Iterator[str]:
 
 
 def _stopped(view: View, rods: np.ndarray) -> Iterator[str]:
-    """Yields lines about branches that could not be followed to their end, some with their rod."""
+    """Yields lines about branches that could not be followed to the end, some with the rod's parameters."""
     along = followed_parameter(view)
     ends = [
         (int(rod), number, curve.special[-1])
@@ -204,7 +204,7 @@ def _coexistence(view: View, rods: np.ndarray) -> Iterator[str]:
 def _rods_with(
     view: View, rods: list[int], words: str, ranges_of: Callable[[View, int], list[Range]]
 ) -> Iterator[str]:
-    """Yields the number of rods with a property, and its ranges of the parameter for some rods."""
+    """Yields the number of rods with a property, and ranges of the parameter for some rods."""
     along = followed_parameter(view)
     having = [(rod, ranges) for rod in rods if (ranges := ranges_of(view, rod))]
     yield f"{words} at {some_of(len(having), len(rods), 'rod')}"

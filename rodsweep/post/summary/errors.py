@@ -36,11 +36,11 @@ ABSOLUTE = {
 EXTREMA = ("tip_x_min", "tip_x_max", "tip_y_min", "tip_theta_max", "least_stretch")
 """Variables of a cycle whose error is stored in units of tip_y_max."""
 BETWEEN_NODES = 1e-3
-"""Largest dip of h1 between nodes below its value at nodes, in units of the distance from 1."""
+"""Largest dip of h1 between nodes below the value at nodes, in units of the distance from 1."""
 POWERS = ("injection_mean", "injection_rms", "dissipation_mean", "dissipation_rms")
-"""Powers, whose error follows from those of amplitude, period and energy balance."""
+"""Powers; the error of a power follows from the errors of amplitude, period and energy balance."""
 MIN_KNOWN = 0.5
-"""Relative error of a time from which on none of its digits is known."""
+"""Relative error of a time from which on no digit is known."""
 STRAIGHT_EIGENVALUE = ("linear_growth_rate", "linear_frequency")
 """Variables with the eigenvalue of the straight rod."""
 

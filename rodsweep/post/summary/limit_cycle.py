@@ -16,7 +16,7 @@ from .stability import stability_lines
 from .summary_lines import SummaryLines, in_brackets, region, varied
 
 OUTCOMES = {"cycle": "beats", "straight": "stays straight"}
-"""Words for outcomes; other statuses are their own words."""
+"""Words for outcomes; unlisted statuses are words already."""
 
 
 def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
@@ -123,7 +123,7 @@ def _second_state_lines(v: Mapping[str, np.ndarray], done: np.ndarray) -> list[s
 
 
 def _at(some: np.ndarray, done: np.ndarray) -> str:
-    """Clause on the number of chosen points among those that are `done`, masks of one shape; may be empty."""
+    """Clause on the number of chosen points among the points in `done`, masks of equal shape, or empty."""
     return "" if done.sum() == 1 else f" at {some_of(some.sum(), done.sum(), 'point')}"
 
 

@@ -1,7 +1,7 @@
-"""Numbers with errors, and ranges of numbers, as `rodsweep show` writes them.
+"""Numbers with errors, and ranges of numbers, as written by `rodsweep show`.
 
-If a number has an error beside it, the true value lies within the error, which includes the rounding of the
-number. In a range, which has no errors, the error is at most half a unit of the last digit.
+The error beside a number includes the rounding of the number: the true value lies within the error. In a
+range, without errors, the error is at most half a unit of the last digit.
 """
 
 from collections.abc import Mapping, Sequence
@@ -10,7 +10,7 @@ from math import ceil, floor, isfinite, isnan, log10
 import numpy as np
 
 MAX_DIGITS = 15
-"""Number of digits of a number whose error is below them."""
+"""Number of digits of a number with a smaller error."""
 RANGE_DIGITS = 6
 """Largest number of digits of the ends of a range; larger errors leave fewer."""
 END_DIGITS = 9
@@ -26,9 +26,9 @@ NONE = "none"
 
 
 def span(values: np.ndarray, errors: np.ndarray | None = None) -> str:
-    """Range of the finite values, of any shape, as text; NONE if no value is finite.
+    """Range of the finite values, of any shape, as text; NONE without a finite value.
 
-    errors: absolute errors of the same shape, which limit the number of digits.
+    errors: absolute errors, of the shape of the values, which limit the number of digits.
     """
     values = np.asarray(values, dtype=float)
     is_finite = np.isfinite(values)
@@ -52,9 +52,9 @@ def listed(ranges: Sequence[tuple[float, float]], errors: Mapping[float, float])
 
 
 def to_error(value: float, error: float) -> str:
-    """A number to the first digit that its absolute error reaches, with the error.
+    """A number to the first digit reached by the absolute error, with the error.
 
-    The number has six digits if the error is unknown. NaN becomes NONE, and 0 has no error.
+    The number has six digits if the error is unknown. NaN becomes NONE, and 0 is written without error.
     """
     value = float(value)
     error = float(error)
@@ -69,7 +69,7 @@ def to_error(value: float, error: float) -> str:
 
 
 def stated_error(value: float, error: float) -> tuple[str, float]:
-    """(number to the first digit that its error reaches, error including the rounding of the number)."""
+    """(number to the first digit reached by the error, error including the rounding of the number)."""
     text = _rounded(value, error / 10, MAX_DIGITS)
     return text, error + abs(float(text) - value)
 
@@ -88,7 +88,7 @@ def rounded(value: float, error: float, most: int = RANGE_DIGITS) -> str:
 
 
 def _rounded(value: float, error: float, most: int) -> str:
-    """A finite number with digits larger than its error: at least one digit, at most `most`."""
+    """A finite number with digits larger than the error: at least one digit, at most `most`."""
     if value == 0:
         return "0"
     size = floor(log10(abs(value)))

@@ -12,7 +12,7 @@ from .arm.arm import thresholds_of_arm
 from .ranges import error_text, stated_error
 
 FEW_LINES = 3
-"""Largest number of lines whose thresholds are listed individually."""
+"""Largest number of lines with individually listed thresholds."""
 OVER_FORCE = {
     "onset": "F* (straight rod starts to oscillate)",
     "hopf": "F** (straight rod starts to beat)",
@@ -62,7 +62,7 @@ def names_of(lines: Sequence[ParameterLine]) -> list[str]:
 
 
 def _positions(found: Mapping[int, list[Threshold]], names: list[str], along: str) -> str:
-    """Thresholds on the named lines that have some: one by one for a few lines, else their range."""
+    """Thresholds on named lines: individually for a few lines, else as a range."""
     points = [point for line in found.values() for point in line]
     located = [point for point in points if isinstance(point, LocatedChange)]
     stated = [stated_error(point.position, point.error)[1] for point in located]
@@ -93,7 +93,7 @@ def _thresholds_of_line(points: Sequence[Threshold], name: str) -> str:
 
 
 def _text(threshold: Threshold) -> str:
-    """Position of a threshold to the first digit that its error reaches, or the points that bracket it."""
+    """Position of a threshold to the first digit reached by the error, or the two bracketing points."""
     if isinstance(threshold, BracketedChange):
         return f"between {threshold.low:.6g} and {threshold.high:.6g}"
     return stated_error(threshold.position, threshold.error)[0]

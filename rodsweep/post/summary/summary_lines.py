@@ -1,4 +1,4 @@
-"""Lines of the summary of a task, in the order in which `rodsweep show` prints them."""
+"""Lines of the summary of a task, in the order of printing."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,10 +11,10 @@ from .ranges import span
 
 @dataclass(frozen=True, slots=True)
 class SummaryLines:
-    """Sentences about one result.
+    """Sentences about a result.
 
-    answer: the results asked for. trust: their accuracy and proved completeness. details: other results.
-    of_arm: parts of the answer in the units of an arm.
+    answer: the results asked for. trust: accuracy and proved completeness. details: further results. of_arm:
+    parts of the answer in the units of an arm.
     """
 
     answer: Sequence[str]

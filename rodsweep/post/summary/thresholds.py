@@ -17,7 +17,7 @@ EVENTS = {
     "restabilization": ("stable again", "restabilization_frequency", "frequency", ANGULAR),
     "onset": ("F* (straight rod starts to oscillate)", "onset_growth_rate", "growth rate", "1/tau2"),
 }
-"""(words for the first crossing of a kind, its second variable, words and unit of this variable)."""
+"""(words for the first crossing of a kind, second variable, words and unit of the second variable)."""
 
 
 def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
@@ -157,6 +157,6 @@ def cost_lines(view: View, done: np.ndarray) -> list[str]:
 
 
 def spans(values: np.ndarray, noun: str) -> str:
-    """Range of whole numbers, (n,), with the noun that they count."""
+    """Range of whole numbers, (n,), with the counted noun."""
     text = span(values)
     return f"{text} {noun if text == '1' else plural(noun)}"

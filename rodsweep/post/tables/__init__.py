@@ -69,11 +69,11 @@ class Tables:
         return Table(name, tuple(by_name[each] for each in columns), empty, others)
 
     def items(self, name: str) -> tuple[Column, ...]:
-        """Columns of a list without those of its points."""
+        """Columns of a list, without the columns of points."""
         return tuple(self._rows(name)[1])
 
     def _rows(self, name: str) -> tuple[NDArray[np.int64] | None, list[Column]]:
-        """(point of every row of a table, or None if rows have none; columns of its items)."""
+        """(point of every row of a table, or None for rows without points; columns of the items)."""
         if name == POINTS:
             return np.arange(self.view.variables["status"].size), []
         if name == BRANCHES:

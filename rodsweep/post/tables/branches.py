@@ -1,4 +1,4 @@
-"""Table of branches: cycles in order, with special points between them, marked in a column."""
+"""Table of branches: cycles in order, special points in between, and a column that marks them."""
 
 from dataclasses import replace
 

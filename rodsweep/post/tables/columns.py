@@ -43,7 +43,7 @@ class Column:
         return "error" in self.name or self.name == SECONDS.name
 
     def rows(self, which: NDArray[np.int64] | slice) -> "Column":
-        """Some rows of the column, in the order of their indices; index -1 gives a missing value."""
+        """Some rows of the column, in the order of the indices; index -1 gives a missing value."""
         if isinstance(which, slice):
             return replace(self, values=self.values[which], absent=self.absent[which])
         nothing = np.zeros(1, self.values.dtype)
@@ -52,7 +52,7 @@ class Column:
         return replace(self, values=values, absent=absent)
 
     def text(self) -> list[str]:
-        """Values as text for CSV: words, or the shortest decimal number that reads back as the same value."""
+        """Values as text for CSV: words, or the shortest decimal number that reads back equal."""
         if self.is_boolean:
             texts = [BOOLEAN_TEXTS[int(value)] for value in self.values]
         elif self.words:
@@ -91,7 +91,7 @@ def column_of(variable: Variable, values: NDArray, words: Mapping[int, str] | No
 
 
 def coordinate(name: str, unit: str, meaning: str, values: NDArray) -> Column:
-    """Column of a coordinate, (rows,); it is missing (NaN) for arms that no rod covers."""
+    """Column of a coordinate, (rows,), missing (NaN) for arms without a rod."""
     return Column(name, unit, meaning, values, np.isnan(values.astype(float)), given=True)
 
 
@@ -115,5 +115,5 @@ def absent_in(variable: Variable, values: NDArray) -> NDArray[np.bool_]:
 
 
 def tells_of_items(variable: Variable) -> bool:
-    """Whether a value of a variable shows that an item exists; fill values that are valid values do not."""
+    """Whether a value of a variable shows that an item exists; valid values as fill values do not."""
     return variable.dtype.startswith("<f") or bool(variable.flags) or variable.fill == -1

@@ -1,7 +1,7 @@
-"""Tables of a result: its points, and a table for each of its lists, found from the dimensions.
+"""Tables of a result: points, and a table for each list, found from the dimensions.
 
-A table has a row for each item, with the parameters and the status of its point. `grid` is the grid of a
-phase diagram, in which each point of the file is a row of the diagram.
+A table has a row for each item, with the parameters and the status of a point. `grid` is the grid of a phase
+diagram, in which each point of the file is a row of the diagram.
 """
 
 import json
@@ -41,7 +41,7 @@ NAMES = {
     ("shape", "u"): "shapes",
     ("transient",): "motion",
 }
-"""Names of tables, by their dimensions besides those of the points."""
+"""Names of tables, by dimensions without the dimensions of the points."""
 FIRST = {
     "spectrum": "modes",
     "modes": "modes",
@@ -58,8 +58,8 @@ FIRST = {
 class Contents:
     """Variables of a result, by table.
 
-    of_points: variables of a point, for `points` and as further columns of other tables. joint: names of
-    tables that all points together give, whose rows have no point.
+    of_points: variables of a point, for `points` and as further columns of all tables. joint: names of tables
+    given by all points together, with rows that have no point.
     """
 
     of_points: tuple[Variable, ...]
@@ -101,7 +101,7 @@ def contents_of(view: View) -> Contents:
 
 
 def name_of(dimensions: tuple[str, ...]) -> str:
-    """Name of the table with the given dimensions besides those of the points."""
+    """Name of a table, by dimensions without the dimensions of the points."""
     return GRID if dimensions[0] in PARAMETERS else NAMES[dimensions]
 
 

@@ -1,4 +1,4 @@
-"""Rows of the tables of a result: one for each item, with the coordinates of its point."""
+"""Rows of the tables of a result: a row for each item, with the coordinates of a point."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -19,9 +19,9 @@ Rows = tuple[NDArray[np.int64], ...]
 
 
 def item_rows(view: View, variables: Sequence[Variable], joint: bool) -> Rows:
-    """Rows of a list: its items at every point; joint: whether the items belong to all points together.
+    """Rows of a list: the items at every point; joint: whether the items belong to all points together.
 
-    An item exists if one of its variables has a value.
+    An item exists if some variable has a value.
     """
     points = 1 if joint else view.variables["status"].size
     exists: NDArray[np.bool_] = np.zeros((), bool)
@@ -51,7 +51,7 @@ def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]
 
 
 def list_columns(view: View, variables: Sequence[Variable], rows: Rows, joint: bool) -> Iterator[Column]:
-    """Yields columns of the items of a list: their places, then their variables."""
+    """Yields columns of the items of a list: places, then variables."""
     names = variables[0].extra
     for name, places in zip(names, rows[1:], strict=True):
         yield coordinate(name, *DIMENSIONS[name], view.variables[name][places])
@@ -73,7 +73,7 @@ def si_columns(
 ) -> Iterator[Column]:
     """Yields SI columns for the variables of a list that an arm's file stores without dimension only.
 
-    points: of the rows, (rows,); None if rows have no point, for which all points must have the same arm.
+    points: of the rows, (rows,); None for rows without points, which need the same arm at all points.
     """
     if not view.quantities:
         return
@@ -109,7 +109,7 @@ def quantity_column(name: str, values: NDArray) -> Column:
 
 
 def _is_of_points(view: View, variable: Variable) -> bool:
-    """Whether a variable of a list has the dimensions of the points, which its declaration omits."""
+    """Whether a variable of a list has the dimensions of the points, which the declaration omits."""
     return variable.extra[0] not in ("point", *view.parameters)
 
 

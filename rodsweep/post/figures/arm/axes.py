@@ -1,7 +1,7 @@
 """A second scale in SI units beside the axis of a follower force, in figures of an arm.
 
-If the file has a single arm, F corresponds to one pressure or force at the tip, so that a linear or
-logarithmic axis of F gets a second scale on the opposite side.
+For a file with a single arm, F corresponds to a pressure or a force at the tip. A linear or logarithmic axis
+of F then gets a second scale on the opposite side.
 """
 
 from collections.abc import Sequence
@@ -54,7 +54,7 @@ def _outermost(axes: Axes, which: str) -> Axes:
 
 
 def _add(axes: Axes, which: str, unit: float, load: str) -> None:
-    """Adds a scale opposite to an axis; its numbers are those of the axis times `unit`."""
+    """Adds a scale opposite to an axis, with the numbers of the axis times `unit`."""
     symbol = UNITS[load][0]
     word = LOAD_WORDS[load]
     largest = unit * max(map(abs, getattr(axes, f"get_{which}lim")()))

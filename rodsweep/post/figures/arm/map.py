@@ -39,12 +39,12 @@ HATCHES: tuple[tuple[str, int, str, dict[str, Any]], ...] = (
     ("status", NO_FLUTTER, "no flutter", {"fc": "0.75", "hatch": ""}),
     ("status", NO_WALL, "no wall", {"fc": "0.45", "hatch": ""}),
 )
-"""Covered cells: (variable, its value, legend entry, look); later entries lie above earlier ones."""
+"""Covered cells: (variable, value, legend entry, look); later entries lie above earlier ones."""
 DRAG = "drag"
 BAND_OPACITY = 0.25
 """Opacity of the band between the smallest and the largest number over the drags."""
 EMPTY_LOOK: dict[str, Any] = {"fc": "#E8EDF2"}
-"""Look of cells whose rod has no number, such as a rod without flutter."""
+"""Look of cells with a rod but no number, such as a rod without flutter."""
 HATCH_COLOUR = "0.35"
 
 
@@ -87,7 +87,7 @@ def _unique_entries(handles: Sequence[Artist]) -> list[Artist]:
 
 
 def can_draw(request: FigureRequest) -> bool:
-    """Whether the figure is one over an arm's quantities: the task has one, and no other is asked for."""
+    """Whether the figure is a map over an arm's quantities: no other figure is asked for."""
     view = request.views[0]
     chosen = request.what not in (None, *MAPS) or request.points or request.roots
     return bool(view.over) and view.task in PANELS and not chosen
@@ -197,7 +197,7 @@ def _cover(axes: Axes, view: View, panel: Panel, names: tuple[str, str], place: 
 
 
 def _fixed(view: View, drawn: list[str]) -> str:
-    """Quantities that are not along an axis of the figure, with values."""
+    """Quantities away from the axes of the figure, with values."""
     texts = []
     for name, values in view.quantities.items():
         if name in drawn or name in ARM_UNITS:

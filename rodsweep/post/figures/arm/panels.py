@@ -12,10 +12,10 @@ from .quantities import in_typed
 
 @dataclass(frozen=True, slots=True)
 class Panel:
-    """A number at every point, with its label and unit.
+    """A number at every point, with label and unit.
 
     lines: lines drawn over a single axis, by legend entry, if there are more than the values. zero_label:
-    legend entry of the contour of a map on which the number is 0; empty for no contour.
+    legend entry of the zero contour of a map; empty for no contour.
     """
 
     label: str

@@ -15,7 +15,7 @@ from ....results.file.view import View
 from ...summary.arm.arm import word
 
 NO_BREAK = "\N{NO-BREAK SPACE}"
-"""Space between a number and its unit, at which no line of a figure breaks."""
+"""Space between a number and a unit, at which no line of a figure breaks."""
 
 SAME_NUMBER = 1e-9
 """Largest relative difference between a stored parameter and the same parameter computed from the arm
@@ -39,7 +39,7 @@ def quantity_text(view: View, name: str, value: float) -> str:
 
 
 def given_quantities(view: View) -> list[str]:
-    """Names of the quantities that define the arm of a file, without units that follow from them."""
+    """Names of the quantities that define the arm of a file, without derived units."""
     return [name for name in view.quantities if name not in (*ARM_UNITS, *RELATIVE)]
 
 

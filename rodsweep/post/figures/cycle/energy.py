@@ -21,7 +21,7 @@ RATE_MARKS = 24
 def draw_energy(view: View, points: Sequence[int], narrow: bool = False) -> tuple[Figure, str]:
     """Draws a column for each cycle: the energy U, injection and dissipation, their difference and dU/dt.
 
-    The marks are derivatives of the stored U, which are independent of the curve and must lie on it. narrow:
+    The marks are derivatives of the stored U. They are independent of the curve and must lie on it. narrow:
     whether the columns have little room.
     """
     selection = chosen_cycles(view, points, ENERGIES)

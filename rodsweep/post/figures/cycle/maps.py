@@ -45,7 +45,7 @@ STATUS_LOOKS = {
 }
 """Colour and hatching of cells without a cycle: greys, which the colour maps do not contain."""
 OTHER_LOOKS = (("#BFA893", "----"), ("#8F7A68", "oooo"))
-"""Looks of other statuses, in the order in which they appear."""
+"""Looks of unlisted statuses, in order of appearance."""
 PANEL_POINTS = 250
 """Width of a panel, in points of print."""
 MARKER_SIZES = 1.0, 4.0
@@ -58,8 +58,7 @@ QUANTITIES = (
     ("period", "viridis", True),
     ("tip_y_max", "plasma", False),
 )
-"""(variable, colour map, whether its colours are logarithmic if the values span more than a decade) by
-panel."""
+"""(variable, colour map, whether colours are logarithmic for values over more than a decade) by panel."""
 
 
 def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
@@ -101,7 +100,7 @@ def _shared(view: View, points: PointMap, in_si: bool) -> str:
 
 
 def map_panels(count: int, narrow: bool) -> tuple[Figure, list[Axes]]:
-    """Figure with panels that share their axes: side by side, or if narrow stacked."""
+    """Figure with panels that share axes: side by side, or if narrow stacked."""
     apart = ConstrainedLayoutEngine(
         wspace=0.0 if narrow else 0.06
     )  # room for the label of the first colour bar
@@ -111,7 +110,7 @@ def map_panels(count: int, narrow: bool) -> tuple[Figure, list[Axes]]:
 
 
 def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
-    """Sets scales and labels of panels that share their axes; inner panels get no labels."""
+    """Sets scales and labels of panels that share axes; inner panels get no labels."""
     for axes in panels:
         scale(axes, "x", points.x)
         scale(axes, "y", points.y)

@@ -87,7 +87,7 @@ def in_its_scale(values: Array) -> tuple[Array, Callable[[Array], Array]]:
 
 
 def cell_edges(values: Array) -> Array:
-    """Edges, (n + 1,), of cells around increasing values, (n,), half-way between them on their scale."""
+    """Edges, (n + 1,), of cells around increasing values, (n,), half-way on the scale of the axis."""
     centres, back = in_its_scale(values)
     inner = (centres[1:] + centres[:-1]) / 2
     return back(np.concatenate(([2 * centres[0] - inner[0]], inner, [2 * centres[-1] - inner[-1]])))

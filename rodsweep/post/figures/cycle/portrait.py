@@ -1,6 +1,6 @@
 """Portrait of the beating arm, as in the paper's Fig. 5: shapes through the cycle, and the tip in time.
 
-The motion of the tip is drawn from its start if the file has it, so that it shows how the cycle emerges;
+The motion of the tip is drawn from the start, to show how the cycle emerges, if the file has the start;
 otherwise over two periods.
 """
 
@@ -25,7 +25,7 @@ from .selection import SHAPES, StoredCycle, chosen_cycles
 from .transient import draw_emergence, label_time, label_tip
 
 MAX_SHAPES = 12
-"""Largest number of shapes of a single cycle that a reader can distinguish."""
+"""Largest number of shapes that a reader can distinguish."""
 ARROW = 0.14
 """Length of the arrow of the force, in L."""
 WALL_DEPTH = 0.05
@@ -37,7 +37,7 @@ MARGIN = 0.04
 TIP_PERIODS = 2
 """Duration of the drawn motion of the tip, in periods of the slowest cycle."""
 FEW_SAMPLES = 48
-"""With fewer samples than this number, the samples are marked on the curve."""
+"""Number of samples below which the samples are marked on the curve."""
 SHAPES_WIDTH = 3.2
 """Width of a panel with shapes, in inches."""
 TIP_HEIGHT = 1.0
@@ -90,10 +90,10 @@ def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tu
 def _panels(
     cycles: Sequence[StoredCycle], narrow: bool
 ) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
-    """(figure, a panel for the shapes of each cycle, two panels for its tip).
+    """(figure, a panel for the shapes of each cycle, two panels for the tip).
 
     The panels of the tip lie beside the shapes of a single cycle, and below otherwise. The panels with shapes
-    have the aspect ratio of their content, so that no blank space remains.
+    have the aspect ratio of the content, without blank space.
     """
     count = len(cycles)
     (left, right), (low, high) = region(cycles)

@@ -29,17 +29,17 @@ ENERGIES = ("energy", "injection", "dissipation")
 TRACE = ("transient_time", "transient_x", "transient_y")
 """Variables of the motion from its start."""
 OPTIONS = dict.fromkeys(SHAPES, "shapes") | dict.fromkeys(TRACE, "transient")
-"""Option that stores a variable; all other variables over a period are stored by `samples`."""
+"""Option that stores a variable; unlisted variables over a period are stored by `samples`."""
 
 
 @dataclass(frozen=True, slots=True)
 class StoredCycle:
-    """A point of a file: its parameters, its period (NaN without a cycle), and its variables in `units`."""
+    """A point of a file: parameters, period (NaN without a cycle), and variables in `units`."""
 
     number: int
     """Number of the point in the file, from 1."""
     label: str
-    """Parameters that distinguish the cycle from the other cycles of the figure."""
+    """Parameters that distinguish the cycle within the figure."""
     parameters: dict[str, float]
     period: float
     values: dict[str, Array]
@@ -56,7 +56,7 @@ class StoredCycle:
 
     @property
     def period_text(self) -> str:
-        """The period in TeX, with the digits that its error allows; a line may break after the T."""
+        """The period in TeX, to the digits of the error; a line may break after the T."""
         if self.units.in_si:
             return f"$T$ = {self.units.time_text(self.period)}"
         return self._period(self.period, r"\tau_2", r"T\,")
@@ -184,22 +184,22 @@ def _refuse_bad_points(view: View, points: Sequence[int]) -> None:
 
 
 def _values(view: View, number: int) -> dict[str, Array]:
-    """Variables of a point, each in its shape at a point."""
+    """Variables of a point, in the shape at a point."""
     of_point = view.of_point(number - 1).items()
     return {name: values for name, values in of_point if name not in (*view.parameters, "point")}
 
 
 def shared_and_own(parameters: Sequence[dict[str, float]]) -> tuple[str, list[str]]:
-    """(parameters that all share, parameters that distinguish each), as text."""
+    """(common parameters, parameters that distinguish each), as text."""
     shared = {n: v for n, v in parameters[0].items() if all(other[n] == v for other in parameters)}
     own = [parameter_text({n: v for n, v in each.items() if n not in shared}) for each in parameters]
     return parameter_text(shared), own
 
 
 def shared_and_own_of_points(view: View, numbers: Sequence[int]) -> tuple[str, list[str]]:
-    """(parameters that points, numbered from 1, share, parameters that distinguish each), as text.
+    """(common parameters of points, numbered from 1, parameters that distinguish each), as text.
 
-    For an arm they are its quantities.
+    For an arm the text has the arm's quantities.
     """
     if all(name in view.quantities for name in REQUIRED):
         return shared_and_own_of_arms(view, numbers)
@@ -212,10 +212,10 @@ def shared_and_own_of_points(view: View, numbers: Sequence[int]) -> tuple[str, l
 def shared_and_own_of_arms(
     view: View, numbers: Sequence[int], without: Collection[str] = ()
 ) -> tuple[str, list[str]]:
-    """(quantities that the arms at points, numbered from 1, share, quantities that distinguish each).
+    """(common quantities of the arms at points, numbered from 1, quantities that distinguish each).
 
     Both are text with values in the units typed by the user. without: quantities and parameters to leave out,
-    such as those along an axis of the figure.
+    such as the axes of the figure.
     """
     texts = []
     for number in numbers:

@@ -30,7 +30,7 @@ Factor = Any
 SI = ("m", "s", "J", "W")
 """SI units of length, time, energy and power."""
 REQUIRED = ("length", "tau2", "force_scale")
-"""Quantities of an arm from which its units follow."""
+"""Quantities of an arm from which all units follow."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,9 +122,9 @@ def units_of(view: View, numbers: Sequence[int]) -> list[CycleUnits]:
 
 
 def units_over(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> list[CycleUnits]:
-    """Units of the points of each file, by their indices: factors (n,), the same names in all files.
+    """Units of the points of each file, by index: factors (n,), with the same names in all files.
 
-    Dimensionless if one of the files has no arm.
+    Dimensionless if any file has no arm.
     """
     if not all(name in view.quantities for view in views for name in REQUIRED):
         return [PLAIN_UNITS] * len(views)

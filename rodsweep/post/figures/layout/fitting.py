@@ -19,7 +19,7 @@ MIN_ASPECT = 0.45
 """Smallest height of a panel, in units of the width; a flatter panel makes the figure grow, to keep curves
 legible."""
 MAP_ASPECT = 0.7
-"""Smallest aspect ratio of a map, whose slopes matter along both axes."""
+"""Smallest aspect ratio of a map, for which slopes matter along both axes."""
 STRIP_ASPECT = 0.25
 """Smallest aspect ratio of a curve in time, which is long and low and shares a figure with other panels."""
 TALLEST = 9.5
@@ -29,21 +29,21 @@ MAX_PASSES = 6
 MIN_HEIGHT = 0.45
 """Smallest height of a panel, in inches, at which the labels of two ticks fit above each other."""
 SPARE = 4.0
-"""Additional height, in inches, while texts are measured, so that panels do not vanish."""
+"""Additional height, in inches, while texts are measured, to keep panels from vanishing."""
 SLACK = 1.03
 """Additional factor on the height of a panel with equal scales. If height and width both just suffice, the
 layout alternates between them."""
 MARGIN = 0.04
 """Margin between text and the edge of the figure, in inches."""
 WORDS = re.compile(r"(?:\\.|\$(?:\\.|[^$\\])*\$|[^\s$]|\xa0)+")
-"""Words of a text. Mathematics between dollars belongs to its word, with its blanks; a no-break space joins a
-number and its unit."""
+"""Words of a text. Mathematics between dollars belongs to a word, blanks included; a no-break space joins a
+number and a unit."""
 
 
 def fit(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
-    """Lays a figure out so that nothing is cut or overlaps, and no panel is flatter than `min_aspect`.
+    """Lays a figure out: nothing is cut or overlaps, and no panel is flatter than `min_aspect`.
 
-    The figure keeps its width, and its height if the content fits.
+    The width of the figure stays, and the height if the content fits.
     """
     width, height = figure.get_size_inches()
     figure.set_size_inches(width, height + SPARE)
@@ -72,7 +72,7 @@ def _lay_out(figure: Figure) -> None:
 
 
 def break_lines(text: Text, room: float, upright: bool = False) -> bool:
-    """Breaks lines of a text at blanks so that none exceeds `room` pixels; returns whether the text changed.
+    """Breaks lines of a text at blanks to fit into `room` pixels; returns whether the text changed.
 
     upright: whether the text is rotated by 90 degrees.
     """
@@ -101,7 +101,7 @@ def break_lines(text: Text, room: float, upright: bool = False) -> bool:
 
 
 def _break_texts(figure: Figure) -> bool:
-    """Breaks headings and axis labels that are longer than their room; returns whether any changed."""
+    """Breaks headings and axis labels longer than the room; returns whether any changed."""
     margin = MARGIN * figure.dpi
     width = figure.bbox.width
     changed = [break_lines(heading, width - 2 * margin) for heading in figure.texts]
@@ -164,7 +164,7 @@ def _columns(legend: Legend) -> int:
 
 
 def _with_columns(figure: Figure, legend: Legend, columns: int) -> Legend:
-    """Replaces a legend by one with another number of columns."""
+    """Replaces a legend by a legend with the given number of columns."""
     texts = [text.get_text() for text in legend.get_texts()]
     handles = [handle for handle in legend.legend_handles if handle is not None]
     legend.remove()
@@ -174,13 +174,13 @@ def _with_columns(figure: Figure, legend: Legend, columns: int) -> Legend:
 
 
 def _shape(axes: Axes) -> float:
-    """Height divided by width of a panel with equal scales, which its data determine; 0 for other panels."""
+    """Height divided by width of a panel with equal scales, given by the data; 0 for other panels."""
     scale = axes.get_aspect()
     return 0.0 if scale == "auto" else float(axes.get_data_ratio() * scale)
 
 
 def _spare_height(figure: Figure, min_aspect: float) -> float:
-    """Height, in inches, by which the figure can shrink until a panel has its smallest height."""
+    """Height, in inches, by which the figure can shrink until a panel has the smallest height."""
     width, height = figure.get_size_inches()
     spare = [height]
     for axes in figure.axes:

@@ -53,7 +53,7 @@ def _thin(axis: Axis, way: int) -> bool:
 
 
 def _thin_powers(axis: Axis, shown: int) -> bool:
-    """Reduces the powers of ten on a symmetric logarithmic axis that shows this number of labels."""
+    """Reduces the powers of ten on a symmetric logarithmic axis; shown: the present number of labels."""
     start = getattr(axis.get_transform(), "linthresh", None)
     if start is None:
         return False

@@ -1,4 +1,4 @@
-"""Spectra without an axis: eigenvalues of a single point in the complex plane, or those of a list of points."""
+"""Spectra without an axis: eigenvalues of a point in the complex plane, or of a list of points."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -18,7 +18,7 @@ LINEAR_FRACTION = 0.1
 LOOKS = {True: (SECOND, "s", "growing mode"), False: (FIRST, "o", "decaying mode")}
 """Colour, marker and word of modes, by whether they grow."""
 MAX_NUMBERED = 8
-"""Largest number of modes that get a number beside their mark."""
+"""Largest number of modes with a number beside the mark."""
 
 
 def draw_eigenvalues(view: View) -> Figure:

@@ -171,9 +171,9 @@ def edge_of_flutter(change: LocatedChange | BracketedChange) -> float:
 
 
 def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedChange]:
-    """Shades the range in which the rod is unstable, and draws lines at thresholds over F; returns these.
+    """Shades the range of the unstable rod, and draws lines at thresholds over F; returns the thresholds.
 
-    Thresholds are the first force at which the rod oscillates, and forces at which its stability changes.
+    Thresholds are the first force of oscillation, and forces at which the stability of the rod changes.
     """
     x = view.axes[name]
     unstable = view.variables["unstable_count"].reshape(-1) > 0

@@ -48,7 +48,7 @@ MARKS = {
 FILL = 0.8
 """Width of the bar of a rod, as a fraction of the place."""
 BAR_ASPECT = 0.12
-"""Height of a panel with one bar, in units of the width."""
+"""Height of the panel with a single bar, in units of the width."""
 DIGITS = 6
 """Number of digits of the thresholds of a single rod."""
 
@@ -118,7 +118,7 @@ def classes_between_crossings(view: View, row: str) -> tuple[Array, Array, NDArr
 
 
 def _class_beyond(kind: int, unstable: int) -> str:
-    """Class of a rod beyond a crossing, from its number of unstable modes there, -1 if unknown."""
+    """Class of a rod beyond a crossing, from the number of unstable modes there, -1 if unknown."""
     stable = STABLE_CLASS.get(CROSSING_KINDS[kind], "undecided")
     return "flutter" if unstable > 0 else stable if unstable == 0 else "undecided"
 

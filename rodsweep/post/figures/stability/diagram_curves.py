@@ -1,4 +1,4 @@
-"""Curves of a phase diagram and the special points on them, with legend."""
+"""Curves of a phase diagram, special points on the curves, and legend."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -40,7 +40,7 @@ SAME_PLACE = 1e-6
 NAME_SIZE = 8
 """Type size of a curve's symbol, in points."""
 BESIDE_SIDES = "double eigenvalue", 1.0, ":"
-"""Look of double eigenvalues if Hopf curves show their criticality, for which dashed means subcritical."""
+"""Look of double eigenvalues beside Hopf curves drawn by criticality, where dashed means subcritical."""
 
 
 def draw_curves(axes: Axes, view: View, line: str, row: str, states: bool) -> list[Line2D]:

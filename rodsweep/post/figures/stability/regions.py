@@ -1,4 +1,4 @@
-"""Regions of a plane bounded by curves: each pixel takes its class from points of its own region."""
+"""Regions of a plane bounded by curves: each pixel takes a class from points of the same region."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

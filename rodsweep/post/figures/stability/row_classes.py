@@ -28,7 +28,7 @@ def class_along_row(
     """Class of each pixel of a row, (n,), between the edges, (n + 1,); place: number of the row.
 
     variable: `class` or `stable_states`. A pixel takes the class of the nearest computed point between the
-    same two changes of the row; without such a point it is undecided.
+    same two changes of the row; without a point between the changes it is undecided.
     """
     x = view.variables[line]
     classes = view.by_point(variable)[place]

@@ -27,7 +27,7 @@ DARKEST = 0.0
 LIGHTEST = 0.85
 """End of the used part of the colour map; lighter colours are invisible on white."""
 INDISTINCT = 0.01
-"""Distance of two lines, in units of the largest force, below which only one of them is drawn."""
+"""Distance of two lines, in units of the largest force, below which a single line is drawn."""
 HEADROOM = 1.05
 """Upper limit of the axis of forces, in units of the largest force."""
 
@@ -155,7 +155,7 @@ def _left_out(view: View, names: list[str]) -> str:
 
 
 def _far_apart(table: Array) -> list[int]:
-    """Numbers of the first and the last line, and the one nearest to half their height; (lines, 3, n)."""
+    """Numbers of the first line, the last line and the line nearest to half the height; (lines, 3, n)."""
     last = len(table) - 1
     if last < 2:
         return list(range(len(table)))

@@ -24,7 +24,7 @@ OTHER_PLANE = (
     "the motion is in the plane of the height; where that is above the width, the arm flutters first in the "
     "other plane, at a lower load: exchange width and height to see it"
 )
-"""Warning about a rectangular section that is higher than wide."""
+"""Warning about a rectangular section of greater height than width."""
 
 
 def arm_answer(view: View, done: np.ndarray) -> list[str]:
@@ -58,9 +58,9 @@ def _applied(view: View, done: np.ndarray) -> list[str]:
 
 
 def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str:
-    """Sentence on the validity of the model at points, with its largest neglected effect.
+    """Sentence on the validity of the model at points, with the largest neglected effect.
 
-    validity: the variables of VALIDITY, (n,). when: condition under which they hold, as a clause.
+    validity: the variables of VALIDITY, (n,). when: condition of the validity, as a clause.
     """
     applies, effect, excess = (validity[variable.name] for variable in VALIDITY)
     worst = Validity(int(applies.max()))

@@ -27,15 +27,15 @@ WIDTH = 80
 FEW_ITEMS = 4
 """Largest number of values of a table listed individually for a single rod."""
 TYPED_AS = {"m": ("length",), "Pa": ("pressure", "young"), "N": ("force",)}
-"""Quantities whose typed unit is used for all numbers with this SI unit; the first typed quantity decides."""
+"""Quantities whose typed unit is used for all numbers with an SI unit; the first typed quantity decides."""
 PREFIXED = ("J", "W")
-"""Units that get a prefix, such as mW."""
+"""Units with a prefix, such as mW."""
 SHORT_TIME = 0.1
 """Time, in s, below which times are given in ms or smaller units."""
 DIGITS = 3
 """Number of digits of a quantity that identifies a point."""
 WORDS = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
-"""Words for quantities whose name is not one."""
+"""Words for quantities with an unclear name."""
 THRESHOLD_SENTENCES = {
     "hopf": "flutters at {load}{rate}",
     "restabilization": "is straight again from {load} on",
@@ -140,9 +140,9 @@ def arm_lines(view: View, done: np.ndarray) -> list[str]:
 
 
 def _numbers(values: np.ndarray, errors: np.ndarray) -> str:
-    """Values as text: one by one for a few values of a table, else their range.
+    """Values as text: a few values of a table individually, more values as a range.
 
-    errors: absolute errors of the same shape, which limit the number of digits.
+    errors: absolute errors, of the shape of the values, which limit the number of digits.
     """
     is_finite = np.isfinite(values)
     finite = values[is_finite]

@@ -98,7 +98,7 @@ def _draw_branches(
 
 
 def _file_words(views: Sequence[View], name: str) -> dict[Path, tuple[str, bool | None]]:
-    """Legend text of each of several files, and whether its chains go upward; None if files differ otherwise.
+    """Legend text of each of several files, and whether chains go upward; None for other differences.
 
     Files followed along the axis in both directions are distinguished by direction, other files by name.
     """
@@ -122,7 +122,7 @@ def _file_words(views: Sequence[View], name: str) -> dict[Path, tuple[str, bool 
 
 
 def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: bool, colour: str) -> None:
-    """Draws an arrow on each line in the direction in which it was followed."""
+    """Draws an arrow on each line in the direction of continuation."""
     for axes, values in zip(panels, branch.measures, strict=True):
         known = np.flatnonzero(np.isfinite(values))
         if len(known) < MIN_ARROW_POINTS:
@@ -139,7 +139,7 @@ def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: boo
 
 
 def _names(branches: Sequence[AmplitudeBranch], name: str) -> tuple[str, list[str]]:
-    """(parameters that all branches share, parameters of each branch), for an arm in its own units."""
+    """(parameters that all branches share, parameters of each branch), for an arm in typed units."""
     view = branches[0].view
     if branches[0].units.in_si and all(branch.view is view for branch in branches):
         along = {name, *(quantity for quantity, moved in MOVES.items() if moved == name)}

@@ -17,11 +17,11 @@ from .square_root import SquareRootLaw, square_root_laws
 
 @dataclass(frozen=True, slots=True)
 class AmplitudeBranch:
-    """Points that differ in one parameter only, in the order of the file; amplitudes are NaN where unknown.
+    """Points that differ in a single parameter, in the order of the file; amplitudes are NaN where unknown.
 
-    parameters: the remaining parameters, by name. power: mean power of the force over a period. units: of all
-    these. words: words of the status. hopf: Hopf points along the branch, empty if it is not over F. All
-    arrays have the shape (points,).
+    parameters: the remaining parameters, by name. power: mean power of the force over a period. units: units
+    of all quantities. words: words of the status. hopf: Hopf points along the branch, empty unless over F.
+    All arrays have the shape (points,).
     """
 
     view: View
@@ -64,7 +64,7 @@ def abscissa(view: View) -> str:
 
 
 def branches_of(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[AmplitudeBranch]:
-    """Branches of a file, one for each combination of the parameters other than `name`."""
+    """Branches of a file, a branch for each combination of the parameters without `name`."""
     words = outcomes(view)
     v = view.variables
     straight = words == "straight"

@@ -28,10 +28,10 @@ MAX_COEFFICIENTS = 3
 
 
 def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedChange, str]]) -> list[Line2D]:
-    """Draws a vertical dotted line at each Hopf point in the colour of its branch; returns legend entries.
+    """Draws a vertical dotted line at each Hopf point in the colour of the branch; returns legend entries.
 
-    A Hopf point that several branches share is drawn once, in grey. If all Hopf points of a kind have one
-    position, the legend gives it.
+    A Hopf point shared by several branches is drawn once, in grey. The legend gives the position of a Hopf
+    point if the kind has a single position.
     """
     handles = []
     for kind, word in HOPF_WORDS.items():
@@ -79,7 +79,7 @@ def draw_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str = "") -> list
 
 
 def _coefficients(laws: Sequence[SquareRootLaw]) -> str:
-    """Distinct coefficients of the laws as text, or their range if there are many."""
+    """Distinct coefficients of the laws as text, or the range of many."""
     ordered = sorted(laws, key=lambda law: law.coefficient)
     each = {law: rounded(law.coefficient, law.error, COEFFICIENT_DIGITS) for law in laws}
     texts = list(dict.fromkeys(each.values()))

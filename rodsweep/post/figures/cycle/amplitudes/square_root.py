@@ -18,7 +18,7 @@ FARTHEST_FITTED = 0.1
 LARGEST_DEPARTURE = 0.2
 """Largest relative difference between an amplitude and the law over the range in which the law is drawn."""
 SAFETY = 2.0
-"""Error of a coefficient, in units of the change when one more cycle is used."""
+"""Error of a coefficient, in units of the change by a further cycle."""
 MIN_ERRORS_AWAY = 100
 """Least distance of a cycle from F**, in errors of F**, so that the distance is known to a percent."""
 
@@ -49,16 +49,16 @@ class SquareRootLaw:
 def square_root_laws(F: Array, amplitude: Array, points: Sequence[LocatedChange]) -> list[SquareRootLaw]:
     """Laws that the amplitudes follow, at most one on each side of a Hopf point.
 
-    F, amplitude: shape (n,), in any order; amplitude is NaN or 0 where there is no cycle.
+    F, amplitude: shape (n,), in any order; amplitude is NaN or 0 without a cycle.
     """
     laws = (_law(F, amplitude, point, side) for point in points for side in (1, -1) if point.position)
     return [law for law in laws if law]
 
 
 def _law(F: Array, amplitude: Array, point: LocatedChange, side: int) -> SquareRootLaw | None:
-    """The law above (side 1) or below (-1) the Hopf point; None if the amplitudes follow none.
+    """The law above (side 1) or below (-1) the Hopf point; None if the amplitudes disagree.
 
-    amplitude^2/distance is linear in the distance to leading order. Its value at distance 0 is extrapolated
+    amplitude^2/distance is linear in the distance to leading order. The value at distance 0 is extrapolated
     from the nearest two cycles.
     """
     distance = side * (F - point.position) / abs(point.position)
