@@ -1,4 +1,4 @@
-"""Curves of a phase diagram that bound the region of stable rods, as opposed to curves of further modes."""
+"""Curves of Hopf points that bound the stable rods, as opposed to Hopf points of further modes."""
 
 import numpy as np
 

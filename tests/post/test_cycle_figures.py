@@ -21,7 +21,7 @@ from rodsweep.post.figures.cycle.amplitudes.branches import branches_of
 from rodsweep.post.figures.cycle.amplitudes.square_root import square_root_laws
 from rodsweep.post.figures.cycle.animation import first_frame
 from rodsweep.post.figures.cycle.energy import draw_energy
-from rodsweep.post.figures.cycle.portrait import ARROW, draw_portrait, drawn_shapes
+from rodsweep.post.figures.cycle.portrait import ARROW_LENGTH, draw_portrait, drawn_shapes
 from rodsweep.post.figures.cycle.selection import chosen_cycles
 from rodsweep.post.figures.limit_cycle import figure_name
 from rodsweep.post.figures.request import FigureRequest
@@ -68,7 +68,9 @@ def test_force_presses_on_the_tip_against_e1_in_the_colour_of_its_shape_and_late
         theta = v["theta"][place, -1]
         assert arrow.pivot == "tip"
         assert arrow.get_offsets()[0] == pytest.approx([v["x"][place, -1], v["y"][place, -1]])
-        assert [arrow.U[0], arrow.V[0]] == pytest.approx([-ARROW * np.cos(theta), -ARROW * np.sin(theta)])
+        assert [arrow.U[0], arrow.V[0]] == pytest.approx(
+            [-ARROW_LENGTH * np.cos(theta), -ARROW_LENGTH * np.sin(theta)]
+        )
     rods = [line for line in axes.lines if len(line.get_xdata()) == 21]
     colours = [to_rgb(line.get_color()) for line in rods]
     assert colours == [tuple(arrow.get_facecolor()[0, :3]) for arrow in arrows]

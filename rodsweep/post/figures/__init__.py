@@ -38,7 +38,7 @@ FIGURES: dict[str, Callable[[FigureRequest], str]] = {
 """Function of each task that writes the figure and returns a description."""
 
 
-PLAIN = Look()
+DEFAULT_LOOK = Look()
 """Default appearance of figures."""
 OMITTED = {"missing": "are not computed", "failed": "failed"}
 """Statuses of points absent from all figures, with words for the number."""
@@ -80,7 +80,7 @@ def draw(
     views: View | Sequence[View],
     output: Path,
     *,
-    look: Look = PLAIN,
+    look: Look = DEFAULT_LOOK,
     shapes: Shapes | None = None,
     keep: Callable[[Figure], None] | None = None,
     **choices: Unpack[Choices],

@@ -75,9 +75,9 @@ LEGEND = {
     "neither_known": "no stable state known",
 }
 """Legend entries of the stable states; unlisted words are entries as they stand."""
-MOTIONS = Palette("class", CLASSES, CLASS_COLOURS)
+CLASS_PALETTE = Palette("class", CLASSES, CLASS_COLOURS)
 """Palette of the behaviour of the straight rod."""
-STATES = Palette("stable_states", STABLE_STATES, STATE_COLOURS)
+STATE_PALETTE = Palette("stable_states", STABLE_STATES, STATE_COLOURS)
 """Palette of the stable states."""
 BESIDE_CRUSHING = 1 - np.linspace(0, 3e-3, 7)
 """Values of F/k1 at which barriers separate colours. Curves of cycles end where F is within 1e-3 of k1; the
@@ -89,7 +89,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     view = request.only_view()
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
     row = next((name for name in view.parameters if len(view.axes[name]) > 1), view.parameters[0])
-    palette = STATES if STATES.variable in view.variables else MOTIONS
+    palette = STATE_PALETTE if STATE_PALETTE.variable in view.variables else CLASS_PALETTE
     values = view.variables[palette.variable]
     require(view, (values >= 0).any(), "computed row")
     x = view.variables[line]
@@ -112,7 +112,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=LABELS[line], ylabel=LABELS[row])
     handles: list = palette.patches(table)
     if "curve_number" in view.variables:
-        handles += draw_curves(axes, view, line, row, palette is STATES)
+        handles += draw_curves(axes, view, line, row, palette is STATE_PALETTE)
     if "cycle_curve_number" in view.variables:
         handles += draw_cycle_curves(axes, view, line, row)
     if "cycle_special_kind" in view.variables:
@@ -178,14 +178,14 @@ def _class_of_pixels(view: View, palette: Palette, line: str, row: str, table: A
     known = (table != palette.crushed) | ((line, row) != CRUSHING)
     computed = ClassifiedPoints(plane.unit(columns[known], rows[known]), table[known])
     further = ClassifiedPoints(np.zeros((0, 2)), np.zeros(0, int))
-    if palette is MOTIONS:
+    if palette is CLASS_PALETTE:
         x, at, found = classes_between_crossings(view, row)
         further = ClassifiedPoints(plane.unit(x, at), found)
     curves = [
         plane.unit(view.variables[f"{kind}_{line}"][one], view.variables[f"{kind}_{row}"][one])
         for kind in ("curve", "cycle_curve")
         if f"{kind}_number" in view.variables
-        for one in _each_curve(view, kind, double=palette is MOTIONS)
+        for one in _each_curve(view, kind, double=palette is CLASS_PALETTE)
     ]
     if (line, row) == CRUSHING:
         edge = np.linspace(plane.y[0], plane.y[-1], 1000)

@@ -24,7 +24,7 @@ from .summary_lines import SummaryLines, at_point
 
 NAMED_RODS = 8
 """Largest number of rods listed individually."""
-FULL = "they have more special points than the list holds; raise branch.special"
+LIST_TOO_SHORT = "they have more special points than the list holds; raise branch.special"
 """Cause and remedy of branches not shown."""
 BESIDE_STRAIGHT = "stable cycles beside a stable straight rod"
 TWO_CYCLES = "stable cycles of two branches"
@@ -68,7 +68,7 @@ def _one_rod(view: View, rod: int) -> Iterator[str]:
     v = view.variables
     hidden = count_incomplete_branches(view, rod)
     if hidden:
-        yield f"{some_of(hidden, hidden + len(curves), 'branch')} {is_or_are(hidden)} not shown: {FULL}"
+        yield f"{some_of(hidden, hidden + len(curves), 'branch')} {is_or_are(hidden)} not shown: {LIST_TOO_SHORT}"
     elif v["branch_count"].max() < 0:
         yield "its branches are not known"
     elif not curves:
@@ -145,7 +145,7 @@ def ends_of(view: View) -> Range:
 
 
 def _sizes(view: View, done: np.ndarray) -> str:
-    """Clause on the period and the amplitude of all cycles of the points that are `done`; may be empty."""
+    """Clause on the period and the amplitude of all cycles of the points in `done`; may be empty."""
     v = view.variables
     if not np.isfinite(v["period"][done]).any():
         return ""
@@ -195,7 +195,7 @@ def _coexistence(view: View, rods: np.ndarray) -> Iterator[str]:
     """Yields lines about rods with two stable states, some with parameters."""
     complete = [int(rod) for rod in rods if not count_incomplete_branches(view, int(rod))]
     if len(complete) < len(rods):
-        yield f"not known for {counted(len(rods) - len(complete), 'rod')}: {FULL}"
+        yield f"not known for {counted(len(rods) - len(complete), 'rod')}: {LIST_TOO_SHORT}"
     yield from _rods_with(view, complete, BESIDE_STRAIGHT, coexistence)
     if any(two_cycles(view, rod) for rod in complete):
         yield from _rods_with(view, complete, TWO_CYCLES, two_cycles)

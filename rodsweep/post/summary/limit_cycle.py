@@ -107,7 +107,7 @@ def orbit_lines(v: Mapping[str, np.ndarray], stable: bool) -> list[str]:
 
 
 def _second_state_lines(v: Mapping[str, np.ndarray], done: np.ndarray) -> list[str]:
-    """Lines about the points that are `done` with a second stable state, certain or possible."""
+    """Lines about the points in `done` with a second stable state, certain or possible."""
     numbers = {word: number for number, word in SECOND_STATES}
     lines = []
     straight, cycle = (done & (v["second_state"] == numbers[word]) for word in ("straight", "cycle_possible"))

@@ -25,7 +25,7 @@ CHANGES_OF_CYCLES = {
     "left_the_model": "cycles leave the model (h1 = 0)",
 }
 """Words for special points of rows, by kind."""
-SHARP = 1e-8
+GRID_RESOLUTION = 1e-8
 """Resolution of a boundary, in units of the parameter, of the uniform grid that is compared."""
 
 
@@ -59,10 +59,10 @@ def saving_line(view: View, done: np.ndarray, line: str) -> str:
     rows = int(done.sum())
     solves = int(v["solves"][done].sum())
     boxes = int(v["boxes"][done].sum())
-    uniform = float(np.ptp(v[line])) / SHARP * rows
+    uniform = float(np.ptp(v[line])) / GRID_RESOLUTION * rows
     return (
         f"in all {counted(solves, 'eigenproblem')} and {counted(boxes, 'evaluation')} of D; a uniform grid "
-        f"that resolves {line} to {SHARP:g} on these rows has {uniform:.2g} places, "
+        f"that resolves {line} to {GRID_RESOLUTION:g} on these rows has {uniform:.2g} places, "
         f"{uniform / max(solves + boxes, 1):.1g} times as many"
     )
 
@@ -113,7 +113,7 @@ def start_lines(view: View, done: np.ndarray, line: str) -> list[str]:
 
 
 def row_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
-    """Lines about the changes on the rows that are `done`, a mask of their shape."""
+    """Lines about the changes on the rows in `done`, a mask of the rows' shape."""
     v = view.variables
     of_row = view.point_columns[row].reshape(done.shape)
     lines = start_lines(view, done, line)

@@ -10,12 +10,12 @@ from math import ceil, floor, isfinite, isnan, log10
 import numpy as np
 
 MAX_DIGITS = 15
-"""Number of digits of a number with a smaller error."""
+"""Largest number of digits of a number, however small the error."""
 RANGE_DIGITS = 6
 """Largest number of digits of the ends of a range; larger errors leave fewer."""
 END_DIGITS = 9
 """Largest number of digits of the end of a range that is a single number, such as a fold."""
-PLAIN = range(-4, MAX_DIGITS)
+PLAIN_EXPONENTS = range(-4, MAX_DIGITS)
 """Decimal exponents of numbers written without an exponent."""
 ROUNDING_EXCESS = 1e-9
 """Relative excess of an error over a digit that is rounding, and does not raise the digit."""
@@ -83,7 +83,10 @@ def error_text(error: float) -> str:
 
 
 def rounded(value: float, error: float, most: int = RANGE_DIGITS) -> str:
-    """A number with digits of which its absolute error is at most half a unit, and at most `most` digits."""
+    """A number with as many digits as the absolute error allows, at most `most`.
+
+    The error is at most half a unit of the last digit.
+    """
     return _rounded(float(value), 2 * float(error), most) if isfinite(value) else NONE
 
 
@@ -97,4 +100,4 @@ def _rounded(value: float, error: float, most: int) -> str:
     if most < MAX_DIGITS and digits == most:
         return f"{value:.{most}g}"
     short = f"{value:.{digits - 1}e}"
-    return f"{float(short):.{max(digits - 1 - size, 0)}f}" if size in PLAIN else short
+    return f"{float(short):.{max(digits - 1 - size, 0)}f}" if size in PLAIN_EXPONENTS else short

@@ -115,7 +115,7 @@ def points_in(file: h5py.File, layout: Layout) -> Points:
 
 
 def on_grid(variables: Mapping[str, Any], layout: Layout) -> Iterator[np.ndarray]:
-    """Yields every parameter on a grid over an arm's quantities: in its shape, or along the own axis."""
+    """Yields every parameter on a grid over an arm's quantities: in the grid's shape, or along an axis."""
     for name in layout.parameters:
         along = [-1 if axis == name else 1 for axis in layout.over]
         table = variables[name][...]

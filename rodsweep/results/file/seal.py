@@ -29,7 +29,7 @@ LONGEST_FRAME = 100_000
 """Largest size, in bytes, of the checksum with the places of the numbers left out."""
 BYTES_A_READ = 1 << 20
 """Bytes read at once, to bound the memory."""
-SMALL = 1 << 16
+LARGEST_INCLUDED = 1 << 16
 """Largest size, in bytes, of a variable whose numbers the checksum includes: axes, and numbers read on every
 opening."""
 
@@ -96,7 +96,7 @@ def _large_pieces(file: h5py.File) -> list[Piece]:
     """(offset, size) of the numbers of every large contiguous variable, in order."""
     variables = [data for data in map(file.get, file) if isinstance(data, h5py.Dataset)]
     places = {(data.id.get_offset(), data.id.get_storage_size()) for data in variables}
-    return sorted((start, size) for start, size in places if start is not None and size > SMALL)
+    return sorted((start, size) for start, size in places if start is not None and size > LARGEST_INCLUDED)
 
 
 def _between(pieces: list[Piece], end: int) -> Iterator[Piece]:

@@ -39,7 +39,7 @@ from .recent import SNAPSHOT
 from .refusals import header_in_the_way, refuse_other, require_room
 from .validation import Header, is_ours, reading
 
-BEFORE = "before-*.h5"
+BACKUPS = "before-*.h5"
 """Copies, beside the journals, of the file before an extension that is not complete yet."""
 
 Additions = Callable[[h5py.File], Sequence[Filled]]
@@ -97,7 +97,7 @@ class Store:
         if fresh:
             drop_files(self.journals, CHECKPOINTS)
             self._set_aside(own, "journals that --fresh does not use")
-        self._set_aside(sorted(self.journals.glob(BEFORE)), "points from before an extension")
+        self._set_aside(sorted(self.journals.glob(BACKUPS)), "points from before an extension")
         with self.exchange.replacing(None) as copy:
             create_file(copy, self.plan)
         if own and not fresh:
@@ -130,8 +130,8 @@ class Store:
 
     def _keep_before(self) -> Path:
         """Copies the file beside the journals, where the copy stays until the extension is complete."""
-        number = 1 + sum(1 for _ in self.journals.glob(BEFORE))
-        copy = self.journals / BEFORE.replace("*", str(number))
+        number = 1 + sum(1 for _ in self.journals.glob(BACKUPS))
+        copy = self.journals / BACKUPS.replace("*", str(number))
         shutil.copyfile(self.path, copy)
         return copy
 
@@ -169,7 +169,7 @@ class Store:
         blocks = read_journals(self.journals, plan.layout, plan.fingerprint, plan.points.count)
         self._fold_blocks(blocks, plan.layout, plan.fingerprint, attributes, additions)
         if not self.missing():
-            for pattern in (CHECKPOINTS, BEFORE):
+            for pattern in (CHECKPOINTS, BACKUPS):
                 drop_files(self.journals, pattern)
 
     def _restore_if_gone(self) -> None:

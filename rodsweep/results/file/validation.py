@@ -32,7 +32,7 @@ CONFIGS = (".yaml", ".yml")
 LONGEST_REASON = 150
 """Largest number of characters of a library's message in a sentence."""
 DAMAGES = (OSError, LookupError, ValueError, TypeError, RuntimeError, OverflowError, MemoryError)
-"""Exceptions that h5py, and reading afterwards, raises for a damaged file."""
+"""Exceptions raised by h5py, or by later reading, for a damaged file."""
 
 
 class IncompleteFile(InputError):

@@ -174,8 +174,7 @@ def _size(axis: Mapping[str, Any]) -> int:
 def quantities_of(parameters: Axes, points: Points) -> tuple[Filled, ...]:
     """Variables of a config's arm besides the axes of a grid of parameters; empty without an arm.
 
-    For a grid over the arm's quantities the axes of the grid come first, and include every parameter on the
-    grid.
+    For a grid over the arm's quantities the axes come first, and every parameter is included, along the grid.
     """
     arm = parameters.arm
     if arm is None:
@@ -237,9 +236,9 @@ def in_si(
         si = _stored_si_unit(variable, "force" in quantities)
         if si.unit:
             used = {name: quantities[name] for name in (*si.factors, *si.divisors)}
-            here = {name: array[index] if np.ndim(array) else array for name, array in used.items()}
+            at_index = {name: array[index] if np.ndim(array) else array for name, array in used.items()}
             value = np.asarray(record[variable.name])
-            scale = si.scale(here)
+            scale = si.scale(at_index)
             shape = scale.shape + (1,) * (value.ndim - scale.ndim)
             found[si_name_of(variable.name, si.unit)] = value * scale.reshape(shape)
     return found

@@ -1,4 +1,4 @@
-"""Grid over the quantities of an arm: each point has a rod of own parameters, or a status but no rod."""
+"""Grid over the quantities of an arm: each point has a separate rod, or a status but no rod."""
 
 from collections.abc import Callable, Mapping
 from typing import Any

@@ -183,13 +183,13 @@ def _cover(axes: Axes, view: View, panel: Panel, names: tuple[str, str], place: 
     up = cell_edges(_axis(view, y)[0]) if y else np.array(limits)
     handles: list[Artist] = []
     for variable, value, label, look in HATCHES:
-        there = view.variables[variable][place] == value
-        empty.append((there if variable == "status" else there & rods, label, look))
-    for there, label, look in empty:
-        for i, j in np.argwhere(there if y else there[:, None]):
+        chosen = view.variables[variable][place] == value
+        empty.append((chosen if variable == "status" else chosen & rods, label, look))
+    for chosen, label, look in empty:
+        for i, j in np.argwhere(chosen if y else chosen[:, None]):
             corner = across[[i, i + 1]], up[[j, j + 1]]
             axes.fill_between(corner[0], *corner[1], ec=HATCH_COLOUR, lw=0, zorder=3 if y else 0, **look)
-        if there.any():
+        if chosen.any():
             handles.append(Patch(label=label, ec=HATCH_COLOUR, lw=0.5, **look))
     axes.set_xlim(across[0], across[-1])
     axes.set_ylim(up[0], up[-1]) if y else axes.set_ylim(limits)

@@ -26,7 +26,7 @@ from .transient import draw_emergence, label_time, label_tip
 
 MAX_SHAPES = 12
 """Largest number of shapes that a reader can distinguish."""
-ARROW = 0.14
+ARROW_LENGTH = 0.14
 """Length of the arrow of the force, in L."""
 WALL_DEPTH = 0.05
 """Thickness of the wall, in L."""
@@ -152,7 +152,7 @@ def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, lengt
     length: L in the units of x and y.
     """
     e1 = np.array([np.cos(theta[-1]), np.sin(theta[-1])])
-    along = -ARROW * length * e1
+    along = -ARROW_LENGTH * length * e1
     return axes.quiver(
         x[-1], y[-1], *along, angles="xy", scale_units="xy", scale=1, pivot="tip", color=colour,
         width=0.011, headwidth=4, headlength=4.5, headaxislength=4, zorder=4,
@@ -185,7 +185,7 @@ def region(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[fl
     along_y = []
     for cycle in cycles:
         x, y, theta = (cycle.values[name] for name in SHAPES)
-        arrow = ARROW * cycle.units.length
+        arrow = ARROW_LENGTH * cycle.units.length
         along_x += [x.ravel(), x[:, -1] + arrow * np.cos(theta[:, -1])]
         along_y += [y.ravel(), y[:, -1] + arrow * np.sin(theta[:, -1])]
     along = [np.concatenate(values) for values in (along_x, along_y)]

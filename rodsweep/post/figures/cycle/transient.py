@@ -12,7 +12,7 @@ from ..style import FIRST, SECOND
 from .selection import CYCLE_WORDS, TRACE, StoredCycle, chosen_traces
 from .units import CycleUnits
 
-LEVEL: dict[str, Any] = {"color": "0.55", "lw": 0.8, "ls": (0, (4, 2)), "zorder": 1}
+LEVEL_LOOK: dict[str, Any] = {"color": "0.55", "lw": 0.8, "ls": (0, (4, 2)), "zorder": 1}
 """Line style of the extrema of the cycle that the motion approaches."""
 
 
@@ -46,7 +46,7 @@ def draw_emergence(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
     for axes, values, colour, pair in zip((upper, lower), tip, (FIRST, SECOND), levels, strict=True):
         axes.plot(time, values, color=colour, lw=1.1)
         for name, sign in pair if cycle.word in CYCLE_WORDS else ():
-            axes.axhline(sign * float(v[name]), **LEVEL)
+            axes.axhline(sign * float(v[name]), **LEVEL_LOOK)
         axes.margins(x=0)
     label_time(upper, lower, cycle)
 

@@ -28,7 +28,7 @@ MAX_PASSES = 6
 """Largest number of layouts. Each change of the figure moves texts measured before."""
 MIN_HEIGHT = 0.45
 """Smallest height of a panel, in inches, at which the labels of two ticks fit above each other."""
-SPARE = 4.0
+SPARE_HEIGHT = 4.0
 """Additional height, in inches, while texts are measured, to keep panels from vanishing."""
 SLACK = 1.03
 """Additional factor on the height of a panel with equal scales. If height and width both just suffice, the
@@ -46,14 +46,14 @@ def fit(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
     The width of the figure stays, and the height if the content fits.
     """
     width, height = figure.get_size_inches()
-    figure.set_size_inches(width, height + SPARE)
+    figure.set_size_inches(width, height + SPARE_HEIGHT)
     for _ in range(MAX_PASSES):
         _lay_out(figure)
         changes = [_fit_legends(figure), _break_texts(figure), thin_ticks(figure)]
         if not any(changes):
             break
     spare = _spare_height(figure, min_aspect)
-    figure.set_size_inches(width, max(height, min(height + SPARE - spare, TALLEST)))
+    figure.set_size_inches(width, max(height, min(height + SPARE_HEIGHT - spare, TALLEST)))
     for _ in range(MAX_PASSES):
         _lay_out(figure)
         if not thin_ticks(figure):

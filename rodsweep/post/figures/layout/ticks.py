@@ -5,9 +5,9 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, SymmetricalLogLocator
 
-BLANK = 0.25
+LABEL_GAP = 0.25
 """Smallest space between neighbouring tick labels, in units of their height."""
-SEEN = 1e-9
+EDGE_TOLERANCE = 1e-9
 """Rounding tolerance for ticks at the end of an axis, as a fraction of the length."""
 
 
@@ -20,7 +20,7 @@ def thin_ticks(figure: Figure) -> bool:
 def visible_labels(axis: Axis) -> list[Text]:
     """Labels of the ticks within the limits of an axis."""
     low, high = sorted(axis.get_view_interval())
-    near = SEEN * (high - low)
+    near = EDGE_TOLERANCE * (high - low)
     return [
         label
         for place, label in zip(axis.get_majorticklocs(), axis.get_majorticklabels(), strict=False)
@@ -33,7 +33,7 @@ def _thin(axis: Axis, way: int) -> bool:
     shown = visible_labels(axis)
     boxes = [label.get_window_extent() for label in shown]
     spans = sorted(tuple(box.intervaly if way else box.intervalx) for box in boxes)
-    least = 0.0 if way else BLANK * max((box.height for box in boxes), default=0.0)
+    least = 0.0 if way else LABEL_GAP * max((box.height for box in boxes), default=0.0)
     if all(later[0] - earlier[1] >= least for earlier, later in zip(spans[:-1], spans[1:], strict=True)):
         return False
     locator = axis.get_major_locator()

@@ -9,7 +9,7 @@ from ....results.file.view import View
 from ..lists import number_points, shared_parameters
 from ..style import FIRST, SECOND, heading, legend_below, parameter_text, require
 
-SPREAD = 100.0
+SPREAD_RATIO = 100.0
 """Ratio of the largest to the smallest eigenvalue above which axes are symmetric logarithmic."""
 SMALLEST_SHOWN = 1e-6
 """Size, in units of the largest eigenvalue, below which all eigenvalues lie on the linear part of an axis."""
@@ -75,6 +75,6 @@ def spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
     """Makes an axis symmetric logarithmic if its numbers, of any shape, differ much in size."""
     for set_scale, values in ((axes.set_xscale, x), (axes.set_yscale, y)):
         sizes = np.abs(values[np.isfinite(values) & (values != 0)]) if values is not None else np.zeros(0)
-        if sizes.size and sizes.max() > SPREAD * sizes.min():
+        if sizes.size and sizes.max() > SPREAD_RATIO * sizes.min():
             smallest = max(float(np.quantile(sizes, LINEAR_FRACTION)), sizes.max() * SMALLEST_SHOWN)
             set_scale("symlog", linthresh=10 ** np.floor(np.log10(smallest)))

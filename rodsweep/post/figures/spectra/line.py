@@ -22,9 +22,9 @@ FOLLOWED_ROOTS = {
     "all": "all stored roots",
 }
 """Descriptions of the choices of roots."""
-FOLLOWED = 2
+FOLLOWED_COUNT = 2
 """Number of roots followed along a line."""
-LARGE = 10.0
+LARGE_RATIO = 10.0
 """Ratio of the largest to the median root above which the axis of roots is logarithmic except near 0."""
 THRESHOLD_DIGITS = 6
 """Number of digits of thresholds in the legend."""
@@ -35,7 +35,7 @@ THRESHOLD_LOOKS = {
 }
 """Name and line style of each kind of threshold."""
 THRESHOLD_LINE: dict[str, Any] = {"color": "0.3", "lw": 0.9}
-SHADE: dict[str, Any] = {"color": "0.92", "lw": 0, "zorder": 0}
+SHADE_LOOK: dict[str, Any] = {"color": "0.92", "lw": 0, "zorder": 0}
 """Look of the range in which the rod is unstable."""
 
 
@@ -68,7 +68,7 @@ def roots_to_follow(views: Sequence[View], asked: str | None) -> str:
     If both have equally many gaps, the smallest roots are followed, as in the paper; all roots if a file
     stores only one.
     """
-    if any(len(view.variables["mode"]) < FOLLOWED for view in views):
+    if any(len(view.variables["mode"]) < FOLLOWED_COUNT for view in views):
         return "all"
     if asked:
         return asked
@@ -135,7 +135,7 @@ def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
     scale(axes, "x", x)
     axes.set(xlabel=LABELS[name], ylabel=r"$\omega\,\tau_2$", xlim=(x[0], x[-1]))
     sizes = np.abs(w[np.isfinite(w)])
-    if sizes.max(initial=0.0) > LARGE * np.median(sizes):
+    if sizes.max(initial=0.0) > LARGE_RATIO * np.median(sizes):
         least_tick = 10 ** np.floor(np.log10(np.median(sizes) / 10))
         axes.set_yscale("asinh", linear_width=least_tick / 3)  # asinh is smooth between linear and log
         axes.yaxis.set_major_locator(SymmetricalLogLocator(base=10, linthresh=least_tick))
@@ -180,7 +180,7 @@ def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedChange]:
     if name != "F":
         if unstable.any():
             across = axes.get_xaxis_transform()
-            axes.fill_between(x, 0, 1, where=unstable, transform=across, label="flutter", **SHADE)
+            axes.fill_between(x, 0, 1, where=unstable, transform=across, label="flutter", **SHADE_LOOK)
         return []
     (line,) = lines_over(view.point_columns, name)
     found = StoredChanges(view, name).on(line)
@@ -197,5 +197,5 @@ def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedChange]:
     if len(starts) > len(ends):
         ends.append(float(x[-1]))
     for number, (start, end) in enumerate(zip(starts, ends, strict=True)):
-        axes.axvspan(start, end, label=None if number else "flutter", **SHADE)
+        axes.axvspan(start, end, label=None if number else "flutter", **SHADE_LOOK)
     return thresholds

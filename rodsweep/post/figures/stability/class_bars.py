@@ -36,20 +36,20 @@ STABLE_CLASS = {
     "pair_leads": "oscillatory",
 }
 """Class of a stable rod beyond a crossing, by the kind of the crossing."""
-LATER = "later"
+FURTHER_HOPF = "later"
 """Kind of a Hopf point at which the rod is unstable already and a further pair becomes unstable."""
 MARKS = {
     "onset": (FIRST, "o", rf"onset ${SYMBOLS['F']}_*$"),
     "hopf": (SECOND, "s", rf"Hopf ${SYMBOLS['F']}_{{**}}$"),
-    LATER: (SECOND, "D", "further Hopf point"),
+    FURTHER_HOPF: (SECOND, "D", "further Hopf point"),
     "restabilization": (THIRD, "^", "restabilization"),
 }
 """Colour, marker and word of the marked crossings."""
-FILL = 0.8
+BAR_WIDTH = 0.8
 """Width of the bar of a rod, as a fraction of the place."""
 BAR_ASPECT = 0.12
 """Height of the panel with a single bar, in units of the width."""
-DIGITS = 6
+THRESHOLD_DIGITS = 6
 """Number of digits of the thresholds of a single rod."""
 
 
@@ -131,9 +131,9 @@ def _bar(axes: Axes, view: View, rod: int, upright: bool) -> set[str]:
         pieces.append((float(from_), float(to), "undecided"))
     for start, end, word in pieces:
         if upright:
-            axes.bar(rod + 1, end - start, FILL, bottom=start, color=CLASS_COLOURS[word])
+            axes.bar(rod + 1, end - start, BAR_WIDTH, bottom=start, color=CLASS_COLOURS[word])
         else:
-            axes.barh(0, end - start, FILL, left=start, color=CLASS_COLOURS[word])
+            axes.barh(0, end - start, BAR_WIDTH, left=start, color=CLASS_COLOURS[word])
     return {word for *_, word in pieces}
 
 
@@ -141,8 +141,8 @@ def _mark(axes: Axes, view: View, upright: bool) -> list[Line2D]:
     """Marks the thresholds; returns legend entries, for a single rod with the forces."""
     kinds, F, after = map(view.by_point, ("crossing_kind", "crossing_F", "unstable_after"))
     hopf = kinds == CROSSING_KINDS.index("hopf")
-    chosen = {kind: kinds == CROSSING_KINDS.index(kind) for kind in MARKS if kind != LATER}
-    chosen |= {"hopf": hopf & (after <= 2), LATER: hopf & (after > 2)}
+    chosen = {kind: kinds == CROSSING_KINDS.index(kind) for kind in MARKS if kind != FURTHER_HOPF}
+    chosen |= {"hopf": hopf & (after <= 2), FURTHER_HOPF: hopf & (after > 2)}
     handles = []
     for kind, (colour, marker, word) in MARKS.items():
         rods, places = np.nonzero(chosen[kind])
@@ -150,8 +150,8 @@ def _mark(axes: Axes, view: View, upright: bool) -> list[Line2D]:
             continue
         force = F[rods, places]
         x, y = (rods + 1, force) if upright else (force, rods)
-        name = plural(word) if kind == LATER and rods.size > 1 else word
-        label = name if upright else f"{name} = " + ", ".join(f"{at:#.{DIGITS}g}" for at in force)
+        name = plural(word) if kind == FURTHER_HOPF and rods.size > 1 else word
+        label = name if upright else f"{name} = " + ", ".join(f"{at:#.{THRESHOLD_DIGITS}g}" for at in force)
         handles += axes.plot(
             x, y, marker, color=colour, mec="white", mew=0.6, ms=6, label=label, clip_on=False
         )

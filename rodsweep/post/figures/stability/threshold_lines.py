@@ -155,7 +155,7 @@ def _left_out(view: View, names: list[str]) -> str:
 
 
 def _far_apart(table: Array) -> list[int]:
-    """Numbers of the first line, the last line and the line nearest to half the height; (lines, 3, n)."""
+    """Numbers of the first line, the last line and the line half-way in height; (lines, 3, n)."""
     last = len(table) - 1
     if last < 2:
         return list(range(len(table)))

@@ -128,11 +128,11 @@ def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: boo
         if len(known) < MIN_ARROW_POINTS:
             continue
         ends = known[len(known) * 3 // 4 - 1], known[len(known) * 3 // 4]
-        here, there = ends if upward else ends[::-1]
+        start, end = ends if upward else ends[::-1]
         axes.annotate(
             "",
-            (branch.x[there], values[there]),
-            (branch.x[here], values[here]),
+            (branch.x[end], values[end]),
+            (branch.x[start], values[start]),
             arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.2, "mutation_scale": 14},
             zorder=4,
         )

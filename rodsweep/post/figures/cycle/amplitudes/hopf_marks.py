@@ -66,14 +66,14 @@ def draw_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str = "") -> list
     """
     handles = []
     for above in (True, False):
-        here = [law for law in laws if law.above == above]
-        if not here:
+        on_side = [law for law in laws if law.above == above]
+        if not on_side:
             continue
         look: dict[str, Any] = {"color": LAW_GREY, "lw": 1.0, "ls": (0, (5, 2.5))}
-        for law in here:
+        for law in on_side:
             axes.plot(*law.curve(), zorder=1.5, **look)
         difference = rf"\tilde F - {HOPF_SYMBOL}" if above else rf"{HOPF_SYMBOL} - \tilde F"
-        formula = rf"$a\sqrt{{({difference})/{HOPF_SYMBOL}}}$, $a$ = {_coefficients(here)} {unit}".rstrip()
+        formula = rf"$a\sqrt{{({difference})/{HOPF_SYMBOL}}}$, $a$ = {_coefficients(on_side)} {unit}".rstrip()
         handles.append(Line2D([], [], label=formula, **look))
     return handles
 
