@@ -68,7 +68,8 @@ def _one_rod(view: View, rod: int) -> Iterator[str]:
     v = view.variables
     hidden = count_incomplete_branches(view, rod)
     if hidden:
-        yield f"{some_of(hidden, hidden + len(curves), 'branch')} {is_or_are(hidden)} not shown: {LIST_TOO_SHORT}"
+        part = some_of(hidden, hidden + len(curves), "branch")
+        yield f"{part} {is_or_are(hidden)} not shown: {LIST_TOO_SHORT}"
     elif v["branch_count"].max() < 0:
         yield "its branches are not known"
     elif not curves:

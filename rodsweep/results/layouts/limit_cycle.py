@@ -67,7 +67,7 @@ CYCLE = (
     ),
     real("multiplier_imag", "1", "imaginary part of a nontrivial Floquet multiplier", "multiplier_number"),
     real("least_stretch", "1", "smallest stretch h1 along the rod over a period"),
-    integer("periods", "number of periods integrated, counted at the Poincare section"),
+    integer("periods", "number of returns to the Poincare section during the time integration"),
     *MESH,
     SECONDS,
     STATUS,

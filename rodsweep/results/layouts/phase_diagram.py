@@ -114,7 +114,7 @@ def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
     """Variables that `phase_diagram.cycles` adds from all rows, by name: curves of folds and torus points."""
     along = "cycle_curve_point"
     force = PARAMETERS[line].unit
-    kind = "kind of the special points on the curve: fold or torus"
+    kind = "kind of the special points on the curve, fold or torus"
     end = "reason for the end of the curve at the point"
     error = f"estimate of the absolute error of cycle_curve_{line} on the curve"
     variables = (
@@ -136,7 +136,7 @@ def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
 def curve_variables(line: str, row: str) -> dict[str, Variable]:
     """Variables of a phase diagram from all rows, by name: boundary curves and folds."""
     along = (line, row)
-    kind = "kind of the points on the curve: double real eigenvalues, or Hopf points"
+    kind = "kind of the points on the curve, double real eigenvalues or Hopf points"
     units = {name: PARAMETERS[name].unit for name in along}
     force = PARAMETERS["F"].unit
     error = "estimate of the error of fold_"
@@ -153,7 +153,7 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
         *(real(f"fold_{name}_error", units[name], f"{error}{name}", "fold") for name in along),
         real("fold_frequency", ANGULAR, "angular frequency of the modes at the fold", "fold"),
         real("fold_growth_rate", "1/tau2", "growth rate of the modes at the fold", "fold"),
-        real("curve_agreement", "1", f"largest distance of a crossing from its curve, relative to {line}"),
+        real("curve_agreement", "1", f"largest distance of a crossing from its curve, in units of the range of {line}"),
         integer("curves_untraced", "number of crossings on rows without a curve"),
         real("filament_F_hopf", force, "Fc: F at which the filament (k1, k2 = inf, gamma3 = 0) flutters"),
         real("partial_beam_k1", force, "4 Fc: k1 at the fold of the partial beam (k2 = inf, gamma3 = 0)"),
