@@ -35,10 +35,10 @@ class Request:
 def export(view: View, output: Path, request: Request) -> str:
     """Writes a table of a result; returns a sentence about it. Raises InputError for a bad name."""
     if output.is_dir() or output.suffix not in SEPARATORS:
-        endings = "; ".join((".csv has commas between columns", ".tsv tabs"))
+        endings = "; ".join((".csv separates columns by commas", ".tsv by tabs"))
         raise InputError(f"--output {output}: the name must end in .csv or .tsv ({endings})")
     if output.exists() and not request.replace:
-        raise InputError(f"{output} is there already; --replace writes over it, -o names another file")
+        raise InputError(f"{output} exists already; --replace overwrites it, -o names another file")
     table = Tables(view).table(request.table, request.columns)
     partial = output.with_name(f".{output.name}.partial")
     try:

@@ -231,7 +231,7 @@ def test_refusal_names_extend_where_it_helps(command, old, new, told):
     command.solved("small.yaml", "c.h5")
     refused = command("run", "large.yaml", "-o", "c.h5")
     assert refused.returncode == 2
-    assert ("--extend computes what it lacks" in refused.stderr) == told
+    assert ("--extend computes only the missing points" in refused.stderr) == told
 
 
 def test_extend_makes_a_new_file_and_continues_its_own(command):

@@ -34,8 +34,14 @@ def results(loaded, tmp_path_factory):
         (("export", "c.h5", "-o", "beat.xlsx"), "--output beat.xlsx: the name must end in .csv or .tsv"),
         (("plot", "c.h5", "-o", "p.csv"), "--output p.csv: the name must end in .png, .pdf, .svg"),
         (("bench", "spectrum", "--quick", "-o", "b.txt"), "--output b.txt: the name must end in .md"),
-        (("show", "c.yaml"), "c.yaml is a config and no result file; `rodsweep run` makes one of it"),
-        (("export", "c.yaml"), "c.yaml is a config and no result file; `rodsweep run` makes one of it"),
+        (
+            ("show", "c.yaml"),
+            "c.yaml is a config, not a result file; `rodsweep run` makes a result file from it",
+        ),
+        (
+            ("export", "c.yaml"),
+            "c.yaml is a config, not a result file; `rodsweep run` makes a result file from it",
+        ),
         (("check", "c.h5"), "c.h5 is a result file and no config; `rodsweep show` says what it holds"),
         (("export", "."), ". is a directory; name a file"),
         (("plot", "."), ". is a directory; name a file"),

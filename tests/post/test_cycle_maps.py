@@ -256,13 +256,13 @@ THREE = (FORCES, [1e4, 1e5], [1e2], [1e-2], [1.0, 0.5])
             {},
             "and only F varies; leave out --what maps",
         ),
-        (make_view(([50.0], *THREE[2:3] * 4), [0], **WORDS), {}, "and none varies"),
+        (make_view(([50.0], *THREE[2:3] * 4), [0], **WORDS), {}, "and no parameter varies"),
         (scattered(), {}, "no grid over F and k2"),
         (twice(), {}, "no grid over F and k2"),
         (swept([1.0, 2], [10.0, 20]), {}, "no cycle that could be drawn"),
         (swept(FORCES, [10, np.inf]), {}, "fewer than two finite values of F or k2"),
         ([swept(*SMALL), swept(*SMALL)], {}, "only amplitudes of several files"),
-        (swept(*SMALL), {"points": (1,)}, "--point is given but maps are drawn of all points"),
+        (swept(*SMALL), {"points": (1,)}, "--point is given, but maps show all points"),
     ],
 )
 def test_what_no_map_can_show_is_refused_in_one_sentence(tmp_path, views, words, message):

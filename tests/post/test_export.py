@@ -217,7 +217,7 @@ def test_a_file_that_is_there_is_written_over_only_on_request(command):
     before = command.write("c.csv", "mine").read_text()
     refused = command("export", "c.h5")
     assert (refused.returncode, (command.directory / "c.csv").read_text()) == (2, before)
-    assert "c.csv is there already; --replace writes over it" in refused.stderr
+    assert "c.csv exists already; --replace overwrites it" in refused.stderr
     assert command("export", "c.h5", "-o", "c.h5", "--replace").returncode == 2
     assert command("export", "c.h5", "--replace").returncode == 0
     assert (command.directory / "c.csv").read_text().startswith("F,k1,k2")

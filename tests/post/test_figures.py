@@ -298,7 +298,7 @@ def test_style_is_a_name_or_a_file_and_anything_else_is_refused(command, monkeyp
     for wrong in ("nosuch", "c.h5"):
         done = command("plot", "c.h5", "--style", wrong)
         assert (done.returncode, done.stderr.count("\n")) == (2, 1)
-        assert f"{wrong} is neither a style of matplotlib's nor a style file" in done.stderr
+        assert f"{wrong} is neither a style of matplotlib nor a style file" in done.stderr
 
 
 def test_few_digits_of_a_large_number_are_written_with_a_power_of_ten():
@@ -453,7 +453,7 @@ def test_a_section_of_a_grid_is_what_a_run_of_its_own_gives(command, monkeypatch
     for words, said in (
         (("--at", "k2=70"), "no point there; it has k2 = 50, 100"),
         (("--at", "k3=1"), "has no such axis"),
-        (("--at", "k2"), "is no parameter with a number"),
+        (("--at", "k2"), "must be a parameter with a number"),
         (("--width", "tall"), "width = 'tall' is not allowed; choose single, double, or a length as '89 mm'"),
         (("--width", "1 km"), "from 64 to 508 mm"),
         (("--what", "map"), "is for results of thresholds"),
@@ -532,7 +532,10 @@ def test_several_lines_of_spectra_are_panels_of_one_figure(command, monkeypatch)
     refused = command("plot", "a.h5", "t.h5", "-o", "x.png")
     assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
     assert "only lines of spectra" in refused.stderr
-    assert "several files are drawn of" in command("plot", "t.h5", "t.h5", "-o", "x.png").stderr
+    assert (
+        "only files of limit_cycle or spectrum share a figure"
+        in command("plot", "t.h5", "t.h5", "-o", "x.png").stderr
+    )
 
 
 def test_folds_of_rows_are_marked_where_no_curve_goes_through_them():

@@ -144,8 +144,8 @@ def test_points_that_no_file_has_computed_are_missing(command):
             [[], [("modes: 2}", "modes: 2}\naccuracy: 1.0e-8")]],
             "accuracy is 1e-10 in 1.h5",
         ),
-        (SPECTRA, [[(RANGE, "10")], [(RANGE, "[10.000000000000002]")]], "which only rounding sets apart"),
-        (CHAINS, [[], [("60]", "70]")]], "has not the F of the other files"),
+        (SPECTRA, [[(RANGE, "10")], [(RANGE, "[10.000000000000002]")]], "which differ by rounding only"),
+        (CHAINS, [[], [("60]", "70]")]], "differs from the other files in F"),
     ],
 )
 def test_files_that_do_not_fit_are_refused_in_a_sentence(command, text, parts, sentence):

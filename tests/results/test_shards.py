@@ -83,7 +83,7 @@ def test_merged_shards_are_the_undivided_run(command):
         assert "328 of other shards, 164 ok" in done.stdout
     told = command("show", names[1]).stdout
     assert "328 points are not here: the file is shard 2/3" in told
-    assert "missing; where no run goes on" not in told
+    assert "missing; if no run is going on" not in told
     assert re.search(r"computed from \S+ on, all points of shard 2/3; rodsweep", told)
     some = command("merge", "m.h5", *names[:2])
     assert (some.returncode, "164 missing" in some.stdout) == (75, True)
@@ -133,7 +133,7 @@ def test_what_does_not_belong_together_is_not_merged(command):
     shard = command.directory / "c-1-of-2.h5"
     before = shard.read_bytes()
     for names, sentence in (
-        (("m.h5", shard.name, "d.h5"), "together the files are no full grid"),
+        (("m.h5", shard.name, "d.h5"), "together the files do not form a full grid"),
         (("m.h5", shard.name, "e.h5"), "spectrum.modes is 4 in c-1-of-2.h5 and 3 in e.h5"),
         (("m.h5", "text.h5"), "not a whole rodsweep result"),
         (("m.h5", "nowhere.h5"), "does not exist"),

@@ -177,7 +177,7 @@ def test_extension_gives_the_file_of_the_larger_grid(command, config, old, new, 
     command.solved("small.yaml", "c.h5")
     refused = command("run", "large.yaml", "-o", "c.h5")
     assert refused.returncode == 2
-    assert "--extend computes what it lacks" in refused.stderr
+    assert "--extend computes only the missing points" in refused.stderr
     extended = command("run", "large.yaml", "-o", "c.h5", "--extend")
     assert extended.returncode == 0, extended.stderr
     assert told in extended.stdout

@@ -96,7 +96,7 @@ def test_curves_are_stopped_said_to_be_missing_and_resumed(whole, units, ranks, 
             in out
         )
     shown = " ".join(whole("show", name).stdout.split())
-    assert "all rows are there; the curves through them are missing" in shown
+    assert "all rows are computed; the curves are missing" in shown
     if how == signal.SIGKILL:
         assert "curves are missing" in whole("plot", name, "-o", "c.png").stdout
     with h5py.File(whole.directory / name) as file:

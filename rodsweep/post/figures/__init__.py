@@ -56,7 +56,7 @@ def _styled(look: Look) -> AbstractContextManager[None]:
             look.style, use_default_template=False
         )
     except (OSError, ValueError):  # the file does not exist, or is no text
-        raise InputError(f"{look.style} is neither a style of matplotlib's nor a style file") from None
+        raise InputError(f"{look.style} is neither a style of matplotlib nor a style file") from None
     return matplotlib.rc_context(ours | dict(own))
 
 
@@ -92,7 +92,7 @@ def draw(
     """
     views = [views] if isinstance(views, View) else views
     if look.width and choices.get("what") == "animation":
-        raise InputError("--width is for figures in print, and an animation is none; leave it out")
+        raise InputError("--width is for printed figures, not for an animation; remove it")
     if not look.title:
         views = [replace(view, attributes=view.attributes | {"title": ""}) for view in views]
     taken = output.exists() and (

@@ -32,7 +32,7 @@ def draw_limit_cycle(request: FigureRequest) -> str:
     if name == "animation":
         request.check_output(*FILMS)
         if request.keep is not None:
-            raise InputError("an animation is a file and no single figure; save it as a .gif")
+            raise InputError("an animation is not a single figure; save it as a .gif")
         return write_animation(view, points, request.output)
     request.check_output()
     if name == "amplitude":
@@ -65,7 +65,7 @@ def figure_name(request: FigureRequest) -> str:
     if others and name != "amplitude":
         raise InputError(f"--what {name} draws one file; only amplitudes of several files make one figure")
     if request.points and name in ALL_POINTS:
-        raise InputError(f"--point is given but {ALL_POINTS[name]} are drawn of all points; remove it")
+        raise InputError(f"--point is given, but {ALL_POINTS[name]} show all points; remove it")
     return name
 
 

@@ -43,7 +43,7 @@ def _number(name: str, value: float | str) -> float:
             raise InputError(f"--at drag={value} is none of {', '.join(DRAGS)}") from None
         if name in ALL_QUANTITIES:
             return in_si(f"--at {name}", value, ALL_QUANTITIES[name].unit, "12 cm")
-        raise InputError(f"--at {name}={value} is no parameter with a number, as k1=150 is") from None
+        raise InputError(f"--at {name}={value} must be a parameter with a number, such as k1=150") from None
 
 
 def _cut(view: View, name: str, value: float) -> View:
@@ -100,4 +100,4 @@ def choices_of(given: Mapping[str, float | str]) -> dict[str, float | str]:
     try:
         return {str(n): value if isinstance(value, str) else float(value) for n, value in given.items()}
     except (AttributeError, TypeError, ValueError):
-        raise InputError("at is not allowed; give numbers by parameter, as at={'k1': 150}") from None
+        raise InputError("at is not allowed; give numbers by parameter, such as at={'k1': 150}") from None

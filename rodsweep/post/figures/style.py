@@ -104,7 +104,7 @@ def long_axes(view: View) -> list[str]:
     if not 1 <= len(long) <= 2:
         raise InputError(
             f"{view.path} has {len(long)} axes with more than one value ({', '.join(long) or 'none'}); a "
-            "figure needs one or two, and --at, as --at k1=150, takes one value of an axis"
+            "figure needs one or two; --at, such as --at k1=150, selects one value of an axis"
         )
     return long
 

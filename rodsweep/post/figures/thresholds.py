@@ -29,7 +29,7 @@ def draw_thresholds(request: FigureRequest) -> str:
         if request.what and view.quantities:
             raise InputError(
                 f"{view.path}: --what {request.what} is not for a grid over an arm's quantities; remove it, "
-                "and --at, as --at 'length=12 cm', draws lines over the others"
+                "or draw lines over the other quantities with --at, such as --at 'length=12 cm'"
             )
         if request.what:
             raise InputError(

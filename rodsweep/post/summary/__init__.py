@@ -87,17 +87,17 @@ def _unfinished(view: View, missing: int, noun: str) -> list[str]:
     lines = []
     if missing and (shard := view.attributes.get("shard")):
         lines.append(
-            f"{counted(missing, noun)} {is_or_are(missing)} not here: the file is shard {shard}, `rodsweep "
-            "merge` puts the shards together; where this one was interrupted, its own command continues"
+            f"{counted(missing, noun)} {is_or_are(missing)} not here: the file is shard {shard}, and "
+            "`rodsweep merge` combines the shards; if the run of this shard was interrupted, its command continues it"
         )
     elif missing:
         lines.append(
-            f"{counted(missing, noun)} {is_or_are(missing)} missing; where no run goes on, the same command "
+            f"{counted(missing, noun)} {is_or_are(missing)} missing; if no run is going on, the same command "
             "continues"
         )
     elif lacks_curves(view.attributes):
         lines.append(
-            f"all {plural(noun)} are there; the curves through them are missing, the same command adds them"
+            f"all {plural(noun)} are computed; the curves are missing, and the same command adds them"
         )
     if waiting := view.journalled:
         verb = "waits" if waiting == 1 else "wait"

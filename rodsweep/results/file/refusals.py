@@ -23,8 +23,7 @@ def require_room(path: Path, plan: Plan) -> None:
     free = shutil.disk_usage(path.parent).free
     if free < size:
         raise EnvironmentLacks(
-            f"{path} needs {size / 1e6:.3g} MB on its disk while it is computed, and "
-            f"{free / 1e6:.3g} MB are free"
+            f"{path} needs {size / 1e6:.3g} MB of disk space during the run, and {free / 1e6:.3g} MB are free"
         )
 
 
@@ -35,7 +34,7 @@ def header_in_the_way(path: Path, plan: Plan, journals: Path) -> Header:
     try:
         return read_header(path)
     except IncompleteFile as error:
-        raise InputError(f"{error}; it is left as it is: {_ways_out(plan, journals)}") from None
+        raise InputError(f"{error}; the file is left unchanged: {_ways_out(plan, journals)}") from None
 
 
 def refuse_other(header: Header, plan: Plan, journals: Path) -> None:
@@ -44,7 +43,7 @@ def refuse_other(header: Header, plan: Plan, journals: Path) -> None:
     ways = _ways_out(plan, journals)
     try:
         extension_of(header, parameters_of(header.path, header.layout), plan)
-        ways += "; --extend computes what it lacks"
+        ways += "; --extend computes only the missing points"
     except InputError:  # the plan lacks points or results of the file
         pass
     raise InputError(f"{header.path} was made from another config ({change}); {ways}")
@@ -53,5 +52,5 @@ def refuse_other(header: Header, plan: Plan, journals: Path) -> None:
 def _ways_out(plan: Plan, journals: Path) -> str:
     """What the user can do about a file in the way of a run."""
     if journals_of(journals, plan.fingerprint):
-        return f"move it away, and the same command takes the points that wait in {journals}"
+        return f"move it away, and the same command will use the points in {journals}"
     return "choose another file with -o, or replace it with --fresh"

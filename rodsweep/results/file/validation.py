@@ -76,7 +76,9 @@ def open_whole(path: Path, values: bool = True) -> tuple[h5py.File, Header]:
     """
     refuse_absent(path)
     if path.suffix in CONFIGS:
-        raise IncompleteFile(f"{path} is a config and no result file; `rodsweep run` makes one of it")
+        raise IncompleteFile(
+            f"{path} is a config, not a result file; `rodsweep run` makes a result file from it"
+        )
     with reading(path):
         is_framed = check_frame(path)
         file = h5py.File(path, "r")

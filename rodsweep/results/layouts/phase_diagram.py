@@ -153,7 +153,8 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
         *(real(f"fold_{name}_error", units[name], f"{error}{name}", "fold") for name in along),
         real("fold_frequency", ANGULAR, "angular frequency of the modes at the fold", "fold"),
         real("fold_growth_rate", "1/tau2", "growth rate of the modes at the fold", "fold"),
-        real("curve_agreement", "1", f"largest distance of a crossing from its curve, in units of the range of {line}"),
+        real("curve_agreement", "1", f"largest distance of a crossing from its curve, in units of the range "
+             f"of {line}"),
         integer("curves_untraced", "number of crossings on rows without a curve"),
         real("filament_F_hopf", force, "Fc: F at which the filament (k1, k2 = inf, gamma3 = 0) flutters"),
         real("partial_beam_k1", force, "4 Fc: k1 at the fold of the partial beam (k2 = inf, gamma3 = 0)"),

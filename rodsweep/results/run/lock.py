@@ -40,8 +40,8 @@ class Lock:
                     time.sleep(0.1)
                     continue
                 raise InputError(
-                    f"{path} is being written by another run; wait for it, or choose another file with "
-                    "-o (several ranks that each say this were started without MPI between them)"
+                    f"{path} is being written by another run; wait for its end, or choose another file with "
+                    "-o (if several ranks print this message, they were started without MPI)"
                 ) from None
             os.close(self.handle)  # the run that ended just now has removed this lock file: take a new one
 

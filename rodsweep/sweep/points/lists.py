@@ -71,7 +71,7 @@ def _row(row: list[str], header: list[str], where: str) -> list[float]:
     Raises InputError for a cell without a number, and for an impossible rod.
     """
     if len(row) != len(header):
-        raise InputError(f"{where}: {len(row)} values, where the header names {len(header)}")
+        raise InputError(f"{where} has {len(row)} values, but the header names {len(header)}")
     numbers = []
     for cell, name in zip(row, header, strict=True):
         try:

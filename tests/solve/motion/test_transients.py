@@ -181,7 +181,11 @@ def test_transients_are_suggested_where_there_are_no_shapes_to_draw(tmp_path, vi
     ("view", "points", "message"),
     [
         (make_view(TWO, [0, 0]), (), r"holds no transient_time; run with limit_cycle.transient > 0"),
-        (view_with_transients((0, 0), (True, False)), (2,), "no transient, its motion was not followed"),
+        (
+            view_with_transients((0, 0), (True, False)),
+            (2,),
+            "motion of the point from its start is not stored",
+        ),
         (view_with_transients((0, 0), (False, False)), (), "holds no transient that could be drawn"),
         (view_with_transients(), (3,), "points 1 to 2"),
     ],

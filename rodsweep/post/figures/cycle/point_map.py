@@ -49,8 +49,8 @@ def point_map(view: View) -> PointMap:
     at[row.ravel(), column.ravel()] = np.arange(row.size)
     if (at < 0).any() or at.size != row.size:
         raise InputError(
-            f"{view.path} holds points that form no grid over {varied[0]} and {varied[1]}; maps are drawn "
-            "where every combination is there once"
+            f"{view.path} holds points that form no grid over {varied[0]} and {varied[1]}; a map needs every "
+            "combination exactly once"
         )
     finite = np.isfinite(x), np.isfinite(y)
     if min(np.count_nonzero(is_finite) for is_finite in finite) < 2:
@@ -75,9 +75,9 @@ def is_map(view: View) -> bool:
 def _varying(names: list[str]) -> str:
     """Clause on the varied parameters, which are not two, with the remedy."""
     if not names:
-        return "none varies"
+        return "no parameter varies"
     if names[1:]:
-        return f"{', '.join(names)} vary; --at {names[-1]}=VALUE takes the points with one value of it"
+        return f"{', '.join(names)} vary; --at {names[-1]}=VALUE selects the points with one value"
     return f"only {names[0]} varies; leave out --what maps for its lines"
 
 

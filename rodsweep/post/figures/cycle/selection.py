@@ -121,7 +121,7 @@ def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> Se
     for number in points:
         if words[number - 1] != "cycle":
             word = words[number - 1].replace("_", " ")
-            raise InputError(f"--point {number}: the point has no cycle to draw, its status is: {word}")
+            raise InputError(f"--point {number}: the point has no cycle to draw; its status is: {word}")
     return _selection(view, points, words == "cycle", "cycle")
 
 
@@ -135,7 +135,7 @@ def chosen_traces(view: View, points: Sequence[int]) -> Selection:
     is_stored = np.isfinite(view.variables[TRACE[0]][..., -1].ravel())
     for number in points:
         if not is_stored[number - 1]:
-            raise InputError(f"--point {number}: the point has no transient, its motion was not followed")
+            raise InputError(f"--point {number}: the motion of the point from its start is not stored")
     return _selection(view, points, is_stored, "transient")
 
 

@@ -76,7 +76,7 @@ class JoinedFile:
                 if not self._is_rounding(name, stored[i][name], records[i][name], pair):
                     where = _place(self.plan.points, index)
                     both = " and ".join(str(source.path) for source in pair)
-                    raise InputError(f"{both} disagree about the point {where}: their {name} differ")
+                    raise InputError(f"{both} disagree about the point {where}: the values of {name} differ")
 
     def _is_rounding(self, name: str, first: Any, second: Any, sources: tuple[Header, Header]) -> bool:
         """Whether two values differ by rounding only: other BLAS kernels, or neighbours in stretches."""
@@ -114,11 +114,11 @@ def joined_file_of(sources: Sequence[Header], planner: Planner) -> JoinedFile:
         if apart:
             raise InputError(f"{other.path} was made from another config than {first.path} ({apart})")
         if points.is_grid != grids[0].is_grid:
-            raise InputError(f"of {first.path} and {other.path} one is a grid and one a list of points")
+            raise InputError(f"{first.path} and {other.path} cannot be joined: one is a grid, one a list")
     if "arm" in meant:
         raise InputError(
-            f"{first.path} is of an arm, whose files are merged as shards of one config only; run --extend "
-            "adds points to it"
+            f"{first.path} is the file of an arm, and such files are merged only as shards of a single "
+            "config; run --extend adds points to the file"
         )
     if grids[0].is_grid:
         points, places = _joined_grid(grids)
@@ -138,7 +138,7 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[Places]]:
         close = np.flatnonzero(np.diff(axis) <= SAME_VALUE * np.abs(axis[:-1]))
         if len(close):
             values = " and ".join(repr(float(value)) for value in axis[close[0] : close[0] + 2])
-            raise InputError(f"the files have {name} = {values}, which only rounding sets apart")
+            raise InputError(f"the files have {name} = {values}, which differ by rounding only")
         axes.append(axis)
     whole = Points(grids[0].names, tuple(axes), is_grid=True)
     covered = np.zeros(whole.shape, bool)
@@ -149,9 +149,9 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[Places]]:
         places.append(Places(grid.shape, whole.shape, tuple(each)))
     if not covered.all():
         raise InputError(
-            f"together the files are no full grid: {np.count_nonzero(~covered)} of {covered.size} points are "
-            f"in none, the first at {_place(whole, int(np.argmin(covered)))}; compute them into a file of "
-            "their own, or merge fewer files"
+            f"together the files do not form a full grid: {np.count_nonzero(~covered)} of {covered.size} "
+            f"points are in no file, the first at {_place(whole, int(np.argmin(covered)))}; compute these "
+            "points into a separate file, or merge fewer files"
         )
     return whole, places
 
@@ -203,8 +203,8 @@ def _refuse_broken_chains(sources: Sequence[Header], grids: Sequence[Points], pl
     for source, grid in zip(sources, grids, strict=True):
         if not np.array_equal(grid.by_name[name], plan.points.by_name[name]):
             raise InputError(
-                f"{source.path} has not the {name} of the other files, along which each point starts from "
-                "its neighbour: chains cannot be pieced together; use run --extend"
+                f"{source.path} differs from the other files in {name}, along which each point starts from "
+                "its neighbour; pieces of chains cannot be joined; use run --extend"
             )
 
 
@@ -214,7 +214,7 @@ def _with_attributes(plan: Plan, first: Header, config: Config) -> Plan:
     resolved = canonical(config)
     if max(len(text), len(str(resolved))) > LONGEST_ATTRIBUTE:
         raise InputError(
-            "the joined axes are too long to be listed in the file; compute them as ranges by run"
+            "the joined axes are too long to be listed in the file; compute the grid with `run` from ranges"
         )
     with h5py.File(first.path, "r") as file:
         described = file["status"].attrs

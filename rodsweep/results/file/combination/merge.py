@@ -96,7 +96,7 @@ def _opened(paths: Sequence[Path]) -> list[Header]:
         files.append(read_header(path))
         if any(journal_directory(path).glob(JOURNALS)):
             raise InputError(
-                f"{path} has points in its journal that are not in it yet: run its command again first"
+                f"{path} has points in the journal that are not in the file yet: first run its command again"
             )
     return files
 

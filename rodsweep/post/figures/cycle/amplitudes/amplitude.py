@@ -43,9 +43,9 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
     branches = [branch for view, drawn_in in pairs for branch in branches_of(view, name, drawn_in)]
     if len(branches) > len(BRANCH_LOOKS):
         raise InputError(
-            f"{first.path} makes {len(branches)} lines over {name}, for which a figure has no room; "
-            f"it has room for {len(BRANCH_LOOKS)}: choose by --at k1=150, or draw two parameters, each"
-            " combination once, as maps (--what maps)"
+            f"{first.path} gives {len(branches)} lines over {name}, and a figure has room for "
+            f"{len(BRANCH_LOOKS)}: choose lines with --at, such as --at k1=150, or draw a full grid over two "
+            "parameters as maps (--what maps)"
         )
     require(first, any(np.isfinite(branch.amplitude_y).any() for branch in branches), "amplitude")
     figure = Figure(figsize=(4.4, 8.4) if narrow else (8.6, 5.6), layout="constrained")

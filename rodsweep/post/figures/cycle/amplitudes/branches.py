@@ -59,7 +59,7 @@ def abscissa(view: View) -> str:
     sizes = {name: len(np.unique(column)) for name, column in view.point_columns.items()}
     name = "F" if sizes["F"] > 1 else max(sizes, key=sizes.__getitem__)
     if sizes[name] < 2:
-        raise InputError(f"{view.path} holds one point; amplitudes are drawn against F where it has values")
+        raise InputError(f"{view.path} holds one point; amplitudes need several values of a parameter")
     return name
 
 
