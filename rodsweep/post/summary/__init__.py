@@ -88,7 +88,8 @@ def _unfinished(view: View, missing: int, noun: str) -> list[str]:
     if missing and (shard := view.attributes.get("shard")):
         lines.append(
             f"{counted(missing, noun)} {is_or_are(missing)} not here: the file is shard {shard}, and "
-            "`rodsweep merge` combines the shards; if the run of this shard was interrupted, its command continues it"
+            "`rodsweep merge` combines the shards; if the run of this shard was interrupted, its command "
+            "continues it"
         )
     elif missing:
         lines.append(
