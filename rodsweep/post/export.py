@@ -40,6 +40,7 @@ def export(view: View, output: Path, request: Request) -> str:
     if output.exists() and not request.replace:
         raise InputError(f"{output} exists already; --replace overwrites it, -o names another file")
     table = Tables(view).table(request.table, request.columns)
+    # Written under another name first: a kill leaves no half table under the final name.
     partial = output.with_name(f".{output.name}.partial")
     try:
         with partial.open("w", newline="", encoding="utf-8") as stream:

@@ -63,6 +63,7 @@ class FirstRankClaims:
         self.served = 0.0
         self.thread: threading.Thread | None = None
         if team.size > 1:
+            # A daemon, so that an exception on this rank does not wait for the thread.
             self.thread = threading.Thread(target=self._serve_until_over, name="handout", daemon=True)
             self.thread.start()
 

@@ -95,6 +95,7 @@ class Handout:
             return self._take(rank) if self.todo and self.left >= MIN_UNITS_AHEAD * self.ranks else None
 
     def _take(self, rank: int) -> IndexRange:
+        # Half of an equal share at most: chunks shrink toward the end, where waiting costs most.
         share = max(1, self.left // (2 * self.ranks))
         pace = self.pace.get(rank)
         size = 1 if pace is None else int(chunk_seconds(self.ranks) / max(pace, 1e-7))

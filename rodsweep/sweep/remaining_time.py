@@ -51,6 +51,7 @@ class Pace:
             return found
         before, reported = self.reported
         expected = max(reported - (now - before), 0.0)
+        # A zero time constant would divide by zero when nothing is left.
         time_constant = TIME_CONSTANT * min(now, max(found, expected)) or 1.0
         follow = 1 - exp(-(now - before) / time_constant)
         self.reported = now, expected + follow * (found - expected)

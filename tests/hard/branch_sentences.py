@@ -59,7 +59,7 @@ def branch_sentences(view, page, keywords, fine):
         page, "^followed in F from RANGE to RANGE;", [keywords.get("start", 0.0)], [keywords["stop"]]
     )
     proved = (view.variables["certified"].sum(), len(rods))
-    return found + counts(page, r"no Hopf point is missing is proved at NUMBER of NUMBER rod", *proved)
+    return found + counts(page, r"list of Hopf points is proved complete at NUMBER of NUMBER rod", *proved)
 
 
 def _one_rod(view, page, fine, own, true):

@@ -425,7 +425,9 @@ def _search_sentences(view, page, every, noun):
     """How far was searched, how many crossings are stored, how accurate these are; every: the true ones."""
     v, rods = view.variables, len(every)
     proved = int(v["certified"].sum())
-    found = counts(page, rf"^that no crossing is missing is proved on NUMBER of NUMBER {noun}", proved, rods)
+    found = counts(
+        page, rf"^the list of crossings is proved complete on NUMBER of NUMBER {noun}", proved, rods
+    )
     stored = (v["crossing_kind"] > 0).reshape(rods, -1)
     name = "crossing_at" if "crossing_at" in v else "crossing_F"
     off = 0.0
@@ -446,7 +448,7 @@ def _search_sentences(view, page, every, noun):
         found.append((line, "; ".join(why)))
     if "F_end" in v:
         found += ranges(page, "^searched up to F = RANGE$", v["F_end"])
-        found += ranges(page, "^searched up to F = RANGE; that no crossing is missing is proved", v["F_end"])
+        found += ranges(page, "^searched up to F = RANGE; the list of crossings is proved", v["F_end"])
         found += ranges(page, "^no threshold up to F = RANGE", v["F_end"])
     return found
 
@@ -459,7 +461,7 @@ def criticality_sentences(view, page, keywords, fine):
         page, "^no Hopf point up to F = RANGE", end
     )
     proved = (int(own["certified"].sum()), count)
-    found += counts(page, "no Hopf point is missing is proved at NUMBER of NUMBER rod", *proved)
+    found += counts(page, "list of Hopf points is proved complete at NUMBER of NUMBER rod", *proved)
     if count == 1:
         return found + _normal_forms(page, {name: v[name].ravel() for name in v})
     having = (v["crossing_count"] > 0).ravel()
@@ -572,21 +574,23 @@ def cycle_sentences(view, page, keywords, fine):
     if "hopf_lines" in own:
         proved = int(own["hopf_lines_proved"]), int(own["hopf_lines"])
         found += counts(
-            page, "no Hopf point is missing between the points is proved on NUMBER of NUMBER line", *proved
+            page,
+            "list of Hopf points between the points is proved complete on NUMBER of NUMBER line",
+            *proved,
         )
     found += _second_states(view, page, w, keywords)
     orbits = np.isin(words[0], ["cycle", "unstable"]).reshape(shape)
     for pattern, name in (
         ("^period", "period"),
         ("^largest y of the tip", "tip_y_max"),
-        ("^largest Floquet.*is 1", "multiplier"),
+        ("^largest nontrivial Floquet multiplier", "multiplier"),
     ):
         for line, match in read(page, rf"{pattern}: NUMBER \(\+- ({NUMBER})\)"):
             found.append((line, with_error(match[1], match[2], float(v[name][orbits].max()))))
             if name == "multiplier":
                 above = float(v[name][orbits].max()) > 1
                 found.append((line, "" if above == ("above" in line) else "the verdict is the other"))
-                read(page, "all others are below NUMBER|it is above NUMBER", only=line)
+                read(page, "(?:below|above) NUMBER: the cycle", only=line)
     if beats.any():
         of_points = [name for name in v if v[name].shape[: len(shape)] == shape]
         found += _sizes(page, *({name: some[name][beats] for name in of_points} for some in (v, own)))

@@ -280,7 +280,7 @@ def test_variables_added_when_a_run_ends_have_their_own_dimensions(tmp_path, cou
             "at all 6 rods; growth rate -6 to -1 1/tau2",
             "stable again: F = 3 (",
             "searched up to F = 200 ",
-            "that no crossing is missing is proved on 6 of 6 rods",
+            "the list of crossings is proved complete on 6 of 6 rods",
         ],
         "phase_diagram": [
             "of 6 places on the rows: 2 monotone, 2 oscillatory, 2 flutter",

@@ -99,7 +99,7 @@ def draw(
         not output.is_file() or any(output.samefile(view.path) for view in views if view.path.exists())
     )
     request = FigureRequest(views, output, taken=taken, look=look, shapes=shapes, keep=keep, **choices)
-    with _styled(look), np.errstate(all="ignore"):
+    with _styled(look), np.errstate(all="ignore"):  # NaN and inf are ordinary data of a figure
         try:
             shown = _drawn(request)
         except OSError as error:

@@ -222,6 +222,6 @@ def _searched(view: View, done: np.ndarray) -> str:
     along = followed_parameter(view)
     proved = some_of(view.variables["certified"][done].sum(), done.sum(), "rod")
     return (
-        f"followed in {along} from {start:g} to {stop:g}; that no Hopf point is missing is proved at "
+        f"followed in {along} from {start:g} to {stop:g}; the list of Hopf points is proved complete at "
         f"{proved}; cycles that lie on no branch from a Hopf point are not found"
     )

@@ -141,7 +141,7 @@ def _searched(view: View, done: np.ndarray) -> str:
     rods = int(done.sum())
     hidden = int(v["crossing_count"][done].clip(min=0).sum() - (v["crossing_kind"][done] > 0).sum())
     return (
-        f"searched up to F = {span(v['F_end'][done])}; that no Hopf point is missing is proved at "
+        f"searched up to F = {span(v['F_end'][done])}; the list of Hopf points is proved complete at "
         f"{some_of(certified, rods, 'rod')}{not_stored(hidden)}"
     )
 

@@ -81,7 +81,7 @@ def _proof_lines(v: Mapping[str, np.ndarray]) -> list[str]:
     if not lines:
         return []
     proved = some_of(int(v["hopf_lines_proved"]), lines, "line")
-    return [f"that no Hopf point is missing between the points is proved on {proved}"]
+    return [f"the list of Hopf points between the points is proved complete on {proved}"]
 
 
 def _straight_line(v: Mapping[str, np.ndarray], done: np.ndarray) -> str:
@@ -98,11 +98,11 @@ def orbit_lines(v: Mapping[str, np.ndarray], stable: bool) -> list[str]:
     period = float(v["period"].max())
     y = float(v["tip_y_max"].max())
     multiplier = to_error(v["multiplier"].max(), v["multiplier_error"].max())
-    verdict = "stable: all others are below 1" if stable else "unstable: it is above 1"
+    verdict = "below 1: the cycle is stable in the plane" if stable else "above 1: the cycle is unstable"
     return [
         f"period: {to_error(period, period * v['period_error'].max())} tau2",
         f"largest y of the tip: {to_error(y, y * v['amplitude_error'].max())} L",
-        f"largest nontrivial Floquet multiplier: {multiplier}; the cycle is {verdict}",
+        f"largest nontrivial Floquet multiplier: {multiplier}; {verdict}",
     ]
 
 

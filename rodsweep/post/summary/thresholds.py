@@ -79,7 +79,7 @@ def trust_of_one(view: View) -> list[str]:
     end, open_from, open_to = (float(view.variables[n].ravel()[0]) for n in ("F_end", "open_from", "open_to"))
     hidden = int(v["crossing_count"][0]) - int((v["crossing_kind"] > 0).sum())
     proof = "proved" if v["certified"].all() else "not proved"
-    lines = [f"searched up to F = {end:.15g}; that no crossing is missing is {proof}{not_stored(hidden)}"]
+    lines = [f"searched up to F = {end:.15g}; the list of crossings is {proof} complete{not_stored(hidden)}"]
     if np.isfinite(open_from):
         lines.append(f"undecided: F = {open_from:.9g} to {open_to:.9g}")
     return lines
@@ -143,7 +143,7 @@ def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
     window = f"; a range stays undecided on {counted(undecided, noun)}" if undecided else ""
     hidden = int((v["crossing_count"][done] - stored).clip(min=0).sum())
     return [
-        f"that no crossing is missing is proved on {proved}{window}",
+        f"the list of crossings is proved complete on {proved}{window}",
         f"crossings stored: {int(stored.sum())}, at most {int(stored.max())} on a {noun}{worst}"
         f"{not_stored(hidden)}",
     ]

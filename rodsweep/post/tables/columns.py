@@ -67,7 +67,7 @@ class Column:
         """Real numbers as text: errors and times rounded, coordinates without rounding errors."""
         if self.is_estimate:
             return [f"{value:.{ERROR_DIGITS}g}" for value in self.values]
-        values = self.values + self.values.dtype.type(0)  # no -0
+        values = self.values + self.values.dtype.type(0)  # -0.0 + 0 is 0.0, which needs no sign
         texts = [text.removesuffix(".0") for text in values.astype(str).tolist()]
         return (
             [_typed(value, text) for value, text in zip(self.values, texts, strict=True)]

@@ -65,6 +65,7 @@ class Exchange:
             os.fsync(file.fileno())
         os.replace(self.copy, self.path)
         self.left = identity(self.path)
+        # Without syncing the directory a power failure could undo the rename.
         directory = os.open(self.path.parent, os.O_RDONLY)
         os.fsync(directory)
         os.close(directory)

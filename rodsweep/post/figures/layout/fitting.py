@@ -52,6 +52,7 @@ def fit(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
         changes = [_fit_legends(figure), _break_texts(figure), thin_ticks(figure)]
         if not any(changes):
             break
+    # The texts fit; now remove the additional height, which does not lengthen any text.
     spare = _spare_height(figure, min_aspect)
     figure.set_size_inches(width, max(height, min(height + SPARE_HEIGHT - spare, TALLEST)))
     for _ in range(MAX_PASSES):

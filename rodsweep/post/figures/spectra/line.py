@@ -57,6 +57,7 @@ def broken(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(x, w) with a gap of NaN where the followed roots are exchanged for other roots between two points."""
     step = np.abs(np.diff(w, axis=0)).max(axis=1)
     size = np.abs(w).max(axis=1)
+    # A root that is exchanged jumps far beyond the neighbouring steps, and by much of its own size.
     around = np.array([np.median(step[max(0, i - 3) : i + 4]) for i in range(len(step))])
     jump = np.flatnonzero((step > 8 * around) & (step > 0.5 * np.minimum(size[1:], size[:-1]))) + 1
     return np.insert(x, jump, np.nan), np.insert(w, jump, np.nan, axis=0)

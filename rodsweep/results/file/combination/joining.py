@@ -83,6 +83,7 @@ class JoinedFile:
         kernels = {kernel for source in sources for kernel in kernels_of(source.attributes)}
         if (len(kernels) < 2 and not self.plan.stretches) or name == "status":
             return False
+        # Rounding changes the size of an error estimate, and the cost of a solve, by any factor.
         if np.asarray(first).dtype.kind != "f" or name.endswith(("error", "error_estimate")):
             return True
         tolerance = ROUNDING_FACTOR * float(self.plan.config["accuracy"])

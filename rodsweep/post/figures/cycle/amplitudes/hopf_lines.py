@@ -30,6 +30,7 @@ def hopf_lines(points: PointMap, view: View) -> list[Array]:
         rows.append(np.interp(refined, nodes, np.concatenate([row, np.zeros_like(own)])[first]))
     if not np.nanmin(rows) < 0 < np.nanmax(rows):
         return []
+    # This figure is never drawn; matplotlib only computes the contours.
     contours = Figure().subplots().contour(refined, y, np.ma.masked_invalid(rows), levels=[0.0])
     lines = (line for line in contours.allsegs[0] if len(line) > 1)
     return [np.array([x_back(line[:, 0]), y_back(line[:, 1])]) for line in lines]
