@@ -117,6 +117,7 @@ class FirstRankClaims:
                 self.team.comm.send(self.stop.name, dest=rank, tag=STOP_TAG)
 
     def _serve(self) -> None:
+        """Handles all waiting messages: stop requests, progress, and requests for chunks."""
         comm = self.team.comm
         MPI = self.team.MPI
         with self.serving:
@@ -134,6 +135,7 @@ class FirstRankClaims:
                     self.working.discard(rank)
 
     def _hear_places(self) -> None:
+        """Receives the progress of the other ranks."""
         comm = self.team.comm
         MPI = self.team.MPI
         while comm.Iprobe(source=MPI.ANY_SOURCE, tag=PLACE_TAG, status=self.status):
@@ -161,6 +163,7 @@ class FirstRankClaims:
             self.waiting.append(rank)
 
     def _serve_until_over(self) -> None:
+        """Serves the other ranks, in the thread, until all have finished."""
         with self.team.aborting_together():
             while self.working:
                 self._serve()

@@ -96,6 +96,7 @@ class Handout:
 
     def _take(self, rank: int) -> IndexRange:
         # Half of an equal share at most: chunks shrink toward the end, where waiting costs most.
+        """Cuts the next chunk, sized by the rank's pace, off the units still to do; needs the lock."""
         share = max(1, self.left // (2 * self.ranks))
         pace = self.pace.get(rank)
         size = 1 if pace is None else int(chunk_seconds(self.ranks) / max(pace, 1e-7))

@@ -87,6 +87,7 @@ class ProgressReporter:
         self._show()
 
     def _show(self) -> None:
+        """Draws the bar or prints a line, if an update is due."""
         now = time.monotonic()
         if not self.began or now < self.next:
             return

@@ -137,6 +137,7 @@ def read_view(path: Path) -> View:
 
 
 def _view(path: Path) -> View:
+    """Reads the file and the journals once."""
     refuse_absent(path)
     # Opened only once, because a run may replace the file at any instant.
     file, header = open_whole(path, values=path.stat().st_size <= LARGEST_CHECKED)

@@ -30,6 +30,7 @@ class Panel:
 
 def _of_thresholds(view: View) -> list[Panel]:
     # A threshold pressure is shown in the unit in which the user typed Young's modulus.
+    """Load and frequency at flutter, with the loads at the onset of oscillations and at restabilization."""
     load, si, typed = ("force", "N", "force") if "force" in view.quantities else ("pressure", "Pa", "young")
     lines = {}
     for event in ("hopf", "onset", "restabilization"):
@@ -52,6 +53,7 @@ EVENTS = {"hopf": "flutter", "onset": "onset of oscillations", "restabilization"
 
 
 def _of_modes(view: View) -> list[Panel]:
+    """Growth rate and frequency of the leading mode."""
     return [
         Panel("growth rate (1/s)", view.variables["growth_rate_si"][..., 0], zero_label="growth rate 0"),
         Panel("frequency (Hz)", np.abs(view.variables["frequency_hz"][..., 0])),
@@ -59,6 +61,7 @@ def _of_modes(view: View) -> list[Panel]:
 
 
 def _of_cycles(view: View) -> list[Panel]:
+    """Frequency and amplitude of the limit cycle."""
     amplitude, unit = in_typed(view, "length", view.variables["tip_y_max_si"])
     return [
         Panel("frequency (Hz)", view.variables["frequency_hz"], empty_label="no cycle"),

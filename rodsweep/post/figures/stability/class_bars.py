@@ -120,7 +120,9 @@ def classes_between_crossings(view: View, row: str) -> tuple[Array, Array, NDArr
 def _class_beyond(kind: int, unstable: int) -> str:
     """Class of a rod beyond a crossing, from the number of unstable modes there, -1 if unknown."""
     stable = STABLE_CLASS.get(CROSSING_KINDS[kind], "undecided")
-    return "flutter" if unstable > 0 else stable if unstable == 0 else "undecided"
+    if unstable > 0:
+        return "flutter"
+    return stable if unstable == 0 else "undecided"
 
 
 def _bar(axes: Axes, view: View, rod: int, upright: bool) -> set[str]:
