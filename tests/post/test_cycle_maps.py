@@ -249,7 +249,7 @@ THREE = (FORCES, [1e4, 1e5], [1e2], [1e-2], [1.0, 0.5])
         (
             make_view(THREE, [0] * 20, **WORDS),
             {},
-            "over two parameters, and F, k1, gamma1 vary; --at gamma1=VALUE takes the points",
+            "over two parameters, and F, k1, gamma1 vary; --at gamma1=VALUE selects the points",
         ),
         (
             make_view((FORCES, *THREE[2:3] * 4), [0] * 5, **WORDS),

@@ -119,7 +119,7 @@ def test_one_row_of_a_diagram_is_a_bar_bounded_by_its_changes(command, monkeypat
     drawn = []
     monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
     row = section(read_view(command.directory / "c.h5"), {"k1": 200.0})
-    assert draw(row, command.directory / "f.png").endswith("f.png: what the rod does over F")
+    assert draw(row, command.directory / "f.png").endswith("f.png: behaviour of the rod over F")
     (bar,) = drawn[0].axes[0].collections
     edges, found = np.array(bar.get_coordinates()[0, :, 0]), np.array(bar.get_array()).ravel()
     changes = np.flatnonzero(np.diff(found)) + 1

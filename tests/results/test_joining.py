@@ -136,7 +136,7 @@ def test_points_that_no_file_has_computed_are_missing(command):
         (
             SPECTRA,
             [[(RANGE, "[0, 10]"), ("[100,", "[90, 100,")], [(RANGE, "20")]],
-            "2 of 24 points are in none, the first at F = 20, k1 = 90, k2 = 50, gamma3 = 0",
+            "2 of 24 points are in no file, the first at F = 20, k1 = 90, k2 = 50, gamma3 = 0",
         ),
         (SPECTRA, [[], [("modes: 2", "modes: 3")]], "spectrum.modes is 2 in 1.h5 and 3 in 2.h5"),
         (
@@ -172,8 +172,8 @@ def test_points_of_two_files_must_agree(command, kernel, factor, returncode):
     assert joined.returncode == returncode, joined.stderr
     if returncode:
         assert (
-            "1.h5 and 2.h5 disagree about the point F = 10, k1 = 1000, k2 = 50, gamma3 = 0.0001: their "
-            "growth_rate differ"
+            "1.h5 and 2.h5 disagree about the point F = 10, k1 = 1000, k2 = 50, gamma3 = 0.0001: the "
+            "values of growth_rate differ"
         ) in joined.stderr
     else:
         whole, first = (content(command.directory / name) for name in ("m.h5", names[0]))

@@ -182,7 +182,10 @@ def test_lines_that_are_asked_for_over_an_arm_name_what_draws_them(command):
     command.solved("a.yaml")
     refused = command("plot", "a.h5", "--what", "lines")
     assert refused.returncode == 2
-    assert "--what lines is not for a grid over an arm's quantities; remove it, and --at" in refused.stderr
+    assert (
+        "--what lines is not for a grid over an arm's quantities; remove it, or draw lines over the other quantities with --at"
+        in refused.stderr
+    )
 
 
 @pytest.mark.parametrize(("height", "told"), [("8 mm", 1), ("5 mm", 0), ("[5 mm, 7 mm]", 1)])

@@ -373,7 +373,7 @@ def test_show_tells_ranges_and_worst_errors(tmp_path, capsys):
         "of 8 points: beats at 7 (",
         "period: 2 to 8 tau2; largest y of the tip: 7 L",
         "period: 40 to 300 tau1",
-        "multiplier: 0.2; returns",
+        "multiplier: 0.2; periods integrated",
         "worst errors: period 9e+00, amplitude 1e+01, other extrema 2e+01",
         "energy balance 2e+01",
     ):
@@ -386,7 +386,7 @@ def test_show_tells_the_multipliers_of_the_cycles_that_tori_surround():
     view.variables["multiplier_error"] = np.full(view.variables["status"].shape, 1e-3)
     told = limit_cycle_summary(view, view.variables["status"] >= 0)
     assert told.answer[0] == "of 2 points: stays straight at 1 (F = 50), torus at 1 (F = 60)"
-    assert "tori: the cycles that they surround have multipliers 1.25" in told.details
+    assert "tori: the cycles inside have multipliers 1.25" in told.details
 
 
 def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):

@@ -97,7 +97,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     keep = np.isfinite(y)
     if keep.sum() < 2:
         rows = f", for each {row}" if len(y) > 1 else ""
-        shown = f"what the rod does over {line}{rows}"
+        shown = f"behaviour of the rod over {line}{rows}"
         return request.write(_draw_rows(view, palette, line, row), shown, BAR_ASPECT * len(y))
     table = values.reshape(len(y), len(x))[keep]
     y = y[keep]
@@ -121,7 +121,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
     figure.suptitle(heading(view, _fixed(view, line, row)))
     missing = "; curves are missing, the file is not finished" if lacks_curves(view.attributes) else ""
-    return request.write(figure, f"what the rod does over {line} and {row}{missing}", MAP_ASPECT)
+    return request.write(figure, f"behaviour of the rod over {line} and {row}{missing}", MAP_ASPECT)
 
 
 def _fixed(view: View, line: str, row: str) -> str:

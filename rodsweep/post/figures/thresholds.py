@@ -36,7 +36,7 @@ def draw_thresholds(request: FigureRequest) -> str:
                 f"{view.path}: --what {request.what} needs rods that vary in one parameter or two; remove it"
             )
         min_aspect = BAR_ASPECT if view.variables["status"].size == 1 else MIN_ASPECT
-        return request.write(draw_class_bars(view), "what each rod does over F", min_aspect)
+        return request.write(draw_class_bars(view), "behaviour of each rod over F", min_aspect)
     long = style.long_axes(view)
     found = [name for name, *_ in CRITICAL_FORCES if np.isfinite(view.variables[name]).any()]
     style.require(view, found, "threshold")
