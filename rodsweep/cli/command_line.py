@@ -182,7 +182,7 @@ def _values(at: tuple[str, ...]) -> dict[str, str]:
     for text in at:
         name, equals, value = text.partition("=")
         if not equals:
-            raise InputError(f"--at {printable(text)} is no parameter with a number, as k1=150 is")
+            raise InputError(f"--at {printable(text)} must be a parameter with a number, such as k1=150")
         found[name.strip()] = value.strip()
     return found
 
