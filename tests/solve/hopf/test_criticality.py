@@ -295,7 +295,7 @@ def test_numbers_of_one_rod_come_out_of_show(command):
     assert "subcritical: unstable cycles at F above it" in told
     assert re.search(r"Re c = -971\.91953336\d* \(\+- \de-\d+\), Im c = -387\.9588634", told)
     assert re.search(r"a = 0\.5811406522\d* \(\+- \de-1\d\) L", told)
-    assert "is proved at 1 of 1 rod" in told
+    assert "is proved complete at 1 of 1 rod" in told
 
 
 def test_show_counts_the_signs_of_many_rods_and_names_the_subcritical(command):
