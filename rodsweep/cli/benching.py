@@ -7,7 +7,7 @@ from tempfile import TemporaryDirectory
 
 import click
 
-from ..errors import EnvironmentLacks
+from ..errors import EnvironmentIncomplete
 
 MEASURED = (sys.executable, "-m", f"{__package__}.measured")
 """What starts the command that the benchmark of the sweep measures."""
@@ -35,7 +35,9 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
         from ..bench.sweep.study import sweep_study
         from ..bench.thresholds.study import thresholds_study
     except ModuleNotFoundError as error:
-        raise EnvironmentLacks(f"the benchmark needs {error.name}: pip install 'rodsweep[bench]'") from None
+        raise EnvironmentIncomplete(
+            f"the benchmark needs {error.name}: pip install 'rodsweep[bench]'"
+        ) from None
     from ..results.file.measurements import write_measurements
 
     studies: dict[str, Callable[[bool, Peers], Study]] = {

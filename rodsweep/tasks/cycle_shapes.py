@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..config.document.reading import validated, yaml_of
-from ..errors import EnvironmentLacks, InputError
+from ..errors import EnvironmentIncomplete, InputError
 from ..results.file.view import View
 from ..results.layouts.limit_cycle import ENERGY, SHAPE, TIP
 from .running.job import Job, job_of
@@ -44,7 +44,7 @@ def _solved(view: View, number: int) -> tuple[Job, dict[str, Any]]:
         solver = job.solver()
         solver.warm_up()
         record = solver.record(0, solver.solve(0))
-    except EnvironmentLacks as lack:
+    except EnvironmentIncomplete as lack:
         raise InputError(
             f"{view.path} holds no shapes of cycles, and none can be solved here: {lack}; run with "
             "limit_cycle.shapes > 0, which stores them"

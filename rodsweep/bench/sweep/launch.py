@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...errors import EnvironmentLacks
+from ...errors import EnvironmentIncomplete
 from ...results.file.view import read_view
 from ...results.run.journal import journal_directory
 
@@ -117,7 +117,7 @@ def launcher(ranks: int) -> list[str]:
 
 
 def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = True) -> CommandRun:
-    """Runs a case on some ranks; EnvironmentLacks where that fails without having been killed."""
+    """Runs a case on some ranks; EnvironmentIncomplete where that fails without having been killed."""
     others, began = _seconds_of_others(), time.monotonic()
     words = [*launcher(ranks), *command]
     started = [_start(words, case.kind, directory, fresh) for directory in case.directories]
@@ -159,7 +159,7 @@ def _inside(process: subprocess.Popen[str], kind: str) -> float:
     said = re.search(r"points? in ([\d.]+) s on", output)
     stopped = said is None or "stopped by" in output
     if kind != KILLED and (stopped or process.returncode not in (0, 1)):
-        raise EnvironmentLacks(f"a run of the benchmark failed: {' '.join(errors.split())[-500:]}")
+        raise EnvironmentIncomplete(f"a run of the benchmark failed: {' '.join(errors.split())[-500:]}")
     return float(said[1]) if said else nan
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import EnvironmentLacks
+from ...errors import EnvironmentIncomplete
 from ...results.file.creation import Plan
 from ...results.run.checkpoints import Checkpoints
 from ...results.run.journal import Journal, journal_directory, kept_sentence
@@ -80,7 +80,7 @@ class PointWork:
                 loop = Loop(solve=solve, keep=keep, prepare=prepare, name=self._unit_name)
                 share = sweep(self.team, Handout(units, self.team.size), loop, shown, self.stop)
         except OSError as error:
-            raise EnvironmentLacks(
+            raise EnvironmentIncomplete(
                 f"cannot write beside {self.output}: {error.strerror or error}"
                 f"{kept_sentence(directory, plan.fingerprint)}: make room and run again"
             ) from error

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from ...errors import EnvironmentLacks
+from ...errors import EnvironmentIncomplete
 from ..run.journal import journal_directory
 from ..run.lock import Lock
 from .seal import seal
@@ -29,12 +29,14 @@ def identity(path: Path) -> Identity:
 
 @contextmanager
 def disk_refusals(path: Path, kept: Callable[[], str] = str) -> Iterator[None]:
-    """What the disk refuses here (HDF5: RuntimeError) is EnvironmentLacks; `kept` says what is not lost."""
+    """Raises EnvironmentIncomplete for an error of the disk (HDF5: RuntimeError); `kept` says what is not
+    lost.
+    """
     try:
         yield
     except (OSError, RuntimeError) as error:
         reason = getattr(error, "strerror", None) or str(error).splitlines()[0]
-        raise EnvironmentLacks(f"{path} cannot be written: {reason}{kept()}") from error
+        raise EnvironmentIncomplete(f"{path} cannot be written: {reason}{kept()}") from error
 
 
 class Exchange:

@@ -11,7 +11,7 @@ from typing import TypeVar
 import h5py
 import numpy as np
 
-from ...errors import EnvironmentLacks, InputError
+from ...errors import EnvironmentIncomplete, InputError
 from ...sweep.points.ranges import total
 from ..layouts.variables import MISSING
 from ..run.journal import journal_directory, read_journals
@@ -32,14 +32,14 @@ def unfolded(path: Path, read: Callable[[], Found]) -> Found:
     """What `read` makes of a file and its journals: again, where a run folds these in meanwhile.
 
     A fold exchanges the file before it drops the journals: where the file is the same, none was dropped.
-    EnvironmentLacks where the file never stays as it is.
+    EnvironmentIncomplete where the file never stays as it is.
     """
     for _ in range(FOLDS_MET):
         runs, before = journal_directory(path).is_dir(), identity(path)
         found = read()
         if not runs or identity(path) == before:
             return found
-    raise EnvironmentLacks(f"{path} is exchanged again and again, so that it cannot be read; try again")
+    raise EnvironmentIncomplete(f"{path} is exchanged again and again, so that it cannot be read; try again")
 
 
 def journalled_points(header: Header, status: np.ndarray) -> np.ndarray:
@@ -64,8 +64,8 @@ def put_in(values: np.ndarray, name: str, records: np.ndarray) -> None:
 def take_snapshot(path: Path, output: Path) -> tuple[int, int]:
     """Writes what is done of a run so far into a file of its own; returns (points that it has, all points).
 
-    InputError if `path` is no result, or `output` is a file that is no snapshot; EnvironmentLacks where the
-    disk refuses.
+    InputError if `path` is no result, or `output` is a file that is no snapshot; EnvironmentIncomplete where
+    the disk refuses.
     """
     read_header(path)
     if output.exists():

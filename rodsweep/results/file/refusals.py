@@ -3,7 +3,7 @@
 import shutil
 from pathlib import Path
 
-from ...errors import EnvironmentLacks, InputError
+from ...errors import EnvironmentIncomplete, InputError
 from ..run.journal import journals_of
 from .combination.extension import extension_of
 from .combination.identity import change_between
@@ -16,11 +16,11 @@ SPACE_FACTOR, SPACE_FIXED = 3, 300_000
 
 
 def require_room(path: Path, plan: Plan) -> None:
-    """EnvironmentLacks unless the file, its journals and the copy that replaces it have room."""
+    """EnvironmentIncomplete unless the file, its journals and the copy that replaces it have room."""
     size = SPACE_FACTOR * plan.points.count * (plan.layout.bytes_per_point + 12) + SPACE_FIXED
     free = shutil.disk_usage(path.parent).free
     if free < size:
-        raise EnvironmentLacks(
+        raise EnvironmentIncomplete(
             f"{path} needs {size / 1e6:.3g} MB on its disk while it is computed, and "
             f"{free / 1e6:.3g} MB are free"
         )

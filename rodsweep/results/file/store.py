@@ -16,7 +16,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from ...errors import EnvironmentLacks, InputError
+from ...errors import EnvironmentIncomplete, InputError
 from ...sweep.points.ranges import IndexRange, total
 from ..layouts.variables import MISSING, Filled, Layout
 from ..run.checkpoints import CHECKPOINTS
@@ -171,7 +171,7 @@ class Store:
                 drop_files(self.journals, pattern)
 
     def _look_again(self) -> None:
-        """Makes the file anew where it was moved or deleted; EnvironmentLacks where another is there."""
+        """Makes the file anew where it was moved or deleted; EnvironmentIncomplete where another is there."""
         if identity(self.path) == self.exchange.left:
             return
         if not self.path.exists():
@@ -184,7 +184,7 @@ class Store:
             if header.fingerprint != self.plan.fingerprint:
                 refuse_other(header, self.plan, self.journals)
         except InputError as error:
-            raise EnvironmentLacks(f"another file was put in its place meanwhile: {error}") from None
+            raise EnvironmentIncomplete(f"another file was put in its place meanwhile: {error}") from None
 
     def _fold_blocks(
         self,

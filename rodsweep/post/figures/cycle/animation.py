@@ -10,7 +10,7 @@ from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ....errors import EnvironmentLacks, InputError
+from ....errors import EnvironmentIncomplete, InputError
 from ....results.file.view import View
 from ..layout.fitting import fit
 from ..style import FIRST, SECOND
@@ -71,11 +71,13 @@ def first_frame(selection: Selection) -> tuple[Figure, list["MovingArm"]]:
 
 
 def _writer(output: Path, rate: int) -> AbstractMovieWriter:
-    """The writer for the file's suffix; EnvironmentLacks where the machine has none."""
+    """The writer for the file's suffix; EnvironmentIncomplete where the machine has none."""
     if output.suffix == ".gif":
         return PillowWriter(fps=rate)
     if not matplotlib.animation.writers.is_available("ffmpeg"):
-        raise EnvironmentLacks(f"{output}: an .mp4 needs ffmpeg, which is not installed; a .gif does not")
+        raise EnvironmentIncomplete(
+            f"{output}: an .mp4 needs ffmpeg, which is not installed; a .gif does not"
+        )
     return FFMpegWriter(fps=rate)
 
 

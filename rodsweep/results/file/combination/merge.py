@@ -39,7 +39,8 @@ def merge(output: Path, paths: Sequence[Path], planner: Planner) -> Merged:
 
     An existing `output` is the first of them. Of a point given twice the first stays; where the files are of
     different grids, both must be the same. InputError if a file is no result, was made for something else or
-    has points in its journal, or if the grids make up no larger one; EnvironmentLacks where the disk refuses.
+    has points in its journal, or if the grids make up no larger one; EnvironmentIncomplete where the disk
+    refuses.
     """
     sources = _opened(paths)
     with disk_refusals(output):
