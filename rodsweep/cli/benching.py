@@ -10,7 +10,7 @@ import click
 from ..errors import EnvironmentIncomplete
 
 MEASURED = (sys.executable, "-m", f"{__package__}.measured")
-"""What starts the command that the benchmark of the sweep measures."""
+"""Command line of the runs that the benchmark of the sweep measures."""
 HEADING = """# Performance
 
 Speed against error: what this tool takes, on one machine, in one run of `rodsweep bench`, beside its peers,
@@ -24,7 +24,7 @@ beside the text, with all settings."""
 def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path | None) -> None:
     """Runs one benchmark, or all; writes OUTPUT (Markdown), OUTPUT.h5 and OUTPUT_STUDY.png.
 
-    directory: the folder of peers, None for that of the checkout that rodsweep runs from.
+    directory: folder of the peers; None for the folder `benchmarks` of the running checkout.
     """
     try:
         from ..bench.limit_cycle.study import limit_cycle_study

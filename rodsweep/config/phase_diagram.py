@@ -120,7 +120,8 @@ class PhaseDiagramConfig(LinearConfig):
         if options.criticality and not options.curves:
             raise ValueError(
                 "phase_diagram.criticality is true but phase_diagram.curves is false; criticality is "
-                "computed along the curves: set phase_diagram.curves: true or remove phase_diagram.criticality"
+                "computed along the curves: set phase_diagram.curves: true or remove "
+                "phase_diagram.criticality"
             )
         if "gamma1" in self.parameters.numbers and not (options.criticality or options.cycles):
             raise ValueError(
