@@ -190,7 +190,7 @@ def sweep_introduction() -> str:
 
 
 def milliseconds(m: Measurement) -> float:
-    """Time of one point in milliseconds; nan if it failed."""
+    """Time of one point in milliseconds; nan for a failed point."""
     points = STRETCH if m.method.startswith(SWEEP) else 1
     return nan if m.failure else 1e3 * m.seconds / points
 
