@@ -13,12 +13,11 @@ MEASURED = (sys.executable, "-m", f"{__package__}.measured")
 """Command line of the runs that the benchmark of the sweep measures."""
 HEADING = """# Performance
 
-Speed against error: what this tool takes, on one machine, in one run of `rodsweep bench`, beside its peers,
-which one would use otherwise; they are in the folder `benchmarks` of a checkout. Times are of the processor,
-those of `sweep` of the clock; every method is run in turn with all others, round after round, and the
-medians are shown. So compare methods within a table rather than times between machines, and look at the
-error beside each time: a method is faster only where it is as accurate. Every number is in an HDF5 file
-beside the text, with all settings."""
+Speed against error of rodsweep, measured on one machine in one run of `rodsweep bench`. The peers, which a
+user might choose instead, are in the folder `benchmarks` of a checkout. Times are processor times, but clock
+times in `sweep`. All methods run in turn, round after round; the tables show medians. Compare methods within
+a table, not times between machines, and read each time together with its error: a method is faster only at
+equal accuracy. An HDF5 file beside the text has every number with all settings."""
 
 
 def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path | None) -> None:

@@ -86,8 +86,9 @@ def introduction(rounds: int) -> str:
         f"The settled cycle of k1 = {k1:g}, k2 = {k2:g}, gamma3 = {gamma3:g}, gamma1 = {gamma1:g}, "
         f"F = {CYCLE_FORCE:g}, followed for {FOLLOWED_PERIODS} periods; one element of order {CYCLE_ORDER}, "
         f"{3 * CYCLE_ORDER} unknowns. All integrators call the same compiled rate and Jacobian; the "
-        "tolerance is per component of the state, in units of its largest. Errors of period and largest tip "
-        f"y are relative and rms over 5 returns. Times are medians of {plural(rounds, 'interleaved round')}."
+        "tolerance is per component of the state, in units of the component's largest value. Errors of the "
+        "period and of the largest tip y are relative and rms over 5 returns. Times are medians of "
+        f"{plural(rounds, 'interleaved round')}."
     )
 
 
@@ -119,8 +120,8 @@ def target_table(measurements: Sequence[Measurement]) -> str:
         for method, (median, least) in at.items()
     ]
     return (
-        f"At error {TARGET:.0e}, the larger of the two, interpolated; the last column by the least times of "
-        "all rounds, which other loads disturb less:\n\n"
+        f"At an error of {TARGET:.0e}, the larger of the two errors, interpolated. The last column uses the "
+        "minimum times over all rounds, which depend less on the load of the machine:\n\n"
     ) + table(
         "method | ms a period | times the default's time | by the least times",
         "{method} | {ms:.2f} | {ratio:.2f} | {by_least:.2f}",
@@ -191,12 +192,12 @@ def settling(at: Reference, every: Sequence[Contender], rounds: int) -> str:
 def settling_table(waits: Sequence[Wait], raced: Sequence[Timed]) -> str:
     """Table of the times of all ways."""
     return (
-        f"To the settled cycle from a start of {AMPLITUDE:g} L, settled where two successive returns agree "
-        f"to {SETTLED_WITHIN:.0e}, at the loosest tolerance that settles and leaves no larger error; who "
-        "waits is given this tolerance. solve_cycle is asked for the same, and its time includes its choice "
-        f"of mesh and its proof of stability. At F = {NEAR_HOPF:g} waiting is estimated, from below: "
-        f"ln({SETTLED_WITHIN:.0e})/ln(largest multiplier) periods, at the milliseconds that one takes there; "
-        "the errors are then solve_cycle's estimate and the aim.\n\n"
+        f"From a start of {AMPLITUDE:g} L to the settled cycle. Waiting ends when two successive returns "
+        f"agree to {SETTLED_WITHIN:.0e}, at the loosest tolerance that settles with no larger error; the "
+        "user is assumed to know this tolerance. solve_cycle has the same accuracy, and its time includes the "
+        f"choice of mesh and the proof of stability. At F = {NEAR_HOPF:g} the number of periods is estimated "
+        f"from below as ln({SETTLED_WITHIN:.0e})/ln(largest multiplier), and the time from the time per "
+        "period; the errors are solve_cycle's estimate and, for waiting, the target.\n\n"
     ) + table(
         "F | way | tolerance | returns | ms | error left",
         "{force:g} | {way} | {tolerance} | {returns} | {milliseconds} | {error:.0e}",

@@ -179,13 +179,14 @@ def judged_cycle(exact: ExactCycle, cycle: Cycle) -> dict[str, Any]:
 def sweep_introduction() -> str:
     """Description of the measurements for the report."""
     return (
-        f"Cycles solved: a point of a sweep, all its multipliers included, asked for {ACCURACY:.0e}; its "
-        f"neighbour is {STEP - 1:.0%} away; the mean of {STRETCH} points, the last of which is the rod, with "
-        "what finer meshes cost that their errors are calibrated by. The time includes the straight rod's "
-        "spectrum, the choice of the mesh, the verdict, and the estimate of the error, the larger of the "
-        "period's and of the extrema's. Errors of period and largest tip y are relative, against meshes that "
-        f"leave {REFERENCE_ACCURACY:.0e}. Multipliers are those above rounding. The order in space is that "
-        "of one element; the intervals in time cover half a period where the cycle is symmetric."
+        f"Cycles solved as points of a sweep: all multipliers included, accuracy {ACCURACY:.0e}, steps of "
+        f"{STEP - 1:.0%} between neighbours. The time is the mean of {STRETCH} points up to the rod, with "
+        "the finer meshes that calibrate their errors. It includes the straight rod's spectrum, the choice of "
+        "the mesh, the verdict, and the error estimate, which is the larger of the estimates for the period "
+        "and for the extrema. Errors of the period and of the largest tip y are relative to a solution on "
+        f"meshes with errors of {REFERENCE_ACCURACY:.0e}. Multipliers are counted above rounding. The order "
+        "in space is that of one element; the intervals in time cover half a period if the cycle is "
+        "symmetric."
     )
 
 

@@ -106,8 +106,9 @@ def equal_errors(
         }
         rows.append(row)
     return (
-        f"Leading {WANTED_MODES} eigenvalues to {target:.0e}, each method at the cheapest size that gets "
-        f"there, median over {len(rods)} points of the paper's four rods, {plural(rounds, 'round')}:\n\n"
+        f"Leading {WANTED_MODES} eigenvalues to {target:.0e}: each method at the cheapest size that reaches "
+        f"this error; median over {len(rods)} points of the paper's four rods, "
+        f"{plural(rounds, 'round')}:\n\n"
     ) + table(
         "method | points reached | ms a point | worst error | times this tool's time",
         "{method} | {points:.0f} | {ms:.3f} | {worst:.0e} | {ratio:.1f}",
@@ -135,8 +136,9 @@ def hard_table(measurements: Sequence[Measurement]) -> str:
         for (method,), every in grouped(measurements, "method").items()
     ]
     return (
-        f"Leading {WANTED_MODES} eigenvalues of hard rods: the least relative error that a method reaches at "
-        "any size, and the ms of the cheapest size within a factor 10 of it (the figure has all):\n\n"
+        f"Leading {WANTED_MODES} eigenvalues of hard rods: the smallest relative error that a method reaches "
+        "at any size, and the ms of the cheapest size with at most ten times this error (the figure shows "
+        "all sizes):\n\n"
     ) + table(" | ".join(["method", *HARD_RODS]), "{method} | {cells}", rows)
 
 

@@ -82,9 +82,9 @@ def followed_table(measurements: Sequence[Measurement]) -> str:
         )
     return (
         "Certified spectra, `modes: 4`, along the longest axis of grids of F, k1, k2, gamma3, on one rank; "
-        "alone is `follow: false` on a part of the same grid. Seconds are those that the run states, with "
-        "loading what is compiled, handing out and storing; µs of the solver are from `seconds` in the file. "
-        "With a mesh are points that could not be followed, or not proved:\n\n"
+        '"alone" is `follow: false` on a part of the same grid. Seconds are stated by the run, including '
+        "loading of compiled code, scheduling and storing; µs of the solver are from `seconds` in the file. "
+        '"With a mesh" counts points that could not be followed or not be proved:\n\n'
     ) + table(
         "axis | points | s | µs a point | µs of the solver | alone | times | with a mesh | not certified "
         "| MB a rank",

@@ -39,13 +39,13 @@ APART = "spectra, two commands"
 MEGABYTE = 1e6
 INTRODUCTION = """
 `mpiexec -n RANKS rodsweep run CONFIG` as a whole, medians of interleaved rounds. Spectra: `modes: 2`,
-certified, over F, k1, k2; two commands, each with half of them on one rank, gain what two processors of
-this machine gain at most. Limit cycles: of k1 = 1e4, k2 = 1e2, gamma3 = 1e-2, at forces far below the Hopf
-point, down to 1e-6 below and 1e-7 above it, and ordinary ones, mixed. Inside is the time that the run
-itself states, without the start of Python and MPI; % busy of the ranks' time in the sweep went into points,
-the rest into waiting. Beside the solver is the ranks' time inside less the `seconds` in the file: loading
-what is compiled, handing out, storing, and waiting. Memory is the peak of a rank's resident set. While
-other programs, or the host of a virtual machine, keep processors busy, a second rank gains less."""
+certified, over F, k1, k2. Two commands, each with half of the spectra on one rank, show the largest possible
+gain of two processors on this machine. Limit cycles: k1 = 1e4, k2 = 1e2, gamma3 = 1e-2, at mixed forces far
+below the Hopf point, down to 1e-6 below and 1e-7 above it, and far above. "Inside" is the time stated by the
+run, without the start of Python and MPI; "% busy" is the share of the ranks' time in the sweep spent on
+points instead of waiting. "Beside the solver" is the ranks' time inside minus the `seconds` in the file:
+loading compiled code, scheduling, storing, and waiting. Memory is the peak of a rank's resident set. A second
+rank gains less while other programs, or the host of a virtual machine, keep processors busy."""
 
 RunCase = Callable[..., CommandRun]
 """`run_case` with the words that start the command."""
@@ -162,8 +162,8 @@ def solved_table(measurements: Sequence[Measurement]) -> str:
 def instant_table(measurements: Sequence[Measurement]) -> str:
     """Table of sweeps with the instant solver, killed and resumed."""
     return (
-        "The same command with a solver that returns random eigenvalues at once, so that everything counts "
-        "as scheduling and storing; then killed at its last point on one rank, and resumed:\n\n"
+        "The command with an instant solver that returns random eigenvalues: all time is scheduling and "
+        "storing. Next, a sweep killed at the last point on one rank, and resumed:\n\n"
     ) + table(
         "sweep | points | ranks | s | µs a point | MB, first rank | MB, other | bytes a point, file "
         "| bytes a point, journal",
@@ -186,8 +186,8 @@ def growth_table(measurements: Sequence[Measurement]) -> str:
             row |= {name: (end - start[name]) / (many - few) for name, end in totals(more).items()}
             rows.append(row | {"power": growth_power(sizes[0], less, more)})
     return (
-        "What a further point takes, of all ranks together; the power is that of the points with which the "
-        "time beyond that of the smallest sweep grows:\n\n"
+        'Cost of an additional point, summed over ranks. "Power" is the exponent with which the time, minus '
+        "the time of the smallest sweep, grows with the number of points:\n\n"
     ) + table(
         "sweep | on | from | to points | µs | bytes of file | bytes, first rank | bytes, other | power",
         "{case} | {method} | {less:.0f} | {more:.0f} | {microseconds:.3g} | {file:.4g} | {first:+.1f} "

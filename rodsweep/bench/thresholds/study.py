@@ -97,7 +97,7 @@ def introduction(rounds: int) -> str:
     """Description of the measurements for the report."""
     return (
         f"Relative error of the first onset and of the first Hopf point; medians over the rods and "
-        f"{plural(rounds, 'round')}. rodsweep finds all changes in 0 < F < {F_MAX:g} (or below k1) at once, "
-        "for which it evaluates D besides its eigenproblems, and each to rounding, whatever accuracy is "
-        "asked for. Digits = -log10(error), 0 where the threshold was missed."
+        f"{plural(rounds, 'round')}. rodsweep finds all changes in 0 < F < {F_MAX:g} (or below k1) at once. "
+        "It evaluates D in addition to its eigenproblems, and locates each change to rounding, whatever "
+        "accuracy is requested. Digits = -log10(error), 0 where the threshold was missed."
     )
